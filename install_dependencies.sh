@@ -1,0 +1,302 @@
+#!/usr/bin/env bash
+# Installs what roomba_robot needs: ROS 1 from the distribution's own packages, and the Python environment .venv/.
+#
+#   ./install_dependencies.sh         what running the robot needs
+#   ./install_dependencies.sh --dev   also what the tests need
+#
+# May be run again at any time: what is there is kept, what is missing or was left half made is mended.
+# ./roomba sources this file for its functions.
+set -euo pipefail
+
+REPOSITORY=$(cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")" && pwd -P)
+VENV=$REPOSITORY/.venv
+CACHE=$REPOSITORY/.cache
+PYTHON=/usr/bin/python3 # the one that ROS is packaged for; a pyenv or conda python has no rospy
+
+# ---------------------------------------------------------------- telling what goes on
+
+# Everything that is told goes to standard error: the output of `./roomba exec` belongs to the command.
+say() { printf '%s\n' "$*" >&2; }
+
+fail() {
+  say "error: $*"
+  exit 1
+}
+
+# Runs a command as a named step: its output goes to a log, one line on the screen tells how far it is.
+# Must not be called in a condition (`if`, `||`): bash would ignore errors inside the step.
+run_step() { # TITLE COMMAND...
+  local title=$1 started=$SECONDS interrupted=no status log
+  shift
+  log=$CACHE/logs/$1.log
+  mkdir -p "$CACHE/logs"
+  say "==> $title"
+  trap 'interrupted=yes' INT
+  set +e
+  # The lock's descriptor is closed, so that nothing a step leaves running holds the lock.
+  (set -e; "$@") 2>&1 </dev/null 9>&- | show_progress "$log" "$started"
+  status=${PIPESTATUS[0]}
+  set -e
+  trap - INT
+  if [[ $interrupted == yes ]]; then
+    say "Interrupted. The same command goes on where this one stopped."
+    exit 130
+  fi
+  if ((status != 0)); then
+    tail -n 25 "$log" | sed 's/^/    | /' >&2
+    say "error: '$title' ended with status $status; expected 0. The whole output is in $log."
+    say "       Mend what it says and run the same command again: it goes on where it stopped."
+    exit "$status"
+  fi
+  say "    done in $((SECONDS - started)) s"
+}
+
+# Copies lines to LOG and shows the newest: in place on a terminal, now and then in a pipe.
+show_progress() { # LOG STARTED
+  trap '' INT # Ctrl-C ends the step; this goes on until the step's last line
+  local log=$1 started=$2 next=$((SECONDS + 15)) line="" newest="at work" packages=0 handled=0 width
+  width=$(tput cols 2>/dev/null || echo 80)
+  : >"$log"
+  while true; do
+    if IFS= read -r -t 1 line; then
+      printf '%s\n' "$line" >>"$log"
+      case $line in
+        "" | "Selecting previously"* | "Preparing to unpack"*) ;;
+        *" newly installed, "*) # what apt is about to do
+          newest=$line
+          line=${line%% newly installed,*}
+          packages=${line##* }
+          ;;
+        "Unpacking "* | "Setting up "*)
+          handled=$((handled + 1))
+          newest="$((50 * handled / (packages > 0 ? packages : handled))) % $line"
+          ;;
+        *) newest=$line ;;
+      esac
+    elif (($? <= 128)); then # above 128: one second without a line
+      break
+    fi
+    if [[ -t 2 ]]; then
+      line="    $((SECONDS - started)) s  $newest"
+      printf '\r\033[K%s' "${line:0:width-1}" >&2
+    elif ((SECONDS >= next)); then
+      say "    $((SECONDS - started)) s  $newest"
+      next=$((SECONDS + 15))
+    fi
+  done
+  [[ ! -t 2 ]] || printf '\r\033[K' >&2
+}
+
+# Holds the lock of the set-up while a command runs, so that two that start at once do not set up both.
+with_setup_lock() { # COMMAND...
+  mkdir -p "$CACHE"
+  (
+    if ! flock --nonblock 9; then
+      say "Another set-up of $REPOSITORY is running; waiting for its end, at most 30 minutes."
+      flock --wait 1800 9 || fail "the other set-up still holds $CACHE/setup.lock after 30 minutes; end it and try again."
+    fi
+    "$@"
+  ) 9>"$CACHE/setup.lock"
+}
+
+# ---------------------------------------------------------------- stamps
+
+# A stamp is the hash of everything that a step was made from; it is written when the step is complete.
+stamp_is() { # FILE HASH
+  [[ -r $1 && $(<"$1") == "$2" ]]
+}
+
+hash_of() { # FILE...  (also of what is given on standard input)
+  { cat; sha256sum "$@"; } | sha256sum | cut -d ' ' -f 1
+}
+
+# ---------------------------------------------------------------- step: system packages
+
+distribution() { # prints bookworm, trixie or jammy
+  local VERSION_CODENAME="" UBUNTU_CODENAME="" PRETTY_NAME="an unknown system"
+  # shellcheck source=/dev/null
+  [[ ! -r /etc/os-release ]] || . /etc/os-release
+  case ${UBUNTU_CODENAME:-$VERSION_CODENAME} in
+    bookworm | trixie | jammy) printf '%s\n' "${UBUNTU_CODENAME:-$VERSION_CODENAME}" ;;
+    *) fail "expected Debian 12 (bookworm), Debian 13 (trixie) or Ubuntu 22.04 (jammy), whose own packages hold ROS 1;" \
+      "this is $PRETTY_NAME. Use one of those, a container of one of those will do." ;;
+  esac
+}
+
+# The names are the same in bookworm, trixie and jammy, but for those that the case at the end adds.
+system_packages() { # runtime|dev
+  local -a packages=(
+    python3 python3-venv cmake g++ make
+    # building: catkin, and the definitions and CMake files of the messages that ours contain
+    catkin ros-message-generation libactionlib-msgs-dev libsensor-msgs-dev libstd-msgs-dev
+    # running: master, launcher, client library, terminal commands
+    python3-rospy python3-roslaunch python3-actionlib rosout rosbash
+    python3-rosnode python3-rostopic python3-rosservice python3-rosparam python3-rosmsg python3-rosgraph
+    python3-rosbag python3-topic-tools
+    # pictures
+    python3-cv-bridge python3-opencv
+    # messages: for Python, and the definitions that `rosmsg show` reads
+    python3-actionlib-msgs ros-actionlib-msgs
+    python3-diagnostic-msgs ros-diagnostic-msgs
+    python3-geometry-msgs ros-geometry-msgs
+    python3-nav-msgs ros-nav-msgs
+    python3-rosgraph-msgs ros-rosgraph-msgs
+    python3-sensor-msgs ros-sensor-msgs
+    python3-std-msgs ros-std-msgs
+    python3-std-srvs ros-std-srvs
+    python3-tf2-msgs ros-tf2-msgs
+    python3-visualization-msgs ros-visualization-msgs
+  )
+  if [[ $1 == dev ]]; then
+    packages+=(catkin-lint git)
+  fi
+  printf '%s\n' "${packages[@]}"
+}
+
+missing_system_packages() { # runtime|dev
+  command -v dpkg-query >/dev/null || fail "expected a system with dpkg and apt (Debian or Ubuntu); there is no dpkg-query."
+  local -a packages
+  mapfile -t packages < <(system_packages "$1")
+  comm -23 <(printf '%s\n' "${packages[@]}" | sort) \
+    <(dpkg-query --show --showformat '${db:Status-Status} ${Package}\n' "${packages[@]}" 2>/dev/null |
+      sed -n 's/^installed //p' | sort -u)
+}
+
+system_is_current() { # runtime|dev
+  [[ -z $(missing_system_packages "$1") ]]
+}
+
+as_root() {
+  if ((EUID == 0)); then
+    "$@"
+  else
+    sudo -- "$@"
+  fi
+}
+
+# Says what to type if this user may not install packages, before anything is tried.
+require_root() { # PACKAGE...
+  ((EUID != 0)) || return 0
+  local command="apt-get update && apt-get install --no-install-recommends $*"
+  command -v sudo >/dev/null ||
+    fail "installing packages needs root, and there is no sudo. Have this run as root, then try again:"$'\n'"    $command"
+  sudo -n true 2>/dev/null && return 0
+  [[ -t 0 ]] && sudo -v && return 0
+  fail "installing packages needs root, and sudo did not let you. Have this run as root, then try again:"$'\n'"    $command"
+}
+
+apt_get() {
+  as_root env DEBIAN_FRONTEND=noninteractive apt-get -o DPkg::Lock::Timeout=300 -o Dpkg::Use-Pty=0 \
+    -o Acquire::Retries=3 -o Acquire::http::Timeout=30 -o Acquire::https::Timeout=30 "$@"
+}
+
+# A source that cannot be read, of a third party for instance, is no reason to stop: the others may do.
+refresh_package_lists() {
+  local output deadline=$((SECONDS + 300))
+  while true; do
+    output=$(apt_get update 2>&1) || true
+    printf '%s\n' "$output"
+    grep -q 'Could not get lock' <<<"$output" || break
+    ((SECONDS < deadline)) || fail "another apt has held its lock for 5 minutes; wait for its end and try again."
+    sleep 5
+  done
+  if grep -q '^[EW]:' <<<"$output"; then
+    printf 'warning: apt could not read all its sources; going on with those it could.\n'
+  fi
+}
+
+install_system_packages() { # runtime|dev
+  local -a missing
+  mapfile -t missing < <(missing_system_packages "$1")
+  as_root env DEBIAN_FRONTEND=noninteractive dpkg --configure -a || true # what an interrupted apt left
+  refresh_package_lists
+  apt_get --yes --no-install-recommends install "${missing[@]}" || {
+    printf 'If a package cannot be located: on Ubuntu the component "universe" must be enabled.\n'
+    return 1
+  }
+  system_is_current "$1" || fail "apt-get succeeded, but these are still missing: $(missing_system_packages "$1" | xargs)"
+}
+
+# ---------------------------------------------------------------- step: Python environment
+
+# What the environment is made for: another Python or another place needs another environment.
+environment_identity() {
+  printf '%s in %s\n' "$(readlink -f "$PYTHON")" "$(readlink -f "$VENV")"
+}
+
+requirement_files() { # runtime|dev
+  printf '%s\n' requirements.txt
+  [[ $1 != dev ]] || printf '%s\n' requirements-dev.txt
+}
+
+python_hash() { # runtime|dev
+  local -a files
+  mapfile -t files < <(requirement_files "$1")
+  (cd "$REPOSITORY" && environment_identity | hash_of constraints.txt "${files[@]}")
+}
+
+python_is_current() { # runtime|dev
+  [[ -x $VENV/bin/python3 ]] && stamp_is "$VENV/.stamp-$1" "$(python_hash "$1")"
+}
+
+# An environment is made anew if its Python is gone, it was moved, or an installation into it was interrupted.
+make_python_environment() { # runtime|dev
+  local -a arguments=()
+  local file
+  if ! stamp_is "$VENV/.made-for" "$(environment_identity)" || [[ -e $VENV/.unfinished ]] ||
+    ! "$VENV/bin/python3" -m pip --version; then
+    printf 'Making %s\n' "$VENV"
+    "$PYTHON" -m venv --clear --system-site-packages "$VENV"
+    environment_identity >"$VENV/.made-for"
+  fi
+  rm -f "$VENV"/.stamp-*
+  touch "$VENV/.unfinished"
+  while read -r file; do
+    arguments+=(--requirement "$REPOSITORY/$file")
+  done < <(requirement_files "$1")
+  # What a user has in ~/.local does not count: it may be built against another numpy than the distribution's.
+  PYTHONNOUSERSITE=1 PIP_USER=no PIP_DISABLE_PIP_VERSION_CHECK=1 "$VENV/bin/python3" -m pip install --no-input \
+    --progress-bar off --retries 5 --prefer-binary --constraint "$REPOSITORY/constraints.txt" "${arguments[@]}"
+  printf 'Trying that OpenCV, cv_bridge and numba agree about numpy\n'
+  PYTHONNOUSERSITE=1 "$VENV/bin/python3" -c 'import cv2, cv_bridge.boost.cv_bridge_boost, numba, numpy, pydantic, rospy, shapely'
+  rm "$VENV/.unfinished"
+  python_hash runtime >"$VENV/.stamp-runtime"
+  [[ $1 != dev ]] || python_hash dev >"$VENV/.stamp-dev"
+}
+
+# ---------------------------------------------------------------- all of it
+
+install_dependencies() { # runtime|dev
+  if ! system_is_current "$1"; then
+    distribution >/dev/null
+    local -a missing
+    mapfile -t missing < <(missing_system_packages "$1")
+    require_root "${missing[@]}"
+    run_step "Installing ${#missing[@]} system packages and what they need" install_system_packages "$1"
+  fi
+  if ! python_is_current "$1"; then
+    run_step "Installing Python packages into .venv" make_python_environment "$1"
+  fi
+}
+
+main() {
+  local extent=runtime
+  case ${1:-} in
+    "") ;;
+    --dev) extent=dev ;;
+    *)
+      say "usage: ./install_dependencies.sh [--dev]   (--dev: also what the tests need); came: $*"
+      exit 2
+      ;;
+  esac
+  with_setup_lock install_dependencies "$extent"
+  say "All dependencies are there. Next: ./roomba run, or catkin_make in your workspace."
+  if [[ $(command -v python3) != "$PYTHON" && $(command -v python3) != /bin/python3 ]]; then
+    say "The python3 of this shell is $(command -v python3), which need not know ROS; type then:"
+    say "    catkin_make -DPYTHON_EXECUTABLE=$PYTHON"
+  fi
+}
+
+if [[ ${BASH_SOURCE[0]} == "$0" ]]; then
+  main "$@"
+fi
