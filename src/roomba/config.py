@@ -1,0 +1,180 @@
+"""Validated, frozen configuration: ``config/robot.yaml`` and the seed's parameters."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Annotated, Any, TypeVar
+
+import yaml
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+
+from roomba.errors import ConfigError
+
+Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
+Ratio = Annotated[float, Field(ge=0.0, le=1.0, allow_inf_nan=False)]
+
+FASTEST_SPEED = 3.0
+"""m/s; a `robot_max_speed` above this is a slip of the finger, not a robot for a home."""
+
+
+class _Frozen(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=False)
+
+
+class BodyConfig(_Frozen):
+    """The round differential-drive body; lengths in m, speeds in m/s and rad/s."""
+
+    diameter: Positive = 0.3485
+    height: Positive = 0.092
+    wheel_separation: Positive = 0.235
+    wheel_diameter: Positive = 0.072
+    max_angular_speed: Positive = 4.25
+    max_acceleration: Positive = 0.9
+    max_deceleration: Positive = 2.0
+    max_angular_acceleration: Positive = 7.7
+    command_timeout: Positive = 0.5
+
+    @property
+    def radius(self) -> float:
+        """Radius of the body's disc, m."""
+        return self.diameter / 2.0
+
+
+class BrushConfig(_Frozen):
+    """Brushes and bin: what is picked up of the dirt that is driven over."""
+
+    width: Positive = 0.20
+    depth: Positive = 0.05
+    efficiency: Ratio = 0.80
+    bin_capacity: Positive = 100.0
+
+
+class CameraConfig(_Frozen):
+    """The pan camera; ``horizontal_field`` and ``max_pan`` in degrees as the seed's angles are."""
+
+    width: Annotated[int, Field(gt=0)] = 1024
+    height: Annotated[int, Field(gt=0)] = 768
+    horizontal_field: Annotated[float, Field(gt=10.0, lt=150.0)] = 75.0
+    mount_forward: float = 0.15
+    mount_height: Positive = 0.085
+    max_pan: Positive = 30.0
+
+
+class ControlConfig(_Frozen):
+    """The position loop."""
+
+    approach_deceleration: Positive = 0.5
+    heading_gain: Positive = 4.0
+    turn_in_place_angle: Annotated[float, Field(gt=0.0, lt=math.pi / 2)] = 0.9
+    arrival_tolerance: Positive = 0.02
+    restart_distance: Positive = 0.08
+    turning_speed: Positive = 2.5
+    stream_timeout: Positive = 0.3
+
+
+class WalkConfig(_Frozen):
+    """Walking to a point: the path, the setpoint moving along it, and when to give up."""
+
+    lookahead: Positive = 0.25
+    clearance: Positive = 0.04
+    tight_clearance: Positive = 0.01
+    corner_speed: Positive = 0.25
+    arrival_tolerance: Positive = 0.03
+    bump_radius: Positive = 0.06
+    progress_timeout: Positive = 6.0
+    max_replans: Annotated[int, Field(ge=0)] = 12
+
+
+class RobotConfig(_Frozen):
+    """All of ``config/robot.yaml``; every part has the shipped file's values by default."""
+
+    body: BodyConfig = BodyConfig()
+    brush: BrushConfig = BrushConfig()
+    camera: CameraConfig = CameraConfig()
+    control: ControlConfig = ControlConfig()
+    walk: WalkConfig = WalkConfig()
+
+
+class SeedParameters(_Frozen):
+    """The original's parameters (see the README's table), validated; metres and m/s.
+
+    Other spellings of the report (``initial_pos_x``, ``max_coordinate`` …) are accepted by
+    :func:`parse_seed_parameters`.
+    """
+
+    robot_name: Annotated[str, Field(min_length=1, strict=True)] = "roomba_robot"
+    robot_max_speed: Annotated[float, Field(gt=0.0, le=FASTEST_SPEED, allow_inf_nan=False)] = 0.5
+    initial_post_x: Annotated[float, Field(allow_inf_nan=False)] = 0.0
+    initial_post_y: Annotated[float, Field(allow_inf_nan=False)] = 0.0
+    initial_post_theta: Annotated[float, Field(allow_inf_nan=False)] = 0.0
+    min_cordinate: Annotated[float, Field(allow_inf_nan=False)] = -100.0
+    max_cordinate: Annotated[float, Field(allow_inf_nan=False)] = 100.0
+
+    @model_validator(mode="after")
+    def _limits_in_order(self) -> SeedParameters:
+        if self.min_cordinate >= self.max_cordinate:
+            raise ValueError(
+                f"min_cordinate ({self.min_cordinate}) must be below max_cordinate "
+                f"({self.max_cordinate})"
+            )
+        return self
+
+    def allows(self, x: float, y: float) -> bool:
+        """Whether a point, m, is finite and within the limits of both coordinates."""
+        return all(
+            math.isfinite(value) and self.min_cordinate <= value <= self.max_cordinate
+            for value in (x, y)
+        )
+
+
+SEED_SPELLINGS: dict[str, tuple[str, ...]] = {
+    "robot_name": ("robot_name",),
+    "robot_max_speed": ("robot_max_speed",),
+    "initial_post_x": ("initial_post_x", "initial_pos_x"),
+    "initial_post_y": ("initial_post_y", "initial_pos_y"),
+    "initial_post_theta": ("initial_post_theta",),
+    "min_cordinate": ("min_cordinate", "min_coordinate"),
+    "max_cordinate": ("max_cordinate", "max_coordinate"),
+}
+"""Each parameter with the spellings that mean it, the first one its own."""
+
+
+def parse_seed_parameters(values: dict[str, Any]) -> SeedParameters:
+    """Return the validated parameters; what is missing has its default.
+
+    ``values`` maps names, in any spelling of :data:`SEED_SPELLINGS`, to raw values.
+    Raises :class:`ConfigError` with one line that names the parameter, its value and what is meant.
+    """
+    known: dict[str, Any] = {}
+    for name, spellings in SEED_SPELLINGS.items():
+        for spelling in reversed(spellings):
+            if spelling in values:
+                known[name] = values[spelling]
+    for name, value in known.items():
+        if name != "robot_name" and (isinstance(value, bool) or not isinstance(value, int | float)):
+            raise ConfigError(f"parameter {name}: expected a number, got {value!r}")
+    return _validated(SeedParameters, known, "parameter ")
+
+
+def load_robot_config(path: Path) -> RobotConfig:
+    """Read ``config/robot.yaml`` or a file like it; raises :class:`ConfigError` with the reason."""
+    try:
+        raw = yaml.safe_load(path.read_text(encoding="utf-8"))
+    except (OSError, yaml.YAMLError) as error:
+        raise ConfigError(f"{path}: cannot be read as YAML: {error}") from error
+    return _validated(RobotConfig, raw or {}, f"{path}: ")
+
+
+_Model = TypeVar("_Model", bound=BaseModel)
+
+
+def _validated(model: type[_Model], raw: Any, where: str) -> _Model:
+    try:
+        return model.model_validate(raw)
+    except ValidationError as error:
+        first = error.errors()[0]
+        name = ".".join(str(part) for part in first["loc"])
+        reason = first["msg"].removeprefix("Value error, ")
+        got = f", got {first['input']!r}" if name else ""
+        raise ConfigError(f"{where}{name}: {reason}{got}".replace(": :", ":")) from error

@@ -1,0 +1,61 @@
+"""Poses, twists and angles in the plane.
+
+SI units; angles in radians, counter-clockwise from the x axis (REP-103).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+TWO_PI = 2.0 * math.pi
+
+
+def wrap_angle(angle: float) -> float:
+    """Return the same direction in (-pi, pi]; ``angle`` in radians."""
+    wrapped = math.remainder(angle, TWO_PI)
+    return math.pi if wrapped == -math.pi else wrapped
+
+
+@dataclass(frozen=True, slots=True)
+class Twist:
+    """Velocity of a planar body in its own frame: forward, m/s, and turning left, rad/s."""
+
+    linear: float = 0.0
+    angular: float = 0.0
+
+    @property
+    def is_finite(self) -> bool:
+        """Whether both parts are numbers that can be driven."""
+        return math.isfinite(self.linear) and math.isfinite(self.angular)
+
+
+@dataclass(frozen=True, slots=True)
+class Pose:
+    """Position, m, and heading, rad, of one frame in another."""
+
+    x: float = 0.0
+    y: float = 0.0
+    theta: float = 0.0
+
+    def compose(self, other: Pose) -> Pose:
+        """Return ``other``, given in this pose's frame, in the frame that this pose is given in."""
+        cosine, sine = math.cos(self.theta), math.sin(self.theta)
+        return Pose(
+            self.x + cosine * other.x - sine * other.y,
+            self.y + sine * other.x + cosine * other.y,
+            wrap_angle(self.theta + other.theta),
+        )
+
+    def inverse(self) -> Pose:
+        """Return the pose that undoes this one: ``p.compose(p.inverse())`` is the identity."""
+        cosine, sine = math.cos(self.theta), math.sin(self.theta)
+        return Pose(-cosine * self.x - sine * self.y, sine * self.x - cosine * self.y, -self.theta)
+
+    def distance_to(self, x: float, y: float) -> float:
+        """Return the straight distance to a point of the same frame, m."""
+        return math.hypot(x - self.x, y - self.y)
+
+    def bearing_to(self, x: float, y: float) -> float:
+        """Return the angle from this heading to a point of the same frame, rad in (-pi, pi]."""
+        return wrap_angle(math.atan2(y - self.y, x - self.x) - self.theta)

@@ -1,0 +1,81 @@
+"""Grids laid over the floor: metres to cells and back, and occupancy maps.
+
+Row 0 is the lowest y, column 0 the lowest x, as in nav_msgs/OccupancyGrid; a map has no rotation.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+UNKNOWN = -1
+FREE = 0
+OCCUPIED = 100
+
+
+@dataclass(frozen=True, slots=True)
+class GridFrame:
+    """Where a grid lies: its lower left corner, m, its cell size, m, and its shape in cells."""
+
+    resolution: float
+    origin_x: float
+    origin_y: float
+    rows: int
+    columns: int
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """(rows, columns) of an array over this grid."""
+        return self.rows, self.columns
+
+    @property
+    def extent(self) -> tuple[float, float, float, float]:
+        """Lowest x, highest x, lowest y, highest y, m."""
+        return (
+            self.origin_x,
+            self.origin_x + self.columns * self.resolution,
+            self.origin_y,
+            self.origin_y + self.rows * self.resolution,
+        )
+
+    def cell_of(self, x: float, y: float) -> tuple[int, int]:
+        """Return the (row, column) in which a point lies; may be outside the grid."""
+        return (
+            math.floor((y - self.origin_y) / self.resolution),
+            math.floor((x - self.origin_x) / self.resolution),
+        )
+
+    def centre_of(self, row: int, column: int) -> tuple[float, float]:
+        """Return the (x, y) of a cell's centre, m."""
+        return (
+            self.origin_x + (column + 0.5) * self.resolution,
+            self.origin_y + (row + 0.5) * self.resolution,
+        )
+
+    def contains(self, x: float, y: float) -> bool:
+        """Whether a point lies on the grid."""
+        row, column = self.cell_of(x, y)
+        return 0 <= row < self.rows and 0 <= column < self.columns
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class OccupancyMap:
+    """What is known of a floor: int8 [rows, columns]; 0 free, 100 occupied, -1 unknown."""
+
+    frame: GridFrame
+    values: NDArray[np.int8]
+
+    def __post_init__(self) -> None:
+        """Check that the array fits the frame."""
+        if self.values.shape != self.frame.shape:
+            raise ValueError(
+                f"expected map values of shape {self.frame.shape}, got {self.values.shape}"
+            )
+
+    @property
+    def solid(self) -> NDArray[np.bool_]:
+        """Cells that no body may enter: all that is not known to be free, bool [rows, columns]."""
+        return self.values != FREE

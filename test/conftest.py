@@ -1,0 +1,54 @@
+"""One hypothesis profile; graphs of their own for the tests that ask for one."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from fixtures.forked import run_forked
+from fixtures.graph import RosGraph
+from hypothesis import HealthCheck, settings
+
+# The same examples in every run, and no deadline on slow machines.
+settings.register_profile(
+    "project", deadline=None, suppress_health_check=[HealthCheck.too_slow], derandomize=True
+)
+settings.load_profile("project")
+
+GRAPH_FIXTURES = {"graph", "robot", "shared_robot"}
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_pyfunc_call(pyfuncitem: pytest.Function) -> bool | None:
+    """Run what uses a graph in a process of its own: each test can be a node of its graph."""
+    names = pyfuncitem._fixtureinfo.argnames
+    if not GRAPH_FIXTURES & set(pyfuncitem.fixturenames):
+        return None
+    arguments = {name: pyfuncitem.funcargs[name] for name in names}
+    run_forked(lambda: pyfuncitem.obj(**arguments))
+    return True
+
+
+@pytest.fixture
+def graph(tmp_path: Path) -> Iterator[RosGraph]:
+    """A bare master."""
+    with RosGraph(tmp_path) as own:
+        own.start_master()
+        yield own
+
+
+@pytest.fixture
+def robot(tmp_path: Path) -> Iterator[RosGraph]:
+    """The whole robot, launched for one test; it may be broken."""
+    with RosGraph(tmp_path) as own:
+        own.launch()
+        yield own
+
+
+@pytest.fixture(scope="module")
+def shared_robot(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RosGraph]:
+    """The whole robot, launched once for a module whose tests leave it as it was."""
+    with RosGraph(tmp_path_factory.mktemp("robot")) as own:
+        own.launch()
+        yield own

@@ -1,0 +1,49 @@
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from roomba.geometry import Pose, Twist, wrap_angle
+
+angles = st.floats(-50.0, 50.0)
+metres = st.floats(-100.0, 100.0)
+poses = st.builds(Pose, metres, metres, angles)
+
+
+@given(angles)
+def test_wrapped_angle_is_the_same_direction_within_half_a_turn(angle: float) -> None:
+    wrapped = wrap_angle(angle)
+    assert -math.pi < wrapped <= math.pi
+    assert math.cos(wrapped) == pytest.approx(math.cos(angle), abs=1e-9)
+    assert math.sin(wrapped) == pytest.approx(math.sin(angle), abs=1e-9)
+
+
+def test_half_a_turn_is_wrapped_to_plus_pi() -> None:
+    assert wrap_angle(-math.pi) == math.pi
+    assert wrap_angle(3 * math.pi) == pytest.approx(math.pi)
+
+
+@given(poses)
+def test_inverse_undoes_a_pose(pose: Pose) -> None:
+    there_and_back = pose.compose(pose.inverse())
+    assert there_and_back.x == pytest.approx(0.0, abs=1e-9)
+    assert there_and_back.y == pytest.approx(0.0, abs=1e-9)
+    assert math.cos(there_and_back.theta) == pytest.approx(1.0)
+
+
+def test_composition_turns_then_goes() -> None:
+    ahead = Pose(1.0, 2.0, math.pi / 2).compose(Pose(3.0, 0.0, 0.1))
+    assert (ahead.x, ahead.y) == pytest.approx((1.0, 5.0))
+    assert ahead.theta == pytest.approx(math.pi / 2 + 0.1)
+
+
+def test_bearing_is_positive_to_the_left() -> None:
+    assert Pose(0.0, 0.0, 0.0).bearing_to(1.0, 1.0) == pytest.approx(math.pi / 4)
+    assert Pose(0.0, 0.0, math.pi).bearing_to(-1.0, 1.0) == pytest.approx(-math.pi / 4)
+
+
+def test_only_numbers_can_be_driven() -> None:
+    assert Twist(1.0, -1.0).is_finite
+    assert not Twist(math.nan, 0.0).is_finite
+    assert not Twist(0.0, math.inf).is_finite
