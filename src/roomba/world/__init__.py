@@ -1,0 +1,1 @@
+"""The simulated home and robot body: the truth, which the brain never reads."""

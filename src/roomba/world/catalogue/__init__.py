@@ -1,0 +1,19 @@
+"""The catalogue of furniture by kind; each file has the kinds of one corner of a home."""
+
+from __future__ import annotations
+
+from types import MappingProxyType
+
+from roomba.world.catalogue.bathroom import BATHROOM
+from roomba.world.catalogue.cabinets import CABINETS
+from roomba.world.catalogue.kitchen import KITCHEN
+from roomba.world.catalogue.parts import Kind, Size
+from roomba.world.catalogue.seats import SEATS
+from roomba.world.catalogue.things import FIXTURES, THINGS
+
+__all__ = ["FIXTURES", "KINDS", "Kind", "Size"]
+
+KINDS: MappingProxyType[str, Kind] = MappingProxyType(
+    {**SEATS, **CABINETS, **KITCHEN, **BATHROOM, **THINGS}
+)
+"""Every kind by its name."""

@@ -1,0 +1,184 @@
+"""Reads YAML strictly, and says in which line of the file something is wrong."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, TypeVar
+
+from pydantic import BaseModel, ValidationError
+from yaml import MappingNode, Node, ScalarNode, SequenceNode, YAMLError
+from yaml.composer import Composer
+from yaml.constructor import SafeConstructor
+from yaml.parser import Parser
+from yaml.reader import Reader
+from yaml.resolver import Resolver
+from yaml.scanner import Scanner
+
+from roomba.errors import HomeError
+
+Location = tuple[int | str, ...]
+_Model = TypeVar("_Model", bound=BaseModel)
+
+
+class _Loader(Reader, Scanner, Parser, Composer, SafeConstructor, Resolver):
+    """What ``yaml.SafeLoader`` is, but out of reach of ROS, which teaches that one to run code."""
+
+    def __init__(self, text: str) -> None:
+        Reader.__init__(self, text)
+        Scanner.__init__(self)
+        Parser.__init__(self)
+        Composer.__init__(self)
+        SafeConstructor.__init__(self)
+        Resolver.__init__(self)
+
+
+@dataclass(frozen=True, slots=True)
+class YamlFile:
+    """A file's content as plain values, and the tree that knows where each one stands."""
+
+    path: Path
+    data: Any
+    root: Node | None
+
+    def error(self, location: Location, reason: str) -> HomeError:
+        """Return (not raise) the error for the value at ``location``: keys and indices.
+
+        Of a location that is not there (a missing key) the nearest enclosing value gives the line.
+        """
+        return HomeError(f"{self.path}:{self._line_of(location)}: {reason}")
+
+    def validated(self, model: type[_Model]) -> _Model:
+        """Return the content as a model; raises :class:`HomeError` with line, reason and value."""
+        try:
+            return model.model_validate(self.data)
+        except ValidationError as error:
+            first = error.errors()[0]
+            known = _keys_at(model, first["loc"][:-1])
+            raise self.error(first["loc"], _reason(dict(first), known)) from None
+
+    def _line_of(self, location: Location) -> int:
+        node = self.root
+        if node is None:
+            return 1
+        line = node.start_mark.line
+        for step in location:
+            found = _child(node, step)
+            if found is None:
+                break
+            key, node = found
+            line = key.start_mark.line
+        return int(line) + 1
+
+
+def read_yaml(path: Path) -> YamlFile:
+    """Read a YAML file; raises :class:`HomeError` if it cannot be read or is not a mapping."""
+    try:
+        text = path.read_text(encoding="utf-8")
+    except OSError as error:
+        raise HomeError(f"{path}: cannot be read: {error.strerror or error}") from error
+    except UnicodeDecodeError as error:
+        raise HomeError(
+            f"{path}: expected UTF-8 text, got other bytes; save it as UTF-8"
+        ) from error
+    try:
+        loader = _Loader(text)
+        root = loader.get_single_node()
+        file = YamlFile(path, None, root)
+        _refuse_duplicates(file, root, set())
+        data = loader.construct_document(root) if root is not None else None
+    except YAMLError as error:
+        mark = getattr(error, "problem_mark", None)
+        line = mark.line + 1 if mark is not None else 1
+        problem = getattr(error, "problem", None) or str(error).splitlines()[0]
+        raise HomeError(f"{path}:{line}: expected YAML, got something else: {problem}") from error
+    except (ValueError, TypeError, RecursionError) as error:
+        raise HomeError(f"{path}:1: expected plain YAML values: {error}") from error
+    if not isinstance(data, dict):
+        raise file.error((), f"expected keys and values (`key: value`), got {_shown(data)}")
+    return YamlFile(path, data, root)
+
+
+def suggestion(word: str, known: Iterable[str]) -> str:
+    """Return what to do about an unknown word: the nearest known one, or all of them."""
+    choices = sorted(known)
+    near = difflib.get_close_matches(word, choices, n=1, cutoff=0.5)
+    return f"did you mean {near[0]!r}?" if near else f"known are: {', '.join(choices)}"
+
+
+def _child(node: Node, step: int | str) -> tuple[Node, Node] | None:
+    """Return the node where a child begins (its key, or itself in a list), and the child."""
+    if isinstance(node, MappingNode):
+        for key, value in node.value:
+            if isinstance(key, ScalarNode) and key.value == str(step):
+                return key, value
+    if isinstance(node, SequenceNode) and isinstance(step, int) and step < len(node.value):
+        return node.value[step], node.value[step]
+    return None
+
+
+def _refuse_duplicates(file: YamlFile, node: Node | None, seen: set[int]) -> None:
+    """YAML lets the last of two equal keys win in silence; here that is an error."""
+    if node is None or id(node) in seen:
+        return
+    seen.add(id(node))
+    if isinstance(node, SequenceNode):
+        for value in node.value:
+            _refuse_duplicates(file, value, seen)
+    if isinstance(node, MappingNode):
+        keys: set[str] = set()
+        for key, value in node.value:
+            if isinstance(key, ScalarNode):
+                if key.value in keys:
+                    line = key.start_mark.line + 1
+                    raise HomeError(
+                        f"{file.path}:{line}: expected each key once, got {key.value!r} again; "
+                        "remove one of them"
+                    )
+                keys.add(key.value)
+            _refuse_duplicates(file, value, seen)
+
+
+def _reason(error: dict[str, Any], known: list[str]) -> str:
+    """Turn pydantic's first finding into: what was expected, what came, what to do."""
+    name = ".".join(str(part) for part in error["loc"])
+    key = str(error["loc"][-1]) if error["loc"] else ""
+    if error["type"] == "extra_forbidden":
+        return f"expected a known key, got {key!r}; {suggestion(key, known)}"
+    if error["type"] == "missing":
+        return f"expected {key!r} here, got nothing; add it"
+    message = str(error["msg"]).removeprefix("Value error, ").removeprefix("Assertion failed, ")
+    message = message.replace("Input should be", "expected")
+    message = message[:1].lower() + message[1:]
+    return f"{name}: {message}; got {_shown(error['input'])}; correct it"
+
+
+def _keys_at(model: type[BaseModel], location: Location) -> list[str]:
+    """Return the keys that the model takes at a location, for the suggestion of a spelling."""
+    current: Any = model
+    for step in location:
+        if isinstance(step, int):
+            continue
+        field = current.model_fields.get(step) if hasattr(current, "model_fields") else None
+        if field is None:
+            return []
+        current = _model_in(field.annotation)
+    return list(current.model_fields) if hasattr(current, "model_fields") else []
+
+
+def _model_in(annotation: Any) -> Any:
+    """Return the model inside ``list[Model]``, ``Model | None`` and the like."""
+    if hasattr(annotation, "model_fields"):
+        return annotation
+    for part in getattr(annotation, "__args__", ()):
+        found = _model_in(part)
+        if found is not None:
+            return found
+    return None
+
+
+def _shown(value: Any) -> str:
+    text = "nothing" if value is None else repr(value)
+    return text if len(text) <= 60 else text[:57] + "..."

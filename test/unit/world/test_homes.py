@@ -1,0 +1,168 @@
+"""Every shipped home: it loads, its station fits, all rooms can be reached, map and layer agree."""
+
+from __future__ import annotations
+
+import importlib.util
+import math
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+import pytest
+import shapely
+
+from roomba.config import BodyConfig
+from roomba.grid import FREE, OCCUPIED
+from roomba.world.home import Home
+from roomba.world.layer import list_homes, load_home
+from roomba.world.map_file import load_map
+from roomba.world.raster import distance_to_cells, largest_component, where_body_fits
+
+HOMES = Path(__file__).parents[3] / "homes"
+NAMES = ["apartment", "empty", "flat", "hall", "lshape", "studio"]
+RADIUS = BodyConfig().radius
+COMFORT = 0.04
+"""m; wanted between body and walls on the way into every room."""
+
+
+@pytest.fixture(scope="module")
+def homes() -> dict[str, Home]:
+    return {name: load_home(name, HOMES) for name in NAMES}
+
+
+@pytest.fixture(scope="module")
+def draw() -> ModuleType:
+    specification = importlib.util.spec_from_file_location("draw", HOMES / "draw.py")
+    assert specification is not None
+    assert specification.loader is not None
+    module = importlib.util.module_from_spec(specification)
+    specification.loader.exec_module(module)
+    return module
+
+
+def test_these_homes_are_shipped() -> None:
+    assert list_homes(HOMES) == NAMES
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_docked_body_fits_with_its_nose_to_the_station(homes: dict[str, Home], name: str) -> None:
+    home = homes[name]
+    x, y = home.station.x, home.station.y
+    assert distance_to_cells(home.frame, home.solid, x, y) >= RADIUS
+    station = home.furniture[-1]
+    assert station.kind == "station"
+    assert home.station.bearing_to(station.pose.x, station.pose.y) == pytest.approx(0.0, abs=1e-9)
+    row, column = home.frame.cell_of(station.pose.x, station.pose.y)
+    assert home.solid[row, column]
+    assert home.map.values[row, column] == OCCUPIED
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_every_room_can_be_reached_from_the_station(homes: dict[str, Home], name: str) -> None:
+    home = homes[name]
+    floor = largest_component(where_body_fits(home.frame, home.solid, RADIUS + COMFORT))
+    away = math.ceil((RADIUS + COMFORT) / home.frame.resolution)
+    row, column = home.frame.cell_of(home.station.x, home.station.y)
+    near = floor[row - away : row + away + 1, column - away : column + away + 1]
+    assert near.any(), "the station is not on the main floor"
+    rows, columns = np.nonzero(floor)
+    x = home.frame.origin_x + (columns + 0.5) * home.frame.resolution
+    y = home.frame.origin_y + (rows + 0.5) * home.frame.resolution
+    assert home.rooms
+    for room in home.rooms:
+        polygon = shapely.Polygon(room.outline)
+        inside = np.count_nonzero(shapely.contains_xy(polygon, x, y)) * home.frame.resolution**2
+        assert inside > 0.3 * polygon.area, room.name
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_map_and_truth_differ_only_in_what_is_off_the_map(
+    homes: dict[str, Home], name: str
+) -> None:
+    home = homes[name]
+    known_free = home.map.values == FREE
+    assert not (~home.solid & ~known_free).any()
+    surprises = home.solid & known_free
+    hidden = [piece for piece in home.furniture if not piece.on_map]
+    assert surprises.any() == bool(hidden)
+    for row, column in np.argwhere(surprises):
+        x, y = home.frame.centre_of(row, column)
+        assert min(math.hypot(piece.pose.x - x, piece.pose.y - y) for piece in hidden) < 0.25
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_walls_are_solid_and_shut_the_home_in(homes: dict[str, Home], name: str) -> None:
+    home = homes[name]
+    assert home.walls.any()
+    assert not (home.walls & ~home.solid).any()
+    border = np.zeros(home.frame.shape, np.bool_)
+    border[[0, -1], :] = border[:, [0, -1]] = True
+    assert home.solid[border].all()
+
+
+def test_flat_has_five_rooms_of_a_flat_and_a_toy_nobody_mapped(homes: dict[str, Home]) -> None:
+    flat = homes["flat"]
+    assert [room.name for room in flat.rooms] == [
+        "living room",
+        "kitchen",
+        "hallway",
+        "bedroom",
+        "bathroom",
+    ]
+    floor = np.count_nonzero(~flat.walls & (flat.map.values >= 0)) * flat.frame.resolution**2
+    assert 60.0 <= floor <= 90.0
+    assert [piece.name for piece in flat.furniture if not piece.on_map] == ["toy lorry"]
+    assert (flat.station.x, flat.station.y) == (0.0, 0.0)
+    room = flat.room_at(0.0, 0.0)
+    assert room is not None
+    assert room.name == "living room"
+    assert flat.room_at(-3.0, 0.0) is None
+    for door in flat.doors:
+        opening = door.opening
+        width = max(opening.x_max - opening.x_min, opening.y_max - opening.y_min)
+        assert 0.8 <= width <= 0.9 + 1e-9
+        assert door.is_open
+
+
+def test_flat_lets_the_body_walk_straight_from_home_to_3_4(homes: dict[str, Home]) -> None:
+    """The report's 5.0 m in 10 s: a clear corridor, 12 cm wider than the body on both sides."""
+    flat = homes["flat"]
+    assert flat.map.values[flat.frame.cell_of(3.0, 4.0)] == FREE
+    # What lies behind the start, as the station does, is in nobody's way.
+    corridor = shapely.LineString([(0.0, 0.0), (3.0, 4.0)]).buffer(RADIUS + 0.12, cap_style="flat")
+    beyond = shapely.Point(3.0, 4.0).buffer(RADIUS + 0.12)
+    for row, column in np.argwhere(flat.solid):
+        x, y = flat.frame.centre_of(row, column)
+        half = flat.frame.resolution / 2.0
+        cell = shapely.box(x - half, y - half, x + half, y + half)
+        assert not cell.intersects(corridor), (x, y)
+        assert not cell.intersects(beyond), (x, y)
+
+
+def test_hall_lets_the_body_stand_at_the_limits(homes: dict[str, Home]) -> None:
+    hall = homes["hall"]
+    for x in (-100.0, 100.0):
+        for y in (-100.0, 100.0):
+            assert distance_to_cells(hall.frame, hall.solid, x, y) >= RADIUS + COMFORT
+    assert np.count_nonzero(hall.solid & ~hall.walls) <= 4, "nothing but walls and the station"
+
+
+@pytest.mark.parametrize("name", ["flat", "studio", "hall"])
+def test_map_is_what_the_layer_draws(draw: ModuleType, name: str) -> None:
+    drawn = draw.drawn_map(name, HOMES)
+    filed = load_map(HOMES / name / "map.yaml")
+    assert filed.frame == drawn.frame
+    assert np.array_equal(filed.values, drawn.values), "run homes/draw.py"
+
+
+@pytest.mark.parametrize("name", ["apartment", "empty", "lshape"])
+def test_reference_maps_keep_their_frame(homes: dict[str, Home], name: str) -> None:
+    filed = load_map(HOMES / name / "map.yaml")
+    changed = np.argwhere(filed.values != homes[name].map.values)
+    station = homes[name].furniture[-1].pose
+    for row, column in changed:
+        x, y = filed.frame.centre_of(row, column)
+        assert math.hypot(x - station.x, y - station.y) < 0.2, "only the station is added"
+    frame = homes[name].frame
+    assert (frame.origin_x, frame.origin_y, frame.resolution) == (-0.1, -0.1, 0.05)
+    assert frame.shape == (204, 204)
