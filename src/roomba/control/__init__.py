@@ -1,0 +1,1 @@
+"""Loops that turn wishes into twists, and the limits above them."""

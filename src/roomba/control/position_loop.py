@@ -1,0 +1,63 @@
+"""The position loop: from where the robot is and where it should be to the twist it wants."""
+
+from __future__ import annotations
+
+import math
+
+from roomba.config import BodyConfig, ControlConfig
+from roomba.geometry import Pose, Twist
+
+_STANDSTILL = Twist()
+
+
+class PositionLoop:
+    """Drives to a setpoint that may stand or move; turns on the spot for what lies far aside.
+
+    Once there it stands until the setpoint is farther away than ``restart_distance``, so that
+    noise and the way of braking do not make it dance.
+    """
+
+    def __init__(self, control: ControlConfig, body: BodyConfig) -> None:
+        """Take the loop's gains and the body's limits."""
+        self._control = control
+        self._body = body
+        self._arrived = False
+
+    def restart(self) -> None:
+        """Forget that it had arrived; call when there is a new wish."""
+        self._arrived = False
+
+    def tick(self, pose: Pose, target: tuple[float, float], max_speed: float) -> Twist:
+        """Return the wanted twist; ``pose`` and ``target`` in one frame, ``max_speed`` in m/s."""
+        distance = pose.distance_to(*target)
+        bearing = pose.bearing_to(*target)
+        if self._is_there(distance):
+            return _STANDSTILL
+        return Twist(
+            self._forward_speed(distance, bearing, max_speed),
+            self._turning_speed(bearing),
+        )
+
+    @property
+    def arrived(self) -> bool:
+        """Whether it stands at its setpoint."""
+        return self._arrived
+
+    def _is_there(self, distance: float) -> bool:
+        control = self._control
+        near = control.restart_distance if self._arrived else control.arrival_tolerance
+        self._arrived = distance < near
+        return self._arrived
+
+    def _forward_speed(self, distance: float, bearing: float, max_speed: float) -> float:
+        if abs(bearing) > self._control.turn_in_place_angle:
+            return 0.0
+        stopping_speed = math.sqrt(2.0 * self._control.approach_deceleration * distance)
+        return min(max_speed, stopping_speed) * math.cos(bearing) ** 2
+
+    def _turning_speed(self, bearing: float) -> float:
+        top = min(self._control.turning_speed, self._body.max_angular_speed)
+        # What can still be braked away before the bearing is zero.
+        brakeable = math.sqrt(self._body.max_angular_acceleration * abs(bearing))
+        speed = min(self._control.heading_gain * abs(bearing), top, brakeable)
+        return math.copysign(speed, bearing)

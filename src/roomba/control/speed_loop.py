@@ -1,0 +1,91 @@
+"""The speed loop: the last word on what the drive is told.
+
+It keeps to the speed limit, stops for stale commands and keeps a pressed bumper from pushing.
+"""
+
+from __future__ import annotations
+
+import math
+from enum import Enum
+
+from roomba.geometry import Twist
+
+
+class Hold(Enum):
+    """Why the drive does not get what was asked for."""
+
+    NONE = "drives as asked"
+    NO_COMMAND = "no command"
+    """Nothing was asked for yet, or the newest command is too old."""
+    SPEED_ZERO = "the speed wanted is 0"
+    BUMPER = "the bumper is pressed"
+
+
+class SpeedLoop:
+    """Holds the newest command, cruise speed and bumper; :meth:`tick` says what the drive gets.
+
+    Speeds in m/s and rad/s, times in s of the robot's clock.
+    """
+
+    def __init__(self, command_timeout: float, max_speed: float) -> None:
+        """A command older than ``command_timeout`` s counts no more."""
+        self._command_timeout = command_timeout
+        self._max_speed = max_speed
+        self._cruise_speed = math.inf
+        self._command: Twist | None = None
+        self._commanded = 0.0
+        self._bumper_pressed = False
+
+    @property
+    def speed_limit(self) -> float:
+        """The fastest that it lets through, m/s."""
+        return min(self._max_speed, self._cruise_speed)
+
+    def set_max_speed(self, max_speed: float) -> None:
+        """Set the robot's top speed."""
+        self._max_speed = max_speed
+
+    def set_cruise_speed(self, speed: float) -> None:
+        """Set the speed wanted from now on; raises ValueError for what is no speed."""
+        if not math.isfinite(speed) or speed < 0.0:
+            raise ValueError(f"expected a finite speed of 0 m/s or more, got {speed}")
+        self._cruise_speed = speed
+
+    def command(self, now: float, twist: Twist) -> None:
+        """Take a wanted twist; raises ValueError for numbers that cannot be driven."""
+        if not twist.is_finite:
+            raise ValueError(f"expected finite velocities, got {twist}")
+        self._command = twist
+        self._commanded = now
+
+    def set_bumper(self, pressed: bool) -> None:
+        """Tell whether the front bumper is pressed."""
+        self._bumper_pressed = pressed
+
+    def tick(self, now: float) -> tuple[Twist, Hold]:
+        """Return the twist for the drive, and why it is less than what was asked for."""
+        command = self._fresh_command(now)
+        if command is None:
+            return Twist(), Hold.NO_COMMAND
+        if self.speed_limit == 0.0:
+            return Twist(), Hold.SPEED_ZERO
+        limited = self._within_limit(command)
+        if self._bumper_pressed and limited.linear > 0.0:
+            return Twist(0.0, limited.angular), Hold.BUMPER
+        return limited, Hold.NONE
+
+    def _fresh_command(self, now: float) -> Twist | None:
+        if now < self._commanded:
+            # The clock was set back (a bag played again): the command's age starts anew.
+            self._commanded = now
+        if now - self._commanded > self._command_timeout:
+            self._command = None
+        return self._command
+
+    def _within_limit(self, twist: Twist) -> Twist:
+        """Slow the twist down to the limit on the same arc."""
+        speed = abs(twist.linear)
+        if speed <= self.speed_limit:
+            return twist
+        share = self.speed_limit / speed
+        return Twist(twist.linear * share, twist.angular * share)

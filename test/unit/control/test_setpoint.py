@@ -1,0 +1,65 @@
+from roomba.control.setpoint import Setpoint
+
+TIMEOUT = 0.3
+
+
+def streaming(senders: int = 1) -> tuple[Setpoint, float]:
+    setpoint = Setpoint(TIMEOUT)
+    for tick in range(10):
+        setpoint.wish(10.0 + 0.05 * tick, (0.1 * tick, 0.0), senders)
+    return setpoint, 10.45
+
+
+def test_nothing_is_wished_at_first() -> None:
+    setpoint = Setpoint(TIMEOUT)
+    assert setpoint.target is None
+    assert not setpoint.check(5.0, 0)
+
+
+def test_a_single_wish_is_driven_to_the_end_though_its_sender_leaves() -> None:
+    setpoint = Setpoint(TIMEOUT)
+    assert setpoint.wish(10.0, (3.0, 4.0), senders=1)
+    assert not setpoint.check(10.1, senders=0)
+    assert not setpoint.check(20.0, senders=0)
+    assert setpoint.target == (3.0, 4.0)
+
+
+def test_a_stream_stops_when_its_sender_vanishes() -> None:
+    setpoint, now = streaming()
+    assert not setpoint.check(now + 0.05, senders=1)
+    assert setpoint.check(now + 0.1, senders=0)
+    assert setpoint.target is None
+    assert not setpoint.check(now + 0.15, senders=0)
+
+
+def test_another_sender_leaving_long_after_the_stream_ended_changes_nothing() -> None:
+    setpoint, now = streaming()
+    assert not setpoint.check(now + 5.0, senders=1)
+    assert not setpoint.check(now + 5.1, senders=0)
+    assert setpoint.target is not None
+
+
+def test_a_sender_that_joined_later_and_leaves_is_noticed() -> None:
+    setpoint, now = streaming(senders=1)
+    setpoint.check(now + 0.05, senders=2)
+    assert setpoint.check(now + 0.1, senders=1)
+
+
+def test_only_the_first_of_a_stream_is_a_new_wish() -> None:
+    setpoint = Setpoint(TIMEOUT)
+    assert setpoint.wish(10.0, (0.0, 0.0), 1)
+    assert not setpoint.wish(10.05, (0.1, 0.0), 1)
+    assert setpoint.wish(11.0, (0.2, 0.0), 1)
+
+
+def test_a_clock_set_back_makes_no_stream() -> None:
+    setpoint, now = streaming()
+    assert setpoint.wish(now - 100.0, (1.0, 1.0), 1)
+    assert not setpoint.check(now - 99.95, senders=0)
+
+
+def test_dropped_it_wishes_nothing() -> None:
+    setpoint, now = streaming()
+    setpoint.drop()
+    assert setpoint.target is None
+    assert not setpoint.check(now, senders=0)

@@ -1,0 +1,87 @@
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from roomba.control.speed_loop import Hold, SpeedLoop
+from roomba.geometry import Twist
+
+
+def loop() -> SpeedLoop:
+    return SpeedLoop(command_timeout=0.5, max_speed=0.5)
+
+
+def test_nothing_asked_for_nothing_driven() -> None:
+    assert loop().tick(10.0) == (Twist(), Hold.NO_COMMAND)
+
+
+def test_it_drives_as_asked() -> None:
+    speed_loop = loop()
+    speed_loop.command(10.0, Twist(0.3, 1.0))
+    assert speed_loop.tick(10.1) == (Twist(0.3, 1.0), Hold.NONE)
+
+
+def test_an_old_command_counts_no_more() -> None:
+    speed_loop = loop()
+    speed_loop.command(10.0, Twist(0.3, 0.0))
+    assert speed_loop.tick(10.5)[0] == Twist(0.3, 0.0)
+    assert speed_loop.tick(10.51) == (Twist(), Hold.NO_COMMAND)
+    assert speed_loop.tick(10.2) == (Twist(), Hold.NO_COMMAND)
+
+
+def test_after_the_clock_was_set_back_a_command_still_grows_old() -> None:
+    speed_loop = loop()
+    speed_loop.command(1000.0, Twist(0.3, 0.0))
+    assert speed_loop.tick(10.0)[0] == Twist(0.3, 0.0)
+    assert speed_loop.tick(10.6)[0] == Twist()
+
+
+@given(st.floats(-5.0, 5.0), st.floats(-4.0, 4.0), st.floats(0.0, 2.0), st.floats(0.01, 2.0))
+def test_the_limit_holds_and_the_arc_stays(
+    linear: float, angular: float, cruise: float, most: float
+) -> None:
+    speed_loop = loop()
+    speed_loop.set_max_speed(most)
+    speed_loop.set_cruise_speed(cruise)
+    speed_loop.command(0.0, Twist(linear, angular))
+    twist, _ = speed_loop.tick(0.1)
+    assert abs(twist.linear) <= min(cruise, most) + 1e-12
+    assert twist.linear * angular == pytest.approx(twist.angular * linear, abs=1e-9)
+
+
+def test_speed_zero_means_stand() -> None:
+    speed_loop = loop()
+    speed_loop.set_cruise_speed(0.0)
+    speed_loop.command(0.0, Twist(0.3, 1.0))
+    assert speed_loop.tick(0.1) == (Twist(), Hold.SPEED_ZERO)
+
+
+def test_a_pressed_bumper_lets_it_turn_and_back_off_but_not_push() -> None:
+    speed_loop = loop()
+    speed_loop.set_bumper(True)
+    speed_loop.command(0.0, Twist(0.3, 1.0))
+    assert speed_loop.tick(0.1) == (Twist(0.0, 1.0), Hold.BUMPER)
+    speed_loop.command(0.1, Twist(-0.3, 1.0))
+    assert speed_loop.tick(0.2) == (Twist(-0.3, 1.0), Hold.NONE)
+    speed_loop.set_bumper(False)
+    speed_loop.command(0.2, Twist(0.3, 0.0))
+    assert speed_loop.tick(0.3)[1] is Hold.NONE
+
+
+@pytest.mark.parametrize("speed", [-0.1, math.nan, math.inf])
+def test_what_is_no_speed_is_refused_and_the_old_one_stays(speed: float) -> None:
+    speed_loop = loop()
+    speed_loop.set_cruise_speed(0.2)
+    with pytest.raises(ValueError, match="0 m/s or more"):
+        speed_loop.set_cruise_speed(speed)
+    assert speed_loop.speed_limit == 0.2
+
+
+@pytest.mark.parametrize("twist", [Twist(math.nan, 0.0), Twist(0.0, -math.inf)])
+def test_what_cannot_be_driven_is_refused_and_the_old_command_stays(twist: Twist) -> None:
+    speed_loop = loop()
+    speed_loop.command(0.0, Twist(0.1, 0.0))
+    with pytest.raises(ValueError, match="finite"):
+        speed_loop.command(0.1, twist)
+    assert speed_loop.tick(0.2)[0] == Twist(0.1, 0.0)
