@@ -1,0 +1,1 @@
+"""What the robot believes about itself and its home, from its sensors alone."""
