@@ -1,0 +1,152 @@
+"""Walking to a point: a path, a setpoint that moves along it, and what to do when it is blocked.
+
+No clock and no I/O: it is ticked with what the robot senses and answers with what it wants.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from enum import Enum
+
+from roomba.config import BodyConfig, WalkConfig
+from roomba.geometry import Pose
+from roomba.mission.path_follower import PathFollower
+from roomba.mission.unknown_things import UnknownThings
+from roomba.planning.path import NoPathError, Path, PathPlanner
+
+Point = tuple[float, float]
+
+_PROGRESS = 0.05
+"""m; coming nearer to the goal by less than this is no progress."""
+_STANDSTILL = 0.03
+"""m/s; slower than this the robot stands."""
+_OFF_PATH = 0.35
+"""m; farther from its path than this the robot was carried or pushed, and plans anew."""
+
+
+class WalkState(Enum):
+    """How a walk stands."""
+
+    WALKING = "walking"
+    ARRIVED = "arrived"
+    FAILED = "failed"
+    """Given up; the reason is told."""
+
+
+@dataclass(frozen=True, slots=True)
+class Sensed:
+    """What a walk needs to know at a tick: time in s, pose in the map frame, speed in m/s."""
+
+    now: float
+    pose: Pose
+    speed: float
+    bumper_left: bool = False
+    bumper_right: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class WalkStep:
+    """What a walk wants at a tick: the setpoint, m, and the cruise speed to go there, m/s."""
+
+    state: WalkState
+    setpoint: Point
+    cruise_speed: float
+    distance_left: float
+    reason: str = ""
+
+
+class Walk:
+    """One walk to ``goal``.
+
+    It ends by arriving or by failing, never otherwise: each new plan needs a bump, a standstill or
+    a push, and there are at most ``max_replans`` of them.
+    """
+
+    def __init__(
+        self,
+        planner: PathPlanner,
+        config: WalkConfig,
+        body: BodyConfig,
+        things: UnknownThings,
+        goal: Point,
+        sensed: Sensed,
+    ) -> None:
+        """Plan the way; raises NoPathError when there is none, ValueError for a goal not finite."""
+        self.goal = goal
+        self.path = planner.plan((sensed.pose.x, sensed.pose.y), goal, things.at(sensed.now))
+        self._planner = planner
+        self._config = config
+        self._body = body
+        self._things = things
+        self._follower = PathFollower(self.path, config)
+        self._started = sensed.now
+        self._replans = 0
+        self._was_bumped = sensed.bumper_left or sensed.bumper_right
+        self._least_left = math.inf
+        self._progressed = sensed.now
+
+    def time_spent(self, now: float) -> float:
+        """Return how long it has walked, s."""
+        return now - self._started
+
+    def tick(self, sensed: Sensed, max_speed: float) -> WalkStep:
+        """Return what is wanted now; ``max_speed`` in m/s."""
+        if self._has_arrived(sensed):
+            return WalkStep(WalkState.ARRIVED, self.goal, max_speed, 0.0)
+        trouble = self._notice_trouble(sensed)
+        if trouble:
+            failure = self._plan_anew(sensed, trouble)
+            if failure:
+                here = (sensed.pose.x, sensed.pose.y)
+                return WalkStep(WalkState.FAILED, here, max_speed, self._follower.left, failure)
+        setpoint, cruise_speed = self._follower.tick(sensed.pose, max_speed)
+        return WalkStep(WalkState.WALKING, setpoint, cruise_speed, self._follower.left)
+
+    def _has_arrived(self, sensed: Sensed) -> bool:
+        near = sensed.pose.distance_to(*self.goal) <= self._config.arrival_tolerance
+        return near and abs(sensed.speed) <= _STANDSTILL
+
+    def _notice_trouble(self, sensed: Sensed) -> str:
+        """Return why a new plan is needed, or nothing."""
+        where = f"near ({sensed.pose.x:.2f}, {sensed.pose.y:.2f})"
+        bumped = sensed.bumper_left or sensed.bumper_right
+        new_bump, self._was_bumped = bumped and not self._was_bumped, bumped
+        if new_bump:
+            self._things.felt(sensed.now, sensed.pose, sensed.bumper_left, sensed.bumper_right)
+            return f"something that the map does not show stands in the way {where}"
+        if self._follower.distance_off(sensed.pose) > _OFF_PATH:
+            return f"the robot was moved off its path {where}"
+        if self._follower.left < self._least_left - _PROGRESS:
+            self._least_left = self._follower.left
+            self._progressed = sensed.now
+        if sensed.now - self._progressed > self._config.progress_timeout:
+            return f"the robot comes no nearer {where}"
+        return ""
+
+    def _plan_anew(self, sensed: Sensed, trouble: str) -> str:
+        """Plan from here; return why the walk is given up, or nothing."""
+        self._replans += 1
+        if self._replans > self._config.max_replans:
+            return f"gave up after {self._config.max_replans} ways around: {trouble}"
+        obstacles = self._things.at(sensed.now)
+        try:
+            self.path = self._planner.plan((sensed.pose.x, sensed.pose.y), self.goal, obstacles)
+        except NoPathError as error:
+            return f"{trouble}, and there is no way around it: {error}"
+        self._follower = PathFollower(self.path, self._config)
+        self._least_left = math.inf
+        self._progressed = sensed.now
+        return ""
+
+
+def expected_duration(path: Path, max_speed: float) -> float:
+    """Return the time, s, that a path takes at top speed; the walk's feedback is timed by it."""
+    return path.length / max_speed
+
+
+def feedback_period(duration: float) -> float:
+    """Return how often to tell the distance left, s, on a walk of ``duration`` s (SEED's rule)."""
+    if duration < 10.0:
+        return 2.0
+    return 3.0 if duration < 20.0 else 4.0
