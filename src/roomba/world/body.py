@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from roomba.config import BodyConfig
+from roomba.distance import distance_to_nearest
 from roomba.geometry import Pose, Twist
 from roomba.grid import GridFrame
 from roomba.world import body_kernels as kernels
@@ -111,7 +111,6 @@ def room_around(solid: NDArray[np.bool_], resolution: float) -> NDArray[np.float
 
     From centre distances less a cell's diagonal; outside is solid. float32 [rows, columns].
     """
-    fenced = np.pad(~solid, 1).astype(np.uint8)
-    cells = cv2.distanceTransform(fenced, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)[1:-1, 1:-1]
+    cells = distance_to_nearest(np.pad(solid, 1, constant_values=True))[1:-1, 1:-1]
     room = (cells - np.float32(1.4143)) * np.float32(resolution)
     return np.ascontiguousarray(np.maximum(room, 0.0).astype(np.float32))

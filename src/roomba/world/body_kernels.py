@@ -75,7 +75,7 @@ def distance_to_solid(
                 continue
             du = max(column - u, u - column - 1.0, 0.0)
             nearest = min(nearest, du * du + dv * dv)
-    return math.sqrt(nearest) * resolution
+    return float(math.sqrt(nearest) * resolution)
 
 
 @njit(cache=True, nogil=True)

@@ -1,13 +1,14 @@
-"""Reads pictures of floor plans: PGM by itself, PNG and others through OpenCV."""
+"""Reads pictures of floor plans: PGM by itself, PNG and others through Pillow."""
 
 from __future__ import annotations
 
+import io
 import re
 from dataclasses import dataclass
 from pathlib import Path
 
-import cv2
 import numpy as np
+import PIL.Image
 from numpy.typing import NDArray
 
 from roomba.errors import HomeError
@@ -35,7 +36,7 @@ def read_image(path: Path) -> Image:
     if content[:2] in (b"P2", b"P5"):
         grey = _read_pgm(path, content)
         return Image(grey, np.zeros(grey.shape, np.bool_))
-    return _read_with_opencv(path, content)
+    return _read_with_pillow(path, content)
 
 
 def _read_pgm(path: Path, content: bytes) -> NDArray[np.float64]:
@@ -67,21 +68,25 @@ def _read_pgm(path: Path, content: bytes) -> NDArray[np.float64]:
     return grey * (255.0 / highest)
 
 
-def _read_with_opencv(path: Path, content: bytes) -> Image:
+def _read_with_pillow(path: Path, content: bytes) -> Image:
     if content.startswith(PNG_BEGIN) and PNG_END not in content[-64:]:
         raise HomeError(f"{path}: expected a whole PNG, got one that is cut short; copy it again")
     if not content:
         raise HomeError(f"{path}: expected a picture, got an empty file")
     try:
-        decoded = cv2.imdecode(np.frombuffer(content, np.uint8), cv2.IMREAD_UNCHANGED)
-    except cv2.error:
-        decoded = None
-    if decoded is None or decoded.dtype not in (np.uint8, np.uint16):
-        raise HomeError(f"{path}: expected a PGM or PNG picture, got something else; convert it")
-    pixels = decoded.astype(np.float64) * (255.0 / np.iinfo(decoded.dtype).max)
-    if pixels.ndim == 2:
-        return Image(pixels, np.zeros(pixels.shape, np.bool_))
-    has_alpha = pixels.shape[2] in (2, 4)
-    colours = pixels[..., :-1] if has_alpha else pixels
-    transparent = pixels[..., -1] == 0.0 if has_alpha else np.zeros(pixels.shape[:2], np.bool_)
-    return Image(colours.mean(axis=2), np.asarray(transparent, np.bool_))
+        return _decoded(PIL.Image.open(io.BytesIO(content)))
+    except (OSError, SyntaxError, ValueError, PIL.Image.DecompressionBombError) as error:
+        raise HomeError(
+            f"{path}: expected a PGM or PNG picture, got something else ({error}); convert it"
+        ) from error
+
+
+def _decoded(picture: PIL.Image.Image) -> Image:
+    """Return a decoded picture. Raises ValueError for greys of more than 16 bits."""
+    if picture.mode in ("I", "F") or picture.mode.startswith("I;16"):
+        grey = np.asarray(picture, np.float64)
+        if picture.mode == "F" or grey.min() < 0.0 or grey.max() > 65535.0:
+            raise ValueError("greys of more than 16 bits")
+        return Image(grey * (255.0 / 65535.0), np.zeros(grey.shape, np.bool_))
+    pixels = np.asarray(picture.convert("RGBA"))
+    return Image(pixels[..., :3].mean(axis=2), pixels[..., 3] == 0)

@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 
-import cv2
 import numpy as np
 import shapely
 from numpy.typing import NDArray
 
 from roomba.grid import GridFrame
+from roomba.mask_kernels import dilated, numbered_regions
 from roomba.world.home import Box, Rectangle
 
 RELEVANT_SHARE = 0.10
@@ -111,17 +111,14 @@ def where_body_fits(frame: GridFrame, solid: Mask, radius: float) -> Mask:
     """
     reach = math.ceil(radius / frame.resolution + 0.5)
     offsets = np.maximum(np.abs(np.arange(-reach, reach + 1)) - 0.5, 0.0) * frame.resolution
-    kernel = (np.hypot(offsets[:, None], offsets[None, :]) < radius).astype(np.uint8)
-    padded = np.pad(solid.astype(np.uint8), reach, constant_values=1)
-    grown = cv2.dilate(padded, kernel)[reach:-reach, reach:-reach]
-    return np.asarray(grown == 0)
+    disc = np.hypot(offsets[:, None], offsets[None, :]) < radius
+    padded = np.pad(solid, reach, constant_values=True)
+    return np.asarray(~dilated(padded, disc)[reach:-reach, reach:-reach])
 
 
 def largest_component(mask: Mask) -> Mask:
     """Return the largest part of a mask that hangs together (by edges); empty if the mask is."""
-    count, labels, statistics, _ = cv2.connectedComponentsWithStats(
-        mask.astype(np.uint8), connectivity=4
-    )
-    if count < 2:
-        return np.zeros(mask.shape, np.bool_)
-    return np.asarray(labels == 1 + int(np.argmax(statistics[1:, cv2.CC_STAT_AREA])))
+    regions = numbered_regions(mask)
+    sizes = np.bincount(regions.ravel())
+    sizes[0] = 0
+    return np.asarray(mask & (regions == np.argmax(sizes)))

@@ -1,0 +1,52 @@
+"""Compiles the hot loops once, so that the first start of the robot is as quick as every other.
+
+Numba keeps what it compiled in a cache on disk; ``./roomba`` runs this after each build.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from roomba.config import RobotConfig
+from roomba.geometry import Pose, Twist
+from roomba.grid import FREE, OCCUPIED, GridFrame, OccupancyMap
+from roomba.planning.grid_path import shortest_grid_path
+from roomba.planning.path import PathPlanner
+from roomba.world.camera import Camera, Scene
+from roomba.world.home import DirtSource, Home
+from roomba.world.simulator import Simulator
+
+
+def main() -> None:
+    """Do a little of everything in a small room."""
+    home = _small_room()
+    config = RobotConfig()
+    simulator = Simulator(home, config)
+    for _ in range(40):
+        simulator.step(Twist(0.5, 0.1), 0.025)
+    planner = PathPlanner(
+        home.map, config.body.radius, config.walk.clearance, config.walk.tight_clearance
+    )
+    planner.plan((1.0, 1.0), (2.0, 2.0), [(1.5, 1.5, 0.1)])
+    shortest_grid_path(np.ones((4, 4), np.bool_), (0, 0), (3, 3))
+    camera = Camera(Scene.of(home), config.camera)
+    camera.picture(home.station, 0.0, simulator.dirt.micrograms, simulator.dirt.frame)
+
+
+def _small_room() -> Home:
+    frame = GridFrame(0.05, 0.0, 0.0, 60, 60)
+    values = np.full(frame.shape, OCCUPIED, np.int8)
+    values[2:-2, 2:-2] = FREE
+    solid = values != FREE
+    return Home(
+        name="small room",
+        map=OccupancyMap(frame, values),
+        solid=solid,
+        walls=solid,
+        station=Pose(0.5, 1.5, 0.0),
+        dirt_sources=(DirtSource("crumbs", 1.0, 1.5, 0.2, 1.0, 0.0),),
+    )
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,122 @@
+"""What the camera's kernels read: a home as flat arrays, and a picture's geometry as tables."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+class Surfaces(NamedTuple):
+    """What faces and floors look like, by the number of the surface; textures by their own."""
+
+    texture: NDArray[np.int32]
+    """[surfaces]: which texture."""
+    palettes: NDArray[np.uint32]
+    """[surfaces, 256]: colour of each grey of the texture, 0x00BBGGRR."""
+    glows: NDArray[np.bool_]
+    """[surfaces]: shines by itself, so that no shadow falls on it."""
+    texels: NDArray[np.uint8]
+    """All textures: see :class:`roomba.world.textures.Atlas`, also for the following."""
+    offsets: NDArray[np.int32]
+    bits: NDArray[np.int32]
+    scale: NDArray[np.float32]
+    octave: NDArray[np.float32]
+    """[textures]: base 2 logarithm of ``scale``."""
+
+
+class Lighting(NamedTuple):
+    """Light in cells of ``cell`` m from the map's lower left corner, 255 full light."""
+
+    origin_x: float
+    origin_y: float
+    cell: float
+    floor: NDArray[np.uint8]
+    """On the floor, with sun and shadows."""
+    air: NDArray[np.uint8]
+    """On what stands there."""
+
+
+class Walls(NamedTuple):
+    """The map's cells with a border of one cell of wall all around."""
+
+    origin_x: float
+    """Lower left corner of the map, without the border, m in the map frame."""
+    origin_y: float
+    resolution: float
+    """m."""
+    height: float
+    """From floor to ceiling, m."""
+    skip: NDArray[np.uint8]
+    """[rows + 2, columns + 2]: 0 for a wall, else no wall is nearer than so many cells."""
+    rooms: NDArray[np.uint8]
+    """[rows + 2, columns + 2]: the room of a cell, 0 for none."""
+    surfaces: NDArray[np.int32]
+    """[rooms, 2]: paint of a room's walls, and the tiles below it or -1."""
+    skirting: int
+    """Surface of the skirting boards."""
+    ceiling: int
+
+
+class Floor(NamedTuple):
+    """The floor's surfaces, and the pattern of crumbs on it."""
+
+    origin_x: float
+    origin_y: float
+    cell: float
+    """m."""
+    surfaces: NDArray[np.uint8]
+    crumbs: NDArray[np.uint16]
+    """[1024, 1024]: see :func:`roomba.world.textures.crumbs`."""
+    fewest: NDArray[np.uint8]
+    """[128, 128]: the lowest level at which a crumb is seen in 8 x 8 texels of ``crumbs``."""
+    colours: NDArray[np.uint32]
+    """[16], of crumbs."""
+    cover: NDArray[np.float32]
+    """[256]: share of the floor that crumbs cover at a level of dirt."""
+
+
+class Boxes(NamedTuple):
+    """Furniture."""
+
+    shapes: NDArray[np.float32]
+    """[boxes, 8]: x, y, cosine, sine, half length, half width, bottom, top; m."""
+    surfaces: NDArray[np.int32]
+    """[boxes]."""
+
+
+class SceneArrays(NamedTuple):
+    """A home, compiled; made by :class:`roomba.world.scene.Scene`.
+
+    In parts: a kernel's arguments are passed one by one, and none should get what it does not read.
+    """
+
+    surfaces: Surfaces
+    lighting: Lighting
+    walls: Walls
+    floor: Floor
+    boxes: Boxes
+
+
+class ViewTables(NamedTuple):
+    """The geometry of a picture of ``rows`` x ``columns`` samples; see the camera's module."""
+
+    columns: int
+    rows: int
+    focal: float
+    """Samples per unit of slope."""
+    eye: float
+    """Height of the camera above the floor, m."""
+    smooth: bool
+    """Whether to spend time on filtering textures."""
+    reach: NDArray[np.float32]
+    """[rows]: depth at which a row meets a level plane 1 m above or below the camera, m."""
+    knots: NDArray[np.int32]
+    """Rows of the floor between which light and dirt change evenly; the last one is ``rows``."""
+    octave: NDArray[np.float32]
+    """[rows]: base 2 logarithm of the size, m, of the floor that a sample stands for."""
+    taps: NDArray[np.int32]
+    """[rows]: samples along the ray that are averaged."""
+    crispness: NDArray[np.float32]
+    """[rows]: how much of a single crumb is still seen, 0..1."""
