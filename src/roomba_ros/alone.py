@@ -1,0 +1,49 @@
+"""Making sure that a node that must be alone is."""
+
+from __future__ import annotations
+
+import socket
+import sys
+from xmlrpc.client import ServerProxy
+
+import rosgraph
+import rospy
+from rosgraph.names import ns_join
+
+_PING_TIMEOUT = 1.0
+
+
+def refuse_second(node_name: str, topic: str) -> None:
+    """End the process, exit 1, when a living node has this name or publishes ``topic``.
+
+    Call before ``rospy.init_node``: registering a name that is taken ends the node that has it.
+    A node that died without saying so does not count.
+    """
+    mappings = rospy.names.get_mappings()
+    namespace = rosgraph.names.get_ros_namespace()
+    own = ns_join(namespace, mappings.get("__name", node_name))
+    master = rosgraph.Master("/roomba_robot_start")
+    publishers = master.getSystemState()[0]
+    watched = rosgraph.names.resolve_name(topic, ns_join(namespace, "node"))
+    rivals = {own, *(node for name, nodes in publishers if name == watched for node in nodes)}
+    for rival in sorted(rivals):
+        if _is_alive(master, rival):
+            print(
+                f"refused: {rival} already serves {watched} on {rosgraph.get_master_uri()}; two of "
+                f"them would drive one robot. End that one first (`rosnode kill {rival}`), or "
+                "start this one in a namespace of its own (ROS_NAMESPACE)",
+                file=sys.stderr,
+            )
+            sys.exit(1)
+
+
+def _is_alive(master: rosgraph.Master, node: str) -> bool:
+    before = socket.getdefaulttimeout()
+    socket.setdefaulttimeout(_PING_TIMEOUT)
+    try:
+        ServerProxy(master.lookupNode(node)).getPid("/roomba_robot_start")  # type: ignore[operator]
+    except (OSError, rosgraph.MasterError):
+        return False
+    finally:
+        socket.setdefaulttimeout(before)
+    return True

@@ -1,0 +1,29 @@
+"""The report's menu on a terminal."""
+
+from __future__ import annotations
+
+import signal
+import sys
+
+import rospy
+
+from roomba.errors import RoombaError
+from roomba.ui.menu import Menu
+from roomba_ros.node import leave, require_master, wait_for_clock
+from roomba_ros.ros_client import RosRobot
+
+
+def main() -> None:
+    """Run the menu until its user leaves."""
+    require_master()
+    # Ctrl-C belongs to the menu: during a walk it cancels the walk.
+    rospy.init_node("control_node", disable_signals=True)
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
+    try:
+        wait_for_clock()
+        robot = RosRobot()
+        robot.start()
+    except RoombaError as error:
+        print(error, file=sys.stderr)
+        sys.exit(1)
+    leave(Menu(robot).run())

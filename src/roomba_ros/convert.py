@@ -1,0 +1,174 @@
+"""The one place where ROS messages become values and values become messages."""
+
+from __future__ import annotations
+
+import math
+
+import genpy
+import numpy as np
+from geometry_msgs.msg import PoseStamped, Quaternion, TransformStamped
+from geometry_msgs.msg import Twist as TwistMessage
+from nav_msgs.msg import OccupancyGrid, Odometry, Path
+from numpy.typing import NDArray
+from roomba_robot.msg import Bumper as BumperMessage
+from sensor_msgs.msg import Image
+from std_msgs.msg import Header
+
+from roomba.geometry import Pose, Twist
+from roomba.grid import GridFrame, OccupancyMap
+
+
+def header(now: float, frame_id: str) -> Header:
+    """Return a header for a time, s, in a frame."""
+    return Header(stamp=genpy.Time.from_sec(now), frame_id=frame_id)
+
+
+def quaternion_of(theta: float) -> Quaternion:
+    """Return the rotation about the vertical by ``theta`` rad."""
+    return Quaternion(0.0, 0.0, math.sin(theta / 2.0), math.cos(theta / 2.0))
+
+
+def theta_of(rotation: Quaternion) -> float:
+    """Return the heading, rad, of a rotation; what tilts it is left out."""
+    x, y, z, w = rotation.x, rotation.y, rotation.z, rotation.w
+    return math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
+
+
+def twist_of(message: TwistMessage) -> Twist:
+    """Return the planar part of a twist message."""
+    return Twist(message.linear.x, message.angular.z)
+
+
+def twist_message(twist: Twist) -> TwistMessage:
+    """Return a planar twist as a message."""
+    message = TwistMessage()
+    message.linear.x = twist.linear
+    message.angular.z = twist.angular
+    return message
+
+
+def pose_of_odometry(message: Odometry) -> Pose:
+    """Return the planar pose of an odometry message, in its header's frame."""
+    position = message.pose.pose.position
+    return Pose(position.x, position.y, theta_of(message.pose.pose.orientation))
+
+
+def odometry_message(
+    now: float, pose: Pose, twist: Twist, frame_id: str, child_frame_id: str
+) -> Odometry:
+    """Return odometry: ``pose`` in ``frame_id``, ``twist`` in the body's frame."""
+    message = Odometry(header=header(now, frame_id), child_frame_id=child_frame_id)
+    message.pose.pose.position.x = pose.x
+    message.pose.pose.position.y = pose.y
+    message.pose.pose.orientation = quaternion_of(pose.theta)
+    message.twist.twist = twist_message(twist)
+    return message
+
+
+def pose_of(message: PoseStamped) -> Pose:
+    """Return the planar pose of a stamped pose, in its header's frame."""
+    position = message.pose.position
+    return Pose(position.x, position.y, theta_of(message.pose.orientation))
+
+
+def pose_message(now: float, pose: Pose, frame_id: str) -> PoseStamped:
+    """Return a planar pose as a message."""
+    message = PoseStamped(header=header(now, frame_id))
+    message.pose.position.x = pose.x
+    message.pose.position.y = pose.y
+    message.pose.orientation = quaternion_of(pose.theta)
+    return message
+
+
+def transform_message(
+    now: float, pose: Pose, frame_id: str, child_frame_id: str
+) -> TransformStamped:
+    """Return where ``child_frame_id`` is in ``frame_id``."""
+    message = TransformStamped(header=header(now, frame_id), child_frame_id=child_frame_id)
+    message.transform.translation.x = pose.x
+    message.transform.translation.y = pose.y
+    message.transform.rotation = quaternion_of(pose.theta)
+    return message
+
+
+def path_message(now: float, points: NDArray[np.float64], frame_id: str) -> Path:
+    """Return a path through ``points``, float64 [n, 2], each pose looking to the next point."""
+    message = Path(header=header(now, frame_id))
+    ahead = np.diff(points, axis=0, append=points[-1:])
+    headings = np.arctan2(ahead[:, 1], ahead[:, 0])
+    headings[-1] = headings[-2] if len(headings) > 1 else 0.0
+    for (x, y), theta in zip(points.tolist(), headings.tolist(), strict=True):
+        message.poses.append(pose_message(now, Pose(x, y, theta), frame_id))
+    return message
+
+
+def map_message(now: float, known: OccupancyMap, frame_id: str) -> OccupancyGrid:
+    """Return an occupancy map as a message."""
+    message = OccupancyGrid(header=header(now, frame_id))
+    message.info.map_load_time = message.header.stamp
+    message.info.resolution = known.frame.resolution
+    message.info.width = known.frame.columns
+    message.info.height = known.frame.rows
+    message.info.origin.position.x = known.frame.origin_x
+    message.info.origin.position.y = known.frame.origin_y
+    message.info.origin.orientation.w = 1.0
+    # A list, not the array: genpy serializes arrays twenty times slower.
+    message.data = known.values.ravel().tolist()
+    return message
+
+
+def map_of(message: OccupancyGrid) -> OccupancyMap:
+    """Return the occupancy map of a message; raises ValueError for a turned or misshapen one."""
+    info = message.info
+    turn = theta_of(info.origin.orientation)
+    if abs(turn) > 1e-6:
+        raise ValueError(f"expected a map without rotation, got one turned by {turn:.4f} rad")
+    if len(message.data) != info.width * info.height:
+        raise ValueError(
+            f"expected {info.width} x {info.height} map values, got {len(message.data)}"
+        )
+    frame = GridFrame(
+        # float32 in the message: 0.05 comes as 0.05000000074.
+        round(float(info.resolution), 6),
+        info.origin.position.x,
+        info.origin.position.y,
+        info.height,
+        info.width,
+    )
+    values = np.array(message.data, np.int8).reshape(frame.shape)
+    return OccupancyMap(frame, values)
+
+
+def bumper_message(now: float, left: bool, right: bool, frame_id: str) -> BumperMessage:
+    """Return the state of the bumper's halves as a message."""
+    return BumperMessage(header=header(now, frame_id), is_left_pressed=left, is_right_pressed=right)
+
+
+def image_message(now: float, picture: NDArray[np.uint8], frame_id: str) -> Image:
+    """Return a colour picture, uint8 [height, width, 3] RGB, as an rgb8 image."""
+    height, width, _ = picture.shape
+    return Image(
+        header=header(now, frame_id),
+        height=height,
+        width=width,
+        encoding="rgb8",
+        is_bigendian=0,
+        step=3 * width,
+        data=np.ascontiguousarray(picture).tobytes(),
+    )
+
+
+def picture_of(message: Image) -> NDArray[np.uint8]:
+    """Return the picture of an rgb8 or bgr8 image, uint8 [height, width, 3] RGB.
+
+    Raises ValueError for another encoding or a size that does not fit.
+    """
+    if message.encoding not in ("rgb8", "bgr8"):
+        raise ValueError(f"expected an rgb8 or bgr8 image, got {message.encoding!r}")
+    if len(message.data) != message.step * message.height or message.step < 3 * message.width:
+        raise ValueError(
+            f"expected {message.height} rows of {message.step} bytes, got {len(message.data)} bytes"
+        )
+    rows = np.frombuffer(message.data, np.uint8).reshape(message.height, message.step)
+    picture = rows[:, : 3 * message.width].reshape(message.height, message.width, 3)
+    return picture[:, :, ::-1].copy() if message.encoding == "bgr8" else picture.copy()

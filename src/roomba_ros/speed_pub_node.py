@@ -1,0 +1,94 @@
+"""The speed loop on ROS: the last word on what the drive is told, and the robot's speed."""
+
+from __future__ import annotations
+
+import threading
+
+import rospy
+from geometry_msgs.msg import Twist
+from nav_msgs.msg import Odometry
+from roomba_robot.msg import Bumper
+from std_msgs.msg import Float32
+
+from roomba.control.speed_loop import Hold, SpeedLoop
+from roomba_ros.convert import twist_message, twist_of
+from roomba_ros.node import run_node
+from roomba_ros.parameters import LiveSeedParameters, read_robot_config
+
+
+class SpeedPubNode:
+    """Keeps every wanted twist within the limits and stops the drive when nobody drives.
+
+    Publishes: ``speed`` (Float32, m/s, 10 Hz), ``cmd_vel_out`` (Twist, to the drive, at once for
+    each command, and 10 Hz).
+    Subscribes: ``change_speed`` (Float32, cruise speed wanted, m/s), ``cmd_vel`` (Twist),
+    ``odom`` (Odometry), ``bumper`` (Bumper).
+    Parameters: ``robot_max_speed``; a bad value is refused and set back.
+    """
+
+    period = 0.1
+
+    def start(self) -> None:
+        """Read the limits and connect."""
+        self._parameters = LiveSeedParameters(restores=True)
+        self._lock = threading.Lock()
+        self._loop = SpeedLoop(
+            read_robot_config().body.command_timeout, self._parameters.values.robot_max_speed
+        )
+        self._speed: float | None = None
+        self._hold = Hold.NO_COMMAND
+        self._speed_publisher = rospy.Publisher("speed", Float32, queue_size=1)
+        self._drive = rospy.Publisher("cmd_vel_out", Twist, queue_size=1, tcp_nodelay=True)
+        rospy.Subscriber("bumper", Bumper, self._on_bumper, queue_size=1)
+        rospy.Subscriber("odom", Odometry, self._on_odometry, queue_size=1)
+        rospy.Subscriber("change_speed", Float32, self._on_change_speed, queue_size=1)
+        rospy.Subscriber("cmd_vel", Twist, self._on_command, queue_size=1, tcp_nodelay=True)
+
+    def tick(self, now: float) -> None:
+        """Obey changed limits, tell the drive and tell the speed."""
+        with self._lock:
+            self._loop.set_max_speed(self._parameters.refresh().robot_max_speed)
+        self._tell_drive(now)
+        if self._speed is not None:
+            self._speed_publisher.publish(self._speed)
+
+    def stop(self) -> None:
+        """Stop the drive."""
+        self._drive.publish(Twist())
+
+    def _tell_drive(self, now: float) -> None:
+        with self._lock:
+            twist, hold = self._loop.tick(now)
+            changed, self._hold = hold is not self._hold, hold
+        self._drive.publish(twist_message(twist))
+        if changed and hold in (Hold.SPEED_ZERO, Hold.BUMPER):
+            rospy.loginfo("the drive is held: %s", hold.value)
+
+    def _on_command(self, message: Twist) -> None:
+        now = rospy.get_time()
+        try:
+            with self._lock:
+                self._loop.command(now, twist_of(message))
+        except ValueError as error:
+            rospy.logwarn("cmd_vel refused: %s", error)
+            return
+        self._tell_drive(now)
+
+    def _on_change_speed(self, message: Float32) -> None:
+        try:
+            with self._lock:
+                self._loop.set_cruise_speed(message.data)
+        except ValueError as error:
+            rospy.logwarn("change_speed refused: %s", error)
+
+    def _on_bumper(self, message: Bumper) -> None:
+        with self._lock:
+            self._loop.set_bumper(message.is_left_pressed or message.is_right_pressed)
+
+    def _on_odometry(self, message: Odometry) -> None:
+        self._speed = abs(twist_of(message.twist.twist).linear)
+
+
+def main() -> None:
+    """Run the node."""
+    run_node("speed_pub_node", SpeedPubNode)

@@ -1,0 +1,54 @@
+"""Ticks at a steady rate of the ROS clock, whatever that clock does."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+
+import rospy
+
+_LONGEST_WAIT = 0.1
+"""s of wall time; how soon a shutdown or a clock set back is noticed."""
+_EARLY = 1e-6
+
+
+class Ticker:
+    """Calls back every ``period`` s of the ROS clock, in the thread that runs it.
+
+    A clock set back or forward starts the rhythm anew there; ticks that were missed are left out.
+    rospy's own Rate and Timer raise, or end, when the clock goes backwards.
+    """
+
+    def __init__(self, period: float, ended: Callable[[], bool]) -> None:
+        """Tick every ``period`` s until ``ended`` says so."""
+        self._period = period
+        self._ended = ended
+
+    def run(self, tick: Callable[[float], None]) -> None:
+        """Call ``tick(now)`` until the end; ``now`` in s of the ROS clock."""
+        clock_moved = rospy.rostime.get_rostime_cond()
+        last = rospy.get_time()
+        due = last + self._period
+        while not self._ended():
+            now = rospy.get_time()
+            if now < last:
+                rospy.loginfo("the clock was set back by %.1f s; going on from there", last - now)
+                due = now + self._period
+            last = now
+            if now + _EARLY < due:
+                self._wait(clock_moved, now, due)
+                continue
+            tick(now)
+            due += self._period
+            if due <= now:
+                due = now + self._period
+
+    @staticmethod
+    def _wait(clock_moved: object, now: float, due: float) -> None:
+        wait = min(due - now, _LONGEST_WAIT)
+        if rospy.rostime.is_wallclock():
+            time.sleep(wait)
+            return
+        with clock_moved:  # type: ignore[attr-defined]
+            if rospy.get_time() == now:
+                clock_moved.wait(_LONGEST_WAIT)  # type: ignore[attr-defined]

@@ -1,0 +1,160 @@
+import math
+import time
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+import rospy
+from fixtures.graph import RosGraph
+from fixtures.probe import Probe
+from fixtures.waiting import wait_until
+from geometry_msgs.msg import PoseStamped
+from roomba_robot.srv import TurnCamera, TurnCameraRequest, TurnCameraResponse
+from sensor_msgs.msg import Image
+
+ANGLES = (-30, -15, 0, 15, 30)
+
+
+def picture(value: int) -> np.ndarray:
+    return np.full((768, 1024, 3), value, np.uint8)
+
+
+def start(graph: RosGraph, folder: Path) -> rospy.ServiceProxy:
+    graph.rosrun("turn_camera_service.py", f"_picture_folder:={folder}")
+    service = rospy.ServiceProxy("/turn_camera", TurnCamera)
+    service.wait_for_service(15.0)
+    return service
+
+
+def offer_camera() -> list[float]:
+    """Be the robot's camera; return the list of angles that it is asked for."""
+    asked: list[float] = []
+
+    def capture(request: TurnCameraRequest) -> TurnCameraResponse:
+        asked.append(request.turn_degrees)
+        shade = picture(100 + int(request.turn_degrees))
+        return TurnCameraResponse(
+            Image(height=768, width=1024, encoding="rgb8", step=3072, data=shade.tobytes())
+        )
+
+    rospy.Service("/camera/capture", TurnCamera, capture)
+    return asked
+
+
+def test_it_takes_a_picture_when_there_is_none_and_keeps_it(
+    graph: RosGraph, tmp_path: Path
+) -> None:
+    Probe(graph)
+    asked = offer_camera()
+    service = start(graph, tmp_path / "Images")
+    for wish, angle in ((0.0, 0), (-90.0, -30), (8.0, 15), (22.4, 15), (22.6, 30)):
+        image = service(wish).image
+        assert (image.width, image.height, image.encoding) == (1024, 768, "rgb8")
+        assert set(image.data) == {100 + angle}
+        assert cv2.imread(str(tmp_path / "Images" / f"{angle}.png")).shape == (768, 1024, 3)
+    assert asked == [0.0, -30.0, 15.0, 30.0]
+
+
+def test_while_it_travels_it_keeps_the_newest_picture_of_each_angle(
+    graph: RosGraph, tmp_path: Path
+) -> None:
+    probe = Probe(graph)
+    asked = offer_camera()
+    start(graph, tmp_path / "Images")
+    message = PoseStamped()
+    message.pose.orientation.w = 1.0
+    for step in range(100):
+        message.pose.position.x = 0.1 * step
+        probe.send("/pose", message)
+        time.sleep(0.2)
+        if len(asked) >= 8:
+            break
+    assert asked[:5] == [float(angle) for angle in ANGLES]
+    assert asked[5:8] == [-30.0, -15.0, 0.0]
+    assert {path.name for path in (tmp_path / "Images").glob("*.png")} == {
+        f"{angle}.png" for angle in ANGLES
+    }
+    standing = len(asked)
+    for _ in range(20):
+        probe.send("/pose", message)
+        time.sleep(0.2)
+    assert len(asked) <= standing + 1
+
+
+def test_what_is_no_angle_is_an_error_of_the_service(graph: RosGraph, tmp_path: Path) -> None:
+    """FAULTS row 23."""
+    Probe(graph)
+    offer_camera()
+    service = start(graph, tmp_path)
+    for wrong in (math.nan, math.inf, -math.inf, 1e30):
+        with pytest.raises(rospy.ServiceException, match="expected an angle"):
+            service(wrong)
+
+
+def test_a_picture_missing_or_corrupt_is_named(graph: RosGraph, tmp_path: Path) -> None:
+    """FAULTS row 24: without a camera there is nothing to replace it by."""
+    Probe(graph)
+    (tmp_path / "15.png").write_bytes(b"not a picture")
+    service = start(graph, tmp_path)
+    with pytest.raises(rospy.ServiceException, match=r"/0\.png: no picture yet"):
+        service(0.0)
+    with pytest.raises(rospy.ServiceException, match=r"/15\.png: expected a PNG picture"):
+        service(15.0)
+
+
+def test_the_last_good_picture_survives_a_crash(graph: RosGraph, tmp_path: Path) -> None:
+    Probe(graph)
+    cv2.imwrite(str(tmp_path / "30.png"), picture(77))
+    (tmp_path / "30.unfinished").write_bytes(b"half a pic")
+    service = start(graph, tmp_path)
+    assert set(service(30.0).image.data) == {77}
+
+
+def test_a_corrupt_picture_is_taken_again(graph: RosGraph, tmp_path: Path) -> None:
+    Probe(graph)
+    asked = offer_camera()
+    service = start(graph, tmp_path)
+    service(-15.0)
+    (tmp_path / "-15.png").write_bytes(b"")
+    assert set(service(-15.0).image.data) == {85}
+    assert asked == [-15.0, -15.0]
+
+
+def test_the_client_without_a_service_says_so_in_time(graph: RosGraph) -> None:
+    """FAULTS row 25."""
+    client = graph.rosrun("turn_camera_client.py")
+    client.says("Enter the angle: ", 10.0)
+    client.type("0")
+    assert client.ends(8.0) != 0
+    assert "no service /turn_camera answers within 5 s" in client.output
+
+
+def test_the_client_asks_again_for_what_is_no_number_and_ends(
+    graph: RosGraph, tmp_path: Path
+) -> None:
+    """FAULTS row 22."""
+    Probe(graph)
+    offer_camera()
+    start(graph, tmp_path / "Images")
+    client = graph.run(
+        "rosrun",
+        "roomba_robot",
+        "turn_camera_client.py",
+        environment={"DISPLAY": "", "WAYLAND_DISPLAY": "", "TMPDIR": str(tmp_path)},
+    )
+    client.says("Enter the angle: ", 10.0)
+    client.type("abc")
+    client.type("12")
+    wait_until(lambda: client.output.count("Enter the angle: ") >= 3, 10.0)
+    client.type("q")
+    assert client.ends(5.0) == 0
+    assert client.output.count("\n") < 20
+    assert ".png" in client.output
+
+
+def test_the_client_ends_with_its_input(graph: RosGraph) -> None:
+    client = graph.rosrun("turn_camera_client.py")
+    client.says("Enter the angle: ", 10.0)
+    client.end_of_input()
+    assert client.ends(5.0) == 0
