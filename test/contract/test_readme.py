@@ -1,0 +1,75 @@
+"""The README's tables say what the running graph is."""
+
+import re
+import xmlrpc.client
+from pathlib import Path
+
+from fixtures.graph import LAUNCHED, RosGraph
+from fixtures.probe import Probe
+
+README = (Path(__file__).parents[2] / "README.md").read_text(encoding="utf-8")
+OF_EVERY_NODE = {"/rosout"}
+
+
+def table(heading: str) -> list[list[str]]:
+    """Return the rows of the table under a heading, each a list of cells."""
+    section = README.split(f"### {heading}\n", 1)[1].split("\n#", 1)[0]
+    rows = [line.strip("|").split("|") for line in section.splitlines() if line.startswith("|")]
+    return [[cell.strip() for cell in row] for row in rows[2:]]
+
+
+def names(cell: str) -> set[str]:
+    return set(re.findall(r"`([^`]+)`", cell))
+
+
+def by_node(listing: dict[str, list[str]], node: str) -> set[str]:
+    return {name for name, nodes in listing.items() if f"/{node}" in nodes}
+
+
+def test_nodes_do_what_the_table_says(shared_robot: RosGraph) -> None:
+    publishers, subscribers, services = shared_robot.system_state()
+    rows = table("Nodes of `roomba_robot.launch`")
+    assert {name for row in rows for name in names(row[0])} == set(LAUNCHED)
+    for cells in rows:
+        (node,) = names(cells[0])
+        own = {name for name in by_node(services, node) if not name.startswith(f"/{node}/")}
+        assert by_node(publishers, node) - OF_EVERY_NODE == names(cells[1]), node
+        assert by_node(subscribers, node) == names(cells[2]), node
+        assert own == names(cells[3]), node
+
+
+def test_topics_have_the_types_that_the_table_says(shared_robot: RosGraph) -> None:
+    listed = {next(iter(names(row[0]))): next(iter(names(row[1]))) for row in table("Topics")}
+    types = dict(xmlrpc.client.ServerProxy(shared_robot.uri).getTopicTypes("/test")[2])
+    running = {topic: kind for topic, kind in types.items() if not topic.startswith("/rosout")}
+    assert listed == running
+
+
+def test_services_have_the_types_that_the_table_says(shared_robot: RosGraph) -> None:
+    import rosservice
+
+    Probe(shared_robot)
+    listed = {
+        next(iter(names(row[0]))): next(iter(names(row[1])))
+        for row in table("Services and the action")
+    }
+    assert listed.pop("/walk_to_point") == "roomba_robot/WalkToPointAction"
+    _, _, services = shared_robot.system_state()
+    own = {name for name in services if name.count("/") == 1 or "logger" not in name}
+    assert own == set(listed)
+    for name, kind in listed.items():
+        assert rosservice.get_service_type(name) == kind
+
+
+def test_parameters_are_those_of_the_table(shared_robot: RosGraph) -> None:
+    rows = table("Parameters")
+    for cells in rows:
+        (name,), (default,) = names(cells[0]), names(cells[1])
+        assert str(shared_robot.param(name)) == default
+
+
+def test_every_linked_page_and_picture_is_there() -> None:
+    root = Path(__file__).parents[2]
+    links = re.findall(r"\]\(([^)#:]+)\)", README)
+    assert len(links) > 5
+    assert [link for link in links if not (root / link).exists()] == []

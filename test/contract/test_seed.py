@@ -1,0 +1,171 @@
+"""The contract of the original robot (docs: the README's tables), held by the running graph."""
+
+import subprocess
+import time
+from pathlib import Path
+
+import pytest
+import rospy
+from fixtures.graph import LAUNCHED, RosGraph
+from fixtures.probe import Probe, Walker
+from roomba_robot.msg import RobotPosition
+from roomba_robot.srv import TurnCamera
+from std_msgs.msg import Float32
+
+ROOT = Path(__file__).parents[2]
+
+MD5 = {
+    "rosmsg roomba_robot/RobotPosition": "2178591bb5b4f72502724261422523b6",
+    "rosmsg roomba_robot/PositionAndDestination": "9c290bcd1e8f07bfd24d9381e72e1011",
+    "rossrv roomba_robot/TurnCamera": "d2bd6d55eaa6b367037dff843fa7a83c",
+    "rosmsg roomba_robot/WalkToPointAction": "b29e061a6202e3214456dee7af3eeed8",
+}
+
+PUBLISHES = {
+    "/dirt": "dirt_pub_node",
+    "/speed": "speed_pub_node",
+    "/cmd_vel_out": "speed_pub_node",
+    "/position": "position_pub_node",
+    "/cmd_vel": "position_pub_node",
+    "/change_position": "walk_to_point_action_server_node",
+    "/change_speed": "walk_to_point_action_server_node",
+    "/walk_to_point/feedback": "walk_to_point_action_server_node",
+    "/walk_to_point/result": "walk_to_point_action_server_node",
+    "/walk_to_point/status": "walk_to_point_action_server_node",
+    "/clock": "home_sim_node",
+    "/odom": "home_sim_node",
+    "/map": "home_sim_node",
+    "/bumper": "home_sim_node",
+}
+
+SUBSCRIBES = {
+    "/change_speed": "speed_pub_node",
+    "/cmd_vel": "speed_pub_node",
+    "/change_position": "position_pub_node",
+    "/odom": "position_pub_node",
+    "/walk_to_point/goal": "walk_to_point_action_server_node",
+    "/walk_to_point/cancel": "walk_to_point_action_server_node",
+    "/cmd_vel_out": "home_sim_node",
+}
+
+TYPES = {
+    "/dirt": "std_msgs/Float32",
+    "/speed": "std_msgs/Float32",
+    "/position": "roomba_robot/RobotPosition",
+    "/change_position": "roomba_robot/RobotPosition",
+    "/change_speed": "std_msgs/Float32",
+    "/walk_to_point/goal": "roomba_robot/WalkToPointActionGoal",
+    "/cmd_vel": "geometry_msgs/Twist",
+    "/odom": "nav_msgs/Odometry",
+    "/map": "nav_msgs/OccupancyGrid",
+}
+
+PARAMETERS = {
+    "/robot_name": "roomba_robot",
+    "/robot_max_speed": 0.5,
+    "/initial_post_x": 0.0,
+    "/initial_post_y": 0.0,
+    "/min_cordinate": -100.0,
+    "/max_cordinate": 100.0,
+}
+
+
+def tool(graph: RosGraph, *command: str, deadline: float = 20.0) -> str:
+    done = subprocess.run(
+        command, env=graph.environment, capture_output=True, text=True, timeout=deadline, check=True
+    )
+    return done.stdout
+
+
+@pytest.mark.parametrize("question", MD5)
+def test_interfaces_are_byte_compatible(question: str) -> None:
+    command, name = question.split()
+    done = subprocess.run(
+        [command, "md5", name], capture_output=True, text=True, timeout=20, check=True
+    )
+    assert done.stdout.split()[-1] == MD5[question]
+
+
+def test_nodes_topics_and_services_are_those_of_the_report(shared_robot: RosGraph) -> None:
+    publishers, subscribers, services = shared_robot.system_state()
+    for topic, node in PUBLISHES.items():
+        assert publishers.get(topic) == [f"/{node}"], topic
+    for topic, node in SUBSCRIBES.items():
+        assert f"/{node}" in subscribers.get(topic, []), topic
+    for node in LAUNCHED:
+        assert services[f"/{node}/get_loggers"] == [f"/{node}"]
+        assert services[f"/{node}/set_logger_level"] == [f"/{node}"]
+    assert services["/turn_camera"] == ["/turn_camera_service_node"]
+
+
+def test_every_topic_has_one_writer(shared_robot: RosGraph) -> None:
+    publishers, _, _ = shared_robot.system_state()
+    shared = {topic: nodes for topic, nodes in publishers.items() if len(nodes) > 1}
+    # Every node logs, and each of two publishes one part of the tree of frames.
+    assert shared.pop("/rosout")
+    assert sorted(shared.pop("/tf")) == ["/home_sim_node", "/position_pub_node"]
+    assert shared == {}
+
+
+def test_the_stock_tools_agree(shared_robot: RosGraph) -> None:
+    assert {f"/{node}" for node in LAUNCHED} <= set(tool(shared_robot, "rosnode", "list").split())
+    info = tool(shared_robot, "rosnode", "info", "/walk_to_point_action_server_node")
+    for line in (
+        " * /change_position [roomba_robot/RobotPosition]",
+        " * /change_speed [std_msgs/Float32]",
+        " * /walk_to_point/feedback [roomba_robot/WalkToPointActionFeedback]",
+        " * /walk_to_point/goal",
+    ):
+        assert line in info
+    for topic, kind in TYPES.items():
+        assert tool(shared_robot, "rostopic", "type", topic).strip() == kind
+    assert "/turn_camera" in tool(shared_robot, "rosservice", "list")
+    assert tool(shared_robot, "rosservice", "type", "/turn_camera").strip() == (
+        "roomba_robot/TurnCamera"
+    )
+
+
+def test_parameters_have_the_reports_values(shared_robot: RosGraph) -> None:
+    for name, value in PARAMETERS.items():
+        assert shared_robot.param(name) == value, name
+
+
+@pytest.mark.parametrize(
+    ("topic", "kind", "rate"),
+    [("/dirt", Float32, 5.0), ("/speed", Float32, 10.0), ("/position", RobotPosition, 10.0)],
+)
+def test_rates_are_the_reports_by_the_robots_clock(
+    shared_robot: RosGraph, topic: str, kind: type, rate: float
+) -> None:
+    probe = Probe(shared_robot)
+    probe.next(topic, kind)
+    begin, count = rospy.get_time(), probe.counts[topic]
+    while rospy.get_time() < begin + 4.0:
+        time.sleep(0.01)
+    heard = (probe.counts[topic] - count) / (rospy.get_time() - begin)
+    assert heard == pytest.approx(rate, rel=0.1)
+
+
+def test_change_topics_stream_at_20_hz_while_it_walks(shared_robot: RosGraph) -> None:
+    probe = Probe(shared_robot)
+    probe.hear("/change_position", RobotPosition)
+    walker = Walker()
+    walker.send(1.5, 2.0)
+    probe.next("/change_position", RobotPosition)
+    begin, count = rospy.get_time(), probe.counts["/change_position"]
+    while rospy.get_time() < begin + 3.0:
+        time.sleep(0.01)
+    heard = (probe.counts["/change_position"] - count) / (rospy.get_time() - begin)
+    assert heard == pytest.approx(20.0, rel=0.1)
+    walker.cancel()
+    walker.ends(5.0)
+
+
+def test_pictures_come_by_the_reports_service(shared_robot: RosGraph) -> None:
+    Probe(shared_robot)
+    service = rospy.ServiceProxy("/turn_camera", TurnCamera)
+    sizes = set()
+    for wish in (-30.0, -15.0, 0.0, 15.0, 30.0, 7.0):
+        image = service(wish).image
+        sizes.add((image.width, image.height, image.encoding, len(set(image.data)) > 30))
+    assert sizes == {(1024, 768, "rgb8", True)}

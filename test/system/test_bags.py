@@ -1,0 +1,102 @@
+"""Recording a run and playing it again."""
+
+import math
+import signal
+import time
+from pathlib import Path
+
+import pytest
+import rosbag
+import rospy
+from actionlib_msgs.msg import GoalStatus
+from fixtures.forked import run_forked
+from fixtures.graph import RosGraph
+from fixtures.probe import Probe, Walker
+from fixtures.waiting import wait_until
+from roomba_robot.msg import RobotPosition
+
+
+@pytest.fixture(scope="module")
+def bag(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A short walk, recorded with everything."""
+    folder = tmp_path_factory.mktemp("recorded")
+    path = folder / "test.bag"
+    with RosGraph(folder) as graph:
+        graph.launch("speed:=3")
+        recorder = graph.run("rosbag", "record", "-a", "-O", str(path))
+        wait_until(lambda: path.with_suffix(".bag.active").exists(), 15.0, "the recorder records")
+        topics = ("/position", "/odom", "/clock", "/walk_to_point/status", "/map")
+        wait_until(lambda: recording(graph, *topics), 15.0, "the recorder hears the robot")
+        run_forked(lambda: walk(graph))
+        recorder.send(signal.SIGINT)
+        wait_until(path.exists, 15.0, "the recorder closes the bag")
+    return path
+
+
+def recording(graph: RosGraph, *topics: str) -> bool:
+    _, subscribers, _ = graph.system_state()
+    return all(any("record" in node for node in subscribers.get(t, [])) for t in topics)
+
+
+def walk(graph: RosGraph) -> None:
+    Probe(graph)
+    walker = Walker()
+    # The recorder looks for new topics once a second; this client has just made these.
+    wait_until(lambda: walker.listeners >= 2, 15.0, "server and recorder hear the client")
+    walker.send(1.5, 2.0)
+    assert walker.ends(30.0) == GoalStatus.SUCCEEDED
+
+
+def positions(path: Path) -> list[tuple[float, float]]:
+    with rosbag.Bag(str(path)) as recorded:
+        return [(m.pos_x, m.pos_y) for _, m, _ in recorded.read_messages("/position")]
+
+
+def test_every_topic_is_recorded(bag: Path) -> None:
+    with rosbag.Bag(str(bag)) as recorded:
+        topics = set(recorded.get_type_and_topic_info().topics)
+    assert {
+        "/position", "/speed", "/dirt", "/odom", "/map", "/tf", "/clock", "/bumper",
+        "/change_position", "/change_speed", "/cmd_vel", "/cmd_vel_out", "/plan",
+        "/walk_to_point/goal", "/walk_to_point/feedback", "/walk_to_point/result",
+        "/walk_to_point/status",
+    } <= topics  # fmt: skip
+    track = positions(bag)
+    assert math.dist(track[0], (0.0, 0.0)) < 0.3
+    assert math.dist(track[-1], (1.5, 2.0)) < 0.1
+
+
+@pytest.mark.parametrize("clock", [(), ("--clock", "/clock:=/recorded_clock")])
+def test_a_replay_shows_the_same_run(bag: Path, graph: RosGraph, clock: tuple[str, ...]) -> None:
+    graph.set_param("/use_sim_time", True)
+    probe = Probe(graph)
+    heard: list[tuple[float, float]] = []
+    rospy.Subscriber("/position", RobotPosition, lambda m: heard.append((m.pos_x, m.pos_y)))
+    probe.hear("/position", RobotPosition)
+    player = graph.run("rosbag", "play", "-d", "2", "-q", str(bag), *clock)
+    assert player.ends(60.0) == 0
+    recorded = positions(bag)
+    assert len(heard) > 0.8 * len(recorded)
+    assert set(heard) <= set(recorded)
+    assert heard[-1] == recorded[-1]
+
+
+def test_nodes_go_on_while_a_bag_is_played_in_a_loop(bag: Path, graph: RosGraph) -> None:
+    """FAULTS row 15: the recorded clock jumps back at the end of every round."""
+    graph.set_param("/use_sim_time", True)
+    node = graph.rosrun("speed_pub_node.py", "speed:=/speed_again", "cmd_vel_out:=/nowhere")
+    probe = Probe(graph)
+    graph.run("rosbag", "play", "--loop", "-q", "-r", "4", str(bag))
+    from std_msgs.msg import Float32
+
+    probe.hear("/speed_again", Float32)
+    jumps, last = 0, 0.0
+    end = time.monotonic() + 40.0
+    while jumps < 2 and time.monotonic() < end:
+        now = rospy.get_time()
+        jumps += now < last - 1.0
+        last = now
+        time.sleep(0.01)
+    assert jumps == 2
+    probe.next("/speed_again", Float32)
+    assert node.status is None

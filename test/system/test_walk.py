@@ -1,0 +1,140 @@
+"""Walking in the default home, as a user's action client sees it."""
+
+import itertools
+import math
+import time
+
+import pytest
+import rospy
+from actionlib_msgs.msg import GoalStatus
+from fixtures.graph import RosGraph
+from fixtures.probe import Probe, Walker
+from fixtures.waiting import seconds_until, wait_until
+from nav_msgs.msg import OccupancyGrid, Odometry
+from roomba_robot.msg import RobotPosition
+from std_msgs.msg import Float32
+
+
+def test_the_reports_walk_there_and_back(shared_robot: RosGraph) -> None:
+    """(3, 4) from (0, 0) at 0.5 m/s: 5.0 m, about 10 s, and home again."""
+    probe = Probe(shared_robot)
+    walker = Walker()
+    walker.send(3.0, 4.0)
+    assert walker.ends(40.0) == GoalStatus.SUCCEEDED
+    assert math.dist(probe.position(), (3.0, 4.0)) < 0.05
+    assert 10.0 <= walker.time_spent < 14.0
+    assert walker.feedback[0] == pytest.approx(5.0, abs=0.1)
+    assert sorted(walker.feedback, reverse=True) == walker.feedback
+    assert len(walker.feedback) >= 4
+    walker.send(0.0, 0.0)
+    assert walker.ends(40.0) == GoalStatus.SUCCEEDED
+    assert math.dist(probe.position(), (0.0, 0.0)) < 0.05
+
+
+def test_short_ways_and_where_it_stands(shared_robot: RosGraph) -> None:
+    """FAULTS row 1."""
+    probe = Probe(shared_robot)
+    walker = Walker()
+    x, y = probe.position()
+    for away in (0.0, 0.3):
+        walker.send(x, y + away)
+        assert walker.ends(15.0) == GoalStatus.SUCCEEDED
+        assert math.dist(probe.position(), (x, y + away)) < 0.05
+
+
+@pytest.mark.parametrize(
+    ("x", "y", "said"),
+    [
+        (math.nan, 0.0, "finite"),
+        (0.0, math.inf, "finite"),
+        (101.0, 0.0, "outside the limits"),
+        (1e6, 0.0, "outside the limits"),
+        (50.0, 50.0, "nearest reachable point"),
+    ],
+)
+def test_what_cannot_be_walked_to_is_rejected_at_once(
+    shared_robot: RosGraph, x: float, y: float, said: str
+) -> None:
+    """FAULTS rows 2, 5 and 6."""
+    probe = Probe(shared_robot)
+    walker = Walker()
+    before = probe.position()
+    walker.send(x, y)
+    assert walker.ends(2.0) == GoalStatus.REJECTED
+    assert said in walker.text
+    assert probe.position() == before
+
+
+def test_cancel_stops_within_half_a_second(shared_robot: RosGraph) -> None:
+    """FAULTS row 3."""
+    probe = Probe(shared_robot)
+    walker = Walker()
+    walker.send(3.0, 4.0)
+    wait_until(lambda: probe.speed() > 0.45, 10.0, "full speed")
+    walker.cancel()
+    begin = rospy.get_time()
+    assert walker.ends(5.0) == GoalStatus.PREEMPTED
+    assert rospy.get_time() - begin < 0.6
+    assert probe.next("/odom", Odometry).twist.twist.linear.x == pytest.approx(0.0, abs=0.03)
+    stopped = probe.position()
+    time.sleep(0.5)
+    assert math.dist(probe.position(), stopped) < 0.02
+
+
+def test_the_robots_own_pose_counts_and_a_newer_goal_takes_over_without_a_halt(
+    shared_robot: RosGraph,
+) -> None:
+    """FAULTS rows 4 and 8."""
+    probe = Probe(shared_robot)
+    probe.hear("/position", RobotPosition)
+    first, second = Walker(), Walker()
+    x, y = probe.position()
+    first.send(x + 1.5, y + 1.5, cur_x=-40.0, cur_y=70.0)
+    wait_until(lambda: probe.speed() > 0.4, 10.0)
+    assert math.dist(probe.position(), (x, y)) < 2.2
+    odometry: list[float] = []
+    rospy.Subscriber("/odom", Odometry, lambda m: odometry.append(m.twist.twist.linear.x))
+    second.send(x + 1.3, y + 1.9)
+    assert first.ends(3.0) == GoalStatus.PREEMPTED
+    wait_until(lambda: len(odometry) > 15, 5.0)
+    assert min(odometry[:15]) > 0.05
+    assert second.ends(20.0) == GoalStatus.SUCCEEDED
+    assert math.dist(probe.position(), (x + 1.3, y + 1.9)) < 0.05
+
+
+def test_never_above_the_top_speed_nor_a_jump(shared_robot: RosGraph) -> None:
+    """FAULTS row 7, and what `rosparam set` does while it walks."""
+    probe = Probe(shared_robot)
+    track: list[tuple[float, float, float]] = []
+    rospy.Subscriber(
+        "/odom",
+        Odometry,
+        lambda m: track.append(
+            (m.header.stamp.to_sec(), m.pose.pose.position.x, m.pose.pose.position.y)
+        ),
+    )
+    probe.position()
+    walker = Walker()
+    walker.send(0.5, 0.5)
+    wait_until(lambda: probe.speed() > 0.4, 10.0)
+    shared_robot.set_param("/robot_max_speed", 0.2)
+    slowed = seconds_until(lambda: probe.speed() < 0.21, 3.0)
+    assert slowed < 1.3
+    shared_robot.set_param("/robot_max_speed", 0.5)
+    assert walker.ends(30.0) == GoalStatus.SUCCEEDED
+    for (t1, x1, y1), (t2, x2, y2) in itertools.pairwise(track):
+        assert math.dist((x1, y1), (x2, y2)) <= 0.5 * (t2 - t1) + 1e-6
+
+
+def test_a_single_wish_drives_there_without_an_action(shared_robot: RosGraph) -> None:
+    probe = Probe(shared_robot)
+    x, y = probe.position()
+    probe.send("/change_speed", Float32(0.5), receivers=1)
+    probe.send("/change_position", RobotPosition(x + 0.6, y), receivers=1)
+    wait_until(lambda: math.dist(probe.position(), (x + 0.6, y)) < 0.05, 10.0, "it is there")
+
+
+def test_the_map_is_latched(shared_robot: RosGraph) -> None:
+    message = Probe(shared_robot).next("/map", OccupancyGrid)
+    assert message.info.resolution == pytest.approx(0.05)
+    assert set(message.data) <= {-1, 0, 100}
