@@ -127,8 +127,8 @@ distribution() { # prints bookworm, trixie or jammy
 system_packages() { # runtime|dev
   local -a packages=(
     python3 python3-venv cmake g++ make
-    # building: catkin, and the definitions and CMake files of the messages that ours contain
-    catkin ros-message-generation libactionlib-msgs-dev libsensor-msgs-dev libstd-msgs-dev
+    # building: catkin with its hooks, and the definitions and CMake files of the messages that ours contain
+    catkin ros-environment ros-message-generation libactionlib-msgs-dev libsensor-msgs-dev libstd-msgs-dev
     # running: master, launcher, client library, terminal commands
     python3-rospy python3-roslaunch python3-actionlib rosout rosbash
     python3-rosnode python3-rostopic python3-rosservice python3-rosparam python3-rosmsg python3-rosgraph

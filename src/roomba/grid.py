@@ -78,4 +78,5 @@ class OccupancyMap:
     @property
     def solid(self) -> NDArray[np.bool_]:
         """Cells that no body may enter: all that is not known to be free, bool [rows, columns]."""
-        return self.values != FREE
+        solid: NDArray[np.bool_] = self.values != FREE
+        return solid
