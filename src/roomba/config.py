@@ -143,12 +143,13 @@ SEED_SPELLINGS: dict[str, tuple[str, ...]] = {
 def parse_seed_parameters(values: dict[str, Any]) -> SeedParameters:
     """Return the validated parameters; what is missing has its default.
 
-    ``values`` maps names, in any spelling of :data:`SEED_SPELLINGS`, to raw values.
+    ``values`` maps names, in any spelling of :data:`SEED_SPELLINGS`, to raw values. Another
+    spelling counts before the parameter's own, which the launch file always sets.
     Raises :class:`ConfigError` with one line that names the parameter, its value and what is meant.
     """
     known: dict[str, Any] = {}
     for name, spellings in SEED_SPELLINGS.items():
-        for spelling in reversed(spellings):
+        for spelling in spellings:
             if spelling in values:
                 known[name] = values[spelling]
     for name, value in known.items():

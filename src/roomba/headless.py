@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from roomba.config import RobotConfig
 from roomba.control.position_loop import PositionLoop
 from roomba.control.speed_loop import SpeedLoop
+from roomba.errors import RoombaError
 from roomba.geometry import Pose, Twist
 from roomba.mission.unknown_things import UnknownThings
 from roomba.mission.walk import Sensed, Walk, WalkState, WalkStep
@@ -64,7 +65,7 @@ class HeadlessRobot:
         self.planner = PathPlanner(home.map, body.radius, walk.clearance, walk.tight_clearance)
         self._max_speed = max_speed
         self._position_loop = PositionLoop(self.config.control, body)
-        self._speed_loop = SpeedLoop(body.command_timeout, max_speed)
+        self._speed_loop = SpeedLoop(body.command_timeout, max_speed, body.max_angular_speed)
 
     def walk(self, x: float, y: float) -> WalkRecord:
         """Walk to a point of the map frame; raises NoPathError when there is no way."""
@@ -77,7 +78,6 @@ class HeadlessRobot:
             (x, y),
             self._sense(seen),
         )
-        self._position_loop.restart()
         started, bumps, was_bumped = seen.time, 0, False
         steps: list[WalkStep] = []
         poses = [(seen.time, seen.pose.x, seen.pose.y, seen.pose.theta)]
@@ -92,6 +92,8 @@ class HeadlessRobot:
                 bumps += seen.bumper.pressed and not was_bumped
                 was_bumped = seen.bumper.pressed
             poses.append((seen.time, seen.pose.x, seen.pose.y, seen.pose.theta))
+        else:
+            raise RoombaError(f"a walk to ({x}, {y}) has no end; that is a fault of the program")
         return WalkRecord(
             state=step.state,
             reason=step.reason,

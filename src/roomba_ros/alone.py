@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import socket
 import sys
+from http.client import HTTPException
+from xmlrpc.client import Error as XmlRpcError
 from xmlrpc.client import ServerProxy
 
 import rosgraph
@@ -42,7 +44,8 @@ def _is_alive(master: rosgraph.Master, node: str) -> bool:
     socket.setdefaulttimeout(_PING_TIMEOUT)
     try:
         ServerProxy(master.lookupNode(node)).getPid("/roomba_robot_start")  # type: ignore[operator]
-    except (OSError, rosgraph.MasterError):
+    except (OSError, HTTPException, XmlRpcError, rosgraph.MasterError):
+        # Nobody there, or somebody else on a port that was used again.
         return False
     finally:
         socket.setdefaulttimeout(before)

@@ -23,6 +23,8 @@ def main() -> None:
         wait_for_clock()
         robot = RosRobot()
         robot.start()
+    except KeyboardInterrupt:
+        leave(130)
     except RoombaError as error:
         print(error, file=sys.stderr)
         sys.exit(1)

@@ -102,6 +102,12 @@ def path_message(now: float, points: NDArray[np.float64], frame_id: str) -> Path
     return message
 
 
+def path_of(message: Path) -> NDArray[np.float64]:
+    """Return the points of a path, float64 [n, 2], in its header's frame."""
+    points = [(at.pose.position.x, at.pose.position.y) for at in message.poses]
+    return np.array(points, np.float64).reshape(-1, 2)
+
+
 def map_message(now: float, known: OccupancyMap, frame_id: str) -> OccupancyGrid:
     """Return an occupancy map as a message."""
     message = OccupancyGrid(header=header(now, frame_id))

@@ -58,12 +58,13 @@ _FASTEST = 100.0
 class HomeSimNode:
     """Steps the world and publishes what the robot's drive and sensors say.
 
-    Publishes: ``/clock`` (20 Hz), ``/map`` (latched), ``odom`` (20 Hz), ``bumper`` (at each change,
+    Publishes: ``/clock`` (20 Hz), ``map`` (latched), ``odom`` (20 Hz), ``bumper`` (at each change,
     and 5 Hz), ``/tf`` (odom -> base_link), ``dirt_raw`` (Float32, g under the body, 10 Hz).
     Subscribes: ``cmd_vel_out`` (Twist; older than the drive's time-out it stops).
     Services: ``camera/capture`` (TurnCamera, exactly at the angle), ``sim/spill`` (SpillDirt).
     Parameters: ``~home`` (name or path), ``~homes_directory``, ``~speed`` (robot seconds per second
-    of wall time), ``~seed``, ``robot_max_speed``, ``initial_post_x``, ``initial_post_y``.
+    of wall time), ``~seed``, ``~clock`` (false for all but one of several robots),
+    ``robot_max_speed``, ``initial_post_x``, ``initial_post_y``.
     """
 
     def start(self) -> None:
@@ -71,6 +72,9 @@ class HomeSimNode:
         self._parameters = LiveSeedParameters()
         self._config = read_robot_config()
         self._speed = _speed_parameter()
+        self._owns_clock = rospy.get_param("~clock", True)
+        if not isinstance(self._owns_clock, bool):
+            raise ConfigError(f"parameter ~clock: expected true or false, got {self._owns_clock!r}")
         self._simulator = self._make_simulator()
         self._camera = Camera(Scene.of(self._simulator.home), self._config.camera)
         self._lock = threading.Lock()
@@ -118,8 +122,9 @@ class HomeSimNode:
         return self._command
 
     def _publish(self, observation: Observation) -> None:
-        now = self._clock / 1e9
-        self._clock_publisher.publish(rospy.Time(nsecs=self._clock))
+        now = self._now()
+        if self._owns_clock:
+            self._clock_publisher.publish(rospy.Time(nsecs=self._clock))
         odometry = observation.odometry
         self._odometry.publish(
             odometry_message(now, odometry, observation.twist, self._odom_frame, self._base_frame)
@@ -133,6 +138,10 @@ class HomeSimNode:
             self._bumper.publish(bumper_message(now, bumper.left, bumper.right, self._base_frame))
         if self._ticks % _DIRT_EVERY == 0:
             self._dirt.publish(observation.dirt_under)
+
+    def _now(self) -> float:
+        """Return the time for stamps, s: that of the clock, whoever owns it."""
+        return self._clock / 1e9 if self._owns_clock else float(rospy.get_time())
 
     def _make_simulator(self) -> Simulator:
         directory = Path(rospy.get_param("~homes_directory", str(package_folder() / "homes")))
@@ -153,13 +162,14 @@ class HomeSimNode:
         return simulator
 
     def _connect(self) -> None:
-        self._clock_publisher = rospy.Publisher("/clock", Clock, queue_size=1, tcp_nodelay=True)
+        if self._owns_clock:
+            self._clock_publisher = rospy.Publisher("/clock", Clock, queue_size=1, tcp_nodelay=True)
         self._odometry = rospy.Publisher("odom", Odometry, queue_size=1, tcp_nodelay=True)
         self._bumper = rospy.Publisher("bumper", BumperMessage, queue_size=1, tcp_nodelay=True)
         self._transforms = rospy.Publisher("/tf", TFMessage, queue_size=10)
         self._dirt = rospy.Publisher("dirt_raw", Float32, queue_size=1)
-        self._map = rospy.Publisher("/map", OccupancyGrid, queue_size=1, latch=True)
-        self._map.publish(map_message(self._clock / 1e9, self._simulator.home.map, "map"))
+        self._map = rospy.Publisher("map", OccupancyGrid, queue_size=1, latch=True)
+        self._map.publish(map_message(self._now(), self._simulator.home.map, "map"))
         rospy.Subscriber(
             "cmd_vel_out", TwistMessage, self._on_command, queue_size=1, tcp_nodelay=True
         )
@@ -180,7 +190,7 @@ class HomeSimNode:
                 f"expected an angle from {-most:g} to {most:g} degrees, got {angle:g}"
             )
         with self._lock:
-            now, pose = self._clock / 1e9, self._simulator.body.pose
+            now, pose = self._now(), self._simulator.body.pose
         dirt = self._simulator.dirt
         # Not under the simulation's lock: taking a picture must not hold up time.
         with self._camera_lock:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +17,9 @@ from roomba.config import (
     parse_seed_parameters,
 )
 from roomba.errors import ConfigError
+
+_LOOK_PERIOD = 0.5
+"""s of wall time between two looks for what may have been set newly."""
 
 
 def read_seed_parameters() -> SeedParameters:
@@ -44,21 +48,35 @@ def package_folder() -> Path:
 class LiveSeedParameters:
     """The parameters in force: a good change is obeyed, a bad one is refused with a warning.
 
-    The master tells this node of changes; reading costs no call.
+    The master tells this node of changes; reading what is set costs no call. One node of a robot
+    is the ``guardian``: it puts refused values back, and turns the report's other spellings into
+    the parameters' own names, which is what all nodes watch.
     """
 
-    def __init__(self, *, restores: bool = False) -> None:
-        """Read them all; raises ConfigError. ``restores`` puts a refused parameter back."""
-        self._restores = restores
+    def __init__(self, *, guardian: bool = False) -> None:
+        """Read them all; raises ConfigError."""
+        self._guardian = guardian
         self.values = read_seed_parameters()
-        self._keys = self._find_keys()
+        self._keys = {
+            name: rospy.search_param(name) or rospy.resolve_name(name) for name in SEED_SPELLINGS
+        }
+        self._unset: dict[str, float] = {}
+        self._looked = time.monotonic()
         self._seen = self._raw()
 
     def refresh(self) -> SeedParameters:
         """Take over what was changed since the last call; return what is in force."""
-        raw = self._raw()
-        if raw == self._seen:
-            return self.values
+        try:
+            if self._guardian:
+                self._adopt_other_spellings()
+            raw = self._raw()
+            if raw != self._seen:
+                self._take_over(raw)
+        except OSError as error:
+            rospy.logwarn_throttle(10.0, "the master does not answer, parameters stay: %s", error)
+        return self.values
+
+    def _take_over(self, raw: dict[str, Any]) -> None:
         changed = {name: raw.get(name) for name in raw if raw.get(name) != self._seen.get(name)}
         self._seen = raw
         try:
@@ -66,41 +84,38 @@ class LiveSeedParameters:
             rospy.loginfo("parameters changed: %s", changed)
         except ConfigError as error:
             rospy.logwarn("refused: %s; the old value stays in force", error)
-            if self._restores:
-                self._restore(changed)
-        return self.values
-
-    @staticmethod
-    def _find_keys() -> dict[str, str]:
-        """Return the key of each spelling that is set, and of each parameter's own.
-
-        No others: what is not set costs a call of the master each time it is read.
-        """
-        keys = {}
-        for name, spellings in SEED_SPELLINGS.items():
-            for spelling in spellings:
-                key = rospy.search_param(spelling)
-                if key is not None:
-                    keys[spelling] = key
-            if not keys.keys() & set(spellings):
-                keys[name] = rospy.resolve_name(name)
-        return keys
+            if self._guardian:
+                for name in changed:
+                    rospy.set_param(self._keys[name], getattr(self.values, name))
 
     def _raw(self) -> dict[str, Any]:
         raw = {}
-        for spelling, key in self._keys.items():
+        now = time.monotonic()
+        for name, key in self._keys.items():
+            if now < self._unset.get(name, 0.0):
+                continue
             try:
                 value = rospy.get_param_cached(key)
             except KeyError:
-                continue
-            # An empty dictionary is how the master tells that a parameter is not set.
-            if value != {}:
-                raw[spelling] = value
+                value = {}
+            # An empty dictionary is how the master tells that a parameter is not set; asking for
+            # such a one is a call of the master each time.
+            if value == {}:
+                self._unset[name] = now + _LOOK_PERIOD
+            else:
+                raw[name] = value
         return raw
 
-    def _restore(self, changed: dict[str, Any]) -> None:
-        for name, spellings in SEED_SPELLINGS.items():
-            for spelling in spellings:
-                if spelling in changed:
-                    rospy.set_param(self._keys[spelling], getattr(self.values, name))
-        self._seen = self._raw()
+    def _adopt_other_spellings(self) -> None:
+        now = time.monotonic()
+        if now - self._looked < _LOOK_PERIOD:
+            return
+        self._looked = now
+        names = set(rospy.get_param_names())
+        for name, (_, *others) in SEED_SPELLINGS.items():
+            for other in others:
+                key = f"{self._keys[name].rpartition('/')[0]}/{other}"
+                if key in names:
+                    rospy.set_param(self._keys[name], rospy.get_param(key))
+                    rospy.delete_param(key)
+                    rospy.loginfo("%s is taken for %s", key, self._keys[name])

@@ -101,6 +101,9 @@ class PositionPubNode:
         if target is not None:
             twist = self._loop.tick(pose, target, self._parameters.values.robot_max_speed)
             if self._loop.arrived and self._stops_left == 0:
+                # Others may steer now; nothing drives it back here.
+                with self._lock:
+                    self._setpoint.fulfilled(now)
                 return
             self._stops_left = self._stops_left - 1 if self._loop.arrived else _STOP_REPEATS
             self._command.publish(twist_message(twist))
@@ -124,8 +127,7 @@ class PositionPubNode:
             return
         with self._lock:
             target = (message.pos_x, message.pos_y)
-            if self._setpoint.wish(rospy.get_time(), target, self._wishes.get_num_connections()):
-                self._loop.restart()
+            self._setpoint.wish(rospy.get_time(), target, self._wishes.get_num_connections())
 
 
 def main() -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import queue
-import re
 import threading
 import time
 from typing import Any
@@ -36,21 +35,15 @@ from roomba.client import (
     WalkOutcome,
     WalkReport,
 )
-from roomba.errors import RoombaError
-from roomba_ros.convert import picture_of
+from roomba.geometry import Pose
+from roomba_ros.calls import SERVER_DEADLINE, call_service
+from roomba_ros.convert import path_of, picture_of, pose_message
 from roomba_ros.parameters import LiveSeedParameters
 
-SERVER_DEADLINE = 5.0
-"""s of wall time that an action server or a service may take to answer."""
-CALL_DEADLINE = 10.0
-"""s of wall time that a service may work on an answer."""
 OLDEST_NEWS = 3.0
 """s of wall time; the robot tells its state at least 5 times a second, older news is none."""
 SILENCE_DEADLINE = 2.5
 """s of wall time without the server's status (5 Hz) after which it is taken for dead."""
-
-_REFUSAL = re.compile(r"responded with an error: b?['\"](?:error processing request: )?(.*)['\"]$")
-"""How rospy frames the sentence that a service refused with."""
 
 _OUTCOMES = {
     GoalStatus.SUCCEEDED: WalkOutcome.ARRIVED,
@@ -80,7 +73,7 @@ class RosRobot:
     def start(self) -> None:
         """Connect; raises RoombaError for wrong parameters."""
         self._parameters = LiveSeedParameters()
-        self._actions = actionlib.SimpleActionClient("walk_to_point", WalkToPointAction)
+        self._actions = _Actions("walk_to_point", WalkToPointAction)
         self._make_plan = rospy.ServiceProxy("make_plan", GetPlan)
         rospy.Subscriber("dirt", Float32, self._on_dirt, queue_size=1)
         rospy.Subscriber("speed", Float32, self._on_speed, queue_size=1)
@@ -110,12 +103,8 @@ class RosRobot:
 
     def path_length(self, x: float, y: float) -> float:
         """Return the length of the planned way, m."""
-        goal = PoseStamped()
-        goal.header.frame_id = "map"
-        goal.pose.position.x, goal.pose.position.y = x, y
-        goal.pose.orientation.w = 1.0
-        plan = _call(self._make_plan, PoseStamped(), goal, 0.0).plan
-        points = np.array([(p.pose.position.x, p.pose.position.y) for p in plan.poses])
+        goal = pose_message(rospy.get_time(), Pose(x, y), "map")
+        points = path_of(call_service(self._make_plan, PoseStamped(), goal, 0.0).plan)
         if len(points) == 0:
             raise RequestRefusedError(f"there is no way to ({x:.2f}, {y:.2f})")
         return float(np.hypot(*np.diff(points, axis=0).T).sum())
@@ -127,8 +116,9 @@ class RosRobot:
                 f"no action server answers on walk_to_point within {SERVER_DEADLINE:g} s; "
                 "is the robot running (`./roomba run`)?"
             )
-        here = self.state()
-        return _RosWalk(self, self._actions, PositionAndDestination(here.x, here.y, x, y))
+        with self._news:
+            here = self._values.get("position", (0.0, 0.0))
+        return _RosWalk(self, self._actions, PositionAndDestination(*here, x, y))
 
     @property
     def travelled(self) -> float:
@@ -172,13 +162,37 @@ class RosRobot:
         self._status_seen = time.monotonic()
 
 
+class _Actions(actionlib.SimpleActionClient):  # type: ignore[misc]
+    """The stock client with one lock around sending and its callbacks.
+
+    Without it an answer that comes while a goal is being sent is taken for one to an older goal
+    and dropped, and the goal never ends (actionlib issue 206).
+    """
+
+    def __init__(self, *arguments: Any) -> None:
+        self._sending = threading.RLock()
+        super().__init__(*arguments)
+
+    def send_goal(self, *arguments: Any, **callbacks: Any) -> None:
+        with self._sending:
+            super().send_goal(*arguments, **callbacks)
+
+    def _handle_transition(self, handle: Any) -> None:
+        with self._sending:
+            super()._handle_transition(handle)
+
+    def _handle_feedback(self, handle: Any, feedback: Any) -> None:
+        with self._sending:
+            super()._handle_feedback(handle, feedback)
+
+
 class _RosWalk:
     """A goal under way; feedback and end arrive through a queue."""
 
     def __init__(
         self,
         robot: RosRobot,
-        actions: actionlib.SimpleActionClient,
+        actions: _Actions,
         destination: PositionAndDestination,
     ) -> None:
         self._robot = robot
@@ -188,14 +202,10 @@ class _RosWalk:
         self._report: WalkReport | None = None
         self._travelled_before = robot.travelled
         self._started = rospy.get_time()
-        # One lock around sending and its callbacks: without it the stock client can take an early
-        # answer for one to an older goal, and the goal never ends (actionlib issue 206).
-        self._lock = threading.RLock()
         robot.heard_server()
-        with self._lock:
-            actions.send_goal(
-                WalkToPointGoal(destination), done_cb=self._on_done, feedback_cb=self._on_feedback
-            )
+        actions.send_goal(
+            WalkToPointGoal(destination), done_cb=self._on_done, feedback_cb=self._on_feedback
+        )
 
     def next_feedback(self, timeout: float) -> float | None:
         deadline = time.monotonic() + timeout
@@ -227,10 +237,9 @@ class _RosWalk:
         self._feedback.put(message.distance)
 
     def _on_done(self, status: int, result: WalkToPointResult | None) -> None:
-        with self._lock:
-            spent = result.time_spent if result is not None else rospy.get_time() - self._started
-            text = self._actions.get_goal_status_text()
-            self._end(_OUTCOMES.get(status, WalkOutcome.FAILED), spent, text)
+        spent = result.time_spent if result is not None else rospy.get_time() - self._started
+        text = self._actions.get_goal_status_text()
+        self._end(_OUTCOMES.get(status, WalkOutcome.FAILED), spent, text)
 
     def _end(self, outcome: WalkOutcome, duration: float, message: str) -> None:
         if self._ended.is_set():
@@ -250,7 +259,7 @@ class RosCamera:
     def picture(self, degrees: float) -> NDArray[np.uint8]:
         """Return the picture nearest to an angle."""
         try:
-            return picture_of(_call(self._turn_camera, degrees).image)
+            return picture_of(call_service(self._turn_camera, degrees).image)
         except ValueError as error:
             raise RequestRefusedError(f"turn_camera answered with no picture: {error}") from error
 
@@ -263,48 +272,3 @@ def _wait_for_server(actions: actionlib.SimpleActionClient, deadline: float) -> 
             return True
         time.sleep(0.02)
     return False
-
-
-def _call(service: rospy.ServiceProxy, *arguments: object) -> Any:
-    """Call a service within deadlines; its refusals and its absence become named errors."""
-    name = service.resolved_name
-    try:
-        _wait_for_service(name, SERVER_DEADLINE)
-    except rospy.ROSException as error:
-        raise RobotUnavailableError(
-            f"no service {name} answers within {SERVER_DEADLINE:g} s; is the robot running "
-            "(`./roomba run`)?"
-        ) from error
-    answers: queue.SimpleQueue[Any] = queue.SimpleQueue()
-    threading.Thread(target=lambda: answers.put(_answer(service, arguments)), daemon=True).start()
-    try:
-        answer = answers.get(timeout=CALL_DEADLINE)
-    except queue.Empty:
-        raise RobotUnavailableError(f"{name} gave no answer within {CALL_DEADLINE:g} s") from None
-    if isinstance(answer, RoombaError):
-        raise answer
-    return answer
-
-
-def _answer(service: rospy.ServiceProxy, arguments: tuple[object, ...]) -> Any:
-    try:
-        return service(*arguments)
-    except (rospy.ServiceException, rospy.ROSException) as error:
-        refusal = _REFUSAL.search(str(error))
-        if refusal is None:
-            return RobotUnavailableError(f"{service.resolved_name} broke off: {error}")
-        return RequestRefusedError(refusal.group(1))
-
-
-def _wait_for_service(name: str, deadline: float) -> None:
-    end = time.monotonic() + deadline
-    while True:
-        try:
-            # The stock wait counts the robot's clock; the shortest wait, repeated, counts ours.
-            rospy.wait_for_service(name, timeout=0.001)
-        except rospy.ROSException:
-            if time.monotonic() > end or rospy.is_shutdown():
-                raise
-            time.sleep(0.05)
-        else:
-            return

@@ -30,10 +30,13 @@ class SpeedPubNode:
 
     def start(self) -> None:
         """Read the limits and connect."""
-        self._parameters = LiveSeedParameters(restores=True)
+        self._parameters = LiveSeedParameters(guardian=True)
         self._lock = threading.Lock()
+        body = read_robot_config().body
         self._loop = SpeedLoop(
-            read_robot_config().body.command_timeout, self._parameters.values.robot_max_speed
+            body.command_timeout,
+            self._parameters.values.robot_max_speed,
+            body.max_angular_speed,
         )
         self._speed: float | None = None
         self._hold = Hold.NO_COMMAND
@@ -46,8 +49,9 @@ class SpeedPubNode:
 
     def tick(self, now: float) -> None:
         """Obey changed limits, tell the drive and tell the speed."""
+        max_speed = self._parameters.refresh().robot_max_speed
         with self._lock:
-            self._loop.set_max_speed(self._parameters.refresh().robot_max_speed)
+            self._loop.set_max_speed(max_speed)
         self._tell_drive(now)
         if self._speed is not None:
             self._speed_publisher.publish(self._speed)

@@ -11,20 +11,21 @@ from geometry_msgs.msg import PoseStamped
 from numpy.typing import NDArray
 from roomba_robot.srv import TurnCamera, TurnCameraRequest, TurnCameraResponse
 
-from roomba.errors import PictureError
-from roomba.geometry import Pose
+from roomba.errors import PictureError, RoombaError
+from roomba.geometry import Pose, wrap_angle
 from roomba.pictures_folder import ANGLES, PictureFolder, nearest_angle
+from roomba_ros.calls import call_service
 from roomba_ros.convert import image_message, picture_of, pose_of
 from roomba_ros.node import frame_id, run_node
 
 _TRAVELLED = 0.1
-"""m; moving less than this since the last picture is no travelling."""
+"""m; a picture taken farther away than this is old."""
 _TURNED = 0.3
-"""rad; turning as much as this is as good as travelling."""
+"""rad; and so is one taken with another heading."""
 
 
 class TurnCameraService:
-    """Takes a picture every 3 s while the robot travels, going through the five angles.
+    """Keeps a picture of each of five angles up to date: one every 3 s while the robot travels.
 
     Services: ``turn_camera`` (TurnCamera: the newest picture of the angle nearest to the wish).
     Calls: ``camera/capture`` (TurnCamera) of the robot's camera.
@@ -36,51 +37,52 @@ class TurnCameraService:
 
     def start(self) -> None:
         """Connect."""
-        default = Path(rospkg.get_ros_home()) / "roomba_robot" / "Images"
+        own = rospy.get_namespace().strip("/")
+        default = Path(rospkg.get_ros_home()) / "roomba_robot" / own / "Images"
         self._folder = PictureFolder(Path(rospy.get_param("~picture_folder", "") or default))
         self._lock = threading.Lock()
         self._capture = rospy.ServiceProxy("camera/capture", TurnCamera)
         self._pose: Pose | None = None
-        self._pictured: Pose | None = None
-        self._missing = list(ANGLES)
-        self._next = 0
+        self._pictured: dict[int, Pose | None] = {}
+        self._round = list(ANGLES)
         rospy.Subscriber("pose", PoseStamped, self._on_pose, queue_size=1)
         rospy.Service("turn_camera", TurnCamera, self._on_turn_camera)
 
     def tick(self, now: float) -> None:
-        """Take a first picture of each angle, and the next of the round when it travels."""
+        """Take a first picture of each angle at once, later one that is not up to date."""
         pose = self._pose
-        if pose is None or not (self._missing or self._has_travelled(pose)):
+        if pose is None:
             return
+        old = [angle for angle in self._round if self._is_old(angle, pose)]
+        wanted = [angle for angle in old if angle not in self._pictured] or old[:1]
         try:
-            for angle in list(self._missing) or [ANGLES[self._next]]:
+            for angle in wanted:
                 self._take(angle)
+                # To the end of the round, so that all angles get their turn.
+                self._round.remove(angle)
+                self._round.append(angle)
         except PictureError as error:
             rospy.logwarn_throttle(60.0, "no picture taken: %s", error)
-            return
-        if self._pictured is not None:
-            self._next = (self._next + 1) % len(ANGLES)
-        self._pictured = pose
 
     def stop(self) -> None:
         """Nothing of this node moves the robot."""
 
-    def _has_travelled(self, pose: Pose) -> bool:
-        last = self._pictured
+    def _is_old(self, angle: int, pose: Pose) -> bool:
+        last = self._pictured.get(angle)
         if last is None:
             return True
-        turned = abs(Pose(theta=last.theta).inverse().compose(Pose(theta=pose.theta)).theta)
+        turned = abs(wrap_angle(pose.theta - last.theta))
         return pose.distance_to(last.x, last.y) > _TRAVELLED or turned > _TURNED
 
     def _take(self, angle: int) -> NDArray:
+        pose = self._pose
         try:
-            picture = picture_of(self._capture(float(angle)).image)
-        except (rospy.ServiceException, rospy.ROSException, ValueError) as error:
-            raise PictureError(f"the robot's camera does not answer: {error}") from error
+            picture = picture_of(call_service(self._capture, float(angle)).image)
+        except (RoombaError, ValueError) as error:
+            raise PictureError(f"the robot's camera gave no picture: {error}") from error
         with self._lock:
             self._folder.write(angle, picture)
-            if angle in self._missing:
-                self._missing.remove(angle)
+            self._pictured[angle] = pose
         return picture
 
     def _on_turn_camera(self, request: TurnCameraRequest) -> TurnCameraResponse:
@@ -92,7 +94,7 @@ class TurnCameraService:
 
     def _picture_near(self, degrees: float) -> NDArray:
         angle = nearest_angle(degrees)
-        if angle in self._missing:
+        if angle not in self._pictured:
             return self._take_or_old(angle)
         try:
             return self._folder.read(angle)
@@ -106,17 +108,13 @@ class TurnCameraService:
     def _take_or_old(self, angle: int) -> NDArray:
         """Take the first picture of this run; without a camera the last good one counts."""
         try:
-            picture = self._take(angle)
+            return self._take(angle)
         except PictureError as error:
             if not self._folder.has(angle):
-                raise PictureError(
-                    f"{self._folder.path(angle)}: no picture yet; {error}"
-                ) from error
+                path = self._folder.path(angle)
+                raise PictureError(f"{path}: no picture yet; {error}") from error
             rospy.logwarn("%s; showing the last picture there is", error)
             return self._folder.read(angle)
-        if angle in self._missing:
-            self._missing.remove(angle)
-        return picture
 
     def _on_pose(self, message: PoseStamped) -> None:
         self._pose = pose_of(message)

@@ -39,6 +39,8 @@ SENSES_DEADLINE = 6.0
 """s of wall time after which goals are taken, and rejected, though map and pose are not there."""
 _STANDSTILL = 0.02
 """m/s; a cancelled walk has ended when the robot is slower than this."""
+_LONGEST_BRAKING = 1.0
+"""s; a cancelled walk has ended after this, whatever the odometry says."""
 
 
 @dataclass
@@ -49,7 +51,8 @@ class _Job:
     walk: Walk
     feedback_period: float
     feedback_due: float
-    cancelled: bool = False
+    rest_by: float | None = None
+    """When a cancelled walk has ended at the latest; None while it is wanted."""
 
 
 class WalkToPointActionServer:
@@ -59,7 +62,7 @@ class WalkToPointActionServer:
 
     Publishes: ``change_position`` (RobotPosition) and ``change_speed`` (Float32, m/s) at 20 Hz
     while it walks, ``plan`` (Path, latched), ``walk_to_point/{feedback,result,status}``.
-    Subscribes: ``pose``, ``odom``, ``bumper``, ``/map``, ``walk_to_point/{goal,cancel}``.
+    Subscribes: ``pose``, ``odom``, ``bumper``, ``map``, ``walk_to_point/{goal,cancel}``.
     Services: ``make_plan`` (GetPlan: the path to a point, without walking it).
     Parameters: ``robot_max_speed``, ``min_cordinate``, ``max_cordinate``.
     """
@@ -71,13 +74,14 @@ class WalkToPointActionServer:
         self._parameters = LiveSeedParameters()
         self._config = read_robot_config()
         self._things = UnknownThings(self._config.walk, self._config.body)
-        self._lock = threading.Lock()
+        # Plans are made by ticks and by make_plan, and the planner works on one at a time.
+        self._planning = threading.Lock()
         self._planner: PathPlanner | None = None
         self._pose: Pose | None = None
         self._speed = 0.0
         self._bumper = (False, False)
         self._goals: deque[actionlib.ServerGoalHandle] = deque()
-        self._cancels: set[str] = set()
+        self._cancels: deque[str] = deque()
         self._job: _Job | None = None
         self._change_position = rospy.Publisher(
             "change_position", RobotPosition, queue_size=1, tcp_nodelay=True
@@ -86,7 +90,7 @@ class WalkToPointActionServer:
             "change_speed", Float32, queue_size=1, tcp_nodelay=True
         )
         self._plan = rospy.Publisher("plan", Path, queue_size=1, latch=True)
-        rospy.Subscriber("/map", OccupancyGrid, self._on_map, queue_size=1)
+        rospy.Subscriber("map", OccupancyGrid, self._on_map, queue_size=1)
         rospy.Subscriber("pose", PoseStamped, self._on_pose, queue_size=1, tcp_nodelay=True)
         rospy.Subscriber("odom", Odometry, self._on_odometry, queue_size=1)
         rospy.Subscriber("bumper", Bumper, self._on_bumper, queue_size=1, tcp_nodelay=True)
@@ -111,6 +115,7 @@ class WalkToPointActionServer:
         """End the goal under way; the robot stops because its setpoint's sender is gone."""
         job, self._job = self._job, None
         if job is not None:
+            self._change_speed.publish(self._parameters.values.robot_max_speed)
             result = WalkToPointResult(job.walk.time_spent(rospy.get_time()))
             job.handle.set_aborted(result, "the action server was told to end")
 
@@ -124,6 +129,8 @@ class WalkToPointActionServer:
         ready = sensed is not None or time.monotonic() > self._serves_by
         if ready and not self._serves:
             self._serves = True
+            # A server that ended in the middle of a walk may have left any cruise speed.
+            self._change_speed.publish(self._parameters.values.robot_max_speed)
             self._server.start()
 
     def _take_goals(self, sensed: Sensed | None) -> None:
@@ -149,7 +156,8 @@ class WalkToPointActionServer:
                 "the robot does not know its map and position yet; is home_sim_node running?"
             )
         config = self._config
-        return Walk(self._planner, config.walk, config.body, self._things, goal, sensed)
+        with self._planning:
+            return Walk(self._planner, config.walk, config.body, self._things, goal, sensed)
 
     def _require_allowed(self, x: float, y: float) -> None:
         limits = self._parameters.values
@@ -173,18 +181,20 @@ class WalkToPointActionServer:
         self._show_plan(now, walk)
 
     def _obey_cancels(self) -> None:
-        job = self._job
-        if job is not None and job.handle.get_goal_id().id in self._cancels:
-            job.cancelled = True
-        self._cancels.clear()
+        while self._cancels:
+            cancelled = self._cancels.popleft()
+            job = self._job
+            if job is not None and job.handle.get_goal_id().id == cancelled:
+                job.rest_by = rospy.get_time() + _LONGEST_BRAKING
 
     def _walk_on(self, job: _Job, sensed: Sensed) -> None:
-        if job.cancelled:
-            self._come_to_rest(job, sensed)
+        if job.rest_by is not None:
+            self._come_to_rest(job, sensed, job.rest_by)
             return
         path = job.walk.path
         max_speed = self._parameters.values.robot_max_speed
-        step = job.walk.tick(sensed, max_speed)
+        with self._planning:
+            step = job.walk.tick(sensed, max_speed)
         if job.walk.path is not path:
             rospy.loginfo("going around: %.2f m to walk", job.walk.path.length)
             self._show_plan(sensed.now, job.walk)
@@ -201,9 +211,9 @@ class WalkToPointActionServer:
             rospy.logwarn("walk given up: %s", step.reason)
             job.handle.set_aborted(result, step.reason)
 
-    def _come_to_rest(self, job: _Job, sensed: Sensed) -> None:
+    def _come_to_rest(self, job: _Job, sensed: Sensed, rest_by: float) -> None:
         """Stop a cancelled walk: speed 0 at once, then the place where it stands is the wish."""
-        if abs(sensed.speed) > _STANDSTILL:
+        if abs(sensed.speed) > _STANDSTILL and sensed.now < rest_by:
             self._change_speed.publish(0.0)
             return
         self._change_position.publish(RobotPosition(sensed.pose.x, sensed.pose.y))
@@ -222,20 +232,21 @@ class WalkToPointActionServer:
         self._plan.publish(path_message(now, walk.path.points, "map"))
 
     def _on_cancel(self, handle: actionlib.ServerGoalHandle) -> None:
-        self._cancels.add(handle.get_goal_id().id)
+        self._cancels.append(handle.get_goal_id().id)
 
     def _on_make_plan(self, request: GetPlanRequest) -> GetPlanResponse:
         try:
-            goal = (request.goal.pose.position.x, request.goal.pose.position.y)
+            wanted = _in_map(request.goal)
+            goal = (wanted.x, wanted.y)
             self._require_allowed(*goal)
             pose = self._pose
             if pose is None or self._planner is None:
                 raise RoombaError("the robot does not know its map and position yet")
-            start = (pose.x, pose.y)
             if request.start.header.frame_id:
-                start = (request.start.pose.position.x, request.start.pose.position.y)
+                pose = _in_map(request.start)
             now = rospy.get_time()
-            path = self._planner.plan(start, goal, self._things.at(now))
+            with self._planning:
+                path = self._planner.plan((pose.x, pose.y), goal, self._things.at(now))
         except (RoombaError, ValueError) as error:
             raise rospy.ServiceException(str(error)) from error
         return GetPlanResponse(path_message(now, path.points, "map"))
@@ -254,6 +265,16 @@ class WalkToPointActionServer:
 
     def _on_bumper(self, message: Bumper) -> None:
         self._bumper = (message.is_left_pressed, message.is_right_pressed)
+
+
+def _in_map(message: PoseStamped) -> Pose:
+    """Return a pose of the map frame, which no frame stands for, too; raises RoombaError."""
+    if message.header.frame_id not in ("", "map"):
+        raise RoombaError(
+            f"expected a pose in the frame 'map', got one in {message.header.frame_id!r}; "
+            "transform it first"
+        )
+    return pose_of(message)
 
 
 def main() -> None:

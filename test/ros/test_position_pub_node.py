@@ -53,6 +53,23 @@ def test_a_single_wish_makes_it_drive_there_and_no_teleport(graph: RosGraph) -> 
     assert probe.position() == (0.0, 0.0)
 
 
+def test_having_arrived_it_leaves_the_drive_to_others(graph: RosGraph) -> None:
+    probe, _ = start(graph)
+    probe.hear("/cmd_vel", Twist)
+    probe.send("/odom", odometry(0.0, 0.0))
+    probe.next("/position", RobotPosition)
+    probe.send("/change_position", RobotPosition(1.0, 0.0))
+    wait_until(lambda: "/cmd_vel" in probe.newest, 2.0, "a command")
+    probe.send("/odom", odometry(1.0, 0.0))
+    wait_until(lambda: probe.newest["/cmd_vel"] == Twist(), 2.0, "it stops")
+    time.sleep(1.0)
+    before = probe.counts["/cmd_vel"]
+    probe.send("/odom", odometry(2.0, 0.0))
+    for _ in range(5):
+        probe.next("/position", RobotPosition)
+    assert probe.counts["/cmd_vel"] == before
+
+
 def test_wishes_that_are_no_places_are_refused(graph: RosGraph) -> None:
     """FAULTS row 26: change_position NaN and 9999."""
     probe, node = start(graph)

@@ -68,6 +68,16 @@ def test_a_bad_speed_limit_is_refused_put_back_and_the_old_one_stays(graph: RosG
         assert probe.drive_gets(0.5)
 
 
+def test_the_reports_other_spellings_mean_the_same(graph: RosGraph) -> None:
+    graph.set_param("/min_cordinate", -100.0)
+    graph.set_param("/max_cordinate", 100.0)
+    start(graph)
+    graph.set_param("/max_coordinate", 5.0)
+    wait_until(lambda: graph.param("/max_cordinate") == 5.0, 3.0, "it is taken over")
+    graph.set_param("/min_coordinate", 77.0)
+    wait_until(lambda: graph.param("/min_cordinate") == -100.0, 3.0, "a wrong one is refused")
+
+
 def test_bad_wishes_are_refused_and_the_old_ones_stay(graph: RosGraph) -> None:
     """FAULTS row 26: change_speed inf."""
     probe = start(graph)

@@ -79,7 +79,7 @@ def test_while_it_travels_it_keeps_the_newest_picture_of_each_angle(
     for _ in range(20):
         probe.send("/pose", message)
         time.sleep(0.2)
-    assert len(asked) <= standing + 1
+    assert len(asked) <= standing + 5
 
 
 def test_what_is_no_angle_is_an_error_of_the_service(graph: RosGraph, tmp_path: Path) -> None:

@@ -13,25 +13,21 @@ _STANDSTILL = Twist()
 class PositionLoop:
     """Drives to a setpoint that may stand or move; turns on the spot for what lies far aside.
 
-    Once there it stands until the setpoint is farther away than ``restart_distance``, so that
-    noise and the way of braking do not make it dance.
+    Having arrived it stands until it is farther from that setpoint than ``restart_distance``, so
+    that noise and the way of braking do not make it dance.
     """
 
     def __init__(self, control: ControlConfig, body: BodyConfig) -> None:
         """Take the loop's gains and the body's limits."""
         self._control = control
         self._body = body
-        self._arrived = False
-
-    def restart(self) -> None:
-        """Forget that it had arrived; call when there is a new wish."""
-        self._arrived = False
+        self._arrived_at: tuple[float, float] | None = None
 
     def tick(self, pose: Pose, target: tuple[float, float], max_speed: float) -> Twist:
         """Return the wanted twist; ``pose`` and ``target`` in one frame, ``max_speed`` in m/s."""
         distance = pose.distance_to(*target)
         bearing = pose.bearing_to(*target)
-        if self._is_there(distance):
+        if self._is_there(target, distance):
             return _STANDSTILL
         return Twist(
             self._forward_speed(distance, bearing, max_speed),
@@ -41,13 +37,14 @@ class PositionLoop:
     @property
     def arrived(self) -> bool:
         """Whether it stands at its setpoint."""
-        return self._arrived
+        return self._arrived_at is not None
 
-    def _is_there(self, distance: float) -> bool:
-        control = self._control
-        near = control.restart_distance if self._arrived else control.arrival_tolerance
-        self._arrived = distance < near
-        return self._arrived
+    def _is_there(self, target: tuple[float, float], distance: float) -> bool:
+        near = self._control.arrival_tolerance
+        if self._arrived_at is not None and math.dist(target, self._arrived_at) < near:
+            near = self._control.restart_distance
+        self._arrived_at = target if distance < near else None
+        return self.arrived
 
     def _forward_speed(self, distance: float, bearing: float, max_speed: float) -> float:
         if abs(bearing) > self._control.turn_in_place_angle:

@@ -25,17 +25,18 @@ class Setpoint:
         """The point to be at, or None when nothing is wished."""
         return self._target
 
-    def wish(self, now: float, target: Point, senders: int) -> bool:
-        """Take a new wish; return whether it is a single one or the first of a stream.
-
-        ``senders`` is how many programs are connected to send wishes.
-        """
+    def wish(self, now: float, target: Point, senders: int) -> None:
+        """Take a new wish; ``senders`` is how many programs are connected to send wishes."""
         since = now - self._received
         self._streamed = self._target is not None and 0.0 <= since <= self._stream_timeout
         self._target = target
         self._received = now
         self._senders = senders
-        return not self._streamed
+
+    def fulfilled(self, now: float) -> None:
+        """The robot is there: wish nothing any more, unless wishes are still streaming in."""
+        if not 0.0 <= now - self._received <= self._stream_timeout:
+            self._target = None
 
     def check(self, now: float, senders: int) -> bool:
         """Drop a stream whose sender vanished; return True when that happened just now."""
@@ -48,8 +49,3 @@ class Setpoint:
         if lost:
             self._target = None
         return lost
-
-    def drop(self) -> None:
-        """Wish nothing any more."""
-        self._target = None
-        self._streamed = False

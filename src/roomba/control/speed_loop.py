@@ -27,8 +27,9 @@ class SpeedLoop:
     Speeds in m/s and rad/s, times in s of the robot's clock.
     """
 
-    def __init__(self, command_timeout: float, max_speed: float) -> None:
+    def __init__(self, command_timeout: float, max_speed: float, max_angular_speed: float) -> None:
         """A command older than ``command_timeout`` s counts no more."""
+        self._max_angular_speed = max_angular_speed
         self._command_timeout = command_timeout
         self._max_speed = max_speed
         self._cruise_speed = math.inf
@@ -83,9 +84,10 @@ class SpeedLoop:
         return self._command
 
     def _within_limit(self, twist: Twist) -> Twist:
-        """Slow the twist down to the limit on the same arc."""
-        speed = abs(twist.linear)
-        if speed <= self.speed_limit:
-            return twist
-        share = self.speed_limit / speed
+        """Slow the twist down to the limits on the same arc."""
+        share = 1.0
+        if abs(twist.linear) > self.speed_limit:
+            share = self.speed_limit / abs(twist.linear)
+        if abs(twist.angular) * share > self._max_angular_speed:
+            share = self._max_angular_speed / abs(twist.angular)
         return Twist(twist.linear * share, twist.angular * share)

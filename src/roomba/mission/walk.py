@@ -21,6 +21,8 @@ _PROGRESS = 0.05
 """m; coming nearer to the goal by less than this is no progress."""
 _STANDSTILL = 0.03
 """m/s; slower than this the robot stands."""
+_LONGEST_TICK = 2.0
+"""s; more between two ticks than this is a clock that was set."""
 _OFF_PATH = 0.35
 """m; farther from its path than this the robot was carried or pushed, and plans anew."""
 
@@ -81,6 +83,7 @@ class Walk:
         self._things = things
         self._follower = PathFollower(self.path, config)
         self._started = sensed.now
+        self._last_tick = sensed.now
         self._replans = 0
         self._was_bumped = sensed.bumper_left or sensed.bumper_right
         self._least_left = math.inf
@@ -92,6 +95,7 @@ class Walk:
 
     def tick(self, sensed: Sensed, max_speed: float) -> WalkStep:
         """Return what is wanted now; ``max_speed`` in m/s."""
+        self._follow_clock(sensed.now)
         if self._has_arrived(sensed):
             return WalkStep(WalkState.ARRIVED, self.goal, max_speed, 0.0)
         trouble = self._notice_trouble(sensed)
@@ -102,6 +106,14 @@ class Walk:
                 return WalkStep(WalkState.FAILED, here, max_speed, self._follower.left, failure)
         setpoint, cruise_speed = self._follower.tick(sensed.pose, max_speed)
         return WalkStep(WalkState.WALKING, setpoint, cruise_speed, self._follower.left)
+
+    def _follow_clock(self, now: float) -> None:
+        """When the clock was set, move the times that are remembered with it."""
+        jump = now - self._last_tick
+        if not 0.0 <= jump <= _LONGEST_TICK:
+            self._started += jump
+            self._progressed += jump
+        self._last_tick = now
 
     def _has_arrived(self, sensed: Sensed) -> bool:
         near = sensed.pose.distance_to(*self.goal) <= self._config.arrival_tolerance

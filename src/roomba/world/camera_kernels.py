@@ -33,6 +33,8 @@ TILED_HEIGHT = 1.35
 LEDGE = 0.006
 """m; the dark line above skirting boards and tiled walls."""
 UNDERSIDE_SHADE = 0.46
+CEILING_LIGHT = 0.97
+"""The same all over: the light of the walls below would paint stripes on it."""
 
 
 @njit(**KERNEL)
@@ -166,8 +168,8 @@ def paint_wall(
     t: float,
     axis: int,
     room: int,
-) -> tuple[float, int]:
-    """Paint a wall from floor to ceiling; returns its light and the first row of the floor."""
+) -> int:
+    """Paint a wall from floor to ceiling; returns the first row of the floor."""
     half = 0.5 * view.rows
     eye = view.eye
     focal = view.focal
@@ -200,7 +202,7 @@ def paint_wall(
             slant, along, False, shade * share, view.smooth,
         )  # fmt: skip
         low = high
-    return shade, row_of(-eye / t, half, focal, view.rows)
+    return int(row_of(-eye / t, half, focal, view.rows))
 
 
 @njit(**KERNEL)
@@ -254,7 +256,7 @@ def render(
                     colour, depth, scene.boxes, scene.surfaces, scene.lighting, view,
                     int(seen[b, 1]), x, y, dx, dy, t,
                 )  # fmt: skip
-        shade, floor_row = paint_wall(
+        floor_row = paint_wall(
             colour, depth, scene.walls, scene.surfaces, scene.lighting, view,
             x, y, dx, dy, t, int(hits[c, 1]), int(hits[c, 2]),
         )  # fmt: skip
@@ -263,7 +265,7 @@ def render(
         paint_plane(
             colour, depth, 0, ceiling_row, view.reach, gap, view.focal, scene.surfaces,
             scene.walls.ceiling,
-            x, y, dx, dy, min(shade * 1.12, 1.0), shade * 1.02,
+            x, y, dx, dy, CEILING_LIGHT, CEILING_LIGHT,
         )  # fmt: skip
         if c % GROUP == 0:
             first_row = view.rows

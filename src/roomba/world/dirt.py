@@ -51,6 +51,11 @@ class DirtField:
         per_cell = MICROGRAMS_PER_GRAM * self.frame.resolution**2
         return (self.micrograms / per_cell).astype(np.float32)
 
+    def is_floor(self, x: float, y: float) -> bool:
+        """Whether dirt can lie at a point."""
+        row, column = self.frame.cell_of(x, y)
+        return self.frame.contains(x, y) and bool(self._floor[row, column])
+
     def spread(self, x: float, y: float, radius: float, grams: float) -> int:
         """Let ``grams`` fall around a point as a Gaussian of standard deviation ``radius``, m.
 
@@ -69,6 +74,8 @@ class DirtField:
         window = self._window(x, y, max(_SPREAD * radius, self.frame.resolution))
         weights = self._weights(window, x, y, radius)
         total = round(grams * MICROGRAMS_PER_GRAM)
+        if total > _FULL_CELL * weights.size:
+            raise ValueError(f"{grams} g are more than the floor within {_SPREAD * radius} m holds")
         shares = _in_whole_parts(weights, total)
         patch = self.micrograms[window]
         if shares.max(initial=0) + int(patch.max(initial=0)) > _FULL_CELL:

@@ -23,6 +23,8 @@ from roomba.world.home import DirtSource, Home
 _CRUMB = 0.002
 """g; what falls at once from a source that sheds dirt."""
 _SECONDS_PER_HOUR = 3600.0
+_TRIES = 64
+"""How often a place on the floor is looked for before a crumb counts as fallen on the furniture."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -172,12 +174,17 @@ class Simulator:
                 self._next_falls[index] += self._wait_for_crumb(source)
 
     def _drop_crumb(self, source: DirtSource) -> None:
-        x, y = self._random.normal((source.x, source.y), source.radius).tolist()
-        try:
-            self.spill(x, y, self.dirt.frame.resolution, _CRUMB)
-        except ValueError:
-            # It fell behind a wall or on the furniture: it lies on the floor by its source instead.
-            self.spill(source.x, source.y, source.radius, _CRUMB)
+        """Let a crumb fall as the Gaussian of its source says, on floor; else it lands nowhere."""
+        x_min, x_max, y_min, y_max = self.dirt.frame.extent
+        reach = 3.0 * source.radius
+        low = (max(x_min, source.x - reach), max(y_min, source.y - reach))
+        high = (min(x_max, source.x + reach), min(y_max, source.y + reach))
+        for _ in range(_TRIES):
+            x, y = self._random.uniform(low, high).tolist()
+            away = math.hypot(x - source.x, y - source.y) / source.radius
+            if self._random.random() < math.exp(-0.5 * away**2) and self.dirt.is_floor(x, y):
+                self.spill(x, y, self.dirt.frame.resolution, _CRUMB)
+                return
 
 
 def _disc(home: Home, x: float, y: float, radius: float) -> NDArray[np.bool_]:

@@ -18,7 +18,7 @@ def test_nothing_is_wished_at_first() -> None:
 
 def test_a_single_wish_is_driven_to_the_end_though_its_sender_leaves() -> None:
     setpoint = Setpoint(TIMEOUT)
-    assert setpoint.wish(10.0, (3.0, 4.0), senders=1)
+    setpoint.wish(10.0, (3.0, 4.0), senders=1)
     assert not setpoint.check(10.1, senders=0)
     assert not setpoint.check(20.0, senders=0)
     assert setpoint.target == (3.0, 4.0)
@@ -45,21 +45,15 @@ def test_a_sender_that_joined_later_and_leaves_is_noticed() -> None:
     assert setpoint.check(now + 0.1, senders=1)
 
 
-def test_only_the_first_of_a_stream_is_a_new_wish() -> None:
-    setpoint = Setpoint(TIMEOUT)
-    assert setpoint.wish(10.0, (0.0, 0.0), 1)
-    assert not setpoint.wish(10.05, (0.1, 0.0), 1)
-    assert setpoint.wish(11.0, (0.2, 0.0), 1)
+def test_a_fulfilled_wish_is_forgotten_but_a_stream_goes_on() -> None:
+    setpoint, now = streaming()
+    setpoint.fulfilled(now + 0.05)
+    assert setpoint.target is not None
+    setpoint.fulfilled(now + 1.0)
+    assert setpoint.target is None
 
 
 def test_a_clock_set_back_makes_no_stream() -> None:
     setpoint, now = streaming()
-    assert setpoint.wish(now - 100.0, (1.0, 1.0), 1)
+    setpoint.wish(now - 100.0, (1.0, 1.0), 1)
     assert not setpoint.check(now - 99.95, senders=0)
-
-
-def test_dropped_it_wishes_nothing() -> None:
-    setpoint, now = streaming()
-    setpoint.drop()
-    assert setpoint.target is None
-    assert not setpoint.check(now, senders=0)

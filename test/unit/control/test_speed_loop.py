@@ -9,7 +9,7 @@ from roomba.geometry import Twist
 
 
 def loop() -> SpeedLoop:
-    return SpeedLoop(command_timeout=0.5, max_speed=0.5)
+    return SpeedLoop(command_timeout=0.5, max_speed=0.5, max_angular_speed=4.25)
 
 
 def test_nothing_asked_for_nothing_driven() -> None:
@@ -37,7 +37,7 @@ def test_after_the_clock_was_set_back_a_command_still_grows_old() -> None:
     assert speed_loop.tick(10.6)[0] == Twist()
 
 
-@given(st.floats(-5.0, 5.0), st.floats(-4.0, 4.0), st.floats(0.0, 2.0), st.floats(0.01, 2.0))
+@given(st.floats(-5.0, 5.0), st.floats(-90.0, 90.0), st.floats(0.0, 2.0), st.floats(0.01, 2.0))
 def test_the_limit_holds_and_the_arc_stays(
     linear: float, angular: float, cruise: float, most: float
 ) -> None:
@@ -47,6 +47,7 @@ def test_the_limit_holds_and_the_arc_stays(
     speed_loop.command(0.0, Twist(linear, angular))
     twist, _ = speed_loop.tick(0.1)
     assert abs(twist.linear) <= min(cruise, most) + 1e-12
+    assert abs(twist.angular) <= 4.25 + 1e-12
     assert twist.linear * angular == pytest.approx(twist.angular * linear, abs=1e-9)
 
 

@@ -127,6 +127,20 @@ def test_a_walk_that_passed_its_goal_at_speed_has_not_arrived() -> None:
     assert walk.tick(Sensed(101.1, Pose(4.0, 3.0), 0.0), 0.5).state is WalkState.ARRIVED
 
 
+@pytest.mark.parametrize("jump", [-3600.0, 3600.0])
+def test_a_clock_that_is_set_changes_neither_the_time_spent_nor_the_time_out(jump: float) -> None:
+    walk, sensed = stuck_walk()
+    now, ended = 100.0, WalkState.WALKING
+    for tick in range(20 * 200):
+        now += 0.05 + (jump if tick == 100 else 0.0)
+        ended = walk.tick(Sensed(now, sensed.pose, 0.0), 0.5).state
+        if ended is not WalkState.WALKING:
+            break
+    assert ended is WalkState.FAILED
+    expected = CONFIG.walk.progress_timeout * (CONFIG.walk.max_replans + 1)
+    assert walk.time_spent(now) == pytest.approx(expected, abs=2.0)
+
+
 def test_feedback_comes_as_often_as_the_report_says() -> None:
     assert feedback_period(9.9) == 2.0
     assert feedback_period(10.0) == 3.0

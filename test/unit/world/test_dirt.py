@@ -56,7 +56,8 @@ def test_most_of_it_falls_near_its_source() -> None:
         ((1.0, 1.0, 0.0, 1.0), "radius above 0"),
         ((1.0, 1.0, 0.2, -1.0), "amount of 0 g or more"),
         ((50.0, 1.0, 0.2, 1.0), "no floor within"),
-        ((1.0, 1.0, 0.01, 1e5), "more than the floor holds"),
+        ((1.0, 1.0, 0.01, 1e5), "more than the floor"),
+        ((1.0, 1.0, 0.5, 1e30), "more than the floor"),
     ],
 )
 def test_what_cannot_fall_is_refused_and_nothing_changes(

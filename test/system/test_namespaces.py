@@ -1,0 +1,38 @@
+"""Two robots side by side, each in a namespace of its own."""
+
+import math
+
+from fixtures.graph import LAUNCHED, RosGraph
+from fixtures.probe import Probe
+from fixtures.waiting import wait_until
+from roomba_robot.msg import RobotPosition
+
+
+def test_a_second_robot_drives_while_the_first_stands(robot: RosGraph) -> None:
+    robot.run(
+        "roslaunch",
+        *("-p", str(robot.port)),
+        *("roomba_robot", "roomba_robot.launch", "clock:=false", "initial_post_x:=1.0"),
+        environment={"ROS_NAMESPACE": "second"},
+    )
+    second = {f"/second/{name}" for name in LAUNCHED}
+    wait_until(lambda: second <= nodes(robot), 40.0, "the second robot's nodes")
+    publishers, _, services = robot.system_state()
+    assert publishers["/clock"] == ["/home_sim_node"]
+    assert "/second/turn_camera" in services
+    probe = Probe(robot)
+    first = probe.position()
+    start = probe.next("/second/position", RobotPosition, deadline=20.0)
+    assert (start.pos_x, start.pos_y) == (1.0, 0.0)
+    probe.send("/second/change_position", RobotPosition(1.0, 0.7))
+    wait_until(lambda: math.dist(at(probe), (1.0, 0.7)) < 0.05, 15.0, "the second is there")
+    assert probe.position() == first
+
+
+def nodes(graph: RosGraph) -> set[str]:
+    return {node for nodes in graph.system_state()[0].values() for node in nodes}
+
+
+def at(probe: Probe) -> tuple[float, float]:
+    message = probe.next("/second/position", RobotPosition)
+    return message.pos_x, message.pos_y
