@@ -56,6 +56,16 @@ def test_short_ways_arrive_too_and_never_above_the_top_speed(distance: float) ->
         assert math.dist(p, p2) <= 0.5 * (t2 - t) + 1e-9
 
 
+@pytest.mark.parametrize("further", [0.04, 0.06, 0.09])
+def test_a_little_further_right_after_arriving_is_walked_too(further: float) -> None:
+    robot = furnished()
+    robot.walk(0.8, 1.0)
+    record = robot.walk(0.8, 1.0 + further)
+    assert record.state is WalkState.ARRIVED
+    assert record.duration < 10.0
+    assert math.dist(record.poses[-1, 1:3], (0.8, 1.0 + further)) < 0.04
+
+
 def test_a_thing_that_the_map_does_not_know_is_gone_around() -> None:
     robot = furnished(hidden=((1.6, 2.9, 2.0, 3.3),))
     record = robot.walk(2.8, 3.0)
