@@ -62,7 +62,7 @@ def test_what_cannot_be_walked_to_is_rejected_at_once(
     walker.send(x, y)
     assert walker.ends(2.0) == GoalStatus.REJECTED
     assert said in walker.text
-    assert probe.position() == before
+    assert math.dist(probe.position(), before) < 0.05
 
 
 def test_cancel_stops_within_half_a_second(shared_robot: RosGraph) -> None:
