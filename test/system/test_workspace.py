@@ -264,7 +264,11 @@ def test_broken_master_uri_is_refused_with_what_was_expected(uri: str) -> None:
 
 def test_missing_suite_is_an_error(workspace: Path) -> None:
     package = workspace / "src/roomba_robot"
-    assert not (package / "test/web").exists()
-    done = run(["./roomba", "test", "web"], package)
+    suite, away = package / "test/contract", package / "test/contract_away"
+    suite.rename(away)
+    try:
+        done = run(["./roomba", "test", "contract"], package)
+    finally:
+        away.rename(suite)
     assert done.returncode == 1
-    assert "test/web" in done.stderr
+    assert "test/contract" in done.stderr
