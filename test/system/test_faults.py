@@ -40,6 +40,8 @@ def test_a_killed_server_stops_the_robot_at_once_and_its_goal_ends(robot: RosGra
     probe, walker = walking(robot)
     old = robot.signal(SERVER, signal.SIGKILL)
     assert seconds_until(lambda: standing(probe), 5.0, "it stands") < 1.0
+    noticed = "the sender of change_position vanished"
+    wait_until(lambda: noticed in robot.programs[0].output, 3.0, "it was noticed, and no luck")
     assert walker.ends(15.0) in (GoalStatus.LOST, GoalStatus.ABORTED)
     wait_until(lambda: is_new(robot, SERVER, old), 15.0, "a new server")
     again = Walker()
