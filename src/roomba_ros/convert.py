@@ -6,6 +6,7 @@ import math
 
 import genpy
 import numpy as np
+from geometry_msgs.msg import Pose as PoseMessage
 from geometry_msgs.msg import PoseStamped, Quaternion, TransformStamped
 from geometry_msgs.msg import Twist as TwistMessage
 from nav_msgs.msg import OccupancyGrid, Odometry, Path
@@ -34,6 +35,10 @@ def theta_of(rotation: Quaternion) -> float:
     return math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
 
 
+def _planar(pose: PoseMessage) -> Pose:
+    return Pose(pose.position.x, pose.position.y, theta_of(pose.orientation))
+
+
 def twist_of(message: TwistMessage) -> Twist:
     """Return the planar part of a twist message."""
     return Twist(message.linear.x, message.angular.z)
@@ -49,8 +54,7 @@ def twist_message(twist: Twist) -> TwistMessage:
 
 def pose_of_odometry(message: Odometry) -> Pose:
     """Return the planar pose of an odometry message, in its header's frame."""
-    position = message.pose.pose.position
-    return Pose(position.x, position.y, theta_of(message.pose.pose.orientation))
+    return _planar(message.pose.pose)
 
 
 def odometry_message(
@@ -67,8 +71,7 @@ def odometry_message(
 
 def pose_of(message: PoseStamped) -> Pose:
     """Return the planar pose of a stamped pose, in its header's frame."""
-    position = message.pose.position
-    return Pose(position.x, position.y, theta_of(message.pose.orientation))
+    return _planar(message.pose)
 
 
 def pose_message(now: float, pose: Pose, frame_id: str) -> PoseStamped:
