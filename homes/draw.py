@@ -26,9 +26,9 @@ from roomba.world.layer_parts import parts_of
 from roomba.world.map_file import save_map
 from roomba.world.raster import covered_cells, outline
 
-DRAWN = {"flat": 0.05, "studio": 0.05, "hall": 0.2}
+DRAWN = {"flat": 0.05, "studio": 0.05, "family": 0.05, "hall": 0.2}
 """Homes with the cell size of their map, m; the hall's is coarse since it is 200 m wide."""
-MARGIN = {"flat": 2, "studio": 2, "hall": 0}
+MARGIN = {"flat": 2, "studio": 2, "family": 2, "hall": 0}
 """Cells of unknown around the outer walls."""
 PICTURES = {"hall"}
 """Homes whose map is a PNG, which keeps a million equal pixels small."""
@@ -45,7 +45,7 @@ def drawn_map(name: str, homes: Path) -> OccupancyMap:
     values[covered_cells(frame, (shapely.Polygon(room.outline) for room in parts.rooms))] = FREE
     values[covered_cells(frame, (outline(wall) for wall in walls))] = OCCUPIED
     values[covered_cells(frame, (outline(door.opening) for door in parts.doors))] = FREE
-    mapped = (piece for piece in parts.furniture if piece.on_map)
+    mapped = (p for p in (*parts.furniture, *parts.moved) if p.on_map)
     values[standing_cells(frame, mapped, BodyConfig().height)] = OCCUPIED
     return OccupancyMap(frame, values)
 

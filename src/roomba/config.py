@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import Annotated, Any, TypeVar
+from typing import Annotated, Any, Literal, TypeVar
 
 import yaml
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
@@ -13,6 +13,8 @@ from roomba.errors import ConfigError
 
 Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
 Ratio = Annotated[float, Field(ge=0.0, le=1.0, allow_inf_nan=False)]
+
+NotNegative = Annotated[float, Field(ge=0.0, allow_inf_nan=False)]
 
 FASTEST_SPEED = 3.0
 """m/s; a `robot_max_speed` above this is a slip of the finger, not a robot for a home."""
@@ -42,12 +44,111 @@ class BodyConfig(_Frozen):
 
 
 class BrushConfig(_Frozen):
-    """Brushes and bin: what is picked up of the dirt that is driven over."""
+    """Brushes and bin: what is picked up of the dirt that is driven over.
+
+    One pass of the brush at full power picks up the share ``pickup``; with the fan see
+    :func:`pickup_share`. Power in W, current in A.
+    """
 
     width: Positive = 0.20
     depth: Positive = 0.05
-    efficiency: Ratio = 0.80
+    pickup: Ratio = 0.60
+    carpet_pickup: Ratio = 0.45
+    duty: Ratio = 1.0
+    power: NotNegative = 3.0
+    carpet_power: NotNegative = 6.0
+    current_noise: NotNegative = 0.02
+    noise_level: NotNegative = 58.0
     bin_capacity: Positive = 100.0
+
+
+class FanConfig(_Frozen):
+    """The fan: suction, energy and noise by its duty, 0..1."""
+
+    pickup: Ratio = 0.83
+    duty: Ratio = 0.60
+    power: NotNegative = 25.0
+    noise_level: NotNegative = 68.0
+
+
+class BatteryConfig(_Frozen):
+    """The battery, and what everything draws from it: Wh, W, V, ohm, h, degrees Celsius."""
+
+    capacity: Positive = 26.0
+    nominal_voltage: Positive = 14.4
+    resistance: NotNegative = 0.15
+    idle_power: NotNegative = 5.3
+    drive_power: NotNegative = 3.1
+    drive_speed: Positive = 0.306
+    stall_power: NotNegative = 15.0
+    charge_hours: Positive = 2.2
+    ambient: Annotated[float, Field(ge=-20.0, le=60.0)] = 22.0
+    heating: NotNegative = 0.4
+    heating_time: Positive = 900.0
+
+
+class LidarConfig(_Frozen):
+    """The lidar: beams evenly all around, beam 0 ahead, counter-clockwise; ranges in m."""
+
+    beams: Annotated[int, Field(ge=8, le=4096)] = 360
+    min_range: Positive = 0.15
+    max_range: Positive = 12.0
+    rate: Positive = 10.0
+    noise: NotNegative = 0.005
+    misses: Ratio = 0.01
+    mount_height: Positive = 0.085
+
+    @model_validator(mode="after")
+    def _ranges_in_order(self) -> LidarConfig:
+        if self.min_range >= self.max_range:
+            raise ValueError(f"expected min_range below max_range ({self.max_range})")
+        return self
+
+
+class WheelsConfig(_Frozen):
+    """Wheel encoders, and how wheels slip: shares of the way."""
+
+    counts_per_turn: Positive = 508.8
+    scale_error: NotNegative = 0.003
+    slip: Ratio = 0.001
+    carpet_slip: Ratio = 0.02
+    slip_noise: NotNegative = 0.002
+    blocked_slip: Ratio = 0.3
+
+
+class GyroConfig(_Frozen):
+    """The gyro about the vertical and the accelerometer ahead: rad/s, m/s2."""
+
+    noise: NotNegative = 0.0015
+    bias: NotNegative = 0.0005
+    bias_walk: NotNegative = 0.00002
+    scale_error: NotNegative = 0.003
+    acceleration_noise: NotNegative = 0.03
+
+
+class CliffConfig(_Frozen):
+    """Four cliff sensors under the front rim, left to right; degrees and m."""
+
+    angles: tuple[float, float, float, float] = (60.0, 15.0, -15.0, -60.0)
+    radius: Positive = 0.155
+
+
+class StationConfig(_Frozen):
+    """What the charging station sends out: a halo, and two beams that overlap; m and degrees."""
+
+    halo: Positive = 0.6
+    beam: Positive = 1.0
+    beam_angle: Positive = 20.0
+    overlap: Positive = 4.0
+    position_tolerance: Positive = 0.015
+    angle_tolerance: Positive = 8.0
+
+
+class DirtSensorConfig(_Frozen):
+    """The dirt sensor in the intake: it counts grains."""
+
+    grain: Positive = 50.0
+    most: Positive = 2550.0
 
 
 class CameraConfig(_Frozen):
@@ -87,13 +188,30 @@ class WalkConfig(_Frozen):
 
 
 class RobotConfig(_Frozen):
-    """All of ``config/robot.yaml``; every part has the shipped file's values by default."""
+    """All of ``config/robot.yaml``; every part has the shipped file's values by default.
 
+    ``sensors``: "ideal" ones tell the truth, "noisy" ones have the errors given here.
+    """
+
+    sensors: Literal["ideal", "noisy"] = "ideal"
     body: BodyConfig = BodyConfig()
     brush: BrushConfig = BrushConfig()
+    fan: FanConfig = FanConfig()
+    battery: BatteryConfig = BatteryConfig()
+    lidar: LidarConfig = LidarConfig()
+    wheels: WheelsConfig = WheelsConfig()
+    gyro: GyroConfig = GyroConfig()
+    cliff: CliffConfig = CliffConfig()
+    station: StationConfig = StationConfig()
+    dirt_sensor: DirtSensorConfig = DirtSensorConfig()
     camera: CameraConfig = CameraConfig()
     control: ControlConfig = ControlConfig()
     walk: WalkConfig = WalkConfig()
+
+
+def pickup_share(brush: float, fan: float) -> float:
+    """Return the share that one pass picks up, of those that brush and fan would alone: 0..1."""
+    return 1.0 - (1.0 - brush) * (1.0 - fan)
 
 
 class SeedParameters(_Frozen):

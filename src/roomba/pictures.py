@@ -66,7 +66,7 @@ def picture_of_walk(robot: HeadlessRobot) -> NDArray[np.uint8]:
         robot.simulator.home,
         pixels_per_metre=_PIXELS_PER_METRE,
         path=[(float(x), float(y)) for x, y in way],
-        robot=robot.simulator.body.pose,
+        robot=robot.simulator.pose,
     )
 
 

@@ -26,11 +26,10 @@ from tf2_msgs.msg import TFMessage
 from roomba.config import SeedParameters
 from roomba.errors import ConfigError, RoombaError
 from roomba.geometry import Pose, Twist
-from roomba.world.body import Bumper
 from roomba.world.camera import Camera, Scene
 from roomba.world.home import Home
 from roomba.world.layer import load_home
-from roomba.world.simulator import Observation, Simulator
+from roomba.world.simulator import Bumper, Observation, Simulator
 from roomba_ros.convert import (
     bumper_message,
     image_message,
@@ -107,7 +106,7 @@ class HomeSimNode:
             self._tick()
 
     def _tick(self) -> None:
-        self._simulator.body.max_speed = self._parameters.refresh().robot_max_speed
+        self._simulator.max_speed = self._parameters.refresh().robot_max_speed
         with self._lock:
             for _ in range(STEPS_PER_TICK):
                 observation = self._simulator.step(self._fresh_command(), STEP)
@@ -190,7 +189,7 @@ class HomeSimNode:
                 f"expected an angle from {-most:g} to {most:g} degrees, got {angle:g}"
             )
         with self._lock:
-            now, pose = self._now(), self._simulator.body.pose
+            now, pose = self._now(), self._simulator.pose
         dirt = self._simulator.dirt
         # Not under the simulation's lock: taking a picture must not hold up time.
         with self._camera_lock:

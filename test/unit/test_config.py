@@ -25,7 +25,7 @@ def test_every_value_of_the_shipped_file_has_a_reason_beside_it() -> None:
     [
         ("body:\n  diameter: -1\n", "body.diameter: .*greater than 0, got -1"),
         ("body:\n  wings: 2\n", "body.wings"),
-        ("brush:\n  efficiency: 1.5\n", "brush.efficiency"),
+        ("brush:\n  pickup: 1.5\n", "brush.pickup"),
         ("body: [\n", "cannot be read as YAML"),
         ("control:\n  heading_gain: .nan\n", "control.heading_gain"),
     ],

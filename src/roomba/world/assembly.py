@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import shapely
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from roomba.geometry import Pose
 from roomba.grid import FREE, OCCUPIED, GridFrame, OccupancyMap
 from roomba.world.furniture import FIXTURES, STATION_GAP, station_at
-from roomba.world.home import Door, Furniture, Rectangle
+from roomba.world.home import Box, Door, Furniture, Rectangle, cells_in
 from roomba.world.layer_parts import Parts
 from roomba.world.raster import (
     Mask,
@@ -34,28 +34,54 @@ DOCKED_CLEARANCE = 0.005
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Floor:
-    """The grids of a home: see :class:`roomba.world.home.Home`."""
+    """The grids of a home: see :class:`roomba.world.home.Home`.
+
+    ``moving`` are the cells that what moves covers, at the body's height, before it first moves.
+    """
 
     map: OccupancyMap
     solid: Mask
     walls: Mask
+    drop: Mask
+    moving: Mask
+
+    @property
+    def bare(self) -> Mask:
+        """Floor on which dirt can lie, under what moves too."""
+        return ~self.solid & ~self.drop
+
+    @property
+    def taken(self) -> Mask:
+        """Where no robot can stand at the start."""
+        return self.solid | self.drop | self.moving
 
 
 def furnished_floor(occupancy: OccupancyMap, parts: Parts, body_height: float) -> Floor:
     """Return the grids of a home without its station; ``body_height`` in m.
 
-    Doors are open on the map, and what the map does not show is solid in the truth alone.
+    Doors are open on the map, and what the map does not show is solid in the truth alone. What
+    moves may be on the map where it stands at first, but is not solid. Stairs are floor on the map.
     """
     frame = occupancy.frame
     open_map = OccupancyMap(frame, _with_doors_open(occupancy, parts.doors))
+    walls = _walls(open_map, parts)
     mapped = standing_cells(frame, (p for p in parts.furniture if p.on_map), body_height)
+    moved = standing_cells(frame, (p for p in parts.moved if p.on_map), body_height)
     hidden = standing_cells(frame, (p for p in parts.furniture if not p.on_map), body_height)
     shut = _areas(frame, [door.opening for door in parts.doors if not door.is_open])
-    stairs = _areas(frame, parts.stairs)
-    solid = open_map.solid | mapped | hidden | shut | stairs
+    # The map's picture may show a piece that moves; where nothing else stands, floor is below it.
+    uncovered = moved & ~walls & (open_map.values == OCCUPIED)
     values = open_map.values.copy()
-    values[mapped] = OCCUPIED
-    return Floor(OccupancyMap(frame, values), solid, _walls(open_map, parts))
+    values[mapped | moved] = OCCUPIED
+    return Floor(
+        OccupancyMap(frame, values),
+        solid=(open_map.solid & ~uncovered) | mapped | hidden | shut,
+        walls=walls,
+        drop=cells_in(frame, parts.stairs),
+        moving=_covered_below(
+            frame, (box for thing in parts.moving for box in thing.first_boxes), body_height
+        ),
+    )
 
 
 def standing_cells(frame: GridFrame, pieces: Iterable[Furniture], height: float) -> Mask:
@@ -63,16 +89,8 @@ def standing_cells(frame: GridFrame, pieces: Iterable[Furniture], height: float)
 
     Fixtures of a wall are the wall's own.
     """
-    return covered_cells(
-        frame,
-        (
-            footprint(box)
-            for piece in pieces
-            if piece.kind not in FIXTURES
-            for box in piece.boxes
-            if box.bottom < height
-        ),
-    )
+    standing = (piece for piece in pieces if piece.kind not in FIXTURES)
+    return _covered_below(frame, (box for piece in standing for box in piece.boxes), height)
 
 
 def station_on(floor: Floor, docked: Pose, body_radius: float) -> Furniture:
@@ -96,18 +114,22 @@ def with_station(floor: Floor, station: Furniture, docked: Pose, body_radius: fl
     cells &= ~cells_within(frame, body_radius + DOCKED_CLEARANCE, docked.x, docked.y)
     values = floor.map.values.copy()
     values[cells] = OCCUPIED
-    return Floor(OccupancyMap(frame, values), floor.solid | cells, floor.walls)
+    return replace(floor, map=OccupancyMap(frame, values), solid=floor.solid | cells)
 
 
 def room_for_body(floor: Floor, docked: Pose) -> float:
     """Return how large a disc fits at the docked pose: its radius, m; 0 inside something."""
-    return distance_to_cells(floor.map.frame, floor.solid, docked.x, docked.y)
+    return distance_to_cells(floor.map.frame, floor.taken, docked.x, docked.y)
 
 
 def _with_doors_open(occupancy: OccupancyMap, doors: Iterable[Door]) -> NDArray[np.int8]:
     values = occupancy.values.copy()
     values[_areas(occupancy.frame, [door.opening for door in doors])] = FREE
     return values
+
+
+def _covered_below(frame: GridFrame, boxes: Iterable[Box], height: float) -> Mask:
+    return covered_cells(frame, (footprint(box) for box in boxes if box.bottom < height))
 
 
 def _areas(frame: GridFrame, areas: Iterable[Rectangle]) -> Mask:
@@ -127,7 +149,7 @@ def _walls(open_map: OccupancyMap, parts: Parts) -> Mask:
         open_map.frame,
         (
             shapely.buffer(footprint(box), margin, cap_style="square", join_style="mitre")
-            for piece in parts.furniture
+            for piece in (*parts.furniture, *parts.moved)
             if piece.kind not in FIXTURES and piece.on_map
             for box in piece.boxes
         ),

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.grid import GridFrame
+from roomba.world.home import Home
 
 MICROGRAMS_PER_GRAM: Final = 1_000_000
 FINEST_NEEDED: Final = 0.05
@@ -24,8 +25,16 @@ _SPREAD: Final = 3.0
 class DirtField:
     """Dirt by cells of the floor: ``micrograms`` is int32 [rows, columns] over ``frame``."""
 
-    def __init__(self, frame: GridFrame, solid: NDArray[np.bool_]) -> None:
-        """Lay a clean field over a home's grid; ``solid`` cells hold no dirt."""
+    def __init__(
+        self,
+        frame: GridFrame,
+        solid: NDArray[np.bool_],
+        micrograms: NDArray[np.int32] | None = None,
+    ) -> None:
+        """Lay a field over a home's grid; ``solid`` cells hold no dirt.
+
+        ``micrograms``, if given, is the memory of all its cells, in any shape; else it is clean.
+        """
         fineness = max(1, math.floor(frame.resolution / FINEST_NEEDED / 2.0 + 1e-9))
         self.frame = GridFrame(
             frame.resolution / fineness,
@@ -34,11 +43,18 @@ class DirtField:
             frame.rows * fineness,
             frame.columns * fineness,
         )
-        self._floor = np.repeat(np.repeat(~solid, fineness, axis=0), fineness, axis=1)
-        self.micrograms: NDArray[np.int32] = np.zeros(self.frame.shape, np.int32)
+        self.floor = np.repeat(np.repeat(~solid, fineness, axis=0), fineness, axis=1)
+        if micrograms is None:
+            micrograms = np.zeros(self.frame.shape, np.int32)
+        self.micrograms: NDArray[np.int32] = micrograms.reshape(self.frame.shape)
         self.place = np.array(
             [self.frame.resolution, self.frame.origin_x, self.frame.origin_y], np.float64
         )
+
+    @classmethod
+    def of(cls, home: Home, micrograms: NDArray[np.int32] | None = None) -> DirtField:
+        """Lay a field over the floor of a home; on its stairs lies nothing."""
+        return cls(home.frame, home.solid | home.drop, micrograms)
 
     @property
     def total(self) -> int:
@@ -54,7 +70,7 @@ class DirtField:
     def is_floor(self, x: float, y: float) -> bool:
         """Whether dirt can lie at a point."""
         row, column = self.frame.cell_of(x, y)
-        return self.frame.contains(x, y) and bool(self._floor[row, column])
+        return self.frame.contains(x, y) and bool(self.floor[row, column])
 
     def spread(self, x: float, y: float, radius: float, grams: float) -> int:
         """Let ``grams`` fall around a point as a Gaussian of standard deviation ``radius``, m.
@@ -96,7 +112,7 @@ class DirtField:
     def _weights(
         self, window: tuple[slice, slice], x: float, y: float, radius: float
     ) -> NDArray[np.float64]:
-        floor = self._floor[window]
+        floor = self.floor[window]
         rows = np.arange(window[0].start, window[0].start + floor.shape[0])
         columns = np.arange(window[1].start, window[1].start + floor.shape[1])
         dy = self.frame.origin_y + (rows + 0.5) * self.frame.resolution - y

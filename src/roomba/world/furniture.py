@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
 from roomba.geometry import Pose, wrap_angle
 from roomba.world.catalogue import FIXTURES, KINDS, Kind, Size
@@ -46,7 +45,7 @@ def furniture_at(
     """
     entry = KINDS[kind]
     boxes = entry.build(size or entry.size, material or entry.material)
-    return Furniture(name, kind, pose, tuple(_placed(box, pose) for box in boxes), on_map)
+    return Furniture(name, kind, pose, tuple(box.placed_at(pose) for box in boxes), on_map)
 
 
 def station_at(docked: Pose, body_radius: float, depth: float) -> Furniture:
@@ -60,11 +59,5 @@ def station_at(docked: Pose, body_radius: float, depth: float) -> Furniture:
     pose = Pose(middle.x, middle.y, wrap_angle(docked.theta + math.pi))
     plate = Box(0.0, 0.0, 0.0, depth, STATION_WIDTH, 0.0, STATION_HEIGHT, "station")
     light = Box(depth / 2.0, 0.0, 0.0, 0.004, 0.06, 0.075, 0.085, "station_light")
-    return Furniture(
-        "station", STATION_KIND, pose, (_placed(plate, pose), _placed(light, pose)), on_map=True
-    )
-
-
-def _placed(box: Box, pose: Pose) -> Box:
-    placed = pose.compose(Pose(box.x, box.y, box.theta))
-    return replace(box, x=placed.x, y=placed.y, theta=placed.theta)
+    boxes = (plate.placed_at(pose), light.placed_at(pose))
+    return Furniture("station", STATION_KIND, pose, boxes, on_map=True)

@@ -77,13 +77,14 @@ def _assembled(
         carpets=parts.carpets,
         stairs=parts.stairs,
         dirt_sources=((_even_dirt(floor),) if parts.dirt_sources is None else parts.dirt_sources),
+        moving=parts.moving,
         wall_height=parts.wall_height,
     )
 
 
 def _found_station(floor: Floor, file: YamlFile, body: BodyConfig) -> Pose:
     try:
-        return automatic_station(floor.map, floor.solid, body.radius)
+        return automatic_station(floor.map, floor.taken, body.radius)
     except HomeError as error:
         raise file.error((), str(error)) from error
 
@@ -102,11 +103,11 @@ def _check_dirt_on_floor(floor: Floor, parts: Parts, file: YamlFile) -> None:
     for index, source in enumerate(parts.dirt_sources or ()):
         row, column = floor.map.frame.cell_of(source.x, source.y)
         inside = floor.map.frame.contains(source.x, source.y)
-        if not inside or floor.solid[row, column]:
+        if not inside or not floor.bare[row, column]:
             raise file.error(
                 ("dirt_sources", index),
                 f"dirt source {source.name!r}: expected a place on free floor, got "
-                f"({source.x:g}, {source.y:g}), which is solid; move it",
+                f"({source.x:g}, {source.y:g}), which is none; move it",
             )
 
 
@@ -114,7 +115,7 @@ def _even_dirt(floor: Floor) -> DirtSource:
     """Return one source so wide that what it spreads is even: within 1 % over the whole map."""
     frame = floor.map.frame
     x_min, x_max, y_min, y_max = frame.extent
-    area = float(np.count_nonzero(~floor.solid)) * frame.resolution**2
+    area = float(np.count_nonzero(floor.bare)) * frame.resolution**2
     return DirtSource(
         "dust",
         (x_min + x_max) / 2.0,

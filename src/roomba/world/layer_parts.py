@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import shapely
 from shapely.validation import explain_validity
@@ -12,15 +11,30 @@ from shapely.validation import explain_validity
 from roomba.geometry import Pose
 from roomba.grid import GridFrame
 from roomba.world.furniture import KINDS, Size, furniture_at
-from roomba.world.home import Carpet, DirtSource, Door, Furniture, Rectangle, Room
+from roomba.world.home import (
+    Carpet,
+    DirtSource,
+    Door,
+    Furniture,
+    MovingKind,
+    MovingThing,
+    Rectangle,
+    Room,
+)
+from roomba.world.layer_check import Checker
 from roomba.world.layer_file import FurnitureEntry, Layer
-from roomba.world.materials import CARPETS, FLOORS, MATERIALS, Material
+from roomba.world.layer_moving import moving_things
+from roomba.world.materials import CARPETS, FLOORS
 from roomba.world.yaml_file import Location, YamlFile, suggestion
 
 
 @dataclass(frozen=True, slots=True)
 class Parts:
-    """What a layer file adds to a map; None where it says nothing and a default is needed."""
+    """What a layer file adds to a map; None where it says nothing and a default is needed.
+
+    ``furniture`` is what stays; ``moved`` are the pieces that are among the ``moving`` things, as
+    they stand at first.
+    """
 
     wall_height: float
     station: Pose | None
@@ -31,54 +45,30 @@ class Parts:
     carpets: tuple[Carpet, ...]
     stairs: tuple[Rectangle, ...]
     dirt_sources: tuple[DirtSource, ...] | None
-
-
-@dataclass(frozen=True, slots=True)
-class _Checker:
-    """Checks places against the map and words against what is known, naming the line."""
-
-    file: YamlFile
-    frame: GridFrame
-
-    def point(self, location: Location, x: float, y: float) -> None:
-        x_min, x_max, y_min, y_max = self.frame.extent
-        if not (x_min - 1e-9 <= x <= x_max + 1e-9 and y_min - 1e-9 <= y <= y_max + 1e-9):
-            raise self.file.error(
-                location,
-                f"{location[0]}: expected a place on the map (x {x_min:g} to {x_max:g}, "
-                f"y {y_min:g} to {y_max:g}), got ({x:g}, {y:g}); move it",
-            )
-
-    def rectangle(self, location: Location, corners: list[float]) -> Rectangle:
-        self.point(location, corners[0], corners[1])
-        self.point(location, corners[2], corners[3])
-        return Rectangle(*corners)
-
-    def material(
-        self, location: Location, name: str, known: Mapping[str, Material] = MATERIALS
-    ) -> str:
-        if name not in known:
-            hint = suggestion(name, known)
-            raise self.file.error(location, f"expected a known material, got {name!r}; {hint}")
-        return name
+    moved: tuple[Furniture, ...] = ()
+    moving: tuple[MovingThing, ...] = ()
 
 
 def parts_of(layer: Layer, file: YamlFile, frame: GridFrame) -> Parts:
     """Return the parts that a layer describes; raises HomeError with the line of what is wrong."""
-    check = _Checker(file, frame)
+    check = Checker(file, frame)
+    pieces = tuple(
+        _piece(("furniture", index), entry, check) for index, entry in enumerate(layer.furniture)
+    )
+    doors = tuple(
+        Door(door.name, check.rectangle(("doors", index, "opening"), door.opening), door.open)
+        for index, door in enumerate(layer.doors)
+    )
+    moving = moving_things(layer, doors, pieces, check)
+    moved = {thing.name for thing in moving if thing.kind is MovingKind.FURNITURE}
+    swinging = {thing.name for thing in moving if thing.kind is MovingKind.DOOR}
     return Parts(
         layer.wall_height,
         _station(layer, check),
         _rectangles("walls", layer.walls, check) if layer.walls is not None else None,
         _rooms(layer, check),
-        tuple(
-            _piece(("furniture", index), entry, check)
-            for index, entry in enumerate(layer.furniture)
-        ),
-        tuple(
-            Door(door.name, check.rectangle(("doors", index, "opening"), door.opening), door.open)
-            for index, door in enumerate(layer.doors)
-        ),
+        tuple(piece for piece in pieces if piece.name not in moved),
+        tuple(replace(d, is_open=True) if d.name in swinging else d for d in doors),
         tuple(
             Carpet(
                 carpet.name,
@@ -89,21 +79,23 @@ def parts_of(layer: Layer, file: YamlFile, frame: GridFrame) -> Parts:
         ),
         _rectangles("stairs", layer.stairs, check),
         _dirt_sources(layer, check),
+        tuple(piece for piece in pieces if piece.name in moved),
+        moving,
     )
 
 
-def _station(layer: Layer, check: _Checker) -> Pose | None:
+def _station(layer: Layer, check: Checker) -> Pose | None:
     if layer.station is None:
         return None
     check.point(("station",), layer.station.x, layer.station.y)
     return Pose(layer.station.x, layer.station.y, layer.station.facing)
 
 
-def _rectangles(key: str, areas: list[list[float]], check: _Checker) -> tuple[Rectangle, ...]:
+def _rectangles(key: str, areas: list[list[float]], check: Checker) -> tuple[Rectangle, ...]:
     return tuple(check.rectangle((key, index), corners) for index, corners in enumerate(areas))
 
 
-def _rooms(layer: Layer, check: _Checker) -> tuple[Room, ...]:
+def _rooms(layer: Layer, check: Checker) -> tuple[Room, ...]:
     rooms = []
     for index, entry in enumerate(layer.rooms):
         location: Location = ("rooms", index)
@@ -121,7 +113,7 @@ def _rooms(layer: Layer, check: _Checker) -> tuple[Room, ...]:
     return tuple(rooms)
 
 
-def _piece(location: Location, entry: FurnitureEntry, check: _Checker) -> Furniture:
+def _piece(location: Location, entry: FurnitureEntry, check: Checker) -> Furniture:
     if entry.kind not in KINDS:
         raise check.file.error(
             (*location, "kind"),
@@ -159,7 +151,7 @@ def _is_box(*sides: float) -> bool:
     return all(math.isfinite(side) and side > 0.0 for side in sides)
 
 
-def _dirt_sources(layer: Layer, check: _Checker) -> tuple[DirtSource, ...] | None:
+def _dirt_sources(layer: Layer, check: Checker) -> tuple[DirtSource, ...] | None:
     if layer.dirt_sources is None:
         return None
     for index, entry in enumerate(layer.dirt_sources):

@@ -14,7 +14,7 @@ from roomba.geometry import Pose
 from roomba.world.home import Home, Room
 from roomba.world.plan_canvas import FINENESS, WHITE, Canvas, Colour, Picture, circle
 from roomba.world.plan_floor import draw_carpets, draw_dirt, draw_floor
-from roomba.world.plan_furniture import draw_furniture, draw_shadows
+from roomba.world.plan_furniture import draw_furniture, draw_shadows, pieces_at_first
 from roomba.world.plan_walls import LIGHT, draw_openings, draw_stairs, draw_station, draw_walls
 from roomba.world.raster import covered_cells, footprint, outline
 
@@ -148,9 +148,9 @@ def _roomiest_place(
     """Return the middle of the widest place without furniture, best without path and carpets."""
     frame = home.frame
     taken = covered_cells(
-        frame, (footprint(box) for piece in home.furniture for box in piece.boxes)
+        frame, (footprint(box) for piece in pieces_at_first(home) for box in piece.boxes)
     )
-    floor = covered_cells(frame, [polygon]) & ~taken & ~home.solid
+    floor = covered_cells(frame, [polygon]) & ~taken & ~home.solid & ~home.drop
     bare = floor & ~covered_cells(frame, (outline(carpet.area) for carpet in home.carpets))
     walked = covered_cells(frame, [shapely.LineString(path).buffer(0.1)] if len(path) > 1 else [])
     for open_floor in (bare & ~walked, floor & ~walked, floor, covered_cells(frame, [polygon])):

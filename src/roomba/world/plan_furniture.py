@@ -7,7 +7,7 @@ import numpy as np
 
 from roomba.world.catalogue import FIXTURES
 from roomba.world.furniture import STATION_KIND
-from roomba.world.home import Box, Furniture, Home
+from roomba.world.home import Box, Furniture, Home, MovingKind
 from roomba.world.materials import MATERIALS
 from roomba.world.plan_canvas import WHITE, Canvas, Colour, mixed, rounded, softened
 from roomba.world.raster import footprint
@@ -58,8 +58,15 @@ def draw_furniture(canvas: Canvas, home: Home) -> None:
         _draw_hanging(canvas, piece)
 
 
+def pieces_at_first(home: Home) -> list[Furniture]:
+    """Return all furniture, and what moves as a piece where it stands before its first move."""
+    moving = (t for t in home.moving if t.is_present and t.kind is not MovingKind.DOOR)
+    return [*home.furniture, *(Furniture(t.name, "", t.pose, t.first_boxes, True) for t in moving)]
+
+
 def _pieces(home: Home) -> list[Furniture]:
-    return [p for p in home.furniture if p.kind not in FIXTURES and p.kind != STATION_KIND]
+    pieces = pieces_at_first(home)
+    return [p for p in pieces if p.kind not in FIXTURES and p.kind != STATION_KIND]
 
 
 def _height(piece: Furniture) -> float:

@@ -8,7 +8,7 @@ import numpy as np
 
 from roomba.geometry import Pose
 from roomba.world.furniture import STATION_KIND
-from roomba.world.home import Door, Furniture, Home, Rectangle
+from roomba.world.home import Door, Furniture, Home, MovingKind, Rectangle
 from roomba.world.plan_canvas import WHITE, Canvas, Colour, circle, mixed, rounded, softened
 from roomba.world.plan_floor import upscaled
 from roomba.world.plan_furniture import SHADOW
@@ -75,7 +75,7 @@ def _draw_door(canvas: Canvas, home: Home, door: Door) -> None:
     canvas.fill(_corners(area), mixed((214, 200, 178), WHITE, 0.35))
     along_x = area.x_max - area.x_min >= area.y_max - area.y_min
     middle_x, middle_y = (area.x_min + area.x_max) / 2.0, (area.y_min + area.y_max) / 2.0
-    if not door.is_open:
+    if not door.is_open or _is_leaf_shut(home, door):
         half = LEAF_THICKNESS / 2.0
         leaf = (
             Rectangle(area.x_min, middle_y - half, area.x_max, middle_y + half)
@@ -98,8 +98,17 @@ def _draw_door(canvas: Canvas, home: Home, door: Door) -> None:
     _draw_swing(canvas, hinge, turn, width)
 
 
+def _is_leaf_shut(home: Home, door: Door) -> bool:
+    """Whether a leaf that moves stands in the opening at first."""
+    return any(
+        thing.kind is MovingKind.DOOR and thing.name == door.name and thing.is_present
+        for thing in home.moving
+    )
+
+
 def _free_share(home: Home, hinge: Pose, turn: float, width: float) -> float:
     """Return how much of a leaf's swing is floor without furniture, 0..1."""
+    floor = ~home.solid & ~home.drop
     free = total = 0
     for radius in (0.3 * width, 0.6 * width, 0.95 * width):
         for number in range(10):
@@ -107,7 +116,7 @@ def _free_share(home: Home, hinge: Pose, turn: float, width: float) -> float:
             x, y = hinge.x + radius * math.cos(angle), hinge.y + radius * math.sin(angle)
             row, column = home.frame.cell_of(x, y)
             total += 1
-            free += home.frame.contains(x, y) and not home.solid[row, column]
+            free += home.frame.contains(x, y) and bool(floor[row, column])
     return free / total
 
 

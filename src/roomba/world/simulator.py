@@ -1,11 +1,11 @@
 """The simulated world: one robot in one home, a step at a time.
 
-Seeded: the same home, configuration, seed and commands give the same trace, bit for bit.
+Seeded: the same home, configuration, seed and commands give the same trace, bit for bit. It is a
+fleet of one, so the same compiled code runs a robot alone and a thousand.
 """
 
 from __future__ import annotations
 
-import hashlib
 import math
 from dataclasses import dataclass
 
@@ -13,35 +13,82 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.config import RobotConfig
-from roomba.errors import HomeError
 from roomba.geometry import Pose, Twist
-from roomba.world import dirt_kernels
-from roomba.world.body import Body, Bumper
 from roomba.world.dirt import MICROGRAMS_PER_GRAM, DirtField
-from roomba.world.home import DirtSource, Home
+from roomba.world.engine.arrays import Fault, Infrared
+from roomba.world.engine.brush_kernels import amount_under_disc
+from roomba.world.fleet import Fleet
+from roomba.world.home import Home
+from roomba.world.power import BatteryState, battery_state
 
-_CRUMB = 0.002
-"""g; what falls at once from a source that sheds dirt."""
-_SECONDS_PER_HOUR = 3600.0
-_TRIES = 64
-"""How often a place on the floor is looked for before a crumb counts as fallen on the furniture."""
+
+@dataclass(frozen=True, slots=True)
+class Bumper:
+    """Which halves of the front bumper are pressed; both at contact straight ahead."""
+
+    left: bool = False
+    right: bool = False
+
+    @property
+    def pressed(self) -> bool:
+        """Whether any part is pressed."""
+        return self.left or self.right
+
+
+@dataclass(frozen=True, slots=True)
+class Cliff:
+    """Which of the cliff sensors see no floor."""
+
+    left: bool = False
+    front_left: bool = False
+    front_right: bool = False
+    right: bool = False
+
+    @property
+    def any(self) -> bool:
+        """Whether one of them does."""
+        return self.left or self.front_left or self.front_right or self.right
+
+
+@dataclass(frozen=True, slots=True)
+class Wheels:
+    """Of a left and a right wheel: how far each turned, rad, as counted; and what is wrong."""
+
+    left: float
+    right: float
+    dropped_left: bool
+    dropped_right: bool
+    stalled_left: bool
+    stalled_right: bool
 
 
 @dataclass(frozen=True, slots=True)
 class Observation:
-    """What is so after a step: the truth, and what the robot's sensors tell of it.
+    """What is so after a step: the truth (``pose``, ``twist``), and what the sensors tell of it.
 
-    ``odometry`` is the pose in the frame that the robot started in; ``dirt_under`` is g under the
-    body's disc, ``in_bin`` g in the bin.
+    ``odometry`` and ``odometry_twist`` are by the wheel encoders, in the frame that the robot
+    started in; ``angular_velocity`` (rad/s) and ``acceleration`` (m/s2, ahead) are the gyro's and
+    accelerometer's. ``dirt_under`` is g under the body's disc, ``in_bin`` g in the bin, ``grains``
+    what the dirt sensor counts, 1/s, ``brush_current`` A. ``scans`` counts the lidar's scans.
     """
 
     time: float
     pose: Pose
-    odometry: Pose
     twist: Twist
+    odometry: Pose
+    odometry_twist: Twist
     bumper: Bumper
+    cliff: Cliff
+    wheels: Wheels
+    angular_velocity: float
+    acceleration: float
+    infrared: Infrared
+    battery: BatteryState
     dirt_under: float
     in_bin: float
+    grains: float
+    brush_current: float
+    scans: int
 
 
 class Simulator:
@@ -60,137 +107,175 @@ class Simulator:
 
         Raises HomeError when the body does not fit at the start.
         """
-        self.home = home
-        self.config = config or RobotConfig()
-        self.time = 0.0
         self.start = start or home.station
-        self.body = Body(
-            home.solid, home.frame, self.config.body, max_speed=max_speed, start=self.start
+        starts = np.array([[self.start.x, self.start.y, self.start.theta]], np.float64)
+        self._fleet = Fleet(
+            [home], config, seeds=[seed], max_speed=max_speed, starts=starts, threads=1
         )
-        if self.body.gap < 0.0:
-            raise HomeError(
-                f"home {home.name}: the robot does not fit at ({self.start.x:.2f}, "
-                f"{self.start.y:.2f}); expected free floor for a body of "
-                f"{self.config.body.diameter} m; its station is at ({home.station.x:.2f}, "
-                f"{home.station.y:.2f})"
-            )
-        self._random = np.random.default_rng(seed)
-        self.dirt = DirtField(home.frame, home.solid)
-        self.brought_in = 0
-        self.in_bin = 0
-        self.brushes_on = True
-        brush = self.config.brush
-        self._brush = np.array([brush.width, brush.depth, brush.efficiency], np.float64)
-        self._bin_capacity = round(brush.bin_capacity * MICROGRAMS_PER_GRAM)
-        self._next_falls = [self._first_fall(source) for source in home.dirt_sources]
+        self.home = home
+        self.config = self._fleet.config
+        self.dirt: DirtField = self._fleet.dirt(0)
+        self._wanted = np.zeros((1, 2), np.float64)
+
+    @property
+    def time(self) -> float:
+        """Seconds since the beginning."""
+        return float(self._fleet.worlds["time"][0])
+
+    @property
+    def pose(self) -> Pose:
+        """Where the body stands, in the map frame."""
+        x, y, theta = self._fleet.poses[0].tolist()
+        return Pose(x, y, theta)
+
+    @property
+    def max_speed(self) -> float:
+        """What the drive does at most, m/s; may be set."""
+        return float(self._fleet.robots["max_speed"][0])
+
+    @max_speed.setter
+    def max_speed(self, speed: float) -> None:
+        self._fleet.robots["max_speed"] = speed
+
+    @property
+    def gap(self) -> float:
+        """Distance from the body's rim to the nearest solid thing, m, up to one body radius."""
+        return self._fleet.gap(0)
+
+    @property
+    def brought_in(self) -> int:
+        """Micrograms of dirt that ever came into the home."""
+        return int(self._fleet.worlds["brought_in"][0])
+
+    @property
+    def in_bin(self) -> int:
+        """Micrograms in the bin."""
+        return int(self._fleet.robots["in_bin"][0])
+
+    @property
+    def numbers(self) -> dict[str, float]:
+        """All of the robot's numbers by name: ROBOT of :mod:`roomba.world.engine.arrays`."""
+        names = self._fleet.robots.dtype.names or ()
+        return dict(zip(names, self._fleet.robots[0].tolist(), strict=True))
+
+    @property
+    def ranges(self) -> NDArray[np.float32]:
+        """The lidar's last scan, float32 [beams], m: see :class:`roomba.world.lidar.Lidar`."""
+        ranges: NDArray[np.float32] = self._fleet.ranges[0].copy()
+        return ranges
+
+    @property
+    def things(self) -> NDArray[np.float64]:
+        """Where the home's moving things are, float64 [things, 4]: x, y, theta, present."""
+        return self._fleet.things(0)
+
+    @property
+    def discs(self) -> NDArray[np.float64]:
+        """Round things that were put down, float64 [discs, 3]: x, y, radius, m."""
+        return self._fleet.discs(0)
 
     def step(self, wanted: Twist, dt: float) -> Observation:
         """Let ``dt`` s pass while the drive is asked for ``wanted``; return what is so then.
 
         Raises ValueError for a twist or a time that is not finite, or a time that is not above 0.
         """
+        self.advance(wanted, dt, 1)
+        return self.observe()
+
+    def advance(self, wanted: Twist, dt: float, steps: int) -> None:
+        """Let so many steps pass, as :meth:`step` does, without looking."""
         if not wanted.is_finite or not math.isfinite(dt) or dt <= 0.0:
             raise ValueError(f"expected a finite twist and dt > 0 s, got {wanted}, dt={dt}")
-        before = self.body.pose
-        twist_before = self.body.twist
-        self.body.drive(wanted, dt)
-        self.time += dt
-        self._sweep(before, twist_before, dt)
-        self._let_dirt_fall()
-        return self.observe()
+        self._wanted[0] = wanted.linear, wanted.angular
+        self._fleet.step(self._wanted, dt, steps)
 
     def observe(self) -> Observation:
         """Return what is so now; no time passes."""
-        pose = self.body.pose
-        under = dirt_kernels.amount_under_disc(
-            self.dirt.micrograms, self.dirt.place, pose.x, pose.y, self.config.body.radius
-        )
+        now = self.numbers
+        radius = self.config.body.radius
+        under = amount_under_disc(self.dirt.micrograms, self.dirt.place, now["x"], now["y"], radius)
         return Observation(
             time=self.time,
-            pose=pose,
-            odometry=self.start.inverse().compose(pose),
-            twist=self.body.twist,
-            bumper=self.body.bumper,
+            pose=Pose(now["x"], now["y"], now["theta"]),
+            twist=Twist(now["ground_linear"], now["ground_angular"]),
+            odometry=Pose(now["odometry_x"], now["odometry_y"], now["odometry_theta"]),
+            odometry_twist=Twist(now["odometry_linear"], now["odometry_angular"]),
+            bumper=Bumper(now["bumper_left"] > 0.0, now["bumper_right"] > 0.0),
+            cliff=Cliff(
+                now["cliff_left"] > 0.0,
+                now["cliff_front_left"] > 0.0,
+                now["cliff_front_right"] > 0.0,
+                now["cliff_right"] > 0.0,
+            ),
+            wheels=Wheels(
+                now["encoder_left"],
+                now["encoder_right"],
+                now["drop_left"] > 0.0,
+                now["drop_right"] > 0.0,
+                now["stall_left"] > 0.0,
+                now["stall_right"] > 0.0,
+            ),
+            angular_velocity=now["gyro"],
+            acceleration=now["acceleration"],
+            infrared=Infrared(int(now["beams"])),
+            battery=battery_state(
+                self.config.battery,
+                charge=now["charge"],
+                power=now["power"],
+                temperature=now["temperature"],
+                is_docked=now["docked"] > 0.0,
+            ),
             dirt_under=under / MICROGRAMS_PER_GRAM,
-            in_bin=self.in_bin / MICROGRAMS_PER_GRAM,
+            in_bin=now["in_bin"] / MICROGRAMS_PER_GRAM,
+            grains=now["grains"],
+            brush_current=now["brush_current"],
+            scans=int(now["scans"]),
         )
+
+    def set_power(self, brush: float | None = None, fan: float | None = None) -> None:
+        """Set the duty of brush and fan, 0..1; None leaves one as it is. ValueError for others."""
+        wanted = {"brush": brush, "fan": fan}
+        for name, duty in wanted.items():
+            if duty is not None and not 0.0 <= duty <= 1.0:
+                raise ValueError(f"{name}: expected a duty from 0 to 1, got {duty}")
+        for name, duty in wanted.items():
+            if duty is not None:
+                self._fleet.robots[f"{name}_duty"] = duty
+
+    @property
+    def duty(self) -> tuple[float, float]:
+        """Duty of brush and fan, 0..1."""
+        robots = self._fleet.robots
+        return float(robots["brush_duty"][0]), float(robots["fan_duty"][0])
 
     def spill(self, x: float, y: float, radius: float, grams: float) -> None:
         """Spill crumbs around a point of the map frame; raises ValueError as DirtField.spread."""
-        self.brought_in += self.dirt.spread(x, y, radius, grams)
+        self._fleet.worlds["brought_in"] += self.dirt.spread(x, y, radius, grams)
 
     def place_obstacle(self, x: float, y: float, radius: float) -> None:
-        """Stand a round thing on the floor that no map knows; ValueError on the robot itself."""
-        pose = self.body.pose
-        if pose.distance_to(x, y) < radius + self.config.body.radius + self.home.frame.resolution:
-            raise ValueError(f"the robot itself stands at ({x:.2f}, {y:.2f}); choose another place")
-        self.body.replace_solid(self.body.solid | _disc(self.home, x, y, radius))
+        """Stand a round thing on the floor that no map knows; ValueError as Fleet.put_disc."""
+        self._fleet.put_disc(0, x, y, radius)
+
+    def remove_obstacles(self) -> None:
+        """Take all round things away."""
+        self._fleet.remove_discs(0)
+
+    def inject(self, fault: Fault, value: float) -> None:
+        """Set a fault, 0..1 (0: none); raises ValueError for another value."""
+        self._fleet.inject(0, fault, value)
+
+    def put(self, pose: Pose) -> None:
+        """Put the robot down somewhere else; raises HomeError where it does not fit."""
+        self._fleet.put(0, pose)
+
+    def save(self) -> dict[str, NDArray[np.generic]]:
+        """Return a copy of all that can change."""
+        return self._fleet.save()
+
+    def restore(self, saved: dict[str, NDArray[np.generic]]) -> None:
+        """Bring back what :meth:`save` returned, of the same home; ValueError for another's."""
+        self._fleet.restore(saved)
 
     def digest(self) -> str:
         """Return a SHA-256 over everything that can change, hexadecimal."""
-        parts = [
-            np.array([self.time], np.float64).tobytes(),
-            self.body.state.tobytes(),
-            self.dirt.micrograms.tobytes(),
-            np.array([self.brought_in, self.in_bin], np.int64).tobytes(),
-            np.array(self._next_falls, np.float64).tobytes(),
-            str(self._random.bit_generator.state).encode(),
-        ]
-        return hashlib.sha256(b"".join(parts)).hexdigest()
-
-    def _sweep(self, before: Pose, twist_before: Twist, dt: float) -> None:
-        if not self.brushes_on:
-            return
-        after, twist = self.body.pose, self.body.twist
-        travelled = math.hypot(after.x - before.x, after.y - before.y)
-        turned = 0.5 * (twist_before.angular + twist.angular)
-        self.in_bin += dirt_kernels.sweep(
-            self.dirt.micrograms,
-            self.dirt.place,
-            self._brush,
-            0.5 * (before.x + after.x),
-            0.5 * (before.y + after.y),
-            before.theta + 0.5 * turned * dt,
-            math.copysign(travelled / dt, twist_before.linear + twist.linear),
-            turned,
-            dt,
-            self._bin_capacity - self.in_bin,
-        )
-
-    def _first_fall(self, source: DirtSource) -> float:
-        if source.amount > 0.0:
-            self.spill(source.x, source.y, source.radius, source.amount)
-        return self._wait_for_crumb(source)
-
-    def _wait_for_crumb(self, source: DirtSource) -> float:
-        if source.rate <= 0.0:
-            return math.inf
-        return float(self._random.exponential(_CRUMB / source.rate * _SECONDS_PER_HOUR))
-
-    def _let_dirt_fall(self) -> None:
-        for index, source in enumerate(self.home.dirt_sources):
-            while self._next_falls[index] <= self.time:
-                self._drop_crumb(source)
-                self._next_falls[index] += self._wait_for_crumb(source)
-
-    def _drop_crumb(self, source: DirtSource) -> None:
-        """Let a crumb fall as the Gaussian of its source says, on floor; else it lands nowhere."""
-        x_min, x_max, y_min, y_max = self.dirt.frame.extent
-        reach = 3.0 * source.radius
-        low = (max(x_min, source.x - reach), max(y_min, source.y - reach))
-        high = (min(x_max, source.x + reach), min(y_max, source.y + reach))
-        for _ in range(_TRIES):
-            x, y = self._random.uniform(low, high).tolist()
-            away = math.hypot(x - source.x, y - source.y) / source.radius
-            if self._random.random() < math.exp(-0.5 * away**2) and self.dirt.is_floor(x, y):
-                self.spill(x, y, self.dirt.frame.resolution, _CRUMB)
-                return
-
-
-def _disc(home: Home, x: float, y: float, radius: float) -> NDArray[np.bool_]:
-    frame = home.frame
-    rows, columns = np.indices(frame.shape)
-    dy = frame.origin_y + (rows + 0.5) * frame.resolution - y
-    dx = frame.origin_x + (columns + 0.5) * frame.resolution - x
-    inside: NDArray[np.bool_] = dx**2 + dy**2 <= radius**2
-    return inside
+        return self._fleet.digest()

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import importlib.util
+import itertools
 import math
+from dataclasses import replace
 from pathlib import Path
 from types import ModuleType
 
@@ -13,13 +15,20 @@ import shapely
 
 from roomba.config import BodyConfig
 from roomba.grid import FREE, OCCUPIED
-from roomba.world.home import Home
+from roomba.world.home import Home, MovingKind
 from roomba.world.layer import list_homes, load_home
 from roomba.world.map_file import load_map
-from roomba.world.raster import distance_to_cells, largest_component, where_body_fits
+from roomba.world.plan import draw_plan
+from roomba.world.raster import (
+    covered_cells,
+    distance_to_cells,
+    footprint,
+    largest_component,
+    where_body_fits,
+)
 
 HOMES = Path(__file__).parents[3] / "homes"
-NAMES = ["apartment", "empty", "flat", "hall", "lshape", "studio"]
+NAMES = ["apartment", "empty", "family", "flat", "hall", "lshape", "studio"]
 RADIUS = BodyConfig().radius
 COMFORT = 0.04
 """m; wanted between body and walls on the way into every room."""
@@ -60,7 +69,7 @@ def test_docked_body_fits_with_its_nose_to_the_station(homes: dict[str, Home], n
 @pytest.mark.parametrize("name", NAMES)
 def test_every_room_can_be_reached_from_the_station(homes: dict[str, Home], name: str) -> None:
     home = homes[name]
-    floor = largest_component(where_body_fits(home.frame, home.solid, RADIUS + COMFORT))
+    floor = largest_component(where_body_fits(home.frame, home.solid | home.drop, RADIUS + COMFORT))
     away = math.ceil((RADIUS + COMFORT) / home.frame.resolution)
     row, column = home.frame.cell_of(home.station.x, home.station.y)
     near = floor[row - away : row + away + 1, column - away : column + away + 1]
@@ -81,7 +90,9 @@ def test_map_and_truth_differ_only_in_what_is_off_the_map(
 ) -> None:
     home = homes[name]
     known_free = home.map.values == FREE
-    assert not (~home.solid & ~known_free).any()
+    boxes = (box for thing in home.moving for box in thing.first_boxes)
+    moving = covered_cells(home.frame, (footprint(box) for box in boxes))
+    assert not (~home.solid & ~known_free & ~moving).any()
     surprises = home.solid & known_free
     hidden = [piece for piece in home.furniture if not piece.on_map]
     assert surprises.any() == bool(hidden)
@@ -139,6 +150,63 @@ def test_flat_lets_the_body_walk_straight_from_home_to_3_4(homes: dict[str, Home
         assert not cell.intersects(beyond), (x, y)
 
 
+def test_in_the_family_flat_something_of_each_kind_moves(homes: dict[str, Home]) -> None:
+    family = homes["family"]
+    assert [(thing.kind, thing.name) for thing in family.moving] == [
+        (MovingKind.DOOR, "bedroom door"),
+        (MovingKind.FURNITURE, "chair 2"),
+        (MovingKind.PERSON, "Ann"),
+        (MovingKind.PERSON, "Ben"),
+    ]
+    assert [len(homes[name].moving) for name in NAMES if name != "family"] == [0] * 6
+    assert "chair 2" not in [piece.name for piece in family.furniture]
+
+
+def test_what_moves_in_the_family_flat_runs_into_nothing(homes: dict[str, Home]) -> None:
+    family = homes["family"]
+    blocked = family.solid | family.drop
+    for thing in family.moving:
+        places = [thing.pose, *(move.pose for move in thing.script.moves)]
+        if thing.kind is MovingKind.DOOR:
+            continue
+        for start, end in itertools.pairwise(places):
+            ends = [
+                footprint(box.placed_at(pose))
+                for pose in (start, end)
+                for box in thing.boxes
+                if box.bottom < BodyConfig().height
+            ]
+            way = covered_cells(family.frame, [shapely.union_all(ends).convex_hull])
+            assert not (way & blocked).any(), (thing.name, start, end)
+
+
+def test_the_plan_shows_what_moves_where_it_stands_at_first(homes: dict[str, Home]) -> None:
+    door, chair, *_ = homes["family"].moving
+    shut = replace(homes["family"], moving=(replace(door, is_present=True), chair))
+    still = replace(homes["family"], moving=())
+    for thing, home in ((chair, homes["family"]), (door, shut)):
+        drawn = draw_plan(home, pixels_per_metre=20.0, labels=False)
+        bare = draw_plan(still, pixels_per_metre=20.0, labels=False)
+        rows, columns = np.nonzero((drawn != bare).any(axis=2))
+        margin = 0.03 * 8.4
+        x, y = columns / 20.0 - 0.5 - margin, 6.0 + margin - rows / 20.0
+        away = np.hypot(x - thing.pose.x, y - thing.pose.y)
+        assert away.min() < 0.3, thing.name
+
+
+def test_the_robot_can_drive_up_to_the_stairs_of_the_family_flat(homes: dict[str, Home]) -> None:
+    family = homes["family"]
+    (stairs,) = family.stairs
+    assert stairs.x_max - stairs.x_min >= 1.0
+    assert stairs.y_max - stairs.y_min >= 0.9
+    floor = largest_component(where_body_fits(family.frame, family.solid, RADIUS + COMFORT))
+    assert (floor & family.drop).any(), "nothing but the drop keeps it from the stairs"
+    before = family.frame.cell_of(stairs.x_min - 0.3, (stairs.y_min + stairs.y_max) / 2.0)
+    assert floor[before]
+    assert not family.drop[before]
+    assert family.map.values[family.drop].max() == FREE
+
+
 def test_hall_lets_the_body_stand_at_the_limits(homes: dict[str, Home]) -> None:
     hall = homes["hall"]
     for x in (-100.0, 100.0):
@@ -147,7 +215,7 @@ def test_hall_lets_the_body_stand_at_the_limits(homes: dict[str, Home]) -> None:
     assert np.count_nonzero(hall.solid & ~hall.walls) <= 4, "nothing but walls and the station"
 
 
-@pytest.mark.parametrize("name", ["flat", "studio", "hall"])
+@pytest.mark.parametrize("name", ["flat", "studio", "family", "hall"])
 def test_map_is_what_the_layer_draws(draw: ModuleType, name: str) -> None:
     drawn = draw.drawn_map(name, HOMES)
     filed = load_map(HOMES / name / "map.yaml")

@@ -1,0 +1,156 @@
+"""Compiled motion: speed ramps, wheels that slip, exact arcs; what encoders and gyro make of it."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.world.engine.arrays import CARPET, Row, Solid
+from roomba.world.engine.compilation import part
+from roomba.world.engine.contact_kernels import arc, free_share, wrapped
+from roomba.world.engine.random_kernels import next_normal
+
+Quantiles = NDArray[np.float32]
+
+
+@part
+def ramp(value: float, target: float, speeding_up: float, braking: float, dt: float) -> float:
+    """Return ``value`` brought towards ``target`` within the limits (1/s2), not past it."""
+    target_now = 0.0 if value * target < 0.0 else target
+    limit = (speeding_up if abs(target_now) > abs(value) else braking) * dt
+    return value + min(max(target_now - value, -limit), limit)
+
+
+@part
+def ramped(body: Row, numbers: Row, dt: float) -> tuple[float, float]:
+    """Return the velocities that the drive has after ``dt`` s; without charge it comes to rest."""
+    linear = min(max(body.wanted_linear, -body.max_speed), body.max_speed)
+    most = numbers.max_angular_speed
+    angular = min(max(body.wanted_angular, -most), most)
+    if body.charge <= 0.0:
+        linear = angular = 0.0
+    limit = numbers.angular_acceleration
+    return (
+        ramp(body.linear, linear, numbers.acceleration, numbers.deceleration, dt),
+        ramp(body.angular, angular, limit, limit, dt),
+    )
+
+
+@part
+def slips(
+    body: Row, numbers: Row, quantiles: Quantiles, ground: int, way: float
+) -> tuple[float, float]:
+    """Return which share of its ``way``, m, each wheel loses in this step."""
+    left, right = body.slip_left, body.slip_right
+    if numbers.noisy > 0.0 and way > 0.0:
+        mean = numbers.carpet_slip if ground == CARPET else numbers.slip
+        # The noise of a way grows as a random walk does, whatever the step.
+        spread = numbers.slip_noise / math.sqrt(way)
+        left += mean + spread * next_normal(body, quantiles)
+        right += mean + spread * next_normal(body, quantiles)
+    if body.drop_left > 0.0:
+        left = 1.0
+    if body.drop_right > 0.0:
+        right = 1.0
+    return left, right
+
+
+@part
+def drive(
+    solid: Solid,
+    home: Row,
+    world: Row,
+    robot: int,
+    numbers: Row,
+    quantiles: Quantiles,
+    ground: int,
+    dt: float,
+) -> tuple[float, float]:
+    """Move a robot by ``dt`` s; return the way, m, and the turn, rad, of its body.
+
+    Both are those of the ramped velocities' means, driven as one arc. At contact the disc stays
+    there and its forward speed is zero, the wheels' too.
+    """
+    body = solid.robots[robot]
+    linear, angular = ramped(body, numbers, dt)
+    rolled, rolled_turn = 0.5 * (body.linear + linear) * dt, 0.5 * (body.angular + angular) * dt
+    half = 0.5 * numbers.track
+    left, right = rolled - half * rolled_turn, rolled + half * rolled_turn
+    body.stall_left = 1.0 if body.held_left > 0.0 and left != 0.0 else 0.0
+    body.stall_right = 1.0 if body.held_right > 0.0 and right != 0.0 else 0.0
+    if body.held_left > 0.0 or body.held_right > 0.0:
+        left = 0.0 if body.held_left > 0.0 else left
+        right = 0.0 if body.held_right > 0.0 else right
+        rolled, rolled_turn = 0.5 * (left + right), (right - left) / numbers.track
+    length, turn = rolled, rolled_turn
+    slip_left, slip_right = slips(body, numbers, quantiles, ground, 0.5 * (abs(left) + abs(right)))
+    if slip_left != 0.0 or slip_right != 0.0:
+        over_left, over_right = left * (1.0 - slip_left), right * (1.0 - slip_right)
+        length, turn = 0.5 * (over_left + over_right), (over_right - over_left) / numbers.track
+    if body.lifted > 0.0:
+        length = turn = 0.0
+    share = free_share(solid, home, world, robot, numbers.radius, length, turn)
+    is_hit = share < 1.0
+    if length != 0.0:
+        body.x, body.y = arc(body.x, body.y, body.theta, length * share, turn * share)
+    body.theta = wrapped(body.theta + turn)
+    body.hits += 1.0 if is_hit and body.hit == 0.0 else 0.0
+    body.hit = 1.0 if is_hit else 0.0
+    body.linear = 0.0 if is_hit else linear
+    body.angular = angular
+    body.distance += abs(length) * share
+    body.turned += abs(turn)
+    before = body.ground_linear
+    is_held = is_hit or body.lifted > 0.0
+    body.ground_linear = 0.0 if is_held else linear + (length - rolled) / dt
+    body.ground_angular = 0.0 if body.lifted > 0.0 else angular + (turn - rolled_turn) / dt
+    if is_hit:
+        # Wheels of a body that is held stand still, but for what they slip on the spot.
+        rolled *= share + (1.0 - share) * numbers.blocked_slip
+    count_wheels(body, numbers, rolled - half * rolled_turn, rolled + half * rolled_turn, dt)
+    feel_motion(body, numbers, quantiles, turn / dt, (body.ground_linear - before) / dt, dt)
+    return math.copysign(abs(length) * share, length), turn
+
+
+@part
+def count_wheels(body: Row, numbers: Row, left: float, right: float, dt: float) -> None:
+    """Let the encoders count what the wheels rolled, m, and odometry go on by that."""
+    body.wheel_left += left / numbers.wheel_radius
+    body.wheel_right += right / numbers.wheel_radius
+    counted_left, counted_right = body.wheel_left, body.wheel_right
+    if numbers.noisy > 0.0:
+        step = numbers.radians_per_count
+        counted_left = step * math.floor(counted_left / step)
+        counted_right = step * math.floor(counted_right / step)
+        left = (counted_left - body.encoder_left) * numbers.wheel_radius * body.wheel_left_size
+        right = (counted_right - body.encoder_right) * numbers.wheel_radius
+        right *= body.wheel_right_size
+    body.encoder_left, body.encoder_right = counted_left, counted_right
+    length, turn = 0.5 * (left + right), (right - left) / numbers.track
+    if length != 0.0:
+        body.odometry_x, body.odometry_y = arc(
+            body.odometry_x, body.odometry_y, body.odometry_theta, length, turn
+        )
+    body.odometry_theta = wrapped(body.odometry_theta + turn)
+    body.odometry_linear, body.odometry_angular = length / dt, turn / dt
+
+
+@part
+def feel_motion(
+    body: Row,
+    numbers: Row,
+    quantiles: Quantiles,
+    angular: float,
+    acceleration: float,
+    dt: float,
+) -> None:
+    """Let the gyro feel the turning, rad/s, and the accelerometer the acceleration, m/s2."""
+    if numbers.noisy > 0.0:
+        body.gyro_bias += numbers.gyro_walk * math.sqrt(dt) * next_normal(body, quantiles)
+        angular = angular * body.gyro_scale + body.gyro_bias
+        angular += numbers.gyro_noise * next_normal(body, quantiles)
+        acceleration += numbers.acceleration_noise * next_normal(body, quantiles)
+    body.gyro = angular
+    body.acceleration = acceleration

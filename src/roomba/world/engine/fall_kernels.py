@@ -1,0 +1,52 @@
+"""Compiled sources of dirt: now and then a crumb falls around them."""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+from roomba.world.engine.arrays import Dirt, Row
+from roomba.world.engine.compilation import part
+from roomba.world.engine.random_kernels import next_exponential, next_uniform
+
+CRUMB: Final = 2000
+"""Micrograms; what falls at once."""
+_TRIES: Final = 64
+"""How often a place on the floor is looked for before a crumb counts as fallen on the furniture."""
+_FULL_CELL: Final = 2_000_000_000
+
+
+@part
+def let_dirt_fall(dirt: Dirt, home: Row, world: Row) -> None:
+    """Let fall what is due in a world by now."""
+    for number in range(world.falls_at, world.falls_end):
+        fall = dirt.falls[number]
+        source = dirt.sources[fall.source]
+        while fall.time <= world.time:
+            drop_crumb(dirt, home, world, source)
+            fall.time += source.mean_wait * next_exponential(world)
+
+
+@part
+def drop_crumb(dirt: Dirt, home: Row, world: Row, source: Row) -> None:
+    """Let a crumb fall as the Gaussian of its source says, on floor; else it lands nowhere."""
+    size, reach = home.dirt_resolution, 3.0 * source.radius
+    rows, columns = home.dirt_rows, home.dirt_columns
+    left, bottom = home.left, home.bottom
+    low_x, high_x = max(left, source.x - reach), min(left + columns * size, source.x + reach)
+    low_y, high_y = max(bottom, source.y - reach), min(bottom + rows * size, source.y + reach)
+    for _ in range(_TRIES):
+        x = low_x + (high_x - low_x) * next_uniform(world)
+        y = low_y + (high_y - low_y) * next_uniform(world)
+        away = math.hypot(x - source.x, y - source.y) / source.radius
+        if next_uniform(world) >= math.exp(-0.5 * away * away):
+            continue
+        row = min(max(math.floor((y - bottom) / size), 0), rows - 1)
+        column = min(max(math.floor((x - left) / size), 0), columns - 1)
+        cell = row * columns + column
+        if not dirt.floors[home.floors_at + cell]:
+            continue
+        if dirt.micrograms[world.dirt_at + cell] <= _FULL_CELL - CRUMB:
+            dirt.micrograms[world.dirt_at + cell] += CRUMB
+            world.brought_in += CRUMB
+            return

@@ -1,0 +1,171 @@
+"""Fills the arrays of worlds and robots as they are at the beginning, from a seed."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.config import RobotConfig
+from roomba.errors import HomeError
+from roomba.world.dirt import DirtField
+from roomba.world.engine.arrays import (
+    DISC,
+    FALL,
+    MOST_DISCS,
+    ROBOT,
+    THING,
+    WORLD,
+    Dirt,
+    Rows,
+    Solid,
+    State,
+)
+from roomba.world.engine.layout import Layout, room_around
+from roomba.world.home import Home
+from roomba.world.moving import Track, tracks_of
+
+_WORLD, _TRACKS, _ROBOT, _PLACES = range(4)
+"""What a seed is used for, so that no two things get the same random numbers."""
+_TRIES = 2000
+
+
+def first_state(
+    layout: Layout,
+    homes: Sequence[Home],
+    home_of_world: Sequence[int],
+    config: RobotConfig,
+    seeds: Sequence[int],
+    robots_per_home: int,
+    max_speed: float,
+) -> State:
+    """Return worlds in which no time has passed; ``homes`` are those of the layout.
+
+    Their robots all stand at (0, 0).
+    """
+    dirt = [_first_dirt(home) for home in homes]
+    worlds = np.zeros(len(seeds), WORLD)
+    falls: list[tuple[float, int]] = []
+    things: list[tuple[float, ...]] = []
+    tracks: list[Track] = []
+    dirt_at = robots_at = tracks_at = 0
+    for number, (home, seed) in enumerate(zip(home_of_world, seeds, strict=True)):
+        world = worlds[number]
+        world["random"] = _seed_bits(seed, _WORLD)
+        world["home"] = home
+        world["robots_at"], world["robots_end"] = robots_at, robots_at + robots_per_home
+        world["dirt_at"], world["dirt_end"] = dirt_at, dirt_at + dirt[home].size
+        world["brought_in"] = dirt[home].sum(dtype=np.int64)
+        world["falls_at"], world["things_at"] = len(falls), len(things)
+        world["discs_at"] = world["discs_end"] = number * MOST_DISCS
+        falls += _first_falls(layout, home, seed)
+        boxes_at = layout.boxes_at[home]
+        for index, track in enumerate(tracks_of(homes[home].moving, _generator(seed, _TRACKS))):
+            rows = tracks_at, tracks_at + len(track) - 1
+            things.append((*track[0, 1:], 0.0, *rows, boxes_at[index], boxes_at[index + 1]))
+            tracks.append(track)
+            tracks_at += len(track)
+        world["falls_end"], world["things_end"] = len(falls), len(things)
+        robots_at, dirt_at = robots_at + robots_per_home, dirt_at + dirt[home].size
+    robots = first_robots(config, seeds, robots_per_home, max_speed)
+    return State(
+        homes=layout.homes,
+        worlds=worlds,
+        solid=Solid(
+            cells=layout.cells,
+            things=np.array(things, THING),
+            boxes=layout.boxes,
+            discs=np.zeros(len(seeds) * MOST_DISCS, DISC),
+            robots=robots,
+        ),
+        dirt=Dirt(
+            micrograms=np.concatenate([dirt[home] for home in home_of_world]),
+            floors=layout.floors,
+            falls=np.array(falls, FALL),
+            sources=layout.sources,
+        ),
+        edges=layout.edges,
+        tracks=np.concatenate([*tracks, np.zeros((0, 5))]),
+        ranges=np.full((len(robots), config.lidar.beams), np.inf, np.float32),
+    )
+
+
+def first_robots(
+    config: RobotConfig, seeds: Sequence[int], robots_per_home: int, max_speed: float
+) -> Rows:
+    """Return charged robots that stand at (0, 0), each with errors of its own."""
+    robots = np.zeros(len(seeds) * robots_per_home, ROBOT)
+    robots["charge"] = config.battery.capacity
+    robots["temperature"] = config.battery.ambient
+    robots["max_speed"] = max_speed
+    robots["brush_duty"], robots["fan_duty"] = config.brush.duty, config.fan.duty
+    for name in ("wheel_left_size", "wheel_right_size", "gyro_scale"):
+        robots[name] = 1.0
+    for number, robot in enumerate(robots):
+        seed = seeds[number // robots_per_home]
+        purpose = (_ROBOT, number % robots_per_home)
+        robot["random"] = _seed_bits(seed, *purpose)
+        if config.sensors == "noisy":
+            left, right, scale, bias = _generator(seed, *purpose).standard_normal(4).tolist()
+            robot["wheel_left_size"] += config.wheels.scale_error * left
+            robot["wheel_right_size"] += config.wheels.scale_error * right
+            robot["gyro_scale"] += config.gyro.scale_error * scale
+            robot["gyro_bias"] = config.gyro.bias * bias
+    return robots
+
+
+def starts_of(
+    homes: Sequence[Home], seeds: Sequence[int], robots_per_home: int, radius: float
+) -> NDArray[np.float64]:
+    """Return where robots start, float64 [robots, 3]: the first of each home at the station.
+
+    Others stand at places found at random that are free for bodies of ``radius`` m, and of
+    moving things; raises HomeError if there is not so much room.
+    """
+    starts = []
+    for home, seed in zip(homes, seeds, strict=True):
+        taken = [(home.station.x, home.station.y, home.station.theta)]
+        if robots_per_home > 1:
+            room = room_around(home.solid | home.drop, home.frame.resolution)
+            rows, columns = np.nonzero(room > radius + 0.01)
+            random = _generator(seed, _PLACES)
+            for _ in range(_TRIES * robots_per_home if len(rows) else 0):
+                if len(taken) == robots_per_home:
+                    break
+                cell = int(random.integers(len(rows)))
+                x, y = home.frame.centre_of(int(rows[cell]), int(columns[cell]))
+                theta = float(random.uniform(-np.pi, np.pi))
+                away = min(np.hypot(x - other[0], y - other[1]) for other in taken)
+                if away > 2.0 * radius + 0.05:
+                    taken.append((x, y, theta))
+            if len(taken) < robots_per_home:
+                raise HomeError(
+                    f"home {home.name}: expected room for {robots_per_home} robots, found it for "
+                    f"{len(taken)}; ask for fewer"
+                )
+        starts.extend(taken)
+    return np.array(starts, np.float64)
+
+
+def _first_dirt(home: Home) -> NDArray[np.int32]:
+    field = DirtField.of(home)
+    for source in home.dirt_sources:
+        if source.amount > 0.0:
+            field.spread(source.x, source.y, source.radius, source.amount)
+    return field.micrograms.ravel()
+
+
+def _first_falls(layout: Layout, home: int, seed: int) -> list[tuple[float, int]]:
+    first, last = layout.sources_at[home], layout.sources_at[home + 1]
+    waits = layout.sources["mean_wait"][first:last]
+    times = waits * _generator(seed, _WORLD).exponential(1.0, last - first)
+    return list(zip(times.tolist(), range(first, last), strict=True))
+
+
+def _generator(seed: int, *purpose: int) -> np.random.Generator:
+    return np.random.default_rng([seed, *purpose])
+
+
+def _seed_bits(seed: int, *purpose: int) -> np.uint64:
+    return np.uint64(np.random.SeedSequence([seed, *purpose]).generate_state(1, np.uint64)[0])

@@ -1,0 +1,309 @@
+"""Many robots at once: any number of worlds, each with its own dirt and one or more robots.
+
+The robots of one world see and bump each other; worlds know nothing of each other, so threads
+share them out. A robot's trace is the same, bit for bit, alone and among a thousand.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import itertools
+import math
+import os
+from collections.abc import Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.config import RobotConfig
+from roomba.errors import HomeError
+from roomba.geometry import Pose
+from roomba.world.dirt import DirtField
+from roomba.world.engine.arrays import MOST_DISCS, Fault, Rows, Solid
+from roomba.world.engine.contact_kernels import gap_at
+from roomba.world.engine.layout import layout_of
+from roomba.world.engine.lidar_kernels import ScanBuffers, buffers_for
+from roomba.world.engine.numbers import numbers_of
+from roomba.world.engine.populate import first_state, starts_of
+from roomba.world.engine.random_kernels import normal_quantiles
+from roomba.world.engine.step_kernels import advance
+from roomba.world.home import Home
+
+_CHUNKS_PER_THREAD = 4
+"""Worlds are shared out in so many parts for each thread, as some take longer than others."""
+_WORTH_A_THREAD = 32
+"""World-steps; fewer of them are done sooner than a thread begins."""
+
+
+class Fleet:
+    """Worlds with their robots; :meth:`step` is the only thing that lets time pass.
+
+    Robots are numbered world by world. What it shows of them, ``robots``, ``poses`` and
+    ``ranges``, is the fleet's own memory, as it is now: copy what is to be kept.
+    """
+
+    def __init__(
+        self,
+        homes: Sequence[Home],
+        config: RobotConfig | None = None,
+        *,
+        robots_per_home: int = 1,
+        seeds: Sequence[int] | None = None,
+        max_speed: float = 0.5,
+        starts: NDArray[np.float64] | None = None,
+        threads: int | None = None,
+    ) -> None:
+        """Make a world of each home, and put its robots in.
+
+        ``seeds`` has one for each world (default 0, 1, ...). ``starts`` is float64 [robots, 3]:
+        x, y, theta, map frame; by default the first robot of a world stands at the station, others
+        at free places found by the seed. ``threads``: at most so many work (default: all cores).
+        Raises HomeError where a body does not fit, ValueError for other numbers that make no sense.
+        """
+        _check_counts(homes, robots_per_home, seeds, threads)
+        self.config = config or RobotConfig()
+        self.homes = tuple(homes)
+        self.threads = threads or os.cpu_count() or 1
+        self.seeds = tuple(seeds) if seeds is not None else tuple(range(len(homes)))
+        distinct = list({id(home): home for home in homes}.values())
+        number_of = {id(home): number for number, home in enumerate(distinct)}
+        self._numbers, self._quantiles = numbers_of(self.config), normal_quantiles()
+        self._state = first_state(
+            layout_of(distinct, self.config),
+            distinct,
+            [number_of[id(home)] for home in homes],
+            self.config,
+            self.seeds,
+            robots_per_home,
+            max_speed,
+        )
+        self._buffers: list[ScanBuffers] = []
+        self._pool: ThreadPoolExecutor | None = None
+        self._place(starts, robots_per_home)
+
+    @property
+    def robots(self) -> Rows:
+        """All numbers of the robots: ROBOT of :mod:`roomba.world.engine.arrays`."""
+        return self._state.solid.robots
+
+    @property
+    def worlds(self) -> Rows:
+        """All numbers of the worlds: WORLD of :mod:`roomba.world.engine.arrays`."""
+        return self._state.worlds
+
+    @property
+    def poses(self) -> NDArray[np.float64]:
+        """True poses, float64 [robots, 3]: x, y (m), theta (rad), map frame; a view."""
+        return self.robots.view(np.float64).reshape(len(self.robots), -1)[:, :3]
+
+    @property
+    def ranges(self) -> NDArray[np.float32]:
+        """The lidars' last scans, float32 [robots, beams], m: see :class:`roomba.world.lidar`."""
+        return self._state.ranges
+
+    @property
+    def bytes_per_robot(self) -> float:
+        """Memory that grows with the robots and their worlds, bytes for each robot."""
+        return sum(part.nbytes for part in self._changing.values()) / len(self.robots)
+
+    def step(self, twists: NDArray[np.float64], dt: float, steps: int = 1) -> None:
+        """Let ``steps`` times ``dt`` s pass while the drives are asked for ``twists``.
+
+        ``twists`` is float64 [robots, 2]: m/s and rad/s. Raises ValueError for twists or a time
+        that are not finite or of another shape, a time not above 0, or no step.
+        """
+        wanted = np.asarray(twists, np.float64)
+        expected = (len(self.robots), 2)
+        if wanted.shape != expected or not np.isfinite(wanted).all():
+            raise ValueError(
+                f"expected finite twists of shape {expected}, got shape {wanted.shape} or numbers "
+                "that are not finite"
+            )
+        if not math.isfinite(dt) or dt <= 0.0 or steps < 1:
+            raise ValueError(f"expected dt > 0 s and 1 step or more, got dt={dt}, steps={steps}")
+        self.robots["wanted_linear"], self.robots["wanted_angular"] = wanted.T
+        self._advance(dt, steps)
+
+    def dirt(self, world: int) -> DirtField:
+        """Return the dirt of a world as it lies now: a view, not a copy."""
+        row = self.worlds[world]
+        cells = self._state.dirt.micrograms[row["dirt_at"] : row["dirt_end"]]
+        return DirtField.of(self.homes[world], cells)
+
+    def things(self, world: int) -> NDArray[np.float64]:
+        """Return where a world's moving things are, float64 [things, 4]: x, y, theta, present."""
+        row = self.worlds[world]
+        things = self._state.solid.things[row["things_at"] : row["things_end"]]
+        return np.stack([things[name] for name in ("x", "y", "theta", "present")], axis=1)
+
+    def discs(self, world: int) -> NDArray[np.float64]:
+        """Return round things that were put into a world, float64 [discs, 3]: x, y, radius, m."""
+        row = self.worlds[world]
+        discs = self._state.solid.discs[row["discs_at"] : row["discs_end"]]
+        return np.stack([discs[name] for name in ("x", "y", "radius")], axis=1)
+
+    def put_disc(self, world: int, x: float, y: float, radius: float) -> None:
+        """Stand a round thing on the floor of a world.
+
+        Raises ValueError where a robot stands, for numbers that make no sense, and for more than
+        MOST_DISCS things.
+        """
+        if not all(map(math.isfinite, (x, y, radius))) or radius <= 0.0:
+            raise ValueError(f"expected a place and a radius above 0 m, got {x}, {y}, {radius}")
+        row = self.worlds[world]
+        for robot_x, robot_y, _ in self.poses[row["robots_at"] : row["robots_end"]].tolist():
+            if math.hypot(x - robot_x, y - robot_y) < radius + self.config.body.radius:
+                raise ValueError(
+                    f"the robot itself stands at ({robot_x:.2f}, {robot_y:.2f}); choose another "
+                    "place"
+                )
+        if row["discs_end"] - row["discs_at"] == MOST_DISCS:
+            raise ValueError(f"expected at most {MOST_DISCS} things; remove some")
+        self._state.solid.discs[row["discs_end"]] = x, y, radius
+        row["discs_end"] += 1
+
+    def remove_discs(self, world: int) -> None:
+        """Take all round things out of a world."""
+        self.worlds["discs_end"][world] = self.worlds["discs_at"][world]
+
+    def gap(self, robot: int) -> float:
+        """Return how far a robot's rim is from the nearest solid thing, m, up to one radius."""
+        radius = self.config.body.radius
+        x, y, _ = self.poses[robot].tolist()
+        number = int(np.searchsorted(self.worlds["robots_at"], robot, "right")) - 1
+        # The compiled step's own function, run as the plain Python that it is.
+        solid = Solid(*(rows.view(np.recarray) for rows in self._state.solid))
+        world = self._state.worlds.view(np.recarray)[number]
+        home = self._state.homes.view(np.recarray)[world.home]
+        return float(gap_at(solid, home, world, robot, radius, x, y, radius))
+
+    def save(self) -> dict[str, NDArray[np.generic]]:
+        """Return a copy of all that can change, by name: restored, all goes on as it would have."""
+        return {name: values.copy() for name, values in self._changing.items()}
+
+    def restore(self, saved: Mapping[str, NDArray[np.generic]]) -> None:
+        """Bring back what :meth:`save` returned; raises ValueError if it is not of such a fleet."""
+        for name, values in self._changing.items():
+            came = saved[name] if name in saved else np.zeros(0)
+            if came.shape != values.shape or came.dtype != values.dtype:
+                raise ValueError(
+                    f"expected {name} to be {values.dtype} {values.shape}, got {came.dtype} "
+                    f"{came.shape}; restore it into a fleet of the same homes"
+                )
+        for name, values in self._changing.items():
+            values[...] = saved[name]
+
+    def digest(self) -> str:
+        """Return a SHA-256 over everything that can change, hexadecimal."""
+        hashed = hashlib.sha256()
+        for name, values in self._changing.items():
+            hashed.update(name.encode())
+            hashed.update(values.tobytes())
+        return hashed.hexdigest()
+
+    def close(self) -> None:
+        """End the threads, if there are any; the fleet may still be used."""
+        if self._pool is not None:
+            self._pool.shutdown()
+            self._pool = None
+
+    def inject(self, robot: int, fault: Fault, value: float) -> None:
+        """Set a fault of a robot; raises ValueError for a value that is not of 0..1."""
+        if not 0.0 <= value <= 1.0:
+            raise ValueError(f"{fault.name.lower()}: expected a value from 0 to 1, got {value}")
+        self.robots[fault.value][robot] = value
+
+    def put(self, robot: int, pose: Pose) -> None:
+        """Put a robot down somewhere else, standing; raises HomeError where it does not fit.
+
+        What it believes about its way stays as it was.
+        """
+        before = self.robots[robot].copy()
+        row = self.robots[robot]
+        row["x"], row["y"], row["theta"] = pose.x, pose.y, pose.theta
+        for name in ("linear", "angular", "hit", "ground_linear", "ground_angular"):
+            row[name] = 0.0
+        if self.gap(robot) < 0.0:
+            self.robots[robot] = before
+            raise HomeError(
+                f"the robot does not fit at ({pose.x:.2f}, {pose.y:.2f}); expected free floor for "
+                f"a body of {self.config.body.diameter} m"
+            )
+
+    @property
+    def _changing(self) -> dict[str, NDArray[np.generic]]:
+        state = self._state
+        return {
+            "worlds": state.worlds,
+            "robots": state.solid.robots,
+            "things": state.solid.things,
+            "discs": state.solid.discs,
+            "dirt": state.dirt.micrograms,
+            "falls": state.dirt.falls,
+            "tracks": state.tracks,
+            "ranges": state.ranges,
+        }
+
+    def _place(self, starts: NDArray[np.float64] | None, robots_per_home: int) -> None:
+        if starts is None:
+            starts = starts_of(self.homes, self.seeds, robots_per_home, self.config.body.radius)
+        if starts.shape != (len(self.robots), 3) or not np.isfinite(starts).all():
+            raise ValueError(
+                f"expected finite starts of shape {(len(self.robots), 3)}, got {starts.shape}"
+            )
+        self.poses[:] = starts
+        for robot, (x, y, _) in enumerate(starts.tolist()):
+            home = self.homes[robot // robots_per_home]
+            if self.gap(robot) < 0.0:
+                raise HomeError(
+                    f"home {home.name}: the robot does not fit at ({x:.2f}, {y:.2f}); expected "
+                    f"free floor for a body of {self.config.body.diameter} m; its station is at "
+                    f"({home.station.x:.2f}, {home.station.y:.2f})"
+                )
+
+    def _advance(self, dt: float, steps: int) -> None:
+        count = len(self.homes)
+        threads = min(self.threads, count, max(1, count * steps // _WORTH_A_THREAD))
+        self._make_buffers(threads)
+        if threads == 1:
+            self._work(0, count, self._buffers[0], dt, steps)
+            return
+        if self._pool is None:
+            self._pool = ThreadPoolExecutor(self.threads)
+        chunks = np.linspace(0, count, threads * _CHUNKS_PER_THREAD + 1).astype(int).tolist()
+        waiting = list(itertools.pairwise(chunks))
+
+        def work(buffers: ScanBuffers) -> None:
+            while waiting:
+                try:
+                    first, last = waiting.pop()
+                except IndexError:
+                    return
+                self._work(first, last, buffers, dt, steps)
+
+        for done in [self._pool.submit(work, self._buffers[i]) for i in range(threads)]:
+            done.result()
+
+    def _work(self, first: int, last: int, buffers: ScanBuffers, dt: float, steps: int) -> None:
+        advance(self._state, first, last, self._numbers, self._quantiles, buffers, dt, steps)
+
+    def _make_buffers(self, threads: int) -> None:
+        while len(self._buffers) < threads:
+            self._buffers.append(buffers_for(self._state.edges, self.ranges.shape[1]))
+
+
+def _check_counts(
+    homes: Sequence[Home], robots_per_home: int, seeds: Sequence[int] | None, threads: int | None
+) -> None:
+    if not homes or robots_per_home < 1:
+        raise ValueError(
+            f"expected a home or more, with a robot or more each, got {len(homes)} homes with "
+            f"{robots_per_home}"
+        )
+    if seeds is not None and (len(seeds) != len(homes) or min(seeds) < 0):
+        raise ValueError(
+            f"expected a seed of 0 or more for each of {len(homes)} worlds, got {list(seeds)[:8]}"
+        )
+    if threads is not None and threads < 1:
+        raise ValueError(f"expected 1 thread or more, got {threads}")

@@ -1,0 +1,116 @@
+"""The lidar alone: exact scans of a home's walls and furniture from any poses."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.config import LidarConfig
+from roomba.grid import GridFrame
+from roomba.world.engine.arrays import HOME, Edges, Rows
+from roomba.world.engine.compilation import entry
+from roomba.world.engine.layout import joined_edges, seen_by_lidar
+from roomba.world.engine.lidar_edges import LidarEdges, lidar_edges
+from roomba.world.engine.lidar_kernels import (
+    ScanBuffers,
+    begin_scan,
+    buffers_for,
+    end_scan,
+    scan_walls,
+)
+from roomba.world.home import Home
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Lidar:
+    """Scans a home in which nothing moves; make it with :meth:`of`. Not for two threads at once."""
+
+    config: LidarConfig
+    frame: GridFrame
+    edges: LidarEdges
+    _home: Rows
+    _arrays: Edges
+    _buffers: ScanBuffers
+
+    @staticmethod
+    def of(home: Home, config: LidarConfig | None = None) -> Lidar:
+        """Return the lidar of a home."""
+        return Lidar.on_grid(seen_by_lidar(home), home.frame, config)
+
+    @staticmethod
+    def on_grid(
+        solid: NDArray[np.bool_],
+        frame: GridFrame,
+        config: LidarConfig | None = None,
+        tile: float | None = None,
+    ) -> Lidar:
+        """Return the lidar of a grid, bool [rows, columns]; ``tile`` as in ``lidar_edges``."""
+        config = config or LidarConfig()
+        edges = lidar_edges(solid, frame.resolution, tile)
+        home = np.zeros(1, HOME)
+        home["tile_columns"] = edges.tile_columns
+        home["tile_size"] = edges.tile_cells * frame.resolution
+        arrays = joined_edges([edges])
+        return Lidar(config, frame, edges, home, arrays, buffers_for(arrays, config.beams))
+
+    def scan(
+        self, poses: NDArray[np.float64], out: NDArray[np.float32] | None = None
+    ) -> NDArray[np.float32]:
+        """Return exact ranges, float32 [poses, beams], m: beam 0 ahead, counter-clockwise.
+
+        ``poses`` is float64 [poses, 3]: x, y (m), theta (rad), map frame. A beam that meets
+        nothing within reach is inf, one that meets something nearer than the least range -inf.
+        ``out``, if given, is filled and returned. Raises ValueError for poses that are not on the
+        grid, or arrays of another shape.
+        """
+        poses = np.ascontiguousarray(poses, np.float64)
+        if poses.ndim != 2 or poses.shape[1] != 3:
+            raise ValueError(f"expected poses of shape [poses, 3], got {poses.shape}")
+        x_min, x_max, y_min, y_max = self.frame.extent
+        x, y = poses[:, 0], poses[:, 1]
+        inside = (x >= x_min) & (x < x_max) & (y >= y_min) & (y < y_max)
+        if not np.all(inside & np.isfinite(poses[:, 2])):
+            wrong = poses[int(np.argmin(inside & np.isfinite(poses[:, 2])))].tolist()
+            raise ValueError(
+                f"expected poses on the grid (x {x_min:g} to {x_max:g}, y {y_min:g} to "
+                f"{y_max:g}), got {wrong}"
+            )
+        shape = (len(poses), self.config.beams)
+        if out is None:
+            out = np.empty(shape, np.float32)
+        elif out.shape != shape or out.dtype != np.float32:
+            raise ValueError(f"expected out to be float32 {shape}, got {out.dtype} {out.shape}")
+        _scan_all(
+            self._buffers,
+            self._arrays,
+            self._home,
+            poses,
+            self.frame.origin_x,
+            self.frame.origin_y,
+            self.config.min_range,
+            self.config.max_range,
+            out,
+        )
+        return out
+
+
+@entry
+def _scan_all(
+    buffers: ScanBuffers,
+    edges: Edges,
+    homes: Rows,
+    poses: NDArray[np.float64],
+    origin_x: float,
+    origin_y: float,
+    min_range: float,
+    max_range: float,
+    ranges: NDArray[np.float32],
+) -> None:
+    for row in range(len(poses)):
+        x = np.float32(poses[row, 0] - origin_x)
+        y = np.float32(poses[row, 1] - origin_y)
+        theta = begin_scan(buffers.rays, buffers.fan, poses[row, 2], max_range)
+        scan_walls(buffers, edges, homes[0], x, y, theta)
+        end_scan(buffers.fan, ranges, row, min_range, max_range)
