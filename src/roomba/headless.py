@@ -105,11 +105,22 @@ class HeadlessRobot:
         )
 
     def _sense(self, seen: Observation) -> Sensed:
-        return Sensed(seen.time, seen.pose, seen.twist.linear, seen.bumper.left, seen.bumper.right)
+        cliff = seen.cliff
+        return Sensed(
+            seen.time,
+            seen.pose,
+            seen.twist.linear,
+            seen.bumper.left,
+            seen.bumper.right,
+            cliff.left or cliff.front_left,
+            cliff.right or cliff.front_right,
+        )
 
     def _control(self, seen: Observation, step: WalkStep) -> Twist:
         wanted = self._position_loop.tick(seen.pose, step.setpoint, self._max_speed)
         self._speed_loop.set_cruise_speed(step.cruise_speed)
         self._speed_loop.set_bumper(seen.bumper.pressed)
+        self._speed_loop.set_cliff(seen.cliff.any)
+        self._speed_loop.set_wheel_drop(seen.wheels.dropped)
         self._speed_loop.command(seen.time, wanted)
         return self._speed_loop.tick(seen.time)[0]

@@ -11,7 +11,6 @@ from geometry_msgs.msg import PoseStamped, Quaternion, TransformStamped
 from geometry_msgs.msg import Twist as TwistMessage
 from nav_msgs.msg import OccupancyGrid, Odometry, Path
 from numpy.typing import NDArray
-from roomba_robot.msg import Bumper as BumperMessage
 from sensor_msgs.msg import Image
 from std_msgs.msg import Header
 
@@ -94,6 +93,25 @@ def transform_message(
     return message
 
 
+def mount_message(
+    frame_id: str,
+    child_frame_id: str,
+    place: tuple[float, float, float],
+    *,
+    is_optical: bool = False,
+) -> TransformStamped:
+    """Return where a part is mounted for good: ``place`` x, y, z, m.
+
+    An optical frame (REP 103) looks along its z, with x to the right and y down.
+    """
+    message = TransformStamped(header=header(0.0, frame_id), child_frame_id=child_frame_id)
+    translation = message.transform.translation
+    translation.x, translation.y, translation.z = place
+    rotation = Quaternion(-0.5, 0.5, -0.5, 0.5) if is_optical else Quaternion(0.0, 0.0, 0.0, 1.0)
+    message.transform.rotation = rotation
+    return message
+
+
 def path_message(now: float, points: NDArray[np.float64], frame_id: str) -> Path:
     """Return a path through ``points``, float64 [n, 2], each pose looking to the next point."""
     message = Path(header=header(now, frame_id))
@@ -146,11 +164,6 @@ def map_of(message: OccupancyGrid) -> OccupancyMap:
     )
     values = np.array(message.data, np.int8).reshape(frame.shape)
     return OccupancyMap(frame, values)
-
-
-def bumper_message(now: float, left: bool, right: bool, frame_id: str) -> BumperMessage:
-    """Return the state of the bumper's halves as a message."""
-    return BumperMessage(header=header(now, frame_id), is_left_pressed=left, is_right_pressed=right)
 
 
 def image_message(now: float, picture: NDArray[np.uint8], frame_id: str) -> Image:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import threading
 import time
 from pathlib import Path
@@ -10,45 +9,34 @@ from pathlib import Path
 import rospy
 from geometry_msgs.msg import Twist as TwistMessage
 from nav_msgs.msg import OccupancyGrid, Odometry
-from roomba_robot.msg import Bumper as BumperMessage
-from roomba_robot.srv import (
-    SpillDirt,
-    SpillDirtRequest,
-    SpillDirtResponse,
-    TurnCamera,
-    TurnCameraRequest,
-    TurnCameraResponse,
-)
 from rosgraph_msgs.msg import Clock
 from std_msgs.msg import Float32
 from tf2_msgs.msg import TFMessage
 
-from roomba.config import SeedParameters
+from roomba.config import RobotConfig, SeedParameters
 from roomba.errors import ConfigError, RoombaError
 from roomba.geometry import Pose, Twist
-from roomba.world.camera import Camera, Scene
 from roomba.world.home import Home
 from roomba.world.layer import load_home
-from roomba.world.simulator import Bumper, Observation, Simulator
+from roomba.world.simulator import Observation, Simulator
+from roomba_ros.camera_topics import CameraTopics
 from roomba_ros.convert import (
-    bumper_message,
-    image_message,
     map_message,
+    mount_message,
     odometry_message,
     transform_message,
     twist_of,
 )
 from roomba_ros.node import frame_id, give_up, leave, register, require_master, told_to_end
 from roomba_ros.parameters import LiveSeedParameters, package_folder, read_robot_config
+from roomba_ros.sensor_topics import SensorTopics
+from roomba_ros.sim_services import SimServices
 
 TICK_NANOSECONDS = 50_000_000
 """Robot time between two messages of the clock: a whole part of every period in the graph."""
 STEPS_PER_TICK = 2
 STEP = TICK_NANOSECONDS / STEPS_PER_TICK / 1e9
 """s of robot time of one step of the world."""
-_DIRT_EVERY = 2
-_BUMPER_EVERY = 4
-"""Ticks between two messages of an unchanged bumper; a change is told at once."""
 _LATEST = 0.5
 """s of wall time; farther behind than this the simulation runs slower than asked for."""
 _FASTEST = 100.0
@@ -57,32 +45,32 @@ _FASTEST = 100.0
 class HomeSimNode:
     """Steps the world and publishes what the robot's drive and sensors say.
 
-    Publishes: ``/clock`` (20 Hz), ``map`` (latched), ``odom`` (20 Hz), ``bumper`` (at each change,
-    and 5 Hz), ``/tf`` (odom -> base_link), ``dirt_raw`` (Float32, g under the body, 10 Hz).
-    Subscribes: ``cmd_vel_out`` (Twist; older than the drive's time-out it stops).
-    Services: ``camera/capture`` (TurnCamera, exactly at the angle), ``sim/spill`` (SpillDirt).
+    Publishes: ``/clock`` (20 Hz), ``map`` (latched), ``odom`` (20 Hz, by the wheel encoders),
+    ``/tf`` (odom -> base_link), ``/tf_static`` (where the sensors are on the body), and what
+    :class:`SensorTopics` and :class:`CameraTopics` tell.
+    Subscribes: ``cmd_vel_out`` (Twist; older than the drive's time-out it stops),
+    ``main_brush_motor``, ``vacuum_motor`` (Float32, duty 0..1, of brush and fan).
+    Services: those of :class:`CameraTopics` and :class:`SimServices`.
     Parameters: ``~home`` (name or path), ``~homes_directory``, ``~speed`` (robot seconds per second
-    of wall time), ``~seed``, ``~clock`` (false for all but one of several robots),
+    of wall time), ``~seed``, ``~clock`` (false for all but one of several robots), ``~sensors``
+    (ideal or noisy; by default what ``robot_config`` says),
     ``robot_max_speed``, ``initial_post_x``, ``initial_post_y``.
     """
 
     def start(self) -> None:
         """Load the home, put the robot in it, connect; raises RoombaError."""
         self._parameters = LiveSeedParameters()
-        self._config = read_robot_config()
+        self._config = _config_with_sensors(read_robot_config())
         self._speed = _speed_parameter()
         self._owns_clock = rospy.get_param("~clock", True)
         if not isinstance(self._owns_clock, bool):
             raise ConfigError(f"parameter ~clock: expected true or false, got {self._owns_clock!r}")
         self._simulator = self._make_simulator()
-        self._camera = Camera(Scene.of(self._simulator.home), self._config.camera)
         self._lock = threading.Lock()
-        self._camera_lock = threading.Lock()
         self._command = Twist()
         self._command_age = float("inf")
         self._clock = time.time_ns() // TICK_NANOSECONDS * TICK_NANOSECONDS
         self._ticks = 0
-        self._told_bumper = Bumper()
         self._odom_frame, self._base_frame = frame_id("odom"), frame_id("base_link")
         self._connect()
 
@@ -109,7 +97,8 @@ class HomeSimNode:
         self._simulator.max_speed = self._parameters.refresh().robot_max_speed
         with self._lock:
             for _ in range(STEPS_PER_TICK):
-                observation = self._simulator.step(self._fresh_command(), STEP)
+                self._simulator.advance(self._fresh_command(), STEP, 1)
+            observation = self._simulator.observe()
             self._clock += TICK_NANOSECONDS
         self._ticks += 1
         self._publish(observation)
@@ -126,17 +115,15 @@ class HomeSimNode:
             self._clock_publisher.publish(rospy.Time(nsecs=self._clock))
         odometry = observation.odometry
         self._odometry.publish(
-            odometry_message(now, odometry, observation.twist, self._odom_frame, self._base_frame)
+            odometry_message(
+                now, odometry, observation.odometry_twist, self._odom_frame, self._base_frame
+            )
         )
         self._transforms.publish(
             [transform_message(now, odometry, self._odom_frame, self._base_frame)]
         )
-        bumper = observation.bumper
-        if bumper != self._told_bumper or self._ticks % _BUMPER_EVERY == 0:
-            self._told_bumper = bumper
-            self._bumper.publish(bumper_message(now, bumper.left, bumper.right, self._base_frame))
-        if self._ticks % _DIRT_EVERY == 0:
-            self._dirt.publish(observation.dirt_under)
+        self._sensors.tell(now, self._ticks, observation)
+        self._camera.set_time(now)
 
     def _now(self) -> float:
         """Return the time for stamps, s: that of the clock, whoever owns it."""
@@ -164,16 +151,32 @@ class HomeSimNode:
         if self._owns_clock:
             self._clock_publisher = rospy.Publisher("/clock", Clock, queue_size=1, tcp_nodelay=True)
         self._odometry = rospy.Publisher("odom", Odometry, queue_size=1, tcp_nodelay=True)
-        self._bumper = rospy.Publisher("bumper", BumperMessage, queue_size=1, tcp_nodelay=True)
         self._transforms = rospy.Publisher("/tf", TFMessage, queue_size=10)
-        self._dirt = rospy.Publisher("dirt_raw", Float32, queue_size=1)
+        self._mounts = rospy.Publisher("/tf_static", TFMessage, queue_size=10, latch=True)
+        self._mounts.publish(self._mounted())
         self._map = rospy.Publisher("map", OccupancyGrid, queue_size=1, latch=True)
         self._map.publish(map_message(self._now(), self._simulator.home.map, "map"))
+        self._sensors = SensorTopics(self._config, self._simulator)
+        self._camera = CameraTopics(self._simulator, self._config.camera, self._lock)
+        self._services = SimServices(self._simulator, self._lock)
         rospy.Subscriber(
             "cmd_vel_out", TwistMessage, self._on_command, queue_size=1, tcp_nodelay=True
         )
-        rospy.Service("camera/capture", TurnCamera, self._on_capture)
-        rospy.Service("sim/spill", SpillDirt, self._on_spill)
+        for topic, motor in (("main_brush_motor", "brush"), ("vacuum_motor", "fan")):
+            rospy.Subscriber(topic, Float32, self._on_power, callback_args=motor, queue_size=1)
+
+    def _mounted(self) -> list:
+        """Return where the sensors are on the body, which never changes."""
+        camera, lidar = self._config.camera, self._config.lidar
+        forward, up = camera.mount_forward, camera.mount_height
+        return [
+            mount_message(self._base_frame, frame_id("laser"), (0.0, 0.0, lidar.mount_height)),
+            mount_message(self._base_frame, frame_id("imu_link"), (0.0, 0.0, 0.0)),
+            mount_message(self._base_frame, frame_id("camera"), (forward, 0.0, up)),
+            mount_message(
+                frame_id("camera"), frame_id("camera_optical"), (0.0, 0.0, 0.0), is_optical=True
+            ),
+        ]
 
     def _on_command(self, message: TwistMessage) -> None:
         twist = twist_of(message)
@@ -182,29 +185,19 @@ class HomeSimNode:
             return
         self._command, self._command_age = twist, 0.0
 
-    def _on_capture(self, request: TurnCameraRequest) -> TurnCameraResponse:
-        angle, most = request.turn_degrees, self._config.camera.max_pan
-        if not abs(angle) <= most:
-            raise rospy.ServiceException(
-                f"expected an angle from {-most:g} to {most:g} degrees, got {angle:g}"
-            )
-        with self._lock:
-            now, pose = self._now(), self._simulator.pose
-        dirt = self._simulator.dirt
-        # Not under the simulation's lock: taking a picture must not hold up time.
-        with self._camera_lock:
-            picture = self._camera.picture(pose, math.radians(angle), dirt.micrograms, dirt.frame)
-            return TurnCameraResponse(image_message(now, picture, frame_id("camera")))
-
-    def _on_spill(self, request: SpillDirtRequest) -> SpillDirtResponse:
+    def _on_power(self, message: Float32, motor: str) -> None:
         try:
             with self._lock:
-                self._simulator.spill(request.x, request.y, request.radius, request.amount)
+                self._simulator.set_power(**{motor: message.data})
         except ValueError as error:
-            return SpillDirtResponse(False, str(error))
-        return SpillDirtResponse(
-            True, f"{request.amount:g} g lie around ({request.x:.2f}, {request.y:.2f})"
-        )
+            rospy.logwarn("power refused: %s", error)
+
+
+def _config_with_sensors(config: RobotConfig) -> RobotConfig:
+    sensors = rospy.get_param("~sensors", "") or config.sensors
+    if sensors not in ("ideal", "noisy"):
+        raise ConfigError(f"parameter ~sensors: expected ideal or noisy, got {sensors!r}")
+    return config.model_copy(update={"sensors": sensors})
 
 
 def _speed_parameter() -> float:

@@ -7,7 +7,7 @@ import threading
 import rospy
 from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
-from roomba_robot.msg import Bumper
+from roomba_robot.msg import Bumper, Cliff, WheelDrop
 from std_msgs.msg import Float32
 
 from roomba.control.speed_loop import Hold, SpeedLoop
@@ -22,7 +22,8 @@ class SpeedPubNode:
     Publishes: ``speed`` (Float32, m/s, 10 Hz), ``cmd_vel_out`` (Twist, to the drive, at once for
     each command, and 10 Hz).
     Subscribes: ``change_speed`` (Float32, cruise speed wanted, m/s), ``cmd_vel`` (Twist),
-    ``odom`` (Odometry), ``bumper`` (Bumper).
+    ``odom`` (Odometry), ``bumper`` (Bumper), ``cliff`` (Cliff), ``wheel_drop`` (WheelDrop): a
+    hazard is obeyed at once.
     Parameters: ``robot_max_speed``; a bad value is refused and set back.
     """
 
@@ -43,6 +44,8 @@ class SpeedPubNode:
         self._speed_publisher = rospy.Publisher("speed", Float32, queue_size=1)
         self._drive = rospy.Publisher("cmd_vel_out", Twist, queue_size=1, tcp_nodelay=True)
         rospy.Subscriber("bumper", Bumper, self._on_bumper, queue_size=1)
+        rospy.Subscriber("cliff", Cliff, self._on_cliff, queue_size=1, tcp_nodelay=True)
+        rospy.Subscriber("wheel_drop", WheelDrop, self._on_wheel_drop, queue_size=1)
         rospy.Subscriber("odom", Odometry, self._on_odometry, queue_size=1)
         rospy.Subscriber("change_speed", Float32, self._on_change_speed, queue_size=1)
         rospy.Subscriber("cmd_vel", Twist, self._on_command, queue_size=1, tcp_nodelay=True)
@@ -65,7 +68,7 @@ class SpeedPubNode:
             twist, hold = self._loop.tick(now)
             changed, self._hold = hold is not self._hold, hold
         self._drive.publish(twist_message(twist))
-        if changed and hold in (Hold.SPEED_ZERO, Hold.BUMPER):
+        if changed and hold not in (Hold.NONE, Hold.NO_COMMAND):
             rospy.loginfo("the drive is held: %s", hold.value)
 
     def _on_command(self, message: Twist) -> None:
@@ -88,6 +91,18 @@ class SpeedPubNode:
     def _on_bumper(self, message: Bumper) -> None:
         with self._lock:
             self._loop.set_bumper(message.is_left_pressed or message.is_right_pressed)
+
+    def _on_cliff(self, message: Cliff) -> None:
+        front = message.is_cliff_front_left or message.is_cliff_front_right
+        seen = front or message.is_cliff_left or message.is_cliff_right
+        with self._lock:
+            self._loop.set_cliff(seen)
+        if seen:
+            self._tell_drive(rospy.get_time())
+
+    def _on_wheel_drop(self, message: WheelDrop) -> None:
+        with self._lock:
+            self._loop.set_wheel_drop(message.is_left_dropped or message.is_right_dropped)
 
     def _on_odometry(self, message: Odometry) -> None:
         self._speed = abs(twist_of(message.twist.twist).linear)

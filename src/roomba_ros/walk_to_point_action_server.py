@@ -16,6 +16,7 @@ from nav_msgs.msg import OccupancyGrid, Odometry, Path
 from nav_msgs.srv import GetPlan, GetPlanRequest, GetPlanResponse
 from roomba_robot.msg import (
     Bumper,
+    Cliff,
     RobotPosition,
     WalkToPointAction,
     WalkToPointFeedback,
@@ -62,7 +63,8 @@ class WalkToPointActionServer:
 
     Publishes: ``change_position`` (RobotPosition) and ``change_speed`` (Float32, m/s) at 20 Hz
     while it walks, ``plan`` (Path, latched), ``walk_to_point/{feedback,result,status}``.
-    Subscribes: ``pose``, ``odom``, ``bumper``, ``map``, ``walk_to_point/{goal,cancel}``.
+    Subscribes: ``pose``, ``odom``, ``bumper``, ``cliff``, ``map``,
+    ``walk_to_point/{goal,cancel}``.
     Services: ``make_plan`` (GetPlan: the path to a point, without walking it).
     Parameters: ``robot_max_speed``, ``min_cordinate``, ``max_cordinate``.
     """
@@ -80,6 +82,7 @@ class WalkToPointActionServer:
         self._pose: Pose | None = None
         self._speed = 0.0
         self._bumper = (False, False)
+        self._cliff = (False, False)
         self._goals: deque[actionlib.ServerGoalHandle] = deque()
         self._cancels: deque[str] = deque()
         self._job: _Job | None = None
@@ -94,6 +97,7 @@ class WalkToPointActionServer:
         rospy.Subscriber("pose", PoseStamped, self._on_pose, queue_size=1, tcp_nodelay=True)
         rospy.Subscriber("odom", Odometry, self._on_odometry, queue_size=1)
         rospy.Subscriber("bumper", Bumper, self._on_bumper, queue_size=1, tcp_nodelay=True)
+        rospy.Subscriber("cliff", Cliff, self._on_cliff, queue_size=1, tcp_nodelay=True)
         rospy.Service("make_plan", GetPlan, self._on_make_plan)
         self._server = actionlib.ActionServer(
             ACTION, WalkToPointAction, self._goals.append, self._on_cancel, auto_start=False
@@ -122,8 +126,7 @@ class WalkToPointActionServer:
     def _sense(self, now: float) -> Sensed | None:
         if self._pose is None or self._planner is None:
             return None
-        left, right = self._bumper
-        return Sensed(now, self._pose, self._speed, left, right)
+        return Sensed(now, self._pose, self._speed, *self._bumper, *self._cliff)
 
     def _serve_when_ready(self, sensed: Sensed | None) -> None:
         ready = sensed is not None or time.monotonic() > self._serves_by
@@ -265,6 +268,12 @@ class WalkToPointActionServer:
 
     def _on_bumper(self, message: Bumper) -> None:
         self._bumper = (message.is_left_pressed, message.is_right_pressed)
+
+    def _on_cliff(self, message: Cliff) -> None:
+        self._cliff = (
+            message.is_cliff_left or message.is_cliff_front_left,
+            message.is_cliff_right or message.is_cliff_front_right,
+        )
 
 
 def _in_map(message: PoseStamped) -> Pose:

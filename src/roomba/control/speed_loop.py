@@ -1,6 +1,7 @@
 """The speed loop: the last word on what the drive is told.
 
-It keeps to the speed limit, stops for stale commands and keeps a pressed bumper from pushing.
+It keeps to the speed limit, stops for stale commands, keeps a pressed bumper from pushing, backs
+away from cliffs and stands when a wheel hangs in the air.
 """
 
 from __future__ import annotations
@@ -19,10 +20,17 @@ class Hold(Enum):
     """Nothing was asked for yet, or the newest command is too old."""
     SPEED_ZERO = "the speed wanted is 0"
     BUMPER = "the bumper is pressed"
+    CLIFF = "there is no floor ahead"
+    """It backs away until there is, whatever was asked for."""
+    WHEEL_DROP = "a wheel hangs in the air"
+
+
+BACKING_SPEED = 0.1
+"""m/s; how fast it backs away from a cliff."""
 
 
 class SpeedLoop:
-    """Holds the newest command, cruise speed and bumper; :meth:`tick` says what the drive gets.
+    """Holds the newest command, cruise speed and hazards; :meth:`tick` says what the drive gets.
 
     Speeds in m/s and rad/s, times in s of the robot's clock.
     """
@@ -36,6 +44,8 @@ class SpeedLoop:
         self._command: Twist | None = None
         self._commanded = 0.0
         self._bumper_pressed = False
+        self._sees_cliff = False
+        self._wheel_hangs = False
 
     @property
     def speed_limit(self) -> float:
@@ -63,6 +73,14 @@ class SpeedLoop:
         """Tell whether the front bumper is pressed."""
         self._bumper_pressed = pressed
 
+    def set_cliff(self, seen: bool) -> None:
+        """Tell whether a cliff sensor sees no floor."""
+        self._sees_cliff = seen
+
+    def set_wheel_drop(self, dropped: bool) -> None:
+        """Tell whether a wheel hangs in the air."""
+        self._wheel_hangs = dropped
+
     def tick(self, now: float) -> tuple[Twist, Hold]:
         """Return the twist for the drive, and why it is less than what was asked for."""
         command = self._fresh_command(now)
@@ -70,6 +88,10 @@ class SpeedLoop:
             return Twist(), Hold.NO_COMMAND
         if self.speed_limit == 0.0:
             return Twist(), Hold.SPEED_ZERO
+        if self._wheel_hangs:
+            return Twist(), Hold.WHEEL_DROP
+        if self._sees_cliff:
+            return Twist(-min(BACKING_SPEED, self.speed_limit), 0.0), Hold.CLIFF
         limited = self._within_limit(command)
         if self._bumper_pressed and limited.linear > 0.0:
             return Twist(0.0, limited.angular), Hold.BUMPER

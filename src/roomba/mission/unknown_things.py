@@ -1,4 +1,4 @@
-"""Things that the map does not show and the bumper found, remembered for a while."""
+"""Things that the map does not show and bumper or cliff sensors found, remembered for a while."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class UnknownThings:
         self._felt: list[tuple[float, Obstacle]] = []
 
     def felt(self, now: float, pose: Pose, left: bool, right: bool) -> None:
-        """Remember what the bumper's halves touch while the body stands at ``pose``."""
+        """Remember what is in the way of the front's halves while the body stands at ``pose``."""
         angles = _BOTH_ANGLES if left and right else _LEFT_ANGLES if left else _RIGHT_ANGLES
         for angle in angles:
             direction = pose.theta + angle

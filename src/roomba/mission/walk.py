@@ -45,6 +45,13 @@ class Sensed:
     speed: float
     bumper_left: bool = False
     bumper_right: bool = False
+    cliff_left: bool = False
+    cliff_right: bool = False
+
+    @property
+    def touches(self) -> tuple[bool, bool]:
+        """Whether something is in the way on the left, on the right: felt, or no floor seen."""
+        return self.bumper_left or self.cliff_left, self.bumper_right or self.cliff_right
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,7 +92,7 @@ class Walk:
         self._started = sensed.now
         self._last_tick = sensed.now
         self._replans = 0
-        self._was_bumped = sensed.bumper_left or sensed.bumper_right
+        self._was_touching = any(sensed.touches)
         self._least_left = math.inf
         self._progressed = sensed.now
 
@@ -122,10 +129,12 @@ class Walk:
     def _notice_trouble(self, sensed: Sensed) -> str:
         """Return why a new plan is needed, or nothing."""
         where = f"near ({sensed.pose.x:.2f}, {sensed.pose.y:.2f})"
-        bumped = sensed.bumper_left or sensed.bumper_right
-        new_bump, self._was_bumped = bumped and not self._was_bumped, bumped
-        if new_bump:
-            self._things.felt(sensed.now, sensed.pose, sensed.bumper_left, sensed.bumper_right)
+        left, right = sensed.touches
+        is_new, self._was_touching = (left or right) and not self._was_touching, left or right
+        if is_new:
+            self._things.felt(sensed.now, sensed.pose, left, right)
+            if sensed.cliff_left or sensed.cliff_right:
+                return f"the floor ends {where}"
             return f"something that the map does not show stands in the way {where}"
         if self._follower.distance_off(sensed.pose) > _OFF_PATH:
             return f"the robot was moved off its path {where}"
