@@ -10,6 +10,7 @@ set -euo pipefail
 
 REPOSITORY=$(cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")" && pwd -P)
 VENV=$REPOSITORY/.venv
+BENCH_VENV=$REPOSITORY/.venv-bench
 CACHE=$REPOSITORY/.cache
 PYTHON=/usr/bin/python3 # the one that ROS is packaged for; a pyenv or conda python has no rospy
 
@@ -124,7 +125,11 @@ distribution() { # prints bookworm, trixie or jammy
 }
 
 # The names are the same in bookworm, trixie and jammy, but for those that the case at the end adds.
-system_packages() { # runtime|dev
+system_packages() { # runtime|dev|bench
+  if [[ $1 == bench ]]; then # beside those of runtime: OpenGL without a screen, for the peers that draw
+    printf '%s\n' libegl1 libgl1 libgl1-mesa-dri
+    return
+  fi
   local -a packages=(
     python3 python3-venv cmake g++ make
     # building: catkin with its hooks, and the definitions and CMake files of the messages that ours contain
@@ -153,7 +158,7 @@ system_packages() { # runtime|dev
   printf '%s\n' "${packages[@]}"
 }
 
-missing_system_packages() { # runtime|dev
+missing_system_packages() { # runtime|dev|bench
   command -v dpkg-query >/dev/null || fail "expected a system with dpkg and apt (Debian or Ubuntu); there is no dpkg-query."
   local -a packages
   mapfile -t packages < <(system_packages "$1")
@@ -162,7 +167,7 @@ missing_system_packages() { # runtime|dev
       sed -n 's/^installed //p' | sort -u)
 }
 
-system_is_current() { # runtime|dev
+system_is_current() { # runtime|dev|bench
   [[ -z $(missing_system_packages "$1") ]]
 }
 
@@ -262,6 +267,72 @@ make_python_environment() { # runtime|dev
   rm "$VENV/.unfinished"
   python_hash runtime >"$VENV/.stamp-runtime"
   [[ $1 != dev ]] || python_hash dev >"$VENV/.stamp-dev"
+}
+
+# ---------------------------------------------------------------- step: the peers of the benchmarks
+
+bench_hash() {
+  (cd "$REPOSITORY" && printf '%s in %s\n' "$(readlink -f "$PYTHON")" "$BENCH_VENV" | hash_of benchmarks/peers.txt)
+}
+
+bench_is_current() {
+  [[ -x $BENCH_VENV/bin/python3 ]] && stamp_is "$BENCH_VENV/.stamp" "$(bench_hash)"
+}
+
+# The peers have an environment of their own, with the versions of everything that they like.
+make_bench_environment() {
+  local name arguments installed=0
+  "$PYTHON" -m venv --clear "$BENCH_VENV"
+  mkdir "$BENCH_VENV/not-installed"
+  while read -r name arguments; do
+    if [[ -z $name || $name == \#* ]]; then
+      continue
+    fi
+    # shellcheck disable=SC2086  # the arguments are several
+    if install_peer "$name" ${arguments:-$name}; then
+      installed=$((installed + 1))
+    fi
+  done <"$REPOSITORY/benchmarks/peers.txt"
+  ((installed > 0)) || fail "none of the peers could be installed; is the network there?"
+  bench_hash >"$BENCH_VENV/.stamp"
+}
+
+# Each peer by itself, so that one that fails does not keep the others out; the benchmarks tell the reason.
+install_peer() { # NAME PIP_ARGUMENT...
+  local name=$1 output
+  shift
+  if output=$(PYTHONNOUSERSITE=1 PIP_USER=no PIP_DISABLE_PIP_VERSION_CHECK=1 "$BENCH_VENV/bin/python3" -m pip install \
+    --no-input --progress-bar off --retries 5 --prefer-binary "$@" 2>&1); then
+    printf '%s: installed\n' "$name"
+  else
+    printf '%s\n' "$output"
+    { sed -n 's/^ERROR: //p' <<<"$output" | grep . || echo "pip failed"; } | tail -n 1 >"$BENCH_VENV/not-installed/$name"
+    printf '%s: not installed\n' "$name"
+    return 1
+  fi
+}
+
+# These are no reason to stop: a peer that cannot draw without them says so in the table.
+install_bench_packages() {
+  local -a missing
+  mapfile -t missing < <(missing_system_packages bench)
+  refresh_package_lists
+  apt_get --yes --no-install-recommends install "${missing[@]}" ||
+    printf 'warning: going on without %s\n' "${missing[*]}"
+}
+
+may_install_packages() {
+  ((EUID == 0)) || { command -v sudo >/dev/null && sudo -n true 2>/dev/null; }
+}
+
+install_bench() {
+  if bench_is_current; then
+    return
+  fi
+  if ! system_is_current bench && may_install_packages; then
+    run_step "Installing OpenGL for the peers that draw" install_bench_packages
+  fi
+  run_step "Installing the peers of the benchmarks into .venv-bench" make_bench_environment
 }
 
 # ---------------------------------------------------------------- all of it

@@ -1,0 +1,139 @@
+"""The simulator as the benchmarks use it: the one place to change when its interface does.
+
+``python -m benchmarks.ours_sim`` makes one robot and does its first step: what a start costs.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from benchmarks.floors import HOMES, Floor, free_poses
+from benchmarks.peers.arena import SPEED, TURNING_SPEED
+from benchmarks.peers.protocol import Work
+from roomba.config import LidarConfig, RobotConfig
+from roomba.geometry import Pose
+from roomba.grid import FREE, OCCUPIED, OccupancyMap
+from roomba.world.fleet import Fleet
+from roomba.world.home import Home
+from roomba.world.layer import load_home
+from roomba.world.lidar import Lidar
+
+DT = 0.05
+"""s; the steps of all simulators here."""
+_STEPS = 20
+"""In one call: the robots are told something new every second."""
+_TWISTS = 61
+"""Different orders that a robot is given, over and over."""
+_TURN_SHARE = 0.35
+_CALLS_PER_CHARGE = 1000
+"""Then all is as it was at first, battery and dirt too: a robot that stands still costs little."""
+_CHECKED_CALLS = 40
+_LEAST_WAY = 0.05
+"""m for each checked call; less is not driving about."""
+
+
+@dataclass(frozen=True)
+class Drive:
+    """A fleet at work: ``robots`` with a home each, lidar at ``scan_rate`` Hz.
+
+    They drive straight on for a call, or turn on the spot for one, at random; so they bump.
+    """
+
+    robots: int = 1
+    scan_rate: float = 10.0
+    threads: int = 1
+
+    def work(self, home: Home) -> Work:
+        """Return the work; units are steps of one robot."""
+        floor = Floor(home.name, home.solid, home.frame)
+        fleet = Fleet(
+            [home] * self.robots,
+            config_of(self.scan_rate),
+            starts=free_poses(floor, self.robots, room=0.3),
+            threads=self.threads,
+        )
+        orders = itertools.cycle(_orders(self.robots))
+        done = float(self.robots * _STEPS)
+        calls = itertools.count()
+        fresh = fleet.save()
+
+        def work() -> float:
+            if next(calls) % _CALLS_PER_CHARGE == 0:
+                fleet.restore(fresh)
+            fleet.step(next(orders), DT, steps=_STEPS)
+            return done
+
+        return Work(work, {"way": _way(fleet, work)})
+
+
+def config_of(scan_rate: float) -> RobotConfig:
+    """Return the shipped robot with its lidar at another rate, Hz."""
+    return RobotConfig(lidar=LidarConfig(rate=scan_rate))
+
+
+def scanning(floor: Floor, poses: NDArray[np.float64]) -> Work:
+    """Return the work of scanning a floor from all poses; units are scans."""
+    lidar = Lidar.on_grid(floor.solid, floor.frame)
+    out = np.empty((len(poses), lidar.config.beams), np.float32)
+
+    def work() -> float:
+        lidar.scan(poses, out)
+        return float(len(poses))
+
+    work()
+    reach = np.float32(lidar.config.max_range)
+    checked = np.where(np.isposinf(out), reach, out)
+    return Work(work, {"mean range": float(np.mean(checked)), "edges": float(lidar.edges.count)})
+
+
+def scans(floor: Floor, poses: NDArray[np.float64]) -> NDArray[np.float32]:
+    """Return ranges, m, float32 [poses, beams]; infinite where there is nothing within reach."""
+    return Lidar.on_grid(floor.solid, floor.frame).scan(poses)
+
+
+def home_of(floor: Floor) -> Home:
+    """Return a home that is nothing but a floor."""
+    values = np.where(floor.solid, OCCUPIED, FREE).astype(np.int8)
+    x, y, theta = free_poses(floor, 1)[0].tolist()
+    return Home(
+        name=floor.name,
+        map=OccupancyMap(floor.frame, values),
+        solid=floor.solid,
+        walls=floor.solid,
+        station=Pose(x, y, theta),
+    )
+
+
+def bytes_per_robot(home: Home) -> float:
+    """Return what one more robot with its own dirt takes, bytes."""
+    return Fleet([home] * 2).bytes_per_robot
+
+
+def _way(fleet: Fleet, work: Callable[[], float]) -> float:
+    """Return how far robots come in one call, m, mean; raises ValueError if that is not far."""
+    way = 0.0
+    for _ in range(_CHECKED_CALLS):
+        before = fleet.poses[:, :2].copy()
+        work()
+        way += float(np.mean(np.hypot(*(fleet.poses[:, :2] - before).T))) / _CHECKED_CALLS
+    if way < _LEAST_WAY:
+        raise ValueError(f"expected robots that drive about, they come {way:.3f} m in a call")
+    return way
+
+
+def _orders(robots: int) -> list[NDArray[np.float64]]:
+    """Return what the robots are told, one array [robots, 2] (m/s, rad/s) per call."""
+    random = np.random.default_rng(0)
+    turns = random.random((_TWISTS, robots)) < _TURN_SHARE
+    ways = random.choice([-1.0, 1.0], (_TWISTS, robots))
+    linear, angular = np.where(turns, 0.0, SPEED), np.where(turns, ways * TURNING_SPEED, 0.0)
+    return list(np.ascontiguousarray(np.stack([linear, angular], axis=2)))
+
+
+if __name__ == "__main__":
+    Fleet([load_home("apartment", HOMES)]).step(np.array([[SPEED, 0.0]]), DT)

@@ -1,0 +1,97 @@
+"""How a peer's process speaks: a line of JSON in, a line of JSON out, on its standard streams.
+
+``{"prepare": {...}}`` is answered by ``{"version": "1.2", "facts": {...}}``, and
+``{"run": seconds}`` by ``{"rate": units per second}``; or either by ``{"error": "why not"}``.
+Only the standard library is used here.
+"""
+
+from __future__ import annotations
+
+import importlib
+import json
+import platform
+import time
+import traceback
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field
+from importlib import metadata
+from typing import Any, TextIO, TypeAlias
+
+Parameters: TypeAlias = Mapping[str, Any]
+
+_LONGEST = 200
+"""Characters of an error."""
+
+
+class LeftOutError(Exception):
+    """A peer is not for this case; the text says why, and is told as it is."""
+
+
+@dataclass(frozen=True)
+class Work:
+    """What is measured: ``batch`` does some and returns how many units (scans, plans) it did.
+
+    ``facts`` are figures that do not depend on time, such as a path's length.
+    """
+
+    batch: Callable[[], float]
+    facts: dict[str, float] = field(default_factory=dict)
+
+
+def rate(batch: Callable[[], float], seconds: float) -> float:
+    """Return units per second over at least ``seconds``; the same clock for us and for peers."""
+    done = 0.0
+    start = time.perf_counter()
+    while True:
+        done += batch()
+        elapsed = time.perf_counter() - start
+        if elapsed >= seconds:
+            return done / elapsed
+
+
+def once(work: Callable[[], object]) -> Callable[[], float]:
+    """Return a batch of one unit."""
+
+    def batch() -> float:
+        work()
+        return 1.0
+
+    return batch
+
+
+def serve(module: str, requests: Iterable[str], answers: TextIO) -> None:
+    """Answer ``requests`` for the peer whose script is ``module``.
+
+    The script offers ``prepare(parameters)``, and ``DISTRIBUTION``: its name for pip, "" for Python
+    itself.
+    """
+    work: Work | None = None
+    for line in requests:
+        request = json.loads(line)
+        try:
+            if "prepare" in request:
+                peer = importlib.import_module(module)
+                work = peer.prepare(request["prepare"])
+                work.batch()  # what is compiled or allocated at first use is no part of the rate
+                answer = {"version": _version(peer.DISTRIBUTION), "facts": work.facts}
+            elif work is None:
+                answer = {"error": "expected 'prepare' before 'run'"}
+            else:
+                answer = {"rate": rate(work.batch, float(request["run"]))}
+        except LeftOutError as error:
+            answer = {"error": str(error)}
+        except Exception as error:
+            # A peer must not take the others down with it, whatever its library raises.
+            traceback.print_exc()
+            answer = {"error": f"{type(error).__name__}: {error}".splitlines()[0][:_LONGEST]}
+        answers.write(json.dumps(answer) + "\n")
+        answers.flush()
+
+
+def _version(distribution: str) -> str:
+    if not distribution:
+        return platform.python_version()
+    try:
+        return metadata.version(distribution)
+    except metadata.PackageNotFoundError:
+        return ""

@@ -1,0 +1,1 @@
+"""ROS programs of the benchmarks: they run inside a graph of their own."""

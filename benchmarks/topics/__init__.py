@@ -1,0 +1,29 @@
+"""The topics of ``./roomba bench``: one module each, whose ``measure(bench)`` returns its rows.
+
+To add a topic, write its module and name it here.
+"""
+
+from __future__ import annotations
+
+import importlib
+from types import MappingProxyType
+
+from benchmarks.bench import Bench
+from benchmarks.record import Record
+
+TOPICS: MappingProxyType[str, str] = MappingProxyType(
+    {
+        "sim": "whole steps of one robot and of fleets: move, bump, vacuum, lidar",
+        "lidar": "exact scans",
+        "camera": "pictures with depth",
+        "plan": "shortest paths",
+        "ros": "round trips, and the speed of the whole graph",
+    }
+)
+"""What each topic is about, by name, in the order in which ``./roomba bench`` runs them all."""
+
+
+def measure(topic: str, bench: Bench) -> list[Record]:
+    """Return the rows of a topic; its module is loaded only now."""
+    records: list[Record] = importlib.import_module(f"benchmarks.topics.{topic}").measure(bench)
+    return records

@@ -1,0 +1,146 @@
+"""How long it takes to find the way, and how long the way is."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable
+
+import numpy as np
+
+from benchmarks.bench import Bench
+from benchmarks.contestants import Contestant, Local, Peer
+from benchmarks.floors import (
+    HOMES,
+    Cell,
+    Mask,
+    apartment,
+    building,
+    far_corners,
+    free_poses,
+    room_for,
+)
+from benchmarks.peers.protocol import Work, once
+from benchmarks.record import Better, Record, gain
+from benchmarks.rounds import Outcome, milliseconds
+from benchmarks.shortest import ShortestWays
+from roomba.config import RobotConfig
+from roomba.planning.costmap import FitMap, Point
+from roomba.planning.grid_path import shortest_grid_path
+from roomba.planning.path import PathPlanner
+from roomba.world.layer import load_home
+
+_TOPIC = "plan"
+_BODY_ROOM = 0.20
+"""m; the body's radius and a little."""
+_MOST_EXCESS = 1.0
+"""%."""
+_OPTIMAL = 1e-6
+"""Relative; two optimal lengths differ by the order in which their steps were added."""
+
+
+def measure(bench: Bench) -> list[Record]:
+    """Return all rows of the topic."""
+    records = []
+    for name, fits, aim in (
+        ("apartment, 204 x 204 cells, corner to corner", room_for(apartment(), _BODY_ROOM), 0.5),
+        ("building, 2000 x 2000 cells, corner to corner", ~building(2000), 60.0),
+    ):
+        bench.say(name)
+        records += _grid_rows(bench, name, fits, aim)
+    bench.say("any-angle")
+    return records + _any_angle_rows(bench)
+
+
+def _grid_rows(bench: Bench, case: str, fits: Mask, aim: float) -> list[Record]:
+    """Return time and length of 8-connected paths."""
+    start, goal = far_corners(fits)
+    case_of_peers = {"fits": bench.save("fits", fits), "start": start, "goal": goal}
+    contestants: list[Contestant] = [
+        Local("ours", lambda: _grid_work(fits, start, goal)),
+        Peer("pyastar2d", "pyastar2d", case_of_peers),
+        Peer("scikit-image", "scikit_image", case_of_peers),
+        Peer("scipy", "scipy_graph", case_of_peers),
+        Peer("networkx", "networkx", case_of_peers),
+        Peer("scikit-fmm", "scikit_fmm", case_of_peers),
+    ]
+    ours, *peers = bench.compete(contestants)
+    for peer in peers:
+        peer.name += _rules(peer)
+    time = Record(
+        _TOPIC,
+        case,
+        "shortest 8-connected path",
+        None if ours.rate is None else milliseconds(ours.rate),
+        "ms",
+        Better.LOWER,
+        aim,
+        tuple(peer.figure(milliseconds) for peer in peers),
+        ours.error,
+    )
+    optimal = peers[2].facts.get("length")
+    length = Record(
+        _TOPIC,
+        case,
+        "path length",
+        ours.facts.get("length"),
+        "cells",
+        Better.LOWER,
+        None if optimal is None else optimal * (1.0 + _OPTIMAL),
+        tuple(peer.fact("length") for peer in peers),
+        ours.error,
+    )
+    return [time, gain(time, "pyastar2d", 2.0), length]
+
+
+def _rules(outcome: Outcome) -> str:
+    """Return what a peer does other than ours."""
+    if outcome.name == "scikit-fmm":
+        return " (any-angle field, no path)"
+    if outcome.name == "scipy":
+        return " (whole field)"
+    cut = outcome.facts.get("corners cut", 0.0)
+    return f" (cuts {cut:.0f} corners)" if cut else ""
+
+
+def _grid_work(fits: Mask, start: Cell, goal: Cell) -> Work:
+    path = shortest_grid_path(fits, start, goal)
+    if path is None:
+        raise ValueError("expected a way from corner to corner")
+    return Work(once(lambda: shortest_grid_path(fits, start, goal)), {"length": path.length})
+
+
+def _any_angle_rows(bench: Bench) -> list[Record]:
+    """Return time of smooth plans, and how much longer than the shortest they are."""
+    home = load_home("apartment", HOMES)
+    config = RobotConfig()
+    body, walk = config.body, config.walk
+    room = body.radius + walk.clearance
+    points = free_poses(apartment(), 12 if bench.is_quick else 40, room + 0.1)[:, :2].tolist()
+    places = [(x, y) for x, y in points]
+    pairs = list(zip(places[::2], places[1::2], strict=True))
+    planner = PathPlanner(home.map, body.radius, walk.clearance, walk.tight_clearance)
+    case = f"apartment, any-angle, {len(pairs)} pairs of points"
+    [ours] = bench.compete([Local("ours", lambda: Work(_plans(planner, pairs)))])
+    time = None if ours.rate is None else milliseconds(ours.rate)
+    records = [Record(_TOPIC, case, "plan, mean", time, "ms", Better.LOWER, error=ours.error)]
+    cells = FitMap.build(home.map, body.radius, walk.clearance).fits
+    for over, ways in (
+        ("over the same cells", ShortestWays.over_cells(cells, home.frame)),
+        ("of a disc, whatever the cells", ShortestWays.of_disc(home.map.solid, home.frame, room)),
+    ):
+        excess = [
+            100.0 * (planner.plan(start, goal).length / ways.length(start, goal) - 1.0)
+            for start, goal in pairs
+        ]
+        for which, value, aim in (
+            ("worst pair", max(excess), _MOST_EXCESS),
+            ("mean", float(np.mean(excess)), None),
+        ):
+            figure = f"longer than the shortest {over} (visibility graph), {which}"
+            records.append(Record(_TOPIC, case, figure, value, "%", Better.LOWER, aim))
+    return records
+
+
+def _plans(planner: PathPlanner, pairs: list[tuple[Point, Point]]) -> Callable[[], float]:
+    forever = itertools.cycle(pairs)
+    return once(lambda: planner.plan(*next(forever)))
