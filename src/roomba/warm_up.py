@@ -29,8 +29,10 @@ def main() -> None:
     )
     planner.plan((1.0, 1.0), (2.0, 2.0), [(1.5, 1.5, 0.1)])
     shortest_grid_path(np.ones((4, 4), np.bool_), (0, 0), (3, 3))
-    camera = Camera(Scene.of(home), config.camera)
-    camera.picture(home.station, 0.0, simulator.dirt.micrograms, simulator.dirt.frame)
+    scene = Scene.of(home)
+    for supersampling in (1, 2):
+        camera = Camera(scene, config.camera, supersampling)
+        camera.render(home.station, 0.0, simulator.dirt.micrograms, simulator.dirt.frame)
 
 
 def _small_room() -> Home:

@@ -6,7 +6,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from roomba.world.camera_compilation import KERNEL
+from roomba.world.camera_compilation import INNER, KERNEL
 
 BLOCK = 16
 """Columns that are turned into rows together: what fits the nearest cache."""
@@ -28,7 +28,7 @@ def develop(
                 picture[row, column, 2] = tone[(colour >> 16) & 255]
 
 
-@njit(**KERNEL)
+@njit(**INNER)
 def shrink(colours: NDArray[np.uint32], halved: NDArray[np.uint32]) -> None:
     """Average two painted columns [2, 2 n] by twos into one, [n]."""
     for row in range(halved.shape[0]):
@@ -40,13 +40,3 @@ def shrink(colours: NDArray[np.uint32], halved: NDArray[np.uint32]) -> None:
         red_blue = (one & RED_BLUE) + (two & RED_BLUE) + (three & RED_BLUE) + (four & RED_BLUE)
         green = (one & GREEN) + (two & GREEN) + (three & GREEN) + (four & GREEN)
         halved[row] = ((red_blue >> TWO) & RED_BLUE) | ((green >> TWO) & GREEN)
-
-
-@njit(**KERNEL)
-def turn(columns: NDArray[np.float32], picture: NDArray[np.float32]) -> None:
-    """Copy [width, height] into [height, width] by blocks that stay in the cache."""
-    height, width = picture.shape
-    for low in range(0, width, BLOCK):
-        for row in range(height):
-            for column in range(low, min(low + BLOCK, width)):
-                picture[row, column] = columns[column, row]

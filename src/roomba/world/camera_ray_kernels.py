@@ -8,14 +8,14 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from roomba.world.camera_compilation import KERNEL
+from roomba.world.camera_compilation import INLINE, INNER
 from roomba.world.scene_arrays import ViewTables, Walls
 
 NEAR = 0.004
 """m; what is nearer than this to the lens is not seen."""
 
 
-@njit(**KERNEL)
+@njit(**INLINE)
 def cast_wall(
     walls: Walls, x: float, y: float, dx: float, dy: float
 ) -> tuple[float, int, int, int]:
@@ -70,7 +70,32 @@ def cast_wall(
                 break
 
 
-@njit(**KERNEL)
+@njit(**INNER)
+def cast_walls(
+    walls: Walls,
+    view: ViewTables,
+    x: float,
+    y: float,
+    cosine: float,
+    sine: float,
+    hits: NDArray[np.float64],
+) -> float:
+    """Find the wall in every column; returns the depth of the farthest, m.
+
+    ``hits`` [columns, 3] gets depth, axis crossed and room.
+    """
+    farthest = 0.0
+    for c in range(view.columns):
+        k = (view.middle - c - 0.5) / view.focal
+        t, axis, row, column = cast_wall(walls, x, y, cosine - k * sine, sine + k * cosine)
+        hits[c, 0] = max(t, NEAR)
+        hits[c, 1] = axis
+        hits[c, 2] = walls.rooms[row, column]
+        farthest = max(farthest, t)
+    return farthest
+
+
+@njit(**INNER)
 def find_boxes(
     shapes: NDArray[np.float32],
     view: ViewTables,
@@ -86,12 +111,14 @@ def find_boxes(
     ``seen`` [boxes, 4] gets distance, index, first and last column.
     """
     count = 0
-    half = 0.5 * view.columns
     for b in range(shapes.shape[0]):
         box = shapes[b]
+        if not box[4] > 0.0:
+            continue
         ahead = (box[0] - x) * cosine + (box[1] - y) * sine
         aside = (box[1] - y) * cosine - (box[0] - x) * sine
-        size = math.hypot(box[4], box[5])
+        width = box[5] if box[5] > 0.0 else box[4]
+        size = math.hypot(box[4], width)
         if ahead < -size or ahead - size > farthest:
             continue
         first = float(view.columns)
@@ -99,7 +126,7 @@ def find_boxes(
         nearest = math.inf
         for corner in range(4):
             along = box[4] if corner & 1 else -box[4]
-            across = box[5] if corner & 2 else -box[5]
+            across = width if corner & 2 else -width
             corner_x = box[0] + along * box[2] - across * box[3] - x
             corner_y = box[1] + along * box[3] + across * box[2] - y
             depth = corner_x * cosine + corner_y * sine
@@ -110,7 +137,7 @@ def find_boxes(
                 first = 0.0 if left > 0.0 or abs(aside) < size else first
                 last = view.columns - 1.0 if left < 0.0 or abs(aside) < size else last
                 continue
-            column = half - 0.5 - view.focal * left / depth
+            column = view.middle - 0.5 - view.focal * left / depth
             first = min(first, column)
             last = max(last, column)
         first = max(math.floor(first), 0.0)

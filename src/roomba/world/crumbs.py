@@ -18,6 +18,8 @@ CRUMB_COLOURS = (
     (120, 118, 116),
 )
 """Soil, crust, dust, grit, crumb, toast, bread, lint."""
+DUST = 0x7A848A
+"""Dust, and what many crumbs look like from afar, packed as 0x00BBGGRR."""
 
 
 @cache

@@ -12,13 +12,29 @@ from PIL import Image, ImageDraw
 
 from roomba.distance import distance_to_nearest
 from roomba.grid import UNKNOWN
-from roomba.world.crumbs import CRUMB_COLOURS, crumbs
-from roomba.world.home import Box, Home, Rectangle
+from roomba.world.crumbs import CRUMB_COLOURS, DUST, crumbs
+from roomba.world.home import Box, Home, MovingThing, Rectangle
 from roomba.world.materials import MATERIALS, Material
-from roomba.world.scene_arrays import Boxes, Floor, Lighting, SceneArrays, Surfaces, Walls
+from roomba.world.scene_arrays import (
+    GREYS,
+    SHADES,
+    Boxes,
+    Floor,
+    Lighting,
+    SceneArrays,
+    Surfaces,
+    Walls,
+)
 from roomba.world.scene_doors import door_boxes
 from roomba.world.scene_light import WINDOW_KIND, lit
-from roomba.world.texture_atlas import atlas, palette
+from roomba.world.scene_moving import (
+    DISC_MATERIAL,
+    MOST_DISCS,
+    MovingBoxes,
+    box_shapes,
+    no_discs,
+)
+from roomba.world.texture_atlas import atlas, in_every_light, palette
 
 FLOOR_TEXTURES = {"wood": "planks", "tile": "tiles", "fabric": "pile"}
 FACE_TEXTURES = {"tile": "wall_tiles", "fabric": "weave"}
@@ -77,6 +93,11 @@ class Scene:
     """A compiled home; make it with :meth:`of`."""
 
     arrays: SceneArrays
+    moving: MovingBoxes
+
+    def boxes(self) -> Boxes:
+        """Return boxes of which some can be placed, as they stand at first."""
+        return self.arrays.boxes._replace(shapes=self.arrays.boxes.shapes.copy())
 
     @staticmethod
     def of(home: Home) -> Scene:
@@ -88,26 +109,34 @@ class Scene:
         walls = _walls(home)
         rooms = _rooms(home)
         light = lit(home, walls, rooms)
-        boxes = [
+        fixed = [
             *_furniture_boxes(home),
-            *((box, False) for box in door_boxes(home.doors, walls, home)),
+            *((box, False) for box in door_boxes(home, walls)),
         ]
+        moving = MovingBoxes.of(home.moving, len(fixed))
+        boxes = [*fixed, *((box, False) for thing in home.moving for box in thing.boxes)]
         numbers = [
             looks.number("view", (255, 255, 255), True) if is_pane else looks.face(box.material)
             for box, is_pane in boxes
         ]
+        numbers += [looks.face(DISC_MATERIAL)] * MOST_DISCS
+        shapes = np.concatenate([box_shapes(box for box, _ in boxes), no_discs()])
+        moving.place_things(shapes, _first_poses(home.moving))
         wall_surfaces = _wall_surfaces(home, looks)
         skirting, ceiling = looks.face("skirting"), looks.face("ceiling")
         names = tuple(dict.fromkeys(looks.textures))
         drawn = atlas(names)
         pattern = crumbs()
         levels = pattern.astype(np.uint8)
+        palettes = np.stack(looks.palettes)
+        crumb_colours = _crumb_colours()
         cover = np.searchsorted(np.sort(levels, axis=None), np.arange(256), "right") / levels.size
         return Scene(
             SceneArrays(
                 Surfaces(
                     texture=np.array([names.index(n) for n in looks.textures], np.int32),
-                    palettes=np.stack(looks.palettes),
+                    palettes=palettes,
+                    shaded=in_every_light(palettes[:, 2 :: 256 // GREYS], SHADES).ravel(),
                     glows=np.array(looks.glows, np.bool_),
                     texels=drawn.texels,
                     offsets=drawn.offsets,
@@ -132,13 +161,17 @@ class Scene:
                     frame.origin_y,
                     floor_cell,
                     surfaces=floor,
-                    crumbs=pattern,
-                    fewest=levels.reshape(128, 8, 128, 8).min(axis=(1, 3)),
-                    colours=_crumb_colours(),
+                    crumbs=pattern.ravel(),
+                    fewest=levels.reshape(128, 8, 128, 8).min(axis=(1, 3)).ravel(),
+                    colours=crumb_colours,
                     cover=cover.astype(np.float32),
+                    shaded=in_every_light(
+                        np.append(crumb_colours, np.uint32(DUST))[:, None], SHADES
+                    ).ravel(),
                 ),
-                Boxes(_box_array(box for box, _ in boxes), np.array(numbers, np.int32)),
-            )
+                Boxes(shapes, np.array(numbers, np.int32)),
+            ),
+            moving,
         )
 
 
@@ -239,21 +272,11 @@ def _furniture_boxes(home: Home) -> list[tuple[Box, bool]]:
     ]
 
 
-def _box_array(boxes: Iterable[Box]) -> NDArray[np.float32]:
+def _first_poses(things: Iterable[MovingThing]) -> NDArray[np.float64]:
     rows = [
-        (
-            box.x,
-            box.y,
-            math.cos(box.theta),
-            math.sin(box.theta),
-            0.5 * box.length,
-            0.5 * box.width,
-            box.bottom,
-            box.top,
-        )
-        for box in boxes
+        (thing.pose.x, thing.pose.y, thing.pose.theta, float(thing.is_present)) for thing in things
     ]
-    return np.array(rows, np.float32).reshape(-1, 8)
+    return np.array(rows, np.float64).reshape(-1, 4)
 
 
 def _crumb_colours() -> NDArray[np.uint32]:

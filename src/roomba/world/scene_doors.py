@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
 
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.world.home import Box, Door, Home
+from roomba.world.home import Box, Home, MovingKind
 
 FRAME_WIDTH = 0.06
 FRAME_PROUD = 0.015
@@ -16,10 +15,14 @@ FRAME_PROUD = 0.015
 DOOR_HEIGHT = 2.03
 
 
-def door_boxes(doors: Iterable[Door], walls: NDArray[np.bool_], home: Home) -> list[Box]:
-    """Return the frame, the wall above, and the leaf if it is shut, of every door."""
+def door_boxes(home: Home, walls: NDArray[np.bool_]) -> list[Box]:
+    """Return the frame, the wall above, and the leaf if it is shut, of every door.
+
+    A leaf that is among the things that move is left to them.
+    """
+    moving = {thing.name for thing in home.moving if thing.kind is MovingKind.DOOR}
     boxes: list[Box] = []
-    for door in doors:
+    for door in home.doors:
         opening = door.opening
         x, y = 0.5 * (opening.x_min + opening.x_max), 0.5 * (opening.y_min + opening.y_max)
         size_x, size_y = opening.x_max - opening.x_min, opening.y_max - opening.y_min
@@ -39,7 +42,7 @@ def door_boxes(doors: Iterable[Door], walls: NDArray[np.bool_], home: Home) -> l
         wide = length + 2.0 * FRAME_WIDTH
         boxes.append(Box(x, y, theta, wide, deep, top, top + FRAME_WIDTH, "door_frame"))
         boxes.append(Box(x, y, theta, length, thick, top + FRAME_WIDTH, home.wall_height, "wall"))
-        if not door.is_open:
+        if not door.is_open and door.name not in moving:
             boxes.append(Box(x, y, theta, length, 0.04, 0.006, top, "door"))
             handle = 0.5 * length - 0.1
             at = (x + handle * cosine, y + handle * sine)

@@ -34,6 +34,25 @@ def palette(rgb: tuple[int, int, int], name: str) -> NDArray[np.uint32]:
     return packed
 
 
+def tone() -> NDArray[np.uint8]:
+    """Return a gentle film curve [256]: brighter middles, more contrast at the ends."""
+    light = np.arange(256) / 255.0
+    lifted = light**0.76
+    curve = lifted + 0.10 * lifted * (1.0 - lifted) * (2.0 * lifted - 1.0) * 2.0
+    return np.asarray(np.clip(curve * 255.0 + 0.5, 0.0, 255.0), np.uint8)
+
+
+def in_every_light(colours: NDArray[np.uint32], shades: int) -> NDArray[np.uint32]:
+    """Return colours [n, m] in ``shades`` lights, dark to full, toned, as [n, shades, m]."""
+    lights = np.linspace(0.0, 1.0, shades, dtype=np.float32)[None, :, None]
+    curve = tone().astype(np.uint32)
+    toned = np.zeros((colours.shape[0], shades, colours.shape[1]), np.uint32)
+    for shift in (0, 8, 16):
+        channel = ((colours >> np.uint32(shift)) & np.uint32(255)).astype(np.float32)
+        toned |= curve[(channel[:, None, :] * lights).astype(np.uint8)] << np.uint32(shift)
+    return toned
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Atlas:
     """Patterns with all their smaller versions in one array.

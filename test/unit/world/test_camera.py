@@ -173,6 +173,19 @@ def test_shape_and_type(supersampling: int) -> None:
     assert (picture.depth > 0.0).all()
 
 
+@pytest.mark.parametrize("supersampling", [1, 2])
+@pytest.mark.parametrize("width", [7, 100])
+def test_any_width_has_a_picture(width: int, supersampling: int) -> None:
+    home = home_with(Box(1.6, 0.0, 0.0, 0.4, 0.6, 0.0, 1.0, "red"))
+    config = CONFIG.model_copy(update={"width": width})
+    picture = Camera(Scene.of(home), config, supersampling).render(Pose(), 0.0, CLEAN, DIRT_FRAME)
+    assert picture.colour.shape == (120, width, 3)
+    assert picture.colour.flags.c_contiguous
+    assert picture.depth[59, width // 2] == pytest.approx(1.4 - CONFIG.mount_forward, abs=1e-4)
+    assert redness(picture.colour)[59, width // 2]
+    assert not redness(picture.colour)[59, 0]
+
+
 @pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf])
 @pytest.mark.parametrize("slot", ["x", "y", "theta", "pan"])
 def test_what_is_not_finite_is_refused(slot: str, bad: float) -> None:

@@ -1,0 +1,344 @@
+"""Compiled pictures of four samples per pixel, with textures smoothed near and far.
+
+Columns of samples are painted one after the other, and two of them make a column of the picture.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from roomba.world.camera_colour_kernels import blended, level_of, scaled, smooth_texel
+from roomba.world.camera_compilation import INLINE, KERNEL
+from roomba.world.camera_dirt_kernels import (
+    CRUMB_BLOCK,
+    CRUMB_MASK,
+    CRUMB_TEXELS,
+    feel_knots,
+    floor_surface,
+)
+from roomba.world.camera_film_kernels import shrink
+from roomba.world.camera_ray_kernels import cast_walls, find_boxes
+from roomba.world.camera_span_kernels import column_spans, row_of
+from roomba.world.crumbs import DUST
+from roomba.world.scene_arrays import (
+    PLANE,
+    TURNED_FACE,
+    SceneArrays,
+    Surfaces,
+    ViewTables,
+    Workspace,
+)
+
+PAIR = 2
+"""Finely sampled pictures need each edge twice, but not each texel: rows are coloured in pairs."""
+GROUP = 4
+"""Columns that share one feeling of the floor's light and dirt."""
+
+
+@njit(**INLINE)
+def paint_face(
+    colours: NDArray[np.uint32],
+    depths: NDArray[np.float32],
+    surfaces: Surfaces,
+    place: NDArray[np.int64],
+    value: NDArray[np.float64],
+) -> None:
+    """Paint a span of an upright face where nothing nearer is painted."""
+    texels, palettes = surfaces.texels, surfaces.palettes
+    first, last, surface, upright = place[0], place[1], place[2], place[3] == TURNED_FACE
+    u, v, step, footprint = value[1], value[2], value[3], value[4]
+    texture = surfaces.texture[surface]
+    scale = float(surfaces.scale[texture])
+    level = level_of(footprint * scale, surfaces.bits[texture])
+    bits = surfaces.bits[texture] - level
+    start = surfaces.offsets[texture, level]
+    scale /= 1 << level
+    light = value[5] * 256.0
+    light_step = value[6] * 256.0
+    near = np.float32(value[0])
+    if footprint * scale < 0.75:
+        colour = 0
+        for row in range(first, last):
+            if near < depths[row]:
+                depths[row] = near
+                # Samples are so much smaller than texels that two may share a colour.
+                if not row & 1 or colour == 0:
+                    at = (v + step * (row - first)) * scale
+                    if upright:
+                        grey = smooth_texel(texels, start, bits, at, u * scale)
+                    else:
+                        grey = smooth_texel(texels, start, bits, u * scale, at)
+                    colour = scaled(
+                        palettes[surface, grey], int(light + light_step * (row - first))
+                    )
+                colours[row] = colour
+            else:
+                colour = 0
+        return
+    mask = (1 << bits) - 1
+    fixed = math.floor(u * scale) & mask
+    across = bits
+    if upright:
+        start += fixed << bits
+        across = 0
+    else:
+        start += fixed
+    # Fixed point with 16 bits behind the point: wraps around the texture by itself.
+    along = np.int64(math.floor(v * scale * 65536.0))
+    advance = np.int64(math.floor(step * scale * 65536.0))
+    for row in range(first, last):
+        if near < depths[row]:
+            depths[row] = near
+            grey = texels[start + (((along >> 16) & mask) << across)]
+            shade_now = int(light + light_step * (row - first))
+            colours[row] = scaled(palettes[surface, grey], shade_now)
+        along += advance
+
+
+@njit(**INLINE)
+def paint_plane(
+    colours: NDArray[np.uint32],
+    depths: NDArray[np.float32],
+    surfaces: Surfaces,
+    view: ViewTables,
+    place: NDArray[np.int64],
+    value: NDArray[np.float64],
+) -> None:
+    """Paint a span of a level plane where nothing nearer is painted."""
+    texels, palettes, offsets = surfaces.texels, surfaces.palettes, surfaces.offsets
+    first, last, surface = place[0], place[1], place[2]
+    gap, u, v, u_step, v_step = value[0], value[1], value[2], value[3], value[4]
+    reach, focal = view.reach, view.focal
+    texture = surfaces.texture[surface]
+    all_scale = float(surfaces.scale[texture])
+    all_bits = surfaces.bits[texture]
+    light = value[5] * 256.0
+    light_step = value[6] * 256.0
+    row = first
+    while row < last:
+        until = min(row + 16, last)
+        t = gap * reach[(row + until) // 2]
+        along = t * t / (gap * focal)
+        scale = all_scale
+        level = level_of(math.sqrt(along * t / focal) * scale, all_bits)
+        bits = all_bits - level
+        start = offsets[texture, level]
+        scale /= 1 << level
+        mask = (1 << bits) - 1
+        for at in range(row, until):
+            t = gap * reach[at]
+            if t < depths[at]:
+                depths[at] = t
+                column = math.floor((u + t * u_step) * scale) & mask
+                line = math.floor((v + t * v_step) * scale) & mask
+                grey = texels[start + (line << bits) + column]
+                shade = int(light + light_step * (at - first))
+                colours[at] = scaled(palettes[surface, grey], shade)
+        row = until
+
+
+@njit(**INLINE)
+def far_grey(
+    texels: NDArray[np.uint8],
+    start: int,
+    bits: int,
+    taps: int,
+    below: float,
+    rows: int,
+    rise: float,
+    x: float,
+    y: float,
+    dx: float,
+    dy: float,
+) -> int:
+    """Return a texture's grey averaged over ``taps`` places along the ray within some rows.
+
+    ``below`` is how many rows under the horizon their upper edge is, ``rise`` what depth times
+    that is. Places in texels.
+    """
+    mask = (1 << bits) - 1
+    total = 0
+    share = 1.0 / taps
+    step = rows * share
+    below += 0.5 * step
+    for _ in range(taps):
+        t = rise / below
+        below += step
+        column = math.floor(x + t * dx) & mask
+        line = math.floor(y + t * dy) & mask
+        total += texels[start + (line << bits) + column]
+    return int(total * share)
+
+
+@njit(**INLINE)
+def with_crumb(
+    fewest: NDArray[np.uint8],
+    crumbs: NDArray[np.uint16],
+    crumb_colours: NDArray[np.uint32],
+    colour: int,
+    level: float,
+    share: int,
+    x: float,
+    y: float,
+) -> int:
+    """Return a colour with the crumb that lies at a place, m, on it, if one does."""
+    line = math.floor(y * CRUMB_TEXELS) & CRUMB_MASK
+    column = math.floor(x * CRUMB_TEXELS) & CRUMB_MASK
+    # Most floor is free of crumbs: a look at a small table spares one at a large one.
+    if fewest[((line >> CRUMB_BLOCK) << 7) + (column >> CRUMB_BLOCK)] > level:
+        return colour
+    crumb = int(crumbs[(line << 10) + column])
+    if (crumb & 255) > level:
+        return colour
+    return int(blended(colour, crumb_colours[crumb >> 8], share))
+
+
+@njit(**INLINE)
+def paint_floor(
+    colours: NDArray[np.uint32],
+    depths: NDArray[np.float32],
+    first_row: int,
+    scene: SceneArrays,
+    view: ViewTables,
+    x: float,
+    y: float,
+    dx: float,
+    dy: float,
+    knots: NDArray[np.float32],
+) -> None:
+    """Paint the floor from ``first_row`` down, where nothing nearer stands."""
+    floor, surfaces = scene.floor, scene.surfaces
+    knot_rows, reach, octaves = view.knots, view.reach, view.octave
+    row_taps, row_crispness = view.taps, view.crispness
+    textures, palettes, texels = surfaces.texture, surfaces.palettes, surfaces.texels
+    scales, all_bits, offsets = surfaces.scale, surfaces.bits, surfaces.offsets
+    fewest, crumbs, crumb_colours = floor.fewest, floor.crumbs, floor.colours
+    texture_octaves, looks = surfaces.octave, floor.surfaces
+    eye = view.eye
+    focal = view.focal
+    half = 0.5 * view.rows
+    per_cell = 1.0 / floor.cell
+    cell_x = (x - floor.origin_x) * per_cell
+    cell_y = (y - floor.origin_y) * per_cell
+    for k in range(knot_rows.shape[0] - 1):
+        top = knot_rows[k]
+        until = knot_rows[k + 1]
+        if until <= first_row:
+            continue
+        row = max(top, first_row)
+        share = 1.0 / (until - top)
+        light, level, dust = float(knots[k, 0]), float(knots[k, 1]), float(knots[k, 2])
+        light_step = (knots[k + 1, 0] - light) * share
+        level_step = (knots[k + 1, 1] - level) * share
+        dust_step = (knots[k + 1, 2] - dust) * share
+        clean = level <= 0.0 and level_step <= 0.0
+        crumb_share = int(row_crispness[top] * 256.0)
+        step = eye * reach[until - 1] * per_cell
+        last_surface = floor_surface(looks, cell_y + step * dy, cell_x + step * dx)
+        while row < until:
+            step = eye * reach[row] * per_cell
+            surface = floor_surface(looks, cell_y + step * dy, cell_x + step * dx)
+            end = until if surface == last_surface else min(row + PAIR, until)
+            texture = textures[surface]
+            octave = octaves[row] + texture_octaves[texture]
+            halved = min(max(int(octave + 0.4), 0), all_bits[texture])
+            bits = all_bits[texture] - halved
+            start = offsets[texture, halved]
+            scale = float(scales[texture]) / (1 << halved)
+            mask = (1 << bits) - 1
+            u, v, du, dv = x * scale, y * scale, dx * scale, dy * scale
+            taps = row_taps[row]
+            near = octave < 0.0
+            until_row = row
+            while until_row < end:
+                at = until_row
+                until_row = min(at + PAIR - (at & (PAIR - 1)), end)
+                t = eye * reach[at]
+                low = until_row - 1
+                if t >= depths[at] and eye * reach[low] >= depths[low]:
+                    continue
+                if near:
+                    grey = smooth_texel(texels, start, bits, u + t * du, v + t * dv)
+                elif taps == 1:
+                    column = math.floor(u + t * du) & mask
+                    line = math.floor(v + t * dv) & mask
+                    grey = int(texels[start + (line << bits) + column])
+                else:
+                    grey = far_grey(
+                        texels, start, bits, taps, at - half, until_row - at, eye * focal,
+                        u, v, du, dv,
+                    )  # fmt: skip
+                colour = int(palettes[surface, grey])
+                part = at - top
+                if not clean:
+                    colour = blended(colour, DUST, int(dust + part * dust_step))
+                    if crumb_share > 0:
+                        colour = with_crumb(
+                            fewest, crumbs, crumb_colours, colour, level + part * level_step,
+                            crumb_share, x + t * dx, y + t * dy,
+                        )  # fmt: skip
+                colour = scaled(colour, int(light + part * light_step))
+                for same in range(at, until_row):
+                    t = eye * reach[same]
+                    if t < depths[same]:
+                        depths[same] = t
+                        colours[same] = colour
+            row = end
+
+
+@njit(**KERNEL)
+def render_smooth(
+    scene: SceneArrays,
+    view: ViewTables,
+    x: float,
+    y: float,
+    cosine: float,
+    sine: float,
+    dirt: NDArray[np.int32],
+    dirt_place: NDArray[np.float64],
+    work: Workspace,
+    colours: NDArray[np.uint32],
+) -> None:
+    """Paint ``colours`` [columns / 2, rows / 2], not toned.
+
+    The camera is at (x, y) and looks along (cosine, sine). ``dirt_place`` is cell, origin x and
+    origin y of ``dirt``.
+    """
+    half = 0.5 * view.rows
+    farthest = cast_walls(scene.walls, view, x, y, cosine, sine, work.hits)
+    boxes = find_boxes(scene.boxes.shapes, view, x, y, cosine, sine, farthest, work.seen)
+    depth = work.depths[0]
+    knots = work.knots[0]
+    for c in range(view.columns):
+        k = (view.middle - c - 0.5) / view.focal
+        dx = cosine - k * sine
+        dy = sine + k * cosine
+        colour = work.colours[c & 1]
+        depth[:] = np.float32(np.inf)
+        spans = column_spans(
+            work.spans, scene, view, x, y, dx, dy, c, work.hits[c], work.seen, boxes
+        )
+        for s in range(spans):
+            place, value = work.spans.places[s], work.spans.values[s]
+            if place[3] == PLANE:
+                paint_plane(colour, depth, scene.surfaces, view, place, value)
+            else:
+                paint_face(colour, depth, scene.surfaces, place, value)
+        if c % GROUP == 0:
+            first_row = view.rows
+            for other in range(c, min(c + GROUP, view.columns)):
+                slope = -view.eye / work.hits[other, 0]
+                first_row = min(first_row, row_of(slope, half, view.focal, view.rows))
+            middle = k - (GROUP - 1) * 0.5 / view.focal
+            feel_knots(
+                scene.lighting, view, x, y, cosine - middle * sine, sine + middle * cosine,
+                first_row, dirt, dirt_place, scene.floor.cover, 256.0, knots,
+            )  # fmt: skip
+        floor_row = row_of(-view.eye / work.hits[c, 0], half, view.focal, view.rows)
+        paint_floor(colour, depth, floor_row, scene, view, x, y, dx, dy, knots)
+        if c & 1:
+            shrink(work.colours, colours[c >> 1])
