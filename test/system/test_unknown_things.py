@@ -9,7 +9,7 @@ from actionlib_msgs.msg import GoalStatus
 from fixtures.forked import run_forked
 from fixtures.graph import RosGraph
 from fixtures.probe import Probe, Walker
-from roomba_robot.msg import Bumper
+from roomba_robot.msg import Bumper, WheelDrop
 
 HOMES = Path(__file__).parents[2] / "homes"
 
@@ -42,6 +42,29 @@ def test_it_goes_around_what_the_bumper_finds(tmp_path: Path) -> None:
             assert walker.ends(60.0) == GoalStatus.SUCCEEDED
             assert any(pressed)
             assert math.dist(probe.position(), (3.0, 4.0)) < 0.05
+
+        run_forked(walk)
+
+
+def test_it_stops_at_the_stairs_and_says_so(tmp_path: Path) -> None:
+    with RosGraph(tmp_path) as graph:
+        graph.launch("home:=family", "speed:=3")
+
+        def walk() -> None:
+            probe = Probe(graph)
+            dropped: list[bool] = []
+            rospy.Subscriber(
+                "/wheel_drop",
+                WheelDrop,
+                lambda m: dropped.append(m.is_left_dropped or m.is_right_dropped),
+            )
+            walker = Walker()
+            walker.send(7.1, -0.7)
+            assert walker.ends(60.0) == GoalStatus.ABORTED
+            assert "the floor ends" in walker.text
+            assert dropped
+            assert not any(dropped)
+            assert probe.position()[0] < 6.5
 
         run_forked(walk)
 

@@ -61,6 +61,16 @@ class Wheels:
     stalled_left: bool
     stalled_right: bool
 
+    @property
+    def dropped(self) -> bool:
+        """Whether a wheel hangs in the air."""
+        return self.dropped_left or self.dropped_right
+
+    @property
+    def stalled(self) -> bool:
+        """Whether a wheel is held and should turn."""
+        return self.stalled_left or self.stalled_right
+
 
 @dataclass(frozen=True, slots=True)
 class Observation:

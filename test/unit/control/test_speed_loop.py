@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from roomba.control.speed_loop import Hold, SpeedLoop
+from roomba.control.speed_loop import BACKING_SPEED, Hold, SpeedLoop
 from roomba.geometry import Twist
 
 
@@ -68,6 +68,33 @@ def test_a_pressed_bumper_lets_it_turn_and_back_off_but_not_push() -> None:
     speed_loop.set_bumper(False)
     speed_loop.command(0.2, Twist(0.3, 0.0))
     assert speed_loop.tick(0.3)[1] is Hold.NONE
+
+
+def test_it_backs_away_from_a_cliff_whatever_was_asked_for() -> None:
+    speed_loop = loop()
+    speed_loop.set_cliff(True)
+    for wanted in (Twist(0.5, 0.0), Twist(0.0, 2.0), Twist(-0.5, 1.0)):
+        speed_loop.command(0.0, wanted)
+        assert speed_loop.tick(0.1) == (Twist(-BACKING_SPEED, 0.0), Hold.CLIFF)
+    speed_loop.set_cruise_speed(0.02)
+    assert speed_loop.tick(0.1) == (Twist(-0.02, 0.0), Hold.CLIFF)
+    speed_loop.set_cliff(False)
+    speed_loop.command(0.2, Twist(0.01, 0.0))
+    assert speed_loop.tick(0.3) == (Twist(0.01, 0.0), Hold.NONE)
+
+
+def test_without_a_command_it_stands_at_a_cliff_too() -> None:
+    speed_loop = loop()
+    speed_loop.set_cliff(True)
+    assert speed_loop.tick(0.1) == (Twist(), Hold.NO_COMMAND)
+
+
+def test_it_stands_while_a_wheel_hangs_in_the_air() -> None:
+    speed_loop = loop()
+    speed_loop.set_wheel_drop(True)
+    speed_loop.set_cliff(True)
+    speed_loop.command(0.0, Twist(-0.5, 1.0))
+    assert speed_loop.tick(0.1) == (Twist(), Hold.WHEEL_DROP)
 
 
 @pytest.mark.parametrize("speed", [-0.1, math.nan, math.inf])

@@ -1,4 +1,5 @@
 import math
+from pathlib import Path
 
 import pytest
 from fixtures.rooms import Block, room_home
@@ -11,6 +12,9 @@ from roomba.headless import HeadlessRobot
 from roomba.mission.unknown_things import UnknownThings
 from roomba.mission.walk import Sensed, Walk, WalkState, feedback_period
 from roomba.planning.path import NoPathError, PathPlanner
+from roomba.world.layer import load_home
+
+HOMES = Path(__file__).parents[3] / "homes"
 
 CONFIG = RobotConfig()
 FURNITURE: tuple[Block, ...] = (
@@ -93,6 +97,32 @@ def test_a_destination_in_the_wall_is_refused_with_the_nearest_point() -> None:
         furnished().walk(1.25, 1.0)
     assert refusal.value.nearest is not None
     assert "1.25, 1.00" in str(refusal.value)
+
+
+def family_robot() -> HeadlessRobot:
+    return HeadlessRobot(load_home("family", HOMES))
+
+
+@pytest.mark.parametrize("goal", [(7.1, -0.7), (7.1, -1.0)])
+def test_a_goal_down_the_stairs_ends_at_their_edge_with_the_reason(
+    goal: tuple[float, float],
+) -> None:
+    robot = family_robot()
+    record = robot.walk(*goal)
+    assert record.state is WalkState.FAILED
+    assert "the floor ends" in record.reason
+    numbers = robot.simulator.numbers
+    assert not numbers["drop_left"]
+    assert not numbers["drop_right"]
+    assert record.poses[:, 1].max() < 6.5
+
+
+def test_a_goal_beside_the_stairs_is_reached_without_a_wheel_over_the_edge() -> None:
+    robot = family_robot()
+    record = robot.walk(6.3, -0.9)
+    assert record.state is WalkState.ARRIVED
+    assert not robot.simulator.numbers["drop_left"]
+    assert record.poses[:, 1].max() < 6.5
 
 
 def stuck_walk() -> tuple[Walk, Sensed]:
