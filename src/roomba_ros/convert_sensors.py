@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import io
 import math
+from collections.abc import Iterable
 
 import numpy as np
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from numpy.typing import NDArray
 from PIL import Image as Picture
 from roomba_robot.msg import (
@@ -21,6 +23,7 @@ from sensor_msgs.msg import (
 from sensor_msgs.msg import CameraInfo, CompressedImage, Image, Imu, JointState, LaserScan
 
 from roomba.config import BatteryConfig, CameraConfig, GyroConfig, LidarConfig
+from roomba.world.health import PartHealth
 from roomba.world.power import BatteryState
 from roomba.world.simulator import Bumper, Cliff, Observation, Wheels
 from roomba_ros.convert import header
@@ -135,6 +138,23 @@ def hazards_message(now: float, kinds: tuple[int, ...], frame_id: str) -> Hazard
     """Return hazards by their types."""
     at = header(now, frame_id)
     return HazardDetectionVector(at, [HazardDetection(at, kind) for kind in kinds])
+
+
+def diagnostics_message(now: float, parts: Iterable[PartHealth], robot: str) -> DiagnosticArray:
+    """Return the health of a robot's parts (REP 107)."""
+    return DiagnosticArray(
+        header(now, ""),
+        [
+            DiagnosticStatus(
+                level=int(part.level),
+                name=f"{robot}: {part.name}",
+                message=part.message,
+                hardware_id=robot,
+                values=[KeyValue(key, value) for key, value in part.values.items()],
+            )
+            for part in parts
+        ],
+    )
 
 
 def camera_info_message(

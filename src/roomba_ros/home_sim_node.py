@@ -156,7 +156,9 @@ class HomeSimNode:
         self._mounts.publish(self._mounted())
         self._map = rospy.Publisher("map", OccupancyGrid, queue_size=1, latch=True)
         self._map.publish(map_message(self._now(), self._simulator.home.map, "map"))
-        self._sensors = SensorTopics(self._config, self._simulator)
+        self._sensors = SensorTopics(
+            self._config, self._simulator, self._parameters.values.robot_name
+        )
         self._camera = CameraTopics(self._simulator, self._config.camera, self._lock)
         self._services = SimServices(self._simulator, self._lock)
         rospy.Subscriber(

@@ -7,16 +7,19 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import rospy
+from diagnostic_msgs.msg import DiagnosticArray
 from roomba_robot.msg import Bumper, Cliff, DockStatus, HazardDetectionVector, WheelDrop
 from sensor_msgs.msg import BatteryState, Imu, JointState, LaserScan
 from std_msgs.msg import Float32, UInt16
 
 from roomba.config import RobotConfig
+from roomba.world.health import health_of
 from roomba.world.simulator import Observation, Simulator
 from roomba_ros.convert_sensors import (
     battery_message,
     bumper_message,
     cliff_message,
+    diagnostics_message,
     dock_message,
     hazards_message,
     hazards_of,
@@ -58,11 +61,12 @@ class SensorTopics:
     per second), ``brush_current`` (Float32, A), all 10 Hz; ``imu`` and ``joint_states``, 20 Hz;
     ``bin_level`` (Float32, 0..1), 1 Hz; and at each change, but also 5 times a second, ``bumper``,
     ``cliff``, ``wheel_drop`` and ``ir_omni`` (UInt16, the station's beams as Create 2 codes them),
-    or once a second ``hazard_detection``, ``battery_state`` and ``dock_status``.
+    or once a second ``hazard_detection``, ``battery_state`` and ``dock_status``. ``/diagnostics``
+    (health of the parts) and ``noise_level`` (Float32, dB(A) at 1 m), 1 Hz.
     """
 
-    def __init__(self, config: RobotConfig, simulator: Simulator) -> None:
-        """Connect all of them."""
+    def __init__(self, config: RobotConfig, simulator: Simulator, robot: str) -> None:
+        """Connect all of them; ``robot`` is its name."""
         self._config, self._simulator = config, simulator
         self._scans = 0
         base, laser, gyro = frame_id("base_link"), frame_id("laser"), frame_id("imu_link")
@@ -132,6 +136,15 @@ class SensorTopics:
             _topic("dirt_detect", UInt16, 2, lambda _, seen: UInt16(round(seen.grains))),
             _topic("brush_current", Float32, 2, lambda _, seen: Float32(seen.brush_current)),
             _topic("bin_level", Float32, 20, lambda _, seen: Float32(seen.in_bin / capacity)),
+            _topic("noise_level", Float32, 20, lambda _, __: Float32(simulator.noise_level)),
+            _topic(
+                "/diagnostics",
+                DiagnosticArray,
+                20,
+                lambda now, seen: diagnostics_message(
+                    now, health_of(seen, simulator.ranges, capacity), robot
+                ),
+            ),
         ]
 
     def tell(self, now: float, tick: int, seen: Observation) -> None:

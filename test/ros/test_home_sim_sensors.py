@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 import rospy
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from fixtures.graph import RosGraph
 from fixtures.probe import Probe
 from fixtures.waiting import wait_until
@@ -62,6 +63,13 @@ class Robot:
             self.probe.send("/cmd_vel_out", message)
             time.sleep(0.05)
 
+    def turn_on(self) -> None:
+        """Turn on the spot from now on, until the test ends."""
+        publisher = self.probe.publisher("/cmd_vel_out", Twist)
+        message = Twist()
+        message.angular.z = 1.0
+        rospy.Timer(rospy.Duration(0.1), lambda _: publisher.publish(message))
+
     def until(self, topic: str, kind: type, holds: Callable[[Any], bool]) -> Any:
         """Return the first message from now on for which ``holds``."""
         wait_until(lambda: holds(self.probe.next(topic, kind)), 10.0, f"{topic} as expected")
@@ -95,9 +103,10 @@ def test_each_sensor_tells_in_the_messages_of_its_kind(graph: RosGraph) -> None:
     assert battery.charge == pytest.approx(26.0 / 14.4)
     assert probe.next("/ir_omni", UInt16).data == 160 + 8 + 4 + 1
     assert probe.next("/bin_level", Float32).data == 0.0
-    assert probe.next("/brush_current", Float32).data == pytest.approx(3.0 / 14.4)
+    assert probe.next("/brush_current", Float32).data == 0.0
 
     robot.drive(-0.3, 0.5, 1.5)
+    assert probe.next("/brush_current", Float32).data == pytest.approx(3.0 / 14.4)
     imu, joints = probe.next("/imu", Imu), probe.next("/joint_states", JointState)
     assert imu.angular_velocity.z == pytest.approx(0.5, abs=0.1)
     assert imu.orientation_covariance[0] == -1.0
@@ -213,14 +222,39 @@ def test_faults_that_there_are_not_are_refused_with_those_that_there_are(graph: 
 def test_brush_and_fan_have_power_levels(graph: RosGraph) -> None:
     robot = Robot(graph, "_home:=empty")
     robot.inject("put", x=5.0, y=5.0)
-    usual = robot.until("/battery_state", BatteryState, lambda state: state.current < -0.5)
+    robot.turn_on()
+    usual = robot.until("/battery_state", BatteryState, lambda state: state.current < -0.8)
+    assert robot.probe.next("/noise_level", Float32).data > 55.0
     robot.probe.send("/main_brush_motor", Float32(0.0))
     robot.probe.send("/vacuum_motor", Float32(0.0))
     robot.until("/brush_current", Float32, lambda current: current.data == 0.0)
     robot.until("/battery_state", BatteryState, lambda state: state.current > usual.current + 0.3)
     robot.probe.send("/vacuum_motor", Float32(7.0))
     robot.probe.send("/vacuum_motor", Float32(1.0))
-    robot.until("/battery_state", BatteryState, lambda state: state.current < usual.current)
+    robot.until("/battery_state", BatteryState, lambda state: state.current < usual.current - 0.5)
+
+
+def test_diagnostics_say_what_is_wrong_and_what_to_do(graph: RosGraph) -> None:
+    robot = Robot(graph, "_home:=apartment")
+
+    def parts(message: DiagnosticArray) -> dict[str, DiagnosticStatus]:
+        return {status.name.partition(": ")[2]: status for status in message.status}
+
+    well = parts(robot.probe.next("/diagnostics", DiagnosticArray))
+    assert set(well) == {"battery", "drive", "lidar", "bin"}
+    assert {status.level for status in well.values()} == {DiagnosticStatus.OK}
+    robot.inject("lifted")
+    robot.inject("lidar_blocked")
+    robot.until(
+        "/diagnostics",
+        DiagnosticArray,
+        lambda message: (
+            parts(message)["drive"].level == parts(message)["lidar"].level == DiagnosticStatus.ERROR
+        ),
+    )
+    ill = parts(robot.probe.newest["/diagnostics"])
+    assert "put the robot on the floor" in ill["drive"].message
+    assert "no beam comes back" in ill["lidar"].message
 
 
 def test_noise_is_switched_on_by_a_parameter(graph: RosGraph) -> None:

@@ -62,16 +62,19 @@ class Fleet:
         Raises HomeError where a body does not fit, ValueError for other numbers that make no sense.
         """
         _check_counts(homes, robots_per_home, seeds, threads)
+        _check_speed(max_speed)
         self.config = config or RobotConfig()
         self.homes = tuple(homes)
         self.threads = threads or os.cpu_count() or 1
         self.seeds = tuple(seeds) if seeds is not None else tuple(range(len(homes)))
-        distinct = list({id(home): home for home in homes}.values())
-        number_of = {id(home): number for number, home in enumerate(distinct)}
+        self._distinct = list({id(home): home for home in homes}.values())
+        self._layout = layout_of(self._distinct, self.config)
+        self._max_speed = max_speed
+        number_of = {id(home): number for number, home in enumerate(self._distinct)}
         self._numbers, self._quantiles = numbers_of(self.config), normal_quantiles()
         self._state = first_state(
-            layout_of(distinct, self.config),
-            distinct,
+            self._layout,
+            self._distinct,
             [number_of[id(home)] for home in homes],
             self.config,
             self.seeds,
@@ -124,6 +127,42 @@ class Fleet:
             raise ValueError(f"expected dt > 0 s and 1 step or more, got dt={dt}, steps={steps}")
         self.robots["wanted_linear"], self.robots["wanted_angular"] = wanted.T
         self._advance(dt, steps)
+
+    def reset_world(self, world: int, seed: int) -> None:
+        """Let a world begin anew, as one of this seed in a new fleet without ``starts`` would.
+
+        Raises ValueError for a negative seed.
+        """
+        if seed < 0:
+            raise ValueError(f"expected a seed of 0 or more, got {seed}")
+        state, row, home = self._state, self.worlds[world], self.homes[world]
+        robots = slice(row["robots_at"], row["robots_end"])
+        things = slice(row["things_at"], row["things_end"])
+        count = int(row["robots_end"] - row["robots_at"])
+        fresh = first_state(
+            self._layout,
+            self._distinct,
+            [int(row["home"])],
+            self.config,
+            [seed],
+            count,
+            self._max_speed,
+        )
+        for name in ("time", "random", "brought_in"):
+            row[name] = fresh.worlds[name][0]
+        row["discs_end"] = row["discs_at"]
+        state.solid.discs[row["discs_at"] : row["discs_at"] + MOST_DISCS] = fresh.solid.discs
+        state.dirt.micrograms[row["dirt_at"] : row["dirt_end"]] = fresh.dirt.micrograms
+        state.dirt.falls[row["falls_at"] : row["falls_end"]] = fresh.dirt.falls
+        state.solid.robots[robots], state.ranges[robots] = fresh.solid.robots, fresh.ranges
+        # A seed puts off what moves, but all seeds' tracks are of the same length.
+        tracks_at = state.solid.things["last_row"][things.start - 1] + 1 if things.start else 0
+        state.tracks[tracks_at : tracks_at + len(fresh.tracks)] = fresh.tracks
+        state.solid.things[things] = fresh.solid.things
+        for name in ("row", "last_row"):
+            state.solid.things[name][things] += tracks_at
+        self.poses[robots] = starts_of([home], [seed], count, self.config.body.radius)
+        self.seeds = (*self.seeds[:world], seed, *self.seeds[world + 1 :])
 
     def dirt(self, world: int) -> DirtField:
         """Return the dirt of a world as it lies now: a view, not a copy."""
@@ -214,6 +253,11 @@ class Fleet:
             raise ValueError(f"{fault.name.lower()}: expected a value from 0 to 1, got {value}")
         self.robots[fault.value][robot] = value
 
+    def limit_speed(self, speed: float) -> None:
+        """Set what all drives do at most, m/s; raises ValueError if it is not above 0."""
+        _check_speed(speed)
+        self.robots["max_speed"] = speed
+
     def put(self, robot: int, pose: Pose) -> None:
         """Put a robot down somewhere else, standing; raises HomeError where it does not fit.
 
@@ -224,7 +268,8 @@ class Fleet:
         row["x"], row["y"], row["theta"] = pose.x, pose.y, pose.theta
         for name in ("linear", "angular", "hit", "ground_linear", "ground_angular"):
             row[name] = 0.0
-        if self.gap(robot) < 0.0:
+        is_finite = all(map(math.isfinite, (pose.x, pose.y, pose.theta)))
+        if not is_finite or self.gap(robot) < 0.0:
             self.robots[robot] = before
             raise HomeError(
                 f"the robot does not fit at ({pose.x:.2f}, {pose.y:.2f}); expected free floor for "
@@ -307,3 +352,8 @@ def _check_counts(
         )
     if threads is not None and threads < 1:
         raise ValueError(f"expected 1 thread or more, got {threads}")
+
+
+def _check_speed(speed: float) -> None:
+    if not math.isfinite(speed) or speed <= 0.0:
+        raise ValueError(f"max_speed: expected a speed above 0 m/s, got {speed}")

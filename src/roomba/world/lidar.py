@@ -50,6 +50,8 @@ class Lidar:
         config = config or LidarConfig()
         edges = lidar_edges(solid, frame.resolution, tile)
         home = np.zeros(1, HOME)
+        home["resolution"] = frame.resolution
+        home["rows"], home["columns"] = frame.shape
         home["tile_columns"] = edges.tile_columns
         home["tile_size"] = edges.tile_cells * frame.resolution
         arrays = joined_edges([edges])

@@ -19,7 +19,7 @@ from roomba.world.engine.arrays import Fault, Infrared
 from roomba.world.engine.brush_kernels import amount_under_disc
 from roomba.world.fleet import Fleet
 from roomba.world.home import Home
-from roomba.world.power import BatteryState, battery_state
+from roomba.world.power import BatteryState, battery_state, noise_level
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,7 +145,7 @@ class Simulator:
 
     @max_speed.setter
     def max_speed(self, speed: float) -> None:
-        self._fleet.robots["max_speed"] = speed
+        self._fleet.limit_speed(speed)
 
     @property
     def gap(self) -> float:
@@ -243,7 +243,10 @@ class Simulator:
         )
 
     def set_power(self, brush: float | None = None, fan: float | None = None) -> None:
-        """Set the duty of brush and fan, 0..1; None leaves one as it is. ValueError for others."""
+        """Set the duty of brush and fan, 0..1; None leaves one as it is. ValueError for others.
+
+        Both rest while the robot stands.
+        """
         wanted = {"brush": brush, "fan": fan}
         for name, duty in wanted.items():
             if duty is not None and not 0.0 <= duty <= 1.0:
@@ -257,6 +260,14 @@ class Simulator:
         """Duty of brush and fan, 0..1."""
         robots = self._fleet.robots
         return float(robots["brush_duty"][0]), float(robots["fan_duty"][0])
+
+    @property
+    def noise_level(self) -> float:
+        """How loud it is now, dB(A) at 1 m."""
+        now = self.numbers
+        stands = now["linear"] == 0.0 and now["angular"] == 0.0
+        duty = (0.0, 0.0) if stands else self.duty
+        return noise_level(self.config.brush, self.config.fan, duty)
 
     def spill(self, x: float, y: float, radius: float, grams: float) -> None:
         """Spill crumbs around a point of the map frame; raises ValueError as DirtField.spread."""

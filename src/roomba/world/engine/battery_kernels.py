@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from roomba.world.engine.arrays import CARPET, Row
+from roomba.world.engine.brush_kernels import duty_now
 from roomba.world.engine.compilation import part
 from roomba.world.engine.numbers import TAPER_FROM, TAPER_TO
 
@@ -15,12 +16,13 @@ def drawn_power(body: Row, numbers: Row, ground: int) -> float:
     half_turn = 0.5 * numbers.track * body.angular
     wheels = abs(body.linear - half_turn) + abs(body.linear + half_turn)
     brush = numbers.carpet_power if ground == CARPET else numbers.brush_power
+    brush_duty, fan_duty = duty_now(body)
     return float(
         numbers.idle_power
         + numbers.drive_power * wheels
         + numbers.stall_power * (body.stall_left + body.stall_right)
-        + brush * body.brush_duty
-        + numbers.fan_power * body.fan_duty * body.fan_duty * body.fan_duty
+        + brush * brush_duty
+        + numbers.fan_power * fan_duty * fan_duty * fan_duty
     )
 
 

@@ -101,6 +101,14 @@ def amount_under_disc(
 
 
 @part
+def duty_now(body: Row) -> tuple[float, float]:
+    """Return the duty of brush and fan, 0..1: both rest while the wheels stand."""
+    if body.linear == 0.0 and body.angular == 0.0:
+        return 0.0, 0.0
+    return body.brush_duty, body.fan_duty
+
+
+@part
 def clean(
     dirt: NDArray[np.int32],
     home: Row,
@@ -119,7 +127,8 @@ def clean(
     ``middle`` is the pose in the middle of the way.
     """
     by_brush = numbers.carpet_pickup if ground == CARPET else numbers.pickup
-    keep = (1.0 - by_brush * body.brush_duty) * (1.0 - numbers.fan_pickup * body.fan_duty)
+    brush_duty, fan_duty = duty_now(body)
+    keep = (1.0 - by_brush * brush_duty) * (1.0 - numbers.fan_pickup * fan_duty)
     taken = 0
     if body.lifted == 0.0:
         taken = sweep(
@@ -149,7 +158,7 @@ def sense_cleaning(
 ) -> None:
     """Count the grains that came in, and measure the brush motor's current."""
     power = numbers.carpet_power if ground == CARPET else numbers.brush_power
-    current = power * body.brush_duty / numbers.voltage
+    current = power * duty_now(body)[0] / numbers.voltage
     grains = taken / numbers.grain
     if numbers.noisy > 0.0:
         current += numbers.current_noise * next_normal(body, quantiles)

@@ -14,6 +14,8 @@ from roomba.world.engine.compilation import part
 
 PROBE_STEP: Final = 1e-3
 """m; how finely contact is felt for when something solid is nearer than the way to go."""
+FARTHEST_LOOK: Final = 0.5
+"""m; longer ways are looked at part by part."""
 CONTACT_ERROR: Final = 1e-7
 """m; how exactly the place of contact is found."""
 CONTACT_GAP: Final = 1e-3
@@ -204,7 +206,8 @@ def free_share(
     x, y = body.x, body.y
     while done < 1.0 and way > 0.0:
         left = way * (1.0 - done)
-        gap = gap_at(solid, home, world, robot, radius, x, y, left + PROBE_STEP)
+        look = min(left, FARTHEST_LOOK) + PROBE_STEP
+        gap = gap_at(solid, home, world, robot, radius, x, y, look)
         if gap > left:
             return 1.0
         step = min(1.0, done + max(gap - 1e-9, PROBE_STEP) / way)

@@ -75,7 +75,8 @@ def drive(
     """
     body = solid.robots[robot]
     linear, angular = ramped(body, numbers, dt)
-    rolled, rolled_turn = 0.5 * (body.linear + linear) * dt, 0.5 * (body.angular + angular) * dt
+    asked, asked_turn = 0.5 * (body.linear + linear) * dt, 0.5 * (body.angular + angular) * dt
+    rolled, rolled_turn = asked, asked_turn
     half = 0.5 * numbers.track
     left, right = rolled - half * rolled_turn, rolled + half * rolled_turn
     body.stall_left = 1.0 if body.held_left > 0.0 and left != 0.0 else 0.0
@@ -104,19 +105,25 @@ def drive(
     body.turned += abs(turn)
     before = body.ground_linear
     is_held = is_hit or body.lifted > 0.0
-    body.ground_linear = 0.0 if is_held else linear + (length - rolled) / dt
-    body.ground_angular = 0.0 if body.lifted > 0.0 else angular + (turn - rolled_turn) / dt
+    body.ground_linear = 0.0 if is_held else linear + (length - asked) / dt
+    body.ground_angular = 0.0 if body.lifted > 0.0 else angular + (turn - asked_turn) / dt
     if is_hit:
         # Wheels of a body that is held stand still, but for what they slip on the spot.
         rolled *= share + (1.0 - share) * numbers.blocked_slip
-    count_wheels(body, numbers, rolled - half * rolled_turn, rolled + half * rolled_turn, dt)
+    left, right = rolled - half * rolled_turn, rolled + half * rolled_turn
+    count_wheels(body, numbers, left, right, share, dt)
     feel_motion(body, numbers, quantiles, turn / dt, (body.ground_linear - before) / dt, dt)
     return math.copysign(abs(length) * share, length), turn
 
 
 @part
-def count_wheels(body: Row, numbers: Row, left: float, right: float, dt: float) -> None:
-    """Let the encoders count what the wheels rolled, m, and odometry go on by that."""
+def count_wheels(
+    body: Row, numbers: Row, left: float, right: float, share: float, dt: float
+) -> None:
+    """Let the encoders count what the wheels rolled, m, and odometry go on by that.
+
+    After ``share`` of the step the body was stopped, and turned on the spot for the rest of it.
+    """
     body.wheel_left += left / numbers.wheel_radius
     body.wheel_right += right / numbers.wheel_radius
     counted_left, counted_right = body.wheel_left, body.wheel_right
@@ -131,7 +138,7 @@ def count_wheels(body: Row, numbers: Row, left: float, right: float, dt: float) 
     length, turn = 0.5 * (left + right), (right - left) / numbers.track
     if length != 0.0:
         body.odometry_x, body.odometry_y = arc(
-            body.odometry_x, body.odometry_y, body.odometry_theta, length, turn
+            body.odometry_x, body.odometry_y, body.odometry_theta, length, turn * share
         )
     body.odometry_theta = wrapped(body.odometry_theta + turn)
     body.odometry_linear, body.odometry_angular = length / dt, turn / dt

@@ -23,7 +23,7 @@ from roomba.world.engine.arrays import (
     State,
 )
 from roomba.world.engine.layout import Layout, room_around
-from roomba.world.home import Home
+from roomba.world.home import Box, Home
 from roomba.world.moving import Track, tracks_of
 
 _WORLD, _TRACKS, _ROBOT, _PLACES = range(4)
@@ -129,6 +129,7 @@ def starts_of(
         if robots_per_home > 1:
             room = room_around(home.solid | home.drop, home.frame.resolution)
             rows, columns = np.nonzero(room > radius + 0.01)
+            boxes = [box for thing in home.moving for box in thing.first_boxes]
             random = _generator(seed, _PLACES)
             for _ in range(_TRIES * robots_per_home if len(rows) else 0):
                 if len(taken) == robots_per_home:
@@ -137,7 +138,8 @@ def starts_of(
                 x, y = home.frame.centre_of(int(rows[cell]), int(columns[cell]))
                 theta = float(random.uniform(-np.pi, np.pi))
                 away = min(np.hypot(x - other[0], y - other[1]) for other in taken)
-                if away > 2.0 * radius + 0.05:
+                is_free = all(_distance(box, x, y) > radius + 0.01 for box in boxes)
+                if is_free and away > 2.0 * radius + 0.05:
                     taken.append((x, y, theta))
             if len(taken) < robots_per_home:
                 raise HomeError(
@@ -146,6 +148,14 @@ def starts_of(
                 )
         starts.extend(taken)
     return np.array(starts, np.float64)
+
+
+def _distance(box: Box, x: float, y: float) -> float:
+    cosine, sine = np.cos(box.theta), np.sin(box.theta)
+    dx, dy = x - box.x, y - box.y
+    along = max(abs(cosine * dx + sine * dy) - 0.5 * box.length, 0.0)
+    across = max(abs(cosine * dy - sine * dx) - 0.5 * box.width, 0.0)
+    return float(np.hypot(along, across))
 
 
 def _first_dirt(home: Home) -> NDArray[np.int32]:

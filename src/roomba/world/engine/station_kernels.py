@@ -22,7 +22,7 @@ def sense_station(cells: Rows, home: Row, body: Row, numbers: Row) -> None:
     body.docked = 0.0
     dx, dy = body.x - home.station_x, body.y - home.station_y
     square = dx * dx + dy * dy
-    reach = numbers.beam + numbers.station_ahead
+    reach = max(numbers.beam, numbers.halo) + numbers.station_ahead
     if square > reach * reach or body.station_dead > 0.0:
         return
     is_there = square <= numbers.position_tolerance * numbers.position_tolerance

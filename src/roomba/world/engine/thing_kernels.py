@@ -50,13 +50,27 @@ def move_thing(
 def robot_is_there(
     solid: Solid, world: Row, thing: Row, radius: float, x: float, y: float, theta: float
 ) -> bool:
-    """Tell whether a thing would touch a robot at a pose."""
-    cosine, sine = math.cos(theta), math.sin(theta)
+    """Tell whether a thing would touch a robot at a pose; not if it goes away from it."""
     for number in range(world.robots_at, world.robots_end):
-        dx, dy = solid.robots[number].x - x, solid.robots[number].y - y
-        ahead, aside = cosine * dx + sine * dy, cosine * dy - sine * dx
-        for box in range(thing.boxes_at, thing.boxes_end):
-            away, _, _ = way_to_box(solid.boxes[box], ahead, aside)
-            if away < radius + _MARGIN:
+        body = solid.robots[number]
+        away = way_to_thing(solid, thing, x, y, theta, body.x, body.y)
+        if away < radius + _MARGIN:
+            now = way_to_thing(solid, thing, thing.x, thing.y, thing.theta, body.x, body.y)
+            if thing.present == 0.0 or away < now:
                 return True
     return False
+
+
+@part
+def way_to_thing(
+    solid: Solid, thing: Row, x: float, y: float, theta: float, to_x: float, to_y: float
+) -> float:
+    """Return the distance from a thing, if it were at a pose, to a point."""
+    cosine, sine = math.cos(theta), math.sin(theta)
+    dx, dy = to_x - x, to_y - y
+    ahead, aside = cosine * dx + sine * dy, cosine * dy - sine * dx
+    nearest = math.inf
+    for box in range(thing.boxes_at, thing.boxes_end):
+        away, _, _ = way_to_box(solid.boxes[box], ahead, aside)
+        nearest = min(nearest, away)
+    return nearest

@@ -1,0 +1,96 @@
+"""How well the robot's parts work, by what its own sensors tell: for people who look after it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import IntEnum
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.world.simulator import Observation
+
+LOW_BATTERY: Final = 0.10
+"""Below this charge, 0..1, the robot should go home."""
+EMPTY_BATTERY: Final = 0.03
+HOT_BATTERY: Final = 45.0
+"""Degrees Celsius; lithium cells should not be charged much warmer."""
+FULL_BIN: Final = 0.95
+MOST_MISSES: Final = 0.5
+"""Share of a scan without a range that a home with walls does not explain."""
+
+
+class Level(IntEnum):
+    """How a part does; the values are those of diagnostic_msgs/DiagnosticStatus."""
+
+    OK = 0
+    WARN = 1
+    """It works, but somebody should see to it."""
+    ERROR = 2
+    """It does not work."""
+
+
+@dataclass(frozen=True, slots=True)
+class PartHealth:
+    """A part by ``name``: how it does, why, and its ``values`` by name and unit."""
+
+    name: str
+    level: Level
+    message: str
+    values: dict[str, str]
+
+
+def health_of(
+    seen: Observation, ranges: NDArray[np.float32], bin_capacity: float
+) -> tuple[PartHealth, ...]:
+    """Return the health of battery, drive, lidar and bin.
+
+    ``ranges`` is the last scan, float32 [beams], m; ``bin_capacity`` in g.
+    """
+    return _battery(seen), _drive(seen), _lidar(ranges), _bin(seen.in_bin / bin_capacity)
+
+
+def _battery(seen: Observation) -> PartHealth:
+    battery = seen.battery
+    level, message = Level.OK, "charging" if battery.is_charging else "ok"
+    if battery.temperature > HOT_BATTERY:
+        level, message = Level.WARN, "hot: let it cool down"
+    elif not battery.is_docked and battery.level < EMPTY_BATTERY:
+        level, message = Level.ERROR, "empty: carry the robot to its station"
+    elif not battery.is_docked and battery.level < LOW_BATTERY:
+        level, message = Level.WARN, "low: the robot should go home"
+    values = {
+        "charge (0..1)": f"{battery.level:.3f}",
+        "voltage (V)": f"{battery.voltage:.2f}",
+        "current (A)": f"{battery.current:.2f}",
+        "temperature (degrees C)": f"{battery.temperature:.1f}",
+    }
+    return PartHealth("battery", level, message, values)
+
+
+def _drive(seen: Observation) -> PartHealth:
+    level, message = Level.OK, "ok"
+    if seen.wheels.dropped:
+        level, message = Level.ERROR, "a wheel hangs in the air: put the robot on the floor"
+    elif seen.wheels.stalled:
+        level, message = Level.ERROR, "a wheel is held: free it"
+    values = {"wheel drop": str(seen.wheels.dropped), "stall": str(seen.wheels.stalled)}
+    return PartHealth("drive", level, message, values)
+
+
+def _lidar(ranges: NDArray[np.float32]) -> PartHealth:
+    misses = float(np.mean(~np.isfinite(ranges)))
+    level, message = Level.OK, "ok"
+    if misses == 1.0:
+        level, message = Level.ERROR, "no beam comes back: look what covers it"
+    elif misses > MOST_MISSES:
+        level, message = Level.WARN, "many beams do not come back: clean it"
+    return PartHealth("lidar", level, message, {"misses (0..1)": f"{misses:.3f}"})
+
+
+def _bin(fill: float) -> PartHealth:
+    level, message = Level.OK, "ok"
+    if fill >= FULL_BIN:
+        level, message = Level.WARN, "full: empty it"
+    return PartHealth("bin", level, message, {"fill (0..1)": f"{fill:.3f}"})

@@ -1,0 +1,69 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from fixtures.rooms import room_home
+
+from roomba.world.health import Level, PartHealth, health_of
+from roomba.world.simulator import Observation, Simulator
+
+WHOLE = np.full(360, 2.0, np.float32)
+
+
+def seen(**changes: float) -> Observation:
+    """What a robot away from its station sees, its battery changed."""
+    observation = Simulator(room_home()).observe()
+    return replace(observation, battery=replace(observation.battery, is_docked=False, **changes))
+
+
+def part(name: str, parts: tuple[PartHealth, ...]) -> PartHealth:
+    return next(found for found in parts if found.name == name)
+
+
+def test_all_is_well_at_first() -> None:
+    parts = health_of(seen(), WHOLE, 100.0)
+    assert {found.level for found in parts} == {Level.OK}
+    assert part("battery", parts).values["charge (0..1)"] == "1.000"
+
+
+@pytest.mark.parametrize(
+    ("changes", "level", "said"),
+    [
+        ({"level": 0.08}, Level.WARN, "go home"),
+        ({"level": 0.01}, Level.ERROR, "carry"),
+        ({"temperature": 50.0}, Level.WARN, "cool"),
+    ],
+)
+def test_a_battery_in_need_says_so(changes: dict[str, float], level: Level, said: str) -> None:
+    battery = part("battery", health_of(seen(**changes), WHOLE, 100.0))
+    assert battery.level is level
+    assert said in battery.message
+
+
+def test_a_low_battery_on_the_station_is_no_trouble() -> None:
+    observation = seen(level=0.02)
+    docked = replace(observation, battery=replace(observation.battery, is_docked=True))
+    assert part("battery", health_of(docked, WHOLE, 100.0)).level is Level.OK
+
+
+@pytest.mark.parametrize(
+    ("wrong", "said"), [("dropped_left", "floor"), ("stalled_right", "free it")]
+)
+def test_wheels_in_trouble_are_an_error(wrong: str, said: str) -> None:
+    observation = seen()
+    ill = replace(observation, wheels=replace(observation.wheels, **{wrong: True}))
+    drive = part("drive", health_of(ill, WHOLE, 100.0))
+    assert drive.level is Level.ERROR
+    assert said in drive.message
+
+
+@pytest.mark.parametrize(("lost", "level"), [(0, Level.OK), (200, Level.WARN), (360, Level.ERROR)])
+def test_a_lidar_without_returns_is_noticed(lost: int, level: Level) -> None:
+    ranges = WHOLE.copy()
+    ranges[:lost] = np.inf
+    assert part("lidar", health_of(seen(), ranges, 100.0)).level is level
+
+
+def test_a_full_bin_wants_to_be_emptied() -> None:
+    full = replace(seen(), in_bin=99.0)
+    assert part("bin", health_of(full, WHOLE, 100.0)).message == "full: empty it"
