@@ -15,4 +15,5 @@ setup(
     package_dir={"": "src"},
     python_requires=">=3.10",
     install_requires=[line for line in REQUIREMENTS if line and not line.startswith("#")],
+    extras_require={"gym": ["gymnasium>=1.1"]},
 )
