@@ -109,7 +109,7 @@ class WheelsConfig(_Frozen):
     """Wheel encoders, and how wheels slip: shares of the way."""
 
     counts_per_turn: Positive = 508.8
-    scale_error: NotNegative = 0.003
+    scale_error: NotNegative = 0.001
     slip: Ratio = 0.001
     carpet_slip: Ratio = 0.02
     slip_noise: NotNegative = 0.002

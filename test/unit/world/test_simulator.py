@@ -45,7 +45,7 @@ def test_dirt_is_conserved_exactly(seed: int, steps: int) -> None:
 def test_dirt_falls_at_its_sources_rate() -> None:
     world = simulator()
     before = world.brought_in
-    world.brushes_on = False
+    world.set_power(brush=0.0, fan=0.0)
     for _ in range(3600):
         world.step(Twist(), 1.0)
     fallen = (world.brought_in - before) / 1e6

@@ -166,7 +166,7 @@ ROBOT: Final = np.dtype(
         ("odometry_angular", "f8"),
         ("gyro", "f8"),
         ("acceleration", "f8"),
-        ("grains", "f8"),  # per second in the intake
+        ("grains", "f8"),  # per second in the intake, over the last COUNTING_TIME
         ("brush_current", "f8"),
         ("beams", "i8"),  # of the station, see Infrared
         ("scans", "i8"),  # how many the lidar has made
@@ -177,6 +177,8 @@ ROBOT: Final = np.dtype(
         ("wheel_right_size", "f8"),
         ("gyro_scale", "f8"),
         ("gyro_bias", "f8"),
+        ("varying_left", "f8"),  # what varies of the wheel's slip
+        ("varying_right", "f8"),
         # what is wrong with it, see Fault
         ("slip_left", "f8"),
         ("slip_right", "f8"),

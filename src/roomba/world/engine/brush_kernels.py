@@ -14,6 +14,8 @@ from roomba.world.engine.random_kernels import next_normal
 
 Floats = NDArray[np.float64]
 
+COUNTING_TIME: Final = 0.1
+"""s; over which the dirt sensor counts."""
 _LEAST: Final = 20
 """Micrograms; so little comes up as a whole."""
 
@@ -168,5 +170,6 @@ def sense_cleaning(
             grains = max(0.0, math.floor(grains + 0.5))
     if body.dirt_sensor_blocked > 0.0:
         grains = 0.0
-    body.grains = min(grains / dt, numbers.most_grains)
+    newest = min(grains / dt, numbers.most_grains)
+    body.grains += (newest - body.grains) * dt / (COUNTING_TIME + dt)
     body.brush_current = max(current, 0.0)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,9 +11,13 @@ from numpy.typing import NDArray
 from roomba.world.engine.arrays import CARPET, Row, Solid
 from roomba.world.engine.compilation import part
 from roomba.world.engine.contact_kernels import arc, free_share, wrapped
+from roomba.world.engine.numbers import SLIP_LENGTH
 from roomba.world.engine.random_kernels import next_normal
 
 Quantiles = NDArray[np.float32]
+
+MOST_ACCELERATION: Final = 19.6
+"""m/s2; consumer accelerometers measure up to twice gravity: a bump is more."""
 
 
 @part
@@ -42,14 +47,20 @@ def ramped(body: Row, numbers: Row, dt: float) -> tuple[float, float]:
 def slips(
     body: Row, numbers: Row, quantiles: Quantiles, ground: int, way: float
 ) -> tuple[float, float]:
-    """Return which share of its ``way``, m, each wheel loses in this step."""
+    """Return which share of its ``way``, m, each wheel loses in this step.
+
+    What varies of it stays about the same over SLIP_LENGTH (a process of Ornstein and Uhlenbeck),
+    so that the noise of a long way grows as a random walk does, whatever the step.
+    """
     left, right = body.slip_left, body.slip_right
     if numbers.noisy > 0.0 and way > 0.0:
         mean = numbers.carpet_slip if ground == CARPET else numbers.slip
-        # The noise of a way grows as a random walk does, whatever the step.
-        spread = numbers.slip_noise / math.sqrt(way)
-        left += mean + spread * next_normal(body, quantiles)
-        right += mean + spread * next_normal(body, quantiles)
+        stays = math.exp(-way / SLIP_LENGTH)
+        fresh = numbers.slip_spread * math.sqrt(1.0 - stays * stays)
+        body.varying_left = stays * body.varying_left + fresh * next_normal(body, quantiles)
+        body.varying_right = stays * body.varying_right + fresh * next_normal(body, quantiles)
+        left += mean + body.varying_left
+        right += mean + body.varying_right
     if body.drop_left > 0.0:
         left = 1.0
     if body.drop_right > 0.0:
@@ -159,5 +170,6 @@ def feel_motion(
         angular = angular * body.gyro_scale + body.gyro_bias
         angular += numbers.gyro_noise * next_normal(body, quantiles)
         acceleration += numbers.acceleration_noise * next_normal(body, quantiles)
+        acceleration = min(max(acceleration, -MOST_ACCELERATION), MOST_ACCELERATION)
     body.gyro = angular
     body.acceleration = acceleration

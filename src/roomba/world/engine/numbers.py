@@ -15,6 +15,8 @@ from roomba.world.dirt import MICROGRAMS_PER_GRAM
 from roomba.world.engine.arrays import Rows
 from roomba.world.furniture import STATION_GAP
 
+SLIP_LENGTH: Final = 0.1
+"""m; over so much way the slip of a wheel stays about the same (assumed)."""
 TAPER_FROM: Final = 0.9
 """Share of the charge from which on charging becomes slower, evenly, down to TAPER_TO."""
 TAPER_TO: Final = 0.2
@@ -37,7 +39,8 @@ def numbers_of(config: RobotConfig) -> Rows:
         "radians_per_count": noise * 2.0 * math.pi / config.wheels.counts_per_turn,
         "slip": noise * config.wheels.slip,
         "carpet_slip": noise * config.wheels.carpet_slip,
-        "slip_noise": noise * config.wheels.slip_noise,
+        # The sum of a process with this spread and length varies by slip_noise over each metre.
+        "slip_spread": noise * config.wheels.slip_noise / math.sqrt(2.0 * SLIP_LENGTH),
         "blocked_slip": noise * config.wheels.blocked_slip,
         "gyro_noise": noise * config.gyro.noise,
         "gyro_walk": noise * config.gyro.bias_walk,
