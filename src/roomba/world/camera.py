@@ -20,7 +20,7 @@ from roomba.grid import GridFrame
 from roomba.world.camera_film_kernels import develop
 from roomba.world.camera_quick_kernels import render_quick
 from roomba.world.camera_smooth_kernels import render_smooth
-from roomba.world.camera_view import view_tables, workspace
+from roomba.world.camera_view import aligned, view_tables, whole_lanes, workspace
 from roomba.world.scene import Scene
 from roomba.world.scene_arrays import SceneArrays, ViewTables, Workspace
 from roomba.world.texture_atlas import tone
@@ -146,14 +146,13 @@ class _Quick:
     def taken(self, shot: _Shot) -> Picture:
         scene, x, y, cosine, sine, dirt, dirt_place = shot
         height, width, columns = self._config.height, self._config.width, self.view.columns
-        words = np.empty((height, columns * 3 // 4), np.uint32)
-        depth = np.empty((height, columns), np.float32)
+        colour = aligned((height, columns, 3), np.uint8)
+        depth = aligned((whole_lanes(height), columns), np.float32)
         render_quick(
-            scene, self.view, x, y, cosine, sine, dirt, dirt_place, self._work, words, depth
+            scene, self.view, x, y, cosine, sine, dirt, dirt_place, self._work, colour, depth
         )
-        colour = words.view(np.uint8).reshape(height, columns, 3)
         return Picture(
-            np.ascontiguousarray(colour[:, :width]), np.ascontiguousarray(depth[:, :width])
+            np.ascontiguousarray(colour[:, :width]), np.ascontiguousarray(depth[:height, :width])
         )
 
 

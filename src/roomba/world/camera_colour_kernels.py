@@ -28,8 +28,13 @@ def blended(colour: int, other: int, share: int) -> int:
 @njit(**INLINE)
 def level_of(size: float, bits: int) -> int:
     """Return which halving of a texture has texels about as big as a sample of ``size`` texels."""
-    _, exponent = math.frexp(size * (1.0 / 1.5))
-    return int(min(max(exponent, 0), bits))
+    size *= 1.0 / 1.5
+    # Not from the number's exponent, which takes a call.
+    level = np.int64(0)
+    while size >= 1.0 and level < bits:
+        size *= 0.5
+        level += 1
+    return int(level)
 
 
 @njit(**INLINE)

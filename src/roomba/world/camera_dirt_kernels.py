@@ -9,7 +9,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from roomba.world.camera_compilation import INLINE, INNER
-from roomba.world.camera_span_kernels import between_bytes
+from roomba.world.camera_light_kernels import between_bytes
 from roomba.world.scene_arrays import Lighting, ViewTables
 
 CRUMB_TEXELS = 2000.0

@@ -129,17 +129,6 @@ FACE, TURNED_FACE, PLANE = np.int64(0), np.int64(1), np.int64(2)
 """Kinds of spans; on a turned face, the texture is turned by a right angle."""
 
 
-class Lanes(NamedTuple):
-    """Room for the pixels of one row of a tile of columns, one value per column and quantity.
-
-    One array for all quantities of a type: many small ones could overlap for all that the compiler
-    knows, and it would not put eight columns into one instruction.
-    """
-
-    real: NDArray[np.float32]
-    whole: NDArray[np.uint32]
-
-
 class Workspace(NamedTuple):
     """Room to work in; nothing in it lasts from picture to picture."""
 
@@ -149,13 +138,13 @@ class Workspace(NamedTuple):
     """[boxes, 4]: distance, index, first and last column of a box in view."""
     spans: Spans
     colours: NDArray[np.uint32]
-    """[columns that are painted together, rows]."""
+    """[columns that are painted together, rows]; with rows to spare for all lanes from the last."""
     depths: NDArray[np.float32]
+    """The same."""
     tile: NDArray[np.uint32]
     """[rows, columns that are painted together]: ``colours`` turned."""
     knots: NDArray[np.float32]
     """[2, knots, 3]: light, level of dirt and veil of dust, beside the columns."""
-    lanes: Lanes
 
 
 class ViewTables(NamedTuple):
@@ -171,7 +160,10 @@ class ViewTables(NamedTuple):
     eye: float
     """Height of the camera above the floor, m."""
     reach: NDArray[np.float32]
-    """[rows]: depth at which a row meets a level plane 1 m above or below the camera, m."""
+    """[rows]: depth at which a row meets a level plane 1 m above or below the camera, m.
+
+    Some values to spare for all lanes from the last row, as in ``floor_depth``.
+    """
     spread: NDArray[np.float32]
     """[rows]: size, m, of what a sample stands for on that plane."""
     floor_depth: NDArray[np.float32]
