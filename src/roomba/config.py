@@ -14,6 +14,7 @@ from roomba.errors import ConfigError
 Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
 Ratio = Annotated[float, Field(ge=0.0, le=1.0, allow_inf_nan=False)]
 
+Degrees = Annotated[float, Field(ge=-180.0, le=180.0)]
 NotNegative = Annotated[float, Field(ge=0.0, allow_inf_nan=False)]
 
 FASTEST_SPEED = 3.0
@@ -63,7 +64,7 @@ class BrushConfig(_Frozen):
 
 
 class FanConfig(_Frozen):
-    """The fan: suction, energy and noise by its duty, 0..1."""
+    """The fan: suction, energy (W) and noise (dB(A) at 1 m) by its duty, 0..1."""
 
     pickup: Ratio = 0.83
     duty: Ratio = 0.60
@@ -106,7 +107,7 @@ class LidarConfig(_Frozen):
 
 
 class WheelsConfig(_Frozen):
-    """Wheel encoders, and how wheels slip: shares of the way."""
+    """Wheel encoders, and how wheels slip: shares of the way, and what varies, m/sqrt(m)."""
 
     counts_per_turn: Positive = 508.8
     scale_error: NotNegative = 0.001
@@ -117,7 +118,7 @@ class WheelsConfig(_Frozen):
 
 
 class GyroConfig(_Frozen):
-    """The gyro about the vertical and the accelerometer ahead: rad/s, m/s2."""
+    """The gyro about the vertical and the accelerometer ahead: rad/s, m/s2; walk rad/s/sqrt(s)."""
 
     noise: NotNegative = 0.0015
     bias: NotNegative = 0.0005
@@ -129,7 +130,7 @@ class GyroConfig(_Frozen):
 class CliffConfig(_Frozen):
     """Four cliff sensors under the front rim, left to right; degrees and m."""
 
-    angles: tuple[float, float, float, float] = (60.0, 15.0, -15.0, -60.0)
+    angles: tuple[Degrees, Degrees, Degrees, Degrees] = (60.0, 15.0, -15.0, -60.0)
     radius: Positive = 0.155
 
 
@@ -145,10 +146,10 @@ class StationConfig(_Frozen):
 
 
 class DirtSensorConfig(_Frozen):
-    """The dirt sensor in the intake: it counts grains."""
+    """The dirt sensor in the intake: it counts grains, ug each, up to ``most`` per second."""
 
     grain: Positive = 50.0
-    most: Positive = 2550.0
+    most: Annotated[float, Field(gt=0.0, le=65535.0)] = 2550.0
 
 
 class CameraConfig(_Frozen):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import threading
+import time
 
 import numpy as np
 import rospy
@@ -11,6 +12,7 @@ from roomba_robot.srv import TurnCamera, TurnCameraRequest, TurnCameraResponse
 from sensor_msgs.msg import CameraInfo, CompressedImage, Image
 
 from roomba.config import CameraConfig
+from roomba.errors import RoombaError
 from roomba.world.camera import Camera, Scene
 from roomba.world.simulator import Simulator
 from roomba_ros.convert import image_message
@@ -29,7 +31,8 @@ class CameraTopics:
     Publishes, 5 Hz of wall time while somebody listens: ``camera/image_raw`` (rgb8),
     ``camera/image_raw/compressed`` (JPEG), ``camera/depth/image_raw`` (32FC1, m),
     ``camera/camera_info`` and ``camera/depth/camera_info``, looking straight ahead.
-    Services: ``camera/capture`` (TurnCamera: a smooth picture, exactly at the angle).
+    Services: ``camera/capture`` (TurnCamera: a smooth picture, exactly at the angle; its frame is
+    that of the camera looking ahead).
     """
 
     def __init__(self, simulator: Simulator, config: CameraConfig, lock: threading.Lock) -> None:
@@ -58,12 +61,14 @@ class CameraTopics:
         self._stamp = now
 
     def _stream(self) -> None:
-        ended = threading.Event()
         while not told_to_end():
-            ended.wait(_PERIOD)
+            time.sleep(_PERIOD)
             pictures = self._image, self._compressed, self._depth
             if any(publisher.get_num_connections() for publisher in (*pictures, *self._infos)):
-                self._tell()
+                try:
+                    self._tell()
+                except (RoombaError, rospy.ROSException) as error:
+                    rospy.logwarn_throttle(10.0, "no picture for the stream: %s", error)
 
     def _tell(self) -> None:
         # Made for the first who looks: it needs some megabytes.

@@ -11,6 +11,7 @@ from geometry_msgs.msg import PoseStamped, Quaternion, TransformStamped
 from geometry_msgs.msg import Twist as TwistMessage
 from nav_msgs.msg import OccupancyGrid, Odometry, Path
 from numpy.typing import NDArray
+from roomba_robot.msg import Cliff
 from sensor_msgs.msg import Image
 from std_msgs.msg import Header
 
@@ -54,6 +55,14 @@ def twist_message(twist: Twist) -> TwistMessage:
 def pose_of_odometry(message: Odometry) -> Pose:
     """Return the planar pose of an odometry message, in its header's frame."""
     return _planar(message.pose.pose)
+
+
+def cliff_of(message: Cliff) -> tuple[bool, bool]:
+    """Return whether there is no floor on the left, on the right."""
+    return (
+        message.is_cliff_left or message.is_cliff_front_left,
+        message.is_cliff_right or message.is_cliff_front_right,
+    )
 
 
 def odometry_message(

@@ -30,6 +30,9 @@ from roomba_ros.convert import header
 
 WHEEL_JOINTS = ("wheel_left_joint", "wheel_right_joint")
 _JPEG_QUALITY = 85
+_GRAVITY = 9.80665
+_NOT_MEASURED = 1e6
+"""A variance that nobody will take for a measurement."""
 _UNKNOWN = -1.0
 """In the first element of a covariance: there is no such measurement."""
 
@@ -59,9 +62,13 @@ def imu_message(now: float, seen: Observation, config: GyroConfig, frame_id: str
     message.orientation.w = 1.0
     message.orientation_covariance[0] = _UNKNOWN
     message.angular_velocity.z = seen.angular_velocity
-    message.angular_velocity_covariance[8] = config.noise**2
+    # The floor is level: about the other axes nothing turns. Sideways is not measured.
+    for axis in (0, 4, 8):
+        message.angular_velocity_covariance[axis] = config.noise**2
     message.linear_acceleration.x = seen.acceleration
-    message.linear_acceleration_covariance[0] = config.acceleration_noise**2
+    message.linear_acceleration.z = _GRAVITY
+    for axis, variance in ((0, config.acceleration_noise**2), (4, _NOT_MEASURED), (8, 0.01)):
+        message.linear_acceleration_covariance[axis] = variance
     return message
 
 

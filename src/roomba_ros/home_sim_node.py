@@ -94,14 +94,17 @@ class HomeSimNode:
             self._tick()
 
     def _tick(self) -> None:
-        self._simulator.max_speed = self._parameters.refresh().robot_max_speed
+        max_speed = self._parameters.refresh().robot_max_speed
         with self._lock:
+            self._simulator.max_speed = max_speed
             for _ in range(STEPS_PER_TICK):
                 self._simulator.advance(self._fresh_command(), STEP, 1)
             observation = self._simulator.observe()
             self._clock += TICK_NANOSECONDS
+            now = self._now()
+            self._camera.set_time(now)
         self._ticks += 1
-        self._publish(observation)
+        self._publish(now, observation)
 
     def _fresh_command(self) -> Twist:
         self._command_age += STEP
@@ -109,8 +112,7 @@ class HomeSimNode:
             self._command = Twist()
         return self._command
 
-    def _publish(self, observation: Observation) -> None:
-        now = self._now()
+    def _publish(self, now: float, observation: Observation) -> None:
         if self._owns_clock:
             self._clock_publisher.publish(rospy.Time(nsecs=self._clock))
         odometry = observation.odometry
@@ -123,7 +125,6 @@ class HomeSimNode:
             [transform_message(now, odometry, self._odom_frame, self._base_frame)]
         )
         self._sensors.tell(now, self._ticks, observation)
-        self._camera.set_time(now)
 
     def _now(self) -> float:
         """Return the time for stamps, s: that of the clock, whoever owns it."""
@@ -131,7 +132,7 @@ class HomeSimNode:
 
     def _make_simulator(self) -> Simulator:
         directory = Path(rospy.get_param("~homes_directory", str(package_folder() / "homes")))
-        home = load_home(str(rospy.get_param("~home", "flat")), directory)
+        home = load_home(str(rospy.get_param("~home", "flat")), directory, self._config.body)
         seed = rospy.get_param("~seed", 0)
         if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
             raise ConfigError(
@@ -185,7 +186,8 @@ class HomeSimNode:
         if not twist.is_finite:
             rospy.logwarn("cmd_vel_out refused: expected finite velocities, got %s", twist)
             return
-        self._command, self._command_age = twist, 0.0
+        with self._lock:
+            self._command, self._command_age = twist, 0.0
 
     def _on_power(self, message: Float32, motor: str) -> None:
         try:

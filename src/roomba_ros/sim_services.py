@@ -50,6 +50,7 @@ class SimServices:
     def _on_fault(self, request: InjectFaultRequest) -> InjectFaultResponse:
         others: dict[str, Callable[[InjectFaultRequest], str]] = {
             "obstacle": self._place_obstacle,
+            "moved_chair": self._place_chair,
             "no_obstacles": self._remove_obstacles,
             "put": self._put,
         }
@@ -66,7 +67,7 @@ class SimServices:
 
     def _inject(self, request: InjectFaultRequest) -> str:
         if request.fault not in FAULTS:
-            known = ", ".join([*FAULTS, "obstacle", "no_obstacles", "put"])
+            known = ", ".join([*FAULTS, "obstacle", "moved_chair", "no_obstacles", "put"])
             raise ValueError(f"expected a fault of: {known}; got {request.fault!r}")
         for fault in FAULTS[request.fault]:
             self._simulator.inject(fault, request.value)
@@ -75,6 +76,10 @@ class SimServices:
     def _place_obstacle(self, request: InjectFaultRequest) -> str:
         self._simulator.place_obstacle(request.x, request.y, request.value)
         return f"a thing of {request.value:g} m stands at ({request.x:.2f}, {request.y:.2f})"
+
+    def _place_chair(self, request: InjectFaultRequest) -> str:
+        self._simulator.place_chair(Pose(request.x, request.y, request.theta))
+        return f"a chair that no map shows stands at ({request.x:.2f}, {request.y:.2f})"
 
     def _remove_obstacles(self, request: InjectFaultRequest) -> str:
         self._simulator.remove_obstacles()

@@ -11,7 +11,7 @@ from roomba_robot.msg import Bumper, Cliff, WheelDrop
 from std_msgs.msg import Float32
 
 from roomba.control.speed_loop import Hold, SpeedLoop
-from roomba_ros.convert import twist_message, twist_of
+from roomba_ros.convert import cliff_of, twist_message, twist_of
 from roomba_ros.node import run_node
 from roomba_ros.parameters import LiveSeedParameters, read_robot_config
 
@@ -89,20 +89,25 @@ class SpeedPubNode:
             rospy.logwarn("change_speed refused: %s", error)
 
     def _on_bumper(self, message: Bumper) -> None:
+        pressed = message.is_left_pressed or message.is_right_pressed
         with self._lock:
-            self._loop.set_bumper(message.is_left_pressed or message.is_right_pressed)
+            self._loop.set_bumper(pressed)
+        if pressed:
+            self._tell_drive(rospy.get_time())
 
     def _on_cliff(self, message: Cliff) -> None:
-        front = message.is_cliff_front_left or message.is_cliff_front_right
-        seen = front or message.is_cliff_left or message.is_cliff_right
+        seen = any(cliff_of(message))
         with self._lock:
             self._loop.set_cliff(seen)
         if seen:
             self._tell_drive(rospy.get_time())
 
     def _on_wheel_drop(self, message: WheelDrop) -> None:
+        dropped = message.is_left_dropped or message.is_right_dropped
         with self._lock:
-            self._loop.set_wheel_drop(message.is_left_dropped or message.is_right_dropped)
+            self._loop.set_wheel_drop(dropped)
+        if dropped:
+            self._tell_drive(rospy.get_time())
 
     def _on_odometry(self, message: Odometry) -> None:
         self._speed = abs(twist_of(message.twist.twist).linear)

@@ -30,7 +30,7 @@ from roomba.mission.unknown_things import UnknownThings
 from roomba.mission.walk import Sensed, Walk, WalkState, expected_duration, feedback_period
 from roomba.planning.path import PathPlanner
 from roomba_ros.alone import refuse_second
-from roomba_ros.convert import map_of, path_message, pose_of, twist_of
+from roomba_ros.convert import cliff_of, map_of, path_message, pose_of, twist_of
 from roomba_ros.node import require_master, run_node
 from roomba_ros.parameters import LiveSeedParameters, read_robot_config
 
@@ -270,10 +270,7 @@ class WalkToPointActionServer:
         self._bumper = (message.is_left_pressed, message.is_right_pressed)
 
     def _on_cliff(self, message: Cliff) -> None:
-        self._cliff = (
-            message.is_cliff_left or message.is_cliff_front_left,
-            message.is_cliff_right or message.is_cliff_front_right,
-        )
+        self._cliff = cliff_of(message)
 
 
 def _in_map(message: PoseStamped) -> Pose:

@@ -189,6 +189,9 @@ def test_what_was_put_in_the_way_is_seen_and_felt(graph: RosGraph) -> None:
     bumper = robot.until("/bumper", Bumper, lambda bumper: bumper.is_left_pressed)
     assert bumper.is_right_pressed
     assert HazardDetection.BUMP in robot.hazards()
+    # A chair beside it: its legs are in the scan, two to the left ahead and two farther.
+    assert robot.inject("moved_chair", x=5.4, y=6.0).success
+    robot.until("/scan", LaserScan, lambda scan: min(scan.ranges[45:90]) < 1.0)
     assert robot.inject("no_obstacles").success
     robot.until("/bumper", Bumper, lambda bumper: not bumper.is_left_pressed)
 

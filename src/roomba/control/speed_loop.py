@@ -21,12 +21,14 @@ class Hold(Enum):
     SPEED_ZERO = "the speed wanted is 0"
     BUMPER = "the bumper is pressed"
     CLIFF = "there is no floor ahead"
-    """It backs away until there is, whatever was asked for."""
+    """It backs away until there is, whatever was asked for, but not for ever."""
     WHEEL_DROP = "a wheel hangs in the air"
 
 
 BACKING_SPEED = 0.1
 """m/s; how fast it backs away from a cliff."""
+BACKING_TIME = 2.5
+"""s; then it stands: nobody looks behind, and a sensor may be dirty."""
 
 
 class SpeedLoop:
@@ -45,6 +47,7 @@ class SpeedLoop:
         self._commanded = 0.0
         self._bumper_pressed = False
         self._sees_cliff = False
+        self._backs_since: float | None = None
         self._wheel_hangs = False
 
     @property
@@ -76,6 +79,8 @@ class SpeedLoop:
     def set_cliff(self, seen: bool) -> None:
         """Tell whether a cliff sensor sees no floor."""
         self._sees_cliff = seen
+        if not seen:
+            self._backs_since = None
 
     def set_wheel_drop(self, dropped: bool) -> None:
         """Tell whether a wheel hangs in the air."""
@@ -91,11 +96,18 @@ class SpeedLoop:
         if self._wheel_hangs:
             return Twist(), Hold.WHEEL_DROP
         if self._sees_cliff:
-            return Twist(-min(BACKING_SPEED, self.speed_limit), 0.0), Hold.CLIFF
+            return self._back_away(now), Hold.CLIFF
         limited = self._within_limit(command)
         if self._bumper_pressed and limited.linear > 0.0:
             return Twist(0.0, limited.angular), Hold.BUMPER
         return limited, Hold.NONE
+
+    def _back_away(self, now: float) -> Twist:
+        if self._backs_since is None or now < self._backs_since:
+            self._backs_since = now
+        if now - self._backs_since > BACKING_TIME:
+            return Twist()
+        return Twist(-min(BACKING_SPEED, self.speed_limit), 0.0)
 
     def _fresh_command(self, now: float) -> Twist | None:
         if now < self._commanded:

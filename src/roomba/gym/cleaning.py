@@ -63,6 +63,10 @@ class Cleaning:
         self.floor = Floor.of(home, self.fleet.config)
         dirt = int(self.fleet.dirt(0).micrograms[self.floor.reachable].sum(dtype=np.int64))
         capacity = self.fleet.config.brush.bin_capacity * MICROGRAMS_PER_GRAM
+        if dirt == 0:
+            raise HomeError(
+                f"home {home.name}: expected dirt that can be reached, found none; give it sources"
+            )
         self.enough = min(CLEAN * dirt, math.floor(capacity))
         self._coverage = Coverage(self.floor, robots)
         self._full = np.array([task.max_speed, self.fleet.config.body.max_angular_speed])

@@ -17,7 +17,7 @@ from roomba.world.home import Home
 MICROGRAMS_PER_GRAM: Final = 1_000_000
 FINEST_NEEDED: Final = 0.05
 """m; the dirt's cells are not coarser than twice this, however coarse the home's map."""
-_FULL_CELL: Final = 2_000_000_000
+FULL_CELL: Final = 2_000_000_000
 _SPREAD: Final = 3.0
 """Dirt falls within so many standard deviations of its source."""
 
@@ -67,11 +67,6 @@ class DirtField:
         per_cell = MICROGRAMS_PER_GRAM * self.frame.resolution**2
         return (self.micrograms / per_cell).astype(np.float32)
 
-    def is_floor(self, x: float, y: float) -> bool:
-        """Whether dirt can lie at a point."""
-        row, column = self.frame.cell_of(x, y)
-        return self.frame.contains(x, y) and bool(self.floor[row, column])
-
     def spread(self, x: float, y: float, radius: float, grams: float) -> int:
         """Let ``grams`` fall around a point as a Gaussian of standard deviation ``radius``, m.
 
@@ -90,11 +85,11 @@ class DirtField:
         window = self._window(x, y, max(_SPREAD * radius, self.frame.resolution))
         weights = self._weights(window, x, y, radius)
         total = round(grams * MICROGRAMS_PER_GRAM)
-        if total > _FULL_CELL * weights.size:
+        if total > FULL_CELL * weights.size:
             raise ValueError(f"{grams} g are more than the floor within {_SPREAD * radius} m holds")
         shares = _in_whole_parts(weights, total)
         patch = self.micrograms[window]
-        if shares.max(initial=0) + int(patch.max(initial=0)) > _FULL_CELL:
+        if shares.max(initial=0) + int(patch.max(initial=0)) > FULL_CELL:
             raise ValueError(
                 f"{grams} g within {radius} m are more than the floor holds; spread it wider"
             )

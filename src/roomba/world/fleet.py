@@ -139,6 +139,7 @@ class Fleet:
         robots = slice(row["robots_at"], row["robots_end"])
         things = slice(row["things_at"], row["things_end"])
         count = int(row["robots_end"] - row["robots_at"])
+        starts = starts_of([home], [seed], count, self.config.body.radius)
         fresh = first_state(
             self._layout,
             self._distinct,
@@ -161,7 +162,7 @@ class Fleet:
         state.solid.things[things] = fresh.solid.things
         for name in ("row", "last_row"):
             state.solid.things[name][things] += tracks_at
-        self.poses[robots] = starts_of([home], [seed], count, self.config.body.radius)
+        self.poses[robots] = starts
         self.seeds = (*self.seeds[:world], seed, *self.seeds[world + 1 :])
 
     def dirt(self, world: int) -> DirtField:
@@ -182,25 +183,28 @@ class Fleet:
         discs = self._state.solid.discs[row["discs_at"] : row["discs_end"]]
         return np.stack([discs[name] for name in ("x", "y", "radius")], axis=1)
 
-    def put_disc(self, world: int, x: float, y: float, radius: float) -> None:
-        """Stand a round thing on the floor of a world.
+    def put_discs(self, world: int, discs: NDArray[np.float64]) -> None:
+        """Stand round things on the floor of a world: float64 [discs, 3], x, y and radius, m.
 
-        Raises ValueError where a robot stands, for numbers that make no sense, and for more than
-        MOST_DISCS things.
+        Raises ValueError, and puts none of them, where a robot stands, for numbers that make no
+        sense, and for more than MOST_DISCS things in all.
         """
-        if not all(map(math.isfinite, (x, y, radius))) or radius <= 0.0:
-            raise ValueError(f"expected a place and a radius above 0 m, got {x}, {y}, {radius}")
+        if not np.isfinite(discs).all() or (discs[:, 2] <= 0.0).any():
+            raise ValueError(f"expected places and radii above 0 m, got {discs.tolist()}")
         row = self.worlds[world]
         for robot_x, robot_y, _ in self.poses[row["robots_at"] : row["robots_end"]].tolist():
-            if math.hypot(x - robot_x, y - robot_y) < radius + self.config.body.radius:
+            away = np.hypot(discs[:, 0] - robot_x, discs[:, 1] - robot_y)
+            if (away < discs[:, 2] + self.config.body.radius).any():
                 raise ValueError(
                     f"the robot itself stands at ({robot_x:.2f}, {robot_y:.2f}); choose another "
                     "place"
                 )
-        if row["discs_end"] - row["discs_at"] == MOST_DISCS:
+        first, last = int(row["discs_end"]), int(row["discs_end"]) + len(discs)
+        if last - row["discs_at"] > MOST_DISCS:
             raise ValueError(f"expected at most {MOST_DISCS} things; remove some")
-        self._state.solid.discs[row["discs_end"]] = x, y, radius
-        row["discs_end"] += 1
+        for column, name in enumerate(("x", "y", "radius")):
+            self._state.solid.discs[name][first:last] = discs[:, column]
+        row["discs_end"] = last
 
     def remove_discs(self, world: int) -> None:
         """Take all round things out of a world."""
@@ -256,6 +260,7 @@ class Fleet:
     def limit_speed(self, speed: float) -> None:
         """Set what all drives do at most, m/s; raises ValueError if it is not above 0."""
         _check_speed(speed)
+        self._max_speed = speed
         self.robots["max_speed"] = speed
 
     def put(self, robot: int, pose: Pose) -> None:

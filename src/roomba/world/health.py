@@ -54,10 +54,10 @@ def health_of(
 def _battery(seen: Observation) -> PartHealth:
     battery = seen.battery
     level, message = Level.OK, "charging" if battery.is_charging else "ok"
-    if battery.temperature > HOT_BATTERY:
-        level, message = Level.WARN, "hot: let it cool down"
-    elif not battery.is_docked and battery.level < EMPTY_BATTERY:
+    if not battery.is_docked and battery.level < EMPTY_BATTERY:
         level, message = Level.ERROR, "empty: carry the robot to its station"
+    elif battery.temperature > HOT_BATTERY:
+        level, message = Level.WARN, "hot: let it cool down"
     elif not battery.is_docked and battery.level < LOW_BATTERY:
         level, message = Level.WARN, "low: the robot should go home"
     values = {
@@ -80,10 +80,10 @@ def _drive(seen: Observation) -> PartHealth:
 
 
 def _lidar(ranges: NDArray[np.float32]) -> PartHealth:
-    misses = float(np.mean(~np.isfinite(ranges)))
+    misses = float(np.mean(np.isposinf(ranges)))
     level, message = Level.OK, "ok"
     if misses == 1.0:
-        level, message = Level.ERROR, "no beam comes back: look what covers it"
+        level, message = Level.ERROR, "no beam comes back: look what covers it, if there are walls"
     elif misses > MOST_MISSES:
         level, message = Level.WARN, "many beams do not come back: clean it"
     return PartHealth("lidar", level, message, {"misses (0..1)": f"{misses:.3f}"})

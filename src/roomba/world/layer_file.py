@@ -126,7 +126,7 @@ class DirtSourceEntry(_Entry):
     y: Number
     radius: Length
     amount: Amount = 0.0
-    rate: Amount = 0.0
+    rate: Annotated[float, Field(ge=0.0, le=10_000.0)] = 0.0
 
 
 class PlaceEntry(_Entry):

@@ -9,6 +9,8 @@ from roomba.config import BatteryConfig, BrushConfig, FanConfig
 
 CELLS = 4
 """In series, as in a pack of 14.4 V."""
+STANDING_NOISE = 20.0
+"""dB(A) of a robot that stands: a quiet room."""
 _DRIVING_NOISE = 45.0
 """dB(A) of the wheels alone."""
 
@@ -74,7 +76,7 @@ def open_circuit_voltage(level: float) -> float:
 
 
 def noise_level(brush: BrushConfig, fan: FanConfig, duty: tuple[float, float]) -> float:
-    """Return how loud the robot is, dB(A) at 1 m, at the duty of brush and fan, 0..1.
+    """Return how loud a robot that drives is, dB(A) at 1 m, at the duty of brush and fan, 0..1.
 
     Powers of sound add up; that of a fan goes with the fifth power of its speed (fan laws).
     """

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +20,7 @@ from roomba.world.engine.arrays import Fault, Infrared
 from roomba.world.engine.brush_kernels import amount_under_disc
 from roomba.world.fleet import Fleet
 from roomba.world.home import Home
-from roomba.world.power import BatteryState, battery_state, noise_level
+from roomba.world.power import STANDING_NOISE, BatteryState, battery_state, noise_level
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,6 +100,12 @@ class Observation:
     grains: float
     brush_current: float
     scans: int
+
+
+_CHAIR: Final = 0.40
+"""m; between the middles of a chair's legs."""
+_LEG: Final = 0.02
+"""m; radius of a leg."""
 
 
 class Simulator:
@@ -266,16 +273,27 @@ class Simulator:
         """How loud it is now, dB(A) at 1 m."""
         now = self.numbers
         stands = now["linear"] == 0.0 and now["angular"] == 0.0
-        duty = (0.0, 0.0) if stands else self.duty
-        return noise_level(self.config.brush, self.config.fan, duty)
+        if stands:
+            return STANDING_NOISE
+        return noise_level(self.config.brush, self.config.fan, self.duty)
 
     def spill(self, x: float, y: float, radius: float, grams: float) -> None:
         """Spill crumbs around a point of the map frame; raises ValueError as DirtField.spread."""
         self._fleet.worlds["brought_in"] += self.dirt.spread(x, y, radius, grams)
 
     def place_obstacle(self, x: float, y: float, radius: float) -> None:
-        """Stand a round thing on the floor that no map knows; ValueError as Fleet.put_disc."""
-        self._fleet.put_disc(0, x, y, radius)
+        """Stand a round thing on the floor that no map knows; ValueError as Fleet.put_discs."""
+        self._fleet.put_discs(0, np.array([[x, y, radius]]))
+
+    def place_chair(self, pose: Pose) -> None:
+        """Stand a chair's four legs on the floor around a pose; ValueError as Fleet.put_discs."""
+        half = 0.5 * _CHAIR
+        corners = [
+            pose.compose(Pose(ahead, aside, 0.0))
+            for ahead in (-half, half)
+            for aside in (-half, half)
+        ]
+        self._fleet.put_discs(0, np.array([[leg.x, leg.y, _LEG] for leg in corners]))
 
     def remove_obstacles(self) -> None:
         """Take all round things away."""

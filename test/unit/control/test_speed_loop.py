@@ -83,6 +83,19 @@ def test_it_backs_away_from_a_cliff_whatever_was_asked_for() -> None:
     assert speed_loop.tick(0.3) == (Twist(0.01, 0.0), Hold.NONE)
 
 
+def test_it_does_not_back_away_for_ever() -> None:
+    speed_loop = loop()
+    speed_loop.set_cliff(True)
+    for now in (0.0, 1.0, 2.4):
+        speed_loop.command(now, Twist(0.3, 0.0))
+        assert speed_loop.tick(now)[0].linear < 0.0
+    speed_loop.command(2.6, Twist(0.3, 0.0))
+    assert speed_loop.tick(2.6) == (Twist(), Hold.CLIFF)
+    speed_loop.set_cliff(False)
+    speed_loop.set_cliff(True)
+    assert speed_loop.tick(2.7)[0].linear < 0.0
+
+
 def test_without_a_command_it_stands_at_a_cliff_too() -> None:
     speed_loop = loop()
     speed_loop.set_cliff(True)

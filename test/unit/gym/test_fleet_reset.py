@@ -17,7 +17,7 @@ def test_a_reset_world_is_as_new(robots: int) -> None:
     homes = [family, flat, family]
     new = Fleet(homes, CONFIG, robots_per_home=robots, seeds=[1, 2, 3])
     used = Fleet(homes, CONFIG, robots_per_home=robots, seeds=[7, 8, 9])
-    used.put_disc(0, 2.0, 1.0, 0.05)
+    used.put_discs(0, np.array([[2.0, 1.0, 0.05]]))
     twists = np.tile([0.3, 0.4], (3 * robots, 1))
     used.step(twists, 0.05, 600)
     for world, seed in enumerate((1, 2, 3)):

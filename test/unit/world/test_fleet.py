@@ -167,7 +167,7 @@ def test_dirt_things_and_discs_are_those_of_their_world() -> None:
     before = fleet.dirt(2).total
     fleet.dirt(0).spread(2.0, 2.0, 0.2, 5.0)
     assert fleet.dirt(2).total == before
-    fleet.put_disc(1, 1.5, 3.0, 0.1)
+    fleet.put_discs(1, np.array([[1.5, 3.0, 0.1]]))
     assert [len(fleet.discs(world)) for world in range(4)] == [0, 1, 0, 0]
     assert fleet.discs(1).tolist() == [[1.5, 3.0, 0.1]]
     fleet.inject(2, Fault.LIFTED, 1.0)
@@ -177,12 +177,12 @@ def test_dirt_things_and_discs_are_those_of_their_world() -> None:
 def test_a_world_holds_so_many_discs_and_gives_them_back() -> None:
     fleet = Fleet([room_home(), room_home()])
     for number in range(MOST_DISCS):
-        fleet.put_disc(0, 2.0 + 0.1 * number, 2.0, 0.05)
+        fleet.put_discs(0, np.array([[2.0 + 0.1 * number, 2.0, 0.05]]))
     with pytest.raises(ValueError, match="at most 16 things"):
-        fleet.put_disc(0, 2.0, 3.0, 0.05)
+        fleet.put_discs(0, np.array([[2.0, 3.0, 0.05]]))
     assert len(fleet.discs(1)) == 0
     fleet.remove_discs(0)
-    fleet.put_disc(0, 2.0, 3.0, 0.05)
+    fleet.put_discs(0, np.array([[2.0, 3.0, 0.05]]))
     assert fleet.discs(0).tolist() == [[2.0, 3.0, 0.05]]
 
 
@@ -201,8 +201,8 @@ def test_a_world_holds_so_many_discs_and_gives_them_back() -> None:
 def test_discs_that_make_no_sense_are_refused(disc: tuple[float, float, float]) -> None:
     fleet = Fleet([room_home()])
     before = fleet.digest()
-    with pytest.raises(ValueError, match=r"expected a place|the robot itself"):
-        fleet.put_disc(0, *disc)
+    with pytest.raises(ValueError, match=r"expected places|the robot itself"):
+        fleet.put_discs(0, np.array([disc]))
     assert fleet.digest() == before
 
 
@@ -282,7 +282,7 @@ def test_a_world_that_begins_anew_is_as_in_a_new_fleet_and_others_go_on() -> Non
     twists = random_twists(8, 4, 9)
     run(fleet, twists)
     run(untouched, twists)
-    fleet.put_disc(3, 0.0, -1.0, 0.1)
+    fleet.put_discs(3, np.array([[0.0, -1.0, 0.1]]))
     for world in (2, 3):
         fleet.reset_world(world, 11 + world)
     assert fleet.seeds == (1, 2, 13, 14)

@@ -80,6 +80,7 @@ BOX: Final = np.dtype(
         ("theta", "f8"),
         ("half_length", "f8"),
         ("half_width", "f8"),
+        ("bottom", "f8"),  # above the floor
         ("top", "f8"),
     ]
 )

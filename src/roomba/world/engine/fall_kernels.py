@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import Final
 
+from roomba.world.dirt import FULL_CELL
 from roomba.world.engine.arrays import Dirt, Row
 from roomba.world.engine.compilation import part
 from roomba.world.engine.random_kernels import next_exponential, next_uniform
@@ -13,7 +14,6 @@ CRUMB: Final = 2000
 """Micrograms; what falls at once."""
 _TRIES: Final = 64
 """How often a place on the floor is looked for before a crumb counts as fallen on the furniture."""
-_FULL_CELL: Final = 2_000_000_000
 
 
 @part
@@ -46,7 +46,7 @@ def drop_crumb(dirt: Dirt, home: Row, world: Row, source: Row) -> None:
         cell = row * columns + column
         if not dirt.floors[home.floors_at + cell]:
             continue
-        if dirt.micrograms[world.dirt_at + cell] <= _FULL_CELL - CRUMB:
+        if dirt.micrograms[world.dirt_at + cell] <= FULL_CELL - CRUMB:
             dirt.micrograms[world.dirt_at + cell] += CRUMB
             world.brought_in += CRUMB
             return

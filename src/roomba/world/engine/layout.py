@@ -157,7 +157,7 @@ def _sources(home: Home) -> list[tuple[float, ...]]:
 def _boxes(thing: MovingThing, config: RobotConfig) -> list[tuple[float, ...]]:
     """Return the boxes of a thing that are low enough to stand in the robot's way."""
     return [
-        (box.x, box.y, box.theta, 0.5 * box.length, 0.5 * box.width, box.top)
+        (box.x, box.y, box.theta, 0.5 * box.length, 0.5 * box.width, box.bottom, box.top)
         for box in thing.boxes
         if box.bottom < config.body.height
     ]

@@ -86,7 +86,7 @@ def scan_things(
         cosine, sine = math.cos(thing.theta), math.sin(thing.theta)
         for index in range(thing.boxes_at, thing.boxes_end):
             box = solid.boxes[index]
-            if box.top > height:
+            if box.bottom <= height < box.top:
                 x = thing.x - body.x + cosine * box.x - sine * box.y
                 y = thing.y - body.y + sine * box.x + cosine * box.y
                 scan_box(fan, beams, box, x, y, thing.theta + box.theta, theta)
