@@ -18,6 +18,8 @@ FARTHEST_LOOK: Final = 0.5
 """m; longer ways are looked at part by part."""
 CONTACT_ERROR: Final = 1e-7
 """m; how exactly the place of contact is found."""
+_TRIES: Final = 60
+"""False position needs two or three of them."""
 CONTACT_GAP: Final = 1e-3
 """m; a bumper stays pressed until what it touches is farther away than this."""
 BOTH_BUMPERS_ANGLE: Final = 0.3
@@ -187,6 +189,43 @@ def gap_at(
 
 
 @part
+def contact_share(
+    solid: Solid,
+    home: Row,
+    world: Row,
+    robot: int,
+    radius: float,
+    length: float,
+    turn: float,
+    least: float,
+    bounds: tuple[float, float, float, float],
+) -> float:
+    """Return the share of an arc where the gap falls below ``least``, m, never past it.
+
+    ``bounds``: a share before it and one past it, and how much the gap is above ``least`` at both.
+    By false position (the Illinois method): a disc that leans on a wall is there at once.
+    """
+    body = solid.robots[robot]
+    low, high, over_low, over_high = bounds
+    weight, last = over_low, 0
+    for _ in range(_TRIES):
+        if over_low <= CONTACT_ERROR or (high - low) * abs(length) <= CONTACT_ERROR:
+            break
+        middle = low + (high - low) * weight / (weight - over_high)
+        x, y = arc(body.x, body.y, body.theta, length * middle, turn * middle)
+        over = gap_at(solid, home, world, robot, radius, x, y, PROBE_STEP) - least
+        if over < 0.0:
+            high, over_high = middle, over
+            weight = 0.5 * weight if last < 0 else weight
+            last = -1
+        else:
+            low, over_low, weight = middle, over, over
+            over_high = 0.5 * over_high if last > 0 else over_high
+            last = 1
+    return low
+
+
+@part
 def free_share(
     solid: Solid,
     home: Row,
@@ -213,16 +252,10 @@ def free_share(
         step = min(1.0, done + max(gap - 1e-9, PROBE_STEP) / way)
         least = min(gap, 0.0)
         x, y = arc(body.x, body.y, body.theta, length * step, turn * step)
-        if gap_at(solid, home, world, robot, radius, x, y, PROBE_STEP) < least:
-            low, high = done, step
-            while (high - low) * way > CONTACT_ERROR:
-                middle = 0.5 * (low + high)
-                x, y = arc(body.x, body.y, body.theta, length * middle, turn * middle)
-                if gap_at(solid, home, world, robot, radius, x, y, PROBE_STEP) < least:
-                    high = middle
-                else:
-                    low = middle
-            return low
+        probed = gap_at(solid, home, world, robot, radius, x, y, PROBE_STEP)
+        if probed < least:
+            bounds = done, step, gap - least, probed - least
+            return contact_share(solid, home, world, robot, radius, length, turn, least, bounds)
         done = step
     return 1.0
 
