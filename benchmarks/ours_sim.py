@@ -1,7 +1,4 @@
-"""The simulator as the benchmarks use it: the one place to change when its interface does.
-
-``python -m benchmarks.ours_sim`` makes one robot and does its first step: what a start costs.
-"""
+"""The simulator as the benchmarks use it: the one place to change when its interface does."""
 
 from __future__ import annotations
 
@@ -12,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from benchmarks.floors import HOMES, Floor, free_poses
+from benchmarks.floors import Floor, free_poses
 from benchmarks.peers.arena import SPEED, TURNING_SPEED
 from benchmarks.peers.protocol import Work
 from roomba.config import LidarConfig, RobotConfig
@@ -20,7 +17,6 @@ from roomba.geometry import Pose
 from roomba.grid import FREE, OCCUPIED, OccupancyMap
 from roomba.world.fleet import Fleet
 from roomba.world.home import Home
-from roomba.world.layer import load_home
 from roomba.world.lidar import Lidar
 
 DT = 0.05
@@ -133,7 +129,3 @@ def _orders(robots: int) -> list[NDArray[np.float64]]:
     ways = random.choice([-1.0, 1.0], (_TWISTS, robots))
     linear, angular = np.where(turns, 0.0, SPEED), np.where(turns, ways * TURNING_SPEED, 0.0)
     return list(np.ascontiguousarray(np.stack([linear, angular], axis=2)))
-
-
-if __name__ == "__main__":
-    Fleet([load_home("apartment", HOMES)]).step(np.array([[SPEED, 0.0]]), DT)

@@ -132,7 +132,7 @@ def _start_rows() -> list[Record]:
         for state, aim in (("cold", _COLD_AIM), ("warm", _WARM_AIM)):
             started = time.perf_counter()
             done = subprocess.run(
-                [sys.executable, "-m", "benchmarks.ours_sim"],
+                [sys.executable, "-m", "benchmarks.start"],
                 cwd=REPOSITORY,
                 env=environment,
                 capture_output=True,
