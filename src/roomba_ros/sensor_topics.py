@@ -13,6 +13,7 @@ from sensor_msgs.msg import BatteryState, Imu, JointState, LaserScan
 from std_msgs.msg import Float32, UInt16
 
 from roomba.config import RobotConfig
+from roomba.world.engine.arrays import code_of
 from roomba.world.health import health_of
 from roomba.world.simulator import Observation, Simulator
 from roomba_ros.convert_sensors import (
@@ -129,7 +130,7 @@ class SensorTopics:
                 "ir_omni",
                 UInt16,
                 4,
-                lambda _, seen: UInt16(_IR_BASE + seen.infrared if seen.infrared else 0),
+                lambda _, seen: UInt16(code_of(seen.infrared)),
                 lambda seen: seen.infrared,
             ),
             _topic("dirt_raw", Float32, 2, lambda _, seen: Float32(seen.dirt_under)),
@@ -156,10 +157,6 @@ class SensorTopics:
             if self._scan.get_num_connections() > 0:
                 ranges = self._simulator.ranges
                 self._scan.publish(scan_message(now, ranges, self._config.lidar, self._laser))
-
-
-_IR_BASE = 160
-"""Create 2's station sends this plus the bits of its beams."""
 
 
 def _topic(

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from roomba.config import RobotConfig
 from roomba.pictures.drawing import draw_robot, drawn, empty_figure, show_plan
-from roomba.world.engine.arrays import Infrared
+from roomba.world.engine.arrays import Infrared, code_of
 from roomba.world.fleet import Fleet
 from roomba.world.home import Home
 
@@ -24,8 +24,6 @@ _COLOURS = {
     Infrared.RED | Infrared.GREEN: "#A9A2D6",
     Infrared.RED | Infrared.GREEN | Infrared.HALO: "#5B4FB3",
 }
-_CODE = 160
-"""What ``ir_omni`` adds to the beams."""
 _MARGIN = 0.25
 """m; shown around the reach of the beams."""
 
@@ -79,7 +77,7 @@ def _rows(area: tuple[float, float, float, float], spacing: float) -> NDArray[np
 
 def _label(kind: Infrared) -> str:
     names = [part.name.lower() for part in Infrared if part in kind and part.name]
-    return f"{_CODE + int(kind)}: {', '.join(reversed(names))}"
+    return f"{code_of(kind)}: {', '.join(reversed(names))}"
 
 
 def _beams(

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from enum import Enum
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -121,6 +122,10 @@ class DirtSource:
     radius: float
     amount: float
     rate: float
+
+
+LEAF_HEIGHT: Final = 2.03
+"""m; of a door's leaf, in a home that is not lower."""
 
 
 class MovingKind(Enum):

@@ -9,7 +9,16 @@ from typing import Final, TypeVar
 from roomba.geometry import Pose, wrap_angle
 from roomba.world.catalogue import FIXTURES
 from roomba.world.catalogue.parts import block
-from roomba.world.home import Box, Door, Furniture, Move, MovingKind, MovingThing, Script
+from roomba.world.home import (
+    LEAF_HEIGHT,
+    Box,
+    Door,
+    Furniture,
+    Move,
+    MovingKind,
+    MovingThing,
+    Script,
+)
 from roomba.world.layer_check import Checker
 from roomba.world.layer_file import Layer, MovingEntry
 from roomba.world.moving import DAY
@@ -17,8 +26,6 @@ from roomba.world.yaml_file import Location, suggestion
 
 _Part = TypeVar("_Part")
 
-LEAF_HEIGHT: Final = 2.03
-"""m; of a door's leaf, in a home that is not lower."""
 TURNING_SPEED: Final = 2.0
 """rad/s; of a person who turns on the spot at a corner of the path."""
 SHOE_TOP, LEG_TOP, SHOULDER, CROWN = 0.10, 0.85, 1.45, 1.72

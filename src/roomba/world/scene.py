@@ -13,6 +13,7 @@ from PIL import Image, ImageDraw
 from roomba.distance import distance_to_nearest
 from roomba.grid import UNKNOWN
 from roomba.world.crumbs import CRUMB_COLOURS, DUST, crumbs
+from roomba.world.engine.arrays import MOST_DISCS
 from roomba.world.home import Box, Home, MovingThing, Rectangle
 from roomba.world.materials import MATERIALS, Material
 from roomba.world.scene_arrays import (
@@ -29,7 +30,6 @@ from roomba.world.scene_doors import door_boxes
 from roomba.world.scene_light import WINDOW_KIND, lit
 from roomba.world.scene_moving import (
     DISC_MATERIAL,
-    MOST_DISCS,
     MovingBoxes,
     box_shapes,
     no_discs,

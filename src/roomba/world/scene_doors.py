@@ -7,12 +7,11 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.world.home import Box, Home, MovingKind
+from roomba.world.home import LEAF_HEIGHT, Box, Home, MovingKind
 
 FRAME_WIDTH = 0.06
 FRAME_PROUD = 0.015
 """m; how far a frame stands out of its wall."""
-DOOR_HEIGHT = 2.03
 
 
 def door_boxes(home: Home, walls: NDArray[np.bool_]) -> list[Box]:
@@ -30,7 +29,7 @@ def door_boxes(home: Home, walls: NDArray[np.bool_]) -> list[Box]:
         theta, length, thick = (0.0, size_x, size_y) if along_x else (math.pi / 2, size_y, size_x)
         cosine, sine = math.cos(theta), math.sin(theta)
         deep = thick + 2.0 * FRAME_PROUD
-        top = min(DOOR_HEIGHT, home.wall_height)
+        top = min(LEAF_HEIGHT, home.wall_height)
         for side in (-1.0, 1.0):
             # Half in the opening: a jamb is thin there, and wider where it covers the wall's edge.
             place = side * 0.5 * length

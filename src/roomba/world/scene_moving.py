@@ -10,10 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.errors import PictureError
+from roomba.world.engine.arrays import MOST_DISCS
 from roomba.world.home import Box, MovingThing
 
-MOST_DISCS = 16
-"""Round bodies that are shown at once."""
 DISC_MATERIAL = "station"
 X, Y, COSINE, SINE, HALF_LENGTH, HALF_WIDTH, BOTTOM, TOP = range(8)
 """Columns of the shapes of boxes: see :class:`roomba.world.scene_arrays.Boxes`."""

@@ -206,6 +206,11 @@ class Infrared(IntFlag):
     """The one to its left."""
 
 
+def code_of(seen: Infrared) -> int:
+    """Return what Create 2's receiver tells of beams: 160 and their bits, 0 for none."""
+    return 160 + int(seen) if seen else 0
+
+
 class Fault(Enum):
     """What can be wrong with a robot; the value is the name of the number in its row, 0..1."""
 

@@ -6,12 +6,12 @@ import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from roomba.config import RobotConfig
+from roomba.distance import distance_to_nearest
 from roomba.world.dirt import MICROGRAMS_PER_GRAM, DirtField
 from roomba.world.engine.arrays import (
     BOX,
@@ -28,8 +28,6 @@ from roomba.world.engine.fall_kernels import CRUMB
 from roomba.world.engine.lidar_edges import LidarEdges, lidar_edges
 from roomba.world.home import Home, MovingThing, cells_in
 
-FARTHEST: Final = 10
-"""Cells; room is not looked for beyond."""
 _SECONDS_PER_HOUR = 3600.0
 
 
@@ -96,27 +94,16 @@ def seen_by_lidar(home: Home) -> NDArray[np.bool_]:
 def room_around(solid: NDArray[np.bool_], resolution: float) -> NDArray[np.float32]:
     """Return for the middle of each cell a distance, m, within which nothing is solid.
 
-    Outside is solid; float32 [rows, columns], at most FARTHEST cells. With a and b the cells
-    between two squares along both axes, the middle of one is sqrt((a + 1/2)^2 + (b + 1/2)^2) from
-    the other or more, which is at least sqrt(a^2 + b^2) + 1/2: that is returned, for the nearest.
+    Outside is solid; float32 [rows, columns]. With a and b the cells between two squares along
+    both axes, the middle of one is sqrt((a + 1/2)^2 + (b + 1/2)^2) from the other or more, which is
+    at least sqrt(a^2 + b^2) + 1/2: that is returned, for the nearest.
     """
     # Squares that touch have no cell between them: grow what is solid by one cell all around.
     near = np.pad(solid, 1, constant_values=True)
     near = near[:-2] | near[1:-1] | near[2:]
     near = near[:, :-2] | near[:, 1:-1] | near[:, 2:]
-    padded = np.pad(np.where(near, 0, FARTHEST).astype(np.int16), FARTHEST)
-    along = padded.copy()
-    for shift in range(1, FARTHEST):
-        for shifted in (np.roll(padded, shift, axis=0), np.roll(padded, -shift, axis=0)):
-            np.minimum(along, np.where(shifted == 0, shift, FARTHEST), out=along, casting="unsafe")
-    squared = along.astype(np.int32) ** 2
-    nearest = squared.copy()
-    for shift in range(1, FARTHEST):
-        for shifted in (np.roll(squared, shift, axis=1), np.roll(squared, -shift, axis=1)):
-            np.minimum(nearest, shifted + shift**2, out=nearest)
-    inner = nearest[FARTHEST:-FARTHEST, FARTHEST:-FARTHEST]
-    room = np.where(near, 0.0, (np.sqrt(inner) + 0.5) * resolution)
-    return np.ascontiguousarray(np.minimum(room, FARTHEST * resolution).astype(np.float32))
+    room = np.where(near, 0.0, (distance_to_nearest(near) + 0.5) * resolution)
+    return room.astype(np.float32)
 
 
 def joined_edges(edges: Sequence[LidarEdges]) -> Edges:

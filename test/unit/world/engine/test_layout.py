@@ -12,9 +12,12 @@ from hypothesis import strategies as st
 from roomba.config import RobotConfig
 from roomba.geometry import Pose
 from roomba.world.engine.arrays import CARPET, DROP, FLOOR
-from roomba.world.engine.layout import FARTHEST, layout_of, room_around
+from roomba.world.engine.layout import layout_of, room_around
 
 SIZE = 0.05
+
+FARTHEST = 10
+"""Cells; so far room must be told at least."""
 
 
 @settings(max_examples=40)
