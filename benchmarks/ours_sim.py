@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,19 +38,21 @@ _LEAST_WAY = 0.05
 class Drive:
     """A fleet at work: ``robots`` with a home each, lidar at ``scan_rate`` Hz.
 
-    They drive straight on for a call, or turn on the spot for one, at random; so they bump.
+    They drive straight on for a call, or turn on the spot for one, at random; so they bump. Their
+    sensors are ideal, as those of all peers are, if not told otherwise.
     """
 
     robots: int = 1
     scan_rate: float = 10.0
     threads: int = 1
+    sensors: Literal["ideal", "noisy"] = "ideal"
 
     def work(self, home: Home) -> Work:
         """Return the work; units are steps of one robot."""
         floor = Floor(home.name, home.solid, home.frame)
         fleet = Fleet(
             [home] * self.robots,
-            config_of(self.scan_rate),
+            config_of(self.scan_rate, self.sensors),
             starts=free_poses(floor, self.robots, room=0.3),
             threads=self.threads,
         )
@@ -67,9 +70,9 @@ class Drive:
         return Work(work, {"way": _way(fleet, work)})
 
 
-def config_of(scan_rate: float) -> RobotConfig:
-    """Return the shipped robot with its lidar at another rate, Hz."""
-    return RobotConfig(lidar=LidarConfig(rate=scan_rate))
+def config_of(scan_rate: float, sensors: Literal["ideal", "noisy"]) -> RobotConfig:
+    """Return the shipped robot with its lidar at another rate, Hz, and such sensors."""
+    return RobotConfig(sensors=sensors, lidar=LidarConfig(rate=scan_rate))
 
 
 def scanning(floor: Floor, poses: NDArray[np.float64]) -> Work:

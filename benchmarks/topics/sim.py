@@ -52,6 +52,7 @@ def measure(bench: Bench) -> list[Record]:
                 gain(row, "mujoco", _OVER_MUJOCO),
                 gain(row, "ir-sim (boxes)", _OVER_IRSIM),
             ]
+    records.append(_noise_row(bench, home))
     bench.say("fleets")
     records += _fleet_rows(bench, home)
     records += _building_rows(bench)
@@ -79,6 +80,18 @@ def _beside_peers(
     ours, *peers = bench.compete(contestants)
     figures = tuple(peer.figure() for peer in peers)
     return _steps_row(f"apartment, 20 Hz steps, {when}, one core", ours, figures, aim)
+
+
+def _noise_row(bench: Bench, home: Home) -> Record:
+    """Return steps with all sensors' noise, and wheels that slip, beside the same without."""
+    ideal = Drive(robots=_TOGETHER)
+    noisy = replace(ideal, sensors="noisy")
+    with_noise, without = bench.compete(
+        [Local("ours", _maker(noisy, home)), Local("ours, ideal sensors", _maker(ideal, home))]
+    )
+    peer = PeerFigure("ours, ideal sensors", "", without.rate, without.error)
+    case = "apartment, 20 Hz steps, lidar at 10 Hz, one core, with noise"
+    return _steps_row(case, with_noise, (peer,))
 
 
 def _fleet_rows(bench: Bench, home: Home) -> list[Record]:

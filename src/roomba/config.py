@@ -163,6 +163,26 @@ class CameraConfig(_Frozen):
     max_pan: Positive = 30.0
 
 
+class LocalizationConfig(_Frozen):
+    """Knowing where the robot is: how much motion and scans are trusted, and when not at all.
+
+    Noises grow with the square root of the way (m) or turn (rad), deviations are standard ones.
+    """
+
+    way_noise: Positive = 0.02
+    side_noise: Positive = 0.005
+    wheel_turn_noise: Positive = 0.012
+    turn_noise: Positive = 0.01
+    gyro_drift: Positive = 0.001
+    beam_deviation: Positive = 0.06
+    known_deviation: Positive = 0.10
+    lost_deviation: Positive = 0.60
+    least_beams: Annotated[int, Field(ge=1)] = 30
+    scan_timeout: Positive = 0.5
+    search_timeout: Positive = 30.0
+    needed_evidence: Positive = 8.0
+
+
 class ControlConfig(_Frozen):
     """The position loop."""
 
@@ -191,10 +211,11 @@ class WalkConfig(_Frozen):
 class RobotConfig(_Frozen):
     """All of ``config/robot.yaml``; every part has the shipped file's values by default.
 
-    ``sensors``: "ideal" ones tell the truth, "noisy" ones have the errors given here.
+    ``sensors``: "noisy" ones have the errors given here, and wheels slip; "ideal" ones tell the
+    truth, and wheels slip by faults only.
     """
 
-    sensors: Literal["ideal", "noisy"] = "ideal"
+    sensors: Literal["ideal", "noisy"] = "noisy"
     body: BodyConfig = BodyConfig()
     brush: BrushConfig = BrushConfig()
     fan: FanConfig = FanConfig()
@@ -206,6 +227,7 @@ class RobotConfig(_Frozen):
     station: StationConfig = StationConfig()
     dirt_sensor: DirtSensorConfig = DirtSensorConfig()
     camera: CameraConfig = CameraConfig()
+    localization: LocalizationConfig = LocalizationConfig()
     control: ControlConfig = ControlConfig()
     walk: WalkConfig = WalkConfig()
 

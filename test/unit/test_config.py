@@ -13,6 +13,10 @@ def test_the_shipped_file_says_what_the_library_takes_without_a_file() -> None:
     assert load_robot_config(SHIPPED) == RobotConfig()
 
 
+def test_sensors_have_noise_unless_told_otherwise() -> None:
+    assert RobotConfig().sensors == "noisy"
+
+
 def test_every_value_of_the_shipped_file_has_a_reason_beside_it() -> None:
     lines = SHIPPED.read_text(encoding="utf-8").splitlines()
     values = [line for line in lines if line.startswith("  ")]

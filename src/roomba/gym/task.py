@@ -21,7 +21,7 @@ class Task:
 
     * ``home``: a name of the homes that come along, the path of a folder or map, or a Home.
     * ``config``: the robot; default: the shipped one. ``sensors``: "noisy" or "ideal"; default:
-      as ``config`` says, "noisy" without one.
+      as ``config`` says, which is "noisy" unless it says otherwise.
     * ``duration``: s of robot time after which an episode is truncated.
     * ``dt``: s; one step of the world. ``steps_per_action``: so many of them for each action.
     * ``max_speed``: m/s; what an action of 1 asks for. Turning goes up to the body's own limit.
@@ -60,7 +60,7 @@ class Task:
     @property
     def robot(self) -> RobotConfig:
         """The robot that does it."""
-        config = self.config or RobotConfig(sensors="noisy")
+        config = self.config or RobotConfig()
         if self.sensors is None:
             return config
         return config.model_copy(update={"sensors": self.sensors})

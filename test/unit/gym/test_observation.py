@@ -24,10 +24,9 @@ from roomba.world.home import DirtSource
 PARTS = (LIDAR, BUMPER, CLIFF, VELOCITY, GYRO, BATTERY, GRAINS, BIN, STATION)
 
 
-def environment() -> RoombaClean:
-    return RoombaClean(
-        home=room_home(sources=(DirtSource("dust", 2.5, 2.0, 3.0, 5.0, 0.0),)), sensors="ideal"
-    )
+def environment(sensors: str = "noisy") -> RoombaClean:
+    home = room_home(sources=(DirtSource("dust", 2.5, 2.0, 3.0, 5.0, 0.0),))
+    return RoombaClean(home=home, sensors=sensors)
 
 
 def test_the_parts_are_the_whole_observation() -> None:
@@ -61,7 +60,7 @@ def test_a_lidar_that_cannot_be_shared_out_is_refused() -> None:
 
 
 def test_driving_is_told_by_encoders_gyro_and_dirt_sensor() -> None:
-    robot = environment()
+    robot = environment("ideal")
     robot.reset(seed=0, options={"start": (1.0, 2.0, 0.0)})
     for _ in range(5):
         seen = robot.step(np.array([0.5, 0.25], np.float32))[0]

@@ -1,4 +1,5 @@
 import warnings
+from typing import Any
 
 import gymnasium
 import numpy as np
@@ -43,6 +44,22 @@ def test_the_same_seed_and_actions_give_the_same_observations(sensors: str) -> N
     assert not np.array_equal(seen[0][0], seen[0][1]), "each episode has a start of its own"
 
 
+@pytest.mark.parametrize(
+    ("arguments", "expected"),
+    [
+        ({}, "noisy"),
+        ({"config": RobotConfig(brush=BrushConfig(bin_capacity=1.0))}, "noisy"),
+        ({"config": RobotConfig(sensors="ideal")}, "ideal"),
+        ({"config": RobotConfig(sensors="ideal"), "sensors": "noisy"}, "noisy"),
+        ({"sensors": "ideal"}, "ideal"),
+    ],
+)
+def test_sensors_are_noisy_unless_the_robot_or_the_task_says_otherwise(
+    arguments: dict[str, Any], expected: str
+) -> None:
+    assert RoombaClean(home=dirty_room(), **arguments).task.robot.sensors == expected
+
+
 def test_another_seed_starts_elsewhere() -> None:
     environment = RoombaClean(home=dirty_room())
     starts = [environment.reset(seed=seed)[1]["pose"] for seed in range(8)]
@@ -50,7 +67,7 @@ def test_another_seed_starts_elsewhere() -> None:
 
 
 def test_the_options_say_where_to_start() -> None:
-    environment = RoombaClean(home=dirty_room(), sensors="ideal")
+    environment = RoombaClean(home=dirty_room())
     _, info = environment.reset(seed=1, options={"start": (3.0, 1.0, 0.5)})
     assert info["pose"] == pytest.approx((3.0, 1.0, 0.5))
     _, info = environment.reset(options={"at_station": True})
@@ -101,7 +118,7 @@ def test_standing_is_paid_for_and_brings_nothing() -> None:
 
 
 def test_the_floor_it_drives_over_counts_as_covered() -> None:
-    environment = RoombaClean(home=dirty_room(), sensors="ideal")
+    environment = RoombaClean(home=dirty_room())
     _, info = environment.reset(seed=1, options=EAST_WARD)
     at_start = info["covered"]
     for _ in range(25):
@@ -166,8 +183,8 @@ def test_a_picture_shows_where_the_robot_is() -> None:
 
 
 def test_observations_tell_nothing_that_the_sensors_do_not() -> None:
-    environment = RoombaClean(home=dirty_room(1.0), sensors="ideal")
+    environment = RoombaClean(home=dirty_room(1.0))
     little, _ = environment.reset(seed=2, options=EAST_WARD)
-    much, _ = RoombaClean(home=dirty_room(9.0), sensors="ideal").reset(seed=2, options=EAST_WARD)
+    much, _ = RoombaClean(home=dirty_room(9.0)).reset(seed=2, options=EAST_WARD)
     assert little.shape == (SIZE,)
     assert np.array_equal(little, much), "how much dirt lies about is not seen while standing"

@@ -57,7 +57,8 @@ def test_short_ways_arrive_too_and_never_above_the_top_speed(distance: float) ->
     assert math.dist(record.poses[-1, 1:3], (0.5, 0.5 + distance)) < 0.05
     times, points = record.poses[:, 0], record.poses[:, 1:3]
     for t, p, t2, p2 in zip(times, points, times[1:], points[1:], strict=False):
-        assert math.dist(p, p2) <= 0.5 * (t2 - t) + 1e-9
+        # Slip that varies by chance lets a wheel go a little farther than it turned, too.
+        assert math.dist(p, p2) <= 1.02 * 0.5 * (t2 - t)
 
 
 @pytest.mark.parametrize("further", [0.04, 0.06, 0.09])

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 from fixtures.rooms import room_home
-from fixtures.worlds import DT, drive
+from fixtures.worlds import DT, IDEAL, drive
 
 from roomba.config import RobotConfig
 from roomba.errors import HomeError
@@ -20,8 +20,8 @@ TRACK = CONFIG.body.wheel_separation
 WHEEL = 0.5 * CONFIG.body.wheel_diameter
 
 
-def robot() -> Simulator:
-    return Simulator(room_home(), start=Pose(1.0, 2.0, 0.0))
+def robot(config: RobotConfig = CONFIG) -> Simulator:
+    return Simulator(room_home(), config, start=Pose(1.0, 2.0, 0.0))
 
 
 @pytest.mark.parametrize("fault", Fault)
@@ -47,7 +47,7 @@ def test_values_that_make_no_sense_are_refused(fault: Fault, value: float) -> No
     ("fault", "side"), [(Fault.SLIP_LEFT, 1), (Fault.SLIP_RIGHT, -1)]
 )  # fmt: skip
 def test_a_wheel_that_slips_turns_the_body_to_its_side(fault: Fault, side: int) -> None:
-    world = robot()
+    world = robot(IDEAL)
     world.inject(fault, 0.3)
     seen = drive(world, 0.2, 0.0, 2.0)
     rolled = seen.wheels.left * WHEEL
@@ -62,7 +62,7 @@ def test_a_wheel_that_slips_turns_the_body_to_its_side(fault: Fault, side: int) 
     ("fault", "side"), [(Fault.STALL_LEFT, 1), (Fault.STALL_RIGHT, -1)]
 )  # fmt: skip
 def test_a_wheel_that_is_held_stands_still_and_draws_more(fault: Fault, side: int) -> None:
-    world, sound = robot(), robot()
+    world, sound = robot(IDEAL), robot(IDEAL)
     world.inject(fault, 1.0)
     seen, expected = drive(world, 0.1, 0.0, 1.0), drive(sound, 0.1, 0.0, 1.0)
     wheels = seen.wheels
@@ -86,7 +86,7 @@ def test_a_robot_that_is_lifted_stays_where_it_is_and_feels_no_floor() -> None:
     seen = drive(world, 0.3, 1.0, 2.0)
     assert seen.pose == before
     assert (seen.twist.linear, seen.twist.angular) == (0.0, 0.0)
-    assert seen.angular_velocity == 0.0
+    assert seen.angular_velocity == pytest.approx(0.0, abs=8.0 * CONFIG.gyro.noise)
     assert seen.wheels.dropped_left
     assert seen.wheels.dropped_right
     assert seen.cliff == type(seen.cliff)(True, True, True, True)
@@ -110,7 +110,7 @@ def test_who_is_lifted_off_the_station_charges_no_more() -> None:
 def test_a_blocked_lidar_sees_nothing_and_goes_on_counting() -> None:
     world = robot()
     drive(world, 0.0, 0.0, 1.0)
-    assert np.isfinite(world.ranges).all()
+    assert np.isfinite(world.ranges).mean() > 0.9
     world.inject(Fault.LIDAR_BLOCKED, 1.0)
     before = world.observe().scans
     after = drive(world, 0.0, 0.0, 1.0)
@@ -118,7 +118,7 @@ def test_a_blocked_lidar_sees_nothing_and_goes_on_counting() -> None:
     assert after.scans == pytest.approx(before + 10, abs=1)
     world.inject(Fault.LIDAR_BLOCKED, 0.0)
     drive(world, 0.0, 0.0, 0.2)
-    assert np.isfinite(world.ranges).all()
+    assert np.isfinite(world.ranges).mean() > 0.9
 
 
 def test_a_bumper_that_sticks_is_pressed_until_it_sticks_no_more() -> None:

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 from fixtures.rooms import Block, room_home
-from fixtures.worlds import DT, block_that_moves, drive
+from fixtures.worlds import DT, IDEAL, block_that_moves, drive
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
@@ -14,19 +14,25 @@ from roomba.geometry import Pose, Twist, wrap_angle
 from roomba.world.home import Move
 from roomba.world.simulator import Simulator
 
-BODY = BodyConfig()
+NORMAL = RobotConfig()
+"""Its wheels slip, so that it does not go quite as far and as straight as it is told."""
+BODY = NORMAL.body
 FREE = Pose(2.5, 2.0, 0.3)
 
 
 def robot(
-    start: Pose, *, blocks: tuple[Block, ...] = (), max_speed: float = 0.5, acceleration: float = 0
+    start: Pose,
+    config: RobotConfig = NORMAL,
+    *,
+    blocks: tuple[Block, ...] = (),
+    max_speed: float = 0.5,
+    acceleration: float = 0,
 ) -> Simulator:
     """Return a robot in a room, with an acceleration and deceleration of its own if given."""
-    body = BODY
     if acceleration:
         body = BodyConfig(max_acceleration=acceleration, max_deceleration=acceleration)
-    home = room_home(blocks=blocks)
-    return Simulator(home, RobotConfig(body=body), max_speed=max_speed, start=start)
+        config = config.model_copy(update={"body": body})
+    return Simulator(room_home(blocks=blocks), config, max_speed=max_speed, start=start)
 
 
 def away_from_rectangle(
@@ -99,13 +105,14 @@ def test_nor_in_round_things_and_things_that_move(
 @settings(max_examples=40)
 @given(st.lists(st.tuples(st.floats(-80.0, 80.0), st.floats(-8.0, 8.0)), min_size=1, max_size=12))
 def test_speeds_and_accelerations_keep_their_limits(commands: list[tuple[float, float]]) -> None:
-    world = robot(FREE)
+    world = robot(FREE, IDEAL)
     linear = angular = 0.0
     for command in (command for command in commands for _ in range(20)):
         was_at = world.pose
         twist = world.step(Twist(*command), DT).twist
         assert abs(twist.linear) <= 0.5 + 1e-12
-        assert world.pose.distance_to(was_at.x, was_at.y) <= 0.5 * DT + 1e-12
+        # An arc that hardly turns has a radius of up to 1e7 m, and is rounded by as much less.
+        assert world.pose.distance_to(was_at.x, was_at.y) <= 0.5 * DT + 1e-8
         assert abs(twist.angular) <= BODY.max_angular_speed + 1e-12
         assert abs(twist.angular - angular) <= BODY.max_angular_acceleration * DT + 1e-12
         is_faster = abs(twist.linear) > abs(linear)
@@ -116,7 +123,7 @@ def test_speeds_and_accelerations_keep_their_limits(commands: list[tuple[float, 
 
 
 def test_it_speeds_up_and_brakes_as_configured() -> None:
-    world = robot(Pose(0.5, 2.0, 0.0))
+    world = robot(Pose(0.5, 2.0, 0.0), IDEAL)
     started = drive(world, 0.5, 0.0, 0.4)
     assert started.twist.linear == pytest.approx(0.4 * BODY.max_acceleration)
     assert started.pose.x - 0.5 == pytest.approx(0.5 * BODY.max_acceleration * 0.4**2)
@@ -130,9 +137,9 @@ def test_it_speeds_up_and_brakes_as_configured() -> None:
 
 def test_the_top_speed_may_be_set_while_it_drives() -> None:
     world = robot(Pose(0.5, 2.0, 0.0))
-    assert drive(world, 0.5, 0.0, 1.0).twist.linear == pytest.approx(0.5)
+    assert drive(world, 0.5, 0.0, 1.0).twist.linear == pytest.approx(0.5, rel=0.02)
     world.max_speed = 0.2
-    assert drive(world, 0.5, 0.0, 1.0).twist.linear == pytest.approx(0.2)
+    assert drive(world, 0.5, 0.0, 1.0).twist.linear == pytest.approx(0.2, rel=0.02)
     assert world.max_speed == 0.2
 
 
@@ -154,7 +161,7 @@ def test_arcs_are_exact_whatever_the_step(
     """At steady speeds it stays on the circle of radius v / w; on a line if it is huge."""
     angular *= sign
     linear *= min(1.0, abs(angular))  # a circle that has room
-    world = robot(FREE, max_speed=1.0, acceleration=1e6)
+    world = robot(FREE, IDEAL, max_speed=1.0, acceleration=1e6)
     world.advance(Twist(linear, angular), dt, math.ceil(4.25 / 7.7 / dt) + 1)
     before = world.pose
     world.advance(Twist(linear, angular), dt, 17)
@@ -169,7 +176,7 @@ def test_arcs_are_exact_whatever_the_step(
 @pytest.mark.parametrize("speed", [0.05, 0.5, 5.0, 200.0])
 def test_it_stops_at_contact_whatever_the_speed(speed: float) -> None:
     post = ((3.0, 1.95, 3.05, 2.05),)
-    world = robot(Pose(0.5, 2.0, 0.0), blocks=post, max_speed=speed, acceleration=1e6)
+    world = robot(Pose(0.5, 2.0, 0.0), IDEAL, blocks=post, max_speed=speed, acceleration=1e6)
     seen = drive(world, speed, 0.0, 3.0 / speed + 0.3, 0.05)
     assert seen.pose.x == pytest.approx(3.0 - BODY.radius, abs=1e-6)
     assert seen.twist.linear == 0.0
@@ -179,8 +186,8 @@ def test_it_stops_at_contact_whatever_the_speed(speed: float) -> None:
     assert world.numbers["hits"] == 1.0
 
 
-def press(start: Pose, linear: float = 0.3) -> Simulator:
-    world = robot(start)
+def press(start: Pose, linear: float = 0.3, config: RobotConfig = NORMAL) -> Simulator:
+    world = robot(start, config)
     drive(world, linear, 0.0, 10.0)
     return world
 
@@ -195,7 +202,7 @@ def press(start: Pose, linear: float = 0.3) -> Simulator:
     ],
 )
 def test_the_bumper_tells_the_side(start: Pose, left: bool, right: bool) -> None:
-    bumper = press(start).observe().bumper
+    bumper = press(start, config=IDEAL).observe().bumper
     assert (bumper.left, bumper.right) == (left, right)
     assert bumper.pressed
 
@@ -215,7 +222,7 @@ def test_it_does_not_stick_it_turns_and_backs_off() -> None:
     seen = drive(world, -0.3, 0.0, 1.0)
     assert seen.pose.x < contact.x - 0.2
     assert not seen.bumper.pressed
-    assert seen.twist.linear == pytest.approx(-0.3)
+    assert seen.twist.linear == pytest.approx(-0.3, rel=0.02)
 
 
 def test_the_bumper_stays_pressed_while_it_leans_on_the_wall() -> None:
@@ -248,7 +255,7 @@ def test_a_thing_put_in_the_way_stops_it_and_taken_away_lets_it_go() -> None:
     world = robot(Pose(1.0, 2.0, 0.0))
     world.place_obstacle(2.1, 2.0, 0.1)
     stopped = drive(world, 0.5, 0.0, 5.0)
-    assert stopped.pose.x == pytest.approx(2.0 - BODY.radius, abs=1e-6)
+    assert stopped.pose.distance_to(2.1, 2.0) == pytest.approx(0.1 + BODY.radius, abs=1e-6)
     assert stopped.bumper.pressed
     world.remove_obstacles()
     assert world.discs.shape == (0, 3)
@@ -256,7 +263,7 @@ def test_a_thing_put_in_the_way_stops_it_and_taken_away_lets_it_go() -> None:
 
 
 def test_it_counts_its_way_and_its_turns() -> None:
-    world = robot(Pose(1.0, 2.0, 0.0))
+    world = robot(Pose(1.0, 2.0, 0.0), IDEAL)
     before = drive(world, 0.4, 0.0, 4.0).pose
     assert world.numbers["distance"] == pytest.approx(before.x - 1.0)
     drive(world, 0.0, 0.0, 1.0)

@@ -5,7 +5,7 @@ import sys
 
 import pytest
 from fixtures.rooms import room_home
-from fixtures.worlds import drive_around, simulator
+from fixtures.worlds import IDEAL, drive_around, simulator
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -31,7 +31,12 @@ def test_same_seed_and_commands_give_the_same_trace_in_another_process_too() -> 
 
 
 def test_another_seed_lets_dirt_fall_elsewhere() -> None:
-    assert drive_around(simulator(seed=1)) != drive_around(simulator(seed=2))
+    dirt = []
+    for seed in (1, 1, 2):
+        world = simulator(seed)
+        world.advance(Twist(), 1.0, 600)  # it stands: only what falls makes a difference
+        dirt.append(world.dirt.micrograms.tobytes())
+    assert dirt[0] == dirt[1] != dirt[2]
 
 
 @settings(max_examples=25)
@@ -84,11 +89,11 @@ def test_a_full_bin_takes_no_more() -> None:
 
 @settings(max_examples=20)
 @given(st.floats(-3.0, 3.0), st.floats(-0.5, 0.5), st.floats(-2.0, 2.0))
-def test_odometry_begins_at_zero_and_tells_the_way_since(
+def test_ideal_odometry_begins_at_zero_and_tells_the_way_since(
     theta: float, linear: float, angular: float
 ) -> None:
     start = Pose(2.5, 2.0, theta)
-    world = Simulator(room_home(), start=start)
+    world = Simulator(room_home(), IDEAL, start=start)
     assert world.observe().odometry.distance_to(0.0, 0.0) < 1e-12
     assert world.observe().odometry.theta == 0.0
     for _ in range(60):

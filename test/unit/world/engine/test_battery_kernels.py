@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 from fixtures.rooms import room_home
-from fixtures.worlds import NOISY, drive
+from fixtures.worlds import IDEAL, NOISY, drive
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -20,6 +20,8 @@ CONFIG = RobotConfig()
 CAPACITY = CONFIG.battery.capacity
 HOME = room_home()
 FREE = Pose(2.5, 1.0, 0.0)
+HALL, MIDDLE = room_home(12.0, 12.0), Pose(6.0, 6.0, 0.0)
+"""Room for circles of 0.9 m that drift away as wheels slip: some 0.6 m in 3.4 km."""
 
 
 def hours_until(world: Simulator, twist: Twist, charge: float, dt: float) -> float:
@@ -33,7 +35,7 @@ def hours_until(world: Simulator, twist: Twist, charge: float, dt: float) -> flo
 
 @pytest.mark.parametrize(("speed", "hours", "dt"), [(0.0, 4.9, 5.0), (0.306, 3.1, 0.5)])
 def test_it_idles_and_drives_as_long_as_create_3(speed: float, hours: float, dt: float) -> None:
-    world = Simulator(HOME, start=FREE)
+    world = Simulator(HALL, start=MIDDLE)
     world.set_power(0.0, 0.0)
     took = hours_until(world, Twist(speed, speed / 0.9), 0.0, dt)
     assert world.numbers["hits"] == 0.0
@@ -64,7 +66,7 @@ def test_energy_adds_up_and_the_charge_keeps_its_bounds_whatever_is_driven(
     parts: list[tuple[float, float, float, float]], dt: float, from_station: bool, noisy: bool
 ) -> None:
     start = HOME.station if from_station else FREE
-    world = Simulator(HOME, NOISY if noisy else CONFIG, start=start)
+    world = Simulator(HOME, NOISY if noisy else IDEAL, start=start)
     world.inject(Fault.STALL_LEFT, float(noisy))
     for linear, angular, brush, fan in parts:
         world.set_power(brush, fan)
@@ -129,11 +131,11 @@ def test_an_empty_robot_comes_to_rest_and_drives_again_when_charged() -> None:
     assert drive(world, 0.3, 0.3, 1.0).pose == rest.pose
     world.put(HOME.station)
     drive(world, 0.0, 0.0, 60.0)
-    assert drive(world, -0.3, 0.0, 1.0).twist.linear == pytest.approx(-0.3)
+    assert drive(world, -0.3, 0.0, 1.0).twist.linear == pytest.approx(-0.3, rel=0.02)
 
 
 def test_the_battery_warms_up_by_its_load_and_cools_down_again() -> None:
-    world = Simulator(HOME, start=FREE)
+    world = Simulator(HALL, start=MIDDLE)
     world.set_power(1.0, 1.0)
     circle = 0.306, 0.34, 60.0, 0.5
     temperatures = [drive(world, *circle).battery.temperature for _ in range(30)]

@@ -14,7 +14,7 @@ from fixtures.slow_lidar import (
     ranges_to_disc,
     within,
 )
-from fixtures.worlds import DT, NOISY, block_that_moves, drive
+from fixtures.worlds import DT, IDEAL, NOISY, block_that_moves, drive
 from hypothesis import given, reject, settings
 from hypothesis import strategies as st
 
@@ -52,7 +52,7 @@ def test_what_is_missed_in_a_long_step_is_not_made_up_for() -> None:
 
 
 def test_before_the_first_step_nothing_was_seen_and_scans_are_of_where_it_was() -> None:
-    world = Simulator(room_home(blocks=BLOCKS), start=Pose(2.0, 2.0, 0.3))
+    world = Simulator(room_home(blocks=BLOCKS), IDEAL, start=Pose(2.0, 2.0, 0.3))
     assert (world.ranges == np.inf).all()
     for _ in range(40):
         before = world.observe().scans
@@ -81,7 +81,7 @@ def test_boxes_and_discs_are_seen_as_plain_geometry_has_them(
     thing = block_that_moves(pose=Pose(*box, turn), size=size)
     home = room_home(blocks=BLOCKS, moving=[thing])
     try:
-        world = Simulator(home, start=Pose(*place, theta))
+        world = Simulator(home, IDEAL, start=Pose(*place, theta))
     except HomeError:
         reject()
     if math.dist(place, disc) > radius + CONFIG.body.radius:
@@ -97,7 +97,7 @@ def test_boxes_and_discs_are_seen_as_plain_geometry_has_them(
 
 
 def test_what_is_lower_than_the_lidar_is_not_seen_and_what_is_not_there_neither() -> None:
-    empty = Simulator(room_home(), start=Pose(1.0, 2.0, 0.0))
+    empty = Simulator(room_home(), IDEAL, start=Pose(1.0, 2.0, 0.0))
     empty.step(Twist(), 0.1)
     here = Pose(2.0, 2.0, 0.0)
     for things, is_seen in (
@@ -105,7 +105,7 @@ def test_what_is_lower_than_the_lidar_is_not_seen_and_what_is_not_there_neither(
         ([block_that_moves(pose=here, heights=(0.0, LIDAR.mount_height - 0.001))], False),
         ([block_that_moves(pose=here, is_present=False)], False),
     ):
-        world = Simulator(room_home(moving=things), start=Pose(1.0, 2.0, 0.0))
+        world = Simulator(room_home(moving=things), IDEAL, start=Pose(1.0, 2.0, 0.0))
         world.step(Twist(), 0.1)
         assert (world.ranges != empty.ranges).any() == is_seen
     assert empty.ranges[0] == pytest.approx(4.0, abs=1e-5)
@@ -113,7 +113,7 @@ def test_what_is_lower_than_the_lidar_is_not_seen_and_what_is_not_there_neither(
 
 def test_other_robots_are_seen_as_discs() -> None:
     starts = np.array([(1.0, 2.0, 0.4), (2.5, 2.2, 1.0), (3.5, 1.0, 2.0)])
-    fleet = Fleet([room_home(blocks=BLOCKS)], robots_per_home=3, starts=starts)
+    fleet = Fleet([room_home(blocks=BLOCKS)], IDEAL, robots_per_home=3, starts=starts)
     fleet.step(np.zeros((3, 2)), 0.1)
     for robot, start in enumerate(starts.tolist()):
         expected = slow_walls(Pose(*start))
@@ -128,7 +128,7 @@ def test_other_robots_are_seen_as_discs() -> None:
 def test_noise_has_its_mean_its_deviation_and_its_misses_and_each_beam_its_own() -> None:
     start = Pose(2.2, 1.7, 0.3)
     home = room_home(blocks=BLOCKS)
-    ideal = Simulator(home, start=start)
+    ideal = Simulator(home, IDEAL, start=start)
     ideal.step(Twist(), 0.1)
     noisy = Simulator(home, NOISY, start=start, seed=2)
     scans = []
