@@ -1,0 +1,297 @@
+"""Knowing where the robot is on a known map: the stages put together.
+
+Dead reckoning says how it moved, a tracker corrects that by each scan, and when scans do not fit
+any more, or somebody carried it, a relocation looks for it in the whole map. Plain values in and
+out; times in s of the robot's clock.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from enum import Enum
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.config import GyroConfig, LocalizationConfig
+from roomba.geometry import Pose
+from roomba.grid import OccupancyMap
+from roomba.perception.dead_reckoning import DeadReckoning
+from roomba.perception.place_search import Region
+from roomba.perception.relocation import Hypothesis, Relocation, Verdict
+from roomba.perception.scan_view import Fit, LidarModel, ScanView
+from roomba.perception.surface_field import SurfaceField
+from roomba.perception.tracker import Tracker
+
+_FOUND_SPREAD: Final = np.diag([0.05**2, 0.05**2, 0.03**2])
+"""m2, rad2; of a place that was found, before scans narrow it down."""
+_AGAIN: Final = 1.0
+"""s; after which a search that found nothing is tried anew, from where the robot is then."""
+_GOOD_AGREE: Final = 0.8
+_GOOD_THROUGH: Final = 0.1
+"""Shares of beams with which a pose that was told is taken as it is."""
+_TOLD_AGREE: Final = 0.65
+_TOLD_THROUGH: Final = 0.15
+"""Shares of beams with which a place near to one that was told needs no comparison."""
+_ASTRAY: Final = 0.3
+"""m; a pose less sure than this is searched around, as if it had been told."""
+_TOLD_RADIUS: Final = 0.5
+_TOLD_TURN: Final = 0.5
+"""m, rad; at least so far around a pose that was told the robot is looked for."""
+_HELP: Final = (
+    "carry it to its station, or tell where it is (in RViz: 2D Pose Estimate), "
+    "or let it look around (global_localization)"
+)
+
+
+class Knowledge(Enum):
+    """How well the robot knows where it is."""
+
+    KNOWN = "known"
+    """The pose can be relied on."""
+    ROUGH = "rough"
+    """Only by wheels and gyro, or by too little in sight: good for going slowly."""
+    SEARCHING = "searching"
+    """Not known: places are compared, and looking around helps."""
+    LOST = "lost"
+    """Not found in time; a person should help."""
+
+    @property
+    def is_usable(self) -> bool:
+        """Whether the pose is good enough to drive by."""
+        return self in (Knowledge.KNOWN, Knowledge.ROUGH)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Estimate:
+    """Where the robot is, map frame, as far as it knows.
+
+    ``covariance`` is float64 [3, 3], of x, y (m2) and theta (rad2); ``agreement`` the share of the
+    last scan's beams that agree with the map; ``reason`` says why it is not known, and what helps.
+    """
+
+    pose: Pose
+    covariance: NDArray[np.float64]
+    knowledge: Knowledge
+    agreement: float
+    reason: str
+
+    @property
+    def position_deviation(self) -> float:
+        """Standard deviation of the position along its worst direction, m."""
+        return _worst_deviation(self.covariance)
+
+    @property
+    def heading_deviation(self) -> float:
+        """Standard deviation of the heading, rad."""
+        return math.sqrt(max(0.0, float(self.covariance[2, 2])))
+
+
+class Localizer:
+    """Keeps the estimate; tell it what the sensors say in the order of time."""
+
+    def __init__(
+        self,
+        occupancy: OccupancyMap,
+        config: LocalizationConfig,
+        gyro: GyroConfig,
+        body_radius: float,
+        start: Pose,
+        deviation: tuple[float, float] = (0.05, 0.05),
+    ) -> None:
+        """Begin near ``start``, map frame, unsure by ``deviation``, m and rad."""
+        self.field = SurfaceField.of(occupancy)
+        self._config, self._body_radius = config, body_radius
+        self._reckoning = DeadReckoning(config, gyro)
+        self._is_lifted = self._is_blind = False
+        self._now = 0.0
+        self._seen = self._searching_since = self._tried = -math.inf
+        self._told: Region | None = None
+        self._relocation: Relocation | None = None
+        self._forgotten = ""
+        self._bonus = 0.0
+        self.told(start, deviation)
+
+    # ---------------------------------------------------------------- what the sensors say
+
+    def move(self, stamp: float, odometry: Pose, turning: float | None = None) -> None:
+        """Take the wheels' odometry and the gyro's turning speed, rad/s, if there is one."""
+        if stamp < self._now - 1.0:
+            # The clock was set back: what was remembered by time counts from now.
+            self._seen = self._searching_since = self._tried = stamp
+        self._now = stamp
+        before = self._reckoning.pose
+        self._reckoning.move(stamp, odometry, turning)
+        step = before.inverse().compose(self._reckoning.pose)
+        self._tracker.move(step, self._reckoning.take_spread())
+
+    def lift(self, is_lifted: bool) -> None:
+        """Tell whether the wheels hang in the air: somebody holds the robot."""
+        if self._is_lifted and not is_lifted:
+            self.forget("it was lifted and set down again")
+        self._is_lifted = is_lifted
+
+    def see(self, stamp: float, ranges: NDArray[np.float32], lidar: LidarModel) -> None:
+        """Take a scan, float32 [beams], m; raises ValueError for another number of beams."""
+        view = lidar.view(ranges)
+        reckoned = self._reckoning.at(stamp)
+        self._is_blind = len(view) == 0
+        if self._is_blind or self._is_lifted or reckoned is None:
+            return
+        self._seen = stamp
+        tells_places_apart = len(view) >= self._config.least_beams
+        if not self._forgotten:
+            self._follow(view, reckoned, tells_places_apart)
+        elif tells_places_apart:
+            if self._relocation is None:
+                self._relocation = self._begin_search(view, reckoned)
+            self._search_on(self._relocation, view, reckoned)
+
+    # ---------------------------------------------------------------- what people say
+
+    def told(self, pose: Pose, deviation: tuple[float, float]) -> None:
+        """Take somebody's word for where the robot is, m and rad unsure; scans will confirm it."""
+        spread = np.diag([deviation[0] ** 2, deviation[0] ** 2, deviation[1] ** 2])
+        self._tracker = Tracker(self.field, self._config, pose, spread)
+        self._relocation, self._forgotten = None, ""
+        self._told = _region_around(pose, deviation)
+
+    def forget(self, reason: str) -> None:
+        """Trust no pose any more; look for the robot in the whole map."""
+        self._told = self._relocation = None
+        self._forgotten, self._bonus = reason, 0.0
+        self._searching_since = self._now
+
+    # ---------------------------------------------------------------- what is known
+
+    @property
+    def estimate(self) -> Estimate:
+        """What is known now."""
+        tracker = self._tracker
+        knowledge, reason = self._knowledge()
+        agreement = tracker.fit.agree if tracker.fit is not None else 0.0
+        return Estimate(tracker.pose, tracker.covariance, knowledge, agreement, reason)
+
+    @property
+    def map_to_odometry(self) -> Pose:
+        """Where the frame of the wheels' odometry lies in the map."""
+        return self._tracker.pose.compose(self._reckoning.odometry.inverse())
+
+    @property
+    def hypotheses(self) -> list[Pose]:
+        """Where the robot may be, likeliest first: while it is searched for there may be many."""
+        if self._relocation is None or not self._relocation.hypotheses:
+            return [self._tracker.pose]
+        reckoned = self._reckoning.pose
+        return [each.frame.compose(reckoned) for each in self._relocation.hypotheses]
+
+    # ---------------------------------------------------------------- stages
+
+    def _knowledge(self) -> tuple[Knowledge, str]:
+        if self._is_lifted:
+            return (
+                Knowledge.SEARCHING,
+                "the wheels hang in the air: set the robot down on the floor",
+            )
+        if self._forgotten:
+            return self._searching(self._forgotten)
+        deviation = _worst_deviation(self._tracker.covariance)
+        if deviation > self._config.lost_deviation:
+            return Knowledge.LOST, f"{self._why_unsure()}, for too long; {_HELP}"
+        is_late = self._now - self._seen > self._config.scan_timeout
+        if is_late or self._is_blind or deviation > self._config.known_deviation:
+            return Knowledge.ROUGH, f"{self._why_unsure()}; going by wheels and gyro"
+        return Knowledge.KNOWN, ""
+
+    def _searching(self, why: str) -> tuple[Knowledge, str]:
+        if self._now - self._searching_since > self._config.search_timeout:
+            what = self._relocation.verdict.value if self._relocation else self._why_unsure()
+            return Knowledge.LOST, f"{why}, and {what}; {_HELP}"
+        return Knowledge.SEARCHING, why
+
+    def _why_unsure(self) -> str:
+        if self._is_blind:
+            return "the lidar sees next to nothing: it is blocked, or all is out of its reach"
+        if self._now - self._seen > self._config.scan_timeout:
+            return "the lidar sends no scans"
+        return "what is in sight does not tell where along it the robot is"
+
+    def _follow(self, view: ScanView, reckoned: Pose, tells_places_apart: bool) -> None:
+        """Correct the pose by a scan that was taken at ``reckoned``, perhaps a little ago."""
+        tracker = self._tracker
+        since = reckoned.inverse().compose(self._reckoning.pose)
+        tracker.pose = tracker.pose.compose(since.inverse())
+        if self._told is None and self.estimate.position_deviation > _ASTRAY:
+            estimate = self.estimate
+            deviation = (estimate.position_deviation, estimate.heading_deviation)
+            self._told = _region_around(tracker.pose, deviation)
+        tracker.see(view)
+        tracker.pose = tracker.pose.compose(since)
+        if not tells_places_apart:
+            return
+        fit = tracker.judge(view)
+        if self._told is not None:
+            self._check_told(self._told, fit, view, reckoned)
+        elif tracker.is_doubtful:
+            self.forget("the scan does not fit the map here any more")
+            # Nothing says that it was carried: what the place looks like may have changed as well.
+            self._bonus = self._config.needed_evidence + 2.0
+
+    def _check_told(self, region: Region, fit: Fit, view: ScanView, reckoned: Pose) -> None:
+        """Confirm what was told; or look around there first, and everywhere then."""
+        self._told = None
+        if fit.agree >= _GOOD_AGREE and fit.through <= _GOOD_THROUGH:
+            return
+        relocation = Relocation(
+            self.field, self._config, self._body_radius, view, reckoned, region, region.pose
+        )
+        while relocation.verdict is Verdict.SEARCHING:
+            relocation.advance()
+        if relocation.verdict is Verdict.FOUND:
+            best = relocation.hypotheses[0]
+            if best.fit.agree >= _TOLD_AGREE and best.fit.through <= _TOLD_THROUGH:
+                self._found(best)
+                return
+        self.forget("what the lidar sees does not fit the pose that was told")
+
+    def _begin_search(self, view: ScanView, reckoned: Pose) -> Relocation:
+        """Begin to look for the robot in the whole map."""
+        since = reckoned.inverse().compose(self._reckoning.pose)
+        here = self._tracker.pose.compose(since.inverse())
+        self._tried = self._now
+        return Relocation(
+            self.field,
+            self._config,
+            self._body_radius,
+            view,
+            reckoned,
+            also=here,
+            bonus=self._bonus,
+        )
+
+    def _search_on(self, relocation: Relocation, view: ScanView, reckoned: Pose) -> None:
+        relocation.advance()
+        relocation.see(view, reckoned)
+        if relocation.verdict is Verdict.FOUND:
+            self._found(relocation.hypotheses[0])
+        elif relocation.verdict is Verdict.NOWHERE and self._now - self._tried > _AGAIN:
+            self._relocation = None
+
+    def _found(self, place: Hypothesis) -> None:
+        pose = place.frame.compose(self._reckoning.pose)
+        self._tracker = Tracker(self.field, self._config, pose, _FOUND_SPREAD.copy())
+        self._tracker.trust(place.fit)
+        self._relocation, self._forgotten = None, ""
+
+
+def _region_around(pose: Pose, deviation: tuple[float, float]) -> Region:
+    """Return where to look for a robot that is near a pose, unsure by so much, m and rad."""
+    return Region(pose, max(_TOLD_RADIUS, 3.0 * deviation[0]), max(_TOLD_TURN, 3.0 * deviation[1]))
+
+
+def _worst_deviation(covariance: NDArray[np.float64]) -> float:
+    """Return the standard deviation along the worst direction of the floor, m."""
+    xx, xy, yy = float(covariance[0, 0]), float(covariance[0, 1]), float(covariance[1, 1])
+    return math.sqrt(max(0.0, 0.5 * (xx + yy) + math.hypot(0.5 * (xx - yy), xy)))

@@ -1,0 +1,120 @@
+"""Searching a map for the places where a scan could have been taken, a piece at a time."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.geometry import Pose, wrap_angle
+from roomba.perception.search_kernels import score_heading
+from roomba.perception.surface_field import SurfaceField
+
+STEP: Final = 0.15
+"""m; between places that are tried: the match finds its way from half of that."""
+TURN: Final = math.radians(4.0)
+"""rad; between headings that are tried."""
+WIDTH: Final = 0.35
+"""m; a beam that ends so far from a surface speaks not at all for a place."""
+BEAMS: Final = 48
+"""Beams that are compared: more do not find more, and take longer."""
+PIECE: Final = 200_000
+"""Poses that are tried at once: some 10 ms of work."""
+
+
+@dataclass(frozen=True, slots=True)
+class Region:
+    """Where to search: around a pose, up to so far, m, and so much turned, rad."""
+
+    pose: Pose
+    radius: float
+    turn: float
+
+
+class PlaceSearch:
+    """One search; call :meth:`advance` until it says that all is done."""
+
+    def __init__(
+        self,
+        field: SurfaceField,
+        ends: NDArray[np.float64],
+        body_radius: float,
+        region: Region | None = None,
+    ) -> None:
+        """Search for where ``ends`` (float64 [beams, 4], see ``beam_ends``) were measured from.
+
+        Only places where a body of ``body_radius`` m finds room are tried, in ``region`` if any.
+        """
+        self._field = field
+        self._ends = ends
+        self._chosen = np.unique(np.linspace(0, len(ends) - 1, BEAMS).astype(np.int64))
+        self._spots = _spots(field, 0.9 * body_radius, region)
+        self._headings = _headings(region)
+        self._at = 0
+        self._scores = np.zeros(len(self._spots), np.float32)
+        self._best = np.zeros(len(self._spots), np.float32)
+
+    def advance(self) -> bool:
+        """Try some more; return whether all is tried."""
+        count = max(1, PIECE // max(1, len(self._spots)))
+        for theta in self._headings[self._at : self._at + count]:
+            score_heading(
+                self._field.values,
+                self._field.place,
+                self._ends,
+                self._chosen,
+                self._spots,
+                float(theta),
+                WIDTH,
+                self._scores,
+                self._best,
+            )
+        self._at += count
+        return self._at >= len(self._headings)
+
+    def best(self, most: int) -> NDArray[np.float64]:
+        """Return the poses that fit best, float64 [n, 3], x, y, theta, best first."""
+        order = np.argsort(-self._scores, kind="stable")[:most]
+        order = order[self._scores[order] > 0.0]
+        return np.column_stack((self._spots[order], self._best[order].astype(np.float64)))
+
+
+def _spots(field: SurfaceField, room: float, region: Region | None) -> NDArray[np.float64]:
+    """Return a lattice of places with so much room around, float64 [n, 2], m."""
+    frame = field.frame
+    stride = max(1, round(STEP / frame.resolution))
+    rows, columns = np.nonzero(_roomiest(field.values >= room, stride))
+    spots = np.column_stack(
+        (
+            frame.origin_x + (columns + 0.5) * frame.resolution,
+            frame.origin_y + (rows + 0.5) * frame.resolution,
+        )
+    )
+    if region is not None:
+        near = np.hypot(*(spots - (region.pose.x, region.pose.y)).T) <= region.radius
+        spots = np.vstack(([[region.pose.x, region.pose.y]], spots[near]))
+    return np.ascontiguousarray(spots, np.float64)
+
+
+def _roomiest(fits: NDArray[np.bool_], stride: int) -> NDArray[np.bool_]:
+    """Return one fitting cell of each block of cells, so that narrow places are not left out."""
+    rows, columns = np.nonzero(fits)
+    block = (rows // stride) * (fits.shape[1] // stride + 1) + columns // stride
+    middle = np.abs(rows % stride - stride // 2) + np.abs(columns % stride - stride // 2)
+    order = np.lexsort((middle, block))
+    _, first = np.unique(block[order], return_index=True)
+    chosen = np.zeros(fits.shape, np.bool_)
+    chosen[rows[order][first], columns[order][first]] = True
+    return chosen
+
+
+def _headings(region: Region | None) -> NDArray[np.float64]:
+    if region is None or region.turn >= math.pi:
+        return np.arange(-math.pi, math.pi, TURN)
+    steps = math.ceil(region.turn / TURN)
+    return np.array(
+        [wrap_angle(region.pose.theta + step * TURN) for step in range(-steps, steps + 1)]
+    )

@@ -1,0 +1,183 @@
+"""Finding the robot again: places that fit a scan, compared while it looks at more of the home."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from enum import Enum
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.config import LocalizationConfig
+from roomba.geometry import Pose, wrap_angle
+from roomba.perception.match_kernels import match
+from roomba.perception.place_search import PlaceSearch, Region
+from roomba.perception.scan_view import Fit, ScanView
+from roomba.perception.surface_field import SurfaceField
+
+CANDIDATES: Final = 300
+"""Places of a search that are matched and judged."""
+KEPT: Final = 60
+"""Places that are compared further."""
+_ALIKE: Final = 0.2
+_ALIKE_TURN: Final = 0.2
+"""m and rad; places nearer to each other than both are the same."""
+_FROM_AFAR: Final = np.array([0.40, 0.30, 0.20, 0.10, 0.05, 0.05, 0.05])
+_FROM_NEAR: Final = np.array([0.15, 0.10, 0.05, 0.05])
+"""m; beams that end farther off than this lose weight, round by round."""
+_NEW_WAY: Final = 0.12
+_NEW_TURN: Final = 0.4
+"""m, rad; a scan from so far away, or so much turned, says something new."""
+_LEAST_AGREE: Final = 0.6
+_MOST_THROUGH: Final = 0.15
+"""Shares of beams that a place which is found must have and may have; of those where the robot was
+before, half of the first is enough: homes change more often than robots are carried unnoticed."""
+_WELL: Final = 0.75
+"""Share of beams; a place where fewer agree needs more views, and twice the evidence."""
+_LEAST_VIEWS: Final = 3
+_HOPELESS: Final = 14.0
+"""Evidence; a place that has so much less than the best is dropped."""
+
+
+class Verdict(Enum):
+    """What is known of where the robot is."""
+
+    SEARCHING = "places are being looked for"
+    AMBIGUOUS = "several places fit"
+    NOWHERE = "no place fits"
+    FOUND = "one place fits"
+
+
+@dataclass(slots=True)
+class Hypothesis:
+    """A place where the robot may be: where dead reckoning's frame lies in the map then."""
+
+    frame: Pose
+    evidence: float
+    fit: Fit
+    is_here: bool = False
+
+    @property
+    def is_possible(self) -> bool:
+        """Whether the scan fits at all there."""
+        if self.is_here:
+            return self.fit.agree > 0.5 * _LEAST_AGREE
+        return self.fit.agree >= _LEAST_AGREE and self.fit.through <= _MOST_THROUGH
+
+
+class Relocation:
+    """One attempt to find the robot; ``reckoned`` poses are those of DeadReckoning."""
+
+    def __init__(
+        self,
+        field: SurfaceField,
+        config: LocalizationConfig,
+        body_radius: float,
+        view: ScanView,
+        reckoned: Pose,
+        region: Region | None = None,
+        also: Pose | None = None,
+        bonus: float = 0.0,
+    ) -> None:
+        """Search the map, or a region of it, for the place that ``view`` was seen from.
+
+        ``also`` is a pose to try in any case, map frame; ``bonus`` is evidence for it.
+        """
+        self.hypotheses: list[Hypothesis] = []
+        self.views = 0
+        self._field, self._config = field, config
+        self._search: PlaceSearch | None = PlaceSearch(field, view.ends, body_radius, region)
+        self._view, self._reckoned = view, reckoned
+        self._also, self._bonus = also, bonus
+
+    @property
+    def verdict(self) -> Verdict:
+        """What is known by now."""
+        if self._search is not None:
+            return Verdict.SEARCHING
+        if not self.hypotheses or not self.hypotheses[0].is_possible:
+            return Verdict.NOWHERE
+        return Verdict.FOUND if self._is_clear() else Verdict.AMBIGUOUS
+
+    def advance(self) -> None:
+        """Search on for a while, if that is not done yet."""
+        if self._search is not None and self._search.advance():
+            starts = self._search.best(CANDIDATES)
+            self._search = None
+            self._compare(starts)
+
+    def see(self, view: ScanView, reckoned: Pose) -> None:
+        """Compare the places by another scan; it counts when the robot has moved since the last."""
+        if self._search is not None or not self._is_new(reckoned):
+            return
+        self._view, self._reckoned = view, reckoned
+        for hypothesis in self.hypotheses:
+            pose, fit = self._matched(hypothesis.frame.compose(reckoned), _FROM_NEAR)
+            hypothesis.frame = pose.compose(reckoned.inverse())
+            hypothesis.evidence += fit.evidence
+            hypothesis.fit = fit
+        self.views += 1
+        self._sort()
+
+    def _compare(self, starts: NDArray[np.float64]) -> None:
+        """Match and judge the places that the search found."""
+        back = self._reckoned.inverse()
+        if self._also is not None:
+            pose, fit = self._matched(self._also, _FROM_AFAR)
+            stays = pose.distance_to(self._also.x, self._also.y) < _ALIKE
+            is_here = stays and self._bonus > 0.0
+            evidence = fit.evidence + (self._bonus if stays else 0.0)
+            self.hypotheses.append(Hypothesis(pose.compose(back), evidence, fit, is_here))
+        for x, y, theta in starts.tolist():
+            pose, fit = self._matched(Pose(x, y, theta), _FROM_AFAR)
+            self.hypotheses.append(Hypothesis(pose.compose(back), fit.evidence, fit))
+        self.views = 1
+        self._sort()
+
+    def _matched(self, start: Pose, scales: NDArray[np.float64]) -> tuple[Pose, Fit]:
+        prior = np.array([start.x, start.y, start.theta])
+        pose, covariance = prior.copy(), np.diag([0.3**2, 0.3**2, 0.2**2])
+        match(
+            self._field.values,
+            self._field.place,
+            self._view.ends,
+            len(self._view),
+            prior,
+            covariance,
+            scales,
+            self._config.beam_deviation**2,
+            pose,
+        )
+        return Pose(*pose.tolist()), self._view.fit(self._field, pose)
+
+    def _sort(self) -> None:
+        """Put the best first; leave out what is the same place, or has no hope."""
+        kept: list[Hypothesis] = []
+        for hypothesis in sorted(self.hypotheses, key=lambda each: -each.evidence):
+            if kept and hypothesis.evidence < kept[0].evidence - _HOPELESS:
+                break
+            if not any(self._are_alike(hypothesis, other) for other in kept):
+                kept.append(hypothesis)
+        self.hypotheses = kept[:KEPT]
+
+    def _are_alike(self, one: Hypothesis, other: Hypothesis) -> bool:
+        first, second = one.frame.compose(self._reckoned), other.frame.compose(self._reckoned)
+        near = first.distance_to(second.x, second.y) < _ALIKE
+        return near and abs(wrap_angle(first.theta - second.theta)) < _ALIKE_TURN
+
+    def _is_new(self, reckoned: Pose) -> bool:
+        since = self._reckoned.inverse().compose(reckoned)
+        return math.hypot(since.x, since.y) > _NEW_WAY or abs(since.theta) > _NEW_TURN
+
+    def _is_clear(self) -> bool:
+        """Whether the best place is so much better than the next that it can be believed."""
+        best = self.hypotheses[0]
+        fits_well = best.fit.agree >= _WELL or best.is_here
+        if not fits_well and self.views < _LEAST_VIEWS:
+            return False
+        if len(self.hypotheses) == 1:
+            return True
+        lead = best.evidence - self.hypotheses[1].evidence
+        return lead > self._config.needed_evidence * (1.0 if fits_well else 2.0)

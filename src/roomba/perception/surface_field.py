@@ -1,0 +1,43 @@
+"""How far every spot of a map is from the nearest surface: what a scan is matched against."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.distance import distance_to_nearest
+from roomba.grid import GridFrame, OccupancyMap
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SurfaceField:
+    """Signed distances to the surfaces of a map, at the middles of its cells.
+
+    ``values`` is float32 [rows, columns], m: positive on free floor, negative inside what is not
+    known to be free. Between middles it is bilinear, so that a wall's surface lies where the wall's
+    cells end and not in their middles, to a fraction of a cell (a likelihood field, Thrun, Burgard
+    and Fox, "Probabilistic Robotics", 6.4, but for its sign).
+    """
+
+    frame: GridFrame
+    values: NDArray[np.float32]
+
+    @staticmethod
+    def of(occupancy: OccupancyMap) -> SurfaceField:
+        """Return the field of a map; where a map has no surface at all it is far everywhere."""
+        solid = occupancy.solid
+        outside = distance_to_nearest(solid)
+        inside = distance_to_nearest(~solid)
+        cells = np.where(solid, 0.5 - inside, outside - 0.5)
+        far = float(max(solid.shape))
+        metres = np.clip(cells, -far, far) * occupancy.frame.resolution
+        return SurfaceField(occupancy.frame, np.ascontiguousarray(metres, np.float32))
+
+    @property
+    def place(self) -> NDArray[np.float64]:
+        """x and y of the middle of the first cell, and the resolution, m: as kernels read it."""
+        frame = self.frame
+        half = 0.5 * frame.resolution
+        return np.array([frame.origin_x + half, frame.origin_y + half, frame.resolution])
