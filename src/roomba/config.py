@@ -176,7 +176,7 @@ class LocalizationConfig(_Frozen):
     gyro_drift: Positive = 0.001
     beam_deviation: Positive = 0.06
     known_deviation: Positive = 0.10
-    lost_deviation: Positive = 0.60
+    lost_deviation: Positive = 1.0
     least_beams: Annotated[int, Field(ge=1)] = 30
     scan_timeout: Positive = 0.5
     search_timeout: Positive = 30.0
@@ -202,6 +202,7 @@ class WalkConfig(_Frozen):
     clearance: Positive = 0.04
     tight_clearance: Positive = 0.01
     corner_speed: Positive = 0.25
+    careful_speed: Positive = 0.15
     arrival_tolerance: Positive = 0.03
     bump_radius: Positive = 0.06
     progress_timeout: Positive = 6.0

@@ -35,7 +35,8 @@ def theta_of(rotation: Quaternion) -> float:
     return math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
 
 
-def _planar(pose: PoseMessage) -> Pose:
+def pose_of_message(pose: PoseMessage) -> Pose:
+    """Return the planar part of a pose."""
     return Pose(pose.position.x, pose.position.y, theta_of(pose.orientation))
 
 
@@ -54,7 +55,7 @@ def twist_message(twist: Twist) -> TwistMessage:
 
 def pose_of_odometry(message: Odometry) -> Pose:
     """Return the planar pose of an odometry message, in its header's frame."""
-    return _planar(message.pose.pose)
+    return pose_of_message(message.pose.pose)
 
 
 def cliff_of(message: Cliff) -> tuple[bool, bool]:
@@ -70,25 +71,26 @@ def odometry_message(
 ) -> Odometry:
     """Return odometry: ``pose`` in ``frame_id``, ``twist`` in the body's frame."""
     message = Odometry(header=header(now, frame_id), child_frame_id=child_frame_id)
-    message.pose.pose.position.x = pose.x
-    message.pose.pose.position.y = pose.y
-    message.pose.pose.orientation = quaternion_of(pose.theta)
+    message.pose.pose = planar_pose_message(pose)
     message.twist.twist = twist_message(twist)
     return message
 
 
 def pose_of(message: PoseStamped) -> Pose:
     """Return the planar pose of a stamped pose, in its header's frame."""
-    return _planar(message.pose)
+    return pose_of_message(message.pose)
+
+
+def planar_pose_message(pose: Pose) -> PoseMessage:
+    """Return a planar pose as a message without time and frame."""
+    message = PoseMessage(orientation=quaternion_of(pose.theta))
+    message.position.x, message.position.y = pose.x, pose.y
+    return message
 
 
 def pose_message(now: float, pose: Pose, frame_id: str) -> PoseStamped:
     """Return a planar pose as a message."""
-    message = PoseStamped(header=header(now, frame_id))
-    message.pose.position.x = pose.x
-    message.pose.position.y = pose.y
-    message.pose.orientation = quaternion_of(pose.theta)
-    return message
+    return PoseStamped(header(now, frame_id), planar_pose_message(pose))
 
 
 def transform_message(

@@ -19,6 +19,7 @@ from roomba.geometry import Pose, Twist
 from roomba.world.home import Home
 from roomba.world.layer import load_home
 from roomba.world.simulator import Observation, Simulator
+from roomba_ros import kept_pose
 from roomba_ros.camera_topics import CameraTopics
 from roomba_ros.convert import (
     map_message,
@@ -145,6 +146,9 @@ class HomeSimNode:
         )
         for name, value in (("x", start.x), ("y", start.y), ("theta", start.theta)):
             rospy.set_param(f"initial_post_{name}", value)
+        if rospy.has_param(kept_pose.PARAMETER):
+            # Of a robot that stood elsewhere: its odometry began elsewhere, too.
+            rospy.delete_param(kept_pose.PARAMETER)
         rospy.loginfo("home %s: the robot starts at (%.2f, %.2f)", home.name, start.x, start.y)
         return simulator
 

@@ -1,26 +1,22 @@
-"""The position loop on ROS: where the robot is, and driving to where it should be."""
+"""Where the robot is, and driving to where it should be."""
 
 from __future__ import annotations
 
 import threading
 
 import rospy
-from geometry_msgs.msg import PoseStamped, Twist
-from nav_msgs.msg import Odometry
-from roomba_robot.msg import RobotPosition
-from tf2_msgs.msg import TFMessage
+from geometry_msgs.msg import Twist as TwistMessage
+from roomba_robot.msg import Bumper, Cliff, RobotPosition
 
 from roomba.control.position_loop import PositionLoop
 from roomba.control.setpoint import Setpoint
-from roomba.geometry import Pose
-from roomba_ros.convert import (
-    pose_message,
-    pose_of_odometry,
-    transform_message,
-    twist_message,
-)
-from roomba_ros.node import frame_id, run_node
-from roomba_ros.parameters import LiveSeedParameters, read_robot_config, read_seed_parameters
+from roomba.geometry import Twist
+from roomba.mission.look_around import Search
+from roomba.perception.estimate import Estimate, Knowledge
+from roomba_ros.convert import cliff_of, twist_message
+from roomba_ros.localization_topics import LocalizationTopics
+from roomba_ros.node import run_node
+from roomba_ros.parameters import LiveSeedParameters, read_robot_config
 
 _STOP_REPEATS = 3
 """Ticks for which a stop is repeated before the drive is left to others."""
@@ -29,11 +25,16 @@ _STOP_REPEATS = 3
 class PositionPubNode:
     """Knows the robot's pose and drives it to the wished position, however far that is.
 
-    Publishes: ``position`` (RobotPosition, 10 Hz), ``pose`` (PoseStamped, 20 Hz, map frame),
-    ``cmd_vel`` (Twist, 20 Hz while it drives), ``/tf`` (map -> odom).
-    Subscribes: ``change_position`` (RobotPosition, the wish), ``odom`` (Odometry).
+    When it does not know the pose any more it forgets the wish, and looks around by itself.
+
+    Publishes: ``cmd_vel`` (Twist, 20 Hz while it drives), and what :class:`LocalizationTopics`
+    tells.
+    Subscribes: ``change_position`` (RobotPosition, the wish), ``bumper``, ``cliff`` (while it looks
+    around), and what :class:`LocalizationTopics` hears.
+    Services: those of :class:`LocalizationTopics`.
     Parameters: ``initial_post_x``, ``initial_post_y``, ``initial_post_theta`` (where odometry
-    began), ``robot_max_speed``, ``min_cordinate``, ``max_cordinate``.
+    began), ``robot_max_speed``, ``min_cordinate``, ``max_cordinate``; ``~look_around`` (true: it
+    drives a little by itself when it has to find its place).
     """
 
     period = 0.05
@@ -41,78 +42,85 @@ class PositionPubNode:
     def start(self) -> None:
         """Read parameters and connect."""
         self._parameters = LiveSeedParameters()
-        config = read_robot_config()
-        self._loop = PositionLoop(config.control, config.body)
-        self._setpoint = Setpoint(config.control.stream_timeout)
+        self._config = read_robot_config()
+        self._loop = PositionLoop(self._config.control, self._config.body)
+        self._setpoint = Setpoint(self._config.control.stream_timeout)
+        self._search = Search(self._config.body)
+        self._may_look_around = bool(rospy.get_param("~look_around", True))
         self._lock = threading.Lock()
-        self._odometry: Pose | None = None
-        self._map_to_odom: Pose | None = None
+        self._bumps = self._sees_cliff = False
         self._stops_left = 0
-        self._ticks = 0
-        self._map_frame, self._odom_frame = "map", frame_id("odom")
-        self._position = rospy.Publisher("position", RobotPosition, queue_size=1)
-        self._pose = rospy.Publisher("pose", PoseStamped, queue_size=1, tcp_nodelay=True)
-        self._command = rospy.Publisher("cmd_vel", Twist, queue_size=1, tcp_nodelay=True)
-        self._transforms = rospy.Publisher("/tf", TFMessage, queue_size=10)
-        rospy.Subscriber("odom", Odometry, self._on_odometry, queue_size=1, tcp_nodelay=True)
+        self._place = LocalizationTopics(self._config)
+        self._place.start()
+        self._command = rospy.Publisher("cmd_vel", TwistMessage, queue_size=1, tcp_nodelay=True)
         self._wishes = rospy.Subscriber(
             "change_position", RobotPosition, self._on_wish, queue_size=1, tcp_nodelay=True
         )
+        rospy.Subscriber("bumper", Bumper, self._on_bumper, queue_size=1)
+        rospy.Subscriber("cliff", Cliff, self._on_cliff, queue_size=1)
 
     def tick(self, now: float) -> None:
-        """Publish the pose and drive towards the wish."""
+        """Tell where the robot is, and drive towards the wish."""
         self._parameters.refresh()
-        if self._odometry is None:
+        estimate = self._place.tick(now)
+        if estimate is None:
             return
-        pose = self._locate(self._odometry)
-        self._tell_pose(now, pose)
-        self._drive(now, pose)
+        self._drop_vanished_wish(now)
+        if estimate.knowledge.is_usable:
+            twist = self._twist_to_wish(now, estimate)
+        else:
+            self._forget_wish()
+            twist = self._twist_to_look_around(now)
+        self._command_drive(twist)
 
     def stop(self) -> None:
         """Stop what it drives."""
-        if self._setpoint.target is not None:
-            self._command.publish(Twist())
+        if self._setpoint.target is not None or self._stops_left:
+            self._command.publish(TwistMessage())
 
-    def _locate(self, odometry: Pose) -> Pose:
-        if self._map_to_odom is None:
-            # Read now, not at the start: the simulator puts the robot where its home wants it.
-            start = read_seed_parameters()
-            self._map_to_odom = Pose(
-                start.initial_post_x, start.initial_post_y, start.initial_post_theta
-            )
-        return self._map_to_odom.compose(odometry)
-
-    def _tell_pose(self, now: float, pose: Pose) -> None:
-        self._pose.publish(pose_message(now, pose, self._map_frame))
-        self._ticks += 1
-        if self._ticks % 2 == 0:
-            self._position.publish(RobotPosition(pose.x, pose.y))
-            assert self._map_to_odom is not None
-            self._transforms.publish(
-                [transform_message(now, self._map_to_odom, self._map_frame, self._odom_frame)]
-            )
-
-    def _drive(self, now: float, pose: Pose) -> None:
+    def _drop_vanished_wish(self, now: float) -> None:
         with self._lock:
-            if self._setpoint.check(now, self._wishes.get_num_connections()):
-                rospy.logwarn("the sender of change_position vanished while it drove; stopping")
-                self._stops_left = _STOP_REPEATS
+            has_vanished = self._setpoint.check(now, self._wishes.get_num_connections())
+        if has_vanished:
+            rospy.logwarn("the sender of change_position vanished while it drove; stopping")
+            self._stops_left = _STOP_REPEATS
+
+    def _forget_wish(self) -> None:
+        with self._lock:
+            self._setpoint.forget()
+
+    def _twist_to_wish(self, now: float, estimate: Estimate) -> Twist | None:
+        """Return what is wanted to come to the wish; None when nothing is."""
+        with self._lock:
             target = self._setpoint.target
-        if target is not None:
-            twist = self._loop.tick(pose, target, self._parameters.values.robot_max_speed)
-            if self._loop.arrived and self._stops_left == 0:
-                # Others may steer now; nothing drives it back here.
-                with self._lock:
-                    self._setpoint.fulfilled(now)
-                return
-            self._stops_left = self._stops_left - 1 if self._loop.arrived else _STOP_REPEATS
+        if target is None:
+            return None
+        max_speed = self._parameters.values.robot_max_speed
+        if estimate.knowledge is Knowledge.ROUGH:
+            max_speed = min(max_speed, self._config.walk.careful_speed)
+        twist = self._loop.tick(estimate.pose, target, max_speed)
+        if not self._loop.arrived:
+            return twist
+        if self._stops_left == 0:
+            # Others may steer now; nothing drives it back here.
+            with self._lock:
+                self._setpoint.fulfilled(now)
+        return None
+
+    def _twist_to_look_around(self, now: float) -> Twist | None:
+        if self._place.localizer is None or not self._may_look_around:
+            return None
+        touches = self._bumps or self._sees_cliff
+        return self._search.tick(now, self._place.localizer, touches)
+
+    def _command_drive(self, twist: Twist | None) -> None:
+        """Ask for a twist; after the last one ask to stop a few times, and leave the drive then."""
+        if twist is not None:
+            self._stops_left = _STOP_REPEATS
             self._command.publish(twist_message(twist))
         elif self._stops_left > 0:
             self._stops_left -= 1
-            self._command.publish(Twist())
-
-    def _on_odometry(self, message: Odometry) -> None:
-        self._odometry = pose_of_odometry(message)
+            self._command.publish(TwistMessage())
 
     def _on_wish(self, message: RobotPosition) -> None:
         if not self._parameters.values.allows(message.pos_x, message.pos_y):
@@ -128,6 +136,12 @@ class PositionPubNode:
         with self._lock:
             target = (message.pos_x, message.pos_y)
             self._setpoint.wish(rospy.get_time(), target, self._wishes.get_num_connections())
+
+    def _on_bumper(self, message: Bumper) -> None:
+        self._bumps = message.is_left_pressed or message.is_right_pressed
+
+    def _on_cliff(self, message: Cliff) -> None:
+        self._sees_cliff = any(cliff_of(message))
 
 
 def main() -> None:

@@ -17,6 +17,7 @@ from nav_msgs.srv import GetPlan, GetPlanRequest, GetPlanResponse
 from roomba_robot.msg import (
     Bumper,
     Cliff,
+    Localization,
     RobotPosition,
     WalkToPointAction,
     WalkToPointFeedback,
@@ -28,9 +29,11 @@ from roomba.errors import RoombaError
 from roomba.geometry import Pose
 from roomba.mission.unknown_things import UnknownThings
 from roomba.mission.walk import Sensed, Walk, WalkState, expected_duration, feedback_period
+from roomba.perception.estimate import Knowledge
 from roomba.planning.path import PathPlanner
 from roomba_ros.alone import refuse_second
 from roomba_ros.convert import cliff_of, map_of, path_message, pose_of, twist_of
+from roomba_ros.convert_localization import knowledge_of
 from roomba_ros.node import require_master, run_node
 from roomba_ros.parameters import LiveSeedParameters, read_robot_config
 
@@ -63,7 +66,7 @@ class WalkToPointActionServer:
 
     Publishes: ``change_position`` (RobotPosition) and ``change_speed`` (Float32, m/s) at 20 Hz
     while it walks, ``plan`` (Path, latched), ``walk_to_point/{feedback,result,status}``.
-    Subscribes: ``pose``, ``odom``, ``bumper``, ``cliff``, ``map``,
+    Subscribes: ``pose``, ``localization``, ``odom``, ``bumper``, ``cliff``, ``map``,
     ``walk_to_point/{goal,cancel}``.
     Services: ``make_plan`` (GetPlan: the path to a point, without walking it).
     Parameters: ``robot_max_speed``, ``min_cordinate``, ``max_cordinate``.
@@ -80,6 +83,7 @@ class WalkToPointActionServer:
         self._planning = threading.Lock()
         self._planner: PathPlanner | None = None
         self._pose: Pose | None = None
+        self._knowledge, self._trouble = Knowledge.KNOWN, ""
         self._speed = 0.0
         self._bumper = (False, False)
         self._cliff = (False, False)
@@ -94,6 +98,7 @@ class WalkToPointActionServer:
         )
         self._plan = rospy.Publisher("plan", Path, queue_size=1, latch=True)
         rospy.Subscriber("map", OccupancyGrid, self._on_map, queue_size=1)
+        rospy.Subscriber("localization", Localization, self._on_localization, queue_size=1)
         rospy.Subscriber("pose", PoseStamped, self._on_pose, queue_size=1, tcp_nodelay=True)
         rospy.Subscriber("odom", Odometry, self._on_odometry, queue_size=1)
         rospy.Subscriber("bumper", Bumper, self._on_bumper, queue_size=1, tcp_nodelay=True)
@@ -126,7 +131,15 @@ class WalkToPointActionServer:
     def _sense(self, now: float) -> Sensed | None:
         if self._pose is None or self._planner is None:
             return None
-        return Sensed(now, self._pose, self._speed, *self._bumper, *self._cliff)
+        return Sensed(
+            now,
+            self._pose,
+            self._speed,
+            *self._bumper,
+            *self._cliff,
+            self._knowledge,
+            self._trouble,
+        )
 
     def _serve_when_ready(self, sensed: Sensed | None) -> None:
         ready = sensed is not None or time.monotonic() > self._serves_by
@@ -158,6 +171,8 @@ class WalkToPointActionServer:
             raise RoombaError(
                 "the robot does not know its map and position yet; is home_sim_node running?"
             )
+        if not sensed.knowledge.is_usable:
+            raise RoombaError(f"the robot does not know where it is: {sensed.trouble}")
         config = self._config
         with self._planning:
             return Walk(self._planner, config.walk, config.body, self._things, goal, sensed)
@@ -202,6 +217,9 @@ class WalkToPointActionServer:
             rospy.loginfo("going around: %.2f m to walk", job.walk.path.length)
             self._show_plan(sensed.now, job.walk)
         self._change_speed.publish(step.cruise_speed)
+        if step.state is WalkState.ASTRAY:
+            # The position node forgot what it was asked for, and looks around.
+            return
         self._change_position.publish(RobotPosition(*step.setpoint))
         if step.state is WalkState.WALKING:
             self._tell_feedback(job, sensed.now, step.distance_left)
@@ -262,6 +280,9 @@ class WalkToPointActionServer:
 
     def _on_pose(self, message: PoseStamped) -> None:
         self._pose = pose_of(message)
+
+    def _on_localization(self, message: Localization) -> None:
+        self._knowledge, self._trouble = knowledge_of(message), message.message
 
     def _on_odometry(self, message: Odometry) -> None:
         self._speed = twist_of(message.twist.twist).linear

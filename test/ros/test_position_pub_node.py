@@ -49,7 +49,8 @@ def test_a_single_wish_makes_it_drive_there_and_no_teleport(graph: RosGraph) -> 
     probe.next("/position", RobotPosition)
     probe.send("/change_position", RobotPosition(2.0, 0.0))
     wait_until(lambda: "/cmd_vel" in probe.newest, 2.0, "a command")
-    assert probe.next("/cmd_vel", Twist).linear.x > 0.3
+    # Carefully: without a map and a lidar it knows its place but roughly.
+    assert 0.1 < probe.next("/cmd_vel", Twist).linear.x < 0.2
     assert probe.position() == (0.0, 0.0)
 
 

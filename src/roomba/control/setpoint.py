@@ -38,6 +38,10 @@ class Setpoint:
         if not 0.0 <= now - self._received <= self._stream_timeout:
             self._target = None
 
+    def forget(self) -> None:
+        """Wish nothing any more."""
+        self._target = None
+
     def check(self, now: float, senders: int) -> bool:
         """Drop a stream whose sender vanished; return True when that happened just now."""
         if self._target is None:

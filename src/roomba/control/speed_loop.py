@@ -1,7 +1,7 @@
 """The speed loop: the last word on what the drive is told.
 
-It keeps to the speed limit, stops for stale commands, keeps a pressed bumper from pushing, backs
-away from cliffs and stands when a wheel hangs in the air.
+It keeps to the speed limit, stops for stale commands, backs away from what the bumper meets and
+from cliffs, and stands when a wheel hangs in the air.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ class Hold(Enum):
     """Nothing was asked for yet, or the newest command is too old."""
     SPEED_ZERO = "the speed wanted is 0"
     BUMPER = "the bumper is pressed"
+    """It backs off a little, so that it can turn to another side; then it only does not push."""
     CLIFF = "there is no floor ahead"
     """It backs away until there is, whatever was asked for, but not for ever."""
     WHEEL_DROP = "a wheel hangs in the air"
@@ -29,6 +30,8 @@ BACKING_SPEED = 0.1
 """m/s; how fast it backs away from a cliff."""
 BACKING_TIME = 2.5
 """s; then it stands: nobody looks behind, and a sensor may be dirty."""
+BACKING_OFF_TIME = 0.6
+"""s; so long at most it backs off from what the bumper meets."""
 
 
 class SpeedLoop:
@@ -48,6 +51,7 @@ class SpeedLoop:
         self._bumper_pressed = False
         self._sees_cliff = False
         self._backs_since: float | None = None
+        self._pressed_since: float | None = None
         self._wheel_hangs = False
 
     @property
@@ -75,6 +79,8 @@ class SpeedLoop:
     def set_bumper(self, pressed: bool) -> None:
         """Tell whether the front bumper is pressed."""
         self._bumper_pressed = pressed
+        if not pressed:
+            self._pressed_since = None
 
     def set_cliff(self, seen: bool) -> None:
         """Tell whether a cliff sensor sees no floor."""
@@ -96,17 +102,17 @@ class SpeedLoop:
         if self._wheel_hangs:
             return Twist(), Hold.WHEEL_DROP
         if self._sees_cliff:
-            return self._back_away(now), Hold.CLIFF
+            self._backs_since = _began(self._backs_since, now)
+            is_over = now - self._backs_since > BACKING_TIME
+            return Twist() if is_over else self._backwards(), Hold.CLIFF
         limited = self._within_limit(command)
         if self._bumper_pressed and limited.linear > 0.0:
-            return Twist(0.0, limited.angular), Hold.BUMPER
+            self._pressed_since = _began(self._pressed_since, now)
+            is_over = now - self._pressed_since > BACKING_OFF_TIME
+            return Twist(0.0, limited.angular) if is_over else self._backwards(), Hold.BUMPER
         return limited, Hold.NONE
 
-    def _back_away(self, now: float) -> Twist:
-        if self._backs_since is None or now < self._backs_since:
-            self._backs_since = now
-        if now - self._backs_since > BACKING_TIME:
-            return Twist()
+    def _backwards(self) -> Twist:
         return Twist(-min(BACKING_SPEED, self.speed_limit), 0.0)
 
     def _fresh_command(self, now: float) -> Twist | None:
@@ -125,3 +131,8 @@ class SpeedLoop:
         if abs(twist.angular) * share > self._max_angular_speed:
             share = self._max_angular_speed / abs(twist.angular)
         return Twist(twist.linear * share, twist.angular * share)
+
+
+def _began(since: float | None, now: float) -> float:
+    """Return since when something holds; it began now if it did not, or the clock was set back."""
+    return now if since is None or now < since else since

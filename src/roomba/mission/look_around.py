@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from roomba.config import BodyConfig
 from roomba.geometry import Pose, Twist
+from roomba.perception.localizer import Localizer
 
 SPEED: Final = 0.25
 """m/s; slow, among things that it knows nothing about."""
@@ -100,3 +101,21 @@ class LookAround:
         in_way = (aside < self._radius + _MARGIN) & (ahead > 0.0)
         reach = np.where(in_way, ahead - self._radius - _MARGIN, np.inf)
         return np.minimum(room, np.maximum(reach.min(axis=1), 0.0))
+
+
+class Search:
+    """Lets the robot look around whenever its localizer needs to see more."""
+
+    def __init__(self, body: BodyConfig) -> None:
+        """Begin with nothing to search."""
+        self._body = body
+        self._look_around: LookAround | None = None
+
+    def tick(self, now: float, localizer: Localizer, touches: bool) -> Twist | None:
+        """Return the wanted twist while it looks around, else None; ``touches`` as LookAround."""
+        if localizer.view is None or not localizer.needs_to_look_around:
+            self._look_around = None
+            return None
+        if self._look_around is None:
+            self._look_around = LookAround(self._body)
+        return self._look_around.tick(now, localizer.reckoned, localizer.view.ends, touches)

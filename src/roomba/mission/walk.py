@@ -13,6 +13,7 @@ from roomba.config import BodyConfig, WalkConfig
 from roomba.geometry import Pose
 from roomba.mission.path_follower import PathFollower
 from roomba.mission.unknown_things import UnknownThings
+from roomba.perception.estimate import Knowledge
 from roomba.planning.path import NoPathError, Path, PathPlanner
 
 Point = tuple[float, float]
@@ -31,6 +32,8 @@ class WalkState(Enum):
     """How a walk stands."""
 
     WALKING = "walking"
+    ASTRAY = "astray"
+    """Under way, but nobody knows where the robot is; it goes on when that is known again."""
     ARRIVED = "arrived"
     FAILED = "failed"
     """Given up; the reason is told."""
@@ -38,7 +41,10 @@ class WalkState(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Sensed:
-    """What a walk needs to know at a tick: time in s, pose in the map frame, speed in m/s."""
+    """What a walk needs to know at a tick: time in s, pose in the map frame, speed in m/s.
+
+    ``knowledge`` is how well the pose is known, and ``trouble`` why not better.
+    """
 
     now: float
     pose: Pose
@@ -47,6 +53,8 @@ class Sensed:
     bumper_right: bool = False
     cliff_left: bool = False
     cliff_right: bool = False
+    knowledge: Knowledge = Knowledge.KNOWN
+    trouble: str = ""
 
     @property
     def touches(self) -> tuple[bool, bool]:
@@ -95,6 +103,7 @@ class Walk:
         self._was_touching = any(sensed.touches)
         self._least_left = math.inf
         self._progressed = sensed.now
+        self._went_astray = False
 
     def time_spent(self, now: float) -> float:
         """Return how long it has walked, s."""
@@ -103,6 +112,10 @@ class Walk:
     def tick(self, sensed: Sensed, max_speed: float) -> WalkStep:
         """Return what is wanted now; ``max_speed`` in m/s."""
         self._follow_clock(sensed.now)
+        if not sensed.knowledge.is_usable:
+            return self._wait_to_be_found(sensed, max_speed)
+        if sensed.knowledge is Knowledge.ROUGH:
+            max_speed = min(max_speed, self._config.careful_speed)
         if self._has_arrived(sensed):
             return WalkStep(WalkState.ARRIVED, self.goal, max_speed, 0.0)
         trouble = self._notice_trouble(sensed)
@@ -113,6 +126,19 @@ class Walk:
                 return WalkStep(WalkState.FAILED, here, max_speed, self._follower.left, failure)
         setpoint, cruise_speed = self._follower.tick(sensed.pose, max_speed)
         return WalkStep(WalkState.WALKING, setpoint, cruise_speed, self._follower.left)
+
+    def _wait_to_be_found(self, sensed: Sensed, max_speed: float) -> WalkStep:
+        """Ask for nothing while nobody knows where the robot is; it may look around meanwhile."""
+        self._went_astray = True
+        self._progressed = sensed.now
+        is_lost = sensed.knowledge is Knowledge.LOST
+        return WalkStep(
+            WalkState.FAILED if is_lost else WalkState.ASTRAY,
+            (sensed.pose.x, sensed.pose.y),
+            max_speed,
+            self._follower.left,
+            f"the robot does not know where it is: {sensed.trouble}",
+        )
 
     def _follow_clock(self, now: float) -> None:
         """When the clock was set, move the times that are remembered with it."""
@@ -129,6 +155,9 @@ class Walk:
     def _notice_trouble(self, sensed: Sensed) -> str:
         """Return why a new plan is needed, or nothing."""
         where = f"near ({sensed.pose.x:.2f}, {sensed.pose.y:.2f})"
+        went_astray, self._went_astray = self._went_astray, False
+        if went_astray:
+            return f"the robot found itself again {where}"
         left, right = sensed.touches
         is_new, self._was_touching = (left or right) and not self._was_touching, left or right
         if is_new:

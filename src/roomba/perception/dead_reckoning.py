@@ -18,6 +18,8 @@ _SETTLING: Final = 0.3
 """s; so long after it stopped the gyro of a robot that stands shows its bias alone."""
 _REMEMBERED: Final = 2.0
 """s; how late a scan may come."""
+SET_BACK: Final = 0.1
+"""s; a time so much before the last one is of a clock that was set back."""
 _LONGEST_STEP: Final = 1.0
 """s; the gyro says nothing of a time that was not sampled."""
 
@@ -44,10 +46,10 @@ class DeadReckoning:
     def move(self, stamp: float, odometry: Pose, turning: float | None) -> None:
         """Take the wheels' odometry and the gyro's turning speed, rad/s, if it has one, at a time.
 
-        What is older than the last is left out; a clock set back begins anew.
+        What is a little older than the last is left out; a clock set back begins anew.
         """
         if stamp <= self._stamp:
-            if self._stamp - stamp < _REMEMBERED:
+            if self._stamp - stamp < SET_BACK:
                 return
             self._past.clear()
             self._odometry = None

@@ -8,8 +8,7 @@ out; times in s of the robot's clock.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from enum import Enum
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -18,9 +17,9 @@ from numpy.typing import NDArray
 from roomba.config import GyroConfig, LocalizationConfig
 from roomba.geometry import Pose
 from roomba.grid import OccupancyMap
-from roomba.perception.dead_reckoning import DeadReckoning
-from roomba.perception.place_search import Region
-from roomba.perception.relocation import Hypothesis, Relocation, Verdict
+from roomba.perception.dead_reckoning import SET_BACK, DeadReckoning
+from roomba.perception.estimate import Estimate, Knowledge, worst_deviation
+from roomba.perception.relocation import Expectation, Hypothesis, Relocation, Verdict
 from roomba.perception.scan_view import Fit, LidarModel, ScanView
 from roomba.perception.surface_field import SurfaceField
 from roomba.perception.tracker import Tracker
@@ -29,99 +28,63 @@ _FOUND_SPREAD: Final = np.diag([0.05**2, 0.05**2, 0.03**2])
 """m2, rad2; of a place that was found, before scans narrow it down."""
 _AGAIN: Final = 1.0
 """s; after which a search that found nothing is tried anew, from where the robot is then."""
-_GOOD_AGREE: Final = 0.8
-_GOOD_THROUGH: Final = 0.1
-"""Shares of beams with which a pose that was told is taken as it is."""
-_TOLD_AGREE: Final = 0.65
-_TOLD_THROUGH: Final = 0.15
-"""Shares of beams with which a place near to one that was told needs no comparison."""
+_GOOD_AGREE: Final = 0.95
+_GOOD_THROUGH: Final = 0.03
+"""Shares of beams with which a pose that was told needs no comparison with all others."""
 _ASTRAY: Final = 0.3
 """m; a pose less sure than this is searched around, as if it had been told."""
 _TOLD_RADIUS: Final = 0.5
 _TOLD_TURN: Final = 0.5
-"""m, rad; at least so far around a pose that was told the robot is looked for."""
+_HERE_RADIUS: Final = 0.2
+_HERE_TURN: Final = 0.2
+"""m, rad; so far around a pose that was told, and one that was known, the robot is expected."""
+_HERE_EVIDENCE: Final = 2.0
+"""More than what is needed to believe a place: where it was it is, unless another is likelier."""
 _HELP: Final = (
     "carry it to its station, or tell where it is (in RViz: 2D Pose Estimate), "
     "or let it look around (global_localization)"
 )
 
 
-class Knowledge(Enum):
-    """How well the robot knows where it is."""
-
-    KNOWN = "known"
-    """The pose can be relied on."""
-    ROUGH = "rough"
-    """Only by wheels and gyro, or by too little in sight: good for going slowly."""
-    SEARCHING = "searching"
-    """Not known: places are compared, and looking around helps."""
-    LOST = "lost"
-    """Not found in time; a person should help."""
-
-    @property
-    def is_usable(self) -> bool:
-        """Whether the pose is good enough to drive by."""
-        return self in (Knowledge.KNOWN, Knowledge.ROUGH)
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Estimate:
-    """Where the robot is, map frame, as far as it knows.
-
-    ``covariance`` is float64 [3, 3], of x, y (m2) and theta (rad2); ``agreement`` the share of the
-    last scan's beams that agree with the map; ``reason`` says why it is not known, and what helps.
-    """
-
-    pose: Pose
-    covariance: NDArray[np.float64]
-    knowledge: Knowledge
-    agreement: float
-    reason: str
-
-    @property
-    def position_deviation(self) -> float:
-        """Standard deviation of the position along its worst direction, m."""
-        return _worst_deviation(self.covariance)
-
-    @property
-    def heading_deviation(self) -> float:
-        """Standard deviation of the heading, rad."""
-        return math.sqrt(max(0.0, float(self.covariance[2, 2])))
-
-
 class Localizer:
-    """Keeps the estimate; tell it what the sensors say in the order of time."""
+    """Keeps the estimate; tell it what the sensors say in the order of time.
+
+    ``view`` is the newest scan.
+    """
 
     def __init__(
         self,
-        occupancy: OccupancyMap,
+        occupancy: OccupancyMap | None,
         config: LocalizationConfig,
         gyro: GyroConfig,
         body_radius: float,
         start: Pose,
         deviation: tuple[float, float] = (0.05, 0.05),
     ) -> None:
-        """Begin near ``start``, map frame, unsure by ``deviation``, m and rad."""
-        self.field = SurfaceField.of(occupancy)
+        """Begin near ``start``, map frame, unsure by ``deviation``, m and rad.
+
+        Without a map it goes by wheels and gyro, until :meth:`use_map`.
+        """
+        self._map = occupancy
+        self.field = SurfaceField.of(occupancy) if occupancy else SurfaceField.unknown()
+        self.view: ScanView | None = None
         self._config, self._body_radius = config, body_radius
         self._reckoning = DeadReckoning(config, gyro)
         self._is_lifted = self._is_blind = False
         self._now = 0.0
         self._seen = self._searching_since = self._tried = -math.inf
-        self._told: Region | None = None
+        self._told: Expectation | None = None
         self._relocation: Relocation | None = None
         self._forgotten = ""
-        self._bonus = 0.0
+        self._expectation: Expectation | None = None
+        self._has_begun = False
         self.told(start, deviation)
 
     # ---------------------------------------------------------------- what the sensors say
 
     def move(self, stamp: float, odometry: Pose, turning: float | None = None) -> None:
         """Take the wheels' odometry and the gyro's turning speed, rad/s, if there is one."""
-        if stamp < self._now - 1.0:
-            # The clock was set back: what was remembered by time counts from now.
-            self._seen = self._searching_since = self._tried = stamp
-        self._now = stamp
+        self._pass_time(stamp)
         before = self._reckoning.pose
         self._reckoning.move(stamp, odometry, turning)
         step = before.inverse().compose(self._reckoning.pose)
@@ -135,10 +98,10 @@ class Localizer:
 
     def see(self, stamp: float, ranges: NDArray[np.float32], lidar: LidarModel) -> None:
         """Take a scan, float32 [beams], m; raises ValueError for another number of beams."""
-        view = lidar.view(ranges)
+        self.view = view = lidar.view(ranges)
         reckoned = self._reckoning.at(stamp)
         self._is_blind = len(view) == 0
-        if self._is_blind or self._is_lifted or reckoned is None:
+        if self._is_blind or self._is_lifted or reckoned is None or self._map is None:
             return
         self._seen = stamp
         tells_places_apart = len(view) >= self._config.least_beams
@@ -149,19 +112,35 @@ class Localizer:
                 self._relocation = self._begin_search(view, reckoned)
             self._search_on(self._relocation, view, reckoned)
 
+    def pass_time(self, now: float) -> None:
+        """Tell the time when nothing else does: silence tells something, too."""
+        if self._has_begun:
+            self._pass_time(now)
+
     # ---------------------------------------------------------------- what people say
+
+    def use_map(self, occupancy: OccupancyMap) -> None:
+        """Go on with another map of the same frame; a pose that it does not fit is searched for."""
+        if self._map is not None and (
+            occupancy.frame == self._map.frame
+            and np.array_equal(occupancy.values, self._map.values)
+        ):
+            return
+        self._map, self.field = occupancy, SurfaceField.of(occupancy)
+        estimate = self.estimate
+        self.told(estimate.pose, (estimate.position_deviation, estimate.heading_deviation))
 
     def told(self, pose: Pose, deviation: tuple[float, float]) -> None:
         """Take somebody's word for where the robot is, m and rad unsure; scans will confirm it."""
         spread = np.diag([deviation[0] ** 2, deviation[0] ** 2, deviation[1] ** 2])
         self._tracker = Tracker(self.field, self._config, pose, spread)
         self._relocation, self._forgotten = None, ""
-        self._told = _region_around(pose, deviation)
+        self._told = self._expected_around(pose, deviation)
 
     def forget(self, reason: str) -> None:
         """Trust no pose any more; look for the robot in the whole map."""
         self._told = self._relocation = None
-        self._forgotten, self._bonus = reason, 0.0
+        self._forgotten, self._expectation = reason, None
         self._searching_since = self._now
 
     # ---------------------------------------------------------------- what is known
@@ -173,6 +152,19 @@ class Localizer:
         knowledge, reason = self._knowledge()
         agreement = tracker.fit.agree if tracker.fit is not None else 0.0
         return Estimate(tracker.pose, tracker.covariance, knowledge, agreement, reason)
+
+    @property
+    def needs_to_look_around(self) -> bool:
+        """Whether more must be seen to know where the robot is, so that driving a little helps."""
+        knowledge, _ = self._knowledge()
+        if knowledge is not Knowledge.SEARCHING or self._is_lifted:
+            return False
+        return self._relocation is None or self._relocation.verdict is not Verdict.SEARCHING
+
+    @property
+    def reckoned(self) -> Pose:
+        """Where the robot is in a frame of its own, in which it never jumps but slowly drifts."""
+        return self._reckoning.pose
 
     @property
     def map_to_odometry(self) -> Pose:
@@ -189,6 +181,15 @@ class Localizer:
 
     # ---------------------------------------------------------------- stages
 
+    def _pass_time(self, now: float) -> None:
+        if not self._has_begun or now < self._now - SET_BACK:
+            # The first time, or a clock that was set back: what began before begins now.
+            self._searching_since = self._tried = now
+            self._seen = now if self._has_begun else -math.inf
+            self._now = now
+        self._has_begun = True
+        self._now = max(self._now, now)
+
     def _knowledge(self) -> tuple[Knowledge, str]:
         if self._is_lifted:
             return (
@@ -197,7 +198,7 @@ class Localizer:
             )
         if self._forgotten:
             return self._searching(self._forgotten)
-        deviation = _worst_deviation(self._tracker.covariance)
+        deviation = worst_deviation(self._tracker.covariance)
         if deviation > self._config.lost_deviation:
             return Knowledge.LOST, f"{self._why_unsure()}, for too long; {_HELP}"
         is_late = self._now - self._seen > self._config.scan_timeout
@@ -212,6 +213,8 @@ class Localizer:
         return Knowledge.SEARCHING, why
 
     def _why_unsure(self) -> str:
+        if self._map is None:
+            return "there is no map yet"
         if self._is_blind:
             return "the lidar sees next to nothing: it is blocked, or all is out of its reach"
         if self._now - self._seen > self._config.scan_timeout:
@@ -226,50 +229,48 @@ class Localizer:
         if self._told is None and self.estimate.position_deviation > _ASTRAY:
             estimate = self.estimate
             deviation = (estimate.position_deviation, estimate.heading_deviation)
-            self._told = _region_around(tracker.pose, deviation)
+            self._told = self._expected_around(tracker.pose, deviation)
         tracker.see(view)
         tracker.pose = tracker.pose.compose(since)
         if not tells_places_apart:
             return
         fit = tracker.judge(view)
         if self._told is not None:
-            self._check_told(self._told, fit, view, reckoned)
+            self._check_told(self._told, fit)
         elif tracker.is_doubtful:
             self.forget("the scan does not fit the map here any more")
             # Nothing says that it was carried: what the place looks like may have changed as well.
-            self._bonus = self._config.needed_evidence + 2.0
+            self._expectation = Expectation(
+                tracker.pose,
+                _HERE_RADIUS,
+                _HERE_TURN,
+                self._config.needed_evidence + _HERE_EVIDENCE,
+                is_sure=True,
+            )
 
-    def _check_told(self, region: Region, fit: Fit, view: ScanView, reckoned: Pose) -> None:
-        """Confirm what was told; or look around there first, and everywhere then."""
+    def _check_told(self, told: Expectation, fit: Fit) -> None:
+        """Take what was told if the scan fits very well there; else compare it with the map."""
         self._told = None
-        if fit.agree >= _GOOD_AGREE and fit.through <= _GOOD_THROUGH:
-            return
-        relocation = Relocation(
-            self.field, self._config, self._body_radius, view, reckoned, region, region.pose
+        if fit.agree < _GOOD_AGREE or fit.through > _GOOD_THROUGH:
+            self.forget("what the lidar sees does not fit well where it was told to be")
+            self._expectation = told
+
+    def _expected_around(self, pose: Pose, deviation: tuple[float, float]) -> Expectation:
+        """Return where to expect a robot that is near a pose, unsure by so much, m and rad."""
+        return Expectation(
+            pose,
+            max(_TOLD_RADIUS, 3.0 * deviation[0]),
+            max(_TOLD_TURN, 3.0 * deviation[1]),
+            self._config.needed_evidence + _HERE_EVIDENCE,
         )
-        while relocation.verdict is Verdict.SEARCHING:
-            relocation.advance()
-        if relocation.verdict is Verdict.FOUND:
-            best = relocation.hypotheses[0]
-            if best.fit.agree >= _TOLD_AGREE and best.fit.through <= _TOLD_THROUGH:
-                self._found(best)
-                return
-        self.forget("what the lidar sees does not fit the pose that was told")
 
     def _begin_search(self, view: ScanView, reckoned: Pose) -> Relocation:
         """Begin to look for the robot in the whole map."""
+        self._tried = self._now
         since = reckoned.inverse().compose(self._reckoning.pose)
         here = self._tracker.pose.compose(since.inverse())
-        self._tried = self._now
-        return Relocation(
-            self.field,
-            self._config,
-            self._body_radius,
-            view,
-            reckoned,
-            also=here,
-            bonus=self._bonus,
-        )
+        expectation = self._expectation and replace(self._expectation, pose=here)
+        return Relocation(self.field, self._config, self._body_radius, view, reckoned, expectation)
 
     def _search_on(self, relocation: Relocation, view: ScanView, reckoned: Pose) -> None:
         relocation.advance()
@@ -284,14 +285,3 @@ class Localizer:
         self._tracker = Tracker(self.field, self._config, pose, _FOUND_SPREAD.copy())
         self._tracker.trust(place.fit)
         self._relocation, self._forgotten = None, ""
-
-
-def _region_around(pose: Pose, deviation: tuple[float, float]) -> Region:
-    """Return where to look for a robot that is near a pose, unsure by so much, m and rad."""
-    return Region(pose, max(_TOLD_RADIUS, 3.0 * deviation[0]), max(_TOLD_TURN, 3.0 * deviation[1]))
-
-
-def _worst_deviation(covariance: NDArray[np.float64]) -> float:
-    """Return the standard deviation along the worst direction of the floor, m."""
-    xx, xy, yy = float(covariance[0, 0]), float(covariance[0, 1]), float(covariance[1, 1])
-    return math.sqrt(max(0.0, 0.5 * (xx + yy) + math.hypot(0.5 * (xx - yy), xy)))

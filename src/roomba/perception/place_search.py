@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.geometry import Pose, wrap_angle
 from roomba.perception.search_kernels import score_heading
 from roomba.perception.surface_field import SurfaceField
 
@@ -25,15 +23,6 @@ PIECE: Final = 200_000
 """Poses that are tried at once: some 10 ms of work."""
 
 
-@dataclass(frozen=True, slots=True)
-class Region:
-    """Where to search: around a pose, up to so far, m, and so much turned, rad."""
-
-    pose: Pose
-    radius: float
-    turn: float
-
-
 class PlaceSearch:
     """One search; call :meth:`advance` until it says that all is done."""
 
@@ -42,17 +31,16 @@ class PlaceSearch:
         field: SurfaceField,
         ends: NDArray[np.float64],
         body_radius: float,
-        region: Region | None = None,
     ) -> None:
         """Search for where ``ends`` (float64 [beams, 4], see ``beam_ends``) were measured from.
 
-        Only places where a body of ``body_radius`` m finds room are tried, in ``region`` if any.
+        Only places where a body of ``body_radius`` m finds room are tried.
         """
         self._field = field
         self._ends = ends
         self._chosen = np.unique(np.linspace(0, len(ends) - 1, BEAMS).astype(np.int64))
-        self._spots = _spots(field, 0.9 * body_radius, region)
-        self._headings = _headings(region)
+        self._spots = _spots(field, 0.9 * body_radius)
+        self._headings = np.arange(-math.pi, math.pi, TURN)
         self._at = 0
         self._scores = np.zeros(len(self._spots), np.float32)
         self._best = np.zeros(len(self._spots), np.float32)
@@ -82,7 +70,7 @@ class PlaceSearch:
         return np.column_stack((self._spots[order], self._best[order].astype(np.float64)))
 
 
-def _spots(field: SurfaceField, room: float, region: Region | None) -> NDArray[np.float64]:
+def _spots(field: SurfaceField, room: float) -> NDArray[np.float64]:
     """Return a lattice of places with so much room around, float64 [n, 2], m."""
     frame = field.frame
     stride = max(1, round(STEP / frame.resolution))
@@ -93,9 +81,6 @@ def _spots(field: SurfaceField, room: float, region: Region | None) -> NDArray[n
             frame.origin_y + (rows + 0.5) * frame.resolution,
         )
     )
-    if region is not None:
-        near = np.hypot(*(spots - (region.pose.x, region.pose.y)).T) <= region.radius
-        spots = np.vstack(([[region.pose.x, region.pose.y]], spots[near]))
     return np.ascontiguousarray(spots, np.float64)
 
 
@@ -109,12 +94,3 @@ def _roomiest(fits: NDArray[np.bool_], stride: int) -> NDArray[np.bool_]:
     chosen = np.zeros(fits.shape, np.bool_)
     chosen[rows[order][first], columns[order][first]] = True
     return chosen
-
-
-def _headings(region: Region | None) -> NDArray[np.float64]:
-    if region is None or region.turn >= math.pi:
-        return np.arange(-math.pi, math.pi, TURN)
-    steps = math.ceil(region.turn / TURN)
-    return np.array(
-        [wrap_angle(region.pose.theta + step * TURN) for step in range(-steps, steps + 1)]
-    )

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from roomba.config import LocalizationConfig
 from roomba.geometry import Pose, wrap_angle
 from roomba.perception.match_kernels import match
-from roomba.perception.place_search import PlaceSearch, Region
+from roomba.perception.place_search import PlaceSearch
 from roomba.perception.scan_view import Fit, ScanView
 from roomba.perception.surface_field import SurfaceField
 
@@ -30,10 +30,9 @@ _FROM_NEAR: Final = np.array([0.15, 0.10, 0.05, 0.05])
 _NEW_WAY: Final = 0.12
 _NEW_TURN: Final = 0.4
 """m, rad; a scan from so far away, or so much turned, says something new."""
-_LEAST_AGREE: Final = 0.6
+LEAST_AGREE: Final = 0.6
 _MOST_THROUGH: Final = 0.15
-"""Shares of beams that a place which is found must have and may have; of those where the robot was
-before, half of the first is enough: homes change more often than robots are carried unnoticed."""
+"""Shares of beams that a place which is found must have, and may have."""
 _WELL: Final = 0.75
 """Share of beams; a place where fewer agree needs more views, and twice the evidence."""
 _LEAST_VIEWS: Final = 3
@@ -50,6 +49,26 @@ class Verdict(Enum):
     FOUND = "one place fits"
 
 
+@dataclass(frozen=True, slots=True)
+class Expectation:
+    """Where the robot should be: around a pose, up to so far, m, and so much turned, rad.
+
+    ``evidence`` is what that counts when places are compared. With ``is_sure`` nothing says that
+    the robot moved: there it is enough if half as many beams agree, and walls may have gone.
+    """
+
+    pose: Pose
+    radius: float
+    turn: float
+    evidence: float
+    is_sure: bool = False
+
+    def is_met(self, pose: Pose) -> bool:
+        """Whether a pose is one of those."""
+        near = pose.distance_to(self.pose.x, self.pose.y) <= self.radius
+        return near and abs(wrap_angle(pose.theta - self.pose.theta)) <= self.turn
+
+
 @dataclass(slots=True)
 class Hypothesis:
     """A place where the robot may be: where dead reckoning's frame lies in the map then."""
@@ -57,14 +76,14 @@ class Hypothesis:
     frame: Pose
     evidence: float
     fit: Fit
-    is_here: bool = False
+    is_sure: bool = False
 
     @property
     def is_possible(self) -> bool:
         """Whether the scan fits at all there."""
-        if self.is_here:
-            return self.fit.agree > 0.5 * _LEAST_AGREE
-        return self.fit.agree >= _LEAST_AGREE and self.fit.through <= _MOST_THROUGH
+        if self.is_sure:
+            return self.fit.agree > 0.5 * LEAST_AGREE
+        return self.fit.agree >= LEAST_AGREE and self.fit.through <= _MOST_THROUGH
 
 
 class Relocation:
@@ -77,20 +96,15 @@ class Relocation:
         body_radius: float,
         view: ScanView,
         reckoned: Pose,
-        region: Region | None = None,
-        also: Pose | None = None,
-        bonus: float = 0.0,
+        expectation: Expectation | None = None,
     ) -> None:
-        """Search the map, or a region of it, for the place that ``view`` was seen from.
-
-        ``also`` is a pose to try in any case, map frame; ``bonus`` is evidence for it.
-        """
+        """Search the map for the place that ``view`` was seen from."""
         self.hypotheses: list[Hypothesis] = []
         self.views = 0
         self._field, self._config = field, config
-        self._search: PlaceSearch | None = PlaceSearch(field, view.ends, body_radius, region)
+        self._search: PlaceSearch | None = PlaceSearch(field, view.ends, body_radius)
         self._view, self._reckoned = view, reckoned
-        self._also, self._bonus = also, bonus
+        self._expectation = expectation
 
     @property
     def verdict(self) -> Verdict:
@@ -123,16 +137,15 @@ class Relocation:
 
     def _compare(self, starts: NDArray[np.float64]) -> None:
         """Match and judge the places that the search found."""
-        back = self._reckoned.inverse()
-        if self._also is not None:
-            pose, fit = self._matched(self._also, _FROM_AFAR)
-            stays = pose.distance_to(self._also.x, self._also.y) < _ALIKE
-            is_here = stays and self._bonus > 0.0
-            evidence = fit.evidence + (self._bonus if stays else 0.0)
-            self.hypotheses.append(Hypothesis(pose.compose(back), evidence, fit, is_here))
-        for x, y, theta in starts.tolist():
-            pose, fit = self._matched(Pose(x, y, theta), _FROM_AFAR)
-            self.hypotheses.append(Hypothesis(pose.compose(back), fit.evidence, fit))
+        back, expected = self._reckoned.inverse(), self._expectation
+        poses = [Pose(*start) for start in starts.tolist()]
+        for start in poses if expected is None else [expected.pose, *poses]:
+            pose, fit = self._matched(start, _FROM_AFAR)
+            hypothesis = Hypothesis(pose.compose(back), fit.evidence, fit)
+            if expected is not None and expected.is_met(pose):
+                hypothesis.evidence += expected.evidence
+                hypothesis.is_sure = expected.is_sure
+            self.hypotheses.append(hypothesis)
         self.views = 1
         self._sort()
 
@@ -174,7 +187,7 @@ class Relocation:
     def _is_clear(self) -> bool:
         """Whether the best place is so much better than the next that it can be believed."""
         best = self.hypotheses[0]
-        fits_well = best.fit.agree >= _WELL or best.is_here
+        fits_well = best.fit.agree >= _WELL or best.is_sure
         if not fits_well and self.views < _LEAST_VIEWS:
             return False
         if len(self.hypotheses) == 1:

@@ -35,6 +35,11 @@ class SurfaceField:
         metres = np.clip(cells, -far, far) * occupancy.frame.resolution
         return SurfaceField(occupancy.frame, np.ascontiguousarray(metres, np.float32))
 
+    @staticmethod
+    def unknown() -> SurfaceField:
+        """Return the field of no map: nowhere is a surface."""
+        return SurfaceField(GridFrame(1.0, 0.0, 0.0, 0, 0), np.empty((0, 0), np.float32))
+
     @property
     def place(self) -> NDArray[np.float64]:
         """x and y of the middle of the first cell, and the resolution, m: as kernels read it."""

@@ -69,7 +69,7 @@ class Tracker:
             prior,
             covariance,
             _WIDE if is_unsure else _NARROW,
-            self._config.beam_deviation**2,
+            self._beam_variance(len(view)),
             pose,
         )
         self.pose = Pose(*pose.tolist())
@@ -88,6 +88,12 @@ class Tracker:
         self._usual_through += _ADAPTING * (fit.through - self._usual_through)
         return fit
 
+    def _beam_variance(self, beams: int) -> float:
+        """Return the variance of a beam, m2: few beams are of one thing, and err together."""
+        cell = 0.5 * self._field.frame.resolution
+        share = max(1.0, self._config.least_beams / max(beams, 1))
+        return (self._config.beam_deviation**2 + cell**2) * share
+
     @property
     def is_doubtful(self) -> bool:
         """Whether scans fit so much worse than usual that the robot may be somewhere else."""
@@ -101,7 +107,6 @@ class Tracker:
         self.fit = fit
         self._agree = self._usual_agree = fit.agree
         self._through = self._usual_through = fit.through
-        self._usual_agree = min(self._usual_agree, _LEAST + _WORSE)
 
 
 def moved(

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from roomba.control.speed_loop import BACKING_SPEED, Hold, SpeedLoop
+from roomba.control.speed_loop import BACKING_OFF_TIME, BACKING_SPEED, Hold, SpeedLoop
 from roomba.geometry import Twist
 
 
@@ -58,13 +58,26 @@ def test_speed_zero_means_stand() -> None:
     assert speed_loop.tick(0.1) == (Twist(), Hold.SPEED_ZERO)
 
 
-def test_a_pressed_bumper_lets_it_turn_and_back_off_but_not_push() -> None:
+def test_a_pressed_bumper_makes_it_back_off_a_little_and_never_push() -> None:
     speed_loop = loop()
     speed_loop.set_bumper(True)
-    speed_loop.command(0.0, Twist(0.3, 1.0))
-    assert speed_loop.tick(0.1) == (Twist(0.0, 1.0), Hold.BUMPER)
-    speed_loop.command(0.1, Twist(-0.3, 1.0))
-    assert speed_loop.tick(0.2) == (Twist(-0.3, 1.0), Hold.NONE)
+    for tenth in range(20):
+        now = 0.1 * tenth
+        speed_loop.command(now, Twist(0.3, 1.0))
+        backs_off = now <= BACKING_OFF_TIME
+        expected = Twist(-BACKING_SPEED, 0.0) if backs_off else Twist(0.0, 1.0)
+        assert speed_loop.tick(now) == (expected, Hold.BUMPER)
+    speed_loop.set_bumper(False)
+    speed_loop.set_bumper(True)
+    assert speed_loop.tick(2.0) == (Twist(-BACKING_SPEED, 0.0), Hold.BUMPER)
+
+
+def test_a_pressed_bumper_lets_it_turn_and_drive_backwards() -> None:
+    speed_loop = loop()
+    speed_loop.set_bumper(True)
+    for wanted in (Twist(0.0, 1.0), Twist(-0.3, 1.0)):
+        speed_loop.command(0.1, wanted)
+        assert speed_loop.tick(0.2) == (wanted, Hold.NONE)
     speed_loop.set_bumper(False)
     speed_loop.command(0.2, Twist(0.3, 0.0))
     assert speed_loop.tick(0.3)[1] is Hold.NONE

@@ -1,0 +1,61 @@
+"""What the robot knows of where it is."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.geometry import Pose
+
+
+class Knowledge(Enum):
+    """How well the robot knows where it is."""
+
+    KNOWN = "known"
+    """The pose can be relied on."""
+    ROUGH = "rough"
+    """Only by wheels and gyro, or by too little in sight: good for going slowly."""
+    SEARCHING = "searching"
+    """Not known: places are compared, and looking around helps."""
+    LOST = "lost"
+    """Not found in time; a person should help."""
+
+    @property
+    def is_usable(self) -> bool:
+        """Whether the pose is good enough to drive by."""
+        return self in (Knowledge.KNOWN, Knowledge.ROUGH)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Estimate:
+    """Where the robot is, map frame, as far as it knows.
+
+    ``covariance`` is float64 [3, 3], of x, y (m2) and theta (rad2); ``agreement`` the share of the
+    last scan's beams that agree with the map; ``reason`` says why it is not known, and what helps.
+    """
+
+    pose: Pose
+    covariance: NDArray[np.float64]
+    knowledge: Knowledge
+    agreement: float
+    reason: str
+
+    @property
+    def position_deviation(self) -> float:
+        """Standard deviation of the position along its worst direction, m."""
+        return worst_deviation(self.covariance)
+
+    @property
+    def heading_deviation(self) -> float:
+        """Standard deviation of the heading, rad."""
+        return math.sqrt(max(0.0, float(self.covariance[2, 2])))
+
+
+def worst_deviation(covariance: NDArray[np.float64]) -> float:
+    """Return the standard deviation along the worst direction of the floor, m."""
+    xx, xy, yy = float(covariance[0, 0]), float(covariance[0, 1]), float(covariance[1, 1])
+    return math.sqrt(max(0.0, 0.5 * (xx + yy) + math.hypot(0.5 * (xx - yy), xy)))
