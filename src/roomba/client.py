@@ -34,12 +34,16 @@ class Limits:
 
 @dataclass(frozen=True, slots=True)
 class RobotState:
-    """The newest values the robot has told; ``dirt`` in g under its body."""
+    """The newest values the robot has told; ``dirt`` in g under its body.
+
+    ``doubt`` says why it does not know well where it is, and what helps; empty if it does.
+    """
 
     x: float
     y: float
     speed: float
     dirt: float
+    doubt: str = ""
 
 
 class WalkOutcome(Enum):

@@ -112,6 +112,7 @@ class FakeRobot:
         station: tuple[float, float] = (0.0, 0.0),
         position: tuple[float, float] = (0.0, 0.0),
         dirt: float = 0.25,
+        doubt: str = "",
         detour: float = 1.0,
         blocked: Mapping[tuple[float, float], str] | None = None,
         scripts: Iterable[WalkScript] = (),
@@ -125,7 +126,7 @@ class FakeRobot:
         self._limits = limits
         self._station = station
         self._position = position
-        self._dirt = dirt
+        self._dirt, self._doubt = dirt, doubt
         self._detour = detour
         self._blocked = dict(blocked or {})
         self._scripts = list(scripts)
@@ -147,7 +148,7 @@ class FakeRobot:
             raise RobotUnavailableError(f"expected a position within {timeout:g} s, none came")
         x, y = self._position if walk is None else walk.position
         speed = 0.0 if walk is None else walk.speed
-        return RobotState(x=x, y=y, speed=speed, dirt=self._dirt)
+        return RobotState(x=x, y=y, speed=speed, dirt=self._dirt, doubt=self._doubt)
 
     def path_length(self, x: float, y: float) -> float:
         """Return the straight distance times ``detour``; refuses what is blocked or outside."""

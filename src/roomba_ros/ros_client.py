@@ -16,6 +16,7 @@ from geometry_msgs.msg import PoseStamped
 from nav_msgs.srv import GetPlan
 from numpy.typing import NDArray
 from roomba_robot.msg import (
+    Localization,
     PositionAndDestination,
     RobotPosition,
     WalkToPointAction,
@@ -58,7 +59,8 @@ _OUTCOMES = {
 class RosRobot:
     """A robot in this node's namespace.
 
-    Subscribes: ``dirt``, ``position``, ``speed``, ``walk_to_point/{feedback,result,status}``.
+    Subscribes: ``dirt``, ``position``, ``localization``, ``speed``,
+    ``walk_to_point/{feedback,result,status}``.
     Publishes: ``walk_to_point/{goal,cancel}``. Calls: ``make_plan``.
     """
 
@@ -67,6 +69,7 @@ class RosRobot:
         self._news = threading.Condition()
         self._values: dict[str, tuple[float, ...]] = {}
         self._heard: dict[str, float] = {}
+        self._doubt = ""
         self._travelled = 0.0
         self._status_seen = time.monotonic()
 
@@ -78,6 +81,7 @@ class RosRobot:
         rospy.Subscriber("dirt", Float32, self._on_dirt, queue_size=1)
         rospy.Subscriber("speed", Float32, self._on_speed, queue_size=1)
         rospy.Subscriber("position", RobotPosition, self._on_position, queue_size=1)
+        rospy.Subscriber("localization", Localization, self._on_localization, queue_size=1)
         rospy.Subscriber("walk_to_point/status", GoalStatusArray, self._on_status, queue_size=1)
 
     def limits(self) -> Limits:
@@ -99,7 +103,8 @@ class RosRobot:
                     "is the robot running (`./roomba run`)?"
                 )
             x, y = self._values["position"]
-            return RobotState(x, y, *self._values["speed"], *self._values["dirt"])
+            speed, dirt = self._values["speed"], self._values["dirt"]
+            return RobotState(x, y, *speed, *dirt, self._doubt)
 
     def path_length(self, x: float, y: float) -> float:
         """Return the length of the planned way, m."""
@@ -157,6 +162,10 @@ class RosRobot:
             before = self._values.get("position", (message.pos_x, message.pos_y))
             self._travelled += math.dist(before, (message.pos_x, message.pos_y))
         self._hear("position", message.pos_x, message.pos_y)
+
+    def _on_localization(self, message: Localization) -> None:
+        with self._news:
+            self._doubt = message.message
 
     def _on_status(self, message: GoalStatusArray) -> None:
         self._status_seen = time.monotonic()

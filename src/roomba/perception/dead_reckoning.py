@@ -20,6 +20,8 @@ _REMEMBERED: Final = 2.0
 """s; how late a scan may come."""
 SET_BACK: Final = 0.1
 """s; a time so much before the last one is of a clock that was set back."""
+_UNSEEN: Final = 0.3
+"""Share of a change of the turning speed between two samples: so unsure its mean is."""
 _LONGEST_STEP: Final = 1.0
 """s; the gyro says nothing of a time that was not sampled."""
 
@@ -37,6 +39,7 @@ class DeadReckoning:
         self._odometry: Pose | None = None
         self._stamp = -math.inf
         self._past: deque[tuple[float, Pose]] = deque()
+        self._turning: float | None = None
         self._bias = 0.0
         self._samples = 0
         self._still_since = math.inf
@@ -46,29 +49,19 @@ class DeadReckoning:
     def move(self, stamp: float, odometry: Pose, turning: float | None) -> None:
         """Take the wheels' odometry and the gyro's turning speed, rad/s, if it has one, at a time.
 
-        What is a little older than the last is left out; a clock set back begins anew.
+        What is a little older than the last is left out. When a clock is set back the way still
+        counts, but nothing is known of the time that it took.
         """
-        if stamp <= self._stamp:
-            if self._stamp - stamp < SET_BACK:
+        elapsed = min(stamp - self._stamp, _LONGEST_STEP)
+        if elapsed <= 0.0:
+            if elapsed > -SET_BACK:
                 return
             self._past.clear()
-            self._odometry = None
-        step = Pose() if self._odometry is None else self._odometry.inverse().compose(odometry)
-        elapsed = min(stamp - self._stamp, _LONGEST_STEP)
-        if self._odometry is None:
+        if elapsed <= 0.0 or self._odometry is None:
             elapsed = 0.0
+        step = Pose() if self._odometry is None else self._odometry.inverse().compose(odometry)
         self._odometry, self._stamp = odometry, stamp
-        way = math.hypot(step.x, step.y)
-        self._learn_bias(stamp, way, step.theta, turning)
-        turn, turn_variance = self._turn(way, step.theta, turning, elapsed)
-        # The wheels' arc, bent to the turn that is believed.
-        half = 0.5 * (turn - step.theta)
-        bent = Pose(0.0, 0.0, half).compose(Pose(step.x, step.y, 0.0))
-        self.pose = self.pose.compose(Pose(bent.x, bent.y, turn))
-        config = self._config
-        self._spread[0, 0] += config.way_noise**2 * way
-        self._spread[1, 1] += config.side_noise**2 * way
-        self._spread[2, 2] += turn_variance
+        self._go(step, turning, elapsed)
         self._past.append((stamp, self.pose))
         while self._past[0][0] < stamp - _REMEMBERED:
             self._past.popleft()
@@ -96,6 +89,18 @@ class DeadReckoning:
         """The newest odometry, in its own frame."""
         return self._odometry or Pose()
 
+    def _go(self, step: Pose, turning: float | None, elapsed: float) -> None:
+        """Move by a step of the wheels, bent to the turn that is believed."""
+        config = self._config
+        way = math.hypot(step.x, step.y)
+        self._learn_bias(self._stamp, way, step.theta, turning)
+        turn, variance = self._turn(way, step.theta, turning, elapsed)
+        arc = Pose(0.0, 0.0, 0.5 * (turn - step.theta)).compose(Pose(step.x, step.y, 0.0))
+        self.pose = self.pose.compose(Pose(arc.x, arc.y, turn))
+        self._spread[0, 0] += config.way_noise**2 * way
+        self._spread[1, 1] += config.side_noise**2 * way
+        self._spread[2, 2] += variance
+
     def _learn_bias(self, stamp: float, way: float, turn: float, turning: float | None) -> None:
         """While the wheels stand, the mean of what the gyro shows is its bias."""
         if way > _STANDS or abs(turn) > _STANDS or turning is None:
@@ -118,13 +123,18 @@ class DeadReckoning:
     ) -> tuple[float, float]:
         """Return the turn, rad, of both measurements weighed, and its variance, rad2."""
         config = self._config
+        before, self._turning = self._turning, turning
         by_wheels = config.wheel_turn_noise**2 * way + config.turn_noise**2 * abs(wheels) + 1e-9
         if turning is None or elapsed == 0.0:
             return wheels, by_wheels
-        gyro = (turning - self._bias) * elapsed
-        # Sampled once in a while, it knows little of a turn that begins or ends in between.
-        by_gyro = (self._gyro.noise * elapsed) ** 2 + (0.3 * (gyro - wheels)) ** 2
-        by_gyro += config.turn_noise**2 * abs(gyro) + config.gyro_drift**2 * elapsed
+        before = turning if before is None else before
+        gyro = (0.5 * (before + turning) - self._bias) * elapsed
+        by_gyro = (self._gyro.noise * elapsed) ** 2 + config.gyro_drift**2 * elapsed
+        by_gyro += config.turn_noise**2 * abs(gyro)
+        # Sampled now and then, it does not know how the turning changed in between.
+        by_gyro += (_UNSEEN * (turning - before) * elapsed) ** 2
+        # What the wheels say beside the gyro may be slip.
+        by_wheels += (gyro - wheels) ** 2
         share = by_wheels / (by_wheels + by_gyro)
         return wheels + share * (gyro - wheels), share * by_gyro
 

@@ -26,6 +26,8 @@ from roomba.perception.tracker import Tracker
 
 _FOUND_SPREAD: Final = np.diag([0.05**2, 0.05**2, 0.03**2])
 """m2, rad2; of a place that was found, before scans narrow it down."""
+_PATIENCE: Final = 0.5
+"""s; so long it waits for a scan that tells places apart before it moves to get one."""
 _AGAIN: Final = 1.0
 """s; after which a search that found nothing is tried anew, from where the robot is then."""
 _GOOD_AGREE: Final = 0.95
@@ -127,8 +129,10 @@ class Localizer:
         ):
             return
         self._map, self.field = occupancy, SurfaceField.of(occupancy)
-        estimate = self.estimate
+        estimate, forgotten = self.estimate, self._forgotten
         self.told(estimate.pose, (estimate.position_deviation, estimate.heading_deviation))
+        if forgotten:
+            self.forget(forgotten)
 
     def told(self, pose: Pose, deviation: tuple[float, float]) -> None:
         """Take somebody's word for where the robot is, m and rad unsure; scans will confirm it."""
@@ -159,7 +163,9 @@ class Localizer:
         knowledge, _ = self._knowledge()
         if knowledge is not Knowledge.SEARCHING or self._is_lifted:
             return False
-        return self._relocation is None or self._relocation.verdict is not Verdict.SEARCHING
+        if self._relocation is None:
+            return self._now - self._searching_since > _PATIENCE
+        return self._relocation.verdict is not Verdict.SEARCHING
 
     @property
     def reckoned(self) -> Pose:
@@ -231,10 +237,10 @@ class Localizer:
             deviation = (estimate.position_deviation, estimate.heading_deviation)
             self._told = self._expected_around(tracker.pose, deviation)
         tracker.see(view)
+        fit = tracker.judge(view) if tells_places_apart else None
         tracker.pose = tracker.pose.compose(since)
-        if not tells_places_apart:
+        if fit is None:
             return
-        fit = tracker.judge(view)
         if self._told is not None:
             self._check_told(self._told, fit)
         elif tracker.is_doubtful:
@@ -245,7 +251,6 @@ class Localizer:
                 _HERE_RADIUS,
                 _HERE_TURN,
                 self._config.needed_evidence + _HERE_EVIDENCE,
-                is_sure=True,
             )
 
     def _check_told(self, told: Expectation, fit: Fit) -> None:

@@ -53,15 +53,14 @@ class Verdict(Enum):
 class Expectation:
     """Where the robot should be: around a pose, up to so far, m, and so much turned, rad.
 
-    ``evidence`` is what that counts when places are compared. With ``is_sure`` nothing says that
-    the robot moved: there it is enough if half as many beams agree, and walls may have gone.
+    ``evidence`` is what that counts when places are compared. There it is enough if half as many
+    beams agree, and walls may have gone: homes change more often than robots are elsewhere.
     """
 
     pose: Pose
     radius: float
     turn: float
     evidence: float
-    is_sure: bool = False
 
     def is_met(self, pose: Pose) -> bool:
         """Whether a pose is one of those."""
@@ -76,12 +75,12 @@ class Hypothesis:
     frame: Pose
     evidence: float
     fit: Fit
-    is_sure: bool = False
+    is_expected: bool = False
 
     @property
     def is_possible(self) -> bool:
         """Whether the scan fits at all there."""
-        if self.is_sure:
+        if self.is_expected:
             return self.fit.agree > 0.5 * LEAST_AGREE
         return self.fit.agree >= LEAST_AGREE and self.fit.through <= _MOST_THROUGH
 
@@ -144,7 +143,7 @@ class Relocation:
             hypothesis = Hypothesis(pose.compose(back), fit.evidence, fit)
             if expected is not None and expected.is_met(pose):
                 hypothesis.evidence += expected.evidence
-                hypothesis.is_sure = expected.is_sure
+                hypothesis.is_expected = True
             self.hypotheses.append(hypothesis)
         self.views = 1
         self._sort()
@@ -187,7 +186,7 @@ class Relocation:
     def _is_clear(self) -> bool:
         """Whether the best place is so much better than the next that it can be believed."""
         best = self.hypotheses[0]
-        fits_well = best.fit.agree >= _WELL or best.is_sure
+        fits_well = best.fit.agree >= _WELL or best.is_expected
         if not fits_well and self.views < _LEAST_VIEWS:
             return False
         if len(self.hypotheses) == 1:

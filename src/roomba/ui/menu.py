@@ -95,6 +95,8 @@ class Menu:
         """Tell where the robot is."""
         state = self.robot.state()
         self.say(f"Current position: {_place(state.x, state.y)}")
+        if state.doubt:
+            self.say(f"The robot is not sure of that: {state.doubt}", style="yellow")
 
     def go_to_destination(self) -> None:
         """Ask for a destination and walk there."""

@@ -72,6 +72,12 @@ def test_dirt_is_told_in_grams_and_the_position_in_metres() -> None:
     _, lines, _ = use(FakeRobot(dirt=0.125, position=(1.5, -2.25)), "1", " 2 ")
     assert "Current dirt amount: 0.12 g under the robot" in lines
     assert "Current position: x = 1.50 m, y = -2.25 m" in lines
+    assert not any("not sure" in line for line in lines)
+
+
+def test_a_robot_that_does_not_know_its_place_well_says_why() -> None:
+    _, lines, _ = use(FakeRobot(doubt="the lidar sends no scans"), "2")
+    assert "The robot is not sure of that: the lidar sends no scans" in lines
 
 
 def test_a_walk_is_told_before_during_and_after() -> None:
