@@ -20,3 +20,7 @@ class HomeError(RoombaError):
 
 class PictureError(RoombaError):
     """A picture that cannot be taken, read or written."""
+
+
+class RoomsError(RoombaError):
+    """Rooms that cannot be named, joined, cut or drawn as was asked for."""

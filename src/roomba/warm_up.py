@@ -10,6 +10,9 @@ import numpy as np
 from roomba.config import RobotConfig
 from roomba.geometry import Pose, Twist
 from roomba.grid import FREE, OCCUPIED, GridFrame, OccupancyMap
+from roomba.perception.localizer import Localizer
+from roomba.perception.rooms import segment
+from roomba.perception.scan_view import LidarModel
 from roomba.planning.grid_path import shortest_grid_path
 from roomba.planning.path import PathPlanner
 from roomba.world.camera import Camera, Scene
@@ -24,6 +27,8 @@ def main() -> None:
     simulator = Simulator(home, config)
     for _ in range(40):
         simulator.step(Twist(0.5, 0.1), 0.025)
+    _find_place(home, config, simulator)
+    segment(home.map)
     planner = PathPlanner(
         home.map, config.body.radius, config.walk.clearance, config.walk.tight_clearance
     )
@@ -33,6 +38,19 @@ def main() -> None:
     for supersampling in (1, 2):
         camera = Camera(scene, config.camera, supersampling)
         camera.render(home.station, 0.0, simulator.dirt.micrograms, simulator.dirt.frame)
+
+
+def _find_place(home: Home, config: RobotConfig, simulator: Simulator) -> None:
+    """Look for the robot in the map, and follow it."""
+    lidar = config.lidar
+    localizer = Localizer(
+        home.map, config.localization, config.gyro, config.body.radius, simulator.pose
+    )
+    model = LidarModel.all_around(lidar.beams, lidar.min_range, lidar.max_range)
+    localizer.forget("nobody told")
+    for step in range(40):
+        localizer.move(0.1 * step, Pose(), 0.0)
+        localizer.see(0.1 * step, simulator.ranges, model)
 
 
 def _small_room() -> Home:

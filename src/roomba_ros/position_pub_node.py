@@ -17,6 +17,7 @@ from roomba_ros.convert import cliff_of, twist_message
 from roomba_ros.localization_topics import LocalizationTopics
 from roomba_ros.node import run_node
 from roomba_ros.parameters import LiveSeedParameters, read_robot_config
+from roomba_ros.room_topics import RoomTopics
 
 _STOP_REPEATS = 3
 """Ticks for which a stop is repeated before the drive is left to others."""
@@ -25,13 +26,14 @@ _STOP_REPEATS = 3
 class PositionPubNode:
     """Knows the robot's pose and drives it to the wished position, however far that is.
 
-    When it does not know the pose any more it forgets the wish, and looks around by itself.
+    When it does not know the pose any more it forgets the wish, and looks around by itself. What it
+    knows of the map's rooms is here as well: a process of its own would need 80 MB more (ADR 7).
 
-    Publishes: ``cmd_vel`` (Twist, 20 Hz while it drives), and what :class:`LocalizationTopics`
-    tells.
+    Publishes: ``cmd_vel`` (Twist, 20 Hz while it drives), and what :class:`LocalizationTopics` and
+    :class:`RoomTopics` tell.
     Subscribes: ``change_position`` (RobotPosition, the wish), ``bumper``, ``cliff`` (while it looks
-    around), and what :class:`LocalizationTopics` hears.
-    Services: those of :class:`LocalizationTopics`.
+    around), and what :class:`LocalizationTopics` and :class:`RoomTopics` hear.
+    Services: those of :class:`LocalizationTopics` and :class:`RoomTopics`.
     Parameters: ``initial_post_x``, ``initial_post_y``, ``initial_post_theta`` (where odometry
     began), ``robot_max_speed``, ``min_cordinate``, ``max_cordinate``; ``~look_around`` (true: it
     drives a little by itself when it has to find its place).
@@ -52,6 +54,8 @@ class PositionPubNode:
         self._stops_left = 0
         self._place = LocalizationTopics(self._config)
         self._place.start()
+        self._rooms = RoomTopics()
+        self._rooms.start()
         self._command = rospy.Publisher("cmd_vel", TwistMessage, queue_size=1, tcp_nodelay=True)
         self._wishes = rospy.Subscriber(
             "change_position", RobotPosition, self._on_wish, queue_size=1, tcp_nodelay=True

@@ -30,6 +30,7 @@ QUICK = {
     "moving": {"minutes": 0.5},
     "depth": {"config": SMALL_CAMERA},
     "kitchen": {"config": SMALL_CAMERA},
+    "localization": {"minutes": 0.1},
 }
 """Arguments with which a picture is made in less time than for the documents."""
 SLOW = {"walk", "living_room", "bedroom", "bathroom"}

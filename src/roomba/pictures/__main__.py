@@ -21,9 +21,11 @@ from roomba.pictures.dirt import picture_of_dirt
 from roomba.pictures.edge import picture_of_edge
 from roomba.pictures.faults import picture_of_faults
 from roomba.pictures.lidar import picture_of_lidar
+from roomba.pictures.localization import picture_of_localization, picture_of_relocation
 from roomba.pictures.motion import picture_of_motion
 from roomba.pictures.moving import picture_of_moving
 from roomba.pictures.odometry import picture_of_odometry
+from roomba.pictures.rooms import picture_of_rooms
 from roomba.pictures.station import picture_of_station
 from roomba.pictures.tour import VIEWS, picture_of_home, picture_of_view, picture_of_walk
 from roomba.world.home import Home
@@ -48,6 +50,9 @@ PICTURES: dict[str, tuple[str, Callable[[Home], Picture]]] = {
     "moving": ("family", picture_of_moving),
     "depth": ("family", picture_of_depth),
     "faults": ("empty", picture_of_faults),
+    "localization": ("flat", picture_of_localization),
+    "relocation": ("empty", picture_of_relocation),
+    "rooms": ("family", picture_of_rooms),
 }
 """Each picture by the name of its file: the home that it is of, and what makes it."""
 

@@ -1,0 +1,67 @@
+"""What decides where a floor is cut into rooms: sizes of doors, walls, furniture and rooms."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+Length = Annotated[float, Field(gt=0.0, le=10.0, allow_inf_nan=False)]
+Area = Annotated[float, Field(gt=0.0, le=100.0, allow_inf_nan=False)]
+Share = Annotated[float, Field(ge=0.0, le=1.0, allow_inf_nan=False)]
+
+
+class RoomsConfig(BaseModel):
+    """Sizes of what is built and of what stands in homes; lengths in m, areas in m².
+
+    ``narrowest_door``, ``widest_door``
+        Clear widths of doorways: leaves of homes are 0.6 to 1.0 m wide, and half of a double door
+        more; 0.1 m of the narrowest is left to the noise of scans.
+    ``narrowing``
+        What has the width of a door and lies between the ends of two walls is a doorway. An opening
+        that is wider, or where a wall ends on one side alone, as in a corner or beside a screen,
+        has to be narrow against the floor on both sides as well: at most this share of its width.
+        People see a room of its own up to about two thirds.
+    ``thickest_wall``, ``jamb``
+        What distinguishes a wall's end from furniture that stands in the way: going through the
+        opening, the floor widens again, by ``jamb`` or more, within the thickness of a wall.
+        Bearing walls of old houses have 0.5 m with plaster; most furniture is deeper.
+    ``furniture_size``
+        What stands free and is no longer than this is no wall: legs, chairs, plants, small
+        tables. The piece of wall between two doors is longer.
+    ``tightest_passage``
+        Through what is narrower no robot gets, and it is no doorway: cracks of scanned walls.
+    ``roughness``
+        Differences of the distance to the walls that mean nothing: two cells of a usual map.
+    ``reach``
+        How far floor that is narrower than ``tightest_passage`` belongs to the room that it
+        borders on; further out are rays of a scan through gaps and windows.
+    ``smallest_room``
+        What is smaller belongs to the neighbour with the widest opening: a toilet has 1.0 x 1.5 m.
+    ``most_unknown``
+        The share of a room's outline that may border on what was never seen. Rooms end at walls;
+        what ends at nothing is outdoors, seen through a window, or not surveyed yet.
+    """
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    narrowest_door: Length = 0.5
+    widest_door: Length = 1.3
+    narrowing: Share = 0.7
+    thickest_wall: Length = 0.6
+    jamb: Length = 0.3
+    furniture_size: Length = 1.0
+    tightest_passage: Length = 0.3
+    roughness: Length = 0.1
+    reach: Length = 0.3
+    smallest_room: Area = 1.5
+    most_unknown: Share = 0.5
+
+    @model_validator(mode="after")
+    def _widths_in_order(self) -> RoomsConfig:
+        if not self.tightest_passage <= self.narrowest_door < self.widest_door:
+            raise ValueError(
+                "expected tightest_passage <= narrowest_door < widest_door, got "
+                f"{self.tightest_passage}, {self.narrowest_door}, {self.widest_door}"
+            )
+        return self
