@@ -38,6 +38,11 @@ class Pose:
     y: float = 0.0
     theta: float = 0.0
 
+    @property
+    def is_finite(self) -> bool:
+        """Whether all three are numbers that a robot can stand at."""
+        return all(map(math.isfinite, (self.x, self.y, self.theta)))
+
     def compose(self, other: Pose) -> Pose:
         """Return ``other``, given in this pose's frame, in the frame that this pose is given in."""
         cosine, sine = math.cos(self.theta), math.sin(self.theta)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import threading
 from collections import deque
 from typing import Final
@@ -225,10 +226,18 @@ class LocalizationTopics:
 
     def _on_odometry(self, message: Odometry) -> None:
         stamp = message.header.stamp.to_sec() or rospy.get_time()
-        self._odometry.append((stamp, pose_of_odometry(message)))
+        pose = pose_of_odometry(message)
+        if not pose.is_finite:
+            rospy.logwarn_throttle(10.0, "odom refused: expected finite numbers, got %s", pose)
+            return
+        self._odometry.append((stamp, pose))
 
     def _on_imu(self, message: Imu) -> None:
-        self._gyro.append((message.header.stamp.to_sec(), message.angular_velocity.z))
+        turning = message.angular_velocity.z
+        if not math.isfinite(turning):
+            rospy.logwarn_throttle(10.0, "imu refused: expected finite rad/s, got %s", turning)
+            return
+        self._gyro.append((message.header.stamp.to_sec(), turning))
 
     def _on_scan(self, message: LaserScan) -> None:
         self._scan = message

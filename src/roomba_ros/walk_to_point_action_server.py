@@ -142,7 +142,8 @@ class WalkToPointActionServer:
         )
 
     def _serve_when_ready(self, sensed: Sensed | None) -> None:
-        ready = sensed is not None or time.monotonic() > self._serves_by
+        knows = sensed is not None and sensed.knowledge.is_usable
+        ready = knows or time.monotonic() > self._serves_by
         if ready and not self._serves:
             self._serves = True
             # A server that ended in the middle of a walk may have left any cruise speed.

@@ -47,3 +47,9 @@ def test_only_numbers_can_be_driven() -> None:
     assert Twist(1.0, -1.0).is_finite
     assert not Twist(math.nan, 0.0).is_finite
     assert not Twist(0.0, math.inf).is_finite
+
+
+def test_a_pose_of_numbers_that_are_none_is_not_finite() -> None:
+    assert Pose(1.0, -2.0, 3.0).is_finite
+    for bad in (math.nan, math.inf, -math.inf):
+        assert not any(pose.is_finite for pose in (Pose(bad), Pose(0.0, bad), Pose(0.0, 0.0, bad)))
