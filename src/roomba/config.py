@@ -174,8 +174,8 @@ class LocalizationConfig(_Frozen):
     wheel_turn_noise: Positive = 0.012
     turn_noise: Positive = 0.01
     gyro_drift: Positive = 0.001
-    beam_deviation: Positive = 0.06
-    known_deviation: Positive = 0.10
+    beam_deviation: Positive = 0.03
+    known_deviation: Positive = 0.06
     lost_deviation: Positive = 1.0
     least_beams: Annotated[int, Field(ge=1)] = 30
     scan_timeout: Positive = 0.5

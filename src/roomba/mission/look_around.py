@@ -20,12 +20,14 @@ SPEED: Final = 0.25
 """m/s; slow, among things that it knows nothing about."""
 TURNING: Final = 1.5
 """rad/s."""
-_MARGIN: Final = 0.06
-"""m; kept from all that is in sight."""
+_MARGINS: Final = (0.06, 0.02)
+"""m; kept from all that is in sight; less of it only where there is no other way to go."""
 _LONGEST_LEG: Final = 1.5
 """m; then it chooses anew."""
 _SHORTEST_LEG: Final = 0.15
-"""m; where there is less room than this it does not go."""
+"""m; where there is less room than this it goes only if there is more nowhere."""
+_THERE: Final = 0.02
+"""m; so near to where it goes, or to what is in its way, a leg has ended."""
 _DIRECTIONS: Final = 36
 _AIMED: Final = 0.08
 """rad; so well it aims before it goes."""
@@ -42,6 +44,7 @@ class LookAround:
         self._visited: list[tuple[float, float]] = []
         self._target: tuple[float, float] | None = None
         self._backs_until = -math.inf
+        self._margin = _MARGINS[0]
 
     def tick(self, now: float, pose: Pose, ends: NDArray[np.float64], touches: bool) -> Twist:
         """Return the wanted twist; ``ends`` float64 [n, 2 or more] are the ends of beams, m.
@@ -61,13 +64,13 @@ class LookAround:
     def _go(self, pose: Pose, ends: NDArray[np.float64], target: tuple[float, float]) -> Twist:
         bearing = pose.bearing_to(*target)
         left = pose.distance_to(*target)
-        if left < 0.5 * _SHORTEST_LEG:
+        if left < _THERE:
             self._target = None
             return Twist()
         if abs(bearing) > _AIMED:
             return Twist(0.0, max(-TURNING, min(TURNING, 4.0 * bearing)))
         room = float(self._room(ends, np.array([0.0]))[0])
-        if room < 0.5 * _SHORTEST_LEG:
+        if room < _THERE:
             # Something came into the way.
             self._visited.append((pose.x, pose.y))
             self._target = None
@@ -78,13 +81,16 @@ class LookAround:
         """Choose the point, of those with room on the way, that is farthest from where it was."""
         self._visited.append((pose.x, pose.y))
         bearings = np.arange(_DIRECTIONS) * (2.0 * math.pi / _DIRECTIONS)
-        ways = np.minimum(self._room(ends, bearings), _LONGEST_LEG)
+        for self._margin in _MARGINS:
+            ways = np.minimum(self._room(ends, bearings), _LONGEST_LEG)
+            if ways.max() >= _SHORTEST_LEG:
+                break
         headings = pose.theta + bearings
         points = np.array([pose.x, pose.y]) + ways[:, None] * np.column_stack(
             (np.cos(headings), np.sin(headings))
         )
         away = np.hypot(*(points[:, None, :] - np.array(self._visited)).transpose(2, 0, 1))
-        worth = np.where(ways >= _SHORTEST_LEG, away.min(axis=1), -1.0)
+        worth = np.where(ways >= min(_SHORTEST_LEG, ways.max()), away.min(axis=1), -1.0)
         best = points[int(np.argmax(worth))]
         return float(best[0]), float(best[1])
 
@@ -98,8 +104,8 @@ class LookAround:
         cosine, sine = np.cos(bearings)[:, None], np.sin(bearings)[:, None]
         ahead = cosine * ends[:, 0] + sine * ends[:, 1]
         aside = np.abs(cosine * ends[:, 1] - sine * ends[:, 0])
-        in_way = (aside < self._radius + _MARGIN) & (ahead > 0.0)
-        reach = np.where(in_way, ahead - self._radius - _MARGIN, np.inf)
+        in_way = (aside < self._radius + self._margin) & (ahead > 0.0)
+        reach = np.where(in_way, ahead - self._radius - self._margin, np.inf)
         return np.minimum(room, np.maximum(reach.min(axis=1), 0.0))
 
 

@@ -89,10 +89,13 @@ class Tracker:
         return fit
 
     def _beam_variance(self, beams: int) -> float:
-        """Return the variance of a beam, m2: few beams are of one thing, and err together."""
+        """Return the variance of a beam, m2.
+
+        Few beams are of one thing: they err together, and so do the scans that follow.
+        """
         cell = 0.5 * self._field.frame.resolution
         share = max(1.0, self._config.least_beams / max(beams, 1))
-        return (self._config.beam_deviation**2 + cell**2) * share
+        return (self._config.beam_deviation**2 + cell**2) * share**2
 
     @property
     def is_doubtful(self) -> bool:
