@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from roomba.config import BodyConfig
 from roomba.geometry import Pose, Twist
+from roomba.perception.estimate import Knowledge
 from roomba.perception.localizer import Localizer
 
 SPEED: Final = 0.25
@@ -57,6 +58,9 @@ class LookAround:
             self._target, self._backs_until = None, now + _BACKING
         if now < self._backs_until <= now + _BACKING:
             return Twist(-0.4 * SPEED, 0.0)
+        if not len(ends):
+            # The lidar is blocked, or all is out of its reach: nothing says where there is room.
+            return Twist()
         if self._target is None:
             self._target = self._next_target(pose, ends)
         return self._go(pose, ends, self._target)
@@ -99,8 +103,6 @@ class LookAround:
     ) -> NDArray[np.float64]:
         """Return how far the body can go straight along each bearing, m, at most a long leg."""
         room = np.full(len(bearings), 2.0 * _LONGEST_LEG)
-        if not len(ends):
-            return room
         cosine, sine = np.cos(bearings)[:, None], np.sin(bearings)[:, None]
         ahead = cosine * ends[:, 0] + sine * ends[:, 1]
         aside = np.abs(cosine * ends[:, 1] - sine * ends[:, 0])
@@ -119,8 +121,10 @@ class Search:
 
     def tick(self, now: float, localizer: Localizer, touches: bool) -> Twist | None:
         """Return the wanted twist while it looks around, else None; ``touches`` as LookAround."""
-        if localizer.view is None or not localizer.needs_to_look_around:
+        if localizer.estimate.knowledge is not Knowledge.SEARCHING:
             self._look_around = None
+            return None
+        if localizer.view is None or not localizer.needs_to_look_around:
             return None
         if self._look_around is None:
             self._look_around = LookAround(self._body)
