@@ -17,6 +17,8 @@ TOPICS: MappingProxyType[str, str] = MappingProxyType(
         "lidar": "exact scans",
         "camera": "pictures with depth",
         "plan": "shortest paths",
+        "localization": "where it is: errors on long drives, and finding itself again",
+        "rooms": "floors cut into rooms, as people cut them",
         "ros": "round trips, and the speed of the whole graph",
     }
 )

@@ -166,7 +166,9 @@ class CameraConfig(_Frozen):
 class LocalizationConfig(_Frozen):
     """Knowing where the robot is: how much motion and scans are trusted, and when not at all.
 
-    Noises grow with the square root of the way (m) or turn (rad), deviations are standard ones.
+    Noises of way, side and wheels grow with the square root of the way (per sqrt(m)), that of turns
+    with that of the turn, the gyro's with that of the time; deviations are standard ones, m;
+    time-outs in s; evidence is the natural logarithm of how much likelier.
     """
 
     way_noise: Positive = 0.02
@@ -180,7 +182,15 @@ class LocalizationConfig(_Frozen):
     least_beams: Annotated[int, Field(ge=1)] = 30
     scan_timeout: Positive = 0.5
     search_timeout: Positive = 30.0
-    needed_evidence: Positive = 8.0
+    needed_evidence: Annotated[float, Field(gt=0.0, le=12.0)] = 8.0
+
+    @model_validator(mode="after")
+    def _deviations_in_order(self) -> LocalizationConfig:
+        if self.known_deviation >= self.lost_deviation:
+            raise ValueError(
+                f"expected known_deviation below lost_deviation ({self.lost_deviation})"
+            )
+        return self
 
 
 class ControlConfig(_Frozen):
@@ -203,6 +213,7 @@ class WalkConfig(_Frozen):
     tight_clearance: Positive = 0.01
     corner_speed: Positive = 0.25
     careful_speed: Positive = 0.15
+    astray_timeout: Positive = 60.0
     arrival_tolerance: Positive = 0.03
     bump_radius: Positive = 0.06
     progress_timeout: Positive = 6.0

@@ -61,7 +61,8 @@ def _is_inner(mask: Mask, row: int, column: int) -> bool:
 
 
 @njit(cache=True, nogil=True)
-def _root(parents: Labels, label: int) -> int:
+def root_of(parents: Labels, label: int) -> int:
+    """Return the first of the labels that were joined; shortens the way to it (union-find)."""
     while parents[label] != label:
         parents[label] = parents[parents[label]]
         label = parents[label]
@@ -87,13 +88,13 @@ def _number(mask: Mask, labels: Labels) -> None:
             elif above == 0 or before == 0:
                 labels[row, column] = max(above, before)
             else:
-                low, high = _root(parents, above), _root(parents, before)
+                low, high = root_of(parents, above), root_of(parents, before)
                 parents[max(low, high)] = min(low, high)
                 labels[row, column] = min(low, high)
     numbers = np.zeros(count + 1, np.int32)
     regions = 0
     for label in range(1, count + 1):
-        root = _root(parents, label)
+        root = root_of(parents, label)
         if root == label:
             regions += 1
             numbers[label] = regions

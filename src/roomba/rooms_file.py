@@ -15,7 +15,8 @@ from roomba.errors import RoomsError
 from roomba.grid import FREE, OccupancyMap
 from roomba.perception.rooms import Rooms
 
-Number = Annotated[float, Field(allow_inf_nan=False)]
+Number = Annotated[float, Field(ge=-1e5, le=1e5)]
+"""m; farther from the origin no home is."""
 Ring = Annotated[
     list[Annotated[list[Number], Field(min_length=2, max_length=2)]], Field(min_length=4)
 ]
@@ -85,11 +86,19 @@ def load_rooms(path: Path, occupancy: OccupancyMap) -> Rooms:
             f"{path}: expected the rooms of this map, got those of another; remove the file, or "
             "bring its map back"
         )
-    outlines = [(room.name, shapely.Polygon(room.outline, room.holes)) for room in file.rooms]
+    outlines = [(room.name, _polygon(path, room)) for room in file.rooms]
     try:
         return Rooms.from_outlines(occupancy.frame, occupancy.values == FREE, outlines)
     except RoomsError as error:
         raise RoomsError(f"{path}: {error}") from error
+
+
+def _polygon(path: Path, room: _RoomEntry) -> shapely.Polygon:
+    polygon = shapely.Polygon(room.outline, room.holes)
+    if not polygon.is_valid:
+        reason = shapely.is_valid_reason(polygon)
+        raise RoomsError(f"{path}: room {room.name!r}: expected a simple outline, got {reason}")
+    return polygon
 
 
 def _entry(rooms: Rooms, label: int) -> dict[str, object]:

@@ -18,6 +18,9 @@ from std_msgs.msg import Header
 from roomba.geometry import Pose, Twist
 from roomba.grid import GridFrame, OccupancyMap
 
+MOST_CELLS = 20_000_000
+"""Of a map: 220 x 220 m at 5 cm. A larger one would take a robot's memory."""
+
 
 def header(now: float, frame_id: str) -> Header:
     """Return a header for a time, s, in a frame."""
@@ -156,8 +159,19 @@ def map_message(now: float, known: OccupancyMap, frame_id: str) -> OccupancyGrid
 
 
 def map_of(message: OccupancyGrid) -> OccupancyMap:
-    """Return the occupancy map of a message; raises ValueError for a turned or misshapen one."""
+    """Return the occupancy map of a message.
+
+    Raises ValueError for a map that is turned, misshapen, empty, or larger than MOST_CELLS.
+    """
     info = message.info
+    place = (info.resolution, info.origin.position.x, info.origin.position.y)
+    if not all(map(math.isfinite, place)) or info.resolution <= 0.0:
+        raise ValueError(f"expected a resolution above 0 and a finite origin, got {place}")
+    if not 0 < info.width * info.height <= MOST_CELLS:
+        raise ValueError(
+            f"expected a map of 1 to {MOST_CELLS} cells, got {info.width} x {info.height}; "
+            "make its cells larger"
+        )
     turn = theta_of(info.origin.orientation)
     if abs(turn) > 1e-6:
         raise ValueError(f"expected a map without rotation, got one turned by {turn:.4f} rad")

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import http.client
+import math
 import threading
 import time
+import xmlrpc.client
 from typing import Final
 
 import rospy
@@ -58,7 +61,7 @@ class KeptPose:
             try:
                 rospy.set_param(PARAMETER, [newest.x, newest.y, newest.theta])
                 written = newest
-            except OSError as error:
+            except (OSError, http.client.HTTPException, xmlrpc.client.Error) as error:
                 rospy.logwarn_throttle(10.0, "the master does not keep the pose: %s", error)
 
 
@@ -66,5 +69,5 @@ def _is_pose(value: object) -> bool:
     return (
         isinstance(value, list)
         and len(value) == 3
-        and all(isinstance(number, int | float) for number in value)
+        and all(isinstance(number, int | float) and math.isfinite(number) for number in value)
     )

@@ -10,6 +10,7 @@ from roomba_robot.msg import Bumper, Cliff, RobotPosition
 
 from roomba.control.position_loop import PositionLoop
 from roomba.control.setpoint import Setpoint
+from roomba.errors import ConfigError
 from roomba.geometry import Twist
 from roomba.mission.look_around import Search
 from roomba.perception.estimate import Estimate, Knowledge
@@ -26,8 +27,9 @@ _STOP_REPEATS = 3
 class PositionPubNode:
     """Knows the robot's pose and drives it to the wished position, however far that is.
 
-    When it does not know the pose any more it forgets the wish, and looks around by itself. What it
-    knows of the map's rooms is here as well: a process of its own would need 80 MB more (ADR 7).
+    When it does not know the pose any more it forgets the wish. It looks around as long as somebody
+    still wants it to go somewhere, or asked it to find its place. What it knows of the map's rooms
+    is here as well: a process of its own would need 80 MB more (ADR 7).
 
     Publishes: ``cmd_vel`` (Twist, 20 Hz while it drives), and what :class:`LocalizationTopics` and
     :class:`RoomTopics` tell.
@@ -36,7 +38,7 @@ class PositionPubNode:
     Services: those of :class:`LocalizationTopics` and :class:`RoomTopics`.
     Parameters: ``initial_post_x``, ``initial_post_y``, ``initial_post_theta`` (where odometry
     began), ``robot_max_speed``, ``min_cordinate``, ``max_cordinate``; ``~look_around`` (true: it
-    drives a little by itself when it has to find its place).
+    may drive a little to find its place).
     """
 
     period = 0.05
@@ -48,7 +50,7 @@ class PositionPubNode:
         self._loop = PositionLoop(self._config.control, self._config.body)
         self._setpoint = Setpoint(self._config.control.stream_timeout)
         self._search = Search(self._config.body)
-        self._may_look_around = bool(rospy.get_param("~look_around", True))
+        self._may_look_around = _look_around_parameter()
         self._lock = threading.Lock()
         self._bumps = self._sees_cliff = False
         self._stops_left = 0
@@ -112,7 +114,9 @@ class PositionPubNode:
         return None
 
     def _twist_to_look_around(self, now: float) -> Twist | None:
-        if self._place.localizer is None or not self._may_look_around:
+        with self._lock:
+            is_wanted = self._setpoint.is_wished(now) or self._place.is_asked_to_search
+        if self._place.localizer is None or not (self._may_look_around and is_wanted):
             return None
         touches = self._bumps or self._sees_cliff
         return self._search.tick(now, self._place.localizer, touches)
@@ -146,6 +150,13 @@ class PositionPubNode:
 
     def _on_cliff(self, message: Cliff) -> None:
         self._sees_cliff = any(cliff_of(message))
+
+
+def _look_around_parameter() -> bool:
+    value = rospy.get_param("~look_around", True)
+    if not isinstance(value, bool):
+        raise ConfigError(f"parameter ~look_around: expected true or false, got {value!r}")
+    return value
 
 
 def main() -> None:

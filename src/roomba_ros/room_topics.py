@@ -51,7 +51,7 @@ class RoomTopics:
 
     def start(self) -> None:
         """Connect."""
-        folder = rospy.get_param("~rooms_folder", "")
+        folder = str(rospy.get_param("~rooms_folder", ""))
         self._folder = Path(folder or Path(rospkg.get_ros_home()) / "roomba_robot" / "rooms")
         self._publisher = rospy.Publisher("rooms", RoomArray, queue_size=1, latch=True)
         self._markers = rospy.Publisher("rooms/markers", MarkerArray, queue_size=1, latch=True)
@@ -62,6 +62,7 @@ class RoomTopics:
         rospy.Subscriber("map", OccupancyGrid, self._on_map, queue_size=1)
 
     def _on_map(self, message: OccupancyGrid) -> None:
+        # Cut here and not by a tick: nothing waits for rooms, and the robot's place does not.
         try:
             occupancy = map_of(message)
         except ValueError as error:
@@ -92,13 +93,13 @@ class RoomTopics:
         self._publisher.publish(rooms_message(now, rooms, "map"))
         self._markers.publish(rooms_markers(now, rooms, "map"))
 
-    def _edit(self, change: Callable[[Rooms], Rooms]) -> tuple[bool, str]:
+    def _edit(self, change: Callable[[Rooms, OccupancyMap], Rooms]) -> tuple[bool, str]:
         """Change the rooms, tell and save them; return whether that was done, and what or why."""
         with self._lock:
             if self._map is None or self._rooms is None:
                 return False, "there is no map yet; is home_sim_node running?"
             try:
-                rooms = change(self._rooms)
+                rooms = change(self._rooms, self._map)
                 save_rooms(rooms, self._map, self._path(self._map))
             except RoombaError as error:
                 return False, str(error)
@@ -110,23 +111,22 @@ class RoomTopics:
 
     def _on_rename(self, request: RenameRoomRequest) -> RenameRoomResponse:
         return RenameRoomResponse(
-            *self._edit(lambda rooms: rooms.renamed(request.name, request.new_name))
+            *self._edit(lambda rooms, _: rooms.renamed(request.name, request.new_name))
         )
 
     def _on_join(self, request: JoinRoomsRequest) -> JoinRoomsResponse:
-        return JoinRoomsResponse(*self._edit(lambda rooms: rooms.joined(*request.names)))
+        return JoinRoomsResponse(*self._edit(lambda rooms, _: rooms.joined(*request.names)))
 
     def _on_split(self, request: SplitRoomRequest) -> SplitRoomResponse:
         start, end = request.start, request.end
         return SplitRoomResponse(
-            *self._edit(lambda rooms: rooms.split(request.name, (start.x, start.y), (end.x, end.y)))
+            *self._edit(
+                lambda rooms, _: rooms.split(request.name, (start.x, start.y), (end.x, end.y))
+            )
         )
 
     def _on_segment(self, _: TriggerRequest) -> TriggerResponse:
-        occupancy = self._map
-        if occupancy is None:
-            return TriggerResponse(False, "there is no map yet; is home_sim_node running?")
-        return TriggerResponse(*self._edit(lambda _: _segmented(occupancy)))
+        return TriggerResponse(*self._edit(lambda _, occupancy: _segmented(occupancy)))
 
 
 def _segmented(occupancy: OccupancyMap) -> Rooms:

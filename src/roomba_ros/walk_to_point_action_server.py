@@ -218,10 +218,10 @@ class WalkToPointActionServer:
             rospy.loginfo("going around: %.2f m to walk", job.walk.path.length)
             self._show_plan(sensed.now, job.walk)
         self._change_speed.publish(step.cruise_speed)
-        if step.state is WalkState.ASTRAY:
-            # The position node forgot what it was asked for, and looks around.
-            return
+        # While it is astray nobody drives there, but it says that somebody still wants to go.
         self._change_position.publish(RobotPosition(*step.setpoint))
+        if step.state is WalkState.ASTRAY:
+            return
         if step.state is WalkState.WALKING:
             self._tell_feedback(job, sensed.now, step.distance_left)
             return
@@ -238,7 +238,8 @@ class WalkToPointActionServer:
         if abs(sensed.speed) > _STANDSTILL and sensed.now < rest_by:
             self._change_speed.publish(0.0)
             return
-        self._change_position.publish(RobotPosition(sensed.pose.x, sensed.pose.y))
+        if sensed.knowledge.is_usable:
+            self._change_position.publish(RobotPosition(sensed.pose.x, sensed.pose.y))
         self._change_speed.publish(self._parameters.values.robot_max_speed)
         self._job = None
         job.handle.set_canceled(WalkToPointResult(job.walk.time_spent(sensed.now)), "cancelled")
@@ -275,8 +276,13 @@ class WalkToPointActionServer:
 
     def _on_map(self, message: OccupancyGrid) -> None:
         walk = self._config.walk
+        try:
+            occupancy = map_of(message)
+        except ValueError as error:
+            rospy.logwarn("map refused: %s", error)
+            return
         self._planner = PathPlanner(
-            map_of(message), self._config.body.radius, walk.clearance, walk.tight_clearance
+            occupancy, self._config.body.radius, walk.clearance, walk.tight_clearance
         )
 
     def _on_pose(self, message: PoseStamped) -> None:

@@ -53,6 +53,7 @@ def test_a_file_of_another_map_is_refused(tmp_path: Path) -> None:
         ("{map: x}", "rooms"),
         ("{map: x, rooms: [{name: a, outline: [[0, 0]]}]}", r"rooms\.0\.outline"),
         ("{map: x, rooms: [{name: '', outline: []}]}", r"rooms\.0\.name"),
+        ("{map: x, rooms: [{name: a, outline: [[0,0],[1e308,0],[1,1],[0,1]]}]}", "1e"),
     ],
 )
 def test_a_broken_file_is_named_with_the_reason(tmp_path: Path, text: str, reason: str) -> None:
@@ -75,4 +76,15 @@ def test_rooms_that_overlap_in_the_file_are_refused(tmp_path: Path) -> None:
     half = text[text.index("- name") :]
     path.write_text(text + half.replace("Küche", "third").replace("Room: 2 #x", "fourth"))
     with pytest.raises(RoomsError, match="overlap"):
+        load_rooms(path, occupancy)
+
+
+def test_an_outline_that_crosses_itself_is_refused(tmp_path: Path) -> None:
+    occupancy, _ = two_rooms()
+    path = tmp_path / "rooms.yaml"
+    crossed = "[[-0.8, 2.2], [0.5, 3.5], [-0.8, 3.5], [0.5, 2.2]]"
+    path.write_text(
+        f"{{map: {map_digest(occupancy)}, rooms: [{{name: hall, outline: {crossed}}}]}}"
+    )
+    with pytest.raises(RoomsError, match=r"'hall'.*simple outline"):
         load_rooms(path, occupancy)

@@ -6,6 +6,8 @@ its sender is there: when the sender vanishes, the robot stops at once.
 
 from __future__ import annotations
 
+import math
+
 Point = tuple[float, float]
 
 
@@ -16,7 +18,7 @@ class Setpoint:
         """A stream is wishes that follow each other within ``stream_timeout`` s."""
         self._stream_timeout = stream_timeout
         self._target: Point | None = None
-        self._received = 0.0
+        self._received = -math.inf
         self._streamed = False
         self._senders = 0
 
@@ -37,6 +39,10 @@ class Setpoint:
         """The robot is there: wish nothing any more, unless wishes are still streaming in."""
         if not 0.0 <= now - self._received <= self._stream_timeout:
             self._target = None
+
+    def is_wished(self, now: float) -> bool:
+        """Whether the newest wish is not older than a stream's, though it may be forgotten."""
+        return 0.0 <= now - self._received <= self._stream_timeout
 
     def forget(self) -> None:
         """Wish nothing any more."""

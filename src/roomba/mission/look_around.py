@@ -45,6 +45,7 @@ class LookAround:
         self._visited: list[tuple[float, float]] = []
         self._target: tuple[float, float] | None = None
         self._backs_until = -math.inf
+        self._was_touching = False
         self._margin = _MARGINS[0]
 
     def tick(self, now: float, pose: Pose, ends: NDArray[np.float64], touches: bool) -> Twist:
@@ -53,14 +54,12 @@ class LookAround:
         ``ends`` are in the robot's frame, of the newest scan; ``touches`` tells whether bumper or
         cliff sensors found something.
         """
-        if touches:
+        is_new, self._was_touching = touches and not self._was_touching, touches
+        if is_new:
             self._visited.append((pose.x, pose.y))
             self._target, self._backs_until = None, now + _BACKING
         if now < self._backs_until <= now + _BACKING:
             return Twist(-0.4 * SPEED, 0.0)
-        if not len(ends):
-            # The lidar is blocked, or all is out of its reach: nothing says where there is room.
-            return Twist()
         if self._target is None:
             self._target = self._next_target(pose, ends)
         return self._go(pose, ends, self._target)
@@ -85,7 +84,8 @@ class LookAround:
         """Choose the point, of those with room on the way, that is farthest from where it was."""
         self._visited.append((pose.x, pose.y))
         bearings = np.arange(_DIRECTIONS) * (2.0 * math.pi / _DIRECTIONS)
-        for self._margin in _MARGINS:
+        for margin in _MARGINS:
+            self._margin = margin
             ways = np.minimum(self._room(ends, bearings), _LONGEST_LEG)
             if ways.max() >= _SHORTEST_LEG:
                 break
@@ -108,7 +108,7 @@ class LookAround:
         aside = np.abs(cosine * ends[:, 1] - sine * ends[:, 0])
         in_way = (aside < self._radius + self._margin) & (ahead > 0.0)
         reach = np.where(in_way, ahead - self._radius - self._margin, np.inf)
-        return np.minimum(room, np.maximum(reach.min(axis=1), 0.0))
+        return np.minimum(room, np.maximum(reach.min(axis=1, initial=np.inf), 0.0))
 
 
 class Search:

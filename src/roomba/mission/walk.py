@@ -104,6 +104,7 @@ class Walk:
         self._least_left = math.inf
         self._progressed = sensed.now
         self._went_astray = False
+        self._astray_since = sensed.now
 
     def time_spent(self, now: float) -> float:
         """Return how long it has walked, s."""
@@ -129,9 +130,11 @@ class Walk:
 
     def _wait_to_be_found(self, sensed: Sensed, max_speed: float) -> WalkStep:
         """Ask for nothing while nobody knows where the robot is; it may look around meanwhile."""
-        self._went_astray = True
+        if not self._went_astray:
+            self._went_astray, self._astray_since = True, sensed.now
         self._progressed = sensed.now
         is_lost = sensed.knowledge is Knowledge.LOST
+        is_lost |= sensed.now - self._astray_since > self._config.astray_timeout
         return WalkStep(
             WalkState.FAILED if is_lost else WalkState.ASTRAY,
             (sensed.pose.x, sensed.pose.y),
@@ -146,6 +149,7 @@ class Walk:
         if not 0.0 <= jump <= _LONGEST_TICK:
             self._started += jump
             self._progressed += jump
+            self._astray_since += jump
         self._last_tick = now
 
     def _has_arrived(self, sensed: Sensed) -> bool:

@@ -9,7 +9,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.config import GyroConfig, LocalizationConfig
+from roomba.config import FASTEST_SPEED, GyroConfig, LocalizationConfig
 from roomba.geometry import Pose, wrap_angle
 
 _STANDS: Final = 1e-4
@@ -22,6 +22,8 @@ SET_BACK: Final = 0.1
 """s; a time so much before the last one is of a clock that was set back."""
 _UNSEEN: Final = 0.3
 """Share of a change of the turning speed between two samples: so unsure its mean is."""
+_JOLT: Final = 0.05
+"""s; what a step may be quicker than the fastest robot's: its time is not exact."""
 _LONGEST_STEP: Final = 1.0
 """s; the gyro says nothing of a time that was not sampled."""
 
@@ -49,17 +51,20 @@ class DeadReckoning:
     def move(self, stamp: float, odometry: Pose, turning: float | None) -> None:
         """Take the wheels' odometry and the gyro's turning speed, rad/s, if it has one, at a time.
 
-        What is a little older than the last is left out. When a clock is set back the way still
-        counts, but nothing is known of the time that it took.
+        What is a little older than the last is left out, and so is a jump. When a clock is set back
+        the way still counts, but nothing is known of the time that it took.
         """
-        elapsed = min(stamp - self._stamp, _LONGEST_STEP)
-        if elapsed <= 0.0:
-            if elapsed > -SET_BACK:
+        since = stamp - self._stamp
+        if since <= 0.0:
+            if since > -SET_BACK:
                 return
             self._past.clear()
-        if elapsed <= 0.0 or self._odometry is None:
-            elapsed = 0.0
         step = Pose() if self._odometry is None else self._odometry.inverse().compose(odometry)
+        if 0.0 < since < math.hypot(step.x, step.y) / FASTEST_SPEED - _JOLT:
+            # No robot goes as fast: whoever counts the wheels began anew.
+            step = Pose()
+        is_timed = since > 0.0 and self._odometry is not None
+        elapsed = min(since, _LONGEST_STEP) if is_timed else 0.0
         self._odometry, self._stamp = odometry, stamp
         self._go(step, turning, elapsed)
         self._past.append((stamp, self.pose))

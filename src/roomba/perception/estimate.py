@@ -56,6 +56,7 @@ class Estimate:
 
 
 def worst_deviation(covariance: NDArray[np.float64]) -> float:
-    """Return the standard deviation along the worst direction of the floor, m."""
+    """Return the standard deviation along the worst direction of the floor, m; NaN is infinite."""
     xx, xy, yy = float(covariance[0, 0]), float(covariance[0, 1]), float(covariance[1, 1])
-    return math.sqrt(max(0.0, 0.5 * (xx + yy) + math.hypot(0.5 * (xx - yy), xy)))
+    variance = 0.5 * (xx + yy) + math.hypot(0.5 * (xx - yy), xy)
+    return math.inf if math.isnan(variance) else math.sqrt(max(0.0, variance))

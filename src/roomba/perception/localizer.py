@@ -73,20 +73,25 @@ class Localizer:
         self._config, self._body_radius = config, body_radius
         self._reckoning = DeadReckoning(config, gyro)
         self._is_lifted = self._is_blind = False
-        self._now = 0.0
+        self._now = self._newest_stamp = self._newest_time = -math.inf
         self._seen = self._searching_since = self._tried = -math.inf
+        self._has_clock = False
         self._told: Expectation | None = None
         self._relocation: Relocation | None = None
         self._forgotten = ""
         self._expectation: Expectation | None = None
-        self._has_begun = False
+        self._verdict = Verdict.SEARCHING
         self.told(start, deviation)
 
-    # ---------------------------------------------------------------- what the sensors say
-
     def move(self, stamp: float, odometry: Pose, turning: float | None = None) -> None:
-        """Take the wheels' odometry and the gyro's turning speed, rad/s, if there is one."""
-        self._pass_time(stamp)
+        """Take the wheels' odometry and the gyro's turning speed, rad/s, if there is one.
+
+        Raises ValueError for numbers that are not finite.
+        """
+        if not (odometry.is_finite and math.isfinite(turning or 0.0)):
+            raise ValueError(f"expected finite numbers, got {odometry} and {turning} rad/s")
+        self._follow_clock(stamp, self._newest_stamp)
+        self._newest_stamp = stamp
         before = self._reckoning.pose
         self._reckoning.move(stamp, odometry, turning)
         step = before.inverse().compose(self._reckoning.pose)
@@ -95,7 +100,9 @@ class Localizer:
     def lift(self, is_lifted: bool) -> None:
         """Tell whether the wheels hang in the air: somebody holds the robot."""
         if self._is_lifted and not is_lifted:
+            told = self._told
             self.forget("it was lifted and set down again")
+            self._expectation = told
         self._is_lifted = is_lifted
 
     def see(self, stamp: float, ranges: NDArray[np.float32], lidar: LidarModel) -> None:
@@ -116,10 +123,9 @@ class Localizer:
 
     def pass_time(self, now: float) -> None:
         """Tell the time when nothing else does: silence tells something, too."""
-        if self._has_begun:
-            self._pass_time(now)
-
-    # ---------------------------------------------------------------- what people say
+        if self._has_clock:
+            self._follow_clock(now, self._newest_time)
+            self._newest_time = now
 
     def use_map(self, occupancy: OccupancyMap) -> None:
         """Go on with another map of the same frame; a pose that it does not fit is searched for."""
@@ -129,15 +135,18 @@ class Localizer:
         ):
             return
         self._map, self.field = occupancy, SurfaceField.of(occupancy)
-        estimate, forgotten = self.estimate, self._forgotten
-        self.told(estimate.pose, (estimate.position_deviation, estimate.heading_deviation))
-        if forgotten:
-            self.forget(forgotten)
+        estimate = self.estimate
+        if self._forgotten:
+            # Whoever is searched for is searched for in the new map, no longer than before.
+            self._relocation = None
+            self._tracker = self._tracker_at(estimate.pose, estimate.covariance)
+        else:
+            self.told(estimate.pose, (estimate.position_deviation, estimate.heading_deviation))
 
     def told(self, pose: Pose, deviation: tuple[float, float]) -> None:
         """Take somebody's word for where the robot is, m and rad unsure; scans will confirm it."""
         spread = np.diag([deviation[0] ** 2, deviation[0] ** 2, deviation[1] ** 2])
-        self._tracker = Tracker(self.field, self._config, pose, spread)
+        self._tracker = self._tracker_at(pose, spread)
         self._relocation, self._forgotten = None, ""
         self._told = self._expected_around(pose, deviation)
 
@@ -145,9 +154,8 @@ class Localizer:
         """Trust no pose any more; look for the robot in the whole map."""
         self._told = self._relocation = None
         self._forgotten, self._expectation = reason, None
+        self._verdict = Verdict.SEARCHING
         self._searching_since = self._now
-
-    # ---------------------------------------------------------------- what is known
 
     @property
     def estimate(self) -> Estimate:
@@ -161,7 +169,8 @@ class Localizer:
     def needs_to_look_around(self) -> bool:
         """Whether more must be seen to know where the robot is, so that driving a little helps."""
         knowledge, _ = self._knowledge()
-        if knowledge is not Knowledge.SEARCHING or self._is_lifted:
+        sees_nothing = self._map is None or self._is_blind or self._is_late
+        if knowledge is not Knowledge.SEARCHING or self._is_lifted or sees_nothing:
             return False
         if self._relocation is None:
             return self._now - self._searching_since > _PATIENCE
@@ -185,16 +194,18 @@ class Localizer:
         reckoned = self._reckoning.pose
         return [each.frame.compose(reckoned) for each in self._relocation.hypotheses]
 
-    # ---------------------------------------------------------------- stages
+    def _follow_clock(self, time: float, newest: float) -> None:
+        """Take the time that a clock shows, which showed ``newest`` before.
 
-    def _pass_time(self, now: float) -> None:
-        if not self._has_begun or now < self._now - SET_BACK:
+        Stamps and the time itself are two clocks: stamps are always a little late.
+        """
+        if not self._has_clock or time < newest - SET_BACK:
             # The first time, or a clock that was set back: what began before begins now.
-            self._searching_since = self._tried = now
-            self._seen = now if self._has_begun else -math.inf
-            self._now = now
-        self._has_begun = True
-        self._now = max(self._now, now)
+            self._searching_since = self._tried = self._now = time
+            self._seen = time if self._has_clock else -math.inf
+            self._newest_stamp = self._newest_time = -math.inf
+        self._has_clock = True
+        self._now = max(self._now, time)
 
     def _knowledge(self) -> tuple[Knowledge, str]:
         if self._is_lifted:
@@ -205,16 +216,20 @@ class Localizer:
         if self._forgotten:
             return self._searching(self._forgotten)
         deviation = worst_deviation(self._tracker.covariance)
-        if deviation > self._config.lost_deviation:
+        if deviation > self._config.lost_deviation and self._told is None:
             return Knowledge.LOST, f"{self._why_unsure()}, for too long; {_HELP}"
-        is_late = self._now - self._seen > self._config.scan_timeout
-        if is_late or self._is_blind or deviation > self._config.known_deviation:
+        if self._is_late or self._is_blind or deviation > self._config.known_deviation:
             return Knowledge.ROUGH, f"{self._why_unsure()}; going by wheels and gyro"
         return Knowledge.KNOWN, ""
 
+    @property
+    def _is_late(self) -> bool:
+        return not self._now - self._seen <= self._config.scan_timeout
+
     def _searching(self, why: str) -> tuple[Knowledge, str]:
         if self._now - self._searching_since > self._config.search_timeout:
-            what = self._relocation.verdict.value if self._relocation else self._why_unsure()
+            unseen = self._is_late or self._is_blind or self._verdict is Verdict.SEARCHING
+            what = self._why_unsure() if unseen else self._verdict.value
             return Knowledge.LOST, f"{why}, and {what}; {_HELP}"
         return Knowledge.SEARCHING, why
 
@@ -223,7 +238,7 @@ class Localizer:
             return "there is no map yet"
         if self._is_blind:
             return "the lidar sees next to nothing: it is blocked, or all is out of its reach"
-        if self._now - self._seen > self._config.scan_timeout:
+        if self._is_late:
             return "the lidar sends no scans"
         return "what is in sight does not tell where along it the robot is"
 
@@ -271,15 +286,23 @@ class Localizer:
 
     def _begin_search(self, view: ScanView, reckoned: Pose) -> Relocation:
         """Begin to look for the robot in the whole map."""
-        self._tried = self._now
         since = reckoned.inverse().compose(self._reckoning.pose)
         here = self._tracker.pose.compose(since.inverse())
         expectation = self._expectation and replace(self._expectation, pose=here)
         return Relocation(self.field, self._config, self._body_radius, view, reckoned, expectation)
 
+    def _tracker_at(self, pose: Pose, covariance: NDArray[np.float64]) -> Tracker:
+        return Tracker(self.field, self._config, pose, covariance)
+
     def _search_on(self, relocation: Relocation, view: ScanView, reckoned: Pose) -> None:
+        was_searching = relocation.verdict is Verdict.SEARCHING
         relocation.advance()
         relocation.see(view, reckoned)
+        if relocation.verdict is Verdict.SEARCHING:
+            return
+        if was_searching:
+            self._tried = self._now
+        self._verdict = relocation.verdict
         if relocation.verdict is Verdict.FOUND:
             self._found(relocation.hypotheses[0])
         elif relocation.verdict is Verdict.NOWHERE and self._now - self._tried > _AGAIN:
@@ -287,6 +310,6 @@ class Localizer:
 
     def _found(self, place: Hypothesis) -> None:
         pose = place.frame.compose(self._reckoning.pose)
-        self._tracker = Tracker(self.field, self._config, pose, _FOUND_SPREAD.copy())
+        self._tracker = self._tracker_at(pose, _FOUND_SPREAD.copy())
         self._tracker.trust(place.fit)
         self._relocation, self._forgotten = None, ""

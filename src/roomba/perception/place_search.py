@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.perception.search_kernels import score_heading
+from roomba.perception.search_kernels import cells_with_room, score_heading
 from roomba.perception.surface_field import SurfaceField
 
 STEP: Final = 0.15
@@ -74,23 +74,8 @@ def _spots(field: SurfaceField, room: float) -> NDArray[np.float64]:
     """Return a lattice of places with so much room around, float64 [n, 2], m."""
     frame = field.frame
     stride = max(1, round(STEP / frame.resolution))
-    rows, columns = np.nonzero(_roomiest(field.values >= room, stride))
-    spots = np.column_stack(
-        (
-            frame.origin_x + (columns + 0.5) * frame.resolution,
-            frame.origin_y + (rows + 0.5) * frame.resolution,
-        )
-    )
-    return np.ascontiguousarray(spots, np.float64)
-
-
-def _roomiest(fits: NDArray[np.bool_], stride: int) -> NDArray[np.bool_]:
-    """Return one fitting cell of each block of cells, so that narrow places are not left out."""
-    rows, columns = np.nonzero(fits)
-    block = (rows // stride) * (fits.shape[1] // stride + 1) + columns // stride
-    middle = np.abs(rows % stride - stride // 2) + np.abs(columns % stride - stride // 2)
-    order = np.lexsort((middle, block))
-    _, first = np.unique(block[order], return_index=True)
-    chosen = np.zeros(fits.shape, np.bool_)
-    chosen[rows[order][first], columns[order][first]] = True
-    return chosen
+    blocks = -(-frame.rows // stride) * -(-frame.columns // stride)
+    cells = np.empty((blocks, 2), np.int64)
+    cells = cells[: cells_with_room(field.values, room, stride, cells)]
+    origin = np.array([frame.origin_x, frame.origin_y])
+    return np.ascontiguousarray(origin + (cells[:, ::-1] + 0.5) * frame.resolution)

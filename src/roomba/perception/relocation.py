@@ -30,12 +30,9 @@ _FROM_NEAR: Final = np.array([0.15, 0.10, 0.05, 0.05])
 _NEW_WAY: Final = 0.12
 _NEW_TURN: Final = 0.4
 """m, rad; a scan from so far away, or so much turned, says something new."""
-LEAST_AGREE: Final = 0.6
+_LEAST_AGREE: Final = 0.7
 _MOST_THROUGH: Final = 0.15
 """Shares of beams that a place which is found must have, and may have."""
-_WELL: Final = 0.75
-"""Share of beams; a place where fewer agree needs more views, and twice the evidence."""
-_LEAST_VIEWS: Final = 3
 _HOPELESS: Final = 14.0
 """Evidence; a place that has so much less than the best is dropped."""
 
@@ -81,8 +78,8 @@ class Hypothesis:
     def is_possible(self) -> bool:
         """Whether the scan fits at all there."""
         if self.is_expected:
-            return self.fit.agree > 0.5 * LEAST_AGREE
-        return self.fit.agree >= LEAST_AGREE and self.fit.through <= _MOST_THROUGH
+            return self.fit.agree > 0.5 * _LEAST_AGREE
+        return self.fit.agree >= _LEAST_AGREE and self.fit.through <= _MOST_THROUGH
 
 
 class Relocation:
@@ -185,11 +182,7 @@ class Relocation:
 
     def _is_clear(self) -> bool:
         """Whether the best place is so much better than the next that it can be believed."""
-        best = self.hypotheses[0]
-        fits_well = best.fit.agree >= _WELL or best.is_expected
-        if not fits_well and self.views < _LEAST_VIEWS:
-            return False
         if len(self.hypotheses) == 1:
             return True
-        lead = best.evidence - self.hypotheses[1].evidence
-        return lead > self._config.needed_evidence * (1.0 if fits_well else 2.0)
+        lead = self.hypotheses[0].evidence - self.hypotheses[1].evidence
+        return lead > self._config.needed_evidence

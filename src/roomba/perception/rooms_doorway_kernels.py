@@ -11,6 +11,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from roomba.mask_kernels import root_of
+
 Mask = NDArray[np.bool_]
 Labels = NDArray[np.int32]
 Clearance = NDArray[np.float32]
@@ -19,14 +21,6 @@ _OPPOSITE = -0.5
 """Cosine: the second end of an opening is more than 120 degrees away from the first."""
 NOWHERE = 1e9
 """Cells; how far one has to go for what is not found."""
-
-
-@njit(cache=True, nogil=True)
-def _root(parents: Labels, label: int) -> int:
-    while parents[label] != label:
-        parents[label] = parents[parents[label]]
-        label = parents[label]
-    return label
 
 
 @njit(cache=True, nogil=True)
@@ -51,7 +45,7 @@ def flood_basins(
             for near_column in range(max(0, column - 1), min(columns, column + 2)):
                 if basins[near_row, near_column] > 0 and clearance[near_row, near_column] > widest:
                     widest = clearance[near_row, near_column]
-                    joined = _root(parents, basins[near_row, near_column])
+                    joined = root_of(parents, basins[near_row, near_column])
         if joined == 0:
             count += 1
             parents[count], peaks[count] = count, here
@@ -60,7 +54,7 @@ def flood_basins(
             for near_column in range(max(0, column - 1), min(columns, column + 2)):
                 if basins[near_row, near_column] == 0:
                     continue
-                other = _root(parents, basins[near_row, near_column])
+                other = root_of(parents, basins[near_row, near_column])
                 if other != joined and min(peaks[other], peaks[joined]) - here < least_step:
                     if peaks[other] > peaks[joined]:
                         joined, other = other, joined
@@ -86,7 +80,7 @@ def _renumbered(
     for row in range(basins.shape[0]):
         for column in range(basins.shape[1]):
             if basins[row, column] > 0:
-                basins[row, column] = numbers[_root(parents, basins[row, column])]
+                basins[row, column] = numbers[root_of(parents, basins[row, column])]
     return kept_peaks
 
 

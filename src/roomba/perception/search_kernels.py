@@ -56,3 +56,28 @@ def score_heading(
         if total > scores[spot]:
             scores[spot] = total
             headings[spot] = theta
+
+
+@njit(cache=True, nogil=True)
+def cells_with_room(field: Field, room: float, stride: int, cells: NDArray[np.int64]) -> int:
+    """Fill ``cells`` [n, 2], row and column, with a cell of each block; return how many there are.
+
+    A block is ``stride`` by ``stride`` cells. Of those with ``room`` m around it is the one nearest
+    to the block's middle, so that narrow places are not left out.
+    """
+    rows, columns = field.shape
+    count = 0
+    for block_row in range(0, rows, stride):
+        for block_column in range(0, columns, stride):
+            nearest = 2 * stride
+            for row in range(block_row, min(block_row + stride, rows)):
+                for column in range(block_column, min(block_column + stride, columns)):
+                    off = abs(row - block_row - stride // 2)
+                    off += abs(column - block_column - stride // 2)
+                    if off < nearest and field[row, column] >= room:
+                        nearest = off
+                        cells[count, 0] = row
+                        cells[count, 1] = column
+            if nearest < 2 * stride:
+                count += 1
+    return count

@@ -12,6 +12,7 @@ from benchmarks import __main__ as command
 from benchmarks.bench import Bench
 from benchmarks.record import Better, Record
 from benchmarks.rounds import QUICK, THOROUGH, Pace
+from benchmarks.topics import TOPICS
 
 Run = Callable[..., tuple[int, list[tuple[str, Pace]]]]
 
@@ -45,7 +46,7 @@ def run(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Run:
 
 def test_all_topics_are_measured_unless_some_are_named(run: Run) -> None:
     _, seen = run()
-    assert [topic for topic, _ in seen] == ["sim", "lidar", "camera", "plan", "ros"]
+    assert [topic for topic, _ in seen] == list(TOPICS)
     assert run("plan", "plan", "--quick") == (0, [("plan", QUICK)])
     assert run("camera") == (0, [("camera", THOROUGH)])
 
@@ -76,4 +77,4 @@ def test_an_unknown_topic_is_refused_with_those_there_are(
 ) -> None:
     with pytest.raises(SystemExit):
         run("speed")
-    assert "sim, lidar, camera, plan, ros; came speed" in capsys.readouterr().err
+    assert f"{', '.join(TOPICS)}; came speed" in capsys.readouterr().err

@@ -253,7 +253,3 @@ def test_a_robot_in_the_air_does_not_look_around() -> None:
     robot.localizer.forget("it was told so")
     robot.localizer.lift(True)
     assert searching(robot, search) is None
-
-
-def test_with_nothing_in_sight_it_stands() -> None:
-    assert LookAround(CONFIG.body).tick(0.0, Pose(), NOTHING, False) == Twist()

@@ -1,4 +1,5 @@
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -11,6 +12,7 @@ from roomba.geometry import Pose
 from roomba.headless import HeadlessRobot
 from roomba.mission.unknown_things import UnknownThings
 from roomba.mission.walk import Sensed, Walk, WalkState, feedback_period
+from roomba.perception.estimate import Knowledge
 from roomba.planning.path import NoPathError, PathPlanner
 from roomba.world.layer import load_home
 
@@ -186,3 +188,43 @@ def test_feedback_comes_as_often_as_the_report_says() -> None:
     assert feedback_period(9.9) == 2.0
     assert feedback_period(10.0) == 3.0
     assert feedback_period(25.0) == 4.0
+
+
+def test_a_walk_waits_for_its_place_to_be_found_but_not_for_ever() -> None:
+    robot = furnished()
+    at = Pose(0.5, 0.5, 0.0)
+    sensed = Sensed(0.0, at, 0.0)
+    walk = Walk(robot.planner, CONFIG.walk, CONFIG.body, robot.things, (4.5, 3.5), sensed)
+    astray = replace(sensed, knowledge=Knowledge.SEARCHING, trouble="it was carried")
+    steps = [walk.tick(replace(astray, now=0.05 * tick), 0.5) for tick in range(1, 1400)]
+    assert steps[0].state is WalkState.ASTRAY
+    assert "it was carried" in steps[-1].reason
+    failed = next(tick for tick, step in enumerate(steps) if step.state is WalkState.FAILED)
+    assert 0.05 * failed == pytest.approx(CONFIG.walk.astray_timeout, abs=0.2)
+
+
+def test_a_walk_goes_on_from_where_the_robot_was_found() -> None:
+    robot = furnished()
+    sensed = Sensed(0.0, Pose(0.5, 0.5, 0.0), 0.0)
+    walk = Walk(robot.planner, CONFIG.walk, CONFIG.body, robot.things, (4.5, 3.5), sensed)
+    walk.tick(replace(sensed, now=0.05, knowledge=Knowledge.SEARCHING), 0.5)
+    found = replace(sensed, now=0.1, pose=Pose(4.5, 0.5, 0.0))
+    assert walk.tick(found, 0.5).state is WalkState.WALKING
+    assert tuple(walk.path.points[0]) == pytest.approx((4.5, 0.5), abs=0.06)
+
+
+def test_a_robot_that_knows_its_place_but_roughly_walks_slowly() -> None:
+    robot = furnished()
+    sensed = Sensed(0.0, Pose(0.5, 0.5, 0.0), 0.0, knowledge=Knowledge.ROUGH)
+    walk = Walk(robot.planner, CONFIG.walk, CONFIG.body, robot.things, (0.5, 3.5), sensed)
+    assert walk.tick(replace(sensed, now=0.05), 0.5).cruise_speed <= CONFIG.walk.careful_speed
+
+
+def test_a_lost_robot_gives_its_walk_up() -> None:
+    robot = furnished()
+    sensed = Sensed(0.0, Pose(0.5, 0.5, 0.0), 0.0)
+    walk = Walk(robot.planner, CONFIG.walk, CONFIG.body, robot.things, (0.5, 3.5), sensed)
+    lost = replace(sensed, now=0.05, knowledge=Knowledge.LOST, trouble="several places fit")
+    step = walk.tick(lost, 0.5)
+    assert step.state is WalkState.FAILED
+    assert "several places fit" in step.reason

@@ -303,3 +303,14 @@ def test_a_turn_that_changes_between_samples_is_less_sure() -> None:
         return float(reckoned.take_spread()[2, 2])
 
     assert variance((0.0, 0.5)) > 2.0 * variance((0.25, 0.25))
+
+
+def test_odometry_that_begins_anew_is_no_motion_and_a_long_gap_is_one() -> None:
+    reckoned = reckoning()
+    reckoned.move(1.0, Pose(5.0, 2.0, 1.0), None)
+    reckoned.move(1.05, Pose(0.0, 0.0, 0.0), None)
+    assert reckoned.pose == Pose()
+    reckoned.move(1.1, Pose(0.02, 0.0, 0.0), None)
+    assert same(reckoned.pose, Pose(0.02, 0.0, 0.0))
+    reckoned.move(11.1, Pose(5.02, 0.0, 0.0), None)
+    assert same(reckoned.pose, Pose(5.02, 0.0, 0.0))

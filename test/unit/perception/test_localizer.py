@@ -365,3 +365,27 @@ def test_whatever_the_sensors_say_the_estimate_is_finite() -> None:
         assert np.isfinite([pose.x, pose.y, pose.theta]).all()
         assert np.isfinite(estimate.covariance).all()
         assert np.linalg.eigvalsh(estimate.covariance)[0] > 0.0
+
+
+def test_odometry_that_is_always_late_does_not_stop_the_time() -> None:
+    """Stamps 0.3 s behind the clock are no clock that is set back at every message."""
+    robot = Located(TWO_ROOMS, Pose(1.0, 1.0, 0.3))
+    robot.world.step(Twist(), 0.1)
+    for step in range(40):
+        robot.localizer.move(0.05 * step, Pose(), 0.0)
+        if step < 10 and step % 2 == 0:
+            robot.localizer.see(0.05 * step, robot.world.ranges, LIDAR)
+        robot.localizer.pass_time(0.05 * step + 0.3)
+    assert robot.estimate.knowledge is Knowledge.ROUGH
+    assert "sends no scans" in robot.estimate.reason
+
+
+@pytest.mark.parametrize("bad", [math.nan, math.inf])
+def test_numbers_that_are_none_are_refused(bad: float) -> None:
+    robot = Located(TWO_ROOMS, Pose(1.0, 1.0, 0.3))
+    before = robot.estimate.pose
+    with pytest.raises(ValueError, match="finite"):
+        robot.localizer.move(1.0, Pose(bad, 0.0, 0.0), 0.0)
+    with pytest.raises(ValueError, match="finite"):
+        robot.localizer.move(1.0, Pose(), bad)
+    assert robot.estimate.pose == before

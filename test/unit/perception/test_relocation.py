@@ -183,25 +183,14 @@ def test_of_places_that_look_alike_the_expected_one_is_believed() -> None:
     assert turned.verdict is Verdict.AMBIGUOUS
 
 
-def test_a_place_that_fits_but_fairly_takes_three_views() -> None:
-    """It agrees with 60 to 75 of 100 beams."""
+def test_a_place_that_fits_but_fairly_is_not_believed() -> None:
+    """It agrees with 60 to 70 of 100 beams: where it is may not be among the places that fit."""
     eye, start = Eye(FURNISHED), Pose(1.4, 2.6, 0.7)
-
-    def seen(move: Pose) -> Ranges:
-        ranges = eye.scan(start.compose(move))
-        ranges[60:170] *= 0.6
-        return ranges
-
-    relocation = begin(FURNISHED, seen(Pose()))
-    verdicts = [relocation.verdict]
-    for step in range(1, 4):
-        move = Pose(0.0, 0.0, 0.5 * step)
-        relocation.see(LIDAR.view(seen(move)), RECKONED.compose(move))
-        verdicts.append(relocation.verdict)
-        assert 0.6 <= relocation.hypotheses[0].fit.agree < 0.75
-    assert verdicts[:2] == [Verdict.AMBIGUOUS] * 2
-    assert verdicts[-1] is Verdict.FOUND
-    assert is_at(best(relocation, RECKONED.compose(move)), start.compose(move))
+    ranges = eye.scan(start)
+    ranges[60:170] *= 0.6
+    relocation = begin(FURNISHED, ranges)
+    assert 0.5 <= relocation.hypotheses[0].fit.agree < 0.7
+    assert relocation.verdict is Verdict.NOWHERE
 
 
 def test_hypotheses_follow_when_dead_reckoning_drifts() -> None:

@@ -1,0 +1,29 @@
+"""The plain way to part a floor: what is far from all walls are rooms, grown back to the walls."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.distance import distance_to_nearest
+from roomba.grid import OccupancyMap
+from roomba.mask_kernels import numbered_regions
+from roomba.perception.rooms_config import RoomsConfig
+from roomba.perception.rooms_floor_kernels import clear_small_things, grow
+
+
+def distance_split(occupancy: OccupancyMap) -> NDArray[np.int32]:
+    """Return rooms, int32 [rows, columns], 0 for none: connected floor out of reach of doors.
+
+    In a door one is at most half of its width from the walls. As ours, it is given the floor
+    without small furniture, and the same sizes.
+    """
+    config, resolution = RoomsConfig(), occupancy.frame.resolution
+    solid = occupancy.solid
+    clear_small_things(solid, round(config.furniture_size / resolution))
+    solid[[0, -1]] = solid[:, [0, -1]] = True
+    seeds = distance_to_nearest(solid) * resolution > config.widest_door / 2.0
+    labels = numbered_regions(seeds)
+    grow(labels, ~solid, labels.size)
+    labels[occupancy.solid] = 0
+    return labels

@@ -1,0 +1,135 @@
+"""Floors whose rooms are known, and how well a segmentation agrees with them.
+
+Scored as in Bormann et al., "Room Segmentation: Survey, Implementation, and Analysis" (2016). Both
+means forgive rooms that were not parted (a segment that swallows another room costs that segment's
+precision alone), so it is also counted how many rooms were told apart.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from benchmarks.floors import HOMES
+from roomba.grid import OccupancyMap
+from roomba.mask_kernels import numbered_regions
+from roomba.world.home import Home
+from roomba.world.image_file import read_image
+from roomba.world.layer import list_homes, load_home
+from roomba.world.map_file import load_map
+
+RoomLabels = NDArray[np.signedinteger[Any]]
+
+_SUFFIX = "_rooms.png"
+_WHITE = 250.0
+"""Grey value; what is darker was drawn to part rooms."""
+_SMALLEST = 1.0
+"""m²; smaller white areas are specks of the scan."""
+_SAME = 0.8
+"""A room was told apart if it and its segment have this share of their union in common."""
+
+
+@dataclass(frozen=True, eq=False)
+class KnownRooms:
+    """A map and its true rooms: int [rows, columns], 0 for none, 1 .. ``count``."""
+
+    name: str
+    map: OccupancyMap
+    labels: RoomLabels
+
+    @property
+    def count(self) -> int:
+        """How many true rooms there are."""
+        return int(self.labels.max(initial=0))
+
+    @property
+    def area(self) -> float:
+        """Free floor of the map, m²."""
+        return float(np.count_nonzero(~self.map.solid)) * self.map.frame.resolution**2
+
+
+@dataclass(frozen=True)
+class Score:
+    """Mean recall and precision, 0..1; how many segments there are, and rooms told apart."""
+
+    recall: float
+    precision: float
+    segments: int
+    told_apart: int
+
+
+def known_homes() -> Iterable[KnownRooms]:
+    """Return the shipped homes that have rooms in their layer."""
+    homes = (load_home(name, HOMES) for name in list_homes(HOMES))
+    return (KnownRooms(home.name, home.map, rooms_of(home)) for home in homes if home.rooms)
+
+
+def known_maps(folder: Path) -> Iterable[KnownRooms]:
+    """Return the maps of a folder beside which there is ``<map>_rooms.png``, sorted by name.
+
+    In the picture, of the map's size, rooms are white areas that people parted by dark lines.
+    """
+    for path in sorted(folder.glob(f"*{_SUFFIX}")):
+        name = path.name.removesuffix(_SUFFIX)
+        map = load_map(folder / f"{name}.yaml")
+        white = np.ascontiguousarray(read_image(path).grey[::-1] > _WHITE)
+        if white.shape != map.frame.shape:
+            raise ValueError(f"{path}: expected a picture of {map.frame.shape}, got {white.shape}")
+        yield KnownRooms(name, map, without_specks(white, map.frame.resolution))
+
+
+def rooms_of(home: Home) -> RoomLabels:
+    """Return the rooms of a home's layer, by the middles of cells."""
+    frame = home.frame
+    x = frame.origin_x + (np.arange(frame.columns) + 0.5) * frame.resolution
+    y = frame.origin_y + (np.arange(frame.rows) + 0.5) * frame.resolution
+    labels = np.zeros(frame.shape, np.int32)
+    for label, room in enumerate(home.rooms, 1):
+        labels[shapely.contains_xy(shapely.Polygon(room.outline), x[None, :], y[:, None])] = label
+    return labels
+
+
+def without_specks(white: NDArray[np.bool_], resolution: float) -> RoomLabels:
+    """Return the connected areas of a mask that are large enough for a room."""
+    regions = numbered_regions(white)
+    sizes = np.bincount(regions.ravel()) * resolution**2
+    is_room = sizes >= _SMALLEST
+    is_room[0] = False
+    labels: RoomLabels = np.where(is_room, np.cumsum(is_room), 0)[regions]
+    return labels
+
+
+def overlaps(known: KnownRooms, labels: RoomLabels) -> NDArray[np.int64]:
+    """Return the cells that rooms (rows) and segments (columns) have in common; 0 is no segment.
+
+    Only cells count that are free in the map and lie in a true room. The first row is nobody's.
+    """
+    counted = (known.labels > 0) & ~known.map.solid
+    shape = (known.count + 1, int(labels.max(initial=0)) + 1)
+    common = np.zeros(shape, np.int64)
+    np.add.at(common, (known.labels[counted], labels[counted]), 1)
+    return common
+
+
+def score(known: KnownRooms, labels: RoomLabels) -> Score:
+    """Return how well labels, int [rows, columns], 0 for no room, agree with the true rooms."""
+    common = overlaps(known, labels)
+    rooms, segments = common.sum(axis=1), common.sum(axis=0)
+    inner = common[1:, 1:]
+    union = rooms[1:, None] + segments[None, 1:] - inner
+    seen = segments[1:] > 0
+    recall = inner.max(axis=1, initial=0) / np.maximum(rooms[1:], 1)
+    precision = inner.max(axis=0, initial=0)[seen] / segments[1:][seen]
+    told_apart = (inner >= _SAME * np.maximum(union, 1)).any(axis=1)
+    return Score(
+        float(recall[rooms[1:] > 0].mean()) if rooms.any() else 0.0,
+        float(precision.mean()) if precision.size else 0.0,
+        int(np.count_nonzero(seen)),
+        int(np.count_nonzero(told_apart)),
+    )
