@@ -12,13 +12,18 @@ from fixtures.located import (
     CONFIG,
     CORRIDOR,
     FURNISHED,
+    HASTY,
     LIDAR,
     MOVED,
     SQUARE,
+    START,
     TWO_ROOMS,
+    WORST_ERROR,
     Located,
     Ranges,
     glass,
+    look_until_known,
+    started,
     steps,
 )
 from fixtures.rooms import room_home
@@ -28,29 +33,6 @@ from roomba.grid import FREE, OCCUPIED
 from roomba.perception.estimate import Knowledge
 from roomba.perception.localizer import Localizer
 from roomba.world.home import Home
-
-START = Pose(1.0, 1.0, 0.3)
-HASTY = CONFIG.localization.model_copy(update={"lost_deviation": 0.03, "known_deviation": 0.02})
-"""Gives up so early that a test need not drive far."""
-WORST_ERROR = 0.03
-"""m; of a pose that is tracked."""
-
-
-def started(home: Home = TWO_ROOMS, start: Pose = START, seed: int = 0) -> Located:
-    """A robot that has driven a little and knows where it is."""
-    robot = Located(home, start, seed)
-    for _ in steps(2.0):
-        robot.look()
-    assert robot.estimate.knowledge is Knowledge.KNOWN
-    return robot
-
-
-def look_until_known(robot: Located, seconds: float) -> None:
-    for _ in steps(seconds):
-        if robot.estimate.knowledge is Knowledge.KNOWN:
-            return
-        robot.look()
-    raise AssertionError(f"not known within {seconds} s: {robot.estimate.reason}")
 
 
 @pytest.mark.parametrize("home", [FURNISHED, TWO_ROOMS])

@@ -6,31 +6,19 @@ import numpy as np
 import pytest
 from fixtures.located import (
     CONFIG,
+    HASTY,
+    START,
     TWO_ROOMS,
+    WORST_ERROR,
     Located,
+    started,
     steps,
 )
 
 from roomba.geometry import Pose, Twist
 from roomba.perception.estimate import Knowledge
 from roomba.perception.localizer import Localizer
-from roomba.world.home import Home
 from roomba.world.simulator import Observation
-
-START = Pose(1.0, 1.0, 0.3)
-HASTY = CONFIG.localization.model_copy(update={"lost_deviation": 0.03, "known_deviation": 0.02})
-"""Gives up so early that a test need not drive far."""
-WORST_ERROR = 0.03
-"""m; of a pose that is tracked."""
-
-
-def started(home: Home = TWO_ROOMS, start: Pose = START, seed: int = 0) -> Located:
-    """A robot that has driven a little and knows where it is."""
-    robot = Located(home, start, seed)
-    for _ in steps(2.0):
-        robot.look()
-    assert robot.estimate.knowledge is Knowledge.KNOWN
-    return robot
 
 
 def wander(robot: Located, seconds: float, seed: int) -> list[Observation]:

@@ -11,8 +11,12 @@ from fixtures.located import (
     FURNISHED,
     LIDAR,
     SQUARE,
+    START,
     TWO_ROOMS,
+    WORST_ERROR,
     Located,
+    look_until_known,
+    started,
     steps,
 )
 from fixtures.worlds import DT
@@ -21,28 +25,6 @@ from roomba.geometry import Pose, Twist
 from roomba.perception.estimate import Knowledge
 from roomba.perception.localizer import Localizer
 from roomba.world.home import Home
-
-START = Pose(1.0, 1.0, 0.3)
-WORST_ERROR = 0.03
-"""m; of a pose that is tracked."""
-
-
-def started(home: Home = TWO_ROOMS, start: Pose = START, seed: int = 0) -> Located:
-    """A robot that has driven a little and knows where it is."""
-    robot = Located(home, start, seed)
-    for _ in steps(2.0):
-        robot.look()
-    assert robot.estimate.knowledge is Knowledge.KNOWN
-    return robot
-
-
-def look_until_known(robot: Located, seconds: float) -> None:
-    for _ in steps(seconds):
-        if robot.estimate.knowledge is Knowledge.KNOWN:
-            return
-        robot.look()
-    raise AssertionError(f"not known within {seconds} s: {robot.estimate.reason}")
-
 
 ELSEWHERE = [
     Pose(6.0, 1.2, 2.0),
