@@ -206,7 +206,7 @@ ENDS = st.tuples(st.floats(-3.0, 7.0), st.floats(-1.0, 5.0))
 
 
 @given(st.sampled_from(["Kitchen", "Hall", "Bath"]), ENDS, ENDS)
-@settings(max_examples=100)
+@settings(max_examples=200)
 def test_what_was_split_is_whole_and_joined_again_it_is_as_before(
     name: str, start: tuple[float, float], end: tuple[float, float]
 ) -> None:
@@ -214,7 +214,7 @@ def test_what_was_split_is_whole_and_joined_again_it_is_as_before(
     try:
         after = before.split(name, start, end)
     except RoomsError:
-        assume(False)
+        return  # a line that does not cut the room has a test of its own
     assert np.array_equal(after.labels != 0, before.labels != 0)
     label = before.label_of(name)
     pieces = [label, *range(4, len(after.names) + 1)]
