@@ -74,7 +74,7 @@ class Localizer:
         self._reckoning = DeadReckoning(config, gyro)
         self._is_lifted = self._is_blind = False
         self._now = self._newest_stamp = self._newest_time = -math.inf
-        self._seen = self._searching_since = self._tried = -math.inf
+        self._seen = self._searching_since = self._tried = self._told_since = -math.inf
         self._has_clock = False
         self._told: Expectation | None = None
         self._relocation: Relocation | None = None
@@ -148,7 +148,7 @@ class Localizer:
         spread = np.diag([deviation[0] ** 2, deviation[0] ** 2, deviation[1] ** 2])
         self._tracker = self._tracker_at(pose, spread)
         self._relocation, self._forgotten = None, ""
-        self._told = self._expected_around(pose, deviation)
+        self._told, self._told_since = self._expected_around(pose, deviation), self._now
 
     def forget(self, reason: str) -> None:
         """Trust no pose any more; look for the robot in the whole map."""
@@ -201,7 +201,7 @@ class Localizer:
         """
         if not self._has_clock or time < newest - SET_BACK:
             # The first time, or a clock that was set back: what began before begins now.
-            self._searching_since = self._tried = self._now = time
+            self._searching_since = self._tried = self._told_since = self._now = time
             self._seen = time if self._has_clock else -math.inf
             self._newest_stamp = self._newest_time = -math.inf
         self._has_clock = True
@@ -216,7 +216,8 @@ class Localizer:
         if self._forgotten:
             return self._searching(self._forgotten)
         deviation = worst_deviation(self._tracker.covariance)
-        if deviation > self._config.lost_deviation and self._told is None:
+        was_just_told = self._now - self._told_since <= self._config.scan_timeout
+        if deviation > self._config.lost_deviation and not was_just_told:
             return Knowledge.LOST, f"{self._why_unsure()}, for too long; {_HELP}"
         if self._is_late or self._is_blind or deviation > self._config.known_deviation:
             return Knowledge.ROUGH, f"{self._why_unsure()}; going by wheels and gyro"

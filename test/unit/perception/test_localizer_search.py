@@ -222,3 +222,17 @@ def test_told_to_forget_before_anything_is_sensed_it_is_not_lost_at_once() -> No
     assert robot.estimate.knowledge is Knowledge.SEARCHING
     robot.move(1.7e9 + CONFIG.localization.search_timeout + 1.0, Pose(), 0.0)
     assert robot.estimate.knowledge is Knowledge.LOST
+
+
+def test_a_robot_that_sees_too_little_is_lost_in_the_end_though_it_was_told() -> None:
+    """Half a dozen beams never confirm a pose: a metre unsure, it is not to be driven by."""
+    robot = Located(TWO_ROOMS, START)
+    robot.world.step(Twist(), 0.1)
+    few = np.full_like(robot.world.ranges, np.inf)
+    few[:3] = robot.world.ranges[:3]
+    for step in range(3000):
+        robot.localizer.move(0.05 * step, Pose(0.5 * 0.05 * step, 0.0, 0.0), 0.0)
+        if step < 3:
+            robot.localizer.see(0.05 * step, few, LIDAR)
+    assert robot.estimate.position_deviation > CONFIG.localization.lost_deviation
+    assert robot.estimate.knowledge is Knowledge.LOST
