@@ -83,7 +83,10 @@ class Hypothesis:
 
 
 class Relocation:
-    """One attempt to find the robot; ``reckoned`` poses are those of DeadReckoning."""
+    """One attempt to find the robot; ``reckoned`` poses are those of DeadReckoning.
+
+    ``hypotheses`` are the places that may be, likeliest first, after so many ``views``.
+    """
 
     def __init__(
         self,
