@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import argparse
 import contextlib
+import itertools
 import json
 import math
 import re
@@ -188,7 +189,7 @@ def _localize(
     config = load_robot_config(package_folder() / "config" / "robot.yaml")
     replay = Replay(occupancy, config, mounts, topics.base, start)
     tally = Tally(topics.own_poses)
-    began = time.perf_counter()
+    began, is_placed = time.perf_counter(), False
     with contextlib.ExitStack() as stack:
         files = [stack.enter_context(file) for file in _files(options, topics)]
         show = stack.enter_context(_progress())
@@ -197,10 +198,13 @@ def _localize(
             if heard.kind in topics.kinds_of_own_poses:
                 tally.hear_own_pose(heard)
             row = replay.hear(heard)
-            if row is not None:
-                tally.take(row)
-                for file in files:
-                    file.write(row)
+            if row is None:
+                continue
+            tally.take(row)
+            # What comes before the place is first known is no pose that a file should hold.
+            is_placed = is_placed or row.estimate.knowledge.is_usable
+            for file in files if is_placed else ():
+                file.write(row)
         show(1.0)
     processing = time.perf_counter() - began
     if tally.last is None:
@@ -304,6 +308,8 @@ def _plot(options: argparse.Namespace, occupancy: OccupancyMap, tally: Tally) ->
     from roomba_ros.localize_plot import write_plot
 
     rows = [*tally.rows.rows, tally.last]
+    placed = itertools.dropwhile(lambda row: not row.estimate.knowledge.is_usable, rows)
+    rows = list(placed) or rows
     title = f"{options.bag.name} on {options.map.name}"
     write_plot(options.plot, occupancy, rows, tally.losses, title)
 

@@ -235,7 +235,7 @@ def lines_of(summary: Summary) -> list[tuple[str, str]]:
 
 def _found(summary: Summary) -> str:
     if summary.found_after is None or summary.found_at is None:
-        return "the place was never known"
+        return "the place was never known: is this its map?"
     x, y, theta = summary.found_at
     return f"known after {summary.found_after:.1f} s at ({x:.2f}, {y:.2f}), {theta:.2f} rad"
 

@@ -48,9 +48,17 @@ def run_node(name: str, make: Callable[[], Node]) -> None:
         node.start()
     except RoombaError as error:
         give_up(str(error))
-    rospy.core.add_preshutdown_hook(lambda reason: node.stop())
+    rospy.core.add_preshutdown_hook(lambda reason: _stop(node))
     Ticker(node.period, told_to_end).run(node.tick)
     leave(0)
+
+
+def _stop(node: Node) -> None:
+    try:
+        node.stop()
+    except rospy.ROSException as error:
+        # The connections were closed already, from another thread: nobody hears a last word.
+        rospy.logdebug("stopped without a last word: %s", error)
 
 
 def register(name: str) -> None:

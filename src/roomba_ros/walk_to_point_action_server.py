@@ -215,7 +215,7 @@ class WalkToPointActionServer:
         with self._planning:
             step = job.walk.tick(sensed, max_speed)
         if job.walk.path is not path:
-            rospy.loginfo("going around: %.2f m to walk", job.walk.path.length)
+            rospy.loginfo("a new way: %.2f m to walk", job.walk.path.length)
             self._show_plan(sensed.now, job.walk)
         self._change_speed.publish(step.cruise_speed)
         # While it is astray nobody drives there, but it says that somebody still wants to go.

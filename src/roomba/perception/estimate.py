@@ -36,6 +36,7 @@ class Estimate:
 
     ``covariance`` is float64 [3, 3], of x, y (m2) and theta (rad2); ``agreement`` the share of the
     last scan's beams that agree with the map; ``reason`` says why it is not known, and what helps.
+    What is not known at all is unsure by 100 m.
     """
 
     pose: Pose

@@ -24,6 +24,8 @@ from roomba.perception.scan_view import Fit, LidarModel, ScanView
 from roomba.perception.surface_field import SurfaceField
 from roomba.perception.tracker import Tracker
 
+_ANYWHERE: Final = np.diag([100.0**2, 100.0**2, math.pi**2])
+"""m2, rad2; of a pose that is not known: whoever reads nothing else must not believe it."""
 _FOUND_SPREAD: Final = np.diag([0.05**2, 0.05**2, 0.03**2])
 """m2, rad2; of a place that was found, before scans narrow it down."""
 _PATIENCE: Final = 0.5
@@ -139,7 +141,7 @@ class Localizer:
         if self._forgotten:
             # Whoever is searched for is searched for in the new map, no longer than before.
             self._relocation = None
-            self._tracker = self._tracker_at(estimate.pose, estimate.covariance)
+            self._tracker = self._tracker_at(estimate.pose, _ANYWHERE.copy())
         else:
             self.told(estimate.pose, (estimate.position_deviation, estimate.heading_deviation))
 
@@ -162,8 +164,9 @@ class Localizer:
         """What is known now."""
         tracker = self._tracker
         knowledge, reason = self._knowledge()
-        agreement = tracker.fit.agree if tracker.fit is not None else 0.0
-        return Estimate(tracker.pose, tracker.covariance, knowledge, agreement, reason)
+        covariance = _ANYWHERE if self._forgotten or self._is_lifted else tracker.covariance
+        agreement = 0.0 if tracker.fit is None or self._is_blind else tracker.fit.agree
+        return Estimate(tracker.pose, covariance, knowledge, agreement, reason)
 
     @property
     def needs_to_look_around(self) -> bool:
@@ -232,7 +235,8 @@ class Localizer:
             unseen = self._is_late or self._is_blind or self._verdict is Verdict.SEARCHING
             what = self._why_unsure() if unseen else self._verdict.value
             return Knowledge.LOST, f"{why}, and {what}; {_HELP}"
-        return Knowledge.SEARCHING, why
+        sees_nothing = self._is_blind or self._is_late
+        return Knowledge.SEARCHING, f"{why}; {self._why_unsure()}" if sees_nothing else why
 
     def _why_unsure(self) -> str:
         if self._map is None:
@@ -241,7 +245,9 @@ class Localizer:
             return "the lidar sees next to nothing: it is blocked, or all is out of its reach"
         if self._is_late:
             return "the lidar sends no scans"
-        return "what is in sight does not tell where along it the robot is"
+        if self._told is not None:
+            return "the pose was told, and no scan has confirmed it yet"
+        return "what is in sight does not tell the place: a bare corridor, or next to nothing"
 
     def _follow(self, view: ScanView, reckoned: Pose, tells_places_apart: bool) -> None:
         """Correct the pose by a scan that was taken at ``reckoned``, perhaps a little ago."""
