@@ -22,6 +22,8 @@ STATES = {
     Knowledge.SEARCHING: Localization.SEARCHING,
     Knowledge.LOST: Localization.LOST,
 }
+SAME_TIME = 0.06
+"""s; a gyro sample so near to an odometry's time is of the same motion."""
 _PLANAR = (0, 1, 5)
 """Of a covariance's six axes x, y, z and the turns about them: x, y and the turn about z."""
 _LEAST_DEVIATION = (0.1, 0.1)

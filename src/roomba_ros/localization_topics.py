@@ -22,12 +22,10 @@ from roomba.perception.estimate import Estimate, Knowledge
 from roomba.perception.localizer import Localizer
 from roomba.perception.scan_view import LidarModel
 from roomba_ros.convert import map_of, pose_of_odometry
-from roomba_ros.convert_localization import lidar_of, mount_of, ranges_of, told_pose_of
+from roomba_ros.convert_localization import SAME_TIME, lidar_of, mount_of, ranges_of, told_pose_of
 from roomba_ros.kept_pose import KeptPose
 from roomba_ros.place_topics import PlaceTopics
 
-_SAME_TIME: Final = 0.06
-"""s; a gyro sample so near to an odometry's time is of the same motion."""
 _KEPT: Final = 40
 """Messages of odometry, and of the gyro, that wait for the next tick: two seconds of them."""
 
@@ -126,7 +124,7 @@ class LocalizationTopics:
         if not samples:
             return None
         nearest = min(samples, key=lambda sample: abs(sample[0] - stamp))
-        return nearest[1] if abs(nearest[0] - stamp) < _SAME_TIME else None
+        return nearest[1] if abs(nearest[0] - stamp) < SAME_TIME else None
 
     def _hear_people(self, localizer: Localizer) -> None:
         with self._lock:

@@ -216,8 +216,6 @@ class Recording:
                 f"{self._why_broken}"
             )
 
-    # ---------------------------------------------------------------- where messages are
-
     def _index(self, topics: list[str], odometry: str) -> _Index:
         """Return where the messages of topics are, in the order in which to read them."""
         numbers = {
@@ -286,8 +284,6 @@ class Recording:
     def _note_once(self, note: str) -> None:
         if note not in self.notes:
             self.notes.append(note)
-
-    # ---------------------------------------------------------------- clocks
 
     def _clocks(self, index: _Index, topics: list[str], odometry: str) -> dict[str, _Clock]:
         """Return how to come from a topic's stamps to times by the clock of the odometry."""

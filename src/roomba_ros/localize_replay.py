@@ -17,12 +17,10 @@ from roomba.perception.estimate import Estimate
 from roomba.perception.localizer import Localizer
 from roomba.perception.scan_view import LidarModel
 from roomba_ros.convert import pose_of_odometry
-from roomba_ros.convert_localization import ranges_of, told_pose_of
+from roomba_ros.convert_localization import SAME_TIME, ranges_of, told_pose_of
 from roomba_ros.localize_mounts import Mount, Mounts
 from roomba_ros.localize_recording import Heard, Kind
 
-_SAME_TIME: Final = 0.06
-"""s; a gyro sample so near to an odometry's time is of the same motion, as for the live node."""
 _ROW_PERIOD: Final = 0.045
 """s; as often as the live node tells its pose, with something left for clocks that tremble."""
 _SILENCE: Final = 0.25
@@ -106,11 +104,9 @@ class Replay:
             self._hear_told(message)
         return self._row(heard)
 
-    # ---------------------------------------------------------------- hearing
-
     def _hear_odometry(self, stamp: float, message: Odometry) -> None:
         pose = pose_of_odometry(message)
-        if not all(map(math.isfinite, (pose.x, pose.y, pose.theta))):
+        if not pose.is_finite:
             self._leave_out("messages of odometry with numbers that are not finite")
             return
         if self._localizer is None:
@@ -140,7 +136,7 @@ class Replay:
 
     def _turning_at(self, stamp: float) -> float | None:
         """Return the gyro's newest sample, rad/s, if it is of about that time."""
-        if self._gyro is None or abs(self._gyro[0] - stamp) > _SAME_TIME:
+        if self._gyro is None or abs(self._gyro[0] - stamp) > SAME_TIME:
             return None
         return self._gyro[1]
 
@@ -219,8 +215,6 @@ class Replay:
 
     def _leave_out(self, why: str) -> None:
         self._left_out[why] = self._left_out.get(why, 0) + 1
-
-    # ---------------------------------------------------------------- telling
 
     def _row(self, heard: Heard) -> Row | None:
         localizer = self._localizer

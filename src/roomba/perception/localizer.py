@@ -150,7 +150,7 @@ class Localizer:
         spread = np.diag([deviation[0] ** 2, deviation[0] ** 2, deviation[1] ** 2])
         self._tracker = self._tracker_at(pose, spread)
         self._relocation, self._forgotten = None, ""
-        self._told, self._told_since = self._expected_around(pose, deviation), self._now
+        self._told, self._told_since = self._told_to_be(pose, deviation), self._now
 
     def forget(self, reason: str) -> None:
         """Trust no pose any more; look for the robot in the whole map."""
@@ -254,10 +254,10 @@ class Localizer:
         tracker = self._tracker
         since = reckoned.inverse().compose(self._reckoning.pose)
         tracker.pose = tracker.pose.compose(since.inverse())
-        if self._told is None and self.estimate.position_deviation > _ASTRAY:
-            estimate = self.estimate
-            deviation = (estimate.position_deviation, estimate.heading_deviation)
-            self._told = self._expected_around(tracker.pose, deviation)
+        unsure = worst_deviation(tracker.covariance)
+        if self._told is None and unsure > _ASTRAY:
+            deviation = (unsure, math.sqrt(tracker.covariance[2, 2]))
+            self._told = self._told_to_be(tracker.pose, deviation)
         tracker.see(view)
         fit = tracker.judge(view) if tells_places_apart else None
         tracker.pose = tracker.pose.compose(since)
@@ -268,12 +268,7 @@ class Localizer:
         elif tracker.is_doubtful:
             self.forget("the scan does not fit the map here any more")
             # Nothing says that it was carried: what the place looks like may have changed as well.
-            self._expectation = Expectation(
-                tracker.pose,
-                _HERE_RADIUS,
-                _HERE_TURN,
-                self._config.needed_evidence + _HERE_EVIDENCE,
-            )
+            self._expectation = self._expected(tracker.pose, _HERE_RADIUS, _HERE_TURN)
 
     def _check_told(self, told: Expectation, fit: Fit) -> None:
         """Take what was told if the scan fits very well there; else compare it with the map."""
@@ -282,14 +277,14 @@ class Localizer:
             self.forget("what the lidar sees does not fit well where it was told to be")
             self._expectation = told
 
-    def _expected_around(self, pose: Pose, deviation: tuple[float, float]) -> Expectation:
+    def _told_to_be(self, pose: Pose, deviation: tuple[float, float]) -> Expectation:
         """Return where to expect a robot that is near a pose, unsure by so much, m and rad."""
-        return Expectation(
-            pose,
-            max(_TOLD_RADIUS, 3.0 * deviation[0]),
-            max(_TOLD_TURN, 3.0 * deviation[1]),
-            self._config.needed_evidence + _HERE_EVIDENCE,
-        )
+        radius = max(_TOLD_RADIUS, 3.0 * deviation[0])
+        return self._expected(pose, radius, max(_TOLD_TURN, 3.0 * deviation[1]))
+
+    def _expected(self, pose: Pose, radius: float, turn: float) -> Expectation:
+        evidence = self._config.needed_evidence + _HERE_EVIDENCE
+        return Expectation(pose, radius, turn, evidence)
 
     def _begin_search(self, view: ScanView, reckoned: Pose) -> Relocation:
         """Begin to look for the robot in the whole map."""
