@@ -17,18 +17,22 @@ Ratio = Annotated[float, Field(ge=0.0, le=1.0, allow_inf_nan=False)]
 Degrees = Annotated[float, Field(ge=-180.0, le=180.0)]
 NotNegative = Annotated[float, Field(ge=0.0, allow_inf_nan=False)]
 
+_Model = TypeVar("_Model", bound=BaseModel)
+
 FASTEST_SPEED = 3.0
 """m/s; a `robot_max_speed` above this is a slip of the finger, not a robot for a home."""
 
 
-class _Frozen(BaseModel):
+class Frozen(BaseModel):
+    """A part of a configuration: what it does not know it refuses."""
+
     model_config = ConfigDict(extra="forbid", frozen=True, strict=False)
 
 
-class BodyConfig(_Frozen):
+class BodyConfig(Frozen):
     """The round differential-drive body; lengths in m, speeds in m/s and rad/s."""
 
-    diameter: Positive = 0.3485
+    diameter: Positive = 0.32
     height: Positive = 0.092
     wheel_separation: Positive = 0.235
     wheel_diameter: Positive = 0.072
@@ -44,7 +48,7 @@ class BodyConfig(_Frozen):
         return self.diameter / 2.0
 
 
-class BrushConfig(_Frozen):
+class BrushConfig(Frozen):
     """Brushes and bin: what is picked up of the dirt that is driven over.
 
     One pass of the brush at full power picks up the share ``pickup``; with the fan see
@@ -63,7 +67,7 @@ class BrushConfig(_Frozen):
     bin_capacity: Positive = 100.0
 
 
-class FanConfig(_Frozen):
+class FanConfig(Frozen):
     """The fan: suction, energy (W) and noise (dB(A) at 1 m) by its duty, 0..1."""
 
     pickup: Ratio = 0.83
@@ -72,7 +76,7 @@ class FanConfig(_Frozen):
     noise_level: NotNegative = 68.0
 
 
-class BatteryConfig(_Frozen):
+class BatteryConfig(Frozen):
     """The battery, and what everything draws from it: Wh, W, V, ohm, h, degrees Celsius."""
 
     capacity: Positive = 26.0
@@ -88,7 +92,7 @@ class BatteryConfig(_Frozen):
     heating_time: Positive = 900.0
 
 
-class LidarConfig(_Frozen):
+class LidarConfig(Frozen):
     """The lidar: beams evenly all around, beam 0 ahead, counter-clockwise; ranges in m."""
 
     beams: Annotated[int, Field(ge=8, le=4096)] = 360
@@ -106,7 +110,7 @@ class LidarConfig(_Frozen):
         return self
 
 
-class WheelsConfig(_Frozen):
+class WheelsConfig(Frozen):
     """Wheel encoders, and how wheels slip: shares of the way, and what varies, m/sqrt(m)."""
 
     counts_per_turn: Positive = 508.8
@@ -117,7 +121,7 @@ class WheelsConfig(_Frozen):
     blocked_slip: Ratio = 0.3
 
 
-class GyroConfig(_Frozen):
+class GyroConfig(Frozen):
     """The gyro about the vertical and the accelerometer ahead: rad/s, m/s2; walk rad/s/sqrt(s)."""
 
     noise: NotNegative = 0.0015
@@ -127,14 +131,14 @@ class GyroConfig(_Frozen):
     acceleration_noise: NotNegative = 0.03
 
 
-class CliffConfig(_Frozen):
+class CliffConfig(Frozen):
     """Four cliff sensors under the front rim, left to right; degrees and m."""
 
     angles: tuple[Degrees, Degrees, Degrees, Degrees] = (60.0, 15.0, -15.0, -60.0)
     radius: Positive = 0.155
 
 
-class StationConfig(_Frozen):
+class StationConfig(Frozen):
     """What the charging station sends out: a halo, and two beams that overlap; m and degrees."""
 
     halo: Positive = 0.6
@@ -145,14 +149,14 @@ class StationConfig(_Frozen):
     angle_tolerance: Positive = 8.0
 
 
-class DirtSensorConfig(_Frozen):
+class DirtSensorConfig(Frozen):
     """The dirt sensor in the intake: it counts grains, ug each, up to ``most`` per second."""
 
     grain: Positive = 50.0
     most: Annotated[float, Field(gt=0.0, le=65535.0)] = 2550.0
 
 
-class CameraConfig(_Frozen):
+class CameraConfig(Frozen):
     """The pan camera; ``horizontal_field`` and ``max_pan`` in degrees as the seed's angles are."""
 
     width: Annotated[int, Field(gt=0)] = 1024
@@ -163,7 +167,7 @@ class CameraConfig(_Frozen):
     max_pan: Positive = 30.0
 
 
-class LocalizationConfig(_Frozen):
+class LocalizationConfig(Frozen):
     """Knowing where the robot is: how much motion and scans are trusted, and when not at all.
 
     Noises of way, side and wheels grow with the square root of the way (per sqrt(m)), that of turns
@@ -193,7 +197,7 @@ class LocalizationConfig(_Frozen):
         return self
 
 
-class ControlConfig(_Frozen):
+class ControlConfig(Frozen):
     """The position loop."""
 
     approach_deceleration: Positive = 0.5
@@ -205,7 +209,7 @@ class ControlConfig(_Frozen):
     stream_timeout: Positive = 0.3
 
 
-class WalkConfig(_Frozen):
+class WalkConfig(Frozen):
     """Walking to a point: the path, the setpoint moving along it, and when to give up."""
 
     lookahead: Positive = 0.25
@@ -220,7 +224,23 @@ class WalkConfig(_Frozen):
     max_replans: Annotated[int, Field(ge=0)] = 12
 
 
-class RobotConfig(_Frozen):
+class TrackingConfig(Frozen):
+    """Following a path exactly, as cleaning does: m, s, rad."""
+
+    sharp_corner: Annotated[float, Field(gt=0.0, lt=math.pi / 2)] = 0.35
+    off_corner: Positive = 0.0015
+    braking: Positive = 0.8
+    reach: Positive = 0.12
+    heading_gain: Positive = 5.0
+    turning_speed: Positive = 2.5
+    corner_turning: Positive = 2.0
+    corner_acceleration: Positive = 5.0
+    slowest_corner: Positive = 0.06
+    aimed: Positive = 0.01
+    arrival_tolerance: Positive = 0.003
+
+
+class RobotConfig(Frozen):
     """All of ``config/robot.yaml``; every part has the shipped file's values by default.
 
     ``sensors``: "noisy" ones have the errors given here, and wheels slip; "ideal" ones tell the
@@ -242,6 +262,7 @@ class RobotConfig(_Frozen):
     localization: LocalizationConfig = LocalizationConfig()
     control: ControlConfig = ControlConfig()
     walk: WalkConfig = WalkConfig()
+    tracking: TrackingConfig = TrackingConfig()
 
 
 def pickup_share(brush: float, fan: float) -> float:
@@ -249,7 +270,7 @@ def pickup_share(brush: float, fan: float) -> float:
     return 1.0 - (1.0 - brush) * (1.0 - fan)
 
 
-class SeedParameters(_Frozen):
+class SeedParameters(Frozen):
     """The original's parameters (see the README's table), validated; metres and m/s.
 
     Other spellings of the report (``initial_pos_x``, ``max_coordinate`` …) are accepted by
@@ -313,14 +334,16 @@ def parse_seed_parameters(values: dict[str, Any]) -> SeedParameters:
 
 def load_robot_config(path: Path) -> RobotConfig:
     """Read ``config/robot.yaml`` or a file like it; raises :class:`ConfigError` with the reason."""
+    return load_config(RobotConfig, path)
+
+
+def load_config(model: type[_Model], path: Path) -> _Model:
+    """Read a file of some configuration; raises :class:`ConfigError` with the reason."""
     try:
         raw = yaml.safe_load(path.read_text(encoding="utf-8"))
     except (OSError, yaml.YAMLError) as error:
         raise ConfigError(f"{path}: cannot be read as YAML: {error}") from error
-    return _validated(RobotConfig, raw or {}, f"{path}: ")
-
-
-_Model = TypeVar("_Model", bound=BaseModel)
+    return _validated(model, raw or {}, f"{path}: ")
 
 
 def _validated(model: type[_Model], raw: Any, where: str) -> _Model:

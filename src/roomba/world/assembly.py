@@ -24,7 +24,7 @@ from roomba.world.raster import (
     outline,
 )
 
-STATION_REACH = 0.20
+STATION_REACH = 0.22
 """m; a wall nearer than this behind the station's front is what the station leans on."""
 FREE_STATION_DEPTH = 0.10
 """m; of a station that stands free."""

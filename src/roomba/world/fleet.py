@@ -20,7 +20,7 @@ from roomba.config import RobotConfig
 from roomba.errors import HomeError
 from roomba.geometry import Pose
 from roomba.world.dirt import DirtField
-from roomba.world.engine.arrays import MOST_DISCS, Fault, Rows, Solid
+from roomba.world.engine.arrays import MOST_DISCS, Fault, Rows, Solid, State
 from roomba.world.engine.contact_kernels import gap_at
 from roomba.world.engine.layout import layout_of
 from roomba.world.engine.lidar_kernels import ScanBuffers, buffers_for
@@ -244,6 +244,12 @@ class Fleet:
             hashed.update(name.encode())
             hashed.update(values.tobytes())
         return hashed.hexdigest()
+
+    @property
+    def compiled(self) -> tuple[State, Rows, NDArray[np.float32], ScanBuffers]:
+        """The state, numbers, quantiles and buffers that the compiled step takes, of one thread."""
+        self._make_buffers(1)
+        return self._state, self._numbers, self._quantiles, self._buffers[0]
 
     def close(self) -> None:
         """End the threads, if there are any; the fleet may still be used."""

@@ -16,8 +16,9 @@ from numpy.typing import NDArray
 from roomba.config import RobotConfig
 from roomba.geometry import Pose, Twist
 from roomba.world.dirt import MICROGRAMS_PER_GRAM, DirtField
-from roomba.world.engine.arrays import Fault, Infrared
+from roomba.world.engine.arrays import Fault, Infrared, Rows, State
 from roomba.world.engine.brush_kernels import amount_under_disc
+from roomba.world.engine.lidar_kernels import ScanBuffers
 from roomba.world.fleet import Fleet
 from roomba.world.home import Home
 from roomba.world.power import STANDING_NOISE, BatteryState, battery_state, noise_level
@@ -267,6 +268,11 @@ class Simulator:
         """Duty of brush and fan, 0..1."""
         robots = self._fleet.robots
         return float(robots["brush_duty"][0]), float(robots["fan_duty"][0])
+
+    @property
+    def compiled(self) -> tuple[State, Rows, NDArray[np.float32], ScanBuffers]:
+        """What :func:`roomba.world.engine.step_kernels.advance` takes: for other compiled loops."""
+        return self._fleet.compiled
 
     @property
     def noise_level(self) -> float:

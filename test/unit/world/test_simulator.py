@@ -127,4 +127,4 @@ def test_a_thing_on_no_map_can_be_put_in_the_way_but_not_on_the_robot() -> None:
     for _ in range(300):
         seen = world.step(Twist(0.5, 0.0), 0.025)
     assert seen.bumper.pressed
-    assert seen.pose.x < 2.0 - 0.1 - 0.17
+    assert seen.pose.x < 2.0 - 0.1 - world.config.body.radius + 0.001
