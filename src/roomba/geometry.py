@@ -30,6 +30,9 @@ class Twist:
         return math.isfinite(self.linear) and math.isfinite(self.angular)
 
 
+STANDSTILL = Twist()
+
+
 @dataclass(frozen=True, slots=True)
 class Pose:
     """Position, m, and heading, rad, of one frame in another."""

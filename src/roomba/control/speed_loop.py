@@ -1,12 +1,14 @@
 """The speed loop: the last word on what the drive is told.
 
-It keeps to the speed limit, stops for stale commands, backs away from what the bumper meets and
-from cliffs, and stands when a wheel hangs in the air.
+It chooses among those who want to drive, keeps to the speed limit, stops for stale commands, backs
+away from what the bumper meets and from cliffs, and stands when a wheel hangs in the air. Above all
+that is the emergency stop.
 """
 
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from enum import Enum
 
 from roomba.geometry import Twist
@@ -24,6 +26,17 @@ class Hold(Enum):
     CLIFF = "there is no floor ahead"
     """It backs away until there is, whatever was asked for, but not for ever."""
     WHEEL_DROP = "a wheel hangs in the air"
+    EMERGENCY = "emergency stop"
+    """It stands, whatever was asked for and whatever is in the way, until it is released."""
+
+
+class Source(Enum):
+    """Who asks for a twist; the first of them whose command is not too old is obeyed."""
+
+    DIRECT = "cmd_vel"
+    """A walk, or somebody who steers."""
+    MISSION = "cmd_vel_mission"
+    """Cleaning and docking."""
 
 
 BACKING_SPEED = 0.1
@@ -34,8 +47,14 @@ BACKING_OFF_TIME = 0.6
 """s; so long at most it backs off from what the bumper meets."""
 
 
+@dataclass(frozen=True, slots=True)
+class _Command:
+    twist: Twist
+    given: float
+
+
 class SpeedLoop:
-    """Holds the newest command, cruise speed and hazards; :meth:`tick` says what the drive gets.
+    """Holds the newest commands, cruise speed and hazards; :meth:`tick` says what the drive gets.
 
     Speeds in m/s and rad/s, times in s of the robot's clock.
     """
@@ -46,13 +65,14 @@ class SpeedLoop:
         self._command_timeout = command_timeout
         self._max_speed = max_speed
         self._cruise_speed = math.inf
-        self._command: Twist | None = None
-        self._commanded = 0.0
+        self._commands: dict[Source, _Command] = {}
         self._bumper_pressed = False
         self._sees_cliff = False
         self._backs_since: float | None = None
         self._pressed_since: float | None = None
         self._wheel_hangs = False
+        self.emergency = False
+        """Whether the emergency stop holds the drive."""
 
     @property
     def speed_limit(self) -> float:
@@ -69,12 +89,11 @@ class SpeedLoop:
             raise ValueError(f"expected a finite speed of 0 m/s or more, got {speed}")
         self._cruise_speed = speed
 
-    def command(self, now: float, twist: Twist) -> None:
+    def command(self, now: float, twist: Twist, source: Source = Source.DIRECT) -> None:
         """Take a wanted twist; raises ValueError for numbers that cannot be driven."""
         if not twist.is_finite:
             raise ValueError(f"expected finite velocities, got {twist}")
-        self._command = twist
-        self._commanded = now
+        self._commands[source] = _Command(twist, now)
 
     def set_bumper(self, pressed: bool) -> None:
         """Tell whether the front bumper is pressed."""
@@ -94,6 +113,10 @@ class SpeedLoop:
 
     def tick(self, now: float) -> tuple[Twist, Hold]:
         """Return the twist for the drive, and why it is less than what was asked for."""
+        if self.emergency:
+            # What was asked for before is not to be driven when it is released.
+            self._commands.clear()
+            return Twist(), Hold.EMERGENCY
         command = self._fresh_command(now)
         if command is None:
             return Twist(), Hold.NO_COMMAND
@@ -116,12 +139,17 @@ class SpeedLoop:
         return Twist(-min(BACKING_SPEED, self.speed_limit), 0.0)
 
     def _fresh_command(self, now: float) -> Twist | None:
-        if now < self._commanded:
-            # The clock was set back (a bag played again): the command's age starts anew.
-            self._commanded = now
-        if now - self._commanded > self._command_timeout:
-            self._command = None
-        return self._command
+        for source in Source:
+            command = self._commands.get(source)
+            if command is None:
+                continue
+            if now < command.given:
+                # The clock was set back (a bag played again): the command's age starts anew.
+                self._commands[source] = command = _Command(command.twist, now)
+            if now - command.given <= self._command_timeout:
+                return command.twist
+            del self._commands[source]
+        return None
 
     def _within_limit(self, twist: Twist) -> Twist:
         """Slow the twist down to the limits on the same arc."""

@@ -39,3 +39,15 @@ class UnknownThings:
         """Return what is still remembered; a clock set back forgets nothing."""
         self._felt = [entry for entry in self._felt if now - entry[0] < self._memory]
         return [obstacle for _, obstacle in self._felt]
+
+    def forget_around(self, x: float, y: float) -> None:
+        """Forget what was felt within the body's reach of a place where the robot stands."""
+        self._felt = [
+            entry
+            for entry in self._felt
+            if math.hypot(entry[1][0] - x, entry[1][1] - y) > self._reach
+        ]
+
+    def forget(self) -> None:
+        """Forget everything."""
+        self._felt = []

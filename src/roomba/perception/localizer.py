@@ -17,8 +17,11 @@ from numpy.typing import NDArray
 from roomba.config import GyroConfig, LocalizationConfig
 from roomba.geometry import Pose
 from roomba.grid import OccupancyMap
-from roomba.perception.dead_reckoning import SET_BACK, DeadReckoning
-from roomba.perception.estimate import Estimate, Knowledge, worst_deviation
+from roomba.perception.belief import numbers_of, unknown_belief
+from roomba.perception.belief_correct_kernels import ASTRAY, deviation, is_calm
+from roomba.perception.belief_reckon_kernels import SET_BACK
+from roomba.perception.dead_reckoning import DeadReckoning
+from roomba.perception.estimate import Estimate, Knowledge
 from roomba.perception.relocation import Expectation, Hypothesis, Relocation, Verdict
 from roomba.perception.scan_view import Fit, LidarModel, ScanView
 from roomba.perception.surface_field import SurfaceField
@@ -35,8 +38,6 @@ _AGAIN: Final = 1.0
 _GOOD_AGREE: Final = 0.95
 _GOOD_THROUGH: Final = 0.03
 """Shares of beams with which a pose that was told needs no comparison with all others."""
-_ASTRAY: Final = 0.3
-"""m; a pose less sure than this is searched around, as if it had been told."""
 _TOLD_RADIUS: Final = 0.5
 _TOLD_TURN: Final = 0.5
 _HERE_RADIUS: Final = 0.2
@@ -53,7 +54,8 @@ _HELP: Final = (
 class Localizer:
     """Keeps the estimate; tell it what the sensors say in the order of time.
 
-    ``view`` is the newest scan.
+    ``view`` is the newest scan. While it :attr:`is_calm`, kernels may do its work on ``belief``
+    (see :mod:`roomba.perception.belief_correct_kernels`), until it has :meth:`resumed`.
     """
 
     def __init__(
@@ -73,10 +75,12 @@ class Localizer:
         self.field = SurfaceField.of(occupancy) if occupancy else SurfaceField.unknown()
         self.view: ScanView | None = None
         self._config, self._body_radius = config, body_radius
-        self._reckoning = DeadReckoning(config, gyro)
+        self.belief = unknown_belief()
+        self._row, self._numbers = self.belief[0], numbers_of(config, gyro)
+        self._reckoning = DeadReckoning(config, gyro, self.belief)
         self._is_lifted = self._is_blind = False
         self._now = self._newest_stamp = self._newest_time = -math.inf
-        self._seen = self._searching_since = self._tried = self._told_since = -math.inf
+        self._searching_since = self._tried = self._told_since = -math.inf
         self._has_clock = False
         self._told: Expectation | None = None
         self._relocation: Relocation | None = None
@@ -94,10 +98,7 @@ class Localizer:
             raise ValueError(f"expected finite numbers, got {odometry} and {turning} rad/s")
         self._follow_clock(stamp, self._newest_stamp)
         self._newest_stamp = stamp
-        before = self._reckoning.pose
         self._reckoning.move(stamp, odometry, turning)
-        step = before.inverse().compose(self._reckoning.pose)
-        self._tracker.move(step, self._reckoning.take_spread())
 
     def lift(self, is_lifted: bool) -> None:
         """Tell whether the wheels hang in the air: somebody holds the robot."""
@@ -111,17 +112,44 @@ class Localizer:
         """Take a scan, float32 [beams], m; raises ValueError for another number of beams."""
         self.view = view = lidar.view(ranges)
         reckoned = self._reckoning.at(stamp)
+        self._row["beams"] = len(view)
         self._is_blind = len(view) == 0
         if self._is_blind or self._is_lifted or reckoned is None or self._map is None:
             return
-        self._seen = stamp
+        self._row["seen"] = stamp
         tells_places_apart = len(view) >= self._config.least_beams
         if not self._forgotten:
-            self._follow(view, reckoned, tells_places_apart)
+            self._follow(view, stamp, reckoned, tells_places_apart)
         elif tells_places_apart:
             if self._relocation is None:
                 self._relocation = self._begin_search(view, reckoned)
             self._search_on(self._relocation, view, reckoned)
+
+    @property
+    def is_calm(self) -> bool:
+        """Whether the place is known and nothing waits to be done: the belief says it all."""
+        if self._is_lifted or self._forgotten or self._told is not None or self._map is None:
+            return False
+        return bool(is_calm(self.belief, self._numbers, self._now))
+
+    def resumed(
+        self, now: float, seen: float, ranges: NDArray[np.float32], lidar: LidarModel
+    ) -> None:
+        """Go on after kernels that brought the belief up to ``now``, s, from when it was calm.
+
+        ``ranges`` is the newest scan, as of :meth:`see`, taken at ``seen``.
+        """
+        self.view = lidar.view(ranges)
+        self._row["beams"] = len(self.view)
+        self._is_blind = len(self.view) == 0
+        if not self._is_blind:
+            self._row["seen"] = max(seen, self._row["seen"])
+        self._newest_stamp = float(self._row["stamp"])
+        self._newest_time = max(self._newest_time, now)
+        self._now = max(self._now, now)
+        self._reckoning.begin_history()
+        if self._tracker.is_doubtful:
+            self._doubt()
 
     def pass_time(self, now: float) -> None:
         """Tell the time when nothing else does: silence tells something, too."""
@@ -165,7 +193,7 @@ class Localizer:
         tracker = self._tracker
         knowledge, reason = self._knowledge()
         covariance = _ANYWHERE if self._forgotten or self._is_lifted else tracker.covariance
-        agreement = 0.0 if tracker.fit is None or self._is_blind else tracker.fit.agree
+        agreement = 0.0 if self._is_blind else tracker.agreement
         return Estimate(tracker.pose, covariance, knowledge, agreement, reason)
 
     @property
@@ -205,7 +233,7 @@ class Localizer:
         if not self._has_clock or time < newest - SET_BACK:
             # The first time, or a clock that was set back: what began before begins now.
             self._searching_since = self._tried = self._told_since = self._now = time
-            self._seen = time if self._has_clock else -math.inf
+            self._row["seen"] = time if self._has_clock else -math.inf
             self._newest_stamp = self._newest_time = -math.inf
         self._has_clock = True
         self._now = max(self._now, time)
@@ -218,17 +246,17 @@ class Localizer:
             )
         if self._forgotten:
             return self._searching(self._forgotten)
-        deviation = worst_deviation(self._tracker.covariance)
+        unsure = deviation(self._row["covariance"])
         was_just_told = self._now - self._told_since <= self._config.scan_timeout
-        if deviation > self._config.lost_deviation and not was_just_told:
+        if unsure > self._config.lost_deviation and not was_just_told:
             return Knowledge.LOST, f"{self._why_unsure()}, for too long; {_HELP}"
-        if self._is_late or self._is_blind or deviation > self._config.known_deviation:
+        if self._is_late or self._is_blind or unsure > self._config.known_deviation:
             return Knowledge.ROUGH, f"{self._why_unsure()}; going by wheels and gyro"
         return Knowledge.KNOWN, ""
 
     @property
     def _is_late(self) -> bool:
-        return not self._now - self._seen <= self._config.scan_timeout
+        return not self._now - float(self._row["seen"]) <= self._config.scan_timeout
 
     def _searching(self, why: str) -> tuple[Knowledge, str]:
         if self._now - self._searching_since > self._config.search_timeout:
@@ -249,26 +277,34 @@ class Localizer:
             return "the pose was told, and no scan has confirmed it yet"
         return "what is in sight does not tell the place: a bare corridor, or next to nothing"
 
-    def _follow(self, view: ScanView, reckoned: Pose, tells_places_apart: bool) -> None:
+    def _follow(
+        self, view: ScanView, stamp: float, reckoned: Pose, tells_places_apart: bool
+    ) -> None:
         """Correct the pose by a scan that was taken at ``reckoned``, perhaps a little ago."""
         tracker = self._tracker
-        since = reckoned.inverse().compose(self._reckoning.pose)
-        tracker.pose = tracker.pose.compose(since.inverse())
-        unsure = worst_deviation(tracker.covariance)
-        if self._told is None and unsure > _ASTRAY:
-            deviation = (unsure, math.sqrt(tracker.covariance[2, 2]))
-            self._told = self._told_to_be(tracker.pose, deviation)
+        since = None
+        if not self._reckoning.is_newest(stamp):
+            since = reckoned.inverse().compose(self._reckoning.pose)
+            tracker.pose = tracker.pose.compose(since.inverse())
+        unsure = deviation(self._row["covariance"])
+        if self._told is None and unsure > ASTRAY:
+            spread = (unsure, math.sqrt(tracker.covariance[2, 2]))
+            self._told = self._told_to_be(tracker.pose, spread)
         tracker.see(view)
         fit = tracker.judge(view) if tells_places_apart else None
-        tracker.pose = tracker.pose.compose(since)
+        if since is not None:
+            tracker.pose = tracker.pose.compose(since)
         if fit is None:
             return
         if self._told is not None:
             self._check_told(self._told, fit)
         elif tracker.is_doubtful:
-            self.forget("the scan does not fit the map here any more")
-            # Nothing says that it was carried: what the place looks like may have changed as well.
-            self._expectation = self._expected(tracker.pose, _HERE_RADIUS, _HERE_TURN)
+            self._doubt()
+
+    def _doubt(self) -> None:
+        self.forget("the scan does not fit the map here any more")
+        # Nothing says that it was carried: what the place looks like may have changed as well.
+        self._expectation = self._expected(self._tracker.pose, _HERE_RADIUS, _HERE_TURN)
 
     def _check_told(self, told: Expectation, fit: Fit) -> None:
         """Take what was told if the scan fits very well there; else compare it with the map."""
@@ -294,7 +330,7 @@ class Localizer:
         return Relocation(self.field, self._config, self._body_radius, view, reckoned, expectation)
 
     def _tracker_at(self, pose: Pose, covariance: NDArray[np.float64]) -> Tracker:
-        return Tracker(self.field, self._config, pose, covariance)
+        return Tracker(self.field, self._config, pose, covariance, self.belief)
 
     def _search_on(self, relocation: Relocation, view: ScanView, reckoned: Pose) -> None:
         was_searching = relocation.verdict is Verdict.SEARCHING

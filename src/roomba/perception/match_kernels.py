@@ -14,7 +14,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from roomba.perception.field_kernels import Field, Place, look
+from roomba.perception.field_kernels import Field, Place
 
 Floats = NDArray[np.float64]
 
@@ -22,6 +22,8 @@ _SETTLED: Final = 1e-4
 """m and rad; a correction that is smaller ends the search."""
 _MORE_ROUNDS: Final = 4
 """Rounds after those with scales of their own, at most."""
+MATCH_WORK: Final = 10
+"""Rows of what :func:`match_in` works in."""
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -59,7 +61,7 @@ def beam_ends(
 def add_beams(
     field: Field,
     place: Place,
-    ends: Floats,
+    lanes: Floats,
     count: int,
     pose: Floats,
     scale: float,
@@ -69,19 +71,37 @@ def add_beams(
 ) -> None:
     """Add what the beams say to the upper half of ``information`` [3, 3] and ``gradient`` [3].
 
-    A beam whose end lies on a surface weighs ``certainty``, 1/m2, one that is ``scale`` m off a
-    quarter of that.
+    ``lanes`` [2 or more, n] has x and y of their ends. A beam whose end lies on a surface weighs
+    ``certainty``, 1/m2, one that is ``scale`` m off a quarter of that. Does what
+    :func:`roomba.perception.field_kernels.look` does, for many beams at a time.
     """
+    rows, columns = field.shape
+    if rows < 2 or columns < 2:
+        return
+    cells, row_size = field.ravel(), np.int32(columns)
+    last_column, last_row = columns - 1.0, rows - 1.0
     cosine, sine = math.cos(pose[2]), math.sin(pose[2])
+    per_metre, inverse = 1.0 / place[2], 1.0 / scale
+    from_column, from_row = (pose[0] - place[0]) * per_metre, (pose[1] - place[1]) * per_metre
+    end_x, end_y = lanes[0], lanes[1]
     xx = xy = xt = yy = yt = tt = gx = gy = gt = 0.0
-    inverse = 1.0 / scale
     for index in range(count):
-        end_x, end_y = ends[index, 0], ends[index, 1]
-        turned_x, turned_y = cosine * end_x - sine * end_y, sine * end_x + cosine * end_y
-        off, slope_x, slope_y = look(field, place, pose[0] + turned_x, pose[1] + turned_y)
+        turned_x = cosine * end_x[index] - sine * end_y[index]
+        turned_y = sine * end_x[index] + cosine * end_y[index]
+        u, v = from_column + turned_x * per_metre, from_row + turned_y * per_metre
+        is_inside = (u >= 0.0) & (u < last_column) & (v >= 0.0) & (v < last_row)
+        u, v = (u if is_inside else 0.0), (v if is_inside else 0.0)
+        column, row = np.int32(u), np.int32(v)
+        a, b, cell = u - column, v - row, row * row_size + column
+        low, low_next = cells[cell], cells[cell + 1]
+        high, high_next = cells[cell + row_size], cells[cell + row_size + 1]
+        lower, upper = low + a * (low_next - low), high + a * (high_next - high)
+        off = lower + b * (upper - lower)
+        slope_x = ((1.0 - b) * (low_next - low) + b * (high_next - high)) * per_metre
+        slope_y = (upper - lower) * per_metre
         share = off * inverse
         weight = 1.0 / (1.0 + share * share)
-        weight *= weight
+        weight = weight * weight if is_inside else 0.0
         slope_t = slope_y * turned_x - slope_x * turned_y
         xx += weight * slope_x * slope_x
         xy += weight * slope_x * slope_y
@@ -144,10 +164,33 @@ def match(
     round, the last one for those that follow; ``variance``, m2, is a beam's, its dependence on the
     others included.
     """
-    of_prior, information, solved = np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 3))
-    gradient, step = np.empty(3), np.empty(3)
+    work, lanes = np.empty((MATCH_WORK, 3)), np.empty((2, count))
+    return match_in(
+        field, place, ends, count, prior, covariance, scales, variance, pose, work, lanes
+    )
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def match_in(
+    field: Field,
+    place: Place,
+    ends: Floats,
+    count: int,
+    prior: Floats,
+    covariance: Floats,
+    scales: Floats,
+    variance: float,
+    pose: Floats,
+    work: Floats,
+    lanes: Floats,
+) -> int:
+    """Do the same as :func:`match` in the caller's room, [MATCH_WORK, 3] and [2 or more, n]."""
+    of_prior, information, solved = work[0:3], work[3:6], work[6:9]
+    gradient = work[9]
     if not invert(covariance, of_prior):
         return 0
+    for index in range(count):
+        lanes[0, index], lanes[1, index] = ends[index, 0], ends[index, 1]
     rounds = 0
     while rounds < scales.size + _MORE_ROUNDS:
         scale = scales[min(rounds, scales.size - 1)]
@@ -157,17 +200,16 @@ def match(
             for column in range(3):
                 information[row, column] = of_prior[row, column]
                 gradient[row] += of_prior[row, column] * (pose[column] - prior[column])
-        add_beams(field, place, ends, count, pose, scale, 1.0 / variance, information, gradient)
+        add_beams(field, place, lanes, count, pose, scale, 1.0 / variance, information, gradient)
         if not invert(information, solved):
             return rounds
-        for row in range(3):
-            step[row] = 0.0
-            for column in range(3):
-                step[row] += solved[row, column] * gradient[column]
         most = 0.0
         for row in range(3):
-            pose[row] -= step[row]
-            most = max(most, abs(step[row]))
+            step = 0.0
+            for column in range(3):
+                step += solved[row, column] * gradient[column]
+            pose[row] -= step
+            most = max(most, abs(step))
         if rounds >= scales.size and most < _SETTLED:
             break
     covariance[:] = solved

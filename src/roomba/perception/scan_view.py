@@ -8,7 +8,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.geometry import Pose
-from roomba.perception.fit_kernels import AGREEING, EVIDENCE, LOOKED_AT, SHORT, THROUGH, judge
+from roomba.perception.belief_correct_kernels import Beams
+from roomba.perception.fit_kernels import (
+    AGREEING,
+    EVIDENCE,
+    JUDGE_LANES,
+    LOOKED_AT,
+    SHORT,
+    THROUGH,
+    judge,
+)
 from roomba.perception.match_kernels import beam_ends
 from roomba.perception.surface_field import SurfaceField
 
@@ -37,17 +46,35 @@ class LidarModel:
         farthest: float,
         mount: Pose | None = None,
     ) -> None:
-        """``angles`` is float64 [beams], rad; ranges count from ``nearest`` to ``farthest``, m."""
+        """``angles`` is float64 [beams], rad, evenly spaced; ranges count from ``nearest`` to
+        ``farthest``, m.
+        """
         mount = mount or Pose()
         self.beams = len(angles)
         self.mount = np.array([mount.x, mount.y, mount.theta])
+        self._first_angle = float(angles[0]) if self.beams else 0.0
+        self._step = float(angles[1] - angles[0]) if self.beams > 1 else 2.0 * np.pi
         self._directions = np.column_stack((np.cos(angles), np.sin(angles)))
-        self._nearest, self._farthest = nearest, farthest
+        self._nearest, self._farthest = float(nearest), float(farthest)
 
     @staticmethod
     def all_around(beams: int, nearest: float, farthest: float) -> LidarModel:
         """Return a lidar in the middle of the robot, beam 0 ahead, then counter-clockwise."""
         return LidarModel(np.arange(beams) * (2.0 * np.pi / beams), nearest, farthest)
+
+    def arrays(self) -> Beams:
+        """Return it as kernels know it, with room of its own for the ends of beams."""
+        ends, lanes = np.empty((self.beams, 4)), np.empty((JUDGE_LANES, self.beams))
+        return Beams(
+            self._directions,
+            self.mount,
+            self._first_angle,
+            self._step,
+            self._nearest,
+            self._farthest,
+            ends,
+            lanes,
+        )
 
     def view(self, ranges: NDArray[np.float32]) -> ScanView:
         """Return a scan, float32 [beams], m; raises ValueError for another number of beams."""
@@ -71,9 +98,17 @@ class ScanView:
 
     def fit(self, field: SurfaceField, pose: NDArray[np.float64], stride: int = 1) -> Fit:
         """Return how well it fits a pose, float64 [3]; with a stride only some beams are asked."""
-        counts = np.empty(5)
+        counts, lanes = np.empty(5), np.empty((JUDGE_LANES, len(self.ends)))
         judge(
-            field.values, field.place, self.ends, len(self.ends), pose, self.mount, stride, counts
+            field.values,
+            field.place,
+            self.ends,
+            len(self.ends),
+            pose,
+            self.mount,
+            stride,
+            counts,
+            lanes,
         )
         looked_at = max(counts[LOOKED_AT], 1.0)
         return Fit(

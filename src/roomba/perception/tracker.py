@@ -2,36 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Final
-
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.config import LocalizationConfig
+from roomba.config import GyroConfig, LocalizationConfig
 from roomba.geometry import Pose
-from roomba.perception.match_kernels import match
+from roomba.perception.belief import AGREE, Rows, numbers_of, unknown_belief
+from roomba.perception.belief_correct_kernels import judge_ends, match_ends, trust
+from roomba.perception.belief_reckon_kernels import carry
+from roomba.perception.fit_kernels import JUDGE_LANES
 from roomba.perception.scan_view import Fit, ScanView
 from roomba.perception.surface_field import SurfaceField
-
-_NARROW: Final = np.array([0.10, 0.05, 0.05])
-_WIDE: Final = np.array([0.40, 0.30, 0.20, 0.10, 0.05, 0.05])
-"""m; beams that end farther off than this lose weight, round by round."""
-_UNSURE: Final = 0.08
-"""m; a pose less sure than this is matched from farther away."""
-_STRIDE: Final = 8
-"""Each such beam is judged; of 360 these are enough to notice a wrong pose."""
-_SMOOTHING: Final = 0.4
-"""Share of the newest scan in what the fit is now: about the last three scans count."""
-_ADAPTING: Final = 0.02
-"""Share of it in the usual fit: about the last 5 s."""
-_WORSE: Final = 0.3
-"""Share of beams that agree less than usual, at which the pose is doubted."""
-_THROUGH: Final = 0.15
-"""Share of beams that go through walls more than usual, at which the pose is doubted."""
-_LEAST: Final = 0.35
-"""Share of beams that must agree, whatever is usual."""
-_STILL: Final = np.diag([0.0005**2, 0.0005**2, 0.0003**2])
-"""m2, rad2; what a scan leaves unsure however often it is seen: errors of the map."""
 
 
 class Tracker:
@@ -43,14 +24,46 @@ class Tracker:
         config: LocalizationConfig,
         pose: Pose,
         covariance: NDArray[np.float64],
+        belief: Rows | None = None,
     ) -> None:
-        """Begin where the robot is known to be."""
-        self.pose = pose
-        self.covariance = covariance
-        self.fit: Fit | None = None
-        self._field, self._config = field, config
-        self._agree = self._through = 0.0
-        self._usual_agree = self._usual_through = 0.0
+        """Begin where the robot is known to be; of a ``belief`` it takes the place over."""
+        self._beliefs = unknown_belief() if belief is None else belief
+        self._belief = self._beliefs[0]
+        self._pose: NDArray[np.float64] = self._belief["pose"]
+        self._covariance: NDArray[np.float64] = self._belief["covariance"]
+        self._fit: NDArray[np.float64] = self._belief["fit"]
+        self._numbers = numbers_of(config, GyroConfig())
+        self._field, self._place = field.values, field.place
+        self.pose, self.covariance = pose, covariance
+        self._belief["is_judged"] = self._belief["is_doubtful"] = False
+
+    @property
+    def pose(self) -> Pose:
+        """Where the robot is."""
+        return Pose(*self._pose.tolist())
+
+    @pose.setter
+    def pose(self, pose: Pose) -> None:
+        self._pose[:] = pose.x, pose.y, pose.theta
+
+    @property
+    def covariance(self) -> NDArray[np.float64]:
+        """How unsure that is: a copy."""
+        return self._covariance.copy()
+
+    @covariance.setter
+    def covariance(self, covariance: NDArray[np.float64]) -> None:
+        self._covariance[:] = covariance
+
+    @property
+    def fit(self) -> Fit | None:
+        """How well the last scan fits, if there was one that tells."""
+        return Fit(*self._fit.tolist()) if self._belief["is_judged"] else None
+
+    @property
+    def agreement(self) -> float:
+        """Share of the last scan's beams that agree with the map; 0 if no scan told yet."""
+        return float(self._fit[AGREE]) if self._belief["is_judged"] else 0.0
 
     def move(self, step: Pose, spread: NDArray[np.float64]) -> None:
         """Go on by a step, given in the robot's frame; ``spread`` as of DeadReckoning."""
@@ -58,58 +71,40 @@ class Tracker:
 
     def see(self, view: ScanView) -> None:
         """Correct the pose by a scan that is taken here."""
-        prior = np.array([self.pose.x, self.pose.y, self.pose.theta])
-        pose, covariance = prior.copy(), self.covariance + _STILL
-        is_unsure = max(covariance[0, 0], covariance[1, 1]) > _UNSURE**2
-        match(
-            self._field.values,
-            self._field.place,
+        match_ends(
+            self._beliefs,
+            self._numbers,
+            self._field,
+            self._place,
             view.ends,
             len(view),
-            prior,
-            covariance,
-            _WIDE if is_unsure else _NARROW,
-            self._beam_variance(len(view)),
-            pose,
+            np.empty((2, len(view))),
         )
-        self.pose = Pose(*pose.tolist())
-        self.covariance = covariance
 
     def judge(self, view: ScanView) -> Fit:
         """Return how well a scan fits the pose, and remember that."""
-        pose = np.array([self.pose.x, self.pose.y, self.pose.theta])
-        fit = view.fit(self._field, pose, _STRIDE)
-        if self.fit is None:
-            self.trust(fit)
-        self.fit = fit
-        self._agree += _SMOOTHING * (fit.agree - self._agree)
-        self._through += _SMOOTHING * (fit.through - self._through)
-        self._usual_agree += _ADAPTING * (fit.agree - self._usual_agree)
-        self._usual_through += _ADAPTING * (fit.through - self._usual_through)
-        return fit
-
-    def _beam_variance(self, beams: int) -> float:
-        """Return the variance of a beam, m2.
-
-        Few beams are of one thing: they err together, and so do the scans that follow.
-        """
-        cell = 0.5 * self._field.frame.resolution
-        share = max(1.0, self._config.least_beams / max(beams, 1))
-        return (self._config.beam_deviation**2 + cell**2) * share**2
+        judge_ends(
+            self._beliefs,
+            self._numbers,
+            self._field,
+            self._place,
+            view.ends,
+            len(view),
+            view.mount,
+            np.empty((JUDGE_LANES, len(view))),
+        )
+        return Fit(*self._fit.tolist())
 
     @property
     def is_doubtful(self) -> bool:
         """Whether scans fit so much worse than usual that the robot may be somewhere else."""
-        return (
-            self._agree < max(_LEAST, self._usual_agree - _WORSE)
-            or self._through > self._usual_through + _THROUGH
-        )
+        return bool(self._belief["is_doubtful"])
 
     def trust(self, fit: Fit) -> None:
         """Take this fit for the usual one: the place was compared with all others."""
-        self.fit = fit
-        self._agree = self._usual_agree = fit.agree
-        self._through = self._usual_through = fit.through
+        self._fit[:] = fit.agree, fit.short, fit.through, fit.evidence
+        self._belief["is_doubtful"] = False
+        trust(self._beliefs)
 
 
 def moved(
@@ -117,13 +112,9 @@ def moved(
 ) -> tuple[Pose, NDArray[np.float64]]:
     """Return a pose and its covariance after a step in its own frame, unsure by ``spread``.
 
-    ``spread`` is float64 [3, 3] along the axes of the robot after the step.
+    ``spread`` is float64 [3, 3] along the axes of the robot after the step, of which the diagonal
+    counts.
     """
-    after = pose.compose(step)
-    jacobian = np.array(
-        [[1.0, 0.0, pose.y - after.y], [0.0, 1.0, after.x - pose.x], [0.0, 0.0, 1.0]]
-    )
-    turn = Pose(0.0, 0.0, after.theta)
-    ahead, left = turn.compose(Pose(1.0, 0.0, 0.0)), turn.compose(Pose(0.0, 1.0, 0.0))
-    axes = np.array([[ahead.x, left.x, 0.0], [ahead.y, left.y, 0.0], [0.0, 0.0, 1.0]])
-    return after, jacobian @ covariance @ jacobian.T + axes @ spread @ axes.T
+    after, unsure = np.array([pose.x, pose.y, pose.theta]), covariance.copy()
+    carry(after, unsure, step.x, step.y, step.theta, *np.diag(spread).tolist())
+    return Pose(*after.tolist()), unsure

@@ -138,17 +138,21 @@ class PathPlanner:
             raise self._refusal(room, start_joints, goal, NoPathReason.GOAL_UNREACHABLE)
         return _path(start, self._to_metres(bends), goal)
 
-    def reachable(self, start: Point) -> Mask:
+    def reachable(self, start: Point, obstacles: Iterable[RoundObstacle] = ()) -> Mask:
         """Return the cells whose centres can be reached from ``start``, bool [rows, columns].
 
-        Raises :class:`NoPathError` (START_BLOCKED), and ValueError for numbers that are not finite.
+        ``obstacles`` as for :meth:`plan`. Raises :class:`NoPathError` (START_BLOCKED), and
+        ValueError for numbers that are not finite.
         """
         _check_finite("start", start)
-        tight = self._among_walls.tight
+        room = self._room(obstacles)
+        tight = room.tight
         joints = join_start(tight, start)
         if not len(joints.legs):
             raise NoPathError(start, NoPathReason.START_BLOCKED, None)
         regions = frozenset(_regions(tight, joints).tolist())
+        if room is not self._among_walls:
+            return np.isin(tight.regions, list(regions))
         if regions not in self._reachable:
             mask = np.isin(tight.regions, list(regions))
             mask.flags.writeable = False

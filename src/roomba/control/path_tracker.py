@@ -1,0 +1,88 @@
+"""Following a path exactly: the loop that drives along swaths and edges."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.config import BodyConfig, TrackingConfig
+from roomba.control.course import course_of
+from roomba.control.tracking_kernels import TRACK, track
+from roomba.geometry import Pose, Twist
+
+
+class PathTracker:
+    """Drives along ``points``, float64 [n, 2], m, from the first to the last.
+
+    The robot should stand near the first one; from farther away it drives to the first leg's line.
+    """
+
+    def __init__(
+        self,
+        points: NDArray[np.float64],
+        config: TrackingConfig,
+        body: BodyConfig,
+        period: float,
+    ) -> None:
+        """Begin at the first point; ``period`` is the time between two ticks, s."""
+        self.course = course_of(points, config)
+        self.state = np.zeros(1, TRACK).view(np.recarray)
+        state = self.state[0]
+        state.turning = 1.0
+        state.braking, state.reach, state.gain = config.braking, config.reach, config.heading_gain
+        state.turning_speed = min(config.turning_speed, body.max_angular_speed)
+        state.turning_braking = 0.6 * body.max_angular_acceleration
+        state.aimed = config.aimed
+        state.there, state.period = config.arrival_tolerance, period
+
+    def tick(self, pose: Pose, limit: float) -> Twist:
+        """Return the wanted twist; ``limit`` is the speed wanted, m/s."""
+        linear, angular = track(self.state[0], self.course, pose.x, pose.y, pose.theta, limit)
+        return Twist(linear, angular)
+
+    @property
+    def is_done(self) -> bool:
+        """Whether it is at the end of the path."""
+        return bool(self.state[0].done > 0.0)
+
+    @property
+    def is_turning(self) -> bool:
+        """Whether it turns on the spot."""
+        return bool(self.state[0].turning > 0.0)
+
+    @property
+    def length(self) -> float:
+        """Of the whole path, m."""
+        return float(self.course.stations[-1])
+
+    @property
+    def along(self) -> float:
+        """How far along the path it is, m."""
+        if self.is_done or len(self.course.headings) == 0:
+            return self.length
+        leg, on_leg = int(self.state[0].leg), float(self.state[0].along)
+        first, last = self.course.stations[leg], self.course.stations[leg + 1]
+        return float(min(max(first + on_leg, first), last))
+
+    @property
+    def left(self) -> float:
+        """How much of the path is before it, m."""
+        return self.length - self.along
+
+    @property
+    def aside(self) -> float:
+        """How far left of its leg it is, m."""
+        return float(self.state[0].aside)
+
+    def off_path(self, pose: Pose) -> float:
+        """Return how far a pose is from the leg that it should be on, m."""
+        if len(self.course.headings) == 0:
+            return pose.distance_to(*self.course.points[0].tolist())
+        leg = int(self.state[0].leg)
+        first, last = self.course.points[leg], self.course.points[leg + 1]
+        way = last - first
+        share = float(np.dot((pose.x - first[0], pose.y - first[1]), way) / np.dot(way, way))
+        nearest = first + min(max(share, 0.0), 1.0) * way
+        return math.hypot(pose.x - nearest[0], pose.y - nearest[1])

@@ -1,0 +1,174 @@
+"""Compiled tracking of a path: from where the robot is on it to the twist that keeps it there.
+
+A path is followed leg by leg. Sharp corners are turned on the spot; at soft ones the heading goes
+over from one leg to the next while driving.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, Final, NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+
+TRACK: Final = np.dtype(
+    [
+        ("leg", "i8"),  # that it is on
+        ("turning", "f8"),  # 1 while it turns on the spot towards its leg
+        ("done", "f8"),  # 1 at the end of the path
+        ("along", "f8"),  # way on its leg, m
+        ("aside", "f8"),  # left of its leg, m
+        # what does not change
+        ("braking", "f8"),  # m/s2
+        ("reach", "f8"),  # m; being aside it comes back over about this way
+        ("gain", "f8"),  # 1/s; of the heading
+        ("turning_speed", "f8"),  # rad/s
+        ("turning_braking", "f8"),  # rad/s2
+        ("aimed", "f8"),  # rad; so well it aims before it drives
+        ("there", "f8"),  # m; so near to a corner it is there
+        ("period", "f8"),  # s; between two ticks
+    ]
+)
+"""State and numbers of a tracker, one row; a row in a kernel is a pointer."""
+Row = Any
+
+
+class Course(NamedTuple):
+    """A path as kernels know it; see :mod:`.course`.
+
+    ``points`` is [n, 2], m; ``stations`` [n] the way to each, m; ``through`` [n] how fast its
+    corner may be taken, m/s, 0 for those that are turned on the spot; ``halves`` [n] how far before
+    and after a corner the heading changes, m. ``headings`` [n - 1] are those of the legs, rad.
+    """
+
+    points: Floats
+    headings: Floats
+    stations: Floats
+    through: Floats
+    halves: Floats
+
+
+_ASKEW: Final = 0.6
+"""rad; aiming so badly it turns on the spot first."""
+_LEAD: Final = 0.06
+"""s; so much later the drive has the turning speed that it is told: a tick, and its ramp."""
+_SLOWEST: Final = 0.015
+"""m/s and rad/s; slower than this drives do not turn reliably."""
+
+
+@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+def wrapped(angle: float) -> float:
+    """Return the same direction in [-pi, pi]."""
+    return angle - 2.0 * math.pi * math.floor(angle / (2.0 * math.pi) + 0.5)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def track(
+    state: Row, course: Course, x: float, y: float, theta: float, limit: float
+) -> tuple[float, float]:
+    """Return the twist, m/s and rad/s, that follows a course from the pose on.
+
+    ``limit`` is the speed wanted, m/s. Advances ``state``, a row of TRACK.
+    """
+    last = course.headings.size - 1
+    while state.done == 0.0:
+        if last < 0:
+            state.done = 1.0
+            break
+        leg = state.leg
+        dx, dy = x - course.points[leg, 0], y - course.points[leg, 1]
+        heading = course.headings[leg]
+        cosine, sine = math.cos(heading), math.sin(heading)
+        state.along, state.aside = dx * cosine + dy * sine, dy * cosine - dx * sine
+        left = course.stations[leg + 1] - course.stations[leg] - state.along
+        error = wrapped(heading - theta)
+        if state.turning > 0.0:
+            if abs(error) > state.aimed:
+                return 0.0, turn_speed(state, error)
+            state.turning = 0.0
+        is_stop = course.through[leg + 1] == 0.0
+        if left > (state.there if is_stop else 0.0):
+            return drive(state, course, error, left, limit)
+        if leg == last:
+            state.done = 1.0
+        else:
+            state.leg = leg + 1
+            state.turning = 1.0 if is_stop else 0.0
+    return 0.0, 0.0
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def turn_speed(state: Row, error: float) -> float:
+    """Return the turning speed that ends a turn on the spot well, rad/s."""
+    size = abs(error)
+    speed = min(state.turning_speed, math.sqrt(2.0 * state.turning_braking * size))
+    # What is left at the end takes a few ticks more: the drive is a tick or two late.
+    speed = max(min(speed, size / (2.5 * state.period)), 4.0 * _SLOWEST)
+    return math.copysign(min(speed, size / state.period), error)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def drive(
+    state: Row, course: Course, error: float, left: float, limit: float
+) -> tuple[float, float]:
+    """Return the twist along the leg: as fast as the corners ahead allow, back to the line."""
+    speed = min(limit, corner_limit(state, course, left, limit))
+    bend, _ = blended(state, course, left, 0.0)
+    if abs(error + bend) > _ASKEW:
+        # Pushed aside: it aims first.
+        state.turning = 1.0
+        return 0.0, turn_speed(state, error)
+    # Drives answer late: what it has to turn by then.
+    _, curvature = blended(state, course, left, _LEAD * speed)
+    back = -math.atan(state.aside / state.reach)
+    turn = speed * curvature + state.gain * wrapped(error + bend + back)
+    return speed, min(max(turn, -state.turning_speed), state.turning_speed)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def corner_limit(state: Row, course: Course, left: float, limit: float) -> float:
+    """Return the fastest speed from which all that comes can be braked for, m/s."""
+    last = course.headings.size - 1
+    speed = limit
+    horizon = limit * limit / (2.0 * state.braking) + 2.0 * limit * state.period
+    leg, ahead = state.leg, left
+    if state.leg > 0 and state.along < course.halves[leg]:
+        # Still in the corner behind.
+        speed = min(speed, max(course.through[leg], 4.0 * _SLOWEST))
+    while ahead <= horizon:
+        through = course.through[leg + 1]
+        # The drive does what it is told a tick late, so it goes on by that way.
+        way = max(ahead - course.halves[leg + 1] - speed * state.period, 0.0)
+        if through == 0.0:
+            stop = math.sqrt(2.0 * state.braking * way)
+            return max(min(speed, stop, max(ahead, 0.0) / (2.0 * state.period)), _SLOWEST)
+        speed = min(speed, math.sqrt(through * through + 2.0 * state.braking * way))
+        leg += 1
+        if leg > last:
+            break
+        ahead += course.stations[leg + 1] - course.stations[leg]
+    return speed
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def blended(state: Row, course: Course, left: float, lead: float) -> tuple[float, float]:
+    """Return by how much the wanted heading differs from the leg's, rad, and the curvature, 1/m.
+
+    It is looked up ``lead`` m ahead.
+    """
+    leg = state.leg
+    half = course.halves[leg + 1]
+    if half > 0.0 and left - lead < half:
+        corner = wrapped(course.headings[leg + 1] - course.headings[leg])
+        share = min(0.5 * (1.0 - (left - lead) / half), 1.0)
+        return corner * share, corner / (2.0 * half) if share < 1.0 else 0.0
+    half = course.halves[leg]
+    after = state.along + lead
+    if half > 0.0 and after < half:
+        corner = wrapped(course.headings[leg] - course.headings[leg - 1])
+        return -corner * 0.5 * (1.0 - after / half), corner / (2.0 * half)
+    return 0.0, 0.0

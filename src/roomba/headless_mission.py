@@ -1,0 +1,209 @@
+"""The whole robot without ROS: its mission, its loops and its localizer around the simulated world.
+
+Time passes only in :meth:`HeadlessMission.tick` and :meth:`HeadlessMission.run`. The brain gets
+what the sensors tell and nothing else.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.closed_loop import STEP, STEPS_PER_TICK, ClosedLoop
+from roomba.config import RobotConfig
+from roomba.control.speed_loop import SpeedLoop
+from roomba.errors import RoombaError
+from roomba.geometry import Pose, Twist
+from roomba.mission.clean_request import CleanRequest, CleanResult
+from roomba.mission.docking_config import DockingConfig
+from roomba.mission.look_around import Search
+from roomba.mission.machine import Phase
+from roomba.mission.mission import Mission
+from roomba.mission.senses import Battery, Beams, Senses
+from roomba.mission.site import Site
+from roomba.mission_config import MissionConfig
+from roomba.perception.coverage_map import CoverageMap
+from roomba.perception.dirt_map import DirtMap
+from roomba.perception.estimate import Knowledge
+from roomba.perception.localizer import Localizer
+from roomba.perception.rooms import Rooms
+from roomba.perception.scan_view import LidarModel
+from roomba.perception.things import ThingLayer
+from roomba.perception.zones import Zones
+from roomba.world.engine.arrays import Infrared
+from roomba.world.home import Home
+from roomba.world.simulator import Simulator
+
+_LONGEST_CLEAN: Final = 12 * 3600.0
+"""s; a clean that is still under way then is a fault of the program."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CleanRecord:
+    """What happened on a clean.
+
+    ``poses`` has rows of t (s), x, y (m), theta (rad), true ones, map frame; ``truth`` is the floor
+    that the tool really passed over; ``planning`` the time that the first plan took, s of a clock.
+    """
+
+    result: CleanResult
+    poses: NDArray[np.float64]
+    truth: CoverageMap
+    hits: int
+    distance: float
+    turning: float
+
+
+class HeadlessMission:
+    """One robot with its mission in one home."""
+
+    def __init__(
+        self,
+        home: Home,
+        robot: RobotConfig | None = None,
+        mission: MissionConfig | None = None,
+        docking: DockingConfig | None = None,
+        *,
+        seed: int = 0,
+        rooms: Rooms | None = None,
+        zones: Zones | None = None,
+        start: Pose | None = None,
+    ) -> None:
+        """Put the robot on its station, or at ``start``."""
+        self.robot = robot or RobotConfig()
+        self.config = mission or MissionConfig()
+        docking = docking or DockingConfig()
+        body, lidar = self.robot.body, self.robot.lidar
+        self.simulator = Simulator(home, self.robot, seed=seed, start=start)
+        self.localizer = Localizer(
+            home.map, self.robot.localization, self.robot.gyro, body.radius, self.simulator.start
+        )
+        self.lidar = LidarModel.all_around(lidar.beams, lidar.min_range, lidar.max_range)
+        self._beams = self.lidar.arrays()
+        self.things = ThingLayer(self.localizer.field)
+        self.dirt = DirtMap(home.map)
+        self.site = Site(home.map, home.station, self.robot, self.config, docking, rooms, zones)
+        self.speed_loop = SpeedLoop(
+            body.command_timeout, self.simulator.max_speed, body.max_angular_speed
+        )
+        self._search = Search(body)
+        self._scans = 0
+        self.seen = self.simulator.observe()
+        self._localize()
+        self.mission = Mission(
+            self.site, self.robot, self.config, docking, self.things, self.dirt, self.senses()
+        )
+        frame = self.site.frame
+        self.truth = CoverageMap(frame, np.ones(frame.shape, np.bool_), self.site.tool_width)
+        self.rows: list[NDArray[np.float64]] = []
+        self._loop = ClosedLoop(self)
+
+    def clean(self, request: CleanRequest | None = None) -> CleanRecord:
+        """Clean to the end; raises CleanRefusedError."""
+        request = request or CleanRequest()
+        self.mission.clean(request, self.senses())
+        self.simulator.set_power(fan=request.fan.value)
+        return self.run()
+
+    def run(self) -> CleanRecord:
+        """Let time pass until the clean under way has a result."""
+        began, hits = self.seen.time, self.simulator.numbers["hits"]
+        distance, turning = self._driven()
+        while (result := self.mission.take_result()) is None:
+            if self.seen.time - began > _LONGEST_CLEAN:
+                raise RoombaError("a clean has no end; that is a fault of the program")
+            self.advance()
+        now_distance, now_turning = self._driven()
+        return CleanRecord(
+            result,
+            np.concatenate(self.rows) if self.rows else np.zeros((0, 4)),
+            self.truth,
+            int(self.simulator.numbers["hits"] - hits),
+            now_distance - distance,
+            now_turning - turning,
+        )
+
+    def advance(self) -> None:
+        """Let some ticks pass: many at once while nothing comes up, else one."""
+        if self._loop.may_run():
+            self._loop.run()
+        else:
+            self.tick()
+
+    def tick(self) -> None:
+        """Let one tick pass, by the ordinary classes."""
+        senses = self.senses()
+        step = self.mission.tick(senses)
+        command = self._command(senses, step.twist, step.looks_around)
+        for _ in range(STEPS_PER_TICK):
+            self.simulator.advance(command, STEP, 1)
+        self.seen = self.simulator.observe()
+        self._localize()
+        pose = self.seen.pose
+        self.truth.sweep(pose.x, pose.y)
+        self.rows.append(np.array([[self.seen.time, pose.x, pose.y, pose.theta]]))
+
+    def senses(self) -> Senses:
+        """Return what the robot senses now."""
+        seen, estimate = self.seen, self.localizer.estimate
+        infrared = seen.infrared
+        return Senses(
+            seen.time,
+            estimate.pose,
+            Twist(seen.odometry_twist.linear, seen.angular_velocity),
+            estimate.knowledge,
+            estimate.reason,
+            seen.bumper.left,
+            seen.bumper.right,
+            seen.cliff.left or seen.cliff.front_left,
+            seen.cliff.right or seen.cliff.front_right,
+            seen.wheels.dropped,
+            Beams(Infrared.HALO in infrared, Infrared.GREEN in infrared, Infrared.RED in infrared),
+            Battery(seen.battery.level, seen.battery.capacity, seen.battery.is_docked),
+            seen.grains,
+            seen.in_bin,
+        )
+
+    def _localize(self) -> None:
+        seen = self.seen
+        self.localizer.lift(seen.wheels.dropped_left and seen.wheels.dropped_right)
+        self.localizer.move(seen.time, seen.odometry, seen.angular_velocity)
+        if seen.scans != self._scans:
+            self._scans = seen.scans
+            ranges, estimate = self.simulator.ranges, self.localizer.estimate
+            self.localizer.see(seen.time, ranges, self.lidar)
+            if estimate.knowledge is Knowledge.KNOWN:
+                self.things.see(ranges, self._beams, self.localizer.estimate.pose)
+
+    def caught_up(self, scanned: float, way: float) -> None:
+        """Take over after the compiled loop: ``way`` m were driven, the last scan was at a time, s.
+
+        Without a scan that time is negative.
+        """
+        self.seen = seen = self.simulator.observe()
+        self._scans = seen.scans
+        self.localizer.resumed(seen.time, scanned, self.simulator.ranges, self.lidar)
+        self.mission.caught_up(self.senses(), way)
+
+    def _command(self, senses: Senses, twist: Twist, looks_around: bool) -> Twist:
+        loop = self.speed_loop
+        if looks_around:
+            touches = senses.is_disturbed
+            twist = self._search.tick(senses.now, self.localizer, touches) or twist
+        loop.set_bumper(senses.bumper_left or senses.bumper_right)
+        loop.set_cliff(self.seen.cliff.any)
+        loop.set_wheel_drop(senses.lifted)
+        loop.command(senses.now, twist)
+        return loop.tick(senses.now)[0]
+
+    def _driven(self) -> tuple[float, float]:
+        numbers = self.simulator.numbers
+        return numbers["distance"], numbers["turned"]
+
+    @property
+    def is_home(self) -> bool:
+        """Whether it stands on its station."""
+        return self.mission.state.phase is Phase.DOCKED

@@ -1,0 +1,132 @@
+"""What somebody asks to be cleaned, and what became of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from enum import Enum
+
+from roomba.errors import RoombaError
+
+
+class CleanRefusedError(RoombaError):
+    """A request that cannot be fulfilled; the message says what was expected, and came."""
+
+
+class CleanMode(Enum):
+    """What is to be cleaned."""
+
+    WHOLE = "whole"
+    """All floor that can be reached."""
+    ROOMS = "rooms"
+    """Rooms, by name."""
+    ZONES = "zones"
+    """Rectangles."""
+    SPOT = "spot"
+    """A square around a point."""
+    EDGES = "edges"
+    """Along walls and furniture only."""
+    DIRTIEST = "dirtiest"
+    """All rooms, those first that were the dirtiest."""
+
+
+class FanLevel(Enum):
+    """How strongly it sucks; the value is the fan's duty, 0..1."""
+
+    QUIET = 0.3
+    STANDARD = 0.6
+    STRONG = 1.0
+
+
+Rectangle = tuple[float, float, float, float]
+"""Lowest x, lowest y, highest x, highest y, m."""
+
+SPOT_SIZE = 1.5
+"""m; side of the square that SPOT cleans."""
+MOST_PASSES = 5
+
+
+@dataclass(frozen=True, slots=True)
+class CleanRequest:
+    """``rooms`` for ROOMS, in order if ``in_order``; ``zones`` for ZONES; ``spot`` for SPOT."""
+
+    mode: CleanMode = CleanMode.WHOLE
+    rooms: tuple[str, ...] = ()
+    zones: tuple[Rectangle, ...] = ()
+    spot: tuple[float, float] | None = None
+    passes: int = 1
+    fan: FanLevel = FanLevel.STANDARD
+    in_order: bool = False
+
+    def __post_init__(self) -> None:
+        """Check what can be checked without a map. Raises CleanRefusedError."""
+        if not 1 <= self.passes <= MOST_PASSES:
+            raise CleanRefusedError(f"expected 1 to {MOST_PASSES} passes, got {self.passes}")
+        if self.mode is CleanMode.ROOMS and not self.rooms:
+            raise CleanRefusedError("expected the names of rooms to clean, got none")
+        if self.mode is CleanMode.ZONES and not self.zones:
+            raise CleanRefusedError("expected zones to clean, got none")
+        for zone in self.zones:
+            if not (zone[0] < zone[2] and zone[1] < zone[3]):
+                raise CleanRefusedError(
+                    "expected zones as lowest x, lowest y, highest x, highest y, m, "
+                    f"got {', '.join(f'{value:g}' for value in zone)}"
+                )
+
+
+class CleanOutcome(Enum):
+    """How a clean ended."""
+
+    COMPLETED = "completed"
+    """All that could be reached is clean, and the robot is back on its station."""
+    STOPPED = "stopped"
+    """Somebody ended it."""
+    BATTERY = "battery"
+    """There was not enough energy to go on, and none to be had."""
+    STUCK = "stuck"
+    """It could not get free."""
+    LOST = "lost"
+    """It does not know where it is."""
+    NOT_DOCKED = "not docked"
+    """The floor is done, but it could not get onto its station."""
+    FAULT = "fault"
+    """Something else is wrong; the message says what."""
+
+
+class MissReason(Enum):
+    """Why floor was not cleaned."""
+
+    THING = "something stands there that the map does not show"
+    SHUT = "no way leads there: a door is shut, or something stands in the way"
+    STOPPED = "it was stopped before"
+    LEFT_OVER = "it was passed, but not all of it was met"
+
+
+@dataclass(frozen=True, slots=True)
+class Missed:
+    """Floor that was wanted and is not clean: ``area`` m2 around (x, y), m, and why."""
+
+    area: float
+    x: float
+    y: float
+    room: str
+    reason: MissReason
+
+
+@dataclass(frozen=True, slots=True)
+class CleanResult:
+    """What a clean achieved: areas in m2, dirt in g, m, s of robot time, Wh."""
+
+    outcome: CleanOutcome
+    message: str
+    wanted: float
+    covered: float
+    dirt: float
+    distance: float
+    duration: float
+    energy: float
+    missed: tuple[Missed, ...] = field(default=())
+
+    @property
+    def fraction(self) -> float:
+        """Share of the wanted floor that is clean, 0..1."""
+        return self.covered / self.wanted if self.wanted > 0.0 else 1.0

@@ -1,0 +1,219 @@
+"""The mission's state machine: what comes after what. No clock, no I/O, no robot.
+
+A state is a :class:`Phase`, the :class:`Errand` that it is for, and, while the robot is held up,
+the phase that comes again. :func:`next_state` is a table: an event that a phase does not know
+changes nothing, and a command among them is refused.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from enum import Enum
+from typing import Final
+
+
+class Phase(Enum):
+    """What the robot does now."""
+
+    IDLE = "idle"
+    """Stands somewhere and has nothing to do."""
+    DOCKED = "docked"
+    """Stands on its station and has nothing to do."""
+    UNDOCKING = "undocking"
+    CLEANING = "cleaning"
+    RETURNING = "returning"
+    """On its way to a place before its station."""
+    DOCKING = "docking"
+    """Into the station, by its beams."""
+    CHARGING = "charging"
+    """On its station, to go on with its errand afterwards."""
+    PAUSED = "paused"
+    """Stands until it is told to go on."""
+    ERROR = "error"
+    """Stands until somebody helped and tells it to go on."""
+    EMERGENCY = "emergency stop"
+    """Stands until the emergency stop is released."""
+
+
+class Errand(Enum):
+    """What it is on its way for."""
+
+    NONE = "none"
+    CLEAN = "clean"
+    HOME = "home"
+    """The floor is done; back to the station."""
+    DOCK = "dock"
+    UNDOCK = "undock"
+
+
+class Event(Enum):
+    """What happens: commands first, then what the robot itself finds."""
+
+    CLEAN = "clean"
+    DOCK = "dock"
+    UNDOCK = "undock"
+    PAUSE = "pause"
+    RESUME = "resume"
+    STOP = "stop"
+    EMERGENCY = "emergency stop"
+    RELEASE = "release the emergency stop"
+
+    OUT = "out of the station"
+    FINISHED = "the floor is done"
+    ARRIVED = "before the station"
+    CONTACT = "charging current"
+    CONTACT_LOST = "no charging current any more"
+    LOW = "the battery is just enough for the way home"
+    CHARGED = "charged enough to go on"
+    FAILED = "it cannot go on by itself"
+
+    @property
+    def is_command(self) -> bool:
+        """Whether somebody asks for it, and so is told when it is refused."""
+        return self in _COMMANDS
+
+
+_COMMANDS: Final = frozenset(
+    (
+        Event.CLEAN,
+        Event.DOCK,
+        Event.UNDOCK,
+        Event.PAUSE,
+        Event.RESUME,
+        Event.STOP,
+        Event.EMERGENCY,
+        Event.RELEASE,
+    )
+)
+
+
+@dataclass(frozen=True, slots=True)
+class MissionState:
+    """Where the mission is; ``resumes`` is the phase that comes after PAUSED or ERROR."""
+
+    phase: Phase = Phase.IDLE
+    errand: Errand = Errand.NONE
+    resumes: Phase | None = None
+
+    @property
+    def drives(self) -> bool:
+        """Whether the robot moves by itself."""
+        return self.phase in _DRIVING
+
+
+_DRIVING: Final = frozenset((Phase.UNDOCKING, Phase.CLEANING, Phase.RETURNING, Phase.DOCKING))
+_ON_STATION: Final = frozenset((Phase.DOCKED, Phase.CHARGING))
+_HELD: Final = frozenset((Phase.PAUSED, Phase.ERROR))
+
+
+def next_state(state: MissionState, event: Event) -> MissionState | None:
+    """Return the state after an event, or None when that event means nothing in this state."""
+    if event is Event.EMERGENCY:
+        return MissionState(Phase.EMERGENCY)
+    if state.phase is Phase.EMERGENCY:
+        return MissionState() if event is Event.RELEASE else None
+    if event.is_command:
+        return _commanded(state, event)
+    if state.drives:
+        return _driving(state, event)
+    return _standing(state, event)
+
+
+def _commanded(state: MissionState, event: Event) -> MissionState | None:
+    on_station = state.phase in _ON_STATION
+    if event is Event.CLEAN:
+        return MissionState(Phase.UNDOCKING, Errand.CLEAN)
+    if event is Event.DOCK:
+        if on_station:
+            return MissionState(Phase.DOCKED)
+        return MissionState(Phase.RETURNING, Errand.DOCK)
+    if event is Event.UNDOCK:
+        return MissionState(Phase.UNDOCKING, Errand.UNDOCK)
+    if event is Event.PAUSE:
+        if state.drives:
+            return replace(state, phase=Phase.PAUSED, resumes=_again(state.phase))
+        if state.phase is Phase.CHARGING:
+            return replace(state, phase=Phase.PAUSED, resumes=Phase.UNDOCKING)
+        return None
+    if event is Event.RESUME:
+        if state.phase in _HELD and state.resumes is not None:
+            return MissionState(state.resumes, state.errand)
+        return None
+    if event is Event.STOP:
+        return MissionState(Phase.DOCKED if on_station else Phase.IDLE)
+    return None
+
+
+def _driving(state: MissionState, event: Event) -> MissionState | None:
+    """Return what comes after an event while it drives."""
+    phase, errand = state.phase, state.errand
+    if event is Event.FAILED:
+        return replace(state, phase=Phase.ERROR, resumes=_again(phase))
+    if event is Event.OUT and phase is Phase.UNDOCKING:
+        return _after_undocking(errand)
+    if event is Event.FINISHED and phase is Phase.CLEANING:
+        return MissionState(Phase.RETURNING, Errand.HOME)
+    if event is Event.LOW and phase in (Phase.CLEANING, Phase.UNDOCKING):
+        return replace(state, phase=Phase.RETURNING)
+    if event is Event.ARRIVED and phase is Phase.RETURNING:
+        return replace(state, phase=Phase.DOCKING)
+    if event is Event.CONTACT and phase in (Phase.RETURNING, Phase.DOCKING):
+        return _after_docking(errand)
+    return None
+
+
+def _standing(state: MissionState, event: Event) -> MissionState | None:
+    """Return what comes after an event while it stands."""
+    phase = state.phase
+    if event is Event.CONTACT:
+        if phase is Phase.IDLE:
+            return MissionState(Phase.DOCKED)
+        if phase in _HELD:
+            # Somebody carried it home. With an errand it goes on from there when it is told to.
+            if state.errand is Errand.CLEAN:
+                return replace(state, phase=Phase.PAUSED, resumes=Phase.UNDOCKING)
+            return MissionState(Phase.DOCKED)
+    if event is Event.CONTACT_LOST:
+        if phase is Phase.DOCKED:
+            return MissionState(Phase.IDLE)
+        if phase is Phase.CHARGING:
+            return replace(state, phase=Phase.RETURNING)
+    if event is Event.CHARGED and phase is Phase.CHARGING:
+        return replace(state, phase=Phase.UNDOCKING)
+    if event is Event.FAILED and phase is Phase.CHARGING:
+        return replace(state, phase=Phase.ERROR, resumes=Phase.UNDOCKING)
+    return None
+
+
+def _again(phase: Phase) -> Phase:
+    """Return where to take up a phase that was broken off: the station is approached anew."""
+    return Phase.RETURNING if phase is Phase.DOCKING else phase
+
+
+def _after_undocking(errand: Errand) -> MissionState:
+    if errand is Errand.CLEAN:
+        return MissionState(Phase.CLEANING, errand)
+    if errand in (Errand.HOME, Errand.DOCK):
+        return MissionState(Phase.RETURNING, errand)
+    return MissionState(Phase.IDLE)
+
+
+def _after_docking(errand: Errand) -> MissionState:
+    if errand is Errand.CLEAN:
+        return MissionState(Phase.CHARGING, errand)
+    return MissionState(Phase.DOCKED)
+
+
+VACUUM_STATES: Final[dict[Phase, str]] = {
+    Phase.IDLE: "idle",
+    Phase.DOCKED: "docked",
+    Phase.UNDOCKING: "cleaning",
+    Phase.CLEANING: "cleaning",
+    Phase.RETURNING: "returning",
+    Phase.DOCKING: "returning",
+    Phase.CHARGING: "docked",
+    Phase.PAUSED: "paused",
+    Phase.ERROR: "error",
+    Phase.EMERGENCY: "error",
+}
+"""Each phase in the vocabulary that smart homes use."""

@@ -1,0 +1,69 @@
+"""What the map does not show and the robot found: felt by bumper and cliff sensors, or seen.
+
+Nothing of it changes the map: it is remembered for a while, and looked for again.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+from roomba.config import BodyConfig, WalkConfig
+from roomba.control.path_tracker import PathTracker
+from roomba.mission.senses import Senses
+from roomba.mission.unknown_things import UnknownThings
+from roomba.mission_config import DrivingConfig
+from roomba.perception.things import ThingLayer
+from roomba.planning.costmap import RoundObstacle
+
+_FOREVER: Final = math.inf
+
+
+class Obstacles:
+    """Round things in the way; ``version`` changes when there are others."""
+
+    def __init__(
+        self, seen: ThingLayer, walk: WalkConfig, body: BodyConfig, config: DrivingConfig
+    ) -> None:
+        """Begin with what ``seen`` holds, and nothing felt."""
+        self._seen = seen
+        self._felt = UnknownThings(walk, body, config.felt_memory)
+        # Stairs do not go away.
+        self._edges = UnknownThings(walk, body, _FOREVER)
+        self._felt_version = 0
+        self._keep = body.radius + 0.5 * config.thing_clearance
+
+    @property
+    def version(self) -> int:
+        """A number that is another one when something came or went."""
+        return self._seen.version + self._felt_version
+
+    def feel(self, senses: Senses) -> None:
+        """Remember what bumper or cliff sensors found where the robot stands."""
+        where = self._edges if senses.cliff else self._felt
+        where.felt(senses.now, senses.pose, *senses.touches)
+        self._felt_version += 1
+
+    def forget_felt_at(self, senses: Senses) -> None:
+        """Forget what was felt where the robot itself stands: it cannot be there."""
+        self._felt.forget_around(senses.pose.x, senses.pose.y)
+        self._felt_version += 1
+
+    def forget(self) -> None:
+        """Look at everything anew, but for edges."""
+        self._felt.forget()
+        self._seen.forget()
+        self._felt_version += 1
+
+    def standing(self, now: float) -> list[RoundObstacle]:
+        """Return all that is in the way now, m, map frame."""
+        return self._edges.at(now) + self._felt.at(now) + self._seen.obstacles()
+
+    def first_in_way(self, tracker: PathTracker, first: float, last: float) -> float | None:
+        """Return where on a path, m, something seen first comes too near, or None.
+
+        It is looked at from station ``first`` to ``last``, m.
+        """
+        return self._seen.first_blocked(
+            tracker.course.points, tracker.course.stations, first, last, self._keep
+        )

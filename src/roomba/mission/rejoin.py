@@ -1,0 +1,114 @@
+"""Finding the way around what stands on a path: where to leave it, and where to join it again."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.control.path_tracker import PathTracker
+from roomba.mission.senses import Senses
+from roomba.mission_config import DrivingConfig
+from roomba.planning.costmap import RoundObstacle
+from roomba.planning.path import NoPathError, NoPathReason, PathPlanner
+
+Floats = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+
+_STEP: Final = 0.05
+"""m; the rest of a path is looked at in such steps."""
+_FREE_RUN: Final = 3
+"""Steps that must be free one after the other to join there."""
+_MOST_TRIES: Final = 8
+"""Places to join that are tried before it is given up."""
+
+
+class Rejoin:
+    """Plans from where the robot is to what is left of a path; ``trouble`` says why it cannot."""
+
+    def __init__(self, planner: PathPlanner, body_radius: float, config: DrivingConfig) -> None:
+        """Take the planner, whose tight clearance must allow what paths keep from walls."""
+        self._planner = planner
+        self._keep = body_radius + config.thing_clearance
+        self.trouble = ""
+
+    def way(
+        self, senses: Senses, tracker: PathTracker, obstacles: Sequence[RoundObstacle]
+    ) -> Floats | None:
+        """Return the points, float64 [n, 2], m, from here on, or None if nothing can be reached."""
+        here = (senses.pose.x, senses.pose.y)
+        samples, stations = _samples(tracker)
+        try:
+            reachable = self._planner.reachable(here, obstacles)
+        except NoPathError as error:
+            self.trouble = error.reason.value
+            return None
+        free = self._free(samples, obstacles) & self._near_reachable(samples, reachable)
+        runs = _runs(free, _FREE_RUN)
+        self.trouble = NoPathReason.GOAL_UNREACHABLE.value
+        tried, index = 0, _first(runs, 0)
+        while index is not None and tried < _MOST_TRIES:
+            target = (float(samples[index, 0]), float(samples[index, 1]))
+            try:
+                path = self._planner.plan(here, target, obstacles)
+            except NoPathError as error:
+                self.trouble = error.reason.value
+                tried += 1
+                # Farther away each time, so that a place among many is found.
+                index = _first(runs, index + 4 * tried)
+                continue
+            return np.concatenate((path.points, _rest(tracker, float(stations[index]))))
+        return None
+
+    def _free(self, samples: Floats, obstacles: Sequence[RoundObstacle]) -> Bools:
+        """Return which points keep away from what the map does not show."""
+        free = np.ones(len(samples), np.bool_)
+        for x, y, radius in obstacles:
+            free &= np.hypot(samples[:, 0] - x, samples[:, 1] - y) >= radius + self._keep
+        return free
+
+    def _near_reachable(self, samples: Floats, reachable: Bools) -> Bools:
+        """Return which points have a cell next to them that can be reached."""
+        frame = self._planner.frame
+        rows = np.floor((samples[:, 1] - frame.origin_y) / frame.resolution).astype(np.int64)
+        columns = np.floor((samples[:, 0] - frame.origin_x) / frame.resolution).astype(np.int64)
+        near = np.zeros(len(samples), np.bool_)
+        for down in (-1, 0, 1):
+            for right in (-1, 0, 1):
+                row = np.clip(rows + down, 0, frame.rows - 1)
+                column = np.clip(columns + right, 0, frame.columns - 1)
+                near |= reachable[row, column]
+        return near
+
+
+def _samples(tracker: PathTracker) -> tuple[Floats, Floats]:
+    """Return points along what is left of a path, and how far along it they are, m."""
+    along, length = tracker.along, tracker.length
+    count = max(1, math.ceil((length - along) / _STEP))
+    stations = np.append(along + _STEP * np.arange(count), length)
+    stations = np.minimum(stations, length)
+    x = np.interp(stations, tracker.course.stations, tracker.course.points[:, 0])
+    y = np.interp(stations, tracker.course.stations, tracker.course.points[:, 1])
+    return np.column_stack((x, y)), stations
+
+
+def _runs(free: Bools, run: int) -> Bools:
+    """Return where ``run`` free ones follow each other, or all that are left to the end."""
+    padded = np.concatenate((free, np.ones(run - 1, np.bool_)))
+    together = padded[: len(free)].copy()
+    for offset in range(1, run):
+        together &= padded[offset : offset + len(free)]
+    return together
+
+
+def _first(mask: Bools, start: int) -> int | None:
+    found = np.flatnonzero(mask[start:])
+    return int(found[0]) + start if len(found) else None
+
+
+def _rest(tracker: PathTracker, station: float) -> Floats:
+    """Return the corners of a path beyond a station, and its end."""
+    return tracker.course.points[tracker.course.stations > station]

@@ -1,0 +1,84 @@
+"""The home as a mission plans in it: map, zones, rooms, station, and the planners over them."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.config import RobotConfig
+from roomba.geometry import Pose
+from roomba.grid import GridFrame, OccupancyMap
+from roomba.mission.docking import staging_pose
+from roomba.mission.docking_config import DockingConfig
+from roomba.mission_config import MissionConfig
+from roomba.perception.rooms import Rooms
+from roomba.perception.zones import Zones
+from roomba.planning.coverage import CoveragePlanner
+from roomba.planning.coverage_floor import CoverageFloor
+from roomba.planning.path import PathPlanner
+
+Mask = NDArray[np.bool_]
+
+_RIM: Final = 0.002
+"""m; no robot drives more exactly."""
+
+
+class Site:
+    """What does not change while nobody edits zones or rooms; an edit makes a new one."""
+
+    def __init__(
+        self,
+        occupancy: OccupancyMap,
+        station: Pose,
+        robot: RobotConfig,
+        mission: MissionConfig,
+        docking: DockingConfig,
+        rooms: Rooms | None = None,
+        zones: Zones | None = None,
+    ) -> None:
+        """Make the planners; ``station`` is where the docked robot stands, map frame."""
+        self.occupancy, self.station = occupancy, station
+        self.rooms, self.zones = rooms, zones or Zones()
+        self.known = self.zones.kept_out(occupancy)
+        self.staging = staging_pose(station, docking)
+        driving, radius = mission.driving, robot.body.radius
+        self.reach = radius + driving.clearance
+        self.tool_width = robot.brush.width
+        # The outermost millimetres that the tool can just reach are not asked for.
+        asked = self.tool_width - 2.0 * _RIM
+        self.floor = CoverageFloor.build(self.known, self.reach, asked)
+        # Swaths overlap a little, since no robot drives exactly on its path.
+        swath = self.tool_width - driving.overlap
+        self.coverage = CoveragePlanner(self.known, self.reach, swath)
+        # Paths may come as near to walls as swaths do, so that they can join them.
+        least = 0.5 * driving.clearance
+        self.paths = PathPlanner(self.known, radius, driving.way_clearance, least)
+
+    @property
+    def frame(self) -> GridFrame:
+        """The fine grid that coverage is counted on."""
+        return self.floor.frame
+
+    def coverable(self) -> Mask:
+        """Return the floor that can be cleaned from the station, bool over ``frame``."""
+        return self.floor.coverable((self.staging.x, self.staging.y))
+
+    def in_room(self, name: str) -> Mask:
+        """Return a room's cells over ``frame``; raises RoomsError for a name that is none."""
+        assert self.rooms is not None
+        label = self.rooms.label_of(name)
+        return self.fine(self.rooms.labels == label)
+
+    def fine(self, mask: Mask) -> Mask:
+        """Return a mask over the map's grid as one over ``frame``."""
+        factor = self.frame.rows // self.known.frame.rows
+        return np.repeat(np.repeat(mask, factor, axis=0), factor, axis=1)
+
+    def room_at(self, x: float, y: float) -> str:
+        """Return the name of the room at a point, or nothing."""
+        if self.rooms is None:
+            return ""
+        label = self.rooms.at(x, y)
+        return self.rooms.names[label - 1] if label else ""

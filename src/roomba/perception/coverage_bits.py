@@ -1,0 +1,10 @@
+"""What is noted of each cell of a coverage map, as bits."""
+
+from __future__ import annotations
+
+from typing import Final
+
+WANTED: Final = 1
+"""It shall be cleaned."""
+SWEPT: Final = 2
+"""The tool passed over it."""
