@@ -16,9 +16,9 @@ if TYPE_CHECKING:
 STEPS_PER_TICK: Final = 2
 STEP: Final = PERIOD / STEPS_PER_TICK
 """s; the world's steps between two ticks of the robot."""
-EVERY: Final = 3
-"""Each such scan corrects the pose: 0.3 s apart; every one would halve the error, at 0.5 mm."""
-_LONGEST_BURST: Final = 60
+EVERY: Final = 2
+"""Each such scan corrects the pose and is looked through for things: each 0.2 s."""
+LONGEST_BURST: Final = 60
 """Ticks: three seconds, then the mission looks at its battery and its progress."""
 _MOST_ASIDE: Final = 0.06
 """m; farther from its path than this the ordinary classes decide."""
@@ -27,7 +27,7 @@ _MOST_ASIDE: Final = 0.06
 class ClosedLoop:
     """Runs the robot's undisturbed ticks, all of them compiled, with the robot's own arrays."""
 
-    def __init__(self, robot: HeadlessMission) -> None:
+    def __init__(self, robot: HeadlessMission, longest_burst: int) -> None:
         """Take the robot, and the arrays of it that never change place."""
         self._robot = robot
         simulator, localizer = robot.simulator, robot.localizer
@@ -44,7 +44,7 @@ class ClosedLoop:
         row = self._loop[0]
         row.every, row.most_aside = EVERY, _MOST_ASIDE
         row.step, row.steps = STEP, STEPS_PER_TICK
-        self._rows = np.empty((_LONGEST_BURST, 4))
+        self._rows = np.empty((longest_burst, 4))
 
     def may_run(self) -> bool:
         """Whether the next ticks are undisturbed, as far as can be told."""

@@ -229,7 +229,7 @@ class TrackingConfig(Frozen):
 
     sharp_corner: Annotated[float, Field(gt=0.0, lt=math.pi / 2)] = 0.35
     off_corner: Positive = 0.0015
-    braking: Positive = 0.8
+    braking: Positive = 1.2
     reach: Positive = 0.12
     heading_gain: Positive = 5.0
     turning_speed: Positive = 2.5

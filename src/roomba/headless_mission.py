@@ -12,7 +12,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.closed_loop import STEP, STEPS_PER_TICK, ClosedLoop
+from roomba.closed_loop import LONGEST_BURST, STEP, STEPS_PER_TICK, ClosedLoop
 from roomba.config import RobotConfig
 from roomba.control.speed_loop import SpeedLoop
 from roomba.errors import RoombaError
@@ -46,7 +46,7 @@ class CleanRecord:
     """What happened on a clean.
 
     ``poses`` has rows of t (s), x, y (m), theta (rad), true ones, map frame; ``truth`` is the floor
-    that the tool really passed over; ``planning`` the time that the first plan took, s of a clock.
+    that the tool really passed over; ``planning`` what all ``plans`` took, s of a wall clock.
     """
 
     result: CleanResult
@@ -55,6 +55,8 @@ class CleanRecord:
     hits: int
     distance: float
     turning: float
+    planning: float
+    plans: int
 
 
 class HeadlessMission:
@@ -71,8 +73,12 @@ class HeadlessMission:
         rooms: Rooms | None = None,
         zones: Zones | None = None,
         start: Pose | None = None,
+        longest_burst: int = LONGEST_BURST,
     ) -> None:
-        """Put the robot on its station, or at ``start``."""
+        """Put the robot on its station, or at ``start``.
+
+        ``longest_burst`` is how many ticks pass at once at most, while nothing comes up.
+        """
         self.robot = robot or RobotConfig()
         self.config = mission or MissionConfig()
         docking = docking or DockingConfig()
@@ -99,7 +105,7 @@ class HeadlessMission:
         frame = self.site.frame
         self.truth = CoverageMap(frame, np.ones(frame.shape, np.bool_), self.site.tool_width)
         self.rows: list[NDArray[np.float64]] = []
-        self._loop = ClosedLoop(self)
+        self._loop = ClosedLoop(self, longest_burst)
 
     def clean(self, request: CleanRequest | None = None) -> CleanRecord:
         """Clean to the end; raises CleanRefusedError."""
@@ -124,6 +130,8 @@ class HeadlessMission:
             int(self.simulator.numbers["hits"] - hits),
             now_distance - distance,
             now_turning - turning,
+            self.site.planning_time,
+            self.site.plans,
         )
 
     def advance(self) -> None:

@@ -17,8 +17,8 @@ class DrivingConfig(Frozen):
     clearance: Positive = 0.005
     overlap: Positive = 0.004
     way_clearance: Positive = 0.04
-    look_ahead: Positive = 0.35
-    thing_clearance: Positive = 0.02
+    look_ahead: Positive = 0.15
+    thing_clearance: Positive = 0.004
     off_path: Positive = 0.12
     backing_way: Positive = 0.08
     backing_speed: Positive = 0.10
@@ -33,7 +33,7 @@ class CleaningConfig(Frozen):
     enough: Ratio = 0.9975
     least_patch: Positive = 0.004
     most_rounds: Annotated[int, Field(ge=0)] = 4
-    dirty_times: Positive = 4.0
+    dirty_times: Positive = 6.0
 
 
 class EnergyConfig(Frozen):

@@ -48,9 +48,9 @@ class PathTracker:
         return bool(self.state[0].done > 0.0)
 
     @property
-    def is_turning(self) -> bool:
-        """Whether it turns on the spot."""
-        return bool(self.state[0].turning > 0.0)
+    def leg(self) -> int:
+        """The leg that it is on, from 0."""
+        return int(self.state[0].leg)
 
     @property
     def length(self) -> float:

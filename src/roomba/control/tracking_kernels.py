@@ -107,7 +107,7 @@ def turn_speed(state: Row, error: float) -> float:
     size = abs(error)
     speed = min(state.turning_speed, math.sqrt(2.0 * state.turning_braking * size))
     # What is left at the end takes a few ticks more: the drive is a tick or two late.
-    speed = max(min(speed, size / (2.5 * state.period)), 4.0 * _SLOWEST)
+    speed = max(min(speed, size / (1.7 * state.period)), 4.0 * _SLOWEST)
     return math.copysign(min(speed, size / state.period), error)
 
 
@@ -133,7 +133,7 @@ def drive(
 def corner_limit(state: Row, course: Course, left: float, limit: float) -> float:
     """Return the fastest speed from which all that comes can be braked for, m/s."""
     last = course.headings.size - 1
-    speed = limit
+    speed: float = limit
     horizon = limit * limit / (2.0 * state.braking) + 2.0 * limit * state.period
     leg, ahead = state.leg, left
     if state.leg > 0 and state.along < course.halves[leg]:
@@ -145,7 +145,7 @@ def corner_limit(state: Row, course: Course, left: float, limit: float) -> float
         way = max(ahead - course.halves[leg + 1] - speed * state.period, 0.0)
         if through == 0.0:
             stop = math.sqrt(2.0 * state.braking * way)
-            return max(min(speed, stop, max(ahead, 0.0) / (2.0 * state.period)), _SLOWEST)
+            return max(min(speed, stop, max(ahead, 0.0) / (1.6 * state.period)), _SLOWEST)
         speed = min(speed, math.sqrt(through * through + 2.0 * state.braking * way))
         leg += 1
         if leg > last:

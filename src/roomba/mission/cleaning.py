@@ -28,14 +28,18 @@ from roomba.mission_config import CleaningConfig
 from roomba.perception.coverage_bits import SWEPT, WANTED
 from roomba.perception.coverage_map import CoverageMap, Patch, patches_of
 from roomba.perception.dirt_map import DirtMap
-from roomba.planning.costmap import RoundObstacle
+from roomba.planning.costmap import Point, RoundObstacle
 from roomba.planning.path import NoPathError
 
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
+_MOSTLY: Final = 0.8
+"""Share of a patch that is near to things: it is missed for what stands there."""
 _LITTLE_GAIN: Final = 0.05
 """Share of what was missed; a round that gains less of it than this was for nothing."""
+_WORTH_A_LOOK: Final = 0.5
+"""m2; so much floor out of reach is looked for again, as behind a door: less is below a chair."""
 _WORTH_A_ROUND: Final = 0.02
 """m2; one patch as large as this is worth another round, though enough is clean."""
 
@@ -115,7 +119,11 @@ class Cleaning:
 
     def cut_off(self) -> None:
         """Tell that no way led to some of what was planned."""
-        self._unreachable = True
+        self._unreachable, self._last_missed = True, np.inf
+
+    def interrupted(self) -> None:
+        """Tell that the last path was not driven to its end: it says nothing of what is left."""
+        self._rounds, self._last_missed = 0, np.inf
 
     def use_site(self, site: Site) -> None:
         """Go on with other zones or rooms; what is swept stays so."""
@@ -162,9 +170,8 @@ class Cleaning:
         the end."""
         left = self.coverage.wanted & ~self.clean
         patches = patches_of(left, self.coverage.frame, self._config.least_patch)
-        reachable = self._site.floor.with_obstacles(obstacles).coverable(
-            (self._site.staging.x, self._site.staging.y)
-        )
+        staging = (self._site.staging.x, self._site.staging.y)
+        reachable = self._reachable(staging, obstacles)
         return tuple(
             Missed(
                 patch.area,
@@ -179,14 +186,16 @@ class Cleaning:
     def _reason(
         self, patch: Patch, obstacles: list[RoundObstacle], reachable: Mask, is_over: bool
     ) -> MissReason:
-        if not reachable[patch.cells].any():
+        if np.count_nonzero(reachable[patch.cells]) < 0.5 * np.count_nonzero(patch.cells):
             rows, columns = np.nonzero(patch.cells)
             frame = self.coverage.frame
             x = frame.origin_x + (columns + 0.5) * frame.resolution
             y = frame.origin_y + (rows + 0.5) * frame.resolution
-            near = self._site.reach + self._site.tool_width
-            stands = [bool((np.hypot(x - o[0], y - o[1]) < near + o[2]).all()) for o in obstacles]
-            return MissReason.THING if any(stands) else MissReason.SHUT
+            near = self._site.reach + 2.0 * self._site.tool_width
+            is_near = np.zeros(len(x), np.bool_)
+            for thing_x, thing_y, radius in obstacles:
+                is_near |= np.hypot(x - thing_x, y - thing_y) < near + radius
+            return MissReason.THING if is_near.mean() > _MOSTLY else MissReason.SHUT
         return MissReason.LEFT_OVER if is_over else MissReason.STOPPED
 
     def _next_round(
@@ -196,7 +205,7 @@ class Cleaning:
         todo = stage.floor & self.coverage.missed
         missed = float(np.count_nonzero(todo)) * self.coverage.cell_area
         if self._rounds > 0:
-            todo = self._worth_it(stage, todo)
+            todo = self._worth_it(stage, todo, here, obstacles)
             gained = self._last_missed - missed
             if self._rounds > self._config.most_rounds or gained < _LITTLE_GAIN * self._last_missed:
                 todo[:] = False
@@ -206,11 +215,9 @@ class Cleaning:
             return None
         self._rounds += 1
         self._last_missed = missed
-        staging = (self._site.staging.x, self._site.staging.y)
         try:
-            plan = self._site.coverage.plan(
+            plan = self._site.plan_coverage(
                 (here.x, here.y),
-                staging,
                 todo,
                 obstacles,
                 edges_only=self.request.mode is CleanMode.EDGES,
@@ -220,15 +227,32 @@ class Cleaning:
             return None
         return plan.points if plan.length > 0.0 and len(plan.points) > 2 else None
 
-    def _worth_it(self, stage: Stage, todo: Mask) -> Mask:
-        """Return the patches that are worth another round, of what a stage missed."""
-        wanted = max(int(np.count_nonzero(stage.floor)), 1)
+    def _worth_it(
+        self, stage: Stage, todo: Mask, here: Pose, obstacles: list[RoundObstacle]
+    ) -> Mask:
+        """Return the patches that are worth another round, of what a stage missed.
+
+        Behind and below what stands in the way nothing can be done now.
+        """
+        reachable = self._reachable((here.x, here.y), obstacles)
+        self._note_out_of_reach(todo & ~reachable)
+        todo &= reachable
+        wanted = max(int(np.count_nonzero(stage.floor & reachable)), 1)
         share = 1.0 - np.count_nonzero(todo) / wanted
         least = _WORTH_A_ROUND if share >= self._config.enough else self._config.least_patch
         worth = np.zeros_like(todo)
         for patch in patches_of(todo, self.coverage.frame, least):
             worth |= patch.cells
         return worth
+
+    def _note_out_of_reach(self, floor: Mask) -> None:
+        """Floor that somebody may open later is looked for again before the end."""
+        if patches_of(floor, self.coverage.frame, _WORTH_A_LOOK):
+            self._unreachable = True
+
+    def _reachable(self, here: Point, obstacles: list[RoundObstacle]) -> Mask:
+        """Return what can be cleaned from a place among what the map does not show."""
+        return self._site.floor.with_obstacles(obstacles).coverable(here)
 
     def _dirty_again(self, stage: Stage) -> Mask:
         """Return what was so dirty that it gets another pass, once a stage."""

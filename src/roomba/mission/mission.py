@@ -7,10 +7,12 @@ with the twist it wants. :mod:`.machine` says what comes after what; :mod:`.clea
 
 from __future__ import annotations
 
+import contextlib
 from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from roomba.config import RobotConfig
 from roomba.errors import RoombaError
@@ -32,15 +34,19 @@ from roomba.mission.path_driver import DriveState, PathDriver
 from roomba.mission.rejoin import Rejoin
 from roomba.mission.senses import Senses
 from roomba.mission.site import Site
+from roomba.mission.trail import Trail
 from roomba.mission.undocking import Undocking, UndockState
 from roomba.mission_config import MissionConfig
 from roomba.perception.dirt_map import DirtMap
 from roomba.perception.estimate import Knowledge
 from roomba.perception.things import ThingLayer
+from roomba.planning.costmap import Point, RoundObstacle
 from roomba.planning.path import NoPathError
 
 _LONGEST_TICK: Final = 2.0
 """s; more between two ticks than this is a clock that was set."""
+_MOST_WAYS_HOME: Final = 5
+"""So often it looks for a way home before it says that there is none."""
 _NEAR_STAGING: Final = 0.08
 """m; so near to the place before the station docking takes over."""
 
@@ -78,8 +84,9 @@ class Mission:
         self.message = ""
         self.cleaning: Cleaning | None = None
         self.book = EnergyBook(config.energy, senses)
-        self._rejoin = Rejoin(site.paths, robot.body.radius, config.driving)
+        self._rejoin = Rejoin(site, robot.body.radius, config.driving)
         self.driver: PathDriver | None = None
+        self.trail = Trail()
         self._docking: Docking | None = None
         self._undocking: Undocking | None = None
         self._outcome: CleanOutcome | None = None
@@ -132,8 +139,8 @@ class Mission:
     def use_site(self, site: Site) -> None:
         """Go on with other zones or rooms, from the next tick on."""
         self.site = site
-        self._rejoin = Rejoin(site.paths, self._robot.body.radius, self._config.driving)
-        self.driver = None
+        self._rejoin = Rejoin(site, self._robot.body.radius, self._config.driving)
+        self._drop_driver()
         if self.cleaning is not None:
             self.cleaning.use_site(site)
 
@@ -217,6 +224,9 @@ class Mission:
 
     def caught_up(self, senses: Senses, way: float) -> None:
         """Go on after ticks that were the tracker's alone: ``way`` m were driven in them."""
+        if self.driver is not None:
+            along = self.driver.tracker.along
+            self.trail.follow(self.driver.tracker, along - way, along)
         self.book.note(senses, way)
         self._last = senses
 
@@ -286,7 +296,9 @@ class Mission:
     def _notice_astray(self, senses: Senses) -> None:
         if senses.knowledge.is_usable:
             if self._astray_since is not None:
-                self._astray_since, self.driver = None, None
+                self._astray_since = None
+                self.trail.forget()
+                self._drop_driver()
             return
         if self._astray_since is None or senses.now < self._astray_since:
             self._astray_since = senses.now
@@ -347,6 +359,7 @@ class Mission:
         elif step.state.is_over:
             if step.state is DriveState.CUT_OFF:
                 self.cleaning.cut_off()
+                self.obstacles.forget_felt()
             self.driver = None
         return MissionStep(step.twist)
 
@@ -359,14 +372,12 @@ class Mission:
             self._go(Event.ARRIVED, senses)
             return MissionStep()
         if self.driver is None:
-            obstacles = self.obstacles.standing(senses.now)
-            here = (senses.pose.x, senses.pose.y)
             try:
-                path = self.site.paths.plan(here, (staging.x, staging.y), obstacles)
+                points = self._plan_home(senses)
             except NoPathError as error:
                 self._try_home_again(f"no way home: {error}", senses)
                 return MissionStep()
-            self.driver = self._drive(path.points, senses)
+            self.driver = self._drive(points, senses)
         step = self.driver.tick(senses, self.speed_limit(senses))
         if step.state is DriveState.STUCK:
             self._fail(CleanOutcome.STUCK, step.reason, senses)
@@ -377,10 +388,34 @@ class Mission:
             self._go(Event.ARRIVED, senses)
         return MissionStep(step.twist)
 
+    def _plan_home(self, senses: Senses) -> NDArray[np.float64]:
+        """Plan to the place before the station, if need be closely by what stands in the way."""
+        here = (senses.pose.x, senses.pose.y)
+        staging = (self.site.staging.x, self.site.staging.y)
+        try:
+            standing = self.obstacles.standing(senses.now)
+            return self.site.paths.plan(here, staging, standing).points
+        except NoPathError as error:
+            at_least = self.obstacles.at_least(senses.now)
+            with contextlib.suppress(NoPathError):
+                return self.site.squeeze(here, staging, at_least)
+            points, _ = self.trail.back_and_on(lambda place: self._way_to(place, staging, at_least))
+            if points is None:
+                raise error
+            return points
+
+    def _way_to(
+        self, here: Point, there: Point, obstacles: list[RoundObstacle]
+    ) -> NDArray[np.float64] | None:
+        try:
+            return self.site.paths.plan(here, there, obstacles).points
+        except NoPathError:
+            return None
+
     def _try_home_again(self, reason: str, senses: Senses) -> None:
         """Once more without what was remembered; then it says that there is no way."""
         self._dock_retries += 1
-        if self._dock_retries > 2:
+        if self._dock_retries > _MOST_WAYS_HOME:
             self._fail(CleanOutcome.NOT_DOCKED, reason, senses)
             return
         self.obstacles.forget()
@@ -410,7 +445,8 @@ class Mission:
         if after is None or after == self.state:
             return
         before, self.state = self.state, after
-        self.driver = self._docking = self._undocking = None
+        self._drop_driver()
+        self._docking = self._undocking = None
         if event is not Event.FAILED:
             self.message = ""
         if event is Event.FINISHED:
@@ -419,6 +455,12 @@ class Mission:
             self._dock_retries = 0
             if before.errand in (Errand.HOME, Errand.CLEAN):
                 self._end_clean(self._outcome or CleanOutcome.STOPPED, "", senses)
+
+    def _drop_driver(self) -> None:
+        """Drive there no more; what was not driven of a round is planned again."""
+        if self.driver is not None and self.cleaning is not None:
+            self.cleaning.interrupted()
+        self.driver = None
 
     def _fail(self, outcome: CleanOutcome, reason: str, senses: Senses) -> None:
         self._go(Event.FAILED, senses)
@@ -451,11 +493,12 @@ class Mission:
 
     # ---------------------------------------------------------------- parts
 
-    def _drive(self, points: object, senses: Senses) -> PathDriver:
+    def _drive(self, points: NDArray[np.float64], senses: Senses) -> PathDriver:
         return PathDriver(
-            np.asarray(points, np.float64),
+            points,
             self._rejoin,
             self.obstacles,
+            self.trail,
             self._config.driving,
             self._robot.tracking,
             self._robot.body,

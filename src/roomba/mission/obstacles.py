@@ -17,6 +17,8 @@ from roomba.perception.things import ThingLayer
 from roomba.planning.costmap import RoundObstacle
 
 _FOREVER: Final = math.inf
+_LEAST: Final = 0.01
+"""m; the thinnest thing that stands."""
 
 
 class Obstacles:
@@ -49,6 +51,11 @@ class Obstacles:
         self._felt.forget_around(senses.pose.x, senses.pose.y)
         self._felt_version += 1
 
+    def forget_felt(self) -> None:
+        """Forget what was felt: where exactly it stood was a guess, which may shut the robot in."""
+        self._felt.forget()
+        self._felt_version += 1
+
     def forget(self) -> None:
         """Look at everything anew, but for edges."""
         self._felt.forget()
@@ -58,6 +65,11 @@ class Obstacles:
     def standing(self, now: float) -> list[RoundObstacle]:
         """Return all that is in the way now, m, map frame."""
         return self._edges.at(now) + self._felt.at(now) + self._seen.obstacles()
+
+    def at_least(self, now: float) -> list[RoundObstacle]:
+        """Return the same, as small as it may be: where the bumper felt something is a guess."""
+        felt = [(x, y, _LEAST) for x, y, _ in self._felt.at(now)]
+        return self._edges.at(now) + felt + [(x, y, _LEAST) for x, y, _ in self._seen.obstacles()]
 
     def first_in_way(self, tracker: PathTracker, first: float, last: float) -> float | None:
         """Return where on a path, m, something seen first comes too near, or None.

@@ -20,6 +20,7 @@ from roomba.geometry import STANDSTILL, Twist
 from roomba.mission.obstacles import Obstacles
 from roomba.mission.rejoin import Rejoin
 from roomba.mission.senses import Senses
+from roomba.mission.trail import Trail
 from roomba.mission.wriggle import Wriggle
 from roomba.mission_config import DrivingConfig
 
@@ -27,13 +28,15 @@ PERIOD: Final = 0.05
 """s; between two ticks."""
 _PROGRESS: Final = 0.02
 """m; less than this along the path is no progress."""
-_TURNED: Final = 0.1
-"""rad; less than this of turning is none."""
 _LONGEST_TICK: Final = 2.0
 """s; more between two ticks than this is a clock that was set."""
 _HORIZON: Final = 2.0
 """m; so far ahead its path is looked at for what stands in the way."""
 _NEVER: Final = -1
+_LEAVING: Final = 0.25
+"""m; on so much of a new way it may still be near to what it goes around."""
+_MOST_FUTILE: Final = 3
+"""New ways from one place; then it tries to get free in other ways."""
 _LEAVES_TROUBLE: Final = 0.5
 """m of progress after which earlier recoveries count no more."""
 
@@ -82,13 +85,14 @@ class PathDriver:
         points: NDArray[np.float64],
         rejoin: Rejoin,
         obstacles: Obstacles,
+        trail: Trail,
         config: DrivingConfig,
         tracking: TrackingConfig,
         body: BodyConfig,
         senses: Senses,
     ) -> None:
         """Begin; the path may begin anywhere: the robot goes to its start first."""
-        self._rejoin, self._obstacles = rejoin, obstacles
+        self._rejoin, self._obstacles, self._trail = rejoin, obstacles, trail
         self._config, self._tracking, self._body = config, tracking, body
         self._state = DriveState.DRIVING
         self._reason = ""
@@ -99,8 +103,9 @@ class PathDriver:
         self._recoveries = 0
         self._checked = _NEVER
         self.clear_to = 0.0
-        self._mark_progress(senses, 0.0)
-        self._freed_at = 0.0
+        self._mark_progress(senses, 0.0, 0)
+        self._freed_at = self._leaves_until = 0.0
+        self._planned_at, self._futile = (math.inf, math.inf), 0
         self.tracker = self._track(points)
         if self.tracker.off_path(senses.pose) > _PROGRESS:
             self._go_around(senses)
@@ -123,6 +128,7 @@ class PathDriver:
     def tick(self, senses: Senses, limit: float) -> DriveStep:
         """Return what is wanted now; ``limit`` is the speed wanted, m/s."""
         self._follow_clock(senses.now)
+        self._trail.add(senses.pose.x, senses.pose.y)
         if self._state.is_over:
             return DriveStep(self._state, STANDSTILL, self._reason)
         self._notice_touch(senses)
@@ -187,32 +193,40 @@ class PathDriver:
         along = self.tracker.along
         if self._checked != self._obstacles.version or along >= self.clear_to:
             self._checked = self._obstacles.version
-            blocked = self._obstacles.first_in_way(self.tracker, along, along + _HORIZON)
+            # What it has just planned to leave is not in its way.
+            first = max(along, self._leaves_until)
+            blocked = self._obstacles.first_in_way(self.tracker, first, along + _HORIZON)
             self.clear_to = (blocked or along + _HORIZON) - self._config.look_ahead
         return along >= self.clear_to
 
     def _go_around(self, senses: Senses) -> None:
         """Plan to the next piece of the path that can be reached; a bump may have shortened it."""
-        points = self._rejoin.way(senses, self.tracker, self._obstacles.standing(senses.now))
+        x, y = self._planned_at
+        moved = senses.pose.distance_to(x, y)
+        self._futile = self._futile + 1 if moved < _PROGRESS else 0
+        self._planned_at = senses.pose.x, senses.pose.y
+        if self._futile > _MOST_FUTILE:
+            self._futile = 0
+            self._begin_recovery(senses)
+            return
+        points, back = self._rejoin.way(senses, self.tracker, self._obstacles, self._trail)
         if points is None:
             self._state = DriveState.CUT_OFF
             self._reason = f"no way leads on from {senses.where}: {self._rejoin.trouble}"
             return
         self.tracker = self._track(points)
-        self._mark_progress(senses, 0.0)
-        self._checked = _NEVER
+        self._mark_progress(senses, 0.0, 0)
+        self._checked, self.clear_to = _NEVER, 0.0
         self._freed_at = 0.0
+        self._leaves_until = back + _LEAVING
 
-    def _mark_progress(self, senses: Senses, along: float) -> None:
-        self._progressed, self._progress_along = senses.now, along
-        self._progress_heading = senses.pose.theta
+    def _mark_progress(self, senses: Senses, along: float, leg: int) -> None:
+        self._progressed, self._progress_along, self._progress_leg = senses.now, along, leg
 
     def _comes_no_farther(self, senses: Senses) -> bool:
-        along = self.tracker.along
-        turned = abs(math.remainder(senses.pose.theta - self._progress_heading, math.tau))
-        is_turning = self.tracker.is_turning and turned > _TURNED
-        if along > self._progress_along + _PROGRESS or is_turning:
-            self._mark_progress(senses, max(along, self._progress_along))
+        along, leg = self.tracker.along, self.tracker.leg
+        if along > self._progress_along + _PROGRESS or leg > self._progress_leg:
+            self._mark_progress(senses, max(along, self._progress_along), leg)
             if along > self._freed_at + _LEAVES_TROUBLE:
                 self._recoveries = 0
         return senses.now - self._progressed > self._config.progress_timeout

@@ -10,16 +10,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.control.path_tracker import PathTracker
+from roomba.mission.obstacles import Obstacles
 from roomba.mission.senses import Senses
+from roomba.mission.site import Site
+from roomba.mission.trail import Trail
 from roomba.mission_config import DrivingConfig
-from roomba.planning.costmap import RoundObstacle
-from roomba.planning.path import NoPathError, NoPathReason, PathPlanner
+from roomba.planning.costmap import Point, RoundObstacle
+from roomba.planning.path import NoPathError, NoPathReason
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
 _STEP: Final = 0.05
 """m; the rest of a path is looked at in such steps."""
+_STRETCH: Final = 12
+"""Steps ahead in which something stands that makes it leave the path."""
 _FREE_RUN: Final = 3
 """Steps that must be free one after the other to join there."""
 _MOST_TRIES: Final = 8
@@ -29,31 +34,50 @@ _MOST_TRIES: Final = 8
 class Rejoin:
     """Plans from where the robot is to what is left of a path; ``trouble`` says why it cannot."""
 
-    def __init__(self, planner: PathPlanner, body_radius: float, config: DrivingConfig) -> None:
-        """Take the planner, whose tight clearance must allow what paths keep from walls."""
-        self._planner = planner
-        self._keep = body_radius + config.thing_clearance
+    def __init__(self, site: Site, body_radius: float, config: DrivingConfig) -> None:
+        """Take the site's planners, which must allow what paths keep from walls."""
+        self._site, self._planner = site, site.paths
+        self._body_radius, self._away = body_radius, config.thing_clearance
         self.trouble = ""
 
     def way(
-        self, senses: Senses, tracker: PathTracker, obstacles: Sequence[RoundObstacle]
-    ) -> Floats | None:
-        """Return the points, float64 [n, 2], m, from here on, or None if nothing can be reached."""
+        self, senses: Senses, tracker: PathTracker, obstacles: Obstacles, trail: Trail
+    ) -> tuple[Floats | None, float]:
+        """Return the points, float64 [n, 2], m, from here on, or None if nothing can be reached.
+
+        Also for how many m that is a way back. It may have come in by a gap that looks too narrow
+        now: then it squeezes through, or drives back as it came.
+        """
         here = (senses.pose.x, senses.pose.y)
+        standing, at_least = obstacles.standing(senses.now), obstacles.at_least(senses.now)
+        for things in (standing, at_least):
+            points = self._around(here, tracker, things)
+            if points is not None:
+                return points, 0.0
+        points = self._squeezed(senses, tracker, at_least)
+        if points is not None:
+            return points, 0.0
+        return trail.back_and_on(lambda place: self._around(place, tracker, at_least))
+
+    def _around(
+        self, here: Point, tracker: PathTracker, obstacles: Sequence[RoundObstacle]
+    ) -> Floats | None:
+        """Plan around round things, kept away from a little."""
         samples, stations = _samples(tracker)
+        kept_away = [(x, y, radius + self._away) for x, y, radius in obstacles]
         try:
-            reachable = self._planner.reachable(here, obstacles)
+            reachable = self._planner.reachable(here, kept_away)
         except NoPathError as error:
             self.trouble = error.reason.value
             return None
-        free = self._free(samples, obstacles) & self._near_reachable(samples, reachable)
+        free = self._free(samples, kept_away) & self._near_reachable(samples, reachable)
         runs = _runs(free, _FREE_RUN)
         self.trouble = NoPathReason.GOAL_UNREACHABLE.value
-        tried, index = 0, _first(runs, 0)
+        tried, index = 0, _first(runs, _behind(free))
         while index is not None and tried < _MOST_TRIES:
             target = (float(samples[index, 0]), float(samples[index, 1]))
             try:
-                path = self._planner.plan(here, target, obstacles)
+                path = self._planner.plan(here, target, kept_away)
             except NoPathError as error:
                 self.trouble = error.reason.value
                 tried += 1
@@ -63,11 +87,28 @@ class Rejoin:
             return np.concatenate((path.points, _rest(tracker, float(stations[index]))))
         return None
 
+    def _squeezed(
+        self, senses: Senses, tracker: PathTracker, obstacles: Sequence[RoundObstacle]
+    ) -> Floats | None:
+        """Plan on the fine grid to the next free place behind, or to the end."""
+        samples, stations = _samples(tracker)
+        free = self._free(samples, obstacles)
+        index = _first(_runs(free, _FREE_RUN), _behind(free))
+        for number in {len(samples) - 1 if index is None else index: 0, len(samples) - 1: 0}:
+            target = (float(samples[number, 0]), float(samples[number, 1]))
+            try:
+                points = self._site.squeeze((senses.pose.x, senses.pose.y), target, obstacles)
+            except NoPathError as error:
+                self.trouble = error.reason.value
+                continue
+            return np.concatenate((points, _rest(tracker, float(stations[number]))))
+        return None
+
     def _free(self, samples: Floats, obstacles: Sequence[RoundObstacle]) -> Bools:
         """Return which points keep away from what the map does not show."""
         free = np.ones(len(samples), np.bool_)
         for x, y, radius in obstacles:
-            free &= np.hypot(samples[:, 0] - x, samples[:, 1] - y) >= radius + self._keep
+            free &= np.hypot(samples[:, 0] - x, samples[:, 1] - y) >= radius + self._body_radius
         return free
 
     def _near_reachable(self, samples: Floats, reachable: Bools) -> Bools:
@@ -93,6 +134,12 @@ def _samples(tracker: PathTracker) -> tuple[Floats, Floats]:
     x = np.interp(stations, tracker.course.stations, tracker.course.points[:, 0])
     y = np.interp(stations, tracker.course.stations, tracker.course.points[:, 1])
     return np.column_stack((x, y)), stations
+
+
+def _behind(free: Bools) -> int:
+    """Return from where on to join: behind what stands on the first stretch of a path, if it is."""
+    blocked = np.flatnonzero(~free[:_STRETCH])
+    return int(blocked[0]) if len(blocked) else 0
 
 
 def _runs(free: Bools, run: int) -> Bools:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import time
+from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
@@ -15,8 +17,10 @@ from roomba.mission.docking_config import DockingConfig
 from roomba.mission_config import MissionConfig
 from roomba.perception.rooms import Rooms
 from roomba.perception.zones import Zones
+from roomba.planning.costmap import Point, RoundObstacle
 from roomba.planning.coverage import CoveragePlanner
 from roomba.planning.coverage_floor import CoverageFloor
+from roomba.planning.coverage_plan import CoveragePlan
 from roomba.planning.path import PathPlanner
 
 Mask = NDArray[np.bool_]
@@ -54,7 +58,33 @@ class Site:
         self.coverage = CoveragePlanner(self.known, self.reach, swath)
         # Paths may come as near to walls as swaths do, so that they can join them.
         least = 0.5 * driving.clearance
+        self.plans, self.planning_time = 0, 0.0
         self.paths = PathPlanner(self.known, radius, driving.way_clearance, least)
+
+    def plan_coverage(
+        self, here: Point, todo: Mask, obstacles: Sequence[RoundObstacle], *, edges_only: bool
+    ) -> CoveragePlan:
+        """Plan to sweep ``todo``, bool over ``frame``, from ``here`` and on to the staging place.
+
+        Raises NoPathError when the robot cannot move.
+        """
+        began = time.perf_counter()
+        end = (self.staging.x, self.staging.y)
+        try:
+            return self.coverage.plan(here, end, todo, obstacles, edges_only=edges_only)
+        finally:
+            self.plans += 1
+            self.planning_time += time.perf_counter() - began
+
+    def squeeze(
+        self, here: Point, there: Point, obstacles: Sequence[RoundObstacle]
+    ) -> NDArray[np.float64]:
+        """Return a way, float64 [n, 2], m, through gaps that are too narrow for :attr:`paths`.
+
+        Raises NoPathError when there is none.
+        """
+        nothing = np.zeros(self.frame.shape, np.bool_)
+        return self.coverage.plan(here, there, nothing, obstacles).points
 
     @property
     def frame(self) -> GridFrame:

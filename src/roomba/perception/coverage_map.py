@@ -99,7 +99,8 @@ class CoverageMap:
     @property
     def missed(self) -> Mask:
         """What is wanted and was not swept."""
-        return (self.cells & (WANTED | SWEPT)) == WANTED
+        missed: Mask = (self.cells & (WANTED | SWEPT)) == WANTED
+        return missed
 
     def patches(self, least_area: float) -> list[Patch]:
         """Return what was missed, in patches of ``least_area`` m2 or more, the largest first."""

@@ -75,6 +75,11 @@ class DirtMap:
         dirty: Mask = self._over(density, frame) >= least
         return dirty
 
+    def known(self) -> Floats:
+        """Return grains/m2 by cells: of this run where it was, else as learned, NaN elsewhere."""
+        known: Floats = np.where(self.way > 0.5 * CELL, self._density_now(), self.learned)
+        return known
+
     def _density_now(self) -> Floats:
         area = np.maximum(self.way, 0.05) * CELL
         density: Floats = self.grains / area

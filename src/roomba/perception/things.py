@@ -14,7 +14,14 @@ from roomba.geometry import Pose
 from roomba.perception.belief_correct_kernels import Beams
 from roomba.perception.match_kernels import beam_ends
 from roomba.perception.surface_field import SurfaceField
-from roomba.perception.things_kernels import LAYER, Things, first_blocked, forget_around, note
+from roomba.perception.things_kernels import (
+    LAYER,
+    SPOT_RADIUS,
+    Things,
+    first_blocked,
+    forget_around,
+    note,
+)
 
 RoundObstacle = tuple[float, float, float]
 """x, y and radius of a round thing, m, map frame."""
@@ -75,6 +82,7 @@ class ThingLayer:
             np.zeros(rows * columns, np.int16),
             np.zeros(rows * columns, np.int64),
             np.zeros(_MOST_CELLS, np.int64),
+            np.zeros((rows * columns, 2), np.float32),
         )
         for name, value in self.config.model_dump().items():
             self.arrays.layer[name] = value
@@ -103,23 +111,10 @@ class ThingLayer:
         return np.column_stack(np.divmod(standing, max(self._columns, 1)))
 
     def obstacles(self, least: int | None = None) -> list[RoundObstacle]:
-        """Return round things that cover all cells with so much evidence, m, map frame.
-
-        One for each square of two by two cells, as small as the cells in it allow.
-        """
+        """Return round things, one for each cell with so much evidence, m, map frame."""
         cells = self.cells(least)
-        if not len(cells):
-            return []
-        size = float(self._place[2])
-        squares, number = np.unique(cells // 2, axis=0, return_inverse=True)
-        number = number.ravel()
-        found = []
-        for square in range(len(squares)):
-            middles = self._place[:2] + size * cells[number == square][:, ::-1]
-            centre = 0.5 * (middles.min(axis=0) + middles.max(axis=0))
-            away = float(np.hypot(*(middles - centre).T).max())
-            found.append((float(centre[0]), float(centre[1]), away + size * math.sqrt(0.5)))
-        return found
+        spots = self.arrays.spots[cells[:, 0] * self._columns + cells[:, 1]]
+        return [(x, y, SPOT_RADIUS) for x, y in spots.tolist()]
 
     def first_blocked(
         self,
@@ -133,9 +128,7 @@ class ThingLayer:
 
         Between ``first`` and ``last``, m along the path; ``stations`` [n] tells that of each point.
         """
-        at = first_blocked(
-            self.arrays, self._place, self._columns, points, stations, first, last, radius
-        )
+        at = first_blocked(self.arrays, points, stations, first, last, radius)
         return None if math.isnan(at) else float(at)
 
     def is_blocked(

@@ -39,18 +39,26 @@ LAYER: Final = np.dtype(
 )
 """The numbers of :class:`roomba.perception.things.ThingConfig`, and what changes."""
 
+SPOT_RADIUS: Final = 0.02
+"""m; a thing's cell counts as a disc of this size around where the beams end in it: as thick as a
+leg of a chair, and those of neighbouring cells leave no gap for any body."""
+_NEWEST: Final = 0.2
+"""Share of the newest beam in that place."""
+
 
 class Things(NamedTuple):
     """A layer as kernels know it.
 
     ``layer`` is LAYER [1]; ``evidence`` int16 and ``touched`` int64, the newest scan that ended in
-    a cell, are [cells], row by row as the map's; ``listed`` int64 [n] has the cells with evidence.
+    a cell, are [cells], row by row as the map's; ``listed`` int64 [n] has the cells with evidence;
+    ``spots`` float32 [cells, 2] is where in its cell the beams end, m, map frame: their mean.
     """
 
     layer: NDArray[np.void]
     evidence: NDArray[np.int16]
     touched: NDArray[np.int64]
     listed: NDArray[np.int64]
+    spots: NDArray[np.float32]
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -125,6 +133,9 @@ def _add_ends(
                 continue
             things.listed[layer.count] = cell
             layer.count += 1
+            things.spots[cell, 0], things.spots[cell, 1] = end_x, end_y
+        things.spots[cell, 0] += np.float32(_NEWEST * (end_x - things.spots[cell, 0]))
+        things.spots[cell, 1] += np.float32(_NEWEST * (end_y - things.spots[cell, 1]))
         after = min(before + gain, layer.most)
         things.evidence[cell] = after
         has_come = has_come or before < layer.enough <= after
@@ -196,8 +207,6 @@ def _is_passed(
 @njit(cache=True, nogil=True, error_model="numpy")
 def first_blocked(
     things: Things,
-    place: Place,
-    columns: int,
     points: Floats,
     stations: Floats,
     first: float,
@@ -210,7 +219,7 @@ def first_blocked(
     """
     layer = things.layer[0]
     nearest = math.inf
-    reach = radius + 0.7072 * place[2]
+    reach = radius + SPOT_RADIUS
     for leg in range(stations.size - 1):
         if stations[leg + 1] < first or stations[leg] > min(last, nearest):
             continue
@@ -224,8 +233,8 @@ def first_blocked(
             cell = things.listed[number]
             if things.evidence[cell] < layer.enough:
                 continue
-            off_x = place[0] + (cell % columns) * place[2] - points[leg, 0]
-            off_y = place[1] + (cell // columns) * place[2] - points[leg, 1]
+            off_x = things.spots[cell, 0] - points[leg, 0]
+            off_y = things.spots[cell, 1] - points[leg, 1]
             across = off_x * along_y - off_y * along_x
             if abs(across) >= reach:
                 continue

@@ -3,13 +3,13 @@
 Its stages: :mod:`~roomba.planning.coverage_floor` tells what floor can be swept,
 :mod:`~roomba.planning.coverage_edges` goes along walls and furniture,
 :mod:`~roomba.planning.coverage_swaths` sweeps the floor between them in straight parallel ways,
-:mod:`~roomba.planning.coverage_order` puts these pieces in order, and
-:mod:`~roomba.planning.coverage_connection` joins them to one way.
+:mod:`~roomba.planning.coverage_order` puts these pieces in order,
+:mod:`~roomba.planning.coverage_connection` joins them to one way, and
+:mod:`~roomba.planning.coverage_polish` makes that shorter and straighter.
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable
 
 import numpy as np
@@ -17,20 +17,27 @@ from numpy.typing import NDArray
 
 from roomba.grid import OccupancyMap
 from roomba.planning.costmap import Mask, Point, RoundObstacle
-from roomba.planning.coverage_connection import connected
+from roomba.planning.coverage_connection import connected, tidy
 from roomba.planning.coverage_edges import edges
 from roomba.planning.coverage_floor import CoverageFloor
-from roomba.planning.coverage_masks import sweep
+from roomba.planning.coverage_ground import Ground
+from roomba.planning.coverage_masks import unswept
 from roomba.planning.coverage_order import Weights, ordered
 from roomba.planning.coverage_plan import CoveragePlan
+from roomba.planning.coverage_polish import polished
 from roomba.planning.coverage_swaths import swaths
-from roomba.planning.coverage_ways import net_over
 from roomba.planning.path import NoPathError, NoPathReason
 
 __all__ = ["CoverageFloor", "CoveragePlan", "CoveragePlanner"]
 
-_PIECE = 6.0
+Line = NDArray[np.float64]
+
+_PIECE = 12.0
 """Widths of the tool; edges can be left for swaths about this often."""
+_TURNING = 3.0
+"""cells of way that a radian is worth when the way is polished."""
+_UNSWEPT = 1.0
+"""cells of way that a cell of floor is worth."""
 
 
 class CoveragePlanner:
@@ -42,6 +49,7 @@ class CoveragePlanner:
         Raises ValueError for lengths that are not finite or not above 0.
         """
         self.floor = CoverageFloor.build(map, reach, tool_width)
+        self._ground: Ground | None = None
 
     def plan(
         self,
@@ -60,91 +68,60 @@ class CoveragePlanner:
         not get to the end, and ValueError for a ``todo`` of another shape or numbers that are not
         finite.
         """
-        floor = self.floor.with_obstacles(obstacles)
-        if todo is not None and todo.shape != floor.frame.shape:
-            raise ValueError(f"expected todo of shape {floor.frame.shape}, got {todo.shape}")
+        if todo is not None and (todo.shape != self.floor.frame.shape or todo.dtype != np.bool_):
+            raise ValueError(
+                f"expected todo as bool of shape {self.floor.frame.shape}, "
+                f"got {todo.dtype} of shape {todo.shape}"
+            )
+        ground, first = self._ground_from(start, obstacles)
+        last = None if end is None else _end_on(ground, end)
+        need = ground.coverable if todo is None else ground.coverable & todo[ground.window]
+        edge_pieces = edges(ground.rings, need, ground.radius, _PIECE * 2 * ground.radius)
+        swath_pieces: list[Line] = []
+        if not edges_only:
+            left = unswept(need, edge_pieces, ground.radius) & ground.middles
+            swath_pieces = swaths(left, ground.middles, ground.radius)
+        pieces = ordered(ground.net, edge_pieces + swath_pieces, first, last, Weights())
+        line = connected(ground.net, pieces, first, last)
+        line = polished(line, need, ground.middles, ground.radius, _TURNING, _UNSWEPT)
+        return CoveragePlan(
+            _from_to(ground, line, start, end),
+            tuple(ground.metres(piece) for piece in swath_pieces),
+            tuple(ground.metres(piece) for piece in edge_pieces),
+        )
+
+    def _ground_from(self, start: Point, obstacles: Iterable[RoundObstacle]) -> tuple[Ground, Line]:
+        """Return the ground around a start, and the place on it where the way begins.
+
+        The last ground is kept, and serves again for the same obstacles from anywhere on it.
+        """
+        known = self._ground
+        floor = (self.floor if known is None else known.floor).with_obstacles(obstacles)
+        if not floor.obstacles:
+            floor = self.floor
         seed = floor.cell_near(start)
         if seed is None:
             raise NoPathError(start, NoPathReason.START_BLOCKED, None)
-        middles = floor.middles(start)
-        goal = None
-        if end is not None:
-            goal = floor.cell_near(end)
-            if goal is None or not middles[goal]:
-                raise NoPathError(end, NoPathReason.GOAL_UNREACHABLE, None)
-        need = floor.swept_from(middles)
-        if todo is not None:
-            need &= todo
-        return self._planned(floor, middles, need, start, seed, end, goal, edges_only)
-
-    def _planned(
-        self,
-        floor: CoverageFloor,
-        middles: Mask,
-        need: Mask,
-        start: Point,
-        seed: tuple[int, int],
-        end: Point | None,
-        goal: tuple[int, int] | None,
-        edges_only: bool,
-    ) -> CoveragePlan:
-        window = _window(middles)
-        origin = np.array([window[1].start, window[0].start], np.float64)
-        middles = np.ascontiguousarray(middles[window])
-        need = np.ascontiguousarray(need[window])
-        resolution = floor.frame.resolution
-        radius = floor.tool_width / 2 / resolution
-        edge_pieces = edges(middles, need, radius, _PIECE * 2 * radius)
-        swath_pieces: list[NDArray[np.float64]] = []
-        if not edges_only:
-            left = _left(need, edge_pieces, radius) & middles
-            swath_pieces = swaths(left, middles, radius)
-        net = net_over(middles)
-        first = np.array([seed[1], seed[0]], np.float64) - origin
-        last = None if goal is None else np.array([goal[1], goal[0]], np.float64) - origin
-        pieces = ordered(net, edge_pieces + swath_pieces, first, last, Weights())
-        line = connected(net, pieces, first, last)
-
-        def metres(cells: NDArray[np.float64]) -> NDArray[np.float64]:
-            corner = np.array([floor.frame.origin_x, floor.frame.origin_y])
-            result: NDArray[np.float64] = corner + (cells + origin + 0.5) * resolution
-            return result
-
-        return CoveragePlan(
-            _from_to(metres(line), start, end),
-            tuple(metres(piece) for piece in swath_pieces),
-            tuple(metres(piece) for piece in edge_pieces),
-        )
+        if known is None or known.floor is not floor or not known.holds(seed):
+            known = Ground.around(floor, seed)
+            self._ground = known
+        return known, known.place_of(seed)
 
 
-def _window(mask: Mask) -> tuple[slice, slice]:
-    """Return the smallest window with all true cells and a margin."""
-    rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
-    margin = 40
-    return (
-        slice(max(int(rows[0]) - margin, 0), int(rows[-1]) + margin + 1),
-        slice(max(int(columns[0]) - margin, 0), int(columns[-1]) + margin + 1),
-    )
+def _end_on(ground: Ground, end: Point) -> Line:
+    """Return the place where the way ends."""
+    cell = ground.floor.cell_near(end)
+    if cell is None or not ground.holds(cell):
+        raise NoPathError(end, NoPathReason.GOAL_UNREACHABLE, None)
+    return ground.place_of(cell)
 
 
-def _left(need: Mask, lines: list[NDArray[np.float64]], radius: float) -> Mask:
-    """Return the needed cells that the lines do not sweep."""
-    counts = np.zeros(need.shape, np.int16)
-    for line in lines:
-        sweep(counts, line, radius, 1)
-    left: Mask = need & (counts == 0)
-    return left
-
-
-def _from_to(points: NDArray[np.float64], start: Point, end: Point | None) -> NDArray[np.float64]:
-    """Return the points with exactly these ends."""
-    ends = [np.array([start])]
-    ends.append(points[1:] if math.dist(points[0], start) < 0.01 else points)
-    if end is not None:
-        if math.dist(ends[-1][-1] if len(ends[-1]) else start, end) < 0.01 and len(ends[-1]):
-            ends[-1] = ends[-1][:-1]
-        ends.append(np.array([end]))
-    joined = np.concatenate(ends)
-    kept = np.concatenate(([True], np.hypot(*np.diff(joined, axis=0).T) > 1e-9))
-    result: NDArray[np.float64] = joined[kept]
-    return result
+def _from_to(ground: Ground, line: Line, start: Point, end: Point | None) -> Line:
+    """Return the line in m, with exactly these ends and without needless points."""
+    ends = np.array([start] if end is None else [start, end], np.float64)
+    places = ground.places(ends)
+    if end is None and len(line) == 1:
+        line = line[:0]
+    points = ground.metres(tidy(ground.middles, np.concatenate((places[:1], line, places[1:]))))
+    points[-1], points[0] = ends[-1] if end is not None else points[-1], ends[0]
+    return points

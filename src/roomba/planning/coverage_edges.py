@@ -5,6 +5,8 @@ Places in cells of the window: (x, y) is (column, row), whole numbers are the ce
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
@@ -26,24 +28,31 @@ _BRIDGE = 4
 """stretches without new floor that are driven rather than gone around."""
 
 
-def edges(middles: Mask, need: Mask, radius: float, piece_length: float) -> list[Line]:
-    """Return lines along the outlines of ``middles`` that together sweep the needed floor there.
-
-    ``middles`` and ``need`` are bool [rows, columns]; ``radius`` is half the tool's width, cells.
-    Lines are cut to pieces of about ``piece_length`` cells, so that a path can branch off.
-    """
-    counts = np.zeros(middles.shape, np.int16)
-    pieces: list[Line] = []
+def rings(middles: Mask) -> list[Line]:
+    """Return the outlines of ``middles``, bool [rows, columns], straightened; each is closed."""
+    lines = []
     for chain in outlines(middles):
         ring = np.concatenate((chain, chain[:1])).astype(np.float64)
-        line = ring[straightened(middles, ring, _SIDEWAYS)]
-        stretches = _cut(line, _STRETCH)
+        lines.append(ring[straightened(middles, ring, _SIDEWAYS)])
+    return lines
+
+
+def edges(rings: list[Line], need: Mask, radius: float, piece_length: float) -> list[Line]:
+    """Return lines along the rings that together sweep the needed floor there.
+
+    ``need`` is bool [rows, columns]; ``radius`` is half the tool's width, cells. Lines are cut to
+    pieces of about ``piece_length`` cells, so that a path can branch off.
+    """
+    counts = np.zeros(need.shape, np.int16)
+    pieces: list[Line] = []
+    for ring in rings:
+        stretches = cut(ring, _STRETCH)
         worth = _claim(need, counts, stretches, radius)
         pieces.extend(_joined(stretches, _bridged(worth), piece_length))
     return pieces
 
 
-def _cut(line: Line, spacing: float) -> Line:
+def cut(line: Line, spacing: float) -> Line:
     """Return the line with more points in it, no two more than ``spacing`` apart."""
     legs = np.hypot(*np.diff(line, axis=0).T)
     parts = np.maximum(np.ceil(legs / spacing - 1e-9).astype(np.int64), 1)
@@ -71,7 +80,7 @@ def _bridged(worth: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """Return the same with short gaps between true ones closed."""
     bridged = worth.copy()
     true = np.flatnonzero(worth)
-    for first, last in zip(true[:-1], true[1:], strict=True):
+    for first, last in pairwise(true):
         if last - first <= _BRIDGE:
             bridged[first:last] = True
     return bridged
@@ -79,7 +88,7 @@ def _bridged(worth: NDArray[np.bool_]) -> NDArray[np.bool_]:
 
 def _joined(stretches: Line, kept: NDArray[np.bool_], piece_length: float) -> list[Line]:
     """Return the kept legs joined to pieces of about a length."""
-    pieces = []
+    pieces: list[Line] = []
     runs = np.flatnonzero(np.diff(np.concatenate(([False], kept, [False])).astype(np.int8)))
     for first, last in runs.reshape(-1, 2):
         run = stretches[first : last + 1]
@@ -87,9 +96,5 @@ def _joined(stretches: Line, kept: NDArray[np.bool_], piece_length: float) -> li
         count = max(1, round(stations[-1] / piece_length))
         cuts = np.searchsorted(stations, np.linspace(0.0, stations[-1], count + 1))
         cuts[-1] = len(run) - 1
-        pieces.extend(
-            run[begin : end + 1]
-            for begin, end in zip(cuts[:-1], cuts[1:], strict=True)
-            if end > begin
-        )
+        pieces.extend(run[begin : end + 1] for begin, end in pairwise(cuts) if end > begin)
     return pieces

@@ -126,7 +126,7 @@ class CoverageFloor:
         window = self.fits[
             first_row : max(row + span + 1, 0), first_column : max(column + span + 1, 0)
         ]
-        cells = np.argwhere(window) + (first_row, first_column)
+        cells = np.argwhere(window) + np.array((first_row, first_column))
         away = np.hypot(
             frame.origin_x + (cells[:, 1] + 0.5) * frame.resolution - point[0],
             frame.origin_y + (cells[:, 0] + 0.5) * frame.resolution - point[1],

@@ -116,24 +116,45 @@ def filled_from(mask: Mask, row: int, column: int) -> Mask:
 
 
 @njit(cache=True, nogil=True)
-def swept_columns(
-    x: float, y: float, to_x: float, to_y: float, radius: float, row: int
-) -> tuple[int, int]:
-    """Return the first and last column of a row whose centres are within ``radius`` of a way."""
-    low, high = np.inf, -np.inf
-    for at_x, at_y in ((x, y), (to_x, to_y)):
-        square = radius * radius - (row - at_y) * (row - at_y)
-        if square >= 0.0:
-            half = math.sqrt(square)
-            low, high = min(low, at_x - half), max(high, at_x + half)
+def side_of(x: float, y: float, to_x: float, to_y: float, radius: float) -> tuple[float, float]:
+    """Return the step from a way to the side of the strip that is swept along it."""
     length = math.hypot(to_x - x, to_y - y)
-    if length > 0.0:
+    if length == 0.0:
+        return 0.0, 0.0
+    return -(to_y - y) / length * radius, (to_x - x) / length * radius
+
+
+@njit(cache=True, nogil=True)
+def swept_columns(
+    x: float,
+    y: float,
+    to_x: float,
+    to_y: float,
+    side: tuple[float, float],
+    radius: float,
+    row: int,
+) -> tuple[int, int]:
+    """Return the first and last column of a row whose centres are within ``radius`` of a way.
+
+    ``side`` is what :func:`side_of` returns for it.
+    """
+    low, high = np.inf, -np.inf
+    square = radius * radius - (row - y) * (row - y)
+    if square >= 0.0:
+        half = math.sqrt(square)
+        low, high = x - half, x + half
+    square = radius * radius - (row - to_y) * (row - to_y)
+    if square >= 0.0:
+        half = math.sqrt(square)
+        low, high = min(low, to_x - half), max(high, to_x + half)
+    if to_y != y:
         # The sides of the strip, between its ends, lie beside the way.
-        side_x, side_y = -(to_y - y) / length * radius, (to_x - x) / length * radius
+        slope = (to_x - x) / (to_y - y)
         for sign in (-1.0, 1.0):
-            begin, end = y + sign * side_y, to_y + sign * side_y
-            if begin != end and min(begin, end) <= row <= max(begin, end):
-                at = x + sign * side_x + (row - begin) / (end - begin) * (to_x - x)
+            begin = y + sign * side[1]
+            end = to_y + sign * side[1]
+            if min(begin, end) <= row <= max(begin, end):
+                at = x + sign * side[0] + (row - begin) * slope
                 low, high = min(low, at), max(high, at)
     if low > high:
         return 1, 0
@@ -151,12 +172,22 @@ def sweep(counts: Counts, points: NDArray[np.float64], radius: float, change: in
     for leg in range(max(len(points) - 1, 1)):
         x, y = points[leg]
         to_x, to_y = points[min(leg + 1, len(points) - 1)]
+        side = side_of(x, y, to_x, to_y, reach)
         first_row = max(math.ceil(min(y, to_y) - reach), 0)
         last_row = min(math.floor(max(y, to_y) + reach), rows - 1)
         for row in range(first_row, last_row + 1):
-            first, last = swept_columns(x, y, to_x, to_y, reach, row)
+            first, last = swept_columns(x, y, to_x, to_y, side, reach, row)
             for column in range(max(first, 0), min(last, columns - 1) + 1):
                 counts[row, column] += change
+
+
+def unswept(need: Mask, lines: list[NDArray[np.float64]], radius: float) -> Mask:
+    """Return the needed cells that no line, float64 [n, 2], sweeps; bool [rows, columns]."""
+    counts = np.zeros(need.shape, np.int16)
+    for line in lines:
+        sweep(counts, line, radius, 1)
+    left: Mask = need & (counts == 0)
+    return left
 
 
 @njit(cache=True, nogil=True)
@@ -167,10 +198,11 @@ def newly_swept(
     rows, columns = counts.shape
     reach = radius + 1e-7
     found = 0
+    side = side_of(x, y, to_x, to_y, reach)
     first_row = max(math.ceil(min(y, to_y) - reach), 0)
     last_row = min(math.floor(max(y, to_y) + reach), rows - 1)
     for row in range(first_row, last_row + 1):
-        first, last = swept_columns(x, y, to_x, to_y, reach, row)
+        first, last = swept_columns(x, y, to_x, to_y, side, reach, row)
         for column in range(max(first, 0), min(last, columns - 1) + 1):
             if need[row, column] and counts[row, column] == 0:
                 found += 1

@@ -8,7 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.mask_kernels import Mask
-from roomba.planning.coverage_order_kernels import Costs, greedy_links, shake
+from roomba.planning.coverage_order_kernels import (
+    Costs,
+    greedy_links,
+    note_nearest,
+    note_pair,
+    shake,
+)
 from roomba.planning.coverage_ways import (
     Net,
     Search,
@@ -20,7 +26,7 @@ from roomba.planning.coverage_ways import (
 
 Line = NDArray[np.float64]
 
-_NEAREST = 20
+_NEAREST = 32
 _NEAR = 300.0
 """cells; connections longer than this are only made where there is no other."""
 _EVERYWHERE = 1e8
@@ -31,7 +37,7 @@ class Weights:
     """What the order is to keep low: ``turning`` is the way, in cells, that a radian is worth."""
 
     turning: float = 6.0
-    rounds: int = 0
+    rounds: int = 10000
 
 
 def ordered(
@@ -59,12 +65,11 @@ def ordered(
         order = np.argsort(costs, axis=1, kind="stable")
         nearest = np.take_along_axis(nearest, order, axis=1)
         costs = np.take_along_axis(costs, order, axis=1)
-    unknown = np.full(len(places), -1, np.int32)
-    table = Costs(nearest, costs, unknown, np.full(len(places), np.inf), end is None)
-    tour, given_costs = _first_tour(net, search, places, greedy_links(table), end is None)
-    given = unknown.copy()
-    given[tour[1:-1:2]], given[tour[2::2]] = tour[2::2], tour[1:-1:2]
-    shake(Costs(nearest, costs, given, given_costs, end is None), tour, weights.rounds)
+    size = 1 << int(np.ceil(np.log2(3 * nearest.size + 8)))
+    table = Costs(nearest, costs, np.full(size, -1), np.zeros(size), end is None)
+    note_nearest(table)
+    tour = _first_tour(net, search, places, table)
+    shake(table, tour, weights.rounds)
     return [
         lines[entry // 2] if entry % 2 == 0 else lines[entry // 2][::-1]
         for entry in tour[2:-2:2].tolist()
@@ -72,7 +77,7 @@ def ordered(
 
 
 def _turns(lines: list[Line], places: Line, nearest: NDArray[np.int32]) -> NDArray[np.float64]:
-    """Return how much is turned on the way from each end straight to its nearest, rad, [ends, k]."""
+    """Return the turns, rad, on the straight ways from each end to its nearest; [ends, k]."""
     outward = np.zeros_like(places)
     for index, line in enumerate(lines):
         outward[2 * index] = line[0] - line[1]
@@ -91,22 +96,20 @@ def _turns(lines: list[Line], places: Line, nearest: NDArray[np.int32]) -> NDArr
     return turns
 
 
-def _first_tour(
-    net: Net, search: Search, places: Line, links: NDArray[np.int32], loose: bool
-) -> tuple[NDArray[np.int32], NDArray[np.float64]]:
-    """Return a tour that follows the links and goes on to the nearest free end where they stop.
+def _first_tour(net: Net, search: Search, places: Line, costs: Costs) -> NDArray[np.int32]:
+    """Return a tour that makes the cheapest connections, and goes on to the nearest free end.
 
-    Also returns what the connections cost that were made so, float64 [ends].
+    What the latter cost is noted in ``costs``.
     """
+    links: NDArray[np.int32] = greedy_links(costs)
     first_of, place_at = places_by_block(net, places)
-    given_costs = np.full(len(places), np.inf)
     found = np.empty(64, np.int32)
     lengths = np.empty(64, np.float64)
     last = len(places) - 1
-    free: Mask = links < 0
-    free[[0, last, last - 1]] = False
     tail = _followed(links, last)
-    free[tail] = False
+    free: Mask = links < 0
+    free[[0, last]] = False
+    free[tail[-1]] = False
     tour = _followed(links, 0)
     while True:
         at = int(tour[-1])
@@ -121,12 +124,13 @@ def _first_tour(
             to, cost = int(found[nearest]), float(lengths[nearest])
         else:
             to, cost = int(np.flatnonzero(free)[0]), _EVERYWHERE
-        given_costs[[at, to]] = cost
+        note_pair(costs, at, to, cost)
         free[to] = False
         tour = np.concatenate((tour, _followed(links, to)))
-    at, to = int(tour[-1]), int(tail[-1])
-    given_costs[[at, to]] = 0.0 if loose else np.hypot(*(places[at] - places[to]))
-    return np.concatenate((tour, tail[::-1])).astype(np.int32), given_costs
+    straight = np.hypot(*(places[tour[-1]] - places[tail[-1]]))
+    note_pair(costs, int(tour[-1]), int(tail[-1]), float(straight))
+    whole: NDArray[np.int32] = np.concatenate((tour, tail[::-1])).astype(np.int32)
+    return whole
 
 
 def _followed(links: NDArray[np.int32], end: int) -> NDArray[np.int32]:

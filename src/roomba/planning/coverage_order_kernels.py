@@ -24,36 +24,60 @@ _MOST_MOVES = 20
 class Costs(NamedTuple):
     """What connections cost: between each end and its nearest ones, and those first made.
 
-    ``nearest`` int32 [ends, k], -1 for none, with ``costs``; ``given`` int32 [ends], the end that
-    each was first connected to or -1, with ``given_costs``. ``loose``: the last piece costs nothing
-    to get to. All others are too far.
+    ``nearest`` int32 [ends, k], the cheapest first, -1 for none, with ``costs``, the same there and
+    back. ``pairs``, int64 [2 ** n], and ``pair_costs`` hold all that are known by the two ends,
+    wherever :func:`_slot` finds room. ``loose``: the last piece costs nothing to get to. All others
+    are too far.
     """
 
     nearest: NDArray[np.int32]
     costs: NDArray[np.float64]
-    given: NDArray[np.int32]
-    given_costs: NDArray[np.float64]
+    pairs: NDArray[np.int64]
+    pair_costs: NDArray[np.float64]
     loose: bool
+
+
+@njit(cache=True, nogil=True)
+def _slot(pairs: NDArray[np.int64], ends: int, one: int, other: int) -> np.int64:
+    """Return where two ends are noted, or would be: the first free slot from a scattered one on."""
+    pair = np.int64(min(one, other)) * ends + max(one, other)
+    at = (pair * 0x9E3779B1 >> 8) & (pairs.size - 1)
+    while pairs[at] != pair and pairs[at] >= 0:
+        at = (at + 1) & (pairs.size - 1)
+    return at
+
+
+@njit(cache=True, nogil=True)
+def note_pair(costs: Costs, one: int, other: int, cost: float) -> None:
+    """Note what a connection costs, if that is less than what is known."""
+    ends = len(costs.nearest)
+    at = _slot(costs.pairs, ends, one, other)
+    if costs.pairs[at] < 0:
+        costs.pairs[at] = np.int64(min(one, other)) * ends + max(one, other)
+        costs.pair_costs[at] = cost
+    else:
+        costs.pair_costs[at] = min(costs.pair_costs[at], cost)
+
+
+@njit(cache=True, nogil=True)
+def note_nearest(costs: Costs) -> None:
+    """Note all connections between near ends."""
+    for one in range(len(costs.nearest)):
+        for k in range(costs.nearest.shape[1]):
+            if costs.nearest[one, k] >= 0:
+                note_pair(costs, one, costs.nearest[one, k], costs.costs[one, k])
 
 
 @njit(cache=True, nogil=True)
 def cost_of(costs: Costs, one: int, other: int) -> float:
     """Return what the connection of two ends costs."""
-    if costs.loose and (one >= costs.given.size - 2 or other >= costs.given.size - 2):
+    ends = len(costs.nearest)
+    if costs.loose and (one >= ends - 2 or other >= ends - 2):
         return 0.0
-    for k in range(costs.nearest.shape[1]):
-        if costs.nearest[one, k] == other:
-            return costs.costs[one, k]
-        if costs.nearest[one, k] < 0:
-            break
-    for k in range(costs.nearest.shape[1]):
-        if costs.nearest[other, k] == one:
-            return costs.costs[other, k]
-        if costs.nearest[other, k] < 0:
-            break
-    if costs.given[one] == other:
-        return costs.given_costs[one]
-    return _FAR
+    at = _slot(costs.pairs, ends, one, other)
+    if costs.pairs[at] < 0:
+        return _FAR
+    return float(costs.pair_costs[at])
 
 
 @njit(cache=True, nogil=True)
@@ -91,6 +115,20 @@ def greedy_links(costs: Costs) -> NDArray[np.int32]:
     return links
 
 
+class Log(NamedTuple):
+    """What moves did: ``gain`` float64 [1], ``span`` int64 [2], first and last position changed."""
+
+    gain: NDArray[np.float64]
+    span: NDArray[np.int64]
+
+
+@njit(cache=True, nogil=True)
+def _note(log: Log, gain: float, first: int, last: int) -> None:
+    log.gain[0] += gain
+    log.span[0] = min(log.span[0], first)
+    log.span[1] = max(log.span[1], last)
+
+
 @njit(cache=True, nogil=True)
 def _reverse(tour: Tour, position: Tour, first: int, last: int) -> None:
     while first < last:
@@ -104,7 +142,7 @@ def _reverse(tour: Tour, position: Tour, first: int, last: int) -> None:
 
 
 @njit(cache=True, nogil=True)
-def _try_end(costs: Costs, tour: Tour, position: Tour, end: int, touched: Tour) -> int:
+def _try_end(costs: Costs, tour: Tour, position: Tour, end: int, touched: Tour, log: Log) -> int:
     """Make the first move that a better connection of one end allows.
 
     Returns how many ends it concerned, written to ``touched``; 0 when there is no such move.
@@ -132,18 +170,20 @@ def _try_end(costs: Costs, tour: Tour, position: Tour, end: int, touched: Tour) 
         other_partner = tour[other_partner_at]
         gain += cost_of(costs, other, other_partner)
         if leaves == other_leaves:
-            if gain - cost_of(costs, partner, other_partner) > _GAIN:
+            won = gain - cost_of(costs, partner, other_partner)
+            if won > _GAIN:
                 first = min(max(at, partner_at), max(other_at, other_partner_at))
                 last = max(min(at, partner_at), min(other_at, other_partner_at))
                 _reverse(tour, position, first, last)
+                _note(log, won, first, last)
                 touched[0], touched[1] = end, other
                 touched[2], touched[3] = partner, other_partner
                 return 4
         else:
-            moved = _swap_runs(costs, tour, position, at, other_at, gain, touched)
+            moved = _swap_runs(costs, tour, position, at, other_at, gain, touched, log)
             if moved > 0:
                 return moved
-        moved = _move_run(costs, tour, position, end, other, touched)
+        moved = _move_run(costs, tour, position, end, other, touched, log)
         if moved > 0:
             return moved
     return 0
@@ -151,7 +191,14 @@ def _try_end(costs: Costs, tour: Tour, position: Tour, end: int, touched: Tour) 
 
 @njit(cache=True, nogil=True)
 def _swap_runs(
-    costs: Costs, tour: Tour, position: Tour, at: int, other_at: int, gain: float, touched: Tour
+    costs: Costs,
+    tour: Tour,
+    position: Tour,
+    at: int,
+    other_at: int,
+    gain: float,
+    touched: Tour,
+    log: Log,
 ) -> int:
     """Let two neighbouring runs of pieces change places, without turning either.
 
@@ -172,8 +219,10 @@ def _swap_runs(
             if e_at % 2 == 0 or e_at < entry_at or e_at + 1 >= size:
                 continue
             f = tour[e_at + 1]
-            if gain - costs.costs[b, k] + cost_of(costs, e, f) - cost_of(costs, c, f) > _GAIN:
+            won = gain - costs.costs[b, k] + cost_of(costs, e, f) - cost_of(costs, c, f)
+            if won > _GAIN:
                 _exchange(tour, position, leaver_at + 1, entry_at, e_at + 1)
+                _note(log, won, leaver_at + 1, e_at)
                 touched[0], touched[1], touched[2] = a, b, c
                 touched[3], touched[4], touched[5] = d, e, f
                 return 6
@@ -191,8 +240,10 @@ def _swap_runs(
             if d_at % 2 == 1 or d_at <= entry_at or d_at > leaver_at:
                 continue
             c = tour[d_at - 1]
-            if gain - costs.costs[a, k] + cost_of(costs, c, d) - cost_of(costs, c, f) > _GAIN:
+            won = gain - costs.costs[a, k] + cost_of(costs, c, d) - cost_of(costs, c, f)
+            if won > _GAIN:
                 _exchange(tour, position, entry_at, d_at, leaver_at + 1)
+                _note(log, won, entry_at, leaver_at)
                 touched[0], touched[1], touched[2] = a, b, c
                 touched[3], touched[4], touched[5] = d, e, f
                 return 6
@@ -209,7 +260,9 @@ def _exchange(tour: Tour, position: Tour, first: int, middle: int, stop: int) ->
 
 
 @njit(cache=True, nogil=True)
-def _move_run(costs: Costs, tour: Tour, position: Tour, end: int, other: int, touched: Tour) -> int:
+def _move_run(
+    costs: Costs, tour: Tour, position: Tour, end: int, other: int, touched: Tour, log: Log
+) -> int:
     """Move a run of one to three pieces that begins with ``end`` to the side of ``other``."""
     size = tour.size
     at = position[end]
@@ -234,6 +287,7 @@ def _move_run(costs: Costs, tour: Tour, position: Tour, end: int, other: int, to
         spent -= cost_of(costs, other, partner)
         if saved - spent > _GAIN:
             gap = max(other_at, partner_at)
+            _note(log, saved - spent, min(first, gap), max(last, gap - 1))
             if gap > last:
                 _exchange(tour, position, first, last + 1, gap)
                 first, last = gap - 2 * pieces, gap - 1
@@ -251,29 +305,30 @@ def _move_run(costs: Costs, tour: Tour, position: Tour, end: int, other: int, to
 
 @njit(cache=True, nogil=True)
 def improve(
-    costs: Costs, tour: Tour, position: Tour, queue: Tour, waiting: NDArray[np.bool_]
+    costs: Costs,
+    tour: Tour,
+    position: Tour,
+    queue: Tour,
+    count: int,
+    waiting: NDArray[np.bool_],
+    log: Log,
 ) -> None:
     """Make moves until none helps, looking again at the ends that a move concerned.
 
-    ``waiting``, bool [ends], marks the ends to look at first; all false afterwards.
+    The first ``count`` of ``queue``, int32 [ends], are looked at first; ``waiting``, bool [ends],
+    is true for them, and all false afterwards.
     """
     touched = np.empty(6, np.int32)
-    size = 0
-    for end in tour:
-        if waiting[end]:
-            queue[size] = end
-            size += 1
     head = 0
-    count = size
     moves = 0
-    while count > 0 and moves < _MOST_MOVES * tour.size:
+    while count > 0:
         end = queue[head]
         head = (head + 1) % queue.size
         count -= 1
         waiting[end] = False
-        while True:
-            concerned = _try_end(costs, tour, position, end, touched)
-            if concerned == 0 or moves >= _MOST_MOVES * tour.size:
+        while moves < _MOST_MOVES * tour.size:
+            concerned = _try_end(costs, tour, position, end, touched, log)
+            if concerned == 0:
                 break
             moves += 1
             for n in range(concerned):
@@ -285,8 +340,31 @@ def improve(
 
 
 @njit(cache=True, nogil=True)
+def _drawn(state: NDArray[np.uint64], below: int) -> np.int64:
+    """Return the next number of a fixed sequence (xorshift), 0 to ``below`` - 1."""
+    state[0] ^= state[0] << np.uint64(13)
+    state[0] ^= state[0] >> np.uint64(7)
+    state[0] ^= state[0] << np.uint64(17)
+    return np.int64((state[0] >> np.uint64(11)) % np.uint64(below))
+
+
+@njit(cache=True, nogil=True)
+def _connection_near(costs: Costs, position: Tour, end: np.int64, state: NDArray[np.uint64]) -> int:
+    """Return the position before a connection some steps from an end, from near end to near end."""
+    for _ in range(1 + _drawn(state, 3)):
+        known = 0
+        while known < costs.nearest.shape[1] and costs.nearest[end, known] >= 0:
+            known += 1
+        if known == 0:
+            break
+        end = costs.nearest[end, _drawn(state, known)]
+    at: int = position[end]
+    return at if at % 2 == 1 else at - 1
+
+
+@njit(cache=True, nogil=True)
 def shake(costs: Costs, tour: Tour, rounds: int) -> None:
-    """Improve a tour, then again and again from where short runs near each other were exchanged.
+    """Improve a tour, then again and again from where runs between near places were exchanged.
 
     The exchanges are drawn from a fixed sequence, so the outcome is always the same.
     """
@@ -294,36 +372,37 @@ def shake(costs: Costs, tour: Tour, rounds: int) -> None:
     position = np.empty(ends, np.int32)
     for at in range(ends):
         position[tour[at]] = at
-    queue = np.empty(ends, np.int32)
+    queue = tour.copy()
     waiting = np.ones(ends, np.bool_)
-    improve(costs, tour, position, queue, waiting)
-    pieces = ends // 2
-    if pieces < 6:
+    log = Log(np.zeros(1), np.array([ends, -1]))
+    improve(costs, tour, position, queue, ends, waiting, log)
+    if ends < 12:
         return
     best = tour.copy()
-    best_cost = tour_cost(costs, tour)
-    state = np.uint64(88172645463325252)
+    state = np.array([88172645463325252], np.uint64)
     for _ in range(rounds):
-        state ^= state << np.uint64(13)
-        state ^= state >> np.uint64(7)
-        state ^= state << np.uint64(17)
-        span = min(pieces - 2, 30)
-        begin = 1 + int(state % np.uint64(pieces - 1 - span)) if pieces - 1 > span else 1
-        one = int((state >> np.uint64(20)) % np.uint64(span - 2)) + 1
-        two = int((state >> np.uint64(40)) % np.uint64(span - 1 - one)) + 1
-        first, middle, stop = 2 * begin, 2 * (begin + one), 2 * (begin + one + two)
-        if stop > ends - 2:
+        end = _drawn(state, ends)
+        one = _connection_near(costs, position, end, state)
+        two = _connection_near(costs, position, end, state)
+        three = _connection_near(costs, position, end, state)
+        first, last = min(one, two, three), max(one, two, three)
+        middle = one + two + three - first - last
+        if first < 1 or last > ends - 3 or first == middle or middle == last:
             continue
-        for at in (first - 1, first, middle - 1, middle, stop - 1, stop):
-            waiting[tour[at]] = True
-        _exchange(tour, position, first, middle, stop)
-        improve(costs, tour, position, queue, waiting)
-        cost = tour_cost(costs, tour)
-        if cost < best_cost - _GAIN:
-            best_cost = cost
-            best[:] = tour
-        elif cost > best_cost + _GAIN:
-            tour[:] = best
-            for at in range(ends):
+        a, b, c = tour[first], tour[first + 1], tour[middle]
+        d, e, f = tour[middle + 1], tour[last], tour[last + 1]
+        log.gain[0] = cost_of(costs, a, b) + cost_of(costs, c, d) + cost_of(costs, e, f)
+        log.gain[0] -= cost_of(costs, a, d) + cost_of(costs, e, b) + cost_of(costs, c, f)
+        log.span[0], log.span[1] = first + 1, last
+        _exchange(tour, position, first + 1, middle + 1, last + 1)
+        for n, concerned in enumerate((a, b, c, d, e, f)):
+            queue[n] = concerned
+            waiting[concerned] = True
+        improve(costs, tour, position, queue, 6, waiting, log)
+        low, high = log.span
+        if log.gain[0] >= 0.0:
+            best[low : high + 1] = tour[low : high + 1]
+        else:
+            for at in range(low, high + 1):
+                tour[at] = best[at]
                 position[tour[at]] = at
-    tour[:] = best

@@ -9,7 +9,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from roomba.mask_kernels import Mask, numbered_regions
+from roomba.mask_kernels import Mask
+from roomba.planning.coverage_regions import regions
 
 Line = NDArray[np.float64]
 
@@ -24,11 +25,11 @@ _GAP = 30
 def swaths(left: Mask, middles: Mask, radius: float) -> list[Line]:
     """Return lines, float64 [2, 2], that sweep the floor in ``left``, bool [rows, columns].
 
-    The lines stay in ``middles``, bool of the same shape. Every cell of ``left`` must be so far from where the middle may not be that the middle may be
-    anywhere within ``radius``, cells, of it. Connected regions are swept along rows or along
-    columns, whichever takes less way.
+    The lines stay in ``middles``, bool of the same shape. Every cell of ``left`` must be so far
+    from where the middle may not be that the middle may be anywhere within ``radius``, cells, of
+    it. Each region is swept along rows or along columns, whichever takes less way.
     """
-    labels = numbered_regions(left)
+    labels = regions(left)
     sizes = np.bincount(labels.ravel())
     lines: list[Line] = []
     for label, box in _boxes(labels, sizes):
@@ -91,20 +92,18 @@ def _runs_by_row(region: Mask, floor: Mask, radius: int, gap: int) -> NDArray[np
     rows, columns = region.shape
     runs = np.empty((1024, 3), np.int64)
     size = 0
-    depth = np.zeros(columns, np.int64)
+    depth = np.zeros(columns, np.int32)
     for row in range(min(radius, rows)):
-        for column in range(columns):
-            depth[column] += region[row, column]
+        _add(depth, region[row], 1)
     for row in range(rows):
         if row + radius < rows:
-            for column in range(columns):
-                depth[column] += region[row + radius, column]
+            _add(depth, region[row + radius], 1)
         if row - radius - 1 >= 0:
-            for column in range(columns):
-                depth[column] -= region[row - radius - 1, column]
+            _add(depth, region[row - radius - 1], -1)
+        along = floor[row]
         last = -gap - 2
         for column in range(columns):
-            if not floor[row, column]:
+            if not along[column]:
                 last = -gap - 2
                 continue
             if depth[column] == 0:
@@ -122,10 +121,16 @@ def _runs_by_row(region: Mask, floor: Mask, radius: int, gap: int) -> NDArray[np
 
 
 @njit(cache=True, nogil=True)
+def _add(depth: NDArray[np.int32], cells: NDArray[np.bool_], change: int) -> None:
+    for column in range(depth.size):
+        depth[column] += change * np.int32(cells[column])
+
+
+@njit(cache=True, nogil=True)
 def _cheapest_rows(
     needed: NDArray[np.bool_], costs: NDArray[np.float64], width: int
 ) -> NDArray[np.int64]:
-    """Return the rows to sweep along, no two more than ``width`` apart: the cheapest such choice."""
+    """Return the cheapest rows to sweep along of which no two are more than ``width`` apart."""
     count = len(needed)
     half = width // 2
     best = np.full(count, np.inf)

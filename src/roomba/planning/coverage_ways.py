@@ -31,26 +31,26 @@ _NEVER = np.int32(1 << 30)
 class Net(NamedTuple):
     """Knots, one for each block of fine cells, and which of their eight neighbours each links to.
 
-    ``knots`` int32 [rows, columns, 2] (x, y), x = -1 where nothing fits; ``links`` uint8 [rows,
-    columns], a bit for each step.
+    ``knots`` int32 [rows, columns, 2] (x, y), x = -1 where nothing fits; ``links`` int16 [rows,
+    columns, 8], the length of each in steps of the queue, 0 for none.
     """
 
     fits: Mask
     knots: NDArray[np.int32]
-    links: NDArray[np.uint8]
+    links: NDArray[np.int16]
 
 
 def net_over(fits: Mask) -> Net:
     """Return the net over the cells that fit, bool [rows, columns]."""
     shape = (-(-fits.shape[0] // _BLOCK), -(-fits.shape[1] // _BLOCK))
-    net = Net(fits, np.full((*shape, 2), -1, np.int32), np.zeros(shape, np.uint8))
+    net = Net(fits, np.full((*shape, 2), -1, np.int32), np.zeros((*shape, 8), np.int16))
     _knot(net)
     return net
 
 
 @njit(cache=True, nogil=True)
 def _knot(net: Net) -> None:
-    rows, columns = net.links.shape
+    rows, columns = net.links.shape[:2]
     height, width = net.fits.shape
     middle = _BLOCK // 2
     for row in range(rows):
@@ -74,8 +74,9 @@ def _knot(net: Net) -> None:
                     continue
                 to_x, to_y = net.knots[to_row, to_column]
                 if to_x >= 0 and way_fits(net.fits, x, y, to_x, to_y):
-                    net.links[row, column] |= 1 << step
-                    net.links[to_row, to_column] |= 1 << (step + 4)
+                    steps = max(1, int(math.hypot(to_x - x, to_y - y) * _UNIT + 0.5))
+                    net.links[row, column, step] = steps
+                    net.links[to_row, to_column, step + 4] = steps
 
 
 class Search(NamedTuple):
@@ -89,7 +90,7 @@ class Search(NamedTuple):
 
 def search_over(net: Net) -> Search:
     """Return work arrays for searches over a net."""
-    size = net.links.size
+    size = net.links.size // 8
     return Search(
         np.full(size, _NEVER, np.int32),
         np.full(size, -1, np.int32),
@@ -101,7 +102,7 @@ def search_over(net: Net) -> Search:
 @njit(cache=True, nogil=True)
 def blocks_near(net: Net, x: float, y: float, found: NDArray[np.int32]) -> int:
     """Write the blocks around a place whose knots it sees, at most 9, and return how many."""
-    rows, columns = net.links.shape
+    rows, columns = net.links.shape[:2]
     row, column = int(y + 0.5) // _BLOCK, int(x + 0.5) // _BLOCK
     size = 0
     for at_row in range(max(row - 1, 0), min(row + 2, rows)):
@@ -188,14 +189,12 @@ def nearest_places(
                         length = math.hypot(to_x - x, to_y - y)
                     lengths[count] = length
                     count += 1
-            row, column = block // columns, block % columns
-            knot_x, knot_y = net.knots[row, column]
+            links = net.links[block // columns, block % columns]
             for step in range(8):
-                if not (net.links[row, column] >> step) & 1:
+                if links[step] == 0:
                     continue
                 other = block + _STEP_Y[step] * columns + _STEP_X[step]
-                to_x, to_y = net.knots[row + _STEP_Y[step], column + _STEP_X[step]]
-                cost = level + max(1, int(math.hypot(to_x - knot_x, to_y - knot_y) * _UNIT + 0.5))
+                cost = level + links[step]
                 if cost < search.costs[other]:
                     if search.costs[other] == _NEVER:
                         search.touched[touched] = other
@@ -223,12 +222,12 @@ def places_by_block(net: Net, places: Line) -> tuple[NDArray[np.int32], NDArray[
     """Return which places are near each block: ``first_of`` [blocks + 1] and ``place_at``."""
     near = np.empty((len(places), 9), np.int32)
     sizes = np.empty(len(places), np.int64)
-    first_of = np.zeros(net.links.size + 1, np.int32)
+    first_of = np.zeros(net.links.size // 8 + 1, np.int32)
     for place in range(len(places)):
         sizes[place] = blocks_near(net, places[place, 0], places[place, 1], near[place])
         for n in range(sizes[place]):
             first_of[near[place, n] + 1] += 1
-    for block in range(net.links.size):
+    for block in range(net.links.size // 8):
         first_of[block + 1] += first_of[block]
     place_at = np.empty(first_of[-1], np.int32)
     filled = first_of.copy()
@@ -324,7 +323,7 @@ def way_between(
             items = np.concatenate((items, np.empty_like(items)))
         row, column = block // columns, block % columns
         for step in range(8):
-            if not (net.links[row, column] >> step) & 1:
+            if net.links[row, column, step] == 0:
                 continue
             other = block + _STEP_Y[step] * columns + _STEP_X[step]
             knot = net.knots[row, column]

@@ -8,6 +8,7 @@ and :data:`EVEN_DIRT` lies evenly on its floor.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -38,11 +39,17 @@ def list_homes(directory: Path) -> list[str]:
     return sorted(entry.parent.name for entry in directory.glob(f"*/{MAP_NAME}"))
 
 
-def load_home(name_or_path: str, homes_directory: Path, body: BodyConfig | None = None) -> Home:
+def load_home(
+    name_or_path: str,
+    homes_directory: Path,
+    body: BodyConfig | None = None,
+    station: Pose | None = None,
+) -> Home:
     """Return a home by name (a folder of ``homes_directory``), or by the path of a folder or map.
 
     ``body`` (default: the shipped robot) decides what is solid at its height and whether it fits
-    its station. Raises :class:`HomeError`: ``file:line: reason``.
+    its station; ``station`` is the docked robot's pose in place of the layer's. Raises
+    :class:`HomeError`: ``file:line: reason``.
     """
     map_path, layer_path = _files_of(name_or_path, homes_directory)
     occupancy = load_map(map_path)
@@ -51,6 +58,8 @@ def load_home(name_or_path: str, homes_directory: Path, body: BodyConfig | None 
     else:
         layer, file = read_layer(layer_path)
     parts = parts_of(layer, file, occupancy.frame)
+    if station is not None:
+        parts = replace(parts, station=station)
     return _assembled(_name_of(map_path), occupancy, parts, file, body or BodyConfig())
 
 

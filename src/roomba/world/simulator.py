@@ -263,6 +263,12 @@ class Simulator:
             if duty is not None:
                 self._fleet.robots[f"{name}_duty"] = duty
 
+    def set_charge(self, level: float) -> None:
+        """Set what is in the battery, 0..1; raises ValueError for another level."""
+        if not 0.0 <= level <= 1.0:
+            raise ValueError(f"expected a charge from 0 to 1, got {level}")
+        self._fleet.robots["charge"] = level * self.config.battery.capacity
+
     @property
     def duty(self) -> tuple[float, float]:
         """Duty of brush and fan, 0..1."""
