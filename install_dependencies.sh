@@ -144,6 +144,7 @@ system_packages() { # runtime|dev|bench
     python3-actionlib-msgs ros-actionlib-msgs
     python3-diagnostic-msgs ros-diagnostic-msgs
     python3-geometry-msgs ros-geometry-msgs
+    python3-move-base-msgs ros-move-base-msgs
     python3-nav-msgs ros-nav-msgs
     python3-rosgraph-msgs ros-rosgraph-msgs
     python3-sensor-msgs ros-sensor-msgs

@@ -15,6 +15,7 @@ from roomba.perception.rooms import segment
 from roomba.perception.scan_view import LidarModel
 from roomba.planning.grid_path import shortest_grid_path
 from roomba.planning.path import PathPlanner
+from roomba.sim.warm import warm_up
 from roomba.world.camera import Camera, Scene
 from roomba.world.home import DirtSource, Home
 from roomba.world.simulator import Simulator
@@ -38,6 +39,7 @@ def main() -> None:
     for supersampling in (1, 2):
         camera = Camera(scene, config.camera, supersampling)
         camera.render(home.station, 0.0, simulator.dirt.micrograms, simulator.dirt.frame)
+    warm_up()
 
 
 def _find_place(home: Home, config: RobotConfig, simulator: Simulator) -> None:

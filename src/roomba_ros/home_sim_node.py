@@ -7,6 +7,7 @@ import time
 from pathlib import Path
 
 import rospy
+from geometry_msgs.msg import PoseStamped
 from geometry_msgs.msg import Twist as TwistMessage
 from nav_msgs.msg import OccupancyGrid, Odometry
 from rosgraph_msgs.msg import Clock
@@ -25,6 +26,7 @@ from roomba_ros.convert import (
     map_message,
     mount_message,
     odometry_message,
+    pose_message,
     transform_message,
     twist_of,
 )
@@ -46,9 +48,10 @@ _FASTEST = 100.0
 class HomeSimNode:
     """Steps the world and publishes what the robot's drive and sensors say.
 
-    Publishes: ``/clock`` (20 Hz), ``map`` (latched), ``odom`` (20 Hz, by the wheel encoders),
-    ``/tf`` (odom -> base_link), ``/tf_static`` (where the sensors are on the body), and what
-    :class:`SensorTopics` and :class:`CameraTopics` tell.
+    Publishes: ``/clock`` (20 Hz), ``map`` (latched), ``station_pose`` (PoseStamped, latched: where
+    the docked robot stands on that map, its nose to the station), ``odom`` (20 Hz, by the wheel
+    encoders), ``/tf`` (odom -> base_link), ``/tf_static`` (where the sensors are on the body), and
+    what :class:`SensorTopics` and :class:`CameraTopics` tell.
     Subscribes: ``cmd_vel_out`` (Twist; older than the drive's time-out it stops),
     ``main_brush_motor``, ``vacuum_motor`` (Float32, duty 0..1, of brush and fan).
     Services: those of :class:`CameraTopics` and :class:`SimServices`.
@@ -161,6 +164,8 @@ class HomeSimNode:
         self._mounts.publish(self._mounted())
         self._map = rospy.Publisher("map", OccupancyGrid, queue_size=1, latch=True)
         self._map.publish(map_message(self._now(), self._simulator.home.map, "map"))
+        self._station = rospy.Publisher("station_pose", PoseStamped, queue_size=1, latch=True)
+        self._station.publish(pose_message(self._now(), self._simulator.home.station, "map"))
         self._sensors = SensorTopics(
             self._config, self._simulator, self._parameters.values.robot_name
         )

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import math
 import threading
 
 import rospy
 from geometry_msgs.msg import Twist as TwistMessage
 from roomba_robot.msg import Bumper, Cliff, RobotPosition
+from std_msgs.msg import Bool, Float32
 
 from roomba.control.position_loop import PositionLoop
 from roomba.control.setpoint import Setpoint
 from roomba.errors import ConfigError
-from roomba.geometry import Twist
+from roomba.geometry import Pose, Twist
 from roomba.mission.look_around import Search
 from roomba.perception.estimate import Estimate, Knowledge
 from roomba_ros.convert import cliff_of, twist_message
@@ -20,6 +22,10 @@ from roomba_ros.node import run_node
 from roomba_ros.parameters import LiveSeedParameters, read_robot_config
 from roomba_ros.room_topics import RoomTopics
 
+_LOOK_TIMEOUT = 0.5
+"""s; so long counts what was heard on ``look_around``."""
+_AHEAD = 10.0
+"""m; to a point so far in the direction of a heading it turns on the spot."""
 _STOP_REPEATS = 3
 """Ticks for which a stop is repeated before the drive is left to others."""
 
@@ -33,7 +39,9 @@ class PositionPubNode:
 
     Publishes: ``cmd_vel`` (Twist, 20 Hz while it drives), and what :class:`LocalizationTopics` and
     :class:`RoomTopics` tell.
-    Subscribes: ``change_position`` (RobotPosition, the wish), ``bumper``, ``cliff`` (while it looks
+    Subscribes: ``change_position`` (RobotPosition, the wish), ``change_heading`` (Float32, rad, map
+    frame, streamed: turn to it on the spot instead), ``look_around`` (Bool, streamed while
+    somebody else could go on if the place were known), ``bumper``, ``cliff`` (while it looks
     around), and what :class:`LocalizationTopics` and :class:`RoomTopics` hear.
     Services: those of :class:`LocalizationTopics` and :class:`RoomTopics`.
     Parameters: ``initial_post_x``, ``initial_post_y``, ``initial_post_theta`` (where odometry
@@ -54,6 +62,8 @@ class PositionPubNode:
         self._lock = threading.Lock()
         self._bumps = self._sees_cliff = False
         self._stops_left = 0
+        self._look_asked = -math.inf
+        self._heading = (-math.inf, 0.0)
         self._place = LocalizationTopics(self._config)
         self._place.start()
         self._rooms = RoomTopics()
@@ -62,6 +72,10 @@ class PositionPubNode:
         self._wishes = rospy.Subscriber(
             "change_position", RobotPosition, self._on_wish, queue_size=1, tcp_nodelay=True
         )
+        rospy.Subscriber(
+            "change_heading", Float32, self._on_heading, queue_size=1, tcp_nodelay=True
+        )
+        rospy.Subscriber("look_around", Bool, self._on_look_around, queue_size=1)
         rospy.Subscriber("bumper", Bumper, self._on_bumper, queue_size=1)
         rospy.Subscriber("cliff", Cliff, self._on_cliff, queue_size=1)
 
@@ -72,11 +86,14 @@ class PositionPubNode:
         if estimate is None:
             return
         self._drop_vanished_wish(now)
-        if estimate.knowledge.is_usable:
-            twist = self._twist_to_wish(now, estimate)
-        else:
+        if not estimate.knowledge.is_usable:
             self._forget_wish()
             twist = self._twist_to_look_around(now)
+        elif 0.0 <= now - self._heading[0] <= self._config.control.stream_timeout:
+            self._forget_wish()
+            twist = self._twist_to_heading(estimate.pose, self._heading[1])
+        else:
+            twist = self._twist_to_wish(now, estimate)
         self._command_drive(twist)
 
     def stop(self) -> None:
@@ -113,9 +130,15 @@ class PositionPubNode:
                 self._setpoint.fulfilled(now)
         return None
 
+    def _twist_to_heading(self, pose: Pose, heading: float) -> Twist:
+        """Return what is wanted to turn on the spot."""
+        x, y = pose.x + _AHEAD * math.cos(heading), pose.y + _AHEAD * math.sin(heading)
+        return Twist(0.0, self._loop.tick(pose, (x, y), 0.0).angular)
+
     def _twist_to_look_around(self, now: float) -> Twist | None:
         with self._lock:
             is_wanted = self._setpoint.is_wished(now) or self._place.is_asked_to_search
+        is_wanted |= 0.0 <= now - self._look_asked <= _LOOK_TIMEOUT
         if self._place.localizer is None or not (self._may_look_around and is_wanted):
             return None
         touches = self._bumps or self._sees_cliff
@@ -144,6 +167,15 @@ class PositionPubNode:
         with self._lock:
             target = (message.pos_x, message.pos_y)
             self._setpoint.wish(rospy.get_time(), target, self._wishes.get_num_connections())
+
+    def _on_heading(self, message: Float32) -> None:
+        if not math.isfinite(message.data):
+            rospy.logwarn("change_heading refused: expected finite rad, got %g", message.data)
+            return
+        self._heading = (rospy.get_time(), message.data)
+
+    def _on_look_around(self, message: Bool) -> None:
+        self._look_asked = rospy.get_time() if message.data else -math.inf
 
     def _on_bumper(self, message: Bumper) -> None:
         self._bumps = message.is_left_pressed or message.is_right_pressed

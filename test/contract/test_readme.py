@@ -51,9 +51,15 @@ def test_services_have_the_types_that_the_table_says(shared_robot: RosGraph) -> 
     Probe(shared_robot)
     listed = {
         next(iter(names(row[0]))): next(iter(names(row[1])))
-        for row in table("Services and the action")
+        for row in table("Services and actions")
     }
-    assert listed.pop("/walk_to_point") == "roomba_robot/WalkToPointAction"
+    actions = {name: kind for name, kind in listed.items() if kind.endswith("Action")}
+    types = dict(xmlrpc.client.ServerProxy(shared_robot.uri).getTopicTypes("/test")[2])
+    goals = {name for name, kind in types.items() if kind.endswith("ActionGoal")}
+    assert {f"{name}/goal" for name in actions} == goals
+    for name, kind in actions.items():
+        assert types[f"{name}/goal"] == f"{kind}Goal"
+        del listed[name]
     _, _, services = shared_robot.system_state()
     own = {name for name in services if name.count("/") == 1 or "logger" not in name}
     assert own == set(listed)

@@ -104,6 +104,8 @@ def test_every_topic_has_one_writer(shared_robot: RosGraph) -> None:
     # Every node logs, and each of two publishes one part of the tree of frames.
     assert shared.pop("/rosout")
     assert sorted(shared.pop("/tf")) == ["/home_sim_node", "/position_pub_node"]
+    # Each tells what it drives; only one of them drives at a time.
+    assert sorted(shared.pop("/plan")) == ["/mission_node", "/walk_to_point_action_server_node"]
     assert shared == {}
 
 

@@ -1,4 +1,5 @@
 import math
+import signal
 import threading
 import time
 
@@ -9,7 +10,8 @@ from fixtures.waiting import wait_until
 from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
 from roomba_robot.msg import Bumper
-from std_msgs.msg import Float32
+from roomba_robot.srv import EmergencyStop
+from std_msgs.msg import Float32, String
 
 
 class SpeedProbe(Probe):
@@ -99,6 +101,50 @@ def test_silence_stops_the_drive_within_its_time_out(graph: RosGraph) -> None:
     silent = time.monotonic()
     wait_until(lambda: probe.drive_gets(0.0), 2.0, "standstill")
     assert 0.3 < time.monotonic() - silent < 0.9
+
+
+def test_the_mission_drives_while_nobody_else_does(graph: RosGraph) -> None:
+    probe = start(graph)
+    mission = probe.publisher("/cmd_vel_mission", Twist)
+    wait_until(lambda: mission.get_num_connections() > 0, 10.0)
+    wish = Twist()
+    wish.linear.x = 3.0
+
+    def drives(linear: float) -> bool:
+        mission.publish(wish)
+        time.sleep(0.05)
+        return probe.drive_gets(linear)
+
+    wait_until(lambda: drives(0.5), 5.0, "the mission drives, within the same limit")
+    probe.want(-0.2)
+    wait_until(lambda: drives(-0.2), 2.0, "who steers directly comes first")
+    time.sleep(0.3)
+    assert probe.drive_gets(-0.2)
+    probe.wanted = None
+    wait_until(lambda: drives(0.5), 2.0, "the mission drives again")
+
+
+def test_an_emergency_stop_holds_and_outlives_the_node(graph: RosGraph) -> None:
+    probe = start(graph)
+    probe.want(0.4)
+    wait_until(lambda: probe.drive_gets(0.4), 5.0)
+    call = rospy.ServiceProxy("/emergency_stop", EmergencyStop)
+    assert call(True, "a child came in").success
+    assert probe.next("/emergency_stop", String).data == "a child came in"
+    wait_until(lambda: probe.drive_gets(0.0), 1.0, "it stands")
+    old = graph.signal("speed_pub_node", signal.SIGKILL)
+    graph.programs[-1].ends(5.0)
+    probe.newest.clear()
+    graph.rosrun("speed_pub_node.py")
+    wait_until(lambda: graph.answers("speed_pub_node"), 15.0)
+    assert graph.pid("speed_pub_node") != old
+    wait_until(lambda: probe.drive_gets(0.0), 10.0, "the new node tells the drive to stand")
+    assert probe.newest["/emergency_stop"].data == "a child came in"
+    time.sleep(0.3)
+    assert probe.drive_gets(0.0)
+    assert call(False, "").message == "the drive is free again"
+    wait_until(lambda: probe.drive_gets(0.4), 2.0, "it drives")
+    assert probe.newest["/emergency_stop"].data == ""
 
 
 def test_a_pressed_bumper_lets_nothing_push(graph: RosGraph) -> None:

@@ -1,6 +1,16 @@
+import math
+
+import actionlib
+import rospy
+from actionlib_msgs.msg import GoalStatus
 from fixtures.graph import RosGraph
 from fixtures.probe import Probe, Walker
 from fixtures.waiting import wait_until
+from geometry_msgs.msg import PoseStamped
+from move_base_msgs.msg import MoveBaseAction, MoveBaseActionGoal, MoveBaseGoal
+from nav_msgs.msg import OccupancyGrid
+from roomba_robot.msg import RobotPosition
+from std_msgs.msg import Float32
 
 SCRIPT = "walk_to_point_action_server.py"
 SERVER = "/walk_to_point_action_server_node"
@@ -39,3 +49,59 @@ def test_without_map_and_pose_a_goal_is_rejected_with_the_reason(graph: RosGraph
     walker.send(1.0, 1.0)
     assert walker.ends(5.0) == 5
     assert "map and position" in walker.text
+
+
+def stamped(x: float, y: float, frame: str = "map") -> PoseStamped:
+    message = PoseStamped()
+    message.header.frame_id = frame
+    message.pose.position.x, message.pose.position.y = x, y
+    message.pose.orientation.w = 1.0
+    return message
+
+
+def room() -> OccupancyGrid:
+    message = OccupancyGrid(data=[0] * 6400)
+    message.info.resolution, message.info.width, message.info.height = 0.05, 80, 80
+    message.info.origin.position.x = message.info.origin.position.y = -2.0
+    message.info.origin.orientation.w = 1.0
+    return message
+
+
+def test_move_base_is_the_same_walk_and_the_newest_goal_counts(graph: RosGraph) -> None:
+    graph.rosrun(SCRIPT)
+    probe = Probe(graph)
+    probe.send("/map", room())
+    probe.send("/pose", stamped(0.0, 0.0))
+    walker = Walker()
+    client = actionlib.SimpleActionClient("move_base", MoveBaseAction)
+    wait_until(lambda: client.wait_for_server(rospy.Duration(0.01)), 10.0)
+
+    client.send_goal(MoveBaseGoal(stamped(1.0, 0.0, "odom")))
+    wait_until(lambda: client.get_state() == GoalStatus.REJECTED, 5.0, "another frame")
+    assert "'odom'" in client.get_goal_status_text()
+
+    poses: list[PoseStamped] = []
+    client.send_goal(
+        MoveBaseGoal(stamped(1.0, 0.0)),
+        feedback_cb=lambda message: poses.append(message.base_position),
+    )
+    assert 0.0 < probe.next("/change_position", RobotPosition).pos_x <= 1.0
+    wait_until(lambda: poses, 5.0, "where it is")
+
+    walker.send(-1.0, 0.0)
+    wait_until(lambda: client.get_state() == GoalStatus.PREEMPTED, 5.0, "the newer goal counts")
+    assert client.get_goal_status_text() == "a newer goal took over"
+
+    probe.hear("/move_base/goal", MoveBaseActionGoal)
+    probe.send("/move_base_simple/goal", stamped(0.0, 0.0))
+    assert walker.ends(5.0) == GoalStatus.PREEMPTED
+    wait_until(lambda: "/move_base/goal" in probe.newest, 5.0, "RViz's goal is an ordinary one")
+
+    wanted = stamped(0.0, 0.0)
+    wanted.pose.orientation.z = wanted.pose.orientation.w = math.sqrt(0.5)
+    client.send_goal(MoveBaseGoal(wanted))
+    heading = probe.next("/change_heading", Float32)
+    assert math.isclose(heading.data, 0.5 * math.pi, rel_tol=1e-6), "there it turns"
+    assert client.get_state() == GoalStatus.ACTIVE
+    probe.send("/pose", wanted)
+    wait_until(lambda: client.get_state() == GoalStatus.SUCCEEDED, 5.0, "it looks there")

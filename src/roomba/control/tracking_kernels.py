@@ -145,7 +145,8 @@ def corner_limit(state: Row, course: Course, left: float, limit: float) -> float
         way = max(ahead - course.halves[leg + 1] - speed * state.period, 0.0)
         if through == 0.0:
             stop = math.sqrt(2.0 * state.braking * way)
-            return max(min(speed, stop, max(ahead, 0.0) / (1.6 * state.period)), _SLOWEST)
+            nearly: float = max(ahead, 0.0) / (1.6 * state.period)
+            return max(min(speed, stop, nearly), _SLOWEST)
         speed = min(speed, math.sqrt(through * through + 2.0 * state.braking * way))
         leg += 1
         if leg > last:

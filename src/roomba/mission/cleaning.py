@@ -61,6 +61,7 @@ class Cleaning:
     ) -> None:
         """Find out what is wanted; raises CleanRefusedError when that is nothing."""
         self.request, self._site, self._config, self._dirt = request, site, config, dirt
+        self._began_at = here
         coverable = site.coverable()
         self.stages = stages_of(request, site, dirt, coverable, here)
         wanted = np.logical_or.reduce([stage.floor for stage in self.stages])
@@ -128,10 +129,16 @@ class Cleaning:
     def use_site(self, site: Site) -> None:
         """Go on with other zones or rooms; what is swept stays so."""
         coverable = site.coverable()
-        cells = self.coverage.cells
-        cells[~coverable] &= np.uint8(0xFF ^ WANTED)
         self._site = site
+        asked = stages_of(self.request, site, self._dirt, coverable, self._began_at)
+        wanted = np.logical_or.reduce([stage.floor for stage in asked]) if asked else ~coverable
+        cells = self.coverage.cells
+        freed = wanted & ~self.coverage.wanted
+        cells[~(coverable & wanted)] &= np.uint8(0xFF ^ WANTED)
+        cells[freed] |= np.uint8(WANTED)
         self.stages = [Stage(s.name, s.floor & coverable, s.again) for s in self.stages]
+        if freed.any():
+            self.stages.append(Stage("what was a zone before", freed))
         self.coverage.count_again()
 
     def values(self) -> Values:

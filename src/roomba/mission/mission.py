@@ -45,6 +45,8 @@ from roomba.planning.path import NoPathError
 
 _LONGEST_TICK: Final = 2.0
 """s; more between two ticks than this is a clock that was set."""
+_CARRIED: Final = 1.0
+"""m; farther from where it last knew its place it did not drive itself while it looked around."""
 _MOST_WAYS_HOME: Final = 5
 """So often it looks for a way home before it says that there is none."""
 _NEAR_STAGING: Final = 0.08
@@ -93,6 +95,7 @@ class Mission:
         self._result: CleanResult | None = None
         self._was_docked = senses.battery.is_docked
         self._astray_since: float | None = None
+        self._known_at = (senses.pose.x, senses.pose.y)
         self._last = senses
         self._started = senses.now
         self._dock_retries = 0
@@ -297,11 +300,15 @@ class Mission:
         if senses.knowledge.is_usable:
             if self._astray_since is not None:
                 self._astray_since = None
-                self.trail.forget()
-                self._drop_driver()
+                x, y = self._known_at
+                if senses.pose.distance_to(x, y) > _CARRIED:
+                    # It was carried, or wrong before: what it remembers is of another place.
+                    self.trail.forget()
+                    self.obstacles.forget()
             return
         if self._astray_since is None or senses.now < self._astray_since:
             self._astray_since = senses.now
+            self._known_at = self.last_place
         waited = senses.now - self._astray_since
         if senses.knowledge is Knowledge.LOST or waited > self._robot.walk.astray_timeout:
             reason = f"the robot does not know where it is: {senses.trouble}"
@@ -343,7 +350,7 @@ class Mission:
         if self.book.must_go_home(senses, self._way_home):
             self._go(Event.LOW, senses)
             return MissionStep()
-        if self.driver is None:
+        if self.driver is None and not self._leave_zone(senses):
             obstacles = self.obstacles.standing(senses.now)
             points = self.cleaning.next_path(senses.pose, obstacles)
             if points is None:
@@ -353,6 +360,7 @@ class Mission:
                     self._go(Event.FINISHED, senses)
                 return MissionStep()
             self.driver = self._drive(points, senses)
+        assert self.driver is not None
         step = self.driver.tick(senses, self.speed_limit(senses))
         if step.state is DriveState.STUCK:
             self._fail(CleanOutcome.STUCK, step.reason, senses)
@@ -371,13 +379,14 @@ class Mission:
         if senses.pose.distance_to(staging.x, staging.y) < _NEAR_STAGING:
             self._go(Event.ARRIVED, senses)
             return MissionStep()
-        if self.driver is None:
+        if self.driver is None and not self._leave_zone(senses):
             try:
                 points = self._plan_home(senses)
             except NoPathError as error:
                 self._try_home_again(f"no way home: {error}", senses)
                 return MissionStep()
             self.driver = self._drive(points, senses)
+        assert self.driver is not None
         step = self.driver.tick(senses, self.speed_limit(senses))
         if step.state is DriveState.STUCK:
             self._fail(CleanOutcome.STUCK, step.reason, senses)
@@ -385,8 +394,20 @@ class Mission:
             self.driver = None
             self._try_home_again(step.reason, senses)
         elif step.state.is_over:
-            self._go(Event.ARRIVED, senses)
+            self.driver = None
         return MissionStep(step.twist)
+
+    def _leave_zone(self, senses: Senses) -> bool:
+        """Begin to drive out of a no-go zone, should the robot be in one; tell whether it is."""
+        here = (senses.pose.x, senses.pose.y)
+        if not self.site.is_in_zone(here):
+            return False
+        try:
+            points = self.site.way_out_of_zone(here, self.obstacles.standing(senses.now))
+        except NoPathError:
+            return False
+        self.driver = self._drive(points, senses)
+        return True
 
     def _plan_home(self, senses: Senses) -> NDArray[np.float64]:
         """Plan to the place before the station, if need be closely by what stands in the way."""

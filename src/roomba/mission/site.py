@@ -21,7 +21,7 @@ from roomba.planning.costmap import Point, RoundObstacle
 from roomba.planning.coverage import CoveragePlanner
 from roomba.planning.coverage_floor import CoverageFloor
 from roomba.planning.coverage_plan import CoveragePlan
-from roomba.planning.path import PathPlanner
+from roomba.planning.path import NoPathError, NoPathReason, PathPlanner
 
 Mask = NDArray[np.bool_]
 
@@ -56,10 +56,11 @@ class Site:
         # Swaths overlap a little, since no robot drives exactly on its path.
         swath = self.tool_width - driving.overlap
         self.coverage = CoveragePlanner(self.known, self.reach, swath)
-        # Paths may come as near to walls as swaths do, so that they can join them.
-        least = 0.5 * driving.clearance
         self.plans, self.planning_time = 0, 0.0
-        self.paths = PathPlanner(self.known, radius, driving.way_clearance, least)
+        self.body_radius, self._clearance = radius, driving.way_clearance
+        # Paths may come as near to walls as swaths do, so that they can join them.
+        self._least = 0.5 * driving.clearance
+        self.paths = PathPlanner(self.known, radius, self._clearance, self._least)
 
     def plan_coverage(
         self, here: Point, todo: Mask, obstacles: Sequence[RoundObstacle], *, edges_only: bool
@@ -85,6 +86,37 @@ class Site:
         """
         nothing = np.zeros(self.frame.shape, np.bool_)
         return self.coverage.plan(here, there, nothing, obstacles).points
+
+    def is_in_zone(self, here: Point) -> bool:
+        """Whether a robot at a point touches a zone where it must not go."""
+        frame, reach = self.known.frame, self.body_radius
+        row, column = frame.cell_of(here[0] - reach, here[1] - reach)
+        last_row, last_column = frame.cell_of(here[0] + reach, here[1] + reach)
+        rows = slice(max(row, 0), max(last_row + 1, 0))
+        columns = slice(max(column, 0), max(last_column + 1, 0))
+        zone = (self.known.values != self.occupancy.values)[rows, columns]
+        found = np.argwhere(zone)
+        x = frame.origin_x + (found[:, 1] + columns.start + 0.5) * frame.resolution
+        y = frame.origin_y + (found[:, 0] + rows.start + 0.5) * frame.resolution
+        return bool((np.hypot(x - here[0], y - here[1]) < reach).any())
+
+    def way_out_of_zone(
+        self, here: Point, obstacles: Sequence[RoundObstacle]
+    ) -> NDArray[np.float64]:
+        """Return the shortest way, float64 [n, 2], m, out of the zones to where it may be.
+
+        It goes through zones, of course. Raises NoPathError when there is none.
+        """
+        planner = PathPlanner(self.occupancy, self.body_radius, self._clearance, self._least)
+        allowed = self.paths.reachable((self.staging.x, self.staging.y))
+        places = np.argwhere(allowed & planner.reachable(here, obstacles))
+        if not len(places):
+            raise NoPathError(here, NoPathReason.GOAL_UNREACHABLE, None)
+        frame = self.known.frame
+        x = frame.origin_x + (places[:, 1] + 0.5) * frame.resolution
+        y = frame.origin_y + (places[:, 0] + 0.5) * frame.resolution
+        nearest = int(np.argmin(np.hypot(x - here[0], y - here[1])))
+        return planner.plan(here, (float(x[nearest]), float(y[nearest])), obstacles).points
 
     @property
     def frame(self) -> GridFrame:

@@ -89,9 +89,10 @@ class DirtMap:
         """Return values at the middles of another grid's cells."""
         rows = ((np.arange(frame.rows) + 0.5) * frame.resolution / CELL).astype(np.int64)
         columns = ((np.arange(frame.columns) + 0.5) * frame.resolution / CELL).astype(np.int64)
-        return values[
+        over: Floats = values[
             np.ix_(np.minimum(rows, values.shape[0] - 1), np.minimum(columns, values.shape[1] - 1))
         ]
+        return over
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

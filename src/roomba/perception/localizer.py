@@ -40,10 +40,10 @@ _GOOD_THROUGH: Final = 0.03
 """Shares of beams with which a pose that was told needs no comparison with all others."""
 _TOLD_RADIUS: Final = 0.5
 _TOLD_TURN: Final = 0.5
-_HERE_RADIUS: Final = 0.2
-_HERE_TURN: Final = 0.2
+_HERE_RADIUS: Final = 0.04
+_HERE_TURN: Final = 0.04
 """m, rad; so far around a pose that was told, and one that was known, the robot is expected."""
-_HERE_EVIDENCE: Final = 2.0
+_HERE_EVIDENCE: Final = 14.0
 """More than what is needed to believe a place: where it was it is, unless another is likelier."""
 _HELP: Final = (
     "carry it to its station, or tell where it is (in RViz: 2D Pose Estimate), "

@@ -137,16 +137,25 @@ class Relocation:
     def _compare(self, starts: NDArray[np.float64]) -> None:
         """Match and judge the places that the search found."""
         back, expected = self._reckoned.inverse(), self._expectation
-        poses = [Pose(*start) for start in starts.tolist()]
-        for start in poses if expected is None else [expected.pose, *poses]:
-            pose, fit = self._matched(start, _FROM_AFAR)
-            hypothesis = Hypothesis(pose.compose(back), fit.evidence, fit)
-            if expected is not None and expected.is_met(pose):
-                hypothesis.evidence += expected.evidence
-                hypothesis.is_expected = True
-            self.hypotheses.append(hypothesis)
+        tries = [(Pose(*start), _FROM_AFAR) for start in starts.tolist()]
+        if expected is not None:
+            # From afar what stands there now, and did not before, would draw it away.
+            tries = [(expected.pose, _FROM_NEAR), (expected.pose, _FROM_AFAR), *tries]
+            # And where it was is where it is, as likely as not.
+            self._weigh(expected.pose, self._view.fit(self._field, _array(expected.pose)), back)
+        for start, scales in tries:
+            self._weigh(*self._matched(start, scales), back)
         self.views = 1
         self._sort()
+
+    def _weigh(self, pose: Pose, fit: Fit, back: Pose) -> None:
+        """Add a place, with the advantage that an expected one has."""
+        expected = self._expectation
+        hypothesis = Hypothesis(pose.compose(back), fit.evidence, fit)
+        if expected is not None and expected.is_met(pose):
+            hypothesis.evidence += expected.evidence
+            hypothesis.is_expected = True
+        self.hypotheses.append(hypothesis)
 
     def _matched(self, start: Pose, scales: NDArray[np.float64]) -> tuple[Pose, Fit]:
         prior = np.array([start.x, start.y, start.theta])
@@ -189,3 +198,7 @@ class Relocation:
             return True
         lead = self.hypotheses[0].evidence - self.hypotheses[1].evidence
         return lead > self._config.needed_evidence
+
+
+def _array(pose: Pose) -> NDArray[np.float64]:
+    return np.array([pose.x, pose.y, pose.theta])

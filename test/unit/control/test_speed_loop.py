@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from roomba.control.speed_loop import BACKING_OFF_TIME, BACKING_SPEED, Hold, SpeedLoop
+from roomba.control.speed_loop import BACKING_OFF_TIME, BACKING_SPEED, Hold, Source, SpeedLoop
 from roomba.geometry import Twist
 
 
@@ -35,6 +35,47 @@ def test_after_the_clock_was_set_back_a_command_still_grows_old() -> None:
     speed_loop.command(1000.0, Twist(0.3, 0.0))
     assert speed_loop.tick(10.0)[0] == Twist(0.3, 0.0)
     assert speed_loop.tick(10.6)[0] == Twist()
+
+
+def test_a_direct_command_counts_above_the_missions_while_it_is_fresh() -> None:
+    speed_loop = loop()
+    for tenth in range(20):
+        speed_loop.command(0.1 * tenth, Twist(0.1, 0.0), Source.MISSION)
+        if tenth == 5:
+            speed_loop.command(0.5, Twist(-0.2, 1.0))
+        is_direct = 5 <= tenth <= 10
+        expected = Twist(-0.2, 1.0) if is_direct else Twist(0.1, 0.0)
+        assert speed_loop.tick(0.1 * tenth)[0] == expected, tenth
+
+
+def test_the_missions_command_grows_old_as_any_other() -> None:
+    speed_loop = loop()
+    speed_loop.command(10.0, Twist(3.0, 0.0), Source.MISSION)
+    assert speed_loop.tick(10.5) == (Twist(0.5, 0.0), Hold.NONE)
+    assert speed_loop.tick(10.51) == (Twist(), Hold.NO_COMMAND)
+
+
+@pytest.mark.parametrize("source", Source)
+def test_the_emergency_stop_is_above_everything(source: Source) -> None:
+    speed_loop = loop()
+    speed_loop.set_cliff(True)
+    speed_loop.set_bumper(True)
+    speed_loop.emergency = True
+    for tenth in range(50):
+        speed_loop.command(0.1 * tenth, Twist(-0.3, 1.0), source)
+        assert speed_loop.tick(0.1 * tenth) == (Twist(), Hold.EMERGENCY)
+
+
+def test_what_was_asked_for_during_an_emergency_stop_is_not_driven_after_it() -> None:
+    speed_loop = loop()
+    speed_loop.command(0.0, Twist(0.3, 0.0))
+    speed_loop.command(0.0, Twist(0.3, 0.0), Source.MISSION)
+    speed_loop.emergency = True
+    assert speed_loop.tick(0.1)[1] is Hold.EMERGENCY
+    speed_loop.emergency = False
+    assert speed_loop.tick(0.2) == (Twist(), Hold.NO_COMMAND)
+    speed_loop.command(0.3, Twist(0.3, 0.0))
+    assert speed_loop.tick(0.3) == (Twist(0.3, 0.0), Hold.NONE)
 
 
 @given(st.floats(-5.0, 5.0), st.floats(-90.0, 90.0), st.floats(0.0, 2.0), st.floats(0.01, 2.0))

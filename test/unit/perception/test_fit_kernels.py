@@ -12,7 +12,16 @@ from hypothesis import strategies as st
 
 from roomba.geometry import Pose
 from roomba.grid import FREE, OCCUPIED, GridFrame, OccupancyMap
-from roomba.perception.fit_kernels import AGREEING, EVIDENCE, LOOKED_AT, SHORT, THROUGH, judge
+from roomba.perception.field_kernels import expected_range
+from roomba.perception.fit_kernels import (
+    AGREEING,
+    EVIDENCE,
+    JUDGE_LANES,
+    LOOKED_AT,
+    SHORT,
+    THROUGH,
+    judge,
+)
 from roomba.perception.scan_view import Fit, ScanView
 from roomba.perception.surface_field import SurfaceField
 
@@ -133,8 +142,9 @@ def test_shares_add_to_1_and_evidence_is_never_for_what_is_not_there(
 
 def test_with_a_stride_only_some_beams_are_asked() -> None:
     pose, counts = np.array([1.2, 1.0, 0.4]), np.full(5, 9.0)
+    lanes = np.empty((JUDGE_LANES, 360))
     view = LIDAR.view(EYE.scan(Pose(*pose.tolist())))
-    judge(FIELD.values, FIELD.place, view.ends, len(view), pose, view.mount, 8, counts)
+    judge(FIELD.values, FIELD.place, view.ends, len(view), pose, view.mount, 8, counts, lanes)
     assert counts[LOOKED_AT] == math.ceil(len(view) / 8)
     assert counts[[AGREEING, SHORT, THROUGH]].sum() == counts[LOOKED_AT]
     assert counts[EVIDENCE] <= 0.0
@@ -162,3 +172,24 @@ def test_off_the_map_no_beam_agrees() -> None:
     view = LIDAR.view(Eye(TWO_ROOMS).scan(Pose(1.0, 1.0, 0.0)))
     fit = fit_at(Pose(50.0, 50.0, 0.0), view)
     assert (fit.agree, fit.short, fit.through) == (0.0, 1.0, 0.0)
+
+
+@given(st.integers(0, 2**32 - 1))
+@settings(max_examples=60)
+def test_beams_go_through_what_a_ray_of_its_own_meets_before(seed: int) -> None:
+    """All rays at once mark the same beams as each ray for itself."""
+    random = np.random.default_rng(seed)
+    pose = free_poses(FURNISHED, 1, random)[0]
+    ranges = EYE.scan(pose, random)
+    ranges[random.integers(0, 360, 40)] += random.uniform(0.05, 1.0, 40).astype(np.float32)
+    view = LIDAR.view(ranges)
+    off = pose.compose(Pose(*random.normal(0.0, 0.03, 3).tolist()))
+    through = 0
+    for x, y, along, across in view.ends.tolist():
+        length = math.hypot(x, y)
+        there = off.compose(Pose(along, across))
+        met = expected_range(
+            FIELD.values, FIELD.place, off.x, off.y, there.x - off.x, there.y - off.y, length
+        )
+        through += met < length - (0.06 + 0.01 * length)
+    assert fit_at(off, view).through * len(view) == pytest.approx(through, abs=0.5)

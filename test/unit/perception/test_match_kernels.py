@@ -203,8 +203,8 @@ def test_gradients_are_those_of_half_the_squared_distances() -> None:
         return 0.5 * sum(look(FIELD.values, FIELD.place, x, y)[0] ** 2 for x, y in ends.tolist())
 
     at = np.array([1.02, 0.97, 0.42])
-    information, gradient = np.zeros((3, 3)), np.zeros(3)
-    add_beams(FIELD.values, FIELD.place, view.ends, len(view), at, 1e6, 1.0, information, gradient)
+    information, gradient, lanes = np.zeros((3, 3)), np.zeros(3), view.ends[:, :2].T.copy()
+    add_beams(FIELD.values, FIELD.place, lanes, len(view), at, 1e6, 1.0, information, gradient)
     for axis in range(3):
         step = np.zeros(3)
         step[axis] = 1e-5
@@ -217,8 +217,8 @@ def test_a_beam_that_is_a_scale_off_weighs_a_quarter() -> None:
     slope = np.tile(0.05 * np.arange(60, dtype=np.float32), (20, 1))
     place = np.array([0.0, 0.0, 0.05])
     information, gradient = np.zeros((3, 3)), np.zeros(3)
-    ends = np.array([[0.3, 0.0, 1.0, 0.0]])
-    add_beams(slope, place, ends, 1, np.array([0.0, 0.5, 0.0]), 0.3, 8.0, information, gradient)
+    lanes = np.array([[0.3], [0.0]])
+    add_beams(slope, place, lanes, 1, np.array([0.0, 0.5, 0.0]), 0.3, 8.0, information, gradient)
     assert information[0, 0] == pytest.approx(2.0)
     assert gradient[0] == pytest.approx(2.0 * 0.3)
 

@@ -1,0 +1,92 @@
+"""The figures of a run: plain values, for tables, files and other processes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+
+@dataclass(frozen=True, slots=True)
+class MissedFloor:
+    """Floor that was wanted and is not clean, as the robot tells it: m2, m, and why."""
+
+    area_m2: float
+    x: float
+    y: float
+    room: str
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
+class Figures:
+    """What a run achieved; the unit is the end of each name, and see :mod:`.json_file`."""
+
+    outcome: str
+    message: str
+    docked: bool
+    duration_s: float
+    wall_s: float
+    planning_s: float
+    plans: int
+    distance_m: float
+    turning_rad: float
+    energy_wh: float
+    dirt_g: float
+    coverable_m2: float
+    covered_m2: float
+    tool_width_m: float
+    hits: int
+    missed: tuple[MissedFloor, ...]
+
+    @property
+    def is_completed(self) -> bool:
+        """Whether all was done, and the robot stands on its station."""
+        return self.outcome == "COMPLETED" and self.docked
+
+    @property
+    def fraction(self) -> float:
+        """Share of the floor that the tool can reach that it passed over, 0..1."""
+        return self.covered_m2 / self.coverable_m2 if self.coverable_m2 > 0.0 else 1.0
+
+    @property
+    def path_ratio(self) -> float | None:
+        """Way, by the least way that could sweep that floor: its area by the tool's width."""
+        least = self.coverable_m2 / self.tool_width_m
+        return self.distance_m / least if least > 0.0 else None
+
+    @property
+    def times_real_time(self) -> float:
+        """Robot time by wall time."""
+        return self.duration_s / max(self.wall_s, 1e-9)
+
+    def as_json(self) -> dict[str, Any]:
+        """Return plain values; lengths to 0.1 mm, areas to 1 cm2."""
+        ratio = self.path_ratio
+        return {
+            "outcome": self.outcome,
+            "message": self.message,
+            "docked": self.docked,
+            "duration_s": round(self.duration_s, 3),
+            "wall_s": round(self.wall_s, 4),
+            "planning_s": round(self.planning_s, 4),
+            "plans": self.plans,
+            "distance_m": round(self.distance_m, 4),
+            "turning_rad": round(self.turning_rad, 4),
+            "energy_wh": round(self.energy_wh, 4),
+            "dirt_g": round(self.dirt_g, 4),
+            "coverable_m2": round(self.coverable_m2, 4),
+            "covered_m2": round(self.covered_m2, 4),
+            "fraction": round(self.fraction, 6),
+            "path_ratio": None if ratio is None else round(ratio, 4),
+            "hits": self.hits,
+            "missed": [
+                {
+                    "area_m2": round(each.area_m2, 4),
+                    "x": round(each.x, 4),
+                    "y": round(each.y, 4),
+                    "room": each.room,
+                    "reason": each.reason,
+                }
+                for each in self.missed
+            ],
+        }

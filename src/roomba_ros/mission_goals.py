@@ -1,0 +1,181 @@
+"""The goals of the mission's three actions: how each begins, what of it is told, how it ends."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from typing import Any
+
+import actionlib
+from actionlib_msgs.msg import GoalStatus
+from roomba_robot.msg import (
+    CleanAction,
+    DockAction,
+    DockFeedback,
+    DockResult,
+    UndockAction,
+    UndockFeedback,
+    UndockResult,
+    VacuumState,
+)
+from roomba_robot.msg import CleanResult as CleanResultMessage
+
+from roomba.mission.clean_request import CleanOutcome, CleanResult
+from roomba.mission.machine import Errand, Event, Phase
+from roomba.mission.mission import Mission
+from roomba.mission.senses import Senses
+from roomba_ros.convert_mission import feedback_message, request_of, result_message
+
+
+class MissionGoal(ABC):
+    """One goal, from its coming to its end."""
+
+    name: str
+    """Of its action."""
+    action: type
+    """Its type."""
+
+    def __init__(self, handle: actionlib.ServerGoalHandle) -> None:
+        """Take the action library's handle of it."""
+        self._handle = handle
+
+    @property
+    def identity(self) -> tuple[str, str]:
+        """What tells it from all other goals."""
+        return self.name, str(self._handle.get_goal_id().id)
+
+    @property
+    def is_recalled(self) -> bool:
+        """Whether it was cancelled before it began."""
+        return bool(self._handle.get_goal_status().status == GoalStatus.RECALLING)
+
+    @abstractmethod
+    def begin(self, mission: Mission, senses: Senses) -> None:
+        """Let the mission do it; raises RoombaError with the reason why not."""
+
+    @abstractmethod
+    def follow(self, mission: Mission, result: CleanResult | None) -> bool:
+        """Tell its end if it has ended, and return that; ``result`` is of a clean that ended."""
+
+    @abstractmethod
+    def tell(self, state: VacuumState) -> None:
+        """Tell how far it is."""
+
+    @abstractmethod
+    def _result(self, message: str) -> Any:
+        """Return the action's result for what was not done, and why."""
+
+    def accept(self) -> None:
+        """Tell that it has begun."""
+        self._handle.set_accepted()
+
+    def reject(self, reason: str) -> None:
+        """Tell why it is not begun."""
+        self._handle.set_rejected(self._result(reason), reason)
+
+    def stopped(self, result: CleanResult | None, reason: str) -> None:
+        """Tell that somebody ended it."""
+        self._handle.set_canceled(self._result(reason), reason)
+
+    def given_up(self, reason: str) -> None:
+        """Tell why it comes to no good end."""
+        self._handle.set_aborted(self._result(reason), reason)
+
+
+class CleaningGoal(MissionGoal):
+    """Clean floor."""
+
+    name, action = "clean", CleanAction
+
+    def begin(self, mission: Mission, senses: Senses) -> None:
+        """Let the mission clean."""
+        mission.clean(request_of(self._handle.get_goal()), senses)
+
+    def follow(self, mission: Mission, result: CleanResult | None) -> bool:
+        """Tell its end if there is a result."""
+        if result is None:
+            return False
+        message = result_message(result)
+        text = result.message or result.outcome.value
+        if result.outcome is CleanOutcome.COMPLETED:
+            self._handle.set_succeeded(message, text)
+        elif result.outcome is CleanOutcome.STOPPED:
+            self._handle.set_canceled(message, text)
+        else:
+            self._handle.set_aborted(message, text)
+        return True
+
+    def stopped(self, result: CleanResult | None, reason: str) -> None:
+        """Tell that somebody ended it, and what it achieved."""
+        message = self._result(reason) if result is None else result_message(result)
+        self._handle.set_canceled(message, reason)
+
+    def tell(self, state: VacuumState) -> None:
+        """Tell how much is clean."""
+        self._handle.publish_feedback(feedback_message(state))
+
+    def _result(self, message: str) -> CleanResultMessage:
+        return CleanResultMessage(outcome=CleanResultMessage.STOPPED, message=message)
+
+
+class DockingGoal(MissionGoal):
+    """Go to the station."""
+
+    name, action = "dock", DockAction
+
+    def begin(self, mission: Mission, senses: Senses) -> None:
+        """Let the mission go there."""
+        mission.command(Event.DOCK, senses)
+
+    def follow(self, mission: Mission, result: CleanResult | None) -> bool:
+        """Tell its end if the robot is there, or cannot get there."""
+        state = mission.state
+        if state.phase is Phase.DOCKED:
+            self._handle.set_succeeded(DockResult(True, ""), "docked")
+        elif state.phase in (Phase.ERROR, Phase.EMERGENCY):
+            self.given_up(mission.message)
+        elif state.errand is not Errand.DOCK:
+            self.stopped(None, "it was stopped")
+        else:
+            return False
+        return True
+
+    def tell(self, state: VacuumState) -> None:
+        """Tell whether it drives there or is about to touch it."""
+        self._handle.publish_feedback(DockFeedback(state.phase))
+
+    def _result(self, message: str) -> DockResult:
+        return DockResult(False, message)
+
+
+class UndockingGoal(MissionGoal):
+    """Back out of the station."""
+
+    name, action = "undock", UndockAction
+
+    def begin(self, mission: Mission, senses: Senses) -> None:
+        """Let the mission back out."""
+        mission.command(Event.UNDOCK, senses)
+
+    def follow(self, mission: Mission, result: CleanResult | None) -> bool:
+        """Tell its end if the robot is out, or cannot get out."""
+        state = mission.state
+        if state.phase in (Phase.ERROR, Phase.EMERGENCY):
+            self.given_up(mission.message)
+        elif state.phase is Phase.IDLE:
+            self._handle.set_succeeded(UndockResult(True, ""), "out of the station")
+        elif state.errand is not Errand.UNDOCK:
+            self.stopped(None, "it was stopped")
+        else:
+            return False
+        return True
+
+    def tell(self, state: VacuumState) -> None:
+        """Tell what it does."""
+        self._handle.publish_feedback(UndockFeedback(state.phase))
+
+    def _result(self, message: str) -> UndockResult:
+        return UndockResult(False, message)
+
+
+GOALS: tuple[type[MissionGoal], ...] = (CleaningGoal, DockingGoal, UndockingGoal)
+"""All kinds of them."""

@@ -1,0 +1,193 @@
+"""Cleaning, docking and undocking on ROS: the mission, fed with what the robot senses."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import rospkg
+import rospy
+
+from roomba.geometry import Twist
+from roomba.mission.docking_config import DockingConfig
+from roomba.mission.machine import Event, Phase
+from roomba.mission.mission import Mission, MissionStep
+from roomba.mission.path_driver import PERIOD
+from roomba.mission.senses import Senses
+from roomba.mission_config import MissionConfig, load_mission_config
+from roomba.perception.dirt_map import DirtMap
+from roomba.perception.things import ThingLayer
+from roomba_ros.alone import refuse_second
+from roomba_ros.background import Background
+from roomba_ros.convert_mission import names_of
+from roomba_ros.mission_drive import MissionDrive
+from roomba_ros.mission_memory import MissionMemory
+from roomba_ros.mission_orders import MissionOrders
+from roomba_ros.mission_senses import MissionSenses
+from roomba_ros.mission_site import KnownHome, MissionSite
+from roomba_ros.mission_topics import MissionTopics
+from roomba_ros.node import require_master, run_node
+from roomba_ros.parameters import package_folder, read_robot_config
+
+NAME = "mission_node"
+_OTHERS = "somebody else drives the robot (a walk, or cmd_vel); resume when that is done"
+
+
+class MissionNode:
+    """Ticks one mission for each map; what it is on, it takes up again after it was killed.
+
+    Publishes, subscribes and serves what :class:`MissionSenses`, :class:`MissionSite`,
+    :class:`MissionOrders`, :class:`MissionDrive` and :class:`MissionTopics` say.
+    Parameters: ``robot_config``, ``mission_config`` (paths of configuration files; by default the
+    shipped ones), ``~memory_folder`` (default: roomba_robot/mission in the ROS home folder, and in
+    it a folder for each robot's namespace), ``~zones_folder`` (default: roomba_robot/zones there).
+    """
+
+    period = PERIOD
+
+    def start(self) -> None:
+        """Read the configuration and connect."""
+        self._config, self._mission_config = read_robot_config(), read_mission_config()
+        self._docking_config = DockingConfig()
+        self._background = Background()
+        self._mission: Mission | None = None
+        self._home: KnownHome | None = None
+        self._memory: MissionMemory | None = None
+        self._senses = MissionSenses(self._config)
+        self._site = MissionSite(
+            self._config,
+            self._mission_config,
+            self._docking_config,
+            self._background,
+            _folder("~zones_folder", "zones"),
+        )
+        self._drive = MissionDrive(self._config)
+        self._orders = MissionOrders(self._drive.take)
+        self._topics = MissionTopics(self._mission_config, self._background)
+        for part in (
+            self._background,
+            self._topics,
+            self._drive,
+            self._senses,
+            self._site,
+            self._orders,
+        ):
+            part.start()
+
+    def tick(self, now: float) -> None:
+        """Sense, obey, act, tell, remember."""
+        self._drive.follow_clock(now)
+        senses = self._senses.at(now)
+        self._follow_home(senses)
+        mission = self._mission
+        self._orders.serve(mission is not None)
+        if mission is None or senses is None:
+            self._wait(now)
+            return
+        self._orders.obey(mission, senses)
+        self._give_way(mission, senses)
+        self._act(mission, self._step(mission, senses))
+        result = self._orders.follow(mission)
+        state = self._topics.tell(now, mission, senses)
+        if state is not None:
+            self._orders.tell(state)
+        self._remember(mission, senses, has_learned=result is not None)
+
+    def stop(self) -> None:
+        """Stop the drive; what was ordered comes to no end."""
+        self._drive.stop()
+        self._orders.give_up("the mission node was told to end")
+        self._background.wait(1.0)
+
+    def _wait(self, now: float) -> None:
+        """Tell what is not there yet."""
+        missing = self._site.missing + self._senses.missing
+        reason = self._site.trouble or (
+            f"waits for {names_of(missing)}" if missing else "gets to know its map"
+        )
+        self._orders.refuse(f"the robot is not ready: it {reason}")
+        self._topics.wait(now, reason)
+
+    def _follow_home(self, senses: Senses | None) -> None:
+        """Take over another site, or begin another mission for another map."""
+        self._site.tick()
+        if senses is None:
+            return
+        home = self._site.take()
+        if home is None:
+            return
+        if self._mission is not None and self._home is not None:
+            if home.digest == self._home.digest:
+                self._mission.use_site(home.site)
+                return
+            self._orders.give_up("the robot was given another map")
+            if self._memory is not None:
+                self._memory.forget_errand()
+        self._home = home
+        self._mission = self._begin(home, senses)
+
+    def _begin(self, home: KnownHome, senses: Senses) -> Mission:
+        """Return a mission for a map, that goes on with what was under way there."""
+        self._things = ThingLayer(home.field)
+        dirt = DirtMap(home.site.occupancy)
+        mission = Mission(
+            home.site,
+            self._config,
+            self._mission_config,
+            self._docking_config,
+            self._things,
+            dirt,
+            senses,
+        )
+        robot = rospy.get_namespace().strip("/") or "robot"
+        folder = _folder("~memory_folder", "mission") / robot
+        self._memory = MissionMemory(folder, home.digest, self._background)
+        self._memory.recall_dirt(dirt)
+        if self._memory.recall_errand(mission, senses):
+            self._drive.take()
+        return mission
+
+    def _give_way(self, mission: Mission, senses: Senses) -> None:
+        """Pause while somebody else drives."""
+        if self._drive.is_taken and mission.state.drives:
+            mission.command(Event.PAUSE, senses)
+            mission.message = _OTHERS
+            rospy.logwarn("the mission is paused: %s", _OTHERS)
+
+    def _step(self, mission: Mission, senses: Senses) -> MissionStep:
+        if self._site.is_changing and mission.state.drives:
+            # Zones are obeyed at once: until they are known it stands.
+            return MissionStep()
+        self._senses.show(self._things)
+        return mission.tick(senses)
+
+    def _act(self, mission: Mission, step: MissionStep) -> None:
+        is_driving = mission.state.drives or step.twist != Twist()
+        self._drive.drive(step.twist if is_driving else None, looks_around=step.looks_around)
+        cleaning = mission.cleaning
+        sucks = cleaning is not None and mission.state.phase is not Phase.ERROR
+        self._drive.suck(cleaning.request.fan.value if cleaning and sucks else None)
+
+    def _remember(self, mission: Mission, senses: Senses, *, has_learned: bool) -> None:
+        assert self._memory is not None
+        self._memory.keep(mission, senses)
+        if has_learned:
+            self._memory.keep_dirt(mission.dirt)
+
+
+def read_mission_config() -> MissionConfig:
+    """Return the configuration named by the parameter ``mission_config``, or the shipped one."""
+    key = rospy.search_param("mission_config")
+    path = rospy.get_param(key) if key else package_folder() / "config" / "mission.yaml"
+    return load_mission_config(Path(path))
+
+
+def _folder(parameter: str, name: str) -> Path:
+    folder = str(rospy.get_param(parameter, ""))
+    return Path(folder or Path(rospkg.get_ros_home()) / "roomba_robot" / name)
+
+
+def main() -> None:
+    """Run the node, unless another one serves this robot already."""
+    require_master()
+    refuse_second(NAME, "vacuum/state")
+    run_node(NAME, MissionNode)

@@ -1,0 +1,201 @@
+"""The mission node alone, in a world that is made of topics."""
+
+import math
+import signal
+import threading
+import time
+
+import actionlib
+import rospy
+from actionlib_msgs.msg import GoalID, GoalStatus
+from fixtures.graph import RosGraph
+from fixtures.probe import Probe
+from fixtures.processes import Program
+from fixtures.waiting import wait_until
+from geometry_msgs.msg import Point, PoseStamped, Twist
+from nav_msgs.msg import OccupancyGrid, Odometry
+from roomba_robot.msg import (
+    CleanAction,
+    CleanGoal,
+    DockStatus,
+    UndockAction,
+    UndockGoal,
+    VacuumState,
+    Zone,
+    ZoneArray,
+)
+from roomba_robot.srv import SetZone
+from sensor_msgs.msg import BatteryState
+from std_msgs.msg import String
+from std_srvs.srv import Trigger
+
+NODE = "mission_node"
+
+
+class World(Probe):
+    """A room of 3 x 3 m with the station at (1, 0), and a robot in it that does not move."""
+
+    def __init__(self, graph: RosGraph) -> None:
+        super().__init__(graph)
+        self.x, self.is_docked = 1.0, True
+        self.is_silent = False
+        for topic, message in (("/map", room()), ("/station_pose", stamped(1.0, 0.0))):
+            publisher = rospy.Publisher(topic, type(message), queue_size=1, latch=True)
+            publisher.publish(message)
+        self.hear("/cmd_vel_mission", Twist)
+        self.hear("/vacuum/state", VacuumState)
+        self.hear("/zones", ZoneArray)
+        kinds = {"pose": PoseStamped, "odom": Odometry}
+        kinds |= {"battery_state": BatteryState, "dock_status": DockStatus}
+        self._topics = {name: self.publisher(f"/{name}", kind) for name, kind in kinds.items()}
+        threading.Thread(target=self._run, daemon=True).start()
+
+    def _run(self) -> None:
+        while not rospy.is_shutdown():
+            if not self.is_silent:
+                pose, odometry = stamped(self.x, 0.0), Odometry()
+                odometry.header.stamp = pose.header.stamp = rospy.Time.now()
+                odometry.pose.pose.orientation.w = 1.0
+                self._topics["odom"].publish(odometry)
+                self._topics["pose"].publish(pose)
+                self._topics["battery_state"].publish(BatteryState(percentage=0.8, capacity=1.8))
+                self._topics["dock_status"].publish(DockStatus(is_docked=self.is_docked))
+            time.sleep(0.05)
+
+    @property
+    def state(self) -> VacuumState:
+        return self.newest.get("/vacuum/state", VacuumState())
+
+    def does(self, phase: str, deadline: float = 10.0) -> None:
+        wait_until(lambda: self.state.phase == phase, deadline, f"{phase}, not {self.state}")
+
+    def wants(self, linear: float) -> bool:
+        message = self.newest.get("/cmd_vel_mission", Twist())
+        return math.isclose(message.linear.x, linear, abs_tol=1e-6)
+
+
+def stamped(x: float, y: float) -> PoseStamped:
+    message = PoseStamped()
+    message.header.frame_id = "map"
+    message.pose.position.x, message.pose.position.y = x, y
+    message.pose.orientation.w = 1.0
+    return message
+
+
+def room() -> OccupancyGrid:
+    side = 64
+    edge = (0, 1, side - 2, side - 1)
+    data = [
+        100 if row in edge or column in edge else 0 for row in range(side) for column in range(side)
+    ]
+    message = OccupancyGrid(data=data)
+    message.info.resolution, message.info.width, message.info.height = 0.05, side, side
+    message.info.origin.position.x = message.info.origin.position.y = -1.6
+    message.info.origin.orientation.w = 1.0
+    return message
+
+
+def start(graph: RosGraph) -> tuple[World, Program]:
+    node = graph.rosrun("mission_node.py")
+    return World(graph), node
+
+
+def client(name: str, action: type) -> actionlib.SimpleActionClient:
+    found = actionlib.SimpleActionClient(name, action)
+    wait_until(lambda: found.wait_for_server(rospy.Duration(0.01)), 15.0, f"the server of {name}")
+    return found
+
+
+def ends(client: actionlib.SimpleActionClient, deadline: float) -> int:
+    wait_until(lambda: client.simple_state == 2, deadline, "the goal ends")
+    return int(client.get_state())
+
+
+def order(name: str) -> tuple[bool, str]:
+    answer = rospy.ServiceProxy(name, Trigger)()
+    return answer.success, answer.message
+
+
+def test_orders_are_obeyed_or_refused_with_the_reason(graph: RosGraph) -> None:
+    world, _ = start(graph)
+    cancels = [0]
+    rospy.Subscriber(
+        "/walk_to_point/cancel", GoalID, lambda _: cancels.__setitem__(0, cancels[0] + 1)
+    )
+    world.does("docked", 20.0)
+    assert world.state.state == "docked"
+    assert math.isclose(world.state.battery, 0.8, abs_tol=1e-6)
+    assert order("pause") == (False, "cannot pause now: the robot is docked")
+
+    clean = client("clean", CleanAction)
+    clean.send_goal(CleanGoal(mode=CleanGoal.ROOMS, rooms=["Hall"]))
+    assert ends(clean, 5.0) == GoalStatus.REJECTED
+    assert "rooms" in clean.get_goal_status_text()
+
+    undock = client("undock", UndockAction)
+    undock.send_goal(UndockGoal())
+    world.does("undocking", 5.0)
+    wait_until(lambda: world.wants(-0.15), 2.0, "it backs out")
+    assert cancels == [1]
+    assert order("pause") == (True, "paused")
+    wait_until(lambda: world.wants(0.0), 1.0, "it stands")
+    assert order("resume") == (True, "going on")
+    wait_until(lambda: world.wants(-0.15), 2.0, "it goes on")
+
+    asked = time.monotonic()
+    undock.cancel_goal()
+    assert ends(undock, 2.0) == GoalStatus.PREEMPTED
+    assert time.monotonic() - asked < 0.5
+    wait_until(lambda: world.wants(0.0), 0.5, "it stands")
+    time.sleep(0.5)
+    before = world.counts["/cmd_vel_mission"]
+    time.sleep(0.3)
+    assert world.counts["/cmd_vel_mission"] == before, "the drive is left to others"
+
+    undock.send_goal(UndockGoal())
+    world.does("undocking", 5.0)
+    world.send("/emergency_stop", String("a child"))
+    world.does("emergency stop", 2.0)
+    assert (world.state.state, world.state.message) == ("error", "a child")
+    assert ends(undock, 2.0) == GoalStatus.ABORTED
+    world.send("/emergency_stop", String(""))
+    wait_until(lambda: world.state.state != "error", 2.0)
+
+
+def test_a_killed_node_goes_on_with_its_clean_and_keeps_its_zones(graph: RosGraph) -> None:
+    world, node = start(graph)
+    world.x, world.is_docked = 0.0, False
+    world.does("idle", 20.0)
+    zone = Zone("bowl", Zone.NO_GO, [Point(-1, -1, 0), Point(-0.5, -1, 0), Point(-0.5, -0.5, 0)])
+    assert rospy.ServiceProxy("/set_zone", SetZone)(zone).message == "the zones are: bowl"
+    clean = client("clean", CleanAction)
+    clean.send_goal(CleanGoal())
+    world.does("cleaning")
+    wait_until(lambda: not world.wants(0.0) or world.newest["/cmd_vel_mission"].angular.z, 5.0)
+    wanted = world.state.wanted
+    time.sleep(0.3)
+    graph.signal(NODE, signal.SIGKILL)
+    node.ends(5.0)
+    world.newest.clear()
+    begin = time.monotonic()
+    graph.rosrun("mission_node.py")
+    world.does("cleaning")
+    assert time.monotonic() - begin < 5.0
+    assert math.isclose(world.state.wanted, wanted, rel_tol=1e-4)
+    assert [zone.name for zone in world.newest["/zones"].zones] == ["bowl"]
+
+    # Somebody steers: the mission gives way.
+    time.sleep(2.6)
+    steered = Twist()
+    steered.angular.z = 0.5
+    world.send("/cmd_vel", steered)
+    world.does("paused", 2.0)
+    assert "somebody else drives" in world.state.message
+    assert order("resume")[0]
+    world.does("cleaning", 2.0)
+
+    # The place is told no more: it stands, and asks for nothing but to find it again.
+    world.is_silent = True
+    wait_until(lambda: world.newest["/cmd_vel_mission"] == Twist(), 2.0, "it stands")
+    assert order("stop") == (True, "stopped")
+    world.does("idle", 2.0)
