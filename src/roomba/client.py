@@ -5,6 +5,7 @@ Answers are immutable snapshots. Metres, m/s and seconds of the robot's clock; t
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
 from typing import Protocol
@@ -85,8 +86,163 @@ class Walk(Protocol):
         """Ask the robot to stop, without waiting; the report follows."""
 
 
+class CleanMode(Enum):
+    """What is to be cleaned."""
+
+    WHOLE = "whole"
+    """All floor that can be reached."""
+    ROOMS = "rooms"
+    """Rooms, by name."""
+    ZONES = "zones"
+    """Rectangles."""
+    SPOT = "spot"
+    """A square of 1.5 m around a point."""
+    EDGES = "edges"
+    """Along walls and furniture only."""
+    DIRTIEST = "dirtiest"
+    """All rooms, those first that were the dirtiest."""
+
+
+class FanLevel(Enum):
+    """How strongly it sucks."""
+
+    QUIET = "quiet"
+    STANDARD = "standard"
+    STRONG = "strong"
+
+
+class ErrandOutcome(Enum):
+    """How an errand ended: a clean, or a way into or out of the station."""
+
+    COMPLETED = "completed"
+    """Done; after a clean the robot is back on its station."""
+    STOPPED = "stopped"
+    """Somebody ended it."""
+    REFUSED = "refused"
+    """Never begun: the robot cannot do it; the message says why."""
+    BATTERY = "battery"
+    """There was not enough energy to go on, and none to be had."""
+    STUCK = "stuck"
+    """It could not get free."""
+    ASTRAY = "astray"
+    """It does not know where it is."""
+    NOT_DOCKED = "not docked"
+    """The floor is done, but it could not get onto its station."""
+    FAULT = "fault"
+    """Something else is wrong; the message says what."""
+    LOST = "lost"
+    """Who does it fell silent. A clean is taken up again by the robot itself once that is back:
+    :meth:`RobotClient.vacuum` tells on, this errand does not."""
+
+
+@dataclass(frozen=True, slots=True)
+class CleanProgress:
+    """How far a clean is: m2 of the wanted floor, its share 0..1, s to go without charging.
+
+    ``state`` is cleaning, docked, paused, idle, returning or error; ``battery`` is 0..1; ``room``
+    is where the robot is, empty for none.
+    """
+
+    state: str
+    room: str
+    covered: float
+    wanted: float
+    fraction: float
+    seconds_to_go: float
+    battery: float
+
+
+@dataclass(frozen=True, slots=True)
+class MissedFloor:
+    """Floor that was wanted and is not clean: ``area`` m2 around (x, y), m, and why, in words."""
+
+    area: float
+    x: float
+    y: float
+    room: str
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
+class CleanReport:
+    """The end of a clean: areas in m2, dirt in g, m, s of the robot's clock, Wh.
+
+    What is not known, as after LOST, is not a number; ``missed`` has the largest area first.
+    """
+
+    outcome: ErrandOutcome
+    message: str
+    covered: float
+    wanted: float
+    dirt: float
+    distance: float
+    duration: float
+    energy: float
+    missed: tuple[MissedFloor, ...] = ()
+
+
+class Clean(Protocol):
+    """A clean under way. It goes on when nobody follows it."""
+
+    def next_feedback(self, timeout: float) -> CleanProgress | None:
+        """Wait up to ``timeout`` s of wall time for news, else None; None at once at its end."""
+
+    def report(self) -> CleanReport | None:
+        """Return the end of the clean, or None while it lasts."""
+
+    def cancel(self) -> None:
+        """Ask the robot to stop and stay, without waiting; the report follows."""
+
+
+@dataclass(frozen=True, slots=True)
+class DockReport:
+    """The end of a way into or out of the station; the message says why not, and what helps."""
+
+    outcome: ErrandOutcome
+    message: str
+
+
+class Docking(Protocol):
+    """A way into or out of the station. It goes on when nobody follows it."""
+
+    def next_feedback(self, timeout: float) -> str | None:
+        """Wait up to ``timeout`` s of wall time for what it does: returning, docking, undocking.
+
+        Returns None without news, and at once at its end.
+        """
+
+    def report(self) -> DockReport | None:
+        """Return the end of it, or None while it lasts."""
+
+    def cancel(self) -> None:
+        """Ask the robot to stop and stay, without waiting; the report follows."""
+
+
+@dataclass(frozen=True, slots=True)
+class VacuumSnapshot:
+    """What the robot does, in the words of smart homes, and how far it is.
+
+    ``phase`` is ``state`` in more detail; ``message`` says why it does not do what was asked, and
+    what helps, empty when all is well. The rest is as in :class:`CleanProgress`; areas, share and
+    time are 0 without a clean, a battery not heard of is not a number.
+    """
+
+    state: str
+    phase: str
+    message: str
+    room: str
+    covered: float
+    wanted: float
+    fraction: float
+    seconds_to_go: float
+    battery: float
+
+
 class RobotClient(Protocol):
-    """A robot as its user interfaces see it."""
+    """A robot as its user interfaces see it.
+
+    Every call has a deadline of wall time and raises RobotUnavailableError after it.
+    """
 
     def limits(self) -> Limits:
         """Return the limits in force now."""
@@ -108,6 +264,48 @@ class RobotClient(Protocol):
 
     def walk_to(self, x: float, y: float) -> Walk:
         """Start walking; raises RobotUnavailableError when no action server answers."""
+
+    def clean(
+        self,
+        mode: CleanMode = CleanMode.WHOLE,
+        *,
+        rooms: Sequence[str] = (),
+        in_order: bool = False,
+        zones: Sequence[tuple[float, float, float, float]] = (),
+        spot: tuple[float, float] | None = None,
+        passes: int = 1,
+        fan: FanLevel = FanLevel.STANDARD,
+    ) -> Clean:
+        """Start cleaning; another clean, or a way to the station, ends.
+
+        ``rooms`` are for ROOMS, ``in_order`` or else the shortest way; ``zones`` for ZONES, lowest
+        x and y, highest x and y, m; ``spot`` for SPOT, None for where the robot is; ``passes`` 1
+        to 5. Raises RequestRefusedError for what cannot be asked at all, RobotUnavailableError.
+        """
+
+    def dock(self) -> Docking:
+        """Start for the charging station, by its beams; raises RobotUnavailableError."""
+
+    def undock(self) -> Docking:
+        """Start backing out of the charging station; raises RobotUnavailableError."""
+
+    def pause(self) -> None:
+        """Let the robot stand until it is told to go on; RequestRefusedError with the reason."""
+
+    def resume(self) -> None:
+        """Let a paused robot go on; RequestRefusedError with the reason."""
+
+    def stop(self) -> None:
+        """End what it does, and stay; RequestRefusedError with the reason."""
+
+    def locate(self) -> None:
+        """Let the robot be heard."""
+
+    def vacuum(self, timeout: float = 5.0) -> VacuumSnapshot:
+        """Return what it does now; RobotUnavailableError when it does not tell in ``timeout`` s."""
+
+    def rooms(self, timeout: float = 5.0) -> tuple[str, ...]:
+        """Return the names of the rooms; RobotUnavailableError when there are none yet."""
 
 
 class CameraClient(Protocol):

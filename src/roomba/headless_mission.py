@@ -135,11 +135,10 @@ class HeadlessMission:
         )
 
     def advance(self) -> None:
-        """Let some ticks pass: many at once while nothing comes up, else one."""
+        """Let some ticks pass: many at once while nothing comes up, then one that looks around."""
         if self._loop.may_run():
             self._loop.run()
-        else:
-            self.tick()
+        self.tick()
 
     def tick(self) -> None:
         """Let one tick pass, by the ordinary classes."""

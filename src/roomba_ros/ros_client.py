@@ -40,11 +40,10 @@ from roomba.geometry import Pose
 from roomba_ros.calls import SERVER_DEADLINE, call_service
 from roomba_ros.convert import path_of, picture_of, pose_message
 from roomba_ros.parameters import LiveSeedParameters
+from roomba_ros.ros_clean import SILENCE_DEADLINE, RosVacuum, wait_for_server
 
 OLDEST_NEWS = 3.0
 """s of wall time; the robot tells its state at least 5 times a second, older news is none."""
-SILENCE_DEADLINE = 2.5
-"""s of wall time without the server's status (5 Hz) after which it is taken for dead."""
 
 _OUTCOMES = {
     GoalStatus.SUCCEEDED: WalkOutcome.ARRIVED,
@@ -56,8 +55,8 @@ _OUTCOMES = {
 }
 
 
-class RosRobot:
-    """A robot in this node's namespace.
+class RosRobot(RosVacuum):
+    """A robot in this node's namespace, and what :class:`RosVacuum` is.
 
     Subscribes: ``dirt``, ``position``, ``localization``, ``speed``,
     ``walk_to_point/{feedback,result,status}``.
@@ -66,6 +65,7 @@ class RosRobot:
 
     def __init__(self) -> None:
         """Connect nothing yet."""
+        super().__init__()
         self._news = threading.Condition()
         self._values: dict[str, tuple[float, ...]] = {}
         self._heard: dict[str, float] = {}
@@ -76,6 +76,7 @@ class RosRobot:
     def start(self) -> None:
         """Connect; raises RoombaError for wrong parameters."""
         self._parameters = LiveSeedParameters()
+        super().start()
         self._actions = _Actions("walk_to_point", WalkToPointAction)
         self._make_plan = rospy.ServiceProxy("make_plan", GetPlan)
         rospy.Subscriber("dirt", Float32, self._on_dirt, queue_size=1)
@@ -116,7 +117,7 @@ class RosRobot:
 
     def walk_to(self, x: float, y: float) -> Walk:
         """Send the goal; raises RobotUnavailableError when no action server answers in time."""
-        if not _wait_for_server(self._actions, SERVER_DEADLINE):
+        if not wait_for_server(self._actions.action_client, SERVER_DEADLINE):
             raise RobotUnavailableError(
                 f"no action server answers on walk_to_point within {SERVER_DEADLINE:g} s; "
                 "is the robot running (`./roomba run`)?"
@@ -271,13 +272,3 @@ class RosCamera:
             return picture_of(call_service(self._turn_camera, degrees).image)
         except ValueError as error:
             raise RequestRefusedError(f"turn_camera answered with no picture: {error}") from error
-
-
-def _wait_for_server(actions: actionlib.SimpleActionClient, deadline: float) -> bool:
-    """Wait by the wall clock: the stock call's clock, the robot's, may stand still or jump."""
-    end = time.monotonic() + deadline
-    while not rospy.is_shutdown() and time.monotonic() < end:
-        if actions.action_client.wait_for_server(rospy.Duration(0.001)):
-            return True
-        time.sleep(0.02)
-    return False

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 import rospy
 from roomba_robot.srv import (
@@ -25,7 +25,8 @@ FAULTS = {
     "stall": (Fault.STALL_LEFT, Fault.STALL_RIGHT),
     **{fault.name.lower(): (fault,) for fault in Fault},
 }
-"""What ``sim/inject_fault`` takes by name, beside obstacles and putting the robot elsewhere."""
+"""What ``sim/inject_fault`` takes by name, beside obstacles, the battery's charge, and putting the
+robot elsewhere."""
 
 
 class SimServices:
@@ -52,6 +53,7 @@ class SimServices:
             "obstacle": self._place_obstacle,
             "moved_chair": self._place_chair,
             "no_obstacles": self._remove_obstacles,
+            "charge": self._set_charge,
             "put": self._put,
         }
         try:
@@ -59,15 +61,15 @@ class SimServices:
                 if request.fault in others:
                     done = others[request.fault](request)
                 else:
-                    done = self._inject(request)
+                    done = self._inject(request, others)
         except (ValueError, HomeError) as error:
             return InjectFaultResponse(False, str(error))
         rospy.loginfo("fault injected: %s", done)
         return InjectFaultResponse(True, done)
 
-    def _inject(self, request: InjectFaultRequest) -> str:
+    def _inject(self, request: InjectFaultRequest, others: Iterable[str]) -> str:
         if request.fault not in FAULTS:
-            known = ", ".join([*FAULTS, "obstacle", "moved_chair", "no_obstacles", "put"])
+            known = ", ".join([*FAULTS, *others])
             raise ValueError(f"expected a fault of: {known}; got {request.fault!r}")
         for fault in FAULTS[request.fault]:
             self._simulator.inject(fault, request.value)
@@ -84,6 +86,10 @@ class SimServices:
     def _remove_obstacles(self, request: InjectFaultRequest) -> str:
         self._simulator.remove_obstacles()
         return "all things that were put down are gone"
+
+    def _set_charge(self, request: InjectFaultRequest) -> str:
+        self._simulator.set_charge(request.value)
+        return f"the battery's charge is {request.value:.1%}"
 
     def _put(self, request: InjectFaultRequest) -> str:
         self._simulator.put(Pose(request.x, request.y, request.theta))

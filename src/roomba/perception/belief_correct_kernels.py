@@ -29,7 +29,7 @@ _UNSURE: Final = 0.08
 """m; a pose less sure than this is matched from farther away."""
 _STRIDE: Final = 8
 """Each such beam is judged; of 360 these are enough to notice a wrong pose."""
-_WORSE: Final = 0.3
+_WORSE: Final = 0.45
 """Share of beams that agree less than usual, at which the pose is doubted."""
 _THROUGH: Final = 0.15
 """Share of beams that go through walls more than usual, at which the pose is doubted."""

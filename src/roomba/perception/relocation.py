@@ -31,6 +31,9 @@ _NEW_WAY: Final = 0.12
 _NEW_TURN: Final = 0.4
 """m, rad; a scan from so far away, or so much turned, says something new."""
 _LEAST_AGREE: Final = 0.7
+_CONVINCING: Final = 0.75
+_MOST_THROUGH_THEN: Final = 0.08
+"""Shares of beams that agree, and that go through walls."""
 _MOST_THROUGH: Final = 0.15
 """Shares of beams that a place which is found must have, and may have."""
 _HOPELESS: Final = 14.0
@@ -82,6 +85,15 @@ class Hypothesis:
         return self.fit.agree >= _LEAST_AGREE and self.fit.through <= _MOST_THROUGH
 
 
+    @property
+    def is_convincing(self) -> bool:
+        """Whether so much of the scan fits that a robot which nobody lifted was carried there.
+
+        Else furniture was moved where it is, and there another place may look a little likelier.
+        """
+        return self.fit.agree >= _CONVINCING and self.fit.through <= _MOST_THROUGH_THEN
+
+
 class Relocation:
     """One attempt to find the robot; ``reckoned`` poses are those of DeadReckoning.
 
@@ -111,6 +123,9 @@ class Relocation:
         if self._search is not None:
             return Verdict.SEARCHING
         if not self.hypotheses or not self.hypotheses[0].is_possible:
+            return Verdict.NOWHERE
+        best = self.hypotheses[0]
+        if self._expectation is not None and not best.is_expected and not best.is_convincing:
             return Verdict.NOWHERE
         return Verdict.FOUND if self._is_clear() else Verdict.AMBIGUOUS
 

@@ -28,7 +28,7 @@ def test_seed_decides(flat: Home, change: Change) -> None:
 
 
 @pytest.mark.parametrize("change", list(Change))
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", range(3))
 def test_map_stays_and_truth_changes(flat: Home, change: Change, seed: int) -> None:
     other = changed(flat, change, seed)
     assert other.home.map is flat.map
@@ -42,7 +42,7 @@ def test_map_stays_and_truth_changes(flat: Home, change: Change, seed: int) -> N
 
 
 def test_moved_furniture_keeps_about_its_size(flat: Home) -> None:
-    for seed in range(6):
+    for seed in range(2):
         solid = changed(flat, Change.FURNITURE, seed).home.solid
         new, gone = solid & ~flat.solid, flat.solid & ~solid
         assert new.any()
@@ -77,6 +77,6 @@ def test_nobody_passes_between_things_across_a_doorway(
 def test_shut_doors_cut_floor_off(flat: Home) -> None:
     staging = (0.65, 0.0)
     whole = true_floor(flat, staging).area
-    for seed in range(4):
+    for seed in range(2):
         other = changed(flat, Change.DOORS, seed)
         assert true_floor(other.home, staging, other.things).area < 0.9 * whole

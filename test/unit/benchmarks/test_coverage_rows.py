@@ -38,6 +38,7 @@ CLEAN = Clean(
     is_docked=True,
     area=70.0,
     share=0.998,
+    rounded=0.9995,
     path=420.0,
     turning=550.0,
     hits=0,
@@ -69,18 +70,22 @@ def figures(rows: list[Record]) -> dict[str, Record]:
 
 
 def test_aims_stand_beside_figures_and_peers() -> None:
-    lanes = Driven("boustrophedon, in order", 94.0, 1.6, 1000.0, 0.0, 44.0, NO_POSES)
+    lanes = Driven("boustrophedon, in order", 94.0, 95.0, 1.6, 1e3, 0.0, 44.0, False, NO_POSES)
+    random = Driven("random bounce", 26.0, 27.0, 1.2, 900.0, 320.0, 34.0, True, NO_POSES)
     plan = Planned(0.999, 1.18, 520.0, 0.15, np.zeros((0, 2)))
-    rows = figures(ideal_rows(CASE, CLEAN, plan, [lanes], recorded("apartment")))
+    rows = figures(ideal_rows(CASE, CLEAN, plan, [lanes, random], recorded("apartment")))
     assert rows["coverage"].aim == 99.5
     assert rows["coverage"].is_reached
-    names = [peer.name for peer in rows["coverage"].peers]
-    assert names[:2] == ["boustrophedon, in order", "grid wavefront (PythonRobotics)"]
-    assert rows["coverage"].peers[1].version == "as recorded, planned only"
+    assert [peer.value for peer in rows["coverage"].peers] == [94.0, 26.0]
+    like_them = rows["coverage as recorded ones count"]
+    assert like_them.value == pytest.approx(99.95)
+    assert [peer.value for peer in like_them.peers[:3]] == [95.0, 27.0, 92.1]
+    assert like_them.peers[2].version == "as recorded, planned only"
     ratio = rows["way by (area by 0.20 m)"]
     assert ratio.value == pytest.approx(1.2)
     assert (ratio.aim, ratio.is_reached) == (1.22, True)
-    assert [peer.name for peer in rows["hits"].peers] == ["boustrophedon, in order"]
+    assert [peer.name for peer in ratio.peers[:2]] == [lanes.name, like_them.peers[2].name]
+    assert [peer.value for peer in rows["hits"].peers] == [0.0, 320.0]
     assert rows["planning, CPU"].value == pytest.approx(150.0)
     assert rows["closed loop, CPU"].is_reached
     assert rows["docked and done"].value == 100.0
@@ -91,7 +96,8 @@ def test_aims_stand_beside_figures_and_peers() -> None:
 def test_planner_that_failed_is_named() -> None:
     case = Case("map lab_ipa", "lab_ipa", aims_of("lab_ipa"))
     plan = Planned(0.999, 1.18, 520.0, 0.15, np.zeros((0, 2)))
-    peers = figures(ideal_rows(case, CLEAN, plan, [], recorded("lab_ipa")))["coverage"].peers
+    rows = figures(ideal_rows(case, CLEAN, plan, [], recorded("lab_ipa")))
+    peers = rows["coverage as recorded ones count"].peers
     assert [peer.error for peer in peers if peer.value is None] == ["it gave no way"]
 
 
@@ -155,4 +161,4 @@ def test_pictures_are_drawn(tmp_path: Path) -> None:
     for name in ("time.png", "way.png"):
         with Image.open(tmp_path / name) as picture:
             assert picture.width > 600
-            assert len(set(picture.convert("RGB").resize((90, 90)).getdata())) > 20
+            assert len(set(picture.convert("RGB").resize((90, 90)).tobytes())) > 20
