@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum
 from typing import Protocol
@@ -25,6 +25,7 @@ from roomba.client import (
     WalkOutcome,
     WalkReport,
 )
+from roomba.fake_vacuum import ErrandScript, FakeVacuum
 
 CAMERA_ANGLES = (-30.0, -15.0, 0.0, 15.0, 30.0)
 """Degrees for which there is a picture."""
@@ -97,12 +98,13 @@ class WalkScript:
     obeys: bool = True
 
 
-class FakeRobot:
+class FakeRobot(FakeVacuum):
     """A :class:`roomba.client.RobotClient` and :class:`roomba.client.CameraClient` in one.
 
     ``scripts`` are used up one per walk, later walks arrive; ``detour`` is path over straight
     distance; ``blocked`` maps points to the reason why there is no way to them; ``answers`` and
-    ``camera_answers`` may be set at any time.
+    ``camera_answers`` may be set at any time. Walks and errands (``room_names``, ``errands`` and
+    ``battery``, see :class:`FakeVacuum`) know nothing of each other.
     """
 
     def __init__(
@@ -118,9 +120,11 @@ class FakeRobot:
         scripts: Iterable[WalkScript] = (),
         clock: Clock | None = None,
         picture_shape: tuple[int, int] = (768, 1024),
+        room_names: Sequence[str] = ("kitchen", "hall", "study"),
+        errands: Iterable[ErrandScript] = (),
+        battery: float = 0.8,
     ) -> None:
-        self.clock: Clock = SteppedClock() if clock is None else clock
-        self.answers = True
+        super().__init__(SteppedClock() if clock is None else clock, room_names, errands, battery)
         self.camera_answers = True
         self.walks: list[FakeWalk] = []
         self._limits = limits
@@ -129,7 +133,7 @@ class FakeRobot:
         self._dirt, self._doubt = dirt, doubt
         self._detour = detour
         self._blocked = dict(blocked or {})
-        self._scripts = list(scripts)
+        self._walk_scripts = list(scripts)
         self._picture_shape = picture_shape
 
     def limits(self) -> Limits:
@@ -164,7 +168,7 @@ class FakeRobot:
 
     def walk_to(self, x: float, y: float) -> FakeWalk:
         """Start the next scripted walk; a walk under way ends as cancelled."""
-        script = self._scripts.pop(0) if self._scripts else WalkScript()
+        script = self._walk_scripts.pop(0) if self._walk_scripts else WalkScript()
         if not self.answers or script.turn is Turn.ABSENT:
             self.clock.sleep(5.0)
             raise RobotUnavailableError(

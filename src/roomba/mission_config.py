@@ -15,7 +15,6 @@ class DrivingConfig(Frozen):
 
     speed: Positive = 0.30
     clearance: Positive = 0.005
-    overlap: Positive = 0.004
     way_clearance: Positive = 0.04
     look_ahead: Positive = 0.15
     thing_clearance: Positive = 0.004

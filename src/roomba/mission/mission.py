@@ -8,7 +8,8 @@ with the twist it wants. :mod:`.machine` says what comes after what; :mod:`.clea
 from __future__ import annotations
 
 import contextlib
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -92,6 +93,7 @@ class Mission:
         self._docking: Docking | None = None
         self._undocking: Undocking | None = None
         self._outcome: CleanOutcome | None = None
+        self._is_told = False
         self._result: CleanResult | None = None
         self._was_docked = senses.battery.is_docked
         self._astray_since: float | None = None
@@ -114,7 +116,8 @@ class Mission:
             )
         cleaning = Cleaning(request, self.site, self.dirt, self._config.cleaning, senses.pose)
         self._end_clean(CleanOutcome.STOPPED, "a newer clean took over", senses)
-        self.cleaning, self._outcome = cleaning, None
+        self._forget_clean()
+        self.cleaning, self._outcome, self._is_told = cleaning, None, False
         self.book.begin(senses)
         self._started = senses.now
         self.obstacles.forget()
@@ -130,10 +133,12 @@ class Mission:
             )
         if event in (Event.DOCK, Event.UNDOCK, Event.STOP):
             self._end_clean(CleanOutcome.STOPPED, f"it was told to {event.value}", senses)
+            self._forget_clean()
         if event is Event.EMERGENCY:
             self._end_clean(CleanOutcome.FAULT, f"emergency stop: {reason}", senses)
+            self._forget_clean()
         if event is Event.RESUME:
-            self._dock_retries = 0
+            self._dock_retries, self._is_told = 0, False
         self._go(event, senses)
         self.message = reason if event is Event.EMERGENCY else ""
         if event is Event.RELEASE and senses.battery.is_docked:
@@ -192,11 +197,16 @@ class Mission:
             outcome = values["outcome"]
             self._outcome = None if outcome is None else CleanOutcome[outcome]
             distance, energy, dirt = (float(value) for value in values["book"])
-            self._started = senses.now - float(values["duration"])
+            duration = float(values["duration"])
+            if not all(math.isfinite(value) for value in (distance, energy, dirt, duration)):
+                raise CheckpointError("expected finite numbers")
+            self._started = senses.now - duration
             message = str(values["message"])
-        except (KeyError, TypeError, ValueError, RoombaError) as error:
+        except (LookupError, ArithmeticError, AttributeError, TypeError, ValueError) as error:
             raise CheckpointError(f"expected a checkpoint of this map: {error!r}") from error
-        self.cleaning, self.message = cleaning, message
+        except RoombaError as error:
+            raise CheckpointError(f"expected a checkpoint of this map: {error!r}") from error
+        self.cleaning, self.message, self._is_told = cleaning, message, False
         self.book.begin(senses)
         self.book.distance, self.book.energy, self.book.dirt = distance, energy, dirt
         self._last = senses
@@ -491,7 +501,7 @@ class Mission:
     def _end_clean(self, outcome: CleanOutcome, message: str, senses: Senses) -> None:
         """Make the result of the clean under way, if there is one; it can still be resumed."""
         cleaning = self.cleaning
-        if cleaning is None:
+        if cleaning is None or self._is_told:
             return
         obstacles = self.obstacles.standing(senses.now)
         is_over = cleaning.stage is None
@@ -508,7 +518,13 @@ class Mission:
             energy=self.book.energy,
             missed=missed,
         )
+        self._is_told = True
         if self.state.phase is not Phase.ERROR:
+            self._forget_clean()
+
+    def _forget_clean(self) -> None:
+        """The clean under way, if there was one, is over for good."""
+        if self.cleaning is not None:
             self.cleaning = None
             self.dirt.end_run()
 
@@ -560,6 +576,11 @@ class Mission:
 
 def _taken_up(state: MissionState, is_docked: bool) -> MissionState:
     """Return the state in which a restored mission goes on, wherever the robot stands now."""
+    if state.phase is Phase.CHARGING and not is_docked:
+        return MissionState(Phase.RETURNING, state.errand)
+    if state.resumes is Phase.CLEANING:
+        # Should it stand on the station by now, it has to come out first.
+        return replace(state, resumes=Phase.UNDOCKING)
     if not state.drives:
         return state
     if state.errand is Errand.CLEAN:

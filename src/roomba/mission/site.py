@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
-from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,14 +18,10 @@ from roomba.perception.rooms import Rooms
 from roomba.perception.zones import Zones
 from roomba.planning.costmap import Point, RoundObstacle
 from roomba.planning.coverage import CoveragePlanner
-from roomba.planning.coverage_floor import CoverageFloor
 from roomba.planning.coverage_plan import CoveragePlan
 from roomba.planning.path import NoPathError, NoPathReason, PathPlanner
 
 Mask = NDArray[np.bool_]
-
-_RIM: Final = 0.002
-"""m; no robot drives more exactly."""
 
 
 class Site:
@@ -50,12 +45,8 @@ class Site:
         driving, radius = mission.driving, robot.body.radius
         self.reach = radius + driving.clearance
         self.tool_width = robot.brush.width
-        # The outermost millimetres that the tool can just reach are not asked for.
-        asked = self.tool_width - 2.0 * _RIM
-        self.floor = CoverageFloor.build(self.known, self.reach, asked)
-        # Swaths overlap a little, since no robot drives exactly on its path.
-        swath = self.tool_width - driving.overlap
-        self.coverage = CoveragePlanner(self.known, self.reach, swath)
+        self.coverage = CoveragePlanner(self.known, self.reach, self.tool_width)
+        self.floor = self.coverage.floor
         self.plans, self.planning_time = 0, 0.0
         self.body_radius, self._clearance = radius, driving.way_clearance
         # Paths may come as near to walls as swaths do, so that they can join them.

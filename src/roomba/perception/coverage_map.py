@@ -16,6 +16,9 @@ from roomba.perception.coverage_kernels import sweep
 
 Mask = NDArray[np.bool_]
 
+GRANTED: Final = 0.002
+"""m; a cell counts as swept when the tool's rim comes so near to its middle: two swaths that touch
+in the middle of a row of cells, each a millimetre off, leave none of it."""
 LONGEST_STEP: Final = 0.3
 """m; a robot that is farther from where it last was did not drive there: it was carried."""
 
@@ -41,7 +44,7 @@ class CoverageMap:
         if wanted.shape != frame.shape:
             raise ValueError(f"expected a mask of shape {frame.shape}, got {wanted.shape}")
         self.frame = frame
-        self.radius = 0.5 * tool_width
+        self.radius = 0.5 * tool_width + GRANTED
         self.cells: NDArray[np.uint8] = np.where(wanted, np.uint8(WANTED), np.uint8(0))
         self.place = np.array([*frame.centre_of(0, 0), frame.resolution])
         self.wanted_cells = int(np.count_nonzero(wanted))

@@ -84,7 +84,6 @@ class Hypothesis:
             return self.fit.agree > 0.5 * _LEAST_AGREE
         return self.fit.agree >= _LEAST_AGREE and self.fit.through <= _MOST_THROUGH
 
-
     @property
     def is_convincing(self) -> bool:
         """Whether so much of the scan fits that a robot which nobody lifted was carried there.
