@@ -102,6 +102,7 @@ def run(
     known: Any = belief.belief[0]
     tracker: Any = tracks.state[0]
     period = loop.step * loop.steps
+    ticks = rows.shape[0]
     for tick in range(rows.shape[0]):
         x, y, theta = known.pose[0], known.pose[1], known.pose[2]
         account(loop, robot, floor, x, y, period)
@@ -124,8 +125,10 @@ def run(
             or belief.things.layer[0].version != loop.things_version
             or not is_calm(belief.belief, belief.numbers, now)
         ):
-            return tick + 1
-    return rows.shape[0]
+            ticks = tick + 1
+            break
+    account(loop, robot, floor, known.pose[0], known.pose[1], period)
+    return ticks
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

@@ -41,9 +41,10 @@ _INSTANT = 1e-9
 
 @dataclass(frozen=True, slots=True)
 class ErrandScript:
-    """One errand: its ``outcome`` comes ``after`` s of work, or else at the end of the work.
+    """One errand: its ``outcome`` comes ``after`` s of work, if the work is not done by then.
 
-    LOST is the client's: the robot goes on. One that ``freezes`` then tells and reports no more.
+    A refusal comes at once. LOST is the client's: the robot goes on. One that ``freezes`` then
+    tells and reports no more.
     """
 
     outcome: ErrandOutcome = ErrandOutcome.COMPLETED
@@ -164,13 +165,16 @@ class FakeErrand:
     def _outcome(self) -> ErrandOutcome:
         """What it comes to if nobody stops it."""
         total = self._cleans + self._drives
-        is_struck = self._script.after < total or self._script.outcome in _KEPT
-        return self._script.outcome if is_struck else ErrandOutcome.COMPLETED
+        if self._script.outcome is ErrandOutcome.REFUSED or self._script.after < total:
+            return self._script.outcome
+        return ErrandOutcome.COMPLETED
 
     @property
     def _work(self) -> float:
         """s of work that the robot does, unless it is stopped."""
         total = self._cleans + self._drives
+        if self._outcome is ErrandOutcome.REFUSED:
+            return 0.0
         if self._script.freezes or self._outcome is ErrandOutcome.LOST:
             return total
         return min(total, self._script.after)
@@ -300,7 +304,7 @@ class FakeVacuum:
         unknown = [name for name in names if name not in self._room_names]
         if mode is CleanMode.ROOMS and (unknown or not names):
             message = f"expected rooms among {', '.join(self._room_names)}, got {unknown}"
-            script = ErrandScript(ErrandOutcome.REFUSED, 0.0, message)
+            script = ErrandScript(ErrandOutcome.REFUSED, message=message)
         is_small = mode in (CleanMode.SPOT, CleanMode.ZONES)
         wanted = SPOT_AREA if is_small else ROOM_AREA * max(1, len(names))
         clean = FakeClean(script, self.clock, passes * wanted, names, self._battery)

@@ -8,6 +8,7 @@ import sys
 import rospy
 
 from roomba.errors import RoombaError
+from roomba.ui.cleaning import CLEANING, CLEANING_HEADING
 from roomba.ui.menu import Menu
 from roomba_ros.node import leave, require_master, wait_for_clock
 from roomba_ros.ros_client import RosRobot
@@ -16,7 +17,7 @@ from roomba_ros.ros_client import RosRobot
 def main() -> None:
     """Run the menu until its user leaves."""
     require_master()
-    # Ctrl-C belongs to the menu: during a walk it cancels the walk.
+    # Ctrl-C belongs to the menu: it cancels a walk, and leaves a clean to itself.
     rospy.init_node("control_node", disable_signals=True)
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
     try:
@@ -28,4 +29,4 @@ def main() -> None:
     except RoombaError as error:
         print(error, file=sys.stderr)
         sys.exit(1)
-    leave(Menu(robot).run())
+    leave(Menu(robot, more=CLEANING, more_heading=CLEANING_HEADING).run())

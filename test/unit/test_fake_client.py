@@ -11,6 +11,10 @@ from hypothesis import strategies as st
 
 from roomba.client import (
     CameraClient,
+    CleanMode,
+    CleanReport,
+    ErrandOutcome,
+    FanLevel,
     RequestRefusedError,
     RobotClient,
     RobotUnavailableError,
@@ -18,6 +22,16 @@ from roomba.client import (
     WalkOutcome,
 )
 from roomba.fake_client import CAMERA_ANGLES, FakeRobot, SteppedClock, Turn, WalkScript
+from roomba.fake_vacuum import (
+    CLEANING_RATE,
+    HOMING_TIME,
+    LOST_NOTICE,
+    ROOM_AREA,
+    UNDOCKING_TIME,
+    ErrandScript,
+    FakeClean,
+)
+from roomba.mission import clean_request
 
 COORDINATE = st.floats(min_value=-100.0, max_value=100.0)
 
@@ -220,3 +234,119 @@ def test_a_missing_camera_is_unavailable() -> None:
     robot.camera_answers = False
     with pytest.raises(RobotUnavailableError, match="within 5 s"):
         robot.picture(0.0)
+
+
+def ended(clean: FakeClean) -> CleanReport:
+    while clean.next_feedback(100.0) is not None:
+        pass
+    report = clean.report()
+    assert report is not None
+    return report
+
+
+def test_the_words_for_a_clean_are_those_of_the_mission() -> None:
+    of_mission = {mode.name for mode in clean_request.CleanMode}
+    assert {mode.name for mode in CleanMode} == of_mission
+    assert {fan.name for fan in FanLevel} == {fan.name for fan in clean_request.FanLevel}
+    outcomes = {outcome.name for outcome in ErrandOutcome}
+    assert outcomes - {"REFUSED", "ASTRAY"} == {each.name for each in clean_request.CleanOutcome}
+
+
+def test_a_clean_tells_every_second_and_ends_on_the_station() -> None:
+    robot: RobotClient = FakeRobot(room_names=("kitchen", "hall"))
+    clean = robot.clean()
+    told = []
+    while (progress := clean.next_feedback(100.0)) is not None:
+        told.append(progress)
+    cleaning = 2 * ROOM_AREA / CLEANING_RATE
+    assert len(told) == cleaning + HOMING_TIME
+    assert [told[index].covered for index in (0, 1, -1)] == pytest.approx([0.0, 0.5, 8.0])
+    assert [told[index].state for index in (0, -1)] == ["cleaning", "returning"]
+    assert {progress.room for progress in told} == {"kitchen", "hall"}
+    report = clean.report()
+    assert report is not None
+    assert report.outcome is ErrandOutcome.COMPLETED
+    assert report.duration == pytest.approx(cleaning + HOMING_TIME)
+    assert robot.vacuum().state == "docked"
+
+
+def test_a_pause_takes_no_part_in_the_work() -> None:
+    robot = FakeRobot()
+    clean = robot.clean(CleanMode.SPOT)
+    robot.clock.sleep(2.0)
+    robot.pause()
+    robot.clock.sleep(100.0)
+    assert robot.vacuum().state == "paused"
+    assert robot.vacuum().covered == pytest.approx(1.0)
+    with pytest.raises(RequestRefusedError, match="cannot pause now: the robot is paused"):
+        robot.pause()
+    robot.resume()
+    assert robot.vacuum().state == "cleaning"
+    assert ended(clean).covered == pytest.approx(2.25)
+    with pytest.raises(RequestRefusedError, match="cannot resume now: the robot is docked"):
+        robot.resume()
+
+
+def test_stop_ends_a_clean_on_the_spot() -> None:
+    robot = FakeRobot()
+    clean = robot.clean()
+    robot.clock.sleep(3.0)
+    robot.stop()
+    report = clean.report()
+    assert report is not None
+    assert report.outcome is ErrandOutcome.STOPPED
+    assert report.covered == pytest.approx(1.5)
+    assert robot.vacuum().state == "idle"
+    robot.stop()
+
+
+def test_a_newer_errand_takes_over_and_a_refused_one_does_not() -> None:
+    robot = FakeRobot()
+    first = robot.clean()
+    robot.clock.sleep(1.0)
+    refused = ended(robot.clean(CleanMode.ROOMS, rooms=("attic",)))
+    assert refused.outcome is ErrandOutcome.REFUSED
+    assert "attic" in refused.message
+    assert first.report() is None
+    docking = robot.dock()
+    assert ended(first).message == "a newer goal took over"
+    assert docking.next_feedback(1.0) == "returning"
+    robot.clock.sleep(HOMING_TIME)
+    report = docking.report()
+    assert report is not None
+    assert report.outcome is ErrandOutcome.COMPLETED
+    assert robot.vacuum().state == "docked"
+    assert robot.undock().next_feedback(1.0) == "undocking"
+    robot.clock.sleep(UNDOCKING_TIME)
+    assert robot.vacuum().state == "idle"
+
+
+def test_a_clean_that_is_lost_goes_on_without_its_client() -> None:
+    robot = FakeRobot(errands=[ErrandScript(ErrandOutcome.LOST, after=3.0)])
+    clean = robot.clean()
+    report = ended(clean)
+    assert report.outcome is ErrandOutcome.LOST
+    assert robot.clock.monotonic() == pytest.approx(3.0 + LOST_NOTICE)
+    assert math.isnan(report.distance)
+    robot.clock.sleep(1.0)
+    state = robot.vacuum()
+    assert (state.state, state.covered) == ("cleaning", pytest.approx(3.25))
+
+
+def test_errands_that_end_badly() -> None:
+    script = ErrandScript(ErrandOutcome.STUCK, after=4.0, message="a wheel hangs")
+    report = ended(FakeRobot(errands=[script]).clean())
+    assert (report.outcome, report.message) == (ErrandOutcome.STUCK, "a wheel hangs")
+    assert (report.covered, report.duration) == pytest.approx((2.0, 4.0))
+    frozen = FakeRobot(errands=[ErrandScript(after=2.0, freezes=True)]).clean()
+    assert [frozen.next_feedback(50.0) is None for _ in range(3)] == [False, False, True]
+    assert frozen.report() is None
+
+
+def test_a_silent_vacuum_uses_up_the_timeout() -> None:
+    robot = FakeRobot()
+    robot.answers = False
+    for ask in (robot.vacuum, robot.rooms, robot.pause, robot.clean, robot.dock):
+        with pytest.raises(RobotUnavailableError):
+            ask()
+    assert robot.clock.monotonic() == pytest.approx(25.0)

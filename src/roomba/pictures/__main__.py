@@ -17,6 +17,7 @@ from roomba.errors import RoombaError
 from roomba.pictures.battery import picture_of_battery, picture_of_levels
 from roomba.pictures.bumper import picture_of_bumper
 from roomba.pictures.camera import picture_of_depth
+from roomba.pictures.cleaning import picture_of_cleaning
 from roomba.pictures.dirt import picture_of_dirt
 from roomba.pictures.edge import picture_of_edge
 from roomba.pictures.faults import picture_of_faults
@@ -53,6 +54,7 @@ PICTURES: dict[str, tuple[str, Callable[[Home], Picture]]] = {
     "localization": ("flat", picture_of_localization),
     "relocation": ("empty", picture_of_relocation),
     "rooms": ("family", picture_of_rooms),
+    "cleaning": ("flat", picture_of_cleaning),
 }
 """Each picture by the name of its file: the home that it is of, and what makes it."""
 

@@ -91,8 +91,7 @@ def title_of(run: Run) -> str:
         f"{figures.distance_m:.0f} m"
         + ("" if ratio is None else f" (path ratio {ratio:.2f})")
         + f", {figures.turning_rad:.0f} rad, {clock(figures.duration_s)}, "
-        f"{figures.energy_wh:.1f} Wh, {figures.dirt_g:.0f} g of dirt, simulated in "
-        f"{figures.wall_s:.2f} s"
+        f"{figures.energy_wh:.1f} Wh, {figures.dirt_g:.0f} g of dirt"
     )
 
 

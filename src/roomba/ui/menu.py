@@ -1,4 +1,4 @@
-"""The report's menu: four things to ask of the robot, by number.
+"""The report's menu: four things to ask of the robot, by number; there may be more below.
 
 Speaks to :mod:`roomba.client` alone, and decides nothing: distances, reasons and reports are the
 robot's.
@@ -47,7 +47,10 @@ class Option:
 
 
 class Menu:
-    """The menu on a console; ``read`` asks as ``input`` does, ``options`` are numbered from 1."""
+    """The menu on a console; ``read`` asks as ``input`` does, ``options`` are numbered from 1.
+
+    ``more`` come below them, under ``more_heading``, and are numbered on.
+    """
 
     def __init__(
         self,
@@ -56,18 +59,22 @@ class Menu:
         console: Console | None = None,
         *,
         options: Sequence[Option] | None = None,
+        more: Sequence[Option] = (),
+        more_heading: str = "for more",
         clock: Clock = time,
     ) -> None:
         self.robot = robot
+        self.console = Console() if console is None else console
+        self.clock = clock
+        self.interrupts = Interrupts()
         self._read = Keyboard() if read is None else read
-        self._console = Console() if console is None else console
-        self._options = OPTIONS if options is None else tuple(options)
-        self._clock = clock
-        self._interrupts = Interrupts()
+        self._first = OPTIONS if options is None else tuple(options)
+        self._options = (*self._first, *more)
+        self._more_heading = more_heading
 
     def run(self) -> int:
         """Ask and act until the end of input (status 0) or Ctrl-C (status 130)."""
-        with self._interrupts:
+        with self.interrupts:
             try:
                 while True:
                     self._show_options()
@@ -85,7 +92,15 @@ class Menu:
 
     def say(self, text: str, style: str | None = None) -> None:
         """Print a line for the user, exactly as it is."""
-        say(self._console, text, style)
+        say(self.console, text, style)
+
+    def ask(self, prompt: str) -> str:
+        """Return an answer without the blanks around it; EndOfInputError when there is none."""
+        return ask(self._read, prompt)
+
+    def key_of(self, act: Callable[[Menu], None]) -> str:
+        """Return the number to press for what an option does."""
+        return str([option.act for option in self._options].index(act) + 1)
 
     def tell_dirt(self) -> None:
         """Tell the dirt under the robot."""
@@ -94,7 +109,7 @@ class Menu:
     def tell_position(self) -> None:
         """Tell where the robot is."""
         state = self.robot.state()
-        self.say(f"Current position: {_place(state.x, state.y)}")
+        self.say(f"Current position: {place(state.x, state.y)}")
         if state.doubt:
             self.say(f"The robot is not sure of that: {state.doubt}", style="yellow")
 
@@ -110,22 +125,23 @@ class Menu:
         self._walk(x, y, "at its charging station")
 
     def _show_options(self) -> None:
-        count = len(self._options)
-        keys = "1" if count == 1 else f"1-{count}"
+        first, last = len(self._first), len(self._options)
         self.say("")
-        self.say(f"Please press {keys} to choose what the robot does:", style="bold")
+        self.say(f"Please press {_keys(1, first)} to choose what the robot does:", style="bold")
         for number, option in enumerate(self._options, start=1):
+            if number == first + 1:
+                self.say(f"Or press {_keys(number, last)} {self._more_heading}:", style="bold")
             self.say(f"  {number}. {option.label}")
 
     def _choose(self) -> Option:
         table = {str(number): option for number, option in enumerate(self._options, start=1)}
-        while (option := table.get(ask(self._read, "Select: "))) is None:
+        while (option := table.get(self.ask("Select: "))) is None:
             self.say("Please choose a valid number", style="red")
         return option
 
     def _ask_coordinate(self, prompt: str) -> float:
         while True:
-            text = ask(self._read, prompt)
+            text = self.ask(prompt)
             number = read_number(text)
             limits = self.robot.limits()  # asked anew each time: they may be changed meanwhile
             if number is not None and limits.low <= number <= limits.high:
@@ -136,15 +152,15 @@ class Menu:
     def _walk(self, x: float, y: float, there: str) -> None:
         state = self.robot.state()
         if math.dist((state.x, state.y), (x, y)) <= ALREADY_THERE:
-            self.say(f"The robot is already {there}: {_place(state.x, state.y)}")
+            self.say(f"The robot is already {there}: {place(state.x, state.y)}")
             return
-        with self._interrupts.held():
+        with self.interrupts.held():
             length = self.robot.path_length(x, y)
             speed = self.robot.limits().max_speed
             expected = length / speed if speed > 0.0 else math.nan
             self.say(f"Distance: {quantity(length, 'm')}")
             self.say(f"Expected time: {quantity(expected, 's', 1)}")
-            if self._interrupts.noted():
+            if self.interrupts.noted():
                 self.say("Cancelled before the robot set out.")
                 return
             report = self._supervise(x, y, length)
@@ -153,14 +169,14 @@ class Menu:
     def _supervise(self, x: float, y: float, length: float) -> WalkReport:
         walk = self.robot.walk_to(x, y)
         try:
-            with walk_view(self._console, length) as view:
+            with walk_view(self.console, length) as view:
                 return follow_walk(
                     walk,
                     self.robot,
                     view,
                     total=length,
-                    wants_to_stop=self._interrupts.noted,
-                    clock=self._clock,
+                    wants_to_stop=self.interrupts.noted,
+                    clock=self.clock,
                 )
         except BaseException:
             # whatever ends the menu here, the robot must not walk on unseen
@@ -191,10 +207,15 @@ class Menu:
             state = self.robot.state(timeout=1.0)
         except RobotUnavailableError:
             return "unknown"
-        return _place(state.x, state.y)
+        return place(state.x, state.y)
 
 
-def _place(x: float, y: float) -> str:
+def _keys(first: int, last: int) -> str:
+    return str(first) if first == last else f"{first}-{last}"
+
+
+def place(x: float, y: float) -> str:
+    """Return a place for people."""
     return f"x = {quantity(x, 'm')}, y = {quantity(y, 'm')}"
 
 
