@@ -144,7 +144,7 @@ class FakeErrand:
         if self.ending is not None:
             return False
         due = max(0.0, self._told * FEEDBACK_PERIOD - self.elapsed)
-        is_mute = self._has_struck or due >= min(self._left, timeout + _INSTANT)
+        is_mute = self._is_struck_in(due) or due >= min(self._left, timeout + _INSTANT)
         self._clock.sleep(min(timeout, self._left) if is_mute else due)
         if is_mute or self.ending is not None:
             return False
@@ -155,11 +155,11 @@ class FakeErrand:
     def _is_standing(self) -> bool:
         return self._is_paused or bool(self._stopped_by)
 
-    @property
-    def _has_struck(self) -> bool:
-        """Whether the script made its server silent."""
+    def _is_struck_in(self, seconds: float) -> bool:
+        """Whether the script has made its server silent by then."""
         silences = self._script.freezes or self._outcome is ErrandOutcome.LOST
-        return silences and self.worked >= self._script.after - _INSTANT
+        worked = self.worked + (0.0 if self._is_standing else seconds)
+        return silences and worked >= self._script.after - _INSTANT
 
     @property
     def _outcome(self) -> ErrandOutcome:

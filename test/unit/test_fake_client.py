@@ -330,7 +330,8 @@ def test_a_clean_that_is_lost_goes_on_without_its_client() -> None:
     assert math.isnan(report.distance)
     robot.clock.sleep(1.0)
     state = robot.vacuum()
-    assert (state.state, state.covered) == ("cleaning", pytest.approx(3.25))
+    assert state.state == "cleaning"
+    assert state.covered == pytest.approx(3.25)
 
 
 def test_errands_that_end_badly() -> None:

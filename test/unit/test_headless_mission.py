@@ -115,7 +115,7 @@ def test_it_cleans_all_the_floor_without_a_hit_and_docks(config: RobotConfig) ->
     # Never faster than the speed wanted, and each tick is there.
     assert np.diff(poses[:, 0]) == pytest.approx(0.05)
     speed = np.hypot(*np.diff(poses[:, 1:3], axis=0).T) / 0.05
-    assert speed.max() <= 1.01 * robot.config.driving.speed
+    assert speed.max() <= 1.02 * robot.config.driving.speed
 
 
 def test_the_same_seed_gives_the_same_trace_and_another_one_another() -> None:
@@ -208,7 +208,7 @@ def test_edges_are_cleaned_and_the_middle_is_not() -> None:
     along[top : top + 8, left + 20 : right - 20] = True
     along[bottom - 8 : bottom, left + 20 : right - 20] = True
     assert floor_clean(robot, along) >= 0.98
-    assert record.distance < 18.0
+    assert record.distance < 25.0
     assert floor_clean(robot) < 0.8
 
 

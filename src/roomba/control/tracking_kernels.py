@@ -56,6 +56,8 @@ _ASKEW: Final = 0.6
 """rad; aiming so badly it turns on the spot first."""
 _LEAD: Final = 0.06
 """s; so much later the drive has the turning speed that it is told: a tick, and its ramp."""
+_LATE: Final = 2.0
+"""Ticks; so late it reckons with at corners: one of its own, one of messages."""
 _SLOWEST: Final = 0.015
 """m/s and rad/s; slower than this drives do not turn reliably."""
 
@@ -141,17 +143,26 @@ def corner_limit(state: Row, course: Course, left: float, limit: float) -> float
         speed = min(speed, max(course.through[leg], 4.0 * _SLOWEST))
     while ahead <= horizon:
         through = course.through[leg + 1]
-        # The drive does what it is told a tick late, so it goes on by that way.
-        way = max(ahead - course.halves[leg + 1] - speed * state.period, 0.0)
         if through == 0.0:
-            stop = math.sqrt(2.0 * state.braking * way)
-            nearly: float = max(ahead, 0.0) / (1.6 * state.period)
-            return max(min(speed, stop, nearly), _SLOWEST)
+            nearly: float = max(ahead, 0.0) / (2.2 * state.period)
+            return max(min(speed, stopping_speed(state, ahead), nearly), _SLOWEST)
+        way = max(ahead - course.halves[leg + 1] - speed * state.period, 0.0)
         speed = min(speed, math.sqrt(through * through + 2.0 * state.braking * way))
         leg += 1
         if leg > last:
             break
         ahead += course.stations[leg + 1] - course.stations[leg]
+    return speed
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def stopping_speed(state: Row, way: float) -> float:
+    """Return the speed, m/s, from which it stops within ``way``, m.
+
+    The drive does what it is told a little late, and goes on for that: v T + v^2 / (2 b) = way.
+    """
+    late, braking = _LATE * state.period, state.braking
+    speed: float = braking * (math.sqrt(late * late + 2.0 * max(way, 0.0) / braking) - late)
     return speed
 
 

@@ -16,6 +16,8 @@ from roomba.grid import OCCUPIED, GridFrame, OccupancyMap
 
 WALL_WIDTH: Final = 0.05
 """m; of a virtual wall: as thick as a cell, so that nothing slips through."""
+_LEAST_SHARE: Final = 1e-6
+"""Of a cell; less is rounding."""
 _LEAST_AREA: Final = 0.01
 """m2; a smaller area is a slip of the finger."""
 
@@ -74,13 +76,21 @@ class Zone:
         shape = self._outline
         if self.kind is ZoneKind.WALL:
             shape = shape.buffer(0.5 * WALL_WIDTH, cap_style="square")
-        # A cell's square is touched when its middle is this near, along one axis at least.
-        half = 0.5 * frame.resolution
-        reach = shape.buffer(half, cap_style="square", join_style="mitre")
-        x = frame.origin_x + (np.arange(frame.columns) + 0.5) * frame.resolution
-        y = frame.origin_y + (np.arange(frame.rows) + 0.5) * frame.resolution
-        grid_x, grid_y = np.meshgrid(x, y)
-        touched: NDArray[np.bool_] = shapely.contains_xy(reach, grid_x, grid_y)
+        touched = np.zeros(frame.shape, np.bool_)
+        x_min, y_min, x_max, y_max = shape.bounds
+        low_row, low_column = frame.cell_of(x_min, y_min)
+        high_row, high_column = frame.cell_of(x_max, y_max)
+        rows = np.arange(max(low_row, 0), min(high_row + 1, frame.rows))
+        columns = np.arange(max(low_column, 0), min(high_column + 1, frame.columns))
+        if rows.size == 0 or columns.size == 0:
+            return touched
+        left = frame.origin_x + columns[None, :] * frame.resolution
+        bottom = frame.origin_y + rows[:, None] * frame.resolution
+        squares = shapely.box(left, bottom, left + frame.resolution, bottom + frame.resolution)
+        shapely.prepare(shape)
+        # What shares a border with a zone and nothing else is not touched.
+        common = shapely.area(shapely.intersection(squares, shape))
+        touched[np.ix_(rows, columns)] = common > _LEAST_SHARE * frame.resolution**2
         return touched
 
 

@@ -16,7 +16,14 @@ from roomba.client import (
     MissedFloor,
     VacuumSnapshot,
 )
-from roomba.ui.errand_progress import area_text, clean_view, follow_errand, percent, time_text
+from roomba.ui.errand_progress import (
+    area_text,
+    clean_view,
+    follow_errand,
+    percent,
+    time_text,
+    to_go_text,
+)
 from roomba.ui.menu import Menu, Option, place
 from roomba.ui.progress import quantity
 
@@ -149,6 +156,8 @@ def _follow_clean(menu: Menu, under_way: Clean) -> None:
     _say_end(menu, _ENDS[report.outcome], report.outcome, report.message)
     if report.outcome is not ErrandOutcome.REFUSED:
         _tell_numbers(menu, report)
+    if report.outcome is ErrandOutcome.LOST:
+        menu.say(f"Press {menu.key_of(tell_state)} to see whether the robot goes on with it.")
 
 
 def _leave(menu: Menu) -> None:
@@ -192,6 +201,6 @@ def _state_line(state: VacuumSnapshot) -> str:
     ]
     if state.wanted > 0.0:
         parts.append(f"cleaned {area_text(state.covered, state.wanted)}")
-        parts.append(f"{time_text(state.seconds_to_go)} to go")
+        parts.append(to_go_text(state.seconds_to_go))
     line = f"State: {', '.join(part for part in parts if part)}"
     return f"{line}: {' '.join(state.message.split())}" if state.message else line

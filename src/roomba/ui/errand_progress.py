@@ -82,6 +82,11 @@ def time_text(seconds: float) -> str:
     return f"{minutes} min" if minutes < 100 else f"{minutes // 60} h {minutes % 60:02d} min"
 
 
+def to_go_text(seconds: float) -> str:
+    """Return the time to go for people; nothing where there is none, or none is known yet."""
+    return "" if seconds <= 0.0 else f"{time_text(seconds)} to go"
+
+
 def area_text(covered: float, wanted: float) -> str:
     """Return how much floor is clean, for people."""
     if not (math.isfinite(covered) and math.isfinite(wanted)):
@@ -116,9 +121,13 @@ class CleanLines:
             progress.state,
             progress.room,
             f"battery {percent(progress.battery)}",
-            f"{time_text(progress.seconds_to_go)} to go",
+            to_go_text(progress.seconds_to_go),
         ]
         say(self._console, ", ".join(part for part in parts if part))
+
+
+_FIELDS = ("area", "battery", "to_go", "where")
+"""What stands after the bar; the last is cut off where there is no room."""
 
 
 class CleanBar:
@@ -126,7 +135,9 @@ class CleanBar:
 
     def __init__(self, progress: Progress) -> None:
         self._progress = progress
-        self._task = progress.add_task("Cleaning", total=1.0, area="", where="", more="")
+        self._task = progress.add_task(
+            "Cleaning", total=1.0, area="", battery="", to_go="", where=""
+        )
 
     def show(self, progress: CleanProgress) -> None:
         """Move the bar."""
@@ -137,7 +148,8 @@ class CleanBar:
             completed=share,
             area=area_text(progress.covered, progress.wanted),
             where=progress.room,
-            more=f"battery {percent(progress.battery)}, {time_text(progress.seconds_to_go)} to go",
+            battery=f"battery {percent(progress.battery)}",
+            to_go=to_go_text(progress.seconds_to_go),
             refresh=True,
         )
 
@@ -151,12 +163,9 @@ def clean_view(console: Console, clock: Clock) -> Iterator[CleanView]:
     # a room's name may hold what rich takes for markup
     progress = Progress(
         TextColumn("{task.description}", markup=False),
-        BarColumn(
-            bar_width=20, style="bright_black", complete_style="cyan", finished_style="green"
-        ),
-        TextColumn("{task.fields[area]}", markup=False),
-        TextColumn("{task.fields[where]}", markup=False),
-        TextColumn("{task.fields[more]}", markup=False),
+        # narrow: all of it should fit into 80 columns
+        BarColumn(bar_width=8, style="bright_black", complete_style="cyan", finished_style="green"),
+        *(TextColumn(f"{{task.fields[{field}]}}", markup=False) for field in _FIELDS),
         console=console,
         auto_refresh=False,
     )

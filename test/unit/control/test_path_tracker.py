@@ -117,9 +117,12 @@ def test_soft_corners_are_taken_without_stopping(legs: list[tuple[float, float]]
     points = polyline(headings, [way for _, way in legs])
     drive = Drive(points, Pose(0.0, 0.0, headings[0])).to_the_end()
     check(drive, points)
-    # Slower than this it only is at the end.
-    slow = [twist.linear < 0.05 for twist in drive.twists]
-    assert not any(slow[: -round(0.5 / TICK)])
+    # Once it drives it does not stop, nor creep but at the end.
+    began = next(tick for tick, twist in enumerate(drive.twists) if twist.linear > 0.0)
+    left = np.hypot(*(drive.places[::FINE][:-1] - points[-1]).T)
+    speeds = np.array([twist.linear for twist in drive.twists])
+    assert (speeds[began:-1] > 0.0).all()
+    assert (speeds[began:][left[began:] > 0.05] > 0.05).all()
 
 
 @given(st.floats(0.36, math.pi), st.booleans())
@@ -141,7 +144,7 @@ def test_a_straight_way_is_driven_at_the_speed_wanted() -> None:
     points = line((0.0, 0.0), (3.0, 0.0))
     for limit in (0.1, 0.3, 0.5):
         drive = Drive(points, limit=limit).to_the_end()
-        assert len(drive.twists) * TICK == pytest.approx(3.0 / limit, abs=1.5)
+        assert len(drive.twists) * TICK == pytest.approx(3.0 / limit, abs=2.0)
         assert max(twist.linear for twist in drive.twists) == pytest.approx(limit)
         assert {twist.angular for twist in drive.twists} == {0.0}
 
@@ -153,10 +156,12 @@ def test_it_brakes_for_the_end_and_for_corners() -> None:
     slowing = np.diff([speed for speed in speeds if speed > 0.02]) / TICK
     assert -2.5 * TRACKING.braking < slowing.min() < 0.0
     places = drive.places[::FINE][:-1]
-    near = [
-        speed for speed, place in zip(speeds, places) if np.hypot(*(place - (1.0, 0.0))) < 0.02
-    ]
-    assert max(near) <= math.sqrt(2.0 * TRACKING.braking * 0.02) + 0.03
+    for corner, leg in (((1.0, 0.0), 0), ((1.0, 1.0), 1)):
+        left = np.hypot(*(places - corner).T)[np.array(drive.legs) == leg]
+        on_leg = np.array(speeds)[np.array(drive.legs) == leg]
+        assert (on_leg <= np.sqrt(2.0 * TRACKING.braking * left) + 0.03).all()
+        # But it does not begin to brake long before.
+        assert on_leg[(left > 0.15) & (left < 0.9)] == pytest.approx(LIMIT)
 
 
 def test_where_it_is_on_its_path_is_told() -> None:

@@ -99,7 +99,7 @@ def test_a_clean_is_told_during_and_after() -> None:
     begin = lines.index("Cleaned: 0.0 of 8.0 m2 (0%), cleaning, kitchen, battery 80%, 16 s to go")
     assert lines[begin + 1 : begin + 13] == [
         "Cleaned: 4.0 of 8.0 m2 (50%), cleaning, hall, battery 80%, 8 s to go",
-        "Cleaned: 8.0 of 8.0 m2 (100%), returning, hall, battery 80%, 0 s to go",
+        "Cleaned: 8.0 of 8.0 m2 (100%), returning, hall, battery 80%",
         "The clean is done, and the robot is back on its station.",
         "Cleaned: 8.0 of 8.0 m2 (100%)",
         "Distance travelled: 5.00 m",
@@ -185,6 +185,8 @@ def test_a_clean_gone_wrong_says_why_and_how_far_it_came(outcome: ErrandOutcome,
     assert lines[end + 1].startswith("Cleaned: ")
     assert ("Energy used: 0.04 Wh" in lines) is (outcome is not ErrandOutcome.LOST)
     assert not any("nan" in line or "unknown" in line for line in lines)
+    tip = "Press 9 to see whether the robot goes on with it."
+    assert (tip in lines) is (outcome is ErrandOutcome.LOST)
     assert (status, answers.prompts[-1]) == (0, "Select: ")
 
 
@@ -227,7 +229,7 @@ def test_ctrl_c_leaves_a_clean_to_itself() -> None:
     end = lines.index(GOES_ON)
     assert robot.cleans[0].cancels == 0
     told = [line for line in lines[end:] if line.startswith(("State", "The robot"))]
-    amount = "battery 80%, cleaned 1.6 of 12.0 m2 (13%), 21 s to go"
+    amount = "battery 80%, cleaned 1.5 of 12.0 m2 (12%), 21 s to go"
     assert told[1:] == [
         f"State: cleaning, in kitchen, {amount}",
         "The robot pauses; press 6 to let it go on.",
@@ -240,7 +242,7 @@ def test_ctrl_c_leaves_a_clean_to_itself() -> None:
 
 
 def test_a_second_ctrl_c_leaves_the_menu_and_the_robot_cleans() -> None:
-    robot = FakeRobot(clock=interrupting_clock(3.0, 3.1))
+    robot = FakeRobot(clock=interrupting_clock(3.05, 3.1))
     status, _, _ = use(robot, "5", "")
     assert status == 130
     assert robot.vacuum().state == "cleaning"
@@ -307,7 +309,7 @@ PROGRESS = CleanProgress(
     covered=2.5,
     wanted=10.0,
     fraction=0.25,
-    seconds_to_go=4000.0,
+    seconds_to_go=7500.0,
     battery=math.nan,
 )
 
@@ -324,7 +326,7 @@ def test_a_terminal_gets_a_live_bar() -> None:
         view.show(PROGRESS)
     assert isinstance(console.file, io.StringIO)
     output = console.file.getvalue()
-    for text in ("Cleaning", "━", "2.5 of 10.0 m2 (25%)", "[red]den", "1 h 07 min to go"):
+    for text in ("Cleaning", "━", "2.5 of 10.0 m2 (25%)", "[red]den", "2 h 05 min to go"):
         assert text in output
     assert "battery unknown" in output
 

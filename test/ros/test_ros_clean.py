@@ -1,0 +1,168 @@
+"""Cleaning as a client asks for it, of a mission node that is made of a few callbacks."""
+
+import math
+import os
+import time
+from typing import Any
+
+import actionlib
+import pytest
+import rospy
+from fixtures.graph import RosGraph
+from fixtures.waiting import wait_until
+from geometry_msgs.msg import Point
+from roomba_robot.msg import (
+    CleanAction,
+    CleanFeedback,
+    CleanGoal,
+    CleanResult,
+    DockAction,
+    DockFeedback,
+    DockResult,
+    MissedArea,
+    Room,
+    RoomArray,
+    UndockAction,
+    VacuumState,
+)
+from std_srvs.srv import Trigger, TriggerResponse
+
+from roomba.client import (
+    CleanMode,
+    ErrandOutcome,
+    FanLevel,
+    MissedFloor,
+    RequestRefusedError,
+    RobotUnavailableError,
+)
+from roomba_ros.roomba_client import RoombaClient
+
+
+class Server(actionlib.ActionServer):  # type: ignore[misc]
+    """Accepts every goal but those of the attic, and leaves the rest to the test."""
+
+    def __init__(self, name: str, action: type) -> None:
+        self.is_silent = False
+        self.goals: list[Any] = []
+        super().__init__(name, action, self._on_goal, lambda _: None, auto_start=False)
+        self.start()
+
+    def _on_goal(self, handle: Any) -> None:
+        goal = handle.get_goal()
+        if "attic" in getattr(goal, "rooms", ()):
+            result = CleanResult(outcome=CleanResult.STOPPED, message="there is no attic")
+            handle.set_rejected(result, "there is no attic")
+            return
+        handle.set_accepted()
+        self.goals.append(handle)
+
+    def publish_status(self) -> None:
+        if not self.is_silent:
+            super().publish_status()
+
+
+class FakeMission:
+    """What a client sees of a mission node; a Trigger is refused while ``refusal`` is set."""
+
+    def __init__(self) -> None:
+        self.cleans, self.docks = Server("clean", CleanAction), Server("dock", DockAction)
+        self.undocks = Server("undock", UndockAction)
+        self.orders: list[str] = []
+        self.refusal = ""
+        for name in ("pause", "resume", "stop", "locate"):
+            rospy.Service(name, Trigger, lambda _, name=name: self._on_order(name))
+        self.state = rospy.Publisher("vacuum/state", VacuumState, queue_size=1, latch=True)
+        self.rooms = rospy.Publisher("rooms", RoomArray, queue_size=1, latch=True)
+
+    def _on_order(self, name: str) -> TriggerResponse:
+        self.orders.append(name)
+        return TriggerResponse(not self.refusal, self.refusal)
+
+
+def begin(graph: RosGraph) -> tuple[RoombaClient, FakeMission]:
+    os.environ.update(graph.environment)
+    return RoombaClient.connect(), FakeMission()
+
+
+def test_a_clean_from_its_goal_to_its_report(graph: RosGraph) -> None:
+    roomba, mission = begin(graph)
+    rooms = ("Hall", "Küche")
+    clean = roomba.robot.clean(
+        CleanMode.ROOMS, rooms=rooms, in_order=True, passes=2, fan=FanLevel.STRONG
+    )
+    handle = wait_until(lambda: mission.cleans.goals and mission.cleans.goals[0], 3.0)
+    goal = handle.get_goal()
+    assert (goal.mode, goal.rooms, goal.in_order) == (CleanGoal.ROOMS, list(rooms), True)
+    assert (goal.passes, goal.fan, goal.spot_is_here) == (2, CleanGoal.STRONG, True)
+
+    for covered in (1.0, 2.0):
+        handle.publish_feedback(CleanFeedback("cleaning", "Hall", covered, 8.0, 0.25, 20.0, 0.5))
+    told = clean.next_feedback(3.0)
+    while told is not None and told.covered < 2.0:
+        told = clean.next_feedback(3.0)
+    assert told is not None
+    assert (told.state, told.room, told.battery) == ("cleaning", "Hall", 0.5)
+    assert clean.next_feedback(0.05) is None
+
+    # One that is refused neither ends nor hides the one before it.
+    refused = roomba.clean_rooms("attic")
+    assert (refused.outcome, refused.message) == (ErrandOutcome.REFUSED, "there is no attic")
+    assert clean.report() is None
+
+    area = MissedArea(0.5, Point(1.0, 2.0, 0.0), "Hall", MissedArea.THING, "a chair")
+    handle.set_aborted(
+        CleanResult(CleanResult.LOST, "no place", 6.0, 8.0, 12.0, 40.0, 300.0, 2.5, [area]), "x"
+    )
+    report = wait_until(clean.report, 3.0)
+    assert (report.outcome, report.message) == (ErrandOutcome.ASTRAY, "no place")
+    assert (report.covered, report.wanted, report.dirt) == (6.0, 8.0, 12.0)
+    assert (report.distance, report.duration, report.energy) == (40.0, 300.0, 2.5)
+    assert report.missed == (MissedFloor(0.5, 1.0, 2.0, "Hall", "a chair"),)
+
+    docking = roomba.robot.dock()
+    handle = wait_until(lambda: mission.docks.goals and mission.docks.goals[0], 3.0)
+    handle.publish_feedback(DockFeedback("docking"))
+    assert docking.next_feedback(3.0) == "docking"
+    handle.set_aborted(DockResult(False, "no beam"), "no beam")
+    docked = wait_until(docking.report, 3.0)
+    assert (docked.outcome, docked.message) == (ErrandOutcome.FAULT, "no beam")
+
+    mission.state.publish(state="docked", phase="charging", battery=0.75, message="hm")
+    mission.rooms.publish(rooms=[Room(name=name) for name in rooms])
+    assert (roomba.state.phase, roomba.state.battery) == ("charging", 0.75)
+    assert roomba.robot.rooms() == rooms
+    for name in ("pause", "resume", "stop", "locate"):
+        getattr(roomba.robot, name)()
+    assert mission.orders == ["pause", "resume", "stop", "locate"]
+    mission.refusal = "cannot pause now"
+    with pytest.raises(RequestRefusedError, match="cannot pause now"):
+        roomba.robot.pause()
+    with pytest.raises(RequestRefusedError, match="1 to 5 passes"):
+        roomba.robot.clean(passes=0)
+
+
+def test_a_mission_that_began_anew_or_is_silent_has_lost_the_clean(graph: RosGraph) -> None:
+    roomba, mission = begin(graph)
+    with pytest.raises(RobotUnavailableError, match="nothing came on vacuum/state"):
+        roomba.robot.vacuum(timeout=0.1)
+    first = roomba.robot.clean()
+    handle = wait_until(lambda: mission.cleans.goals and mission.cleans.goals[0], 3.0)
+    handle.publish_feedback(CleanFeedback("cleaning", "", 1.0, 8.0, 0.125, 20.0, 0.5))
+    wait_until(lambda: first.next_feedback(0.1), 3.0)
+    with mission.cleans.lock:
+        mission.cleans.status_list.clear()
+    report = wait_until(first.report, 3.0)
+    assert report.outcome is ErrandOutcome.LOST
+    assert "goes on by itself" in report.message
+    assert (report.covered, report.wanted) == (1.0, 8.0)
+    assert math.isnan(report.energy)
+
+    second = roomba.robot.clean()
+    wait_until(lambda: len(mission.cleans.goals) == 2, 3.0)
+    mission.cleans.is_silent = True
+    began = time.monotonic()
+    report = wait_until(second.report, 5.0)
+    assert report.outcome is ErrandOutcome.LOST
+    assert "silent for 2.5 s" in report.message
+    assert time.monotonic() - began < 4.0
+    assert second.next_feedback(10.0) is None
