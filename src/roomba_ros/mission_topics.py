@@ -17,7 +17,6 @@ from roomba.mission.machine import VACUUM_STATES
 from roomba.mission.mission import Mission
 from roomba.mission.senses import Senses
 from roomba.mission_config import MissionConfig
-from roomba.perception.dirt_map import CELL, DirtMap
 from roomba_ros.background import Background
 from roomba_ros.convert import header, path_message
 from roomba_ros.convert_mission import coverage_message, dirt_message, shown
@@ -113,20 +112,13 @@ class MissionTopics:
             self._show(self._coverage, lambda: coverage_message(now, cells, frame, rows, "map"))
         if has_ended or self._dirt.get_num_connections():
             dirt, times = mission.dirt, self._config.cleaning.dirty_times
-            density = _density(dirt)
+            density = dirt.known()
             known = density[~np.isnan(density)]
             dirty = max(times * float(np.median(known)) if known.size else 0.0, _LEAST_DIRTY)
             self._show(self._dirt, lambda: dirt_message(now, density, dirt.frame, dirty, "map"))
 
     def _show(self, publisher: rospy.Publisher, message: Callable[[], OccupancyGrid]) -> None:
         self._background.do(f"no {publisher.name} is shown", lambda: publisher.publish(message()))
-
-
-def _density(dirt: DirtMap) -> NDArray[np.float32]:
-    """Return grains/m2 as counted on this run, else as learned; NaN where neither is known."""
-    seen = dirt.way > 0.5 * CELL
-    counted = dirt.grains / (np.maximum(dirt.way, 0.5 * CELL) * CELL)
-    return np.where(seen, counted, dirt.learned)
 
 
 def state_of(now: float, mission: Mission, senses: Senses) -> VacuumState:
@@ -142,6 +134,6 @@ def state_of(now: float, mission: Mission, senses: Senses) -> VacuumState:
         state.room = mission.site.room_at(senses.pose.x, senses.pose.y)
     if mission.cleaning is not None:
         coverage = mission.cleaning.coverage
-        state.covered, state.wanted = coverage.swept_area, coverage.wanted_area
-        state.fraction, state.seconds_to_go = coverage.fraction, mission.seconds_to_go()
+        state.covered, state.wanted = mission.cleaning.clean_area, coverage.wanted_area
+        state.fraction, state.seconds_to_go = mission.cleaning.fraction, mission.seconds_to_go()
     return state

@@ -30,7 +30,9 @@ robot elsewhere."""
 
 
 class SimServices:
-    """Services: ``sim/spill`` (SpillDirt), ``sim/inject_fault`` (InjectFault)."""
+    """Services: ``sim/spill`` (SpillDirt), ``sim/inject_fault`` (InjectFault: what goes wrong by
+    name; ``charge`` sets what is in the battery, ``value`` of 0..1).
+    """
 
     def __init__(self, simulator: Simulator, lock: threading.Lock) -> None:
         """Connect; ``lock`` guards the simulator."""

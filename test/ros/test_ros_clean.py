@@ -2,7 +2,9 @@
 
 import math
 import os
+import sys
 import time
+from pathlib import Path
 from typing import Any
 
 import actionlib
@@ -36,6 +38,8 @@ from roomba.client import (
     RobotUnavailableError,
 )
 from roomba_ros.roomba_client import RoombaClient
+
+EXAMPLE = Path(__file__).parents[2] / "examples" / "clean_home.py"
 
 
 class Server(actionlib.ActionServer):  # type: ignore[misc]
@@ -166,3 +170,18 @@ def test_a_mission_that_began_anew_or_is_silent_has_lost_the_clean(graph: RosGra
     assert "silent for 2.5 s" in report.message
     assert time.monotonic() - began < 4.0
     assert second.next_feedback(10.0) is None
+
+
+def test_the_example_cleans_once_and_tells_what_came_of_it(graph: RosGraph) -> None:
+    os.environ.update(graph.environment)
+    rospy.init_node("mission_node", disable_signals=True)
+    mission = FakeMission()
+    program = graph.run(sys.executable, str(EXAMPLE))
+    handle = wait_until(lambda: mission.cleans.goals and mission.cleans.goals[0], 10.0)
+    handle.publish_feedback(CleanFeedback("cleaning", "Hall", 2.0, 8.0, 0.25, 20.0, 0.5))
+    program.says(" 25% cleaning Hall", 5.0)
+    area = MissedArea(2.0, Point(), "", MissedArea.SHUT, "a door is shut")
+    handle.set_succeeded(CleanResult(covered=6.0, wanted=8.0, duration=9.0, missed=[area]), "")
+    assert program.ends(5.0) == 0
+    assert "completed: 6.0 of 8.0 m2 are clean" in program.output
+    assert "missed 2.00 m2 in no room: a door is shut" in program.output

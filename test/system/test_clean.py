@@ -105,7 +105,10 @@ class Vacuum:
         return Order("dock", DockAction, DockGoal())
 
     def does(self, phase: str, deadline: float = 20.0) -> None:
-        wait_until(lambda: self.state.phase == phase, deadline, f"{phase}, not {self.state}")
+        try:
+            wait_until(lambda: self.state.phase == phase, deadline, phase)
+        except AssertionError as error:
+            raise AssertionError(f"{error}; it went through {self.phases}\n{self.state}") from None
 
     def inject(self, fault: str, value: float = 1.0, x: float = 0.0, y: float = 0.0) -> None:
         answer = self._inject(InjectFaultRequest(fault=fault, value=value, x=x, y=y))
@@ -204,7 +207,7 @@ def test_a_clean_is_held_and_completed(shared_robot: RosGraph) -> None:
 
 def test_with_a_low_battery_it_charges_and_goes_on(shared_robot: RosGraph) -> None:
     vacuum = Vacuum(shared_robot)
-    # A little above the reserve when it starts, a little below what the rest takes afterwards.
+    # A little above the reserve when it starts; then a little below twice the reserve.
     vacuum.inject("charge", 0.0825)
     clean = vacuum.clean(SMALL)
     vacuum.does("charging")

@@ -43,11 +43,10 @@ from roomba.mission.clean_request import (
     FanLevel,
     MissReason,
 )
+from roomba.mission.docking_config import DockingConfig
 from roomba.mission.machine import Errand, Event, Phase
 from roomba.mission.mission import CommandRefusedError, Mission
 from roomba.mission.site import Site
-from roomba.mission_config import EnergyConfig, MissionConfig
-from roomba.mission.docking_config import DockingConfig
 from roomba.perception.zones import Zone, ZoneKind, Zones
 from roomba.world.engine.arrays import Fault
 
@@ -539,6 +538,7 @@ def test_a_zone_set_while_it_cleans_is_not_entered_any_more(after: float) -> Non
 
 def test_a_zone_that_is_set_around_it_is_left() -> None:
     robot = begun()
+    until(robot, lambda: robot.simulator.pose.x > 2.4)
     pose = robot.simulator.pose
     area = (pose.x - 0.3, pose.y - 0.3, pose.x + 0.3, pose.y + 0.3)
     robot.mission.use_site(zoned(robot, no_go(*area)))
@@ -619,9 +619,7 @@ def test_what_is_clean_is_not_cleaned_again_after_a_restart() -> None:
     assert robot.simulator.numbers["distance"] - driven < 0.75 * whole
 
 
-@pytest.mark.parametrize(
-    "phase", [Phase.UNDOCKING, Phase.CLEANING, Phase.RETURNING, Phase.DOCKING]
-)
+@pytest.mark.parametrize("phase", [Phase.UNDOCKING, Phase.CLEANING, Phase.RETURNING, Phase.DOCKING])
 def test_each_phase_can_be_taken_up_again(phase: Phase) -> None:
     robot = HeadlessMission(HOME)
     request = CleanRequest(CleanMode.SPOT, spot=(2.0, 0.6))

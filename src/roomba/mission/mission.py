@@ -242,6 +242,7 @@ class Mission:
         if self.driver is not None:
             along = self.driver.tracker.along
             self.trail.follow(self.driver.tracker, along - way, along)
+            self.driver.caught_up(senses)
         self.book.note(senses, way)
         self._last = senses
 
@@ -507,13 +508,12 @@ class Mission:
             return
         obstacles = self.obstacles.standing(senses.now)
         is_over = cleaning.stage is None
-        clean = float(np.count_nonzero(cleaning.clean)) * cleaning.coverage.cell_area
         missed: tuple[Missed, ...] = cleaning.missed(obstacles, is_over)
         self._result = CleanResult(
             outcome,
             message,
             wanted=cleaning.coverage.wanted_area,
-            covered=clean,
+            covered=cleaning.clean_area,
             dirt=self.book.dirt,
             distance=self.book.distance,
             duration=senses.now - self._started,

@@ -44,6 +44,8 @@ class Obstacles:
         """Remember what bumper or cliff sensors found where the robot stands."""
         where = self._edges if senses.cliff else self._felt
         where.felt(senses.now, senses.pose, *senses.touches)
+        # A wall that it drove against, being late, is on the map.
+        self._felt.drop(self._seen.is_mapped)
         self._felt_version += 1
 
     def forget_felt_at(self, senses: Senses) -> None:

@@ -147,6 +147,10 @@ class PathDriver:
             return DriveStep(self._state, twist)
         return DriveStep(self._state, STANDSTILL, self._reason)
 
+    def caught_up(self, senses: Senses) -> None:
+        """Go on after ticks that were the tracker's alone."""
+        self._last_tick = senses.now
+
     def _track(self, points: NDArray[np.float64]) -> PathTracker:
         return PathTracker(points, self._tracking, self._body, PERIOD)
 

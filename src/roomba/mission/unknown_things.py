@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 from roomba.config import BodyConfig, WalkConfig
 from roomba.geometry import Pose
@@ -51,3 +52,7 @@ class UnknownThings:
     def forget(self) -> None:
         """Forget everything."""
         self._felt = []
+
+    def drop(self, is_known: Callable[[float, float], bool]) -> None:
+        """Forget what was felt where the map itself shows something."""
+        self._felt = [entry for entry in self._felt if not is_known(entry[1][0], entry[1][1])]

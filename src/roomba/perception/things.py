@@ -12,6 +12,7 @@ from pydantic import Field
 from roomba.config import Frozen, NotNegative, Positive
 from roomba.geometry import Pose
 from roomba.perception.belief_correct_kernels import Beams
+from roomba.perception.field_kernels import look
 from roomba.perception.match_kernels import beam_ends
 from roomba.perception.surface_field import SurfaceField
 from roomba.perception.things_kernels import (
@@ -26,6 +27,8 @@ from roomba.perception.things_kernels import (
 RoundObstacle = tuple[float, float, float]
 """x, y and radius of a round thing, m, map frame."""
 
+_NEXT_TO: Final = 0.04
+"""m; about a cell."""
 _MOST_CELLS: Final = 4096
 """Cells that may have evidence: 10 m2 of a usual map, more than stands about in a home."""
 
@@ -138,6 +141,11 @@ class ThingLayer:
         legs = np.hypot(*np.diff(points, axis=0).T)
         stations = np.concatenate(([0.0], np.cumsum(legs)))
         return self.first_blocked(points, stations, first, last, radius) is not None
+
+    def is_mapped(self, x: float, y: float) -> bool:
+        """Whether the map shows a surface at a point, m, or next to it."""
+        off, _, _ = look(self._field, self._place, x, y)
+        return bool(off < _NEXT_TO)
 
     def forget(self) -> None:
         """Begin anew with nothing."""

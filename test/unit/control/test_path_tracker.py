@@ -77,7 +77,7 @@ def line(*points: tuple[float, float]) -> Points:
 
 
 def polyline(headings: list[float], lengths: list[float]) -> Points:
-    ways = [(way * math.cos(a), way * math.sin(a)) for a, way in zip(headings, lengths)]
+    ways = [(way * math.cos(a), way * math.sin(a)) for a, way in zip(headings, lengths, strict=False)]
     return np.concatenate((np.zeros((1, 2)), np.cumsum(np.array(ways), axis=0)))
 
 
@@ -102,9 +102,7 @@ def check(drive: Drive, points: Points) -> None:
 
 @given(legs, st.floats(-math.pi, math.pi))
 @settings(max_examples=60)
-def test_any_polyline_is_driven_to_its_end(
-    legs: list[tuple[float, float]], heading: float
-) -> None:
+def test_any_polyline_is_driven_to_its_end(legs: list[tuple[float, float]], heading: float) -> None:
     points = polyline([leg[0] for leg in legs], [leg[1] for leg in legs])
     drive = Drive(points, Pose(0.0, 0.0, heading)).to_the_end()
     check(drive, points)

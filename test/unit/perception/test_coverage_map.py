@@ -13,11 +13,12 @@ from numpy.typing import NDArray
 from roomba.grid import GridFrame
 from roomba.perception.coverage_bits import SWEPT, WANTED
 from roomba.perception.coverage_kernels import sweep
-from roomba.perception.coverage_map import LONGEST_STEP, CoverageMap, patches_of
+from roomba.perception.coverage_map import GRANTED, LONGEST_STEP, CoverageMap, patches_of
 
 FRAME = GridFrame(0.02, -0.5, 0.3, 40, 60)
 LEFT, RIGHT, LOW, HIGH = FRAME.extent
 RADIUS = 0.0917
+"""m; of the tool, and what its map grants."""
 Mask = NDArray[np.bool_]
 
 
@@ -35,7 +36,9 @@ def off_way(start: tuple[float, float], end: tuple[float, float]) -> NDArray[np.
     length = float(way @ way)
     share = ((x - start[0]) * way[0] + (y - start[1]) * way[1]) / length if length else 0.0 * x
     share = np.clip(share, 0.0, 1.0)
-    off: NDArray[np.float64] = np.hypot(x - start[0] - share * way[0], y - start[1] - share * way[1])
+    off: NDArray[np.float64] = np.hypot(
+        x - start[0] - share * way[0], y - start[1] - share * way[1]
+    )
     return off
 
 
@@ -66,7 +69,7 @@ def test_the_kernel_sweeps_what_numpy_says(
 
 
 def test_beginning_anywhere_it_has_swept_what_is_below_it() -> None:
-    coverage = CoverageMap(FRAME, everything(), 2.0 * RADIUS)
+    coverage = CoverageMap(FRAME, everything(), 2.0 * (RADIUS - GRANTED))
     assert coverage.fraction == 0.0
     coverage.sweep(0.0, 0.7)
     assert (coverage.swept == (off_way((0.0, 0.7), (0.0, 0.7)) <= RADIUS)).all()
@@ -74,7 +77,7 @@ def test_beginning_anywhere_it_has_swept_what_is_below_it() -> None:
 
 
 def test_from_where_it_last_was_it_sweeps_all_the_way() -> None:
-    coverage = CoverageMap(FRAME, everything(), 2.0 * RADIUS)
+    coverage = CoverageMap(FRAME, everything(), 2.0 * (RADIUS - GRANTED))
     coverage.sweep(0.0, 0.7)
     coverage.sweep(0.2, 0.8)
     assert (coverage.swept == (off_way((0.0, 0.7), (0.2, 0.8)) <= RADIUS)).all()
@@ -82,10 +85,10 @@ def test_from_where_it_last_was_it_sweeps_all_the_way() -> None:
 
 def test_carried_or_lifted_it_has_not_swept_the_way() -> None:
     far = (0.0 + LONGEST_STEP + 0.05, 0.7)
-    carried = CoverageMap(FRAME, everything(), 2.0 * RADIUS)
+    carried = CoverageMap(FRAME, everything(), 2.0 * (RADIUS - GRANTED))
     carried.sweep(0.0, 0.7)
     carried.sweep(*far)
-    lifted = CoverageMap(FRAME, everything(), 2.0 * RADIUS)
+    lifted = CoverageMap(FRAME, everything(), 2.0 * (RADIUS - GRANTED))
     lifted.sweep(0.0, 0.7)
     lifted.lift()
     lifted.sweep(0.2, 0.7)
@@ -100,7 +103,7 @@ ways = st.lists(st.tuples(st.floats(LEFT, RIGHT), st.floats(LOW, HIGH)), min_siz
 @given(ways, st.integers(0, 2**32 - 1))
 def test_counts_kept_are_those_of_the_cells(ways: list[tuple[float, float]], seed: int) -> None:
     wanted = np.random.default_rng(seed).random(FRAME.shape) < 0.6
-    coverage = CoverageMap(FRAME, wanted, 2.0 * RADIUS)
+    coverage = CoverageMap(FRAME, wanted, 2.0 * (RADIUS - GRANTED))
     for x, y in ways:
         coverage.sweep(x, y)
     kept = coverage.wanted_cells, coverage.swept_cells
@@ -148,7 +151,7 @@ def test_the_middle_of_a_bent_patch_lies_in_it() -> None:
 
 
 def test_what_was_missed_is_told_in_patches() -> None:
-    coverage = CoverageMap(FRAME, everything(), 2.0 * RADIUS)
+    coverage = CoverageMap(FRAME, everything(), 2.0 * (RADIUS - GRANTED))
     coverage.sweep(LEFT, 0.5 * (LOW + HIGH))
     coverage.sweep(LEFT + 0.2, 0.5 * (LOW + HIGH))
     (patch,) = coverage.patches(0.01)

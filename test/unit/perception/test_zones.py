@@ -57,7 +57,7 @@ def test_slanted_ones_cover_what_they_touch_and_hardly_more(
     points: list[tuple[float, float, float]], is_wall: bool
 ) -> None:
     corners: Corners = tuple((x, y) for x, y, _ in points)
-    assume(min(math.dist(a, b) for a, b in zip(corners, (*corners[1:], corners[0]))) > 0.05)
+    assume(min(math.dist(a, b) for a, b in zip(corners, (*corners[1:], corners[0]), strict=False)) > 0.05)
     polygon = shapely.Polygon(corners)
     assume(polygon.area > 0.02)
     shape = shapely.LineString(corners).buffer(0.5 * WALL_WIDTH) if is_wall else polygon

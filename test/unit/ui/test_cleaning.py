@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import io
 import math
 import signal
@@ -323,10 +324,10 @@ def test_a_terminal_gets_a_live_bar() -> None:
         _environ={"TERM": "xterm"},
     )
     with clean_view(console, SteppedClock()) as view:
-        view.show(PROGRESS)
+        view.show(dataclasses.replace(PROGRESS, state="returning"))
     assert isinstance(console.file, io.StringIO)
     output = console.file.getvalue()
-    for text in ("Cleaning", "━", "2.5 of 10.0 m2 (25%)", "[red]den", "2 h 05 min to go"):
+    for text in ("Returning", "━", "2.5 of 10.0 m2 (25%)", "[red]den", "2 h 05 min to go"):
         assert text in output
     assert "battery unknown" in output
 

@@ -1,0 +1,250 @@
+"""Commands and what happens, without a world: what a mission is told, and what it answers."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+from fixtures.missions import HOME, STATION
+
+from roomba.config import RobotConfig
+from roomba.geometry import Pose, Twist
+from roomba.mission.clean_request import CleanOutcome, CleanRequest
+from roomba.mission.docking_config import DockingConfig
+from roomba.mission.machine import Errand, Event, Phase
+from roomba.mission.mission import CommandRefusedError, Mission, MissionStep
+from roomba.mission.senses import Battery, Senses
+from roomba.mission.site import Site
+from roomba.mission_config import MissionConfig
+from roomba.perception.dirt_map import DirtMap
+from roomba.perception.estimate import Knowledge
+from roomba.perception.surface_field import SurfaceField
+from roomba.perception.things import ThingLayer
+
+CONFIG = RobotConfig()
+SITE = Site(HOME.map, HOME.station, CONFIG, MissionConfig(), DockingConfig())
+FIELD = SurfaceField.of(HOME.map)
+HERE = Pose(1.0, 0.6, 0.0)
+AWAY = Senses(0.0, HERE)
+DOCKED = Senses(0.0, STATION, battery=Battery(1.0, 26.0, is_docked=True))
+TICK = 0.05
+
+
+class Rig:
+    """A mission whose senses are made by hand; it stands unless it is put somewhere else."""
+
+    def __init__(self, senses: Senses = AWAY) -> None:
+        self.senses = senses
+        self.mission = Mission(
+            SITE,
+            CONFIG,
+            MissionConfig(),
+            DockingConfig(),
+            ThingLayer(FIELD),
+            DirtMap(HOME.map),
+            senses,
+        )
+
+    def tick(self, count: int = 1, **changes: object) -> MissionStep:
+        self.senses = replace(self.senses, **changes)  # type: ignore[arg-type]
+        step = MissionStep()
+        for _ in range(count):
+            self.senses = replace(self.senses, now=self.senses.now + TICK)
+            step = self.mission.tick(self.senses)
+        return step
+
+    def command(self, event: Event, reason: str = "") -> None:
+        self.mission.command(event, self.senses, reason)
+
+    def clean(self) -> Rig:
+        self.mission.clean(CleanRequest(), self.senses)
+        return self
+
+    @property
+    def phase(self) -> Phase:
+        return self.mission.state.phase
+
+
+def cleaning() -> Rig:
+    rig = Rig().clean()
+    rig.tick(5)
+    assert rig.phase is Phase.CLEANING
+    return rig
+
+
+@pytest.mark.parametrize(("senses", "phase"), [(AWAY, Phase.IDLE), (DOCKED, Phase.DOCKED)])
+def test_it_begins_standing_where_it_is(senses: Senses, phase: Phase) -> None:
+    rig = Rig(senses)
+    assert rig.phase is phase
+    assert rig.tick(20) == MissionStep()
+    assert rig.phase is phase
+
+
+def test_put_onto_its_station_and_taken_off_it_knows() -> None:
+    rig = Rig()
+    rig.tick(battery=DOCKED.battery)
+    assert rig.phase is Phase.DOCKED
+    rig.tick(battery=AWAY.battery)
+    assert rig.phase is Phase.IDLE
+
+
+@pytest.mark.parametrize("event", [Event.PAUSE, Event.RESUME, Event.RELEASE])
+def test_what_means_nothing_is_refused_and_changes_nothing(event: Event) -> None:
+    rig = Rig()
+    state = rig.mission.state
+    with pytest.raises(CommandRefusedError, match=f"cannot {event.value} now.*idle"):
+        rig.command(event)
+    assert rig.mission.state == state
+
+
+def test_told_to_clean_it_drives() -> None:
+    rig = cleaning()
+    assert rig.mission.state.errand is Errand.CLEAN
+    assert rig.tick().twist != Twist()
+    assert rig.mission.sweeps
+
+
+def test_knowing_its_place_only_roughly_it_drives_slowly() -> None:
+    rig = cleaning()
+    fast = rig.mission.speed_limit(rig.senses)
+    slow = rig.mission.speed_limit(replace(rig.senses, knowledge=Knowledge.ROUGH))
+    assert fast == MissionConfig().driving.speed
+    assert slow == CONFIG.walk.careful_speed < fast
+
+
+def test_not_knowing_its_place_it_stands_and_looks_around() -> None:
+    rig = cleaning()
+    step = rig.tick(10, knowledge=Knowledge.SEARCHING)
+    assert step == MissionStep(Twist(), looks_around=True)
+    assert rig.phase is Phase.CLEANING
+    assert not rig.mission.is_undisturbed
+    step = rig.tick(2, knowledge=Knowledge.KNOWN)
+    assert not step.looks_around
+    assert step.twist != Twist()
+
+
+@pytest.mark.parametrize("jump", [0.0, -1e5])
+def test_not_finding_its_place_in_time_is_an_error(jump: float) -> None:
+    rig = cleaning()
+    rig.tick(2, knowledge=Knowledge.SEARCHING, trouble="too little in sight")
+    rig.senses = replace(rig.senses, now=rig.senses.now + jump)
+    seconds = CONFIG.walk.astray_timeout
+    rig.tick(round((seconds - 1.0) / TICK))
+    assert rig.phase is Phase.CLEANING
+    rig.tick(round(2.0 / TICK))
+    assert rig.phase is Phase.ERROR
+    assert "too little in sight" in rig.mission.message
+    result = rig.mission.take_result()
+    assert result is not None
+    assert result.outcome is CleanOutcome.LOST
+
+
+def test_lost_it_says_so_at_once() -> None:
+    rig = cleaning()
+    rig.tick(knowledge=Knowledge.LOST, trouble="nothing looks familiar")
+    assert rig.phase is Phase.ERROR
+    assert "nothing looks familiar" in rig.mission.message
+    rig.tick(knowledge=Knowledge.KNOWN)
+    assert rig.phase is Phase.ERROR
+    rig.command(Event.RESUME)
+    assert rig.mission.message == ""
+    assert rig.tick(3).twist != Twist()
+
+
+def test_what_it_passes_while_its_place_is_unknown_is_not_clean() -> None:
+    rig = cleaning()
+    coverage = rig.mission.cleaning.coverage  # type: ignore[union-attr]
+    swept = coverage.swept_cells
+    rig.tick(knowledge=Knowledge.SEARCHING)
+    rig.tick(3, pose=Pose(1.2, 0.6, 0.0))
+    assert coverage.swept_cells == swept
+    rig.tick(2, knowledge=Knowledge.KNOWN)
+    # Only where it is now: not the way there.
+    assert 0 < coverage.swept_cells - swept < 400
+
+
+def test_lifted_its_error_says_what_to_do() -> None:
+    rig = cleaning()
+    assert rig.tick(lifted=True).twist == Twist()
+    assert rig.phase is Phase.ERROR
+    assert "resume" in rig.mission.message
+    result = rig.mission.take_result()
+    assert result is not None
+    assert result.outcome is CleanOutcome.FAULT
+    assert rig.mission.take_result() is None
+
+
+def test_lifted_while_it_stands_is_nobodys_matter() -> None:
+    rig = Rig()
+    rig.tick(lifted=True)
+    assert rig.phase is Phase.IDLE
+    rig = cleaning()
+    rig.command(Event.PAUSE)
+    rig.tick(5, lifted=True)
+    assert rig.phase is Phase.PAUSED
+
+
+def test_set_onto_its_station_while_paused_it_comes_out_of_it_again() -> None:
+    rig = cleaning()
+    rig.command(Event.PAUSE)
+    rig.tick(5, battery=DOCKED.battery, pose=STATION)
+    assert rig.phase is Phase.PAUSED
+    rig.command(Event.RESUME)
+    assert rig.phase is Phase.UNDOCKING
+    assert rig.tick(5).twist.linear < 0.0
+
+
+def test_the_books_are_the_cleans_own() -> None:
+    rig = cleaning()
+    rig.tick(100, in_bin=3.0)
+    rig.tick(1, battery=Battery(0.9, 26.0))
+    rig.command(Event.STOP)
+    result = rig.mission.take_result()
+    assert result is not None
+    assert result.dirt == pytest.approx(3.0)
+    assert result.energy == pytest.approx(2.6)
+    assert result.duration == pytest.approx(106 * TICK, abs=2 * TICK)
+    rig.clean()
+    rig.tick(10)
+    rig.command(Event.STOP)
+    result = rig.mission.take_result()
+    assert result is not None
+    assert (result.dirt, result.energy, result.distance) == (0.0, 0.0, 0.0)
+    assert result.duration == pytest.approx(10 * TICK, abs=2 * TICK)
+
+
+@pytest.mark.parametrize("jump", [-1e5, 1e5])
+def test_a_clock_that_is_set_does_not_count_as_cleaning(jump: float) -> None:
+    rig = cleaning()
+    rig.tick(20)
+    rig.senses = replace(rig.senses, now=rig.senses.now + jump)
+    rig.tick(20)
+    rig.command(Event.STOP)
+    result = rig.mission.take_result()
+    assert result is not None
+    assert result.duration == pytest.approx(45 * TICK, abs=1.0)
+
+
+def test_no_energy_is_told_and_ends_it() -> None:
+    rig = cleaning()
+    rig.tick(battery=Battery(0.001, 26.0))
+    assert rig.phase is Phase.ERROR
+    result = rig.mission.take_result()
+    assert result is not None
+    assert result.outcome is CleanOutcome.BATTERY
+
+
+def test_before_a_low_battery_empties_it_returns() -> None:
+    rig = cleaning()
+    rig.tick(round(6.0 / TICK), battery=Battery(0.08, 26.0))
+    assert rig.phase in (Phase.RETURNING, Phase.DOCKING)
+    assert rig.mission.state.errand is Errand.CLEAN
+
+
+def test_stopped_on_its_station_it_stays_there() -> None:
+    rig = Rig(DOCKED)
+    rig.command(Event.STOP)
+    assert rig.phase is Phase.DOCKED
+    rig.command(Event.DOCK)
+    assert rig.phase is Phase.DOCKED
+    assert rig.mission.take_result() is None
