@@ -1,6 +1,7 @@
 """Compiles the hot loops once, so that the first start of the robot is as quick as every other.
 
-Numba keeps what it compiled in a cache on disk; ``./roomba`` runs this after each build.
+Numba keeps what it compiled in a cache on disk; ``./roomba`` runs this after each build, and
+:mod:`roomba.sim.warm`, for all that a clean needs, beside it.
 """
 
 from __future__ import annotations
@@ -15,7 +16,6 @@ from roomba.perception.rooms import segment
 from roomba.perception.scan_view import LidarModel
 from roomba.planning.grid_path import shortest_grid_path
 from roomba.planning.path import PathPlanner
-from roomba.sim.warm import warm_up
 from roomba.world.camera import Camera, Scene
 from roomba.world.home import DirtSource, Home
 from roomba.world.simulator import Simulator
@@ -39,7 +39,6 @@ def main() -> None:
     for supersampling in (1, 2):
         camera = Camera(scene, config.camera, supersampling)
         camera.render(home.station, 0.0, simulator.dirt.micrograms, simulator.dirt.frame)
-    warm_up()
 
 
 def _find_place(home: Home, config: RobotConfig, simulator: Simulator) -> None:

@@ -459,7 +459,7 @@ def test_the_emergency_stop_holds_until_it_is_released() -> None:
     assert "a hand in the brush" in result.message
     assert_stands(robot)
     for event in (Event.DOCK, Event.UNDOCK, Event.PAUSE, Event.RESUME, Event.STOP):
-        with pytest.raises(CommandRefusedError, match="emergency stop.*a hand in the brush"):
+        with pytest.raises(CommandRefusedError, match=r"emergency stop.*a hand in the brush"):
             command(robot, event)
     with pytest.raises(CommandRefusedError, match="emergency stop"):
         robot.mission.clean(CleanRequest(), robot.senses())
@@ -844,7 +844,7 @@ def test_rooms_are_refused_on_a_map_without_and_by_names_that_are_none() -> None
     with pytest.raises(CleanRefusedError, match="map with rooms"):
         robot.clean(CleanRequest(CleanMode.ROOMS, rooms=(DEN,)))
     robot = HeadlessMission(TWO_ROOMS, rooms=two_rooms())
-    with pytest.raises(CleanRefusedError, match="'cellar'.*den, hall"):
+    with pytest.raises(CleanRefusedError, match=r"'cellar'.*den, hall"):
         robot.clean(CleanRequest(CleanMode.ROOMS, rooms=("cellar",)))
     assert not robot.mission.state.drives
 

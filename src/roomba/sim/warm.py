@@ -35,3 +35,7 @@ def closet() -> Home:
         station=Pose(0.30, 0.90, np.pi),
         dirt_sources=(DirtSource("dust", 1.2, 0.8, 0.3, 1.0, 0.0),),
     )
+
+
+if __name__ == "__main__":
+    warm_up()

@@ -20,7 +20,9 @@ CONFIG = TrackingConfig()
 def path(*legs: tuple[float, float]) -> NDArray[np.float64]:
     """Return the points along legs: how much it turns before each, rad, and its length, m."""
     headings = itertools.accumulate(turn for turn, _ in legs)
-    ways = [(way * math.cos(a), way * math.sin(a)) for a, (_, way) in zip(headings, legs, strict=False)]
+    ways = [
+        (way * math.cos(a), way * math.sin(a)) for a, (_, way) in zip(headings, legs, strict=True)
+    ]
     return np.concatenate((np.zeros((1, 2)), np.cumsum(np.array(ways), axis=0)))
 
 

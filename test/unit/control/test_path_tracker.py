@@ -77,7 +77,9 @@ def line(*points: tuple[float, float]) -> Points:
 
 
 def polyline(headings: list[float], lengths: list[float]) -> Points:
-    ways = [(way * math.cos(a), way * math.sin(a)) for a, way in zip(headings, lengths, strict=False)]
+    ways = [
+        (way * math.cos(a), way * math.sin(a)) for a, way in zip(headings, lengths, strict=True)
+    ]
     return np.concatenate((np.zeros((1, 2)), np.cumsum(np.array(ways), axis=0)))
 
 

@@ -58,7 +58,7 @@ def drive(clean: Cleaning, points: NDArray[np.float64], share: float = 1.0) -> P
     """Sweep along a path exactly, or along the first of it; return where it ends."""
     count = max(2, round(share * len(points)))
     clean.coverage.lift()
-    for start, end in itertools.pairwise(points):
+    for start, end in itertools.pairwise(points[:count]):
         steps = max(1, int(np.hypot(*(end - start)) / 0.1))
         for part in range(steps + 1):
             x, y = start + (end - start) * part / steps
@@ -108,9 +108,9 @@ def test_what_was_not_driven_is_planned_again() -> None:
 
 def test_rounds_that_gain_nothing_come_to_an_end() -> None:
     clean = cleaning()
-    for rounds in range(20):
-        if clean.next_path(HERE, []) is None:
-            break
+    rounds = 0
+    while clean.next_path(HERE, []) is not None and rounds < 20:
+        rounds += 1
     assert clean.stage is None
     assert 1 <= rounds <= MissionConfig().cleaning.most_rounds + 1
     (missed,) = clean.missed([], True)

@@ -149,5 +149,5 @@ def test_where_something_is_first_in_the_way_of_a_path_is_told() -> None:
     assert 1.4 - BODY - 0.15 < first < 1.4
     assert known.first_in_way(tracker, 0.0, first - 0.1) is None
     assert known.first_in_way(tracker, 1.4 + BODY + 0.15, 2.0) is None
-    aside = PathTracker((*points, 0.0, 0.5), CONFIG.tracking, CONFIG.body, 0.05)
+    aside = PathTracker(points + np.array((0.0, 0.5)), CONFIG.tracking, CONFIG.body, 0.05)
     assert known.first_in_way(aside, 0.0, 2.0) is None
