@@ -19,6 +19,7 @@ TOPICS: MappingProxyType[str, str] = MappingProxyType(
         "plan": "shortest paths",
         "localization": "where it is: errors on long drives, and finding itself again",
         "rooms": "floors cut into rooms, as people cut them",
+        "coverage": "whole homes cleaned: how much of the floor, by how long a way, how fast",
         "ros": "round trips, and the speed of the whole graph",
     }
 )

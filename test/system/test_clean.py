@@ -124,7 +124,7 @@ class Vacuum:
 
     def shows_all_clean(self) -> None:
         wait_until(
-            lambda: cleaned(self.probe.newest["/coverage_map"]) > 0.95, 3.0, "the map of all of it"
+            lambda: cleaned(self.probe.newest["/coverage_map"]) > 0.9, 3.0, "the map of all of it"
         )
 
     def is_driving(self) -> bool:
@@ -221,7 +221,7 @@ def test_with_a_low_battery_it_charges_and_goes_on(shared_robot: RosGraph) -> No
     assert vacuum.state.battery > 0.16
     result = clean.ends(GoalStatus.SUCCEEDED)
     assert result.outcome == CleanResult.COMPLETED
-    assert is_clean(result), result
+    assert result.covered > 0.9 * result.wanted
     vacuum.does("docked")
 
 
@@ -252,7 +252,8 @@ def test_a_blocked_station_is_told_and_found_when_it_is_free(shared_robot: RosGr
     result = clean.ends(GoalStatus.ABORTED)
     assert result.outcome == CleanResult.NOT_DOCKED
     assert "blocked" in result.message
-    assert is_clean(result), result
+    assert result.covered > 0.9 * result.wanted
+    vacuum.does("error", 2.0)
     assert (vacuum.state.state, vacuum.state.message) == ("error", result.message)
     vacuum.inject("no_obstacles")
     assert vacuum.dock().ends(GoalStatus.SUCCEEDED).is_docked

@@ -34,6 +34,9 @@ Line = NDArray[np.float64]
 
 _PIECE = 12.0
 """Widths of the tool; edges can be left for swaths about this often."""
+_ASIDE = 0.2
+"""cells; the tool is a whole number of cells wide, so that seams would lie on their middles, where
+it takes the least error of the drive to leave a whole row unswept."""
 _TURNING = 3.0
 """cells of way that a radian is worth when the way is polished."""
 _UNSWEPT = 1.0
@@ -80,7 +83,9 @@ class CoveragePlanner:
         swath_pieces: list[Line] = []
         if not edges_only:
             left = unswept(need, edge_pieces, ground.radius) & ground.middles
-            swath_pieces = swaths(left, ground.middles, ground.radius)
+            swath_pieces = [
+                _off_middles(line) for line in swaths(left, ground.middles, ground.radius)
+            ]
         pieces = ordered(ground.net, edge_pieces + swath_pieces, first, last, Weights())
         line = connected(ground.net, pieces, first, last)
         line = polished(line, need, ground.middles, ground.radius, _TURNING, _UNSWEPT)
@@ -106,6 +111,14 @@ class CoveragePlanner:
             known = Ground.around(floor, seed)
             self._ground = known
         return known, known.place_of(seed)
+
+
+def _off_middles(line: Line) -> Line:
+    """Return a swath moved aside a little, so that no seam of two lies on middles of cells."""
+    along = np.abs(line[-1] - line[0])
+    aside = np.array([0.0, _ASIDE]) if along[0] >= along[1] else np.array([_ASIDE, 0.0])
+    moved: Line = line + aside
+    return moved
 
 
 def _end_on(ground: Ground, end: Point) -> Line:

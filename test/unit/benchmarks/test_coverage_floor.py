@@ -14,11 +14,11 @@ from benchmarks.coverage_floor import (
     TOOL,
     Disc,
     Reachable,
+    exact_share,
     first_swept,
     length,
     patches,
     reachable,
-    rounded_share,
     share_over_time,
     swept_share,
     turning,
@@ -158,7 +158,7 @@ def test_share_grows_to_all_of_the_floor() -> None:
     points = np.column_stack([x.ravel(), y.ravel()])
     shares = share_over_time(floor, points)
     assert (np.diff(shares) >= 0.0).all()
-    assert shares[-1] == swept_share(floor, points)
+    assert shares[-1] == exact_share(floor, points)
     assert shares[-1] > 0.98
     assert shares[0] < 0.2
     assert len(shares) == len(points)
@@ -169,8 +169,8 @@ def test_drawn_way_is_half_a_cell_off_at_most() -> None:
     points = np.random.default_rng(1).uniform((-0.1, 0.9), (0.5, 1.5), (30, 2))
     narrow = np.count_nonzero((first_swept(floor.frame, points, TOOL - 0.015) >= 0) & floor.floor)
     wide = np.count_nonzero((first_swept(floor.frame, points, TOOL + 0.015) >= 0) & floor.floor)
-    drawn = rounded_share(floor, points) * np.count_nonzero(floor.floor)
-    assert narrow <= drawn <= wide
+    swept = swept_share(floor, points) * np.count_nonzero(floor.floor)
+    assert narrow <= swept <= wide
 
 
 def test_way_and_turns() -> None:

