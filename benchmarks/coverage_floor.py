@@ -160,8 +160,11 @@ def drawn(frame: GridFrame, points: Floats) -> Mask:
 
 
 def share_over_time(floor: Reachable, points: Floats) -> Floats:
-    """Return for each point the share of the floor that is swept by then, 0..1, exact."""
-    first = first_swept(floor.frame, points)[floor.floor]
+    """Return for each point the share of the floor that is swept by then, as aims are judged."""
+    frame = floor.frame
+    corner = np.array([frame.origin_x, frame.origin_y]) + 0.5 * frame.resolution
+    cells = np.rint((points[:, :2] - corner) / frame.resolution)
+    first = first_swept(frame, corner + cells * frame.resolution)[floor.floor]
     counts = np.bincount(first[first >= 0], minlength=len(points))
     return np.asarray(np.cumsum(counts) / np.count_nonzero(floor.floor), np.float64)
 

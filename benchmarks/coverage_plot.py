@@ -41,19 +41,15 @@ def plot_over_time(
         each = slice(None, None, 20)
         minutes, shares = np.append(minutes[each], minutes[-1]), np.append(shares[each], shares[-1])
         width = 2.4 if name == OURS else 1.5
-        panel.plot(minutes, shares, color=colours[name], linewidth=width, label=name)
+        label = f"{name}: {shares[-1]:.1f} % in {minutes[-1]:.0f} min"
+        panel.plot(minutes, shares, color=colours[name], linewidth=width, label=label)
         panel.plot(minutes[-1:], shares[-1:], "o", color=colours[name], markersize=4.0)
-        at = (float(minutes[-1]), float(shares[-1]))
-        label = f"{at[1]:.1f} % in {at[0]:.0f} min"
-        panel.annotate(
-            label, at, (4, -12), textcoords="offset points", fontsize=8, color=colours[name]
-        )
     panel.axhline(aim, color=_AIM, linestyle="--", linewidth=1.0, label=f"aim: {aim:g} %")
     panel.set_title(title, fontsize=10, loc="left")
     panel.set_xlabel("robot time, min")
-    panel.set_ylabel("floor swept, % of what the tool can reach, exact")
+    panel.set_ylabel("floor swept, % of what the tool can reach")
     panel.set_ylim(0.0, 104.0)
-    panel.set_xlim(0.0, panel.get_xlim()[1] * 1.08)
+    panel.set_xlim(left=0.0)
     panel.legend(fontsize=8, frameon=False, loc="lower right")
     panel.grid(True, color="#e6e8eb", linewidth=0.7)
     panel.spines[["top", "right"]].set_visible(False)

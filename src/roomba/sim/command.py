@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 BagOpener = Callable[[Path, "Scene"], AbstractContextManager["Watch"]]
 """Opens a bag; what it gives is shown the robot again and again."""
 
-BAG_BURST: Final = 2
+BAG_BURST: Final = 1
 """Ticks between two looks for a bag: its fastest topics have 10 Hz."""
 _WIDTH: Final = 120
 """Columns of a table that nobody sees on a terminal."""

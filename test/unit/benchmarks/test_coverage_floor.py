@@ -158,7 +158,8 @@ def test_share_grows_to_all_of_the_floor() -> None:
     points = np.column_stack([x.ravel(), y.ravel()])
     shares = share_over_time(floor, points)
     assert (np.diff(shares) >= 0.0).all()
-    assert shares[-1] == exact_share(floor, points)
+    assert shares[-1] == pytest.approx(swept_share(floor, points), abs=0.002)
+    assert exact_share(floor, points) > 0.95
     assert shares[-1] > 0.98
     assert shares[0] < 0.2
     assert len(shares) == len(points)

@@ -125,7 +125,7 @@ def test_soft_corners_are_taken_without_stopping(legs: list[tuple[float, float]]
     assert (speeds[began:][left[began:] > 0.05] > 0.05).all()
 
 
-@given(st.floats(0.36, math.pi), st.booleans())
+@given(st.floats(0.36, 3.1), st.booleans())
 def test_sharp_corners_are_turned_on_the_spot(corner: float, is_left: bool) -> None:
     turn = corner if is_left else -corner
     points = polyline([0.0, turn], [0.5, 0.5])

@@ -140,7 +140,9 @@ def test_flat_lets_the_body_walk_straight_from_home_to_3_4(homes: dict[str, Home
     flat = homes["flat"]
     assert flat.map.values[flat.frame.cell_of(3.0, 4.0)] == FREE
     # What lies behind the start, as the station does, is in nobody's way.
-    corridor = shapely.LineString([(0.0, 0.0), (3.0, 4.0)]).buffer(RADIUS + 0.12, cap_style="flat")
+    corridor = shapely.LineString([(0.12, 0.16), (3.0, 4.0)]).buffer(
+        RADIUS + 0.12, cap_style="flat"
+    )
     beyond = shapely.Point(3.0, 4.0).buffer(RADIUS + 0.12)
     for row, column in np.argwhere(flat.solid):
         x, y = flat.frame.centre_of(row, column)
