@@ -98,6 +98,7 @@ class Mission:
         self._is_told = False
         self._result: CleanResult | None = None
         self._was_docked = senses.battery.is_docked
+        self._needed: float | None = None
         self._astray_since: float | None = None
         self._known_at = (senses.pose.x, senses.pose.y)
         self._last = senses
@@ -340,7 +341,9 @@ class Mission:
             case Phase.DOCKING:
                 return self._dock(senses)
             case Phase.CHARGING:
-                if self.book.is_charged(senses, self._needed_energy()):
+                if self._needed is None:
+                    self._needed = self._needed_energy()
+                if self.book.is_charged(senses, self._needed):
                     self._go(Event.CHARGED, senses)
         return MissionStep()
 
@@ -481,6 +484,7 @@ class Mission:
         before, self.state = self.state, after
         self._drop_driver()
         self._docking = self._undocking = None
+        self._needed = None
         if event is not Event.FAILED:
             self.message = ""
         if event is Event.FINISHED:
