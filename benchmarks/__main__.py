@@ -68,7 +68,7 @@ def _parser() -> argparse.ArgumentParser:
         "--maps",
         type=Path,
         metavar="FOLDER",
-        help="measure lidar, localization and rooms on the map_server maps in it, too",
+        help="measure lidar, localization, rooms, coverage on the map_server maps in it",
     )
     return parser
 
