@@ -14,15 +14,16 @@ from numpy.typing import NDArray
 
 from roomba.closed_loop import LONGEST_BURST, STEP, STEPS_PER_TICK, ClosedLoop
 from roomba.config import RobotConfig
-from roomba.control.speed_loop import SpeedLoop
 from roomba.errors import RoombaError
 from roomba.geometry import Pose, Twist
+from roomba.grid import OccupancyMap
+from roomba.headless_parts import SafeDrive, senses_of
 from roomba.mission.clean_request import CleanRequest, CleanResult
 from roomba.mission.docking_config import DockingConfig
 from roomba.mission.look_around import Search
 from roomba.mission.machine import Phase
 from roomba.mission.mission import Mission
-from roomba.mission.senses import Battery, Beams, Senses
+from roomba.mission.senses import Senses
 from roomba.mission.site import Site
 from roomba.mission_config import MissionConfig
 from roomba.perception.coverage_map import CoverageMap
@@ -33,7 +34,6 @@ from roomba.perception.rooms import Rooms
 from roomba.perception.scan_view import LidarModel
 from roomba.perception.things import ThingLayer
 from roomba.perception.zones import Zones
-from roomba.world.engine.arrays import Infrared
 from roomba.world.home import Home
 from roomba.world.simulator import Simulator
 
@@ -74,27 +74,28 @@ class HeadlessMission:
         zones: Zones | None = None,
         start: Pose | None = None,
         longest_burst: int = LONGEST_BURST,
+        known: OccupancyMap | None = None,
     ) -> None:
         """Put the robot on its station, or at ``start``.
 
-        ``longest_burst`` is how many ticks pass at once at most, while nothing comes up.
+        ``longest_burst`` is how many ticks pass at once at most, while nothing comes up. ``known``
+        is the map that it goes by, in the home's frame; the home's own one by default.
         """
         self.robot = robot or RobotConfig()
         self.config = mission or MissionConfig()
         docking = docking or DockingConfig()
+        known = known or home.map
         body, lidar = self.robot.body, self.robot.lidar
         self.simulator = Simulator(home, self.robot, seed=seed, start=start)
         self.localizer = Localizer(
-            home.map, self.robot.localization, self.robot.gyro, body.radius, self.simulator.start
+            known, self.robot.localization, self.robot.gyro, body.radius, self.simulator.start
         )
         self.lidar = LidarModel.all_around(lidar.beams, lidar.min_range, lidar.max_range)
         self._beams = self.lidar.arrays()
         self.things = ThingLayer(self.localizer.field)
-        self.dirt = DirtMap(home.map)
-        self.site = Site(home.map, home.station, self.robot, self.config, docking, rooms, zones)
-        self.speed_loop = SpeedLoop(
-            body.command_timeout, self.simulator.max_speed, body.max_angular_speed
-        )
+        self.dirt = DirtMap(known)
+        self.site = Site(known, home.station, self.robot, self.config, docking, rooms, zones)
+        self._drive = SafeDrive(self.robot, self.simulator.max_speed)
         self._search = Search(body)
         self._scans = 0
         self.seen = self.simulator.observe()
@@ -155,24 +156,7 @@ class HeadlessMission:
 
     def senses(self) -> Senses:
         """Return what the robot senses now."""
-        seen, estimate = self.seen, self.localizer.estimate
-        infrared = seen.infrared
-        return Senses(
-            seen.time,
-            estimate.pose,
-            Twist(seen.odometry_twist.linear, seen.angular_velocity),
-            estimate.knowledge,
-            estimate.reason,
-            seen.bumper.left,
-            seen.bumper.right,
-            seen.cliff.left or seen.cliff.front_left,
-            seen.cliff.right or seen.cliff.front_right,
-            seen.wheels.dropped,
-            Beams(Infrared.HALO in infrared, Infrared.GREEN in infrared, Infrared.RED in infrared),
-            Battery(seen.battery.level, seen.battery.capacity, seen.battery.is_docked),
-            seen.grains,
-            seen.in_bin,
-        )
+        return senses_of(self.seen, self.localizer.estimate)
 
     def _localize(self) -> None:
         seen = self.seen
@@ -196,15 +180,10 @@ class HeadlessMission:
         self.mission.caught_up(self.senses(), way)
 
     def _command(self, senses: Senses, twist: Twist, looks_around: bool) -> Twist:
-        loop = self.speed_loop
         if looks_around:
             touches = senses.is_disturbed
             twist = self._search.tick(senses.now, self.localizer, touches) or twist
-        loop.set_bumper(senses.bumper_left or senses.bumper_right)
-        loop.set_cliff(self.seen.cliff.any)
-        loop.set_wheel_drop(senses.lifted)
-        loop.command(senses.now, twist)
-        return loop.tick(senses.now)[0]
+        return self._drive.command(self.seen, twist)
 
     def _driven(self) -> tuple[float, float]:
         numbers = self.simulator.numbers

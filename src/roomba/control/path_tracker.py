@@ -72,6 +72,13 @@ class PathTracker:
         return self.length - self.along
 
     @property
+    def rest(self) -> NDArray[np.float64]:
+        """What of the path is before it, float64 [n, 2], m, from where it is on."""
+        along, points, stations = self.along, self.course.points, self.course.stations
+        here = [np.interp(along, stations, points[:, axis]) for axis in (0, 1)]
+        return np.vstack((here, points[stations > along]))
+
+    @property
     def aside(self) -> float:
         """How far left of its leg it is, m."""
         return float(self.state[0].aside)

@@ -21,6 +21,8 @@ class Phase(Enum):
     """Stands on its station and has nothing to do."""
     UNDOCKING = "undocking"
     CLEANING = "cleaning"
+    EXPLORING = "exploring"
+    """On its way to where its map ends."""
     RETURNING = "returning"
     """On its way to a place before its station."""
     DOCKING = "docking"
@@ -40,8 +42,9 @@ class Errand(Enum):
 
     NONE = "none"
     CLEAN = "clean"
+    EXPLORE = "explore"
     HOME = "home"
-    """The floor is done; back to the station."""
+    """All is done; back to the station."""
     DOCK = "dock"
     UNDOCK = "undock"
 
@@ -50,6 +53,7 @@ class Event(Enum):
     """What happens: commands first, then what the robot itself finds."""
 
     CLEAN = "clean"
+    EXPLORE = "explore"
     DOCK = "dock"
     UNDOCK = "undock"
     PAUSE = "pause"
@@ -59,7 +63,7 @@ class Event(Enum):
     RELEASE = "release the emergency stop"
 
     OUT = "out of the station"
-    FINISHED = "the floor is done"
+    FINISHED = "all is done: the floor, or the map"
     ARRIVED = "before the station"
     CONTACT = "charging current"
     CONTACT_LOST = "no charging current any more"
@@ -76,6 +80,7 @@ class Event(Enum):
 _COMMANDS: Final = frozenset(
     (
         Event.CLEAN,
+        Event.EXPLORE,
         Event.DOCK,
         Event.UNDOCK,
         Event.PAUSE,
@@ -101,9 +106,12 @@ class MissionState:
         return self.phase in _DRIVING
 
 
-_DRIVING: Final = frozenset((Phase.UNDOCKING, Phase.CLEANING, Phase.RETURNING, Phase.DOCKING))
+_WORKING: Final = frozenset((Phase.CLEANING, Phase.EXPLORING))
+_DRIVING: Final = _WORKING | {Phase.UNDOCKING, Phase.RETURNING, Phase.DOCKING}
 _ON_STATION: Final = frozenset((Phase.DOCKED, Phase.CHARGING))
 _HELD: Final = frozenset((Phase.PAUSED, Phase.ERROR))
+_GOES_ON: Final = frozenset((Errand.CLEAN, Errand.EXPLORE))
+"""Errands that a charge on the station only interrupts."""
 
 
 def next_state(state: MissionState, event: Event) -> MissionState | None:
@@ -123,6 +131,8 @@ def _commanded(state: MissionState, event: Event) -> MissionState | None:
     on_station = state.phase in _ON_STATION
     if event is Event.CLEAN:
         return MissionState(Phase.UNDOCKING, Errand.CLEAN)
+    if event is Event.EXPLORE:
+        return MissionState(Phase.UNDOCKING, Errand.EXPLORE)
     if event is Event.DOCK:
         if on_station:
             return MissionState(Phase.DOCKED)
@@ -151,9 +161,9 @@ def _driving(state: MissionState, event: Event) -> MissionState | None:
         return replace(state, phase=Phase.ERROR, resumes=_again(phase))
     if event is Event.OUT and phase is Phase.UNDOCKING:
         return _after_undocking(errand)
-    if event is Event.FINISHED and phase is Phase.CLEANING:
+    if event is Event.FINISHED and phase in _WORKING:
         return MissionState(Phase.RETURNING, Errand.HOME)
-    if event is Event.LOW and phase in (Phase.CLEANING, Phase.UNDOCKING):
+    if event is Event.LOW and (phase in _WORKING or phase is Phase.UNDOCKING):
         return replace(state, phase=Phase.RETURNING)
     if event is Event.ARRIVED and phase is Phase.RETURNING:
         return replace(state, phase=Phase.DOCKING)
@@ -170,7 +180,7 @@ def _standing(state: MissionState, event: Event) -> MissionState | None:
             return MissionState(Phase.DOCKED)
         if phase in _HELD:
             # Somebody carried it home. With an errand it goes on from there when it is told to.
-            if state.errand is Errand.CLEAN:
+            if state.errand in _GOES_ON:
                 return replace(state, phase=Phase.PAUSED, resumes=Phase.UNDOCKING)
             return MissionState(Phase.DOCKED)
     if event is Event.CONTACT_LOST:
@@ -193,13 +203,15 @@ def _again(phase: Phase) -> Phase:
 def _after_undocking(errand: Errand) -> MissionState:
     if errand is Errand.CLEAN:
         return MissionState(Phase.CLEANING, errand)
+    if errand is Errand.EXPLORE:
+        return MissionState(Phase.EXPLORING, errand)
     if errand in (Errand.HOME, Errand.DOCK):
         return MissionState(Phase.RETURNING, errand)
     return MissionState(Phase.IDLE)
 
 
 def _after_docking(errand: Errand) -> MissionState:
-    if errand is Errand.CLEAN:
+    if errand in _GOES_ON:
         return MissionState(Phase.CHARGING, errand)
     return MissionState(Phase.DOCKED)
 
@@ -209,6 +221,7 @@ VACUUM_STATES: Final[dict[Phase, str]] = {
     Phase.DOCKED: "docked",
     Phase.UNDOCKING: "cleaning",
     Phase.CLEANING: "cleaning",
+    Phase.EXPLORING: "cleaning",
     Phase.RETURNING: "returning",
     Phase.DOCKING: "returning",
     Phase.CHARGING: "docked",

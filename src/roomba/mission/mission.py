@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from roomba.config import RobotConfig
 from roomba.errors import RoombaError
 from roomba.geometry import STANDSTILL, Twist
+from roomba.grid import OccupancyMap
 from roomba.mission.checkpoint import VERSION, CheckpointError, Values, request_of
 from roomba.mission.clean_request import (
     CleanOutcome,
@@ -29,6 +30,7 @@ from roomba.mission.cleaning import Cleaning
 from roomba.mission.docking import Docking, DockSenses, DockState
 from roomba.mission.docking_config import DockingConfig
 from roomba.mission.energy import EnergyBook
+from roomba.mission.exploration import Exploration, ExploreResult
 from roomba.mission.machine import Errand, Event, MissionState, Phase, next_state
 from roomba.mission.obstacles import Obstacles
 from roomba.mission.path_driver import DriveState, PathDriver
@@ -88,6 +90,8 @@ class Mission:
         self.state = MissionState(Phase.DOCKED if senses.battery.is_docked else Phase.IDLE)
         self.message = ""
         self.cleaning: Cleaning | None = None
+        self.exploration: Exploration | None = None
+        self._explored: ExploreResult | None = None
         self.book = EnergyBook(config.energy, senses)
         self._rejoin = Rejoin(site, robot.body.radius, config.driving)
         self.driver: PathDriver | None = None
@@ -111,23 +115,34 @@ class Mission:
         """Begin a clean; raises CleanRefusedError or CommandRefusedError with the reason."""
         if self.state.phase is Phase.EMERGENCY:
             self.command(Event.CLEAN, senses)
-        least = self._config.energy.least_to_start
-        if senses.battery.level < least and not senses.battery.is_docked:
-            raise CommandRefusedError(
-                f"expected a battery of {least:.0%} or more to begin, got "
-                f"{senses.battery.level:.0%}; bring the robot to its station"
-            )
+        self._require_charge(senses)
         cleaning = Cleaning(request, self.site, self.dirt, self._config.cleaning, senses.pose)
-        self._end_clean(CleanOutcome.STOPPED, "a newer clean took over", senses)
-        self._forget_clean()
+        self._end_errand(CleanOutcome.STOPPED, "a newer clean took over", senses)
+        self._forget_errand()
         self.cleaning, self._outcome, self._is_told = cleaning, None, False
         self.book.begin(senses)
         self._started = senses.now
         self.obstacles.forget()
         self._go(Event.CLEAN, senses)
 
+    def explore(self, senses: Senses) -> None:
+        """Begin to look for what the map does not show yet; raises CommandRefusedError.
+
+        Whoever calls it lets the map grow, and tells it by :meth:`use_site`.
+        """
+        if self.state.phase is Phase.EMERGENCY:
+            self.command(Event.EXPLORE, senses)
+        self._require_charge(senses)
+        self._end_errand(CleanOutcome.STOPPED, "it was told to explore", senses)
+        self._forget_errand()
+        self.exploration, self._outcome, self._is_told = Exploration(), None, False
+        self.book.begin(senses)
+        self._started = senses.now
+        self.obstacles.forget()
+        self._go(Event.EXPLORE, senses)
+
     def command(self, event: Event, senses: Senses, reason: str = "") -> None:
-        """Obey another command than clean; raises CommandRefusedError with the reason."""
+        """Obey a command without further wishes; raises CommandRefusedError with the reason."""
         after = next_state(self.state, event)
         if after is None:
             raise CommandRefusedError(
@@ -135,11 +150,11 @@ class Mission:
                 + (f" ({self.message})" if self.message else "")
             )
         if event in (Event.DOCK, Event.UNDOCK, Event.STOP):
-            self._end_clean(CleanOutcome.STOPPED, f"it was told to {event.value}", senses)
-            self._forget_clean()
+            self._end_errand(CleanOutcome.STOPPED, f"it was told to {event.value}", senses)
+            self._forget_errand()
         if event is Event.EMERGENCY:
-            self._end_clean(CleanOutcome.FAULT, f"emergency stop: {reason}", senses)
-            self._forget_clean()
+            self._end_errand(CleanOutcome.FAULT, f"emergency stop: {reason}", senses)
+            self._forget_errand()
         if event is Event.RESUME:
             self._dock_retries, self._is_told = 0, False
         self._go(event, senses)
@@ -147,13 +162,41 @@ class Mission:
         if event is Event.RELEASE and senses.battery.is_docked:
             self._go(Event.CONTACT, senses)
 
+    def _require_charge(self, senses: Senses) -> None:
+        least = self._config.energy.least_to_start
+        if senses.battery.level < least and not senses.battery.is_docked:
+            raise CommandRefusedError(
+                f"expected a battery of {least:.0%} or more to begin, got "
+                f"{senses.battery.level:.0%}; bring the robot to its station"
+            )
+
     def use_site(self, site: Site) -> None:
-        """Go on with other zones or rooms, from the next tick on."""
+        """Go on with other zones or rooms, or a map that has grown, from the next tick on."""
         self.site = site
         self._rejoin = Rejoin(site, self._robot.body.radius, self._config.driving)
-        self._drop_driver()
+        if not self._goes_on_exploring():
+            self._drop_driver()
         if self.cleaning is not None:
             self.cleaning.use_site(site)
+
+    def wants_map(self, occupancy: OccupancyMap) -> bool:
+        """Whether a map that has grown to this makes a difference to what it does."""
+        if self.driver is None:
+            return True
+        return self.exploration is not None and self.exploration.wants_another(occupancy)
+
+    def _goes_on_exploring(self) -> bool:
+        """Whether it is on its way to a frontier that still is one, and nothing stands between."""
+        if self.exploration is None or self.state.phase is not Phase.EXPLORING:
+            return False
+        if self.driver is None or self.exploration.wants_another(self.site.known):
+            return False
+        return self.site.paths.is_free(self.driver.tracker.rest)
+
+    def take_exploration(self) -> ExploreResult | None:
+        """Return the result of an exploration that ended, once."""
+        result, self._explored = self._explored, None
+        return result
 
     def take_result(self) -> CleanResult | None:
         """Return the result of a clean that ended, once."""
@@ -216,7 +259,7 @@ class Mission:
         self._was_docked = senses.battery.is_docked
         self.state = _taken_up(state, senses.battery.is_docked)
         if self.state.phase is Phase.DOCKED:
-            self._end_clean(self._outcome or CleanOutcome.STOPPED, "", senses)
+            self._end_errand(self._outcome or CleanOutcome.STOPPED, "", senses)
 
     # ---------------------------------------------------------------- ticks
 
@@ -336,6 +379,8 @@ class Mission:
                 return self._undock(senses)
             case Phase.CLEANING:
                 return self._clean(senses)
+            case Phase.EXPLORING:
+                return self._explore(senses)
             case Phase.RETURNING:
                 return self._return(senses)
             case Phase.DOCKING:
@@ -384,6 +429,28 @@ class Mission:
             if step.state is DriveState.CUT_OFF:
                 self.cleaning.cut_off()
                 self.obstacles.forget_felt()
+            self.driver = None
+        return MissionStep(step.twist)
+
+    def _explore(self, senses: Senses) -> MissionStep:
+        """Go to the nearest place from where more can be seen."""
+        assert self.exploration is not None
+        if self.book.must_go_home(senses, self._way_home):
+            self._go(Event.LOW, senses)
+            return MissionStep()
+        if self.driver is None:
+            obstacles = self.obstacles.standing(senses.now)
+            points = self.exploration.next_path(senses.pose, self.site, obstacles)
+            if points is None:
+                self._go(Event.FINISHED, senses)
+                return MissionStep()
+            self.driver = self._drive(points, senses)
+        step = self.driver.tick(senses, self.speed_limit(senses))
+        if step.state is DriveState.STUCK:
+            self._fail(CleanOutcome.STUCK, step.reason, senses)
+        elif step.state.is_over:
+            if step.state is DriveState.CUT_OFF:
+                self.exploration.cut_off()
             self.driver = None
         return MissionStep(step.twist)
 
@@ -492,7 +559,7 @@ class Mission:
         if after.phase is Phase.DOCKED:
             self._dock_retries = 0
             if before.errand in (Errand.HOME, Errand.CLEAN):
-                self._end_clean(self._outcome or CleanOutcome.STOPPED, "", senses)
+                self._end_errand(self._outcome or CleanOutcome.STOPPED, "", senses)
 
     def _drop_driver(self) -> None:
         """Drive there no more; what was not driven of a round is planned again."""
@@ -503,17 +570,27 @@ class Mission:
     def _fail(self, outcome: CleanOutcome, reason: str, senses: Senses) -> None:
         self._go(Event.FAILED, senses)
         self.message = reason
-        self._end_clean(outcome, reason, senses)
+        self._end_errand(outcome, reason, senses)
 
-    def _end_clean(self, outcome: CleanOutcome, message: str, senses: Senses) -> None:
-        """Make the result of the clean under way, if there is one; it can still be resumed."""
-        cleaning = self.cleaning
-        if cleaning is None or self._is_told:
+    def _end_errand(self, outcome: CleanOutcome, message: str, senses: Senses) -> None:
+        """Make the result of the errand under way, if there is one; it can still be resumed."""
+        if self._is_told or (self.cleaning is None and self.exploration is None):
             return
+        if self.cleaning is not None:
+            self._result = self._clean_result(self.cleaning, outcome, message, senses)
+        if self.exploration is not None:
+            self._explored = self._explore_result(self.exploration, outcome, message, senses)
+        self._is_told = True
+        if self.state.phase is not Phase.ERROR:
+            self._forget_errand()
+
+    def _clean_result(
+        self, cleaning: Cleaning, outcome: CleanOutcome, message: str, senses: Senses
+    ) -> CleanResult:
         obstacles = self.obstacles.standing(senses.now)
         is_over = cleaning.stage is None
         missed: tuple[Missed, ...] = cleaning.missed(obstacles, is_over)
-        self._result = CleanResult(
+        return CleanResult(
             outcome,
             message,
             wanted=cleaning.coverage.wanted_area,
@@ -524,12 +601,22 @@ class Mission:
             energy=self.book.energy,
             missed=missed,
         )
-        self._is_told = True
-        if self.state.phase is not Phase.ERROR:
-            self._forget_clean()
 
-    def _forget_clean(self) -> None:
-        """The clean under way, if there was one, is over for good."""
+    def _explore_result(
+        self, exploration: Exploration, outcome: CleanOutcome, message: str, senses: Senses
+    ) -> ExploreResult:
+        return ExploreResult(
+            outcome,
+            message,
+            exploration.known_area(self.site),
+            self.book.distance,
+            senses.now - self._started,
+            tuple(exploration.unseen),
+        )
+
+    def _forget_errand(self) -> None:
+        """What was under way is over for good."""
+        self.exploration = None
         if self.cleaning is not None:
             self.cleaning = None
             self.dirt.end_run()
@@ -574,7 +661,9 @@ class Mission:
             return right - left + high - low
 
     def _needed_energy(self) -> float:
-        """Return what the rest of the clean takes, Wh."""
+        """Return what the rest of the errand takes, Wh; nobody knows that of an exploration."""
+        if self.exploration is not None:
+            return math.inf
         if self.cleaning is None:
             return 0.0
         return self.book.per_metre * 1.2 * self.cleaning.left / self.site.tool_width

@@ -40,6 +40,11 @@ class Obstacles:
         """A number that is another one when something came or went."""
         return self._seen.version + self._felt_version
 
+    def use(self, seen: ThingLayer) -> None:
+        """Go on with what is seen besides another map; what was felt stays."""
+        self._felt_version += self._seen.version + 1
+        self._seen = seen
+
     def feel(self, senses: Senses) -> None:
         """Remember what bumper or cliff sensors found where the robot stands."""
         where = self._edges if senses.cliff else self._felt

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +19,7 @@ from roomba.perception.rooms import Rooms
 from roomba.perception.zones import Zones
 from roomba.planning.costmap import Point, RoundObstacle
 from roomba.planning.coverage import CoveragePlanner
+from roomba.planning.coverage_floor import CoverageFloor
 from roomba.planning.coverage_plan import CoveragePlan
 from roomba.planning.path import NoPathError, NoPathReason, PathPlanner
 
@@ -45,13 +47,21 @@ class Site:
         driving, radius = mission.driving, robot.body.radius
         self.reach = radius + driving.clearance
         self.tool_width = robot.brush.width
-        self.coverage = CoveragePlanner(self.known, self.reach, self.tool_width)
-        self.floor = self.coverage.floor
         self.plans, self.planning_time = 0, 0.0
         self.body_radius, self._clearance = radius, driving.way_clearance
         # Paths may come as near to walls as swaths do, so that they can join them.
         self._least = 0.5 * driving.clearance
         self.paths = PathPlanner(self.known, radius, self._clearance, self._least)
+
+    @cached_property
+    def coverage(self) -> CoveragePlanner:
+        """The planner of ways over the floor; made when it is first asked for: that takes time."""
+        return CoveragePlanner(self.known, self.reach, self.tool_width)
+
+    @property
+    def floor(self) -> CoverageFloor:
+        """The floor on the fine grid."""
+        return self.coverage.floor
 
     def plan_coverage(
         self, here: Point, todo: Mask, obstacles: Sequence[RoundObstacle], *, edges_only: bool

@@ -159,6 +159,12 @@ class PathPlanner:
             self._reachable[regions] = mask
         return self._reachable[regions]
 
+    def is_free(self, points: NDArray[np.float64]) -> bool:
+        """Whether the body fits everywhere on a way, float64 [n, 2], m, with tight clearance."""
+        tight = self._among_walls.tight
+        corners = [(float(x), float(y)) for x, y in points]
+        return all(tight.fits_along(start, end) for start, end in pairwise(corners))
+
     def _room(self, obstacles: Iterable[RoundObstacle]) -> _Room:
         """Return where the body fits; kept until other obstacles come."""
         walls = self._among_walls

@@ -1,0 +1,100 @@
+"""One exploration: which frontier to go to next, and when there is none left.
+
+No clock and no I/O. The map grows while the robot drives: whenever it did, the frontier that it is
+on its way to is looked at again.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.geometry import Pose
+from roomba.grid import FREE, OccupancyMap
+from roomba.mission.clean_request import CleanOutcome
+from roomba.mission.site import Site
+from roomba.planning.costmap import Point, RoundObstacle
+from roomba.planning.frontiers import Frontier, frontiers, is_frontier
+from roomba.planning.path import NoPathError
+
+_STILL_THERE: Final = 0.25
+"""m; around the middle of a frontier, to see whether something of it is left."""
+_ARRIVED: Final = 0.12
+"""m; as near to a viewpoint it has seen all that is to be seen from there."""
+_BESIDE: Final = 0.3
+"""m; frontiers nearer to one that was given up are the same."""
+_MOST_TRIES: Final = 12
+"""Frontiers to which a way is planned before the next tick has its turn."""
+
+
+@dataclass(frozen=True, slots=True)
+class ExploreResult:
+    """How an exploration ended: the floor that is ``known``, m2, ``distance`` m, ``duration`` s.
+
+    ``unseen`` are frontiers that were given up: nobody can drive to where one would see beyond.
+    """
+
+    outcome: CleanOutcome
+    message: str
+    known: float
+    distance: float
+    duration: float
+    unseen: tuple[Point, ...] = ()
+
+
+class Exploration:
+    """Chooses where to go; ``unseen`` are the frontiers that it gave up."""
+
+    def __init__(self) -> None:
+        """Begin with nothing given up."""
+        self.goal: Frontier | None = None
+        self.unseen: list[Point] = []
+
+    def next_path(
+        self, here: Pose, site: Site, obstacles: list[RoundObstacle]
+    ) -> NDArray[np.float64] | None:
+        """Return the way to the next viewpoint, float64 [n, 2], m; None when there is none left.
+
+        A frontier to which no way leads is given up.
+        """
+        self._leave_behind(here, site)
+        at = (here.x, here.y)
+        try:
+            fits = site.paths.reachable(at, obstacles)
+        except NoPathError:
+            return None
+        for frontier in frontiers(site.known, fits, at, self.unseen, _BESIDE)[:_MOST_TRIES]:
+            try:
+                path = site.paths.plan(at, frontier.viewpoint, obstacles)
+            except NoPathError:
+                self.unseen.append(frontier.middle)
+                continue
+            self.goal = frontier
+            return path.points
+        return None
+
+    def wants_another(self, occupancy: OccupancyMap) -> bool:
+        """Whether nothing is left of the frontier that it is on its way to, as the map is now."""
+        return self.goal is not None and not is_frontier(occupancy, self.goal.middle, _STILL_THERE)
+
+    def cut_off(self) -> None:
+        """No way leads to the frontier it was on its way to: give that up."""
+        if self.goal is not None:
+            self.unseen.append(self.goal.middle)
+        self.goal = None
+
+    def known_area(self, site: Site) -> float:
+        """Return how much floor is known to be free, m2."""
+        return float((site.occupancy.values == FREE).sum()) * site.occupancy.frame.resolution**2
+
+    def _leave_behind(self, here: Pose, site: Site) -> None:
+        """Give the last frontier up if it was looked at from its viewpoint, and is still one."""
+        goal, self.goal = self.goal, None
+        if goal is None or math.dist(goal.viewpoint, (here.x, here.y)) > _ARRIVED:
+            return
+        if is_frontier(site.known, goal.middle, _STILL_THERE):
+            self.unseen.append(goal.middle)

@@ -1,0 +1,131 @@
+"""Compiled: counting, for each cell of a grid, how many beams went through and how many ended."""
+
+from __future__ import annotations
+
+import math
+from typing import Final, NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from roomba.grid import FREE, OCCUPIED, UNKNOWN
+from roomba.perception.slam.surface_kernels import NORMAL_X, NORMAL_Y, X, Y
+
+Floats = NDArray[np.float64]
+Counts = NDArray[np.uint16]
+
+_INTO: Final = 0.4
+"""cells; so far behind the surface that it met a beam is counted, to be inside the wall's cell."""
+_BEFORE: Final = 0.5
+"""cells; so far before the surface a beam counts as through no more."""
+_MOST: Final = 60000
+"""Counts are halved there: a cell never overflows."""
+
+
+class Sheet(NamedTuple):
+    """The grid as kernels know it: counts, uint16 [rows, columns]; ``place`` is the lower left
+    corner x, y and the cell size, m; ``bounds`` int64 [4] the first and last row and column with
+    counts.
+    """
+
+    hits: Counts
+    passes: Counts
+    place: Floats
+    bounds: NDArray[np.int64]
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def draw(sheet: Sheet, points: NDArray[np.float32], lidar: Floats, pose: Floats) -> None:
+    """Count a scan, ``points`` [n, 4] in the robot's frame, seen from ``pose`` [3].
+
+    ``lidar`` is x, y of the lidar in the robot's frame.
+    """
+    per_metre = 1.0 / sheet.place[2]
+    cosine, sine = math.cos(pose[2]), math.sin(pose[2])
+    from_x = pose[0] + cosine * lidar[0] - sine * lidar[1]
+    from_y = pose[1] + sine * lidar[0] + cosine * lidar[1]
+    from_u, from_v = (from_x - sheet.place[0]) * per_metre, (from_y - sheet.place[1]) * per_metre
+    for index in range(points.shape[0]):
+        x = pose[0] + cosine * points[index, X] - sine * points[index, Y]
+        y = pose[1] + sine * points[index, X] + cosine * points[index, Y]
+        u, v = (x - sheet.place[0]) * per_metre, (y - sheet.place[1]) * per_metre
+        length = math.hypot(u - from_u, v - from_v)
+        if length == 0.0:
+            continue
+        along_u, along_v = (u - from_u) / length, (v - from_v) / length
+        normal_x, normal_y = points[index, NORMAL_X], points[index, NORMAL_Y]
+        into_u, into_v = along_u, along_v
+        before = _BEFORE
+        if normal_x != 0.0 or normal_y != 0.0:
+            into_u = -(cosine * normal_x - sine * normal_y)
+            into_v = -(sine * normal_x + cosine * normal_y)
+            before = _BEFORE / max(into_u * along_u + into_v * along_v, 0.1)
+        _pass(sheet.passes, from_u, from_v, along_u, along_v, length - before)
+        row, column = math.floor(v + _INTO * into_v), math.floor(u + _INTO * into_u)
+        _count(sheet.hits, row, column)
+        _bound(sheet, row, column)
+    _bound(sheet, math.floor(from_v), math.floor(from_u))
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _pass(
+    passes: Counts, u: float, v: float, along_u: float, along_v: float, length: float
+) -> None:
+    """Count the cells on a straight way, once each (Amanatides and Woo, 1987)."""
+    if length <= 0.0:
+        return
+    column, row = math.floor(u), math.floor(v)
+    step_u, step_v = (1 if along_u > 0.0 else -1), (1 if along_v > 0.0 else -1)
+    per_u = math.inf if along_u == 0.0 else abs(1.0 / along_u)
+    per_v = math.inf if along_v == 0.0 else abs(1.0 / along_v)
+    next_u = math.inf if along_u == 0.0 else per_u * (column + 1 - u if step_u > 0 else u - column)
+    next_v = math.inf if along_v == 0.0 else per_v * (row + 1 - v if step_v > 0 else v - row)
+    while True:
+        _count(passes, row, column)
+        if min(next_u, next_v) > length:
+            return
+        if next_u < next_v:
+            column += step_u
+            next_u += per_u
+        else:
+            row += step_v
+            next_v += per_v
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _count(counts: Counts, row: int, column: int) -> None:
+    if 0 <= row < counts.shape[0] and 0 <= column < counts.shape[1]:
+        if counts[row, column] >= _MOST:
+            counts[row, column] //= 2
+        counts[row, column] += 1
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _bound(sheet: Sheet, row: int, column: int) -> None:
+    rows, columns = sheet.hits.shape
+    sheet.bounds[0] = max(min(sheet.bounds[0], row), 0)
+    sheet.bounds[1] = min(max(sheet.bounds[1], row), rows - 1)
+    sheet.bounds[2] = max(min(sheet.bounds[2], column), 0)
+    sheet.bounds[3] = min(max(sheet.bounds[3], column), columns - 1)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def occupancy(sheet: Sheet, share: float, least: int, values: NDArray[np.int8]) -> None:
+    """Fill ``values``, all within the bounds, from the counts.
+
+    Occupied where ``least`` beams or more, and ``share`` of all, ended; free where beams went
+    through; else unknown.
+    """
+    rows, columns = values.shape
+    first_row, first_column = sheet.bounds[0], sheet.bounds[2]
+    for row in range(rows):
+        for column in range(columns):
+            ended = int(sheet.hits[first_row + row, first_column + column])
+            through = int(sheet.passes[first_row + row, first_column + column])
+            if ended >= least and ended >= share * (ended + through):
+                values[row, column] = OCCUPIED
+            elif through > 0:
+                values[row, column] = FREE
+            else:
+                values[row, column] = OCCUPIED if ended > 0 else UNKNOWN

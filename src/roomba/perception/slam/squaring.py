@@ -1,0 +1,54 @@
+"""How the walls of a home lie to the axes of its map, and to the cells of its grid."""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+
+_NEAR: Final = math.radians(4.0)
+"""Walls that lie farther from the axes are meant to."""
+_ALONG: Final = 0.995
+"""Cosine; a wall that faces along an axis so well has one place on it."""
+_LEAST_POINTS: Final = 200
+_LEAST_AGREEMENT: Final = 0.4
+"""Length of the mean of directions; below it walls lie anyhow, and nothing is gained."""
+
+
+def turn_of_walls(cloud: Floats) -> float:
+    """Return by how much the walls are turned from the axes, rad; 0 when most lie otherwise.
+
+    ``cloud`` is float64 [n, 4], points with normals.
+    """
+    angles = np.arctan2(cloud[:, 3], cloud[:, 2])
+    quarter = math.pi / 2.0
+    off = np.remainder(angles + quarter / 2.0, quarter) - quarter / 2.0
+    near = off[np.abs(off) < _NEAR]
+    if len(near) < max(_LEAST_POINTS, len(off) // 3):
+        return 0.0
+    for _ in range(5):
+        middle = float(np.median(near))
+        near = near[np.abs(near - middle) < 0.5 * _NEAR]
+    return float(near.mean())
+
+
+def phase_of_walls(cloud: Floats, resolution: float) -> tuple[float, float]:
+    """Return where, from 0 to ``resolution``, m, walls lie between the cells of a grid, x and y.
+
+    A grid whose cells begin there shows walls without steps. 0 where walls lie anyhow.
+    """
+    phases = []
+    for axis in (0, 1):
+        facing = np.abs(cloud[:, 2 + axis]) > _ALONG
+        places = cloud[facing, axis]
+        if len(places) < _LEAST_POINTS:
+            phases.append(0.0)
+            continue
+        mean = np.exp(2.0j * np.pi * places / resolution).mean()
+        share = float(np.angle(mean)) / (2.0 * math.pi) % 1.0
+        phases.append(share * resolution if abs(mean) >= _LEAST_AGREEMENT else 0.0)
+    return phases[0], phases[1]

@@ -1,0 +1,174 @@
+"""Compiled: how far it is to each cell, and where what is known of a floor ends."""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from roomba.grid import FREE, OCCUPIED, UNKNOWN
+from roomba.planning.heap_kernels import heap_pop, heap_push
+
+Values = NDArray[np.int8]
+
+_DIAGONAL: Final = math.sqrt(2.0)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def ways_from(fits: NDArray[np.bool_], row: int, column: int, ways: NDArray[np.float64]) -> None:
+    """Fill ``ways`` with the lengths, in cells, of the shortest ways over cells that ``fits``.
+
+    Ways go to eight neighbours and cut no closed corner; where none leads the length is infinite.
+    The first cell need not fit.
+    """
+    rows, columns = fits.shape
+    ways[:] = math.inf
+    most = 4 * fits.size + 8
+    costs, cells = np.empty(most), np.empty(most, np.int32)
+    ways[row, column] = 0.0
+    heap_push(costs, cells, 0, 0.0, row * columns + column)
+    count = 1
+    while count > 0:
+        way, cell = costs[0], cells[0]
+        heap_pop(costs, cells, count)
+        count -= 1
+        at_row, at_column = cell // columns, cell % columns
+        if way > ways[at_row, at_column]:
+            continue
+        for down in range(-1, 2):
+            for right in range(-1, 2):
+                to_row, to_column = at_row + down, at_column + right
+                if not (0 <= to_row < rows and 0 <= to_column < columns):
+                    continue
+                if not fits[to_row, to_column]:
+                    continue
+                is_diagonal = down != 0 and right != 0
+                if is_diagonal and not (fits[at_row, to_column] and fits[to_row, at_column]):
+                    continue
+                on = way + (_DIAGONAL if is_diagonal else 1.0)
+                if on < ways[to_row, to_column] and count < most:
+                    ways[to_row, to_column] = on
+                    heap_push(costs, cells, count, on, to_row * columns + to_column)
+                    count += 1
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def frontier_cells(values: Values, least: int, frontier: NDArray[np.bool_]) -> None:
+    """Mark free cells with a side to the unknown, if ``least`` unknown cells or more hang together.
+
+    Smaller patches of the unknown are shadows of chair legs and gaps between beams.
+    """
+    rows, columns = values.shape
+    sizes = np.zeros(values.shape, np.int32)
+    stack = np.empty(values.size, np.int64)
+    frontier[:] = False
+    for row in range(rows):
+        for column in range(columns):
+            if values[row, column] == UNKNOWN and sizes[row, column] == 0:
+                _measure(values, row, column, sizes, stack)
+    for row in range(1, rows - 1):
+        for column in range(1, columns - 1):
+            if values[row, column] == FREE:
+                beside = max(
+                    max(sizes[row - 1, column], sizes[row + 1, column]),
+                    max(sizes[row, column - 1], sizes[row, column + 1]),
+                )
+                frontier[row, column] = beside >= least
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _measure(
+    values: Values, row: int, column: int, sizes: NDArray[np.int32], stack: NDArray[np.int64]
+) -> None:
+    """Write into all cells of an unknown patch how many they are."""
+    rows, columns = values.shape
+    stack[0] = row * columns + column
+    sizes[row, column] = -1
+    first, last = 0, 1
+    while first < last:
+        cell = stack[first]
+        first += 1
+        for side in range(4):
+            to_row = cell // columns + (1 if side == 0 else -1 if side == 1 else 0)
+            to_column = cell % columns + (1 if side == 2 else -1 if side == 3 else 0)
+            if not (0 <= to_row < rows and 0 <= to_column < columns):
+                continue
+            if values[to_row, to_column] == UNKNOWN and sizes[to_row, to_column] == 0:
+                sizes[to_row, to_column] = -1
+                stack[last] = to_row * columns + to_column
+                last += 1
+    for index in range(last):
+        sizes[stack[index] // columns, stack[index] % columns] = last
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def clusters(frontier: NDArray[np.bool_], labels: NDArray[np.int32]) -> int:
+    """Fill ``labels`` with the numbers, from 1, of frontiers: cells that touch; return how many."""
+    rows, columns = frontier.shape
+    labels[:] = 0
+    stack = np.empty(frontier.size, np.int64)
+    number = 0
+    for row in range(rows):
+        for column in range(columns):
+            if not frontier[row, column] or labels[row, column] != 0:
+                continue
+            number += 1
+            labels[row, column] = number
+            stack[0] = row * columns + column
+            size = 1
+            while size > 0:
+                size -= 1
+                cell = stack[size]
+                for to_row in range(max(cell // columns - 1, 0), min(cell // columns + 2, rows)):
+                    for to_column in range(
+                        max(cell % columns - 1, 0), min(cell % columns + 2, columns)
+                    ):
+                        if frontier[to_row, to_column] and labels[to_row, to_column] == 0:
+                            labels[to_row, to_column] = number
+                            stack[size] = to_row * columns + to_column
+                            size += 1
+    return number
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def viewpoint(
+    values: Values,
+    ways: NDArray[np.float64],
+    row: int,
+    column: int,
+    radius: int,
+    aside: float,
+) -> tuple[int, int, float]:
+    """Return the cell from where a frontier cell is best looked at, and its cost in cells.
+
+    It can be reached, nothing occupied stands between, and it is ``radius`` cells away at most;
+    the cost is the way there, and ``aside`` times how far it is from the frontier. An infinite cost
+    means that there is none.
+    """
+    rows, columns = values.shape
+    best, best_row, best_column = math.inf, -1, -1
+    for to_row in range(max(row - radius, 0), min(row + radius + 1, rows)):
+        for to_column in range(max(column - radius, 0), min(column + radius + 1, columns)):
+            away = math.hypot(to_row - row, to_column - column)
+            cost = ways[to_row, to_column] + aside * away
+            if away > radius or not cost < best:
+                continue
+            if _sees(values, to_row, to_column, row, column):
+                best, best_row, best_column = cost, to_row, to_column
+    return best_row, best_column, best
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _sees(values: Values, row: int, column: int, to_row: int, to_column: int) -> bool:
+    """Whether nothing occupied lies between two cells."""
+    steps = max(abs(to_row - row), abs(to_column - column))
+    for step in range(1, steps):
+        share = step / steps
+        between_row = round(row + share * (to_row - row))
+        between_column = round(column + share * (to_column - column))
+        if values[between_row, between_column] == OCCUPIED:
+            return False
+    return True
