@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import io
 import json
-import os
 import zipfile
 from pathlib import Path
 from typing import Any
@@ -17,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.errors import RoombaError
+from roomba.whole_file import write_whole
 
 Values = dict[str, Any]
 Floats = NDArray[np.float32]
@@ -33,7 +33,7 @@ def save_checkpoint(values: Values, run: str, path: Path, taken_up: int = 0) -> 
     refuses, and ValueError for what is no plain value.
     """
     text = json.dumps({"run": run, "taken_up": taken_up, "mission": values}, allow_nan=False)
-    _replace(path, text.encode("utf-8"))
+    write_whole(path, text.encode("utf-8"))
 
 
 def load_checkpoint(path: Path, run: str) -> tuple[Values, int] | None:
@@ -66,7 +66,7 @@ def save_dirt(learned: Floats, path: Path) -> None:
     """
     packed = io.BytesIO()
     np.savez_compressed(packed, learned=learned)
-    _replace(path, packed.getvalue())
+    write_whole(path, packed.getvalue())
 
 
 def load_dirt(path: Path, shape: tuple[int, int]) -> Floats | None:
@@ -86,13 +86,3 @@ def load_dirt(path: Path, shape: tuple[int, int]) -> Floats | None:
             f"{path}: expected a dirt map of shape {shape}, got {learned.shape}; remove the file"
         )
     return learned
-
-
-def _replace(path: Path, content: bytes) -> None:
-    path.parent.mkdir(parents=True, exist_ok=True)
-    unfinished = path.with_suffix(".tmp")
-    with unfinished.open("wb") as file:
-        file.write(content)
-        file.flush()
-        os.fsync(file.fileno())
-    unfinished.replace(path)

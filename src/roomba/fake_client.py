@@ -25,7 +25,8 @@ from roomba.client import (
     WalkOutcome,
     WalkReport,
 )
-from roomba.fake_vacuum import ErrandScript, FakeVacuum
+from roomba.fake_errands import ErrandScript
+from roomba.fake_vacuum import FakeVacuum
 
 CAMERA_ANGLES = (-30.0, -15.0, 0.0, 15.0, 30.0)
 """Degrees for which there is a picture."""

@@ -2,33 +2,22 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
-from typing import Annotated
-
-import yaml
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from roomba.grid import OccupancyMap
+from roomba.map_bound_file import Entry, MapBound, Number, load_map_bound, save_map_bound
 from roomba.perception.zones import Zone, ZoneKind, Zones, ZonesError
-from roomba.rooms_file import map_digest
 
-Number = Annotated[float, Field(ge=-1e5, le=1e5)]
-"""m; farther from the origin no home is."""
+_COMMENT = "Zones of a map where the robot must not go; lengths in m, map frame."
 
 
-class _ZoneEntry(BaseModel):
-    model_config = ConfigDict(extra="ignore", frozen=True)
-
+class _ZoneEntry(Entry):
     name: str
     kind: ZoneKind
     points: list[tuple[Number, Number]]
 
 
-class _ZonesFile(BaseModel):
-    model_config = ConfigDict(extra="ignore", frozen=True)
-
-    map: str
+class _ZonesFile(MapBound):
     zones: list[_ZoneEntry]
 
 
@@ -37,7 +26,7 @@ def save_zones(zones: Zones, occupancy: OccupancyMap, path: Path) -> None:
 
     Raises OSError when the disk refuses.
     """
-    entries = [
+    entries: list[dict[str, object]] = [
         {
             "name": zone.name,
             "kind": zone.kind.value,
@@ -45,22 +34,7 @@ def save_zones(zones: Zones, occupancy: OccupancyMap, path: Path) -> None:
         }
         for zone in zones.all
     ]
-    text = yaml.safe_dump(
-        {"map": map_digest(occupancy), "zones": entries},
-        sort_keys=False,
-        allow_unicode=True,
-        default_flow_style=None,
-        width=100,
-    )
-    path.parent.mkdir(parents=True, exist_ok=True)
-    unfinished = path.with_suffix(".tmp")
-    with unfinished.open("w", encoding="utf-8") as file:
-        file.write(
-            "# Zones of a map where the robot must not go; lengths in m, map frame.\n" + text
-        )
-        file.flush()
-        os.fsync(file.fileno())
-    unfinished.replace(path)
+    save_map_bound(path, occupancy, "zones", entries, _COMMENT)
 
 
 def load_zones(path: Path, occupancy: OccupancyMap) -> Zones:
@@ -71,20 +45,7 @@ def load_zones(path: Path, occupancy: OccupancyMap) -> Zones:
     """
     if not path.exists():
         return Zones()
-    try:
-        raw = yaml.safe_load(path.read_text(encoding="utf-8"))
-        file = _ZonesFile.model_validate(raw)
-    except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
-        raise ZonesError(f"{path}: expected a file of zones in YAML: {error}") from error
-    except ValidationError as error:
-        first = error.errors()[0]
-        where = ".".join(str(part) for part in first["loc"])
-        raise ZonesError(f"{path}: {where}: {first['msg']}, got {first['input']!r}") from error
-    if file.map != map_digest(occupancy):
-        raise ZonesError(
-            f"{path}: expected the zones of this map, got those of another; remove the file, or "
-            "bring its map back"
-        )
+    file = load_map_bound(path, occupancy, _ZonesFile, "zones", ZonesError)
     try:
         return Zones(tuple(Zone(zone.name, zone.kind, tuple(zone.points)) for zone in file.zones))
     except ZonesError as error:

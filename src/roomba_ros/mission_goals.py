@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from typing import Any
 
-import actionlib
-from actionlib_msgs.msg import GoalStatus
 from roomba_robot.msg import (
     CleanAction,
     DockAction,
@@ -23,30 +21,12 @@ from roomba.mission.clean_request import CleanOutcome, CleanResult
 from roomba.mission.machine import Errand, Event, Phase
 from roomba.mission.mission import Mission
 from roomba.mission.senses import Senses
+from roomba_ros.action_goal import ActionGoal
 from roomba_ros.convert_mission import feedback_message, request_of, result_message
 
 
-class MissionGoal(ABC):
-    """One goal, from its coming to its end."""
-
-    name: str
-    """Of its action."""
-    action: type
-    """Its type."""
-
-    def __init__(self, handle: actionlib.ServerGoalHandle) -> None:
-        """Take the action library's handle of it."""
-        self._handle = handle
-
-    @property
-    def identity(self) -> tuple[str, str]:
-        """What tells it from all other goals."""
-        return self.name, str(self._handle.get_goal_id().id)
-
-    @property
-    def is_recalled(self) -> bool:
-        """Whether it was cancelled before it began."""
-        return bool(self._handle.get_goal_status().status == GoalStatus.RECALLING)
+class MissionGoal(ActionGoal):
+    """One thing that the mission is to do."""
 
     @abstractmethod
     def begin(self, mission: Mission, senses: Senses) -> None:

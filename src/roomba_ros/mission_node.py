@@ -74,7 +74,7 @@ class MissionNode:
             part.start()
 
     def tick(self, now: float) -> None:
-        """Sense, obey, act, tell, remember."""
+        """Sense, obey, answer, act, tell, remember."""
         self._drive.follow_clock(now)
         senses = self._senses.at(now)
         self._follow_home(senses)
@@ -85,11 +85,12 @@ class MissionNode:
             return
         self._orders.obey(mission, senses)
         self._give_way(mission, senses)
+        # Before the answers, and before the step: that may take long to plan.
+        self._tell(now, mission, senses)
+        self._orders.answer()
         self._act(mission, self._step(mission, senses))
+        self._tell(now, mission, senses)
         result = self._orders.follow(mission)
-        state = self._topics.tell(now, mission, senses)
-        if state is not None:
-            self._orders.tell(state)
         self._remember(mission, senses, has_learned=result is not None)
 
     def stop(self) -> None:
@@ -166,6 +167,12 @@ class MissionNode:
         cleaning = mission.cleaning
         sucks = cleaning is not None and mission.state.phase is not Phase.ERROR
         self._drive.suck(cleaning.request.fan.value if cleaning and sucks else None)
+
+    def _tell(self, now: float, mission: Mission, senses: Senses) -> None:
+        """Tell everybody the state if it is due, and whoever ordered what is done how far it is."""
+        state = self._topics.tell(now, mission, senses)
+        if state is not None:
+            self._orders.tell(state)
 
     def _remember(self, mission: Mission, senses: Senses, *, has_learned: bool) -> None:
         assert self._memory is not None

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import queue
-import threading
 import time
 from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Final
 
 import actionlib
@@ -47,6 +47,9 @@ class _Cancel:
 class MissionOrders:
     """Obeys one goal at a time; a newer one of any action takes over.
 
+    What came of an order is told by :meth:`answer` and :meth:`follow`, that are to be called when
+    the state is told: whoever has an answer finds the state that it is about.
+
     Publishes: ``clean/{feedback,result,status}``, ``dock/…``, ``undock/…``, ``beep`` (Empty: here
     the robot is).
     Subscribes: ``clean/{goal,cancel}``, ``dock/…``, ``undock/…``, ``emergency_stop`` (String).
@@ -56,9 +59,9 @@ class MissionOrders:
     def __init__(self, takes_drive: Callable[[], None]) -> None:
         """Connect nothing yet; ``takes_drive`` is called when the mission is about to drive."""
         self._takes_drive = takes_drive
-        self._lock = threading.Lock()
         self._asked: deque[MissionGoal | _Order | _Cancel] = deque()
         self._goal: MissionGoal | None = None
+        self._answers: list[Callable[[], object]] = []
         self._emergency: str | None = None
         self._serves = False
         self._serves_by = time.monotonic() + SENSES_DEADLINE
@@ -101,9 +104,16 @@ class MissionOrders:
             if isinstance(asked, MissionGoal):
                 self._begin(asked, mission, senses)
             elif isinstance(asked, _Order):
-                asked.answer.put(self._command(asked.event, mission, senses))
+                answer = self._command(asked.event, mission, senses)
+                self._answers.append(partial(asked.answer.put, answer))
             elif self._goal is not None and self._goal.identity == asked.identity:
                 self._command(Event.STOP, mission, senses)
+
+    def answer(self) -> None:
+        """Tell what came of what was obeyed."""
+        answers, self._answers = self._answers, []
+        for tell in answers:
+            tell()
 
     def follow(self, mission: Mission) -> CleanResult | None:
         """Tell the end of what ended; return the result of a clean that did, ordered or not."""
@@ -136,7 +146,7 @@ class MissionOrders:
         # Of the clean that was under way; nobody waits for one that was taken up after an error.
         result = mission.take_result()
         if old is not None:
-            old.stopped(result, _OVERTAKEN)
+            self._answers.append(partial(old.stopped, result, _OVERTAKEN))
         goal.accept()
         self._takes_drive()
 
@@ -149,7 +159,7 @@ class MissionOrders:
             goal, self._goal = self._goal, None
             result = mission.take_result()
             if goal is not None:
-                goal.stopped(result, "it was told to stop")
+                self._answers.append(partial(goal.stopped, result, "it was told to stop"))
         elif event is Event.RESUME:
             self._takes_drive()
         return True, _DONE.get(event, event.value)

@@ -27,6 +27,7 @@ from roomba.config import RobotConfig
 from roomba.errors import RoombaError, RoomsError
 from roomba.geometry import Pose
 from roomba.grid import OccupancyMap
+from roomba.map_bound_file import map_digest
 from roomba.mission.docking_config import DockingConfig
 from roomba.mission.site import Site
 from roomba.mission_config import MissionConfig
@@ -34,7 +35,6 @@ from roomba.perception.rooms import Rooms
 from roomba.perception.surface_field import SurfaceField
 from roomba.perception.zones import Zones, ZonesError
 from roomba.planning.coverage_floor import FINE
-from roomba.rooms_file import map_digest
 from roomba.zones_file import load_zones, save_zones
 from roomba_ros.background import Background
 from roomba_ros.convert import map_of

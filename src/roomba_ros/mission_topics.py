@@ -17,6 +17,7 @@ from roomba.mission.machine import VACUUM_STATES
 from roomba.mission.mission import Mission
 from roomba.mission.senses import Senses
 from roomba.mission_config import MissionConfig
+from roomba.perception.dirt_map import dirty_from
 from roomba_ros.background import Background
 from roomba_ros.convert import header, path_message
 from roomba_ros.convert_mission import coverage_message, dirt_message, shown
@@ -28,9 +29,6 @@ _STATE_PERIOD: Final = 1.0
 _MAP_PERIOD: Final = 1.0
 _MAP_WALL_PERIOD: Final = 0.5
 """s of the robot's clock, and of wall time, between two maps of the same kind at least."""
-
-_LEAST_DIRTY: Final = 500.0
-"""Grains/m2; with fewer no floor is shown as dirty."""
 
 
 class MissionTopics:
@@ -113,8 +111,7 @@ class MissionTopics:
         if has_ended or self._dirt.get_num_connections():
             dirt, times = mission.dirt, self._config.cleaning.dirty_times
             density = dirt.known()
-            known = density[~np.isnan(density)]
-            dirty = max(times * float(np.median(known)) if known.size else 0.0, _LEAST_DIRTY)
+            dirty = dirty_from(density, times)
             self._show(self._dirt, lambda: dirt_message(now, density, dirt.frame, dirty, "map"))
 
     def _show(self, publisher: rospy.Publisher, message: Callable[[], OccupancyGrid]) -> None:
@@ -133,7 +130,9 @@ def state_of(now: float, mission: Mission, senses: Senses) -> VacuumState:
     if senses.knowledge.is_usable:
         state.room = mission.site.room_at(senses.pose.x, senses.pose.y)
     if mission.cleaning is not None:
-        coverage = mission.cleaning.coverage
-        state.covered, state.wanted = mission.cleaning.clean_area, coverage.wanted_area
-        state.fraction, state.seconds_to_go = mission.cleaning.fraction, mission.seconds_to_go()
+        # Counted once: it is a look at every cell of the floor.
+        state.covered = mission.cleaning.clean_area
+        state.wanted = mission.cleaning.coverage.wanted_area
+        state.fraction = state.covered / state.wanted if state.wanted > 0.0 else 1.0
+        state.seconds_to_go = mission.seconds_to_go()
     return state

@@ -27,8 +27,9 @@ from visualization_msgs.msg import MarkerArray
 
 from roomba.errors import RoombaError, RoomsError
 from roomba.grid import OccupancyMap
+from roomba.map_bound_file import map_digest
 from roomba.perception.rooms import Rooms, segment
-from roomba.rooms_file import load_rooms, map_digest, save_rooms
+from roomba.rooms_file import load_rooms, save_rooms
 from roomba_ros.convert import map_of
 from roomba_ros.convert_rooms import rooms_markers, rooms_message
 

@@ -40,7 +40,8 @@ from roomba.geometry import Pose
 from roomba_ros.calls import SERVER_DEADLINE, call_service
 from roomba_ros.convert import path_of, picture_of, pose_message
 from roomba_ros.parameters import LiveSeedParameters
-from roomba_ros.ros_clean import SILENCE_DEADLINE, RosVacuum, wait_for_server
+from roomba_ros.ros_clean import RosVacuum
+from roomba_ros.ros_errands import SILENCE_DEADLINE, wait_for_server
 
 OLDEST_NEWS = 3.0
 """s of wall time; the robot tells its state at least 5 times a second, older news is none."""

@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import math
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from typing import Any
 
-import actionlib
-from actionlib_msgs.msg import GoalStatus
 from geometry_msgs.msg import PoseStamped
 from move_base_msgs.msg import MoveBaseAction, MoveBaseFeedback, MoveBaseResult
 from roomba_robot.msg import WalkToPointAction, WalkToPointFeedback, WalkToPointResult
@@ -15,32 +13,14 @@ from roomba_robot.msg import WalkToPointAction, WalkToPointFeedback, WalkToPoint
 from roomba.errors import RoombaError
 from roomba.geometry import Pose
 from roomba.mission.walk import feedback_period
+from roomba_ros.action_goal import ActionGoal
 from roomba_ros.convert import pose_message, pose_of, theta_of
 
 Point = tuple[float, float]
 
 
-class WalkGoal(ABC):
-    """One goal, from its coming to its end; ``time_spent`` in s."""
-
-    name: str
-    """Of its action."""
-    action: type
-    """Its type."""
-
-    def __init__(self, handle: actionlib.ServerGoalHandle) -> None:
-        """Take the action library's handle of it."""
-        self._handle = handle
-
-    @property
-    def identity(self) -> tuple[str, str]:
-        """What tells it from all other goals."""
-        return self.name, str(self._handle.get_goal_id().id)
-
-    @property
-    def is_recalled(self) -> bool:
-        """Whether it was cancelled before it began."""
-        return bool(self._handle.get_goal_status().status == GoalStatus.RECALLING)
+class WalkGoal(ActionGoal):
+    """One place to walk to; ``time_spent`` in s."""
 
     @property
     @abstractmethod

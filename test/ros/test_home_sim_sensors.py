@@ -2,6 +2,7 @@
 
 import io
 import math
+import re
 import time
 from collections.abc import Callable
 from typing import Any
@@ -40,6 +41,8 @@ from tf2_msgs.msg import TFMessage
 from roomba.world.layer import load_home
 from roomba.world.lidar import Lidar
 from roomba_ros.parameters import package_folder
+
+DESCRIPTION = (package_folder() / "srv" / "InjectFault.srv").read_text(encoding="utf-8")
 
 
 class Robot:
@@ -218,6 +221,8 @@ def test_faults_that_there_are_not_are_refused_with_those_that_there_are(graph: 
     assert not unknown.success
     assert "station_dead" in unknown.message
     assert "gravity" in unknown.message
+    names = re.search(r"expected a fault of: (.*); got", unknown.message)[1].split(", ")
+    assert [name for name in names if not re.search(rf"\b{name}\b", DESCRIPTION)] == []
     too_much = robot.inject("slip", 1.5)
     assert not too_much.success
     assert "from 0 to 1" in too_much.message

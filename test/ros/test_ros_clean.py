@@ -88,6 +88,12 @@ def begin(graph: RosGraph) -> tuple[RoombaClient, FakeMission]:
     return RoombaClient.connect(), FakeMission()
 
 
+def tell(mission: FakeMission, roomba: RoombaClient, phase: str) -> None:
+    """Let the mission tell a phase, and wait until the client has heard it."""
+    mission.state.publish(state=phase, phase=phase)
+    wait_until(lambda: roomba.robot.vacuum(3.0).phase == phase, 3.0, phase)
+
+
 def test_a_clean_from_its_goal_to_its_report(graph: RosGraph) -> None:
     roomba, mission = begin(graph)
     rooms = ("Hall", "Küche")
@@ -143,6 +149,27 @@ def test_a_clean_from_its_goal_to_its_report(graph: RosGraph) -> None:
         roomba.robot.pause()
     with pytest.raises(RequestRefusedError, match="1 to 5 passes"):
         roomba.robot.clean(passes=0)
+
+
+def test_a_state_from_before_an_order_is_none_any_more(graph: RosGraph) -> None:
+    roomba, mission = begin(graph)
+    tell(mission, roomba, "cleaning")
+    roomba.robot.pause()
+    with pytest.raises(RobotUnavailableError):
+        roomba.robot.vacuum(timeout=0.2)
+    tell(mission, roomba, "paused")
+    roomba.robot.pause()
+    assert roomba.robot.vacuum(timeout=0.2).phase == "paused"
+    roomba.robot.locate()
+    assert roomba.robot.vacuum(timeout=0.2).phase == "paused"
+    for order in (roomba.robot.resume, roomba.robot.stop):
+        order()
+        with pytest.raises(RobotUnavailableError):
+            roomba.robot.vacuum(timeout=0.2)
+        tell(mission, roomba, "cleaning")
+    tell(mission, roomba, "idle")
+    roomba.robot.stop()
+    assert roomba.robot.vacuum(timeout=0.2).phase == "idle"
 
 
 def test_a_mission_that_began_anew_or_is_silent_has_lost_the_clean(graph: RosGraph) -> None:

@@ -60,3 +60,25 @@ def test_a_refused_destination_is_told_with_the_reason(shared_robot: RosGraph) -
     menu.says("nearest reachable point", 10.0)
     menu.end_of_input()
     assert menu.ends(5.0) == 0
+
+
+def test_a_clean_is_left_held_up_stopped_and_the_robot_docked(shared_robot: RosGraph) -> None:
+    menu = menu_of(shared_robot)
+    menu.type("5")
+    menu.says("What to clean", 5.0)
+    menu.type("3")
+    menu.says("Cleaned: ", 20.0)
+    menu.send(signal.SIGINT)
+    menu.says("The robot goes on by itself", 5.0)
+    menu.type("9")
+    menu.says("State: cleaning", 10.0)
+    menu.type("6")
+    menu.says("The robot pauses", 10.0)
+    menu.type("6")
+    menu.says("The robot goes on.", 10.0)
+    menu.type("7")
+    menu.says("The robot has stopped", 10.0)
+    menu.type("8")
+    menu.says("The robot is on its charging station.", 60.0)
+    menu.send(signal.SIGINT)
+    assert menu.ends(2.0) == 130

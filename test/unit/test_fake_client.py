@@ -22,15 +22,14 @@ from roomba.client import (
     WalkOutcome,
 )
 from roomba.fake_client import CAMERA_ANGLES, FakeRobot, SteppedClock, Turn, WalkScript
-from roomba.fake_vacuum import (
+from roomba.fake_errands import (
     CLEANING_RATE,
     HOMING_TIME,
     LOST_NOTICE,
-    ROOM_AREA,
-    UNDOCKING_TIME,
     ErrandScript,
     FakeClean,
 )
+from roomba.fake_vacuum import ROOM_AREA, UNDOCKING_TIME
 from roomba.mission import clean_request
 
 COORDINATE = st.floats(min_value=-100.0, max_value=100.0)

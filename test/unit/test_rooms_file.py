@@ -7,8 +7,9 @@ import pytest
 
 from roomba.errors import RoomsError
 from roomba.grid import FREE, OCCUPIED, GridFrame, OccupancyMap
+from roomba.map_bound_file import map_digest
 from roomba.perception.rooms import Rooms
-from roomba.rooms_file import load_rooms, map_digest, save_rooms
+from roomba.rooms_file import load_rooms, save_rooms
 
 
 def two_rooms(column: int = 30) -> tuple[OccupancyMap, Rooms]:

@@ -105,12 +105,6 @@ class Cleaning:
         """Of it, m2; it never gets less while nobody edits zones."""
         return float(np.count_nonzero(self.clean)) * self.coverage.cell_area
 
-    @property
-    def fraction(self) -> float:
-        """Share of what is wanted that was ever swept, 0..1."""
-        wanted = self.coverage.wanted_area
-        return self.clean_area / wanted if wanted > 0.0 else 1.0
-
     def next_path(self, here: Pose, obstacles: list[RoundObstacle]) -> Floats | None:
         """Return the next points to drive, float64 [n, 2], m, or None when all is done."""
         while (stage := self.stage) is not None:

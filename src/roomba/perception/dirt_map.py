@@ -65,14 +65,9 @@ class DirtMap:
         return float(values.mean()) if values.size else 0.0
 
     def dirty_now(self, frame: GridFrame, times: float) -> Mask:
-        """Return where the present run counted so many times the usual, on another grid.
-
-        The usual is the median of where it was.
-        """
+        """Return where the present run counted so many times the usual of it, on another grid."""
         density, seen = self._density_now(), self.way > 0.5 * CELL
-        usual = float(np.median(density[seen])) if seen.any() else 0.0
-        least = max(times * usual, _LEAST_DIRTY)
-        dirty: Mask = self._over(density, frame) >= least
+        dirty: Mask = self._over(density, frame) >= dirty_from(density[seen], times)
         return dirty
 
     def known(self) -> Floats:
@@ -93,6 +88,16 @@ class DirtMap:
             np.ix_(np.minimum(rows, values.shape[0] - 1), np.minimum(columns, values.shape[1] - 1))
         ]
         return over
+
+
+def dirty_from(density: Floats, times: float) -> float:
+    """Return from how many grains/m2 on floor is dirty: so many times the usual, their median.
+
+    ``density`` is of any shape; NaN where nothing is known.
+    """
+    known = density[~np.isnan(density)]
+    usual = float(np.median(known)) if known.size else 0.0
+    return max(times * usual, _LEAST_DIRTY)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

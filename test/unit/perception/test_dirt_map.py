@@ -7,7 +7,7 @@ import pytest
 from numpy.typing import NDArray
 
 from roomba.grid import FREE, GridFrame, OccupancyMap
-from roomba.perception.dirt_map import CELL, DirtMap
+from roomba.perception.dirt_map import CELL, DirtMap, dirty_from
 
 COARSE = GridFrame(0.05, -1.0, 2.0, 40, 61)
 MAP = OccupancyMap(COARSE, np.full(COARSE.shape, FREE, np.int8))
@@ -113,3 +113,10 @@ def test_little_is_never_dirty() -> None:
     run_over(dirt, 10.0)
     assert 10.0 / CELL**2 < 500.0
     assert not dirt.dirty_now(FINE, 6.0).any()
+
+
+def test_dirty_is_many_times_the_usual_of_what_is_known() -> None:
+    density = np.array([[np.nan, 100.0, 300.0], [200.0, np.nan, np.nan]], np.float32)
+    assert dirty_from(density, 6.0) == 1200.0
+    assert dirty_from(density, 1.0) == 500.0
+    assert dirty_from(np.full((2, 2), np.nan, np.float32), 6.0) == 500.0

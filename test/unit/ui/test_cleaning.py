@@ -13,7 +13,7 @@ from rich.console import Console
 
 from roomba.client import CleanMode, CleanProgress, ErrandOutcome, MissedFloor
 from roomba.fake_client import FakeRobot, SteppedClock
-from roomba.fake_vacuum import ErrandScript
+from roomba.fake_errands import ErrandScript
 from roomba.ui.cleaning import CLEANING, CLEANING_HEADING
 from roomba.ui.errand_progress import (
     ERRAND_SILENCE_LIMIT,
