@@ -167,4 +167,6 @@ class HeadlessExplorer:
         self.mission.use_site(site)
 
     def _site(self, occupancy: OccupancyMap) -> Site:
-        return Site(occupancy, self._station, self.robot, self.config, self._docking)
+        return Site(
+            occupancy, self._station, self.robot, self.config, self._docking, is_growing=True
+        )

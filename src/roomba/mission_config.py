@@ -35,6 +35,15 @@ class CleaningConfig(Frozen):
     dirty_times: Positive = 6.0
 
 
+class ExploringConfig(Frozen):
+    """Driving where the map is being made: m, m/s."""
+
+    speed: Positive = 0.40
+    clearance: Positive = 0.12
+    tight_clearance: Positive = 0.02
+    most_stuck: Annotated[int, Field(ge=0)] = 3
+
+
 class EnergyConfig(Frozen):
     """When to go home for energy: shares of the capacity 0..1, Wh/m."""
 
@@ -50,6 +59,7 @@ class MissionConfig(Frozen):
 
     driving: DrivingConfig = DrivingConfig()
     cleaning: CleaningConfig = CleaningConfig()
+    exploring: ExploringConfig = ExploringConfig()
     energy: EnergyConfig = EnergyConfig()
 
 

@@ -47,12 +47,13 @@ class ExploreResult:
 
 
 class Exploration:
-    """Chooses where to go; ``unseen`` are the frontiers that it gave up."""
+    """Chooses where to go; ``unseen`` are the frontiers that it gave up, m, map frame."""
 
     def __init__(self) -> None:
         """Begin with nothing given up."""
         self.goal: Frontier | None = None
         self.unseen: list[Point] = []
+        self.times_stuck = 0
 
     def next_path(
         self, here: Pose, site: Site, obstacles: list[RoundObstacle]
@@ -81,8 +82,9 @@ class Exploration:
         """Whether nothing is left of the frontier that it is on its way to, as the map is now."""
         return self.goal is not None and not is_frontier(occupancy, self.goal.middle, _STILL_THERE)
 
-    def cut_off(self) -> None:
+    def cut_off(self, *, is_stuck: bool = False) -> None:
         """No way leads to the frontier it was on its way to: give that up."""
+        self.times_stuck += is_stuck
         if self.goal is not None:
             self.unseen.append(self.goal.middle)
         self.goal = None

@@ -302,10 +302,12 @@ class Mission:
 
     def speed_limit(self, senses: Senses) -> float:
         """Return how fast it goes now, m/s."""
-        driving = self._config.driving
+        is_exploring = self.state.phase is Phase.EXPLORING
+        config = self._config
+        speed = config.exploring.speed if is_exploring else config.driving.speed
         if senses.knowledge is Knowledge.ROUGH:
-            return min(driving.speed, self._robot.walk.careful_speed)
-        return driving.speed
+            return min(speed, self._robot.walk.careful_speed)
+        return speed
 
     def seconds_to_go(self) -> float:
         """Return about how long the clean still takes, s of robot time; charging left out."""
@@ -446,11 +448,12 @@ class Mission:
                 return MissionStep()
             self.driver = self._drive(points, senses)
         step = self.driver.tick(senses, self.speed_limit(senses))
-        if step.state is DriveState.STUCK:
+        is_stuck = step.state is DriveState.STUCK
+        if is_stuck and self.exploration.times_stuck >= self._config.exploring.most_stuck:
             self._fail(CleanOutcome.STUCK, step.reason, senses)
         elif step.state.is_over:
-            if step.state is DriveState.CUT_OFF:
-                self.exploration.cut_off()
+            if step.state is not DriveState.DONE:
+                self.exploration.cut_off(is_stuck=is_stuck)
             self.driver = None
         return MissionStep(step.twist)
 

@@ -38,8 +38,13 @@ class Site:
         docking: DockingConfig,
         rooms: Rooms | None = None,
         zones: Zones | None = None,
+        *,
+        is_growing: bool = False,
     ) -> None:
-        """Make the planners; ``station`` is where the docked robot stands, map frame."""
+        """Make the planners; ``station`` is where the docked robot stands, map frame.
+
+        In a map that ``is_growing`` paths keep the distances of exploring.
+        """
         self.occupancy, self.station = occupancy, station
         self.rooms, self.zones = rooms, zones or Zones()
         self.known = self.zones.kept_out(occupancy)
@@ -48,9 +53,12 @@ class Site:
         self.reach = radius + driving.clearance
         self.tool_width = robot.brush.width
         self.plans, self.planning_time = 0, 0.0
-        self.body_radius, self._clearance = radius, driving.way_clearance
+        self.body_radius = radius
         # Paths may come as near to walls as swaths do, so that they can join them.
-        self._least = 0.5 * driving.clearance
+        self._clearance, self._least = driving.way_clearance, 0.5 * driving.clearance
+        if is_growing:
+            exploring = mission.exploring
+            self._clearance, self._least = exploring.clearance, exploring.tight_clearance
         self.paths = PathPlanner(self.known, radius, self._clearance, self._least)
 
     @cached_property
