@@ -163,8 +163,7 @@ class HeadlessExplorer:
         self._version = self.mapper.version
         site = self._site(occupancy)
         self._things = ThingLayer(SurfaceField.of(site.occupancy))
-        self.mission.obstacles.use(self._things)
-        self.mission.use_site(site)
+        self.mission.use_map(site, self._things, DirtMap(site.occupancy))
 
     def _site(self, occupancy: OccupancyMap) -> Site:
         return Site(

@@ -143,10 +143,13 @@ def path_of(message: Path) -> NDArray[np.float64]:
     return np.array(points, np.float64).reshape(-1, 2)
 
 
-def map_message(now: float, known: OccupancyMap, frame_id: str) -> OccupancyGrid:
-    """Return an occupancy map as a message."""
+def map_message(
+    now: float, known: OccupancyMap, frame_id: str, *, is_growing: bool = False
+) -> OccupancyGrid:
+    """Return an occupancy map as a message; one that ``is_growing`` was never loaded: 0 s."""
     message = OccupancyGrid(header=header(now, frame_id))
-    message.info.map_load_time = message.header.stamp
+    if not is_growing:
+        message.info.map_load_time = message.header.stamp
     message.info.resolution = known.frame.resolution
     message.info.width = known.frame.columns
     message.info.height = known.frame.rows

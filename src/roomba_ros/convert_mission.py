@@ -18,6 +18,7 @@ from roomba_robot.msg import (
     ZoneArray,
 )
 from roomba_robot.msg import CleanResult as CleanResultMessage
+from roomba_robot.msg import ExploreResult as ExploreResultMessage
 from roomba_robot.msg import Zone as ZoneMessage
 from sensor_msgs.msg import BatteryState
 from std_msgs.msg import ColorRGBA
@@ -34,6 +35,7 @@ from roomba.mission.clean_request import (
     Missed,
     MissReason,
 )
+from roomba.mission.exploration import ExploreResult
 from roomba.mission.senses import Battery, Beams
 from roomba.perception.coverage_bits import SWEPT, WANTED
 from roomba.perception.rooms import Rooms
@@ -91,6 +93,18 @@ def result_message(result: CleanResult) -> CleanResultMessage:
         duration=result.duration,
         energy=result.energy,
         missed=[_missed_message(missed) for missed in result.missed],
+    )
+
+
+def explored_message(result: ExploreResult) -> ExploreResultMessage:
+    """Return what an exploration achieved as a message."""
+    return ExploreResultMessage(
+        outcome=OUTCOMES[result.outcome],
+        message=result.message,
+        known=result.known,
+        distance=result.distance,
+        duration=result.duration,
+        unseen=[Point(x, y, 0.0) for x, y in result.unseen],
     )
 
 

@@ -162,10 +162,8 @@ class HomeSimNode:
         self._transforms = rospy.Publisher("/tf", TFMessage, queue_size=10)
         self._mounts = rospy.Publisher("/tf_static", TFMessage, queue_size=10, latch=True)
         self._mounts.publish(self._mounted())
-        self._map = rospy.Publisher("map", OccupancyGrid, queue_size=1, latch=True)
-        self._map.publish(map_message(self._now(), self._simulator.home.map, "map"))
-        self._station = rospy.Publisher("station_pose", PoseStamped, queue_size=1, latch=True)
-        self._station.publish(pose_message(self._now(), self._simulator.home.station, "map"))
+        if _tells_map_parameter():
+            self._tell_map()
         self._sensors = SensorTopics(
             self._config, self._simulator, self._parameters.values.robot_name
         )
@@ -176,6 +174,14 @@ class HomeSimNode:
         )
         for topic, motor in (("main_brush_motor", "brush"), ("vacuum_motor", "fan")):
             rospy.Subscriber(topic, Float32, self._on_power, callback_args=motor, queue_size=1)
+
+    def _tell_map(self) -> None:
+        """Give the robot the map of its home, and the place of its station."""
+        home = self._simulator.home
+        self._map = rospy.Publisher("map", OccupancyGrid, queue_size=1, latch=True)
+        self._map.publish(map_message(self._now(), home.map, "map"))
+        self._station = rospy.Publisher("station_pose", PoseStamped, queue_size=1, latch=True)
+        self._station.publish(pose_message(self._now(), home.station, "map"))
 
     def _mounted(self) -> list:
         """Return where the sensors are on the body, which never changes."""
@@ -211,6 +217,14 @@ def _config_with_sensors(config: RobotConfig) -> RobotConfig:
     if sensors not in ("ideal", "noisy"):
         raise ConfigError(f"parameter ~sensors: expected ideal or noisy, got {sensors!r}")
     return config.model_copy(update={"sensors": sensors})
+
+
+def _tells_map_parameter() -> bool:
+    """Return whether the robot is given the map; if not it makes its own."""
+    value = rospy.get_param("~map", "given")
+    if not isinstance(value, str) or not value:
+        raise ConfigError(f"parameter ~map: expected given, none, own or a name, got {value!r}")
+    return value == "given"
 
 
 def _speed_parameter() -> float:

@@ -7,9 +7,11 @@ import threading
 from collections import deque
 from typing import Final
 
+import numpy as np
 import rospy
 from geometry_msgs.msg import PoseWithCovarianceStamped
 from nav_msgs.msg import OccupancyGrid, Odometry
+from numpy.typing import NDArray
 from roomba_robot.msg import WheelDrop
 from sensor_msgs.msg import Imu, LaserScan
 from std_srvs.srv import Empty, EmptyRequest, EmptyResponse
@@ -21,6 +23,7 @@ from roomba.grid import OccupancyMap
 from roomba.perception.estimate import Estimate, Knowledge
 from roomba.perception.localizer import Localizer
 from roomba.perception.scan_view import LidarModel
+from roomba.perception.slam.mapper import Mapper
 from roomba_ros.convert import map_of, pose_of_odometry
 from roomba_ros.convert_localization import SAME_TIME, lidar_of, mount_of, ranges_of, told_pose_of
 from roomba_ros.kept_pose import KeptPose
@@ -55,6 +58,12 @@ class LocalizationTopics:
         self._stamp = 0.0
         self._kept = KeptPose()
         self._place = PlaceTopics()
+        self.mapper: Mapper | None = None
+        """Who knows the place instead, while a map is being made."""
+        self.is_mapping_held = False
+        """Whether the mapper must not be shown anything just now: its map is being made whole."""
+        self.seen: tuple[float, NDArray[np.float32], LidarModel] | None = None
+        """The newest scan that was used, and its stamp, s."""
         self.is_asked_to_search = False
         """Whether somebody asked it to find its place, and it has not yet."""
 
@@ -90,12 +99,19 @@ class LocalizationTopics:
         self._hear_people(localizer)
         self._hear_scan(localizer)
         localizer.pass_time(now)
-        estimate = localizer.estimate
+        knower = self.mapper or localizer
+        estimate = knower.estimate
         self.is_asked_to_search &= estimate.knowledge is Knowledge.SEARCHING
-        self._place.tell(now, self._stamp, localizer, estimate)
+        self._place.tell(now, self._stamp, knower, estimate)
         if estimate.knowledge is Knowledge.KNOWN:
-            self._kept.keep(localizer.map_to_odometry)
+            self._kept.keep(knower.map_to_odometry)
         return estimate
+
+    @property
+    def place(self) -> Pose:
+        """Where the robot is by what was told and its wheels, map frame: before there is a map."""
+        assert self._localizer is not None
+        return self._localizer.estimate.pose
 
     def _first_localizer(self) -> Localizer | None:
         """Return a localizer at the place where the first odometry was told; None before that."""
@@ -116,7 +132,10 @@ class LocalizationTopics:
     def _hear_odometry(self, localizer: Localizer) -> None:
         for _ in range(len(self._odometry)):
             self._stamp, pose = self._odometry.popleft()
-            localizer.move(self._stamp, pose, self._turning_at(self._stamp))
+            turning = self._turning_at(self._stamp)
+            localizer.move(self._stamp, pose, turning)
+            if self.mapper is not None:
+                self.mapper.move(self._stamp, pose, turning)
 
     def _turning_at(self, stamp: float) -> float | None:
         """Return the gyro's sample of about that time, rad/s."""
@@ -157,7 +176,12 @@ class LocalizationTopics:
         except ValueError as error:
             rospy.logwarn_throttle(10.0, "scan refused: %s", error)
             return
-        localizer.see(stamp, ranges_of(scan), lidar)
+        ranges = ranges_of(scan)
+        self.seen = (stamp, ranges, lidar)
+        if self.mapper is None:
+            localizer.see(stamp, ranges, lidar)
+        elif not self.is_mapping_held:
+            self.mapper.see(stamp, ranges, lidar)
 
     def _lidar_of(self, scan: LaserScan) -> LidarModel:
         """Return the lidar of a scan, made anew only when something of it changed."""

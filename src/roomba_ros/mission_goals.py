@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
+from dataclasses import dataclass
 from typing import Any
 
 from roomba_robot.msg import (
@@ -10,19 +11,41 @@ from roomba_robot.msg import (
     DockAction,
     DockFeedback,
     DockResult,
+    ExploreAction,
+    ExploreFeedback,
     UndockAction,
     UndockFeedback,
     UndockResult,
     VacuumState,
 )
 from roomba_robot.msg import CleanResult as CleanResultMessage
+from roomba_robot.msg import ExploreResult as ExploreResultMessage
 
 from roomba.mission.clean_request import CleanOutcome, CleanResult
+from roomba.mission.exploration import ExploreResult
 from roomba.mission.machine import Errand, Event, Phase
-from roomba.mission.mission import Mission
+from roomba.mission.mission import CommandRefusedError, Mission
 from roomba.mission.senses import Senses
 from roomba_ros.action_goal import ActionGoal
-from roomba_ros.convert_mission import feedback_message, request_of, result_message
+from roomba_ros.convert_mission import (
+    explored_message,
+    feedback_message,
+    request_of,
+    result_message,
+)
+
+_MAP_IS_WHOLE = (
+    "there is nothing to explore: expected a map that is being made, got a whole one; "
+    "to make one anew start the robot with map:=none"
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Ended:
+    """The result of a clean or an exploration that has just ended, if one has."""
+
+    clean: CleanResult | None = None
+    exploration: ExploreResult | None = None
 
 
 class MissionGoal(ActionGoal):
@@ -33,8 +56,8 @@ class MissionGoal(ActionGoal):
         """Let the mission do it; raises RoombaError with the reason why not."""
 
     @abstractmethod
-    def follow(self, mission: Mission, result: CleanResult | None) -> bool:
-        """Tell its end if it has ended, and return that; ``result`` is of a clean that ended."""
+    def follow(self, mission: Mission, ended: Ended) -> bool:
+        """Tell its end if it has ended, and return that."""
 
     @abstractmethod
     def tell(self, state: VacuumState) -> None:
@@ -70,8 +93,9 @@ class CleaningGoal(MissionGoal):
         """Let the mission clean."""
         mission.clean(request_of(self._handle.get_goal()), senses)
 
-    def follow(self, mission: Mission, result: CleanResult | None) -> bool:
+    def follow(self, mission: Mission, ended: Ended) -> bool:
         """Tell its end if there is a result."""
+        result = ended.clean
         if result is None:
             return False
         message = result_message(result)
@@ -106,7 +130,7 @@ class DockingGoal(MissionGoal):
         """Let the mission go there."""
         mission.command(Event.DOCK, senses)
 
-    def follow(self, mission: Mission, result: CleanResult | None) -> bool:
+    def follow(self, mission: Mission, ended: Ended) -> bool:
         """Tell its end if the robot is there, or cannot get there."""
         state = mission.state
         if state.phase is Phase.DOCKED:
@@ -136,7 +160,7 @@ class UndockingGoal(MissionGoal):
         """Let the mission back out."""
         mission.command(Event.UNDOCK, senses)
 
-    def follow(self, mission: Mission, result: CleanResult | None) -> bool:
+    def follow(self, mission: Mission, ended: Ended) -> bool:
         """Tell its end if the robot is out, or cannot get out."""
         state = mission.state
         if state.phase in (Phase.ERROR, Phase.EMERGENCY):
@@ -157,5 +181,49 @@ class UndockingGoal(MissionGoal):
         return UndockResult(False, message)
 
 
-GOALS: tuple[type[MissionGoal], ...] = (CleaningGoal, DockingGoal, UndockingGoal)
+class ExploringGoal(MissionGoal):
+    """Look at what the map does not show yet."""
+
+    name, action = "explore", ExploreAction
+
+    def __init__(self, handle: Any) -> None:
+        """Take the goal's handle."""
+        super().__init__(handle)
+        self._known = 0.0
+
+    def begin(self, mission: Mission, senses: Senses) -> None:
+        """Let the mission explore."""
+        if not mission.site.is_growing:
+            raise CommandRefusedError(_MAP_IS_WHOLE)
+        mission.explore(senses)
+
+    def follow(self, mission: Mission, ended: Ended) -> bool:
+        """Tell its end if there is a result."""
+        exploration = mission.exploration
+        if exploration is not None:
+            self._known = exploration.known_area(mission.site)
+        explored = ended.exploration
+        if explored is None:
+            return False
+        message = explored_message(explored)
+        text = explored.message or explored.outcome.value
+        if explored.outcome is CleanOutcome.COMPLETED:
+            self._handle.set_succeeded(message, text)
+        elif explored.outcome is CleanOutcome.STOPPED:
+            self._handle.set_canceled(message, text)
+        else:
+            self._handle.set_aborted(message, text)
+        return True
+
+    def tell(self, state: VacuumState) -> None:
+        """Tell how much of the home is known."""
+        self._handle.publish_feedback(ExploreFeedback(state.state, self._known, state.battery))
+
+    def _result(self, message: str) -> ExploreResultMessage:
+        return ExploreResultMessage(
+            outcome=ExploreResultMessage.STOPPED, message=message, known=self._known
+        )
+
+
+GOALS: tuple[type[MissionGoal], ...] = (CleaningGoal, DockingGoal, UndockingGoal, ExploringGoal)
 """All kinds of them."""

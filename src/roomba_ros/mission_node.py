@@ -6,8 +6,10 @@ from pathlib import Path
 
 import rospkg
 import rospy
+from std_srvs.srv import Trigger
 
 from roomba.geometry import Twist
+from roomba.mission.clean_request import CleanOutcome
 from roomba.mission.docking_config import DockingConfig
 from roomba.mission.machine import Event, Phase
 from roomba.mission.mission import Mission, MissionStep
@@ -18,8 +20,10 @@ from roomba.perception.dirt_map import DirtMap
 from roomba.perception.things import ThingLayer
 from roomba_ros.alone import refuse_second
 from roomba_ros.background import Background
+from roomba_ros.calls import call_service
 from roomba_ros.convert_mission import names_of
 from roomba_ros.mission_drive import MissionDrive
+from roomba_ros.mission_goals import Ended
 from roomba_ros.mission_memory import MissionMemory
 from roomba_ros.mission_orders import MissionOrders
 from roomba_ros.mission_senses import MissionSenses
@@ -51,6 +55,7 @@ class MissionNode:
         self._background = Background()
         self._mission: Mission | None = None
         self._home: KnownHome | None = None
+        self._newer: KnownHome | None = None
         self._memory: MissionMemory | None = None
         self._senses = MissionSenses(self._config)
         self._site = MissionSite(
@@ -90,8 +95,9 @@ class MissionNode:
         self._orders.answer()
         self._act(mission, self._step(mission, senses))
         self._tell(now, mission, senses)
-        result = self._orders.follow(mission)
-        self._remember(mission, senses, has_learned=result is not None)
+        ended = self._orders.follow(mission)
+        self._finish_map(ended)
+        self._remember(mission, senses, has_learned=ended.clean is not None)
 
     def stop(self) -> None:
         """Stop the drive; what was ordered comes to no end."""
@@ -113,18 +119,40 @@ class MissionNode:
         self._site.tick()
         if senses is None:
             return
-        home = self._site.take()
+        home = self._newer = self._site.take() or self._newer
         if home is None:
             return
-        if self._mission is not None and self._home is not None:
-            if home.digest == self._home.digest:
-                self._mission.use_site(home.site)
+        mission, before = self._mission, self._home
+        if mission is not None and before is not None:
+            if before.site.is_growing:
+                self._grow(mission, before, home)
+                return
+            if home.digest == before.digest:
+                self._newer = None
+                mission.use_site(home.site)
                 return
             self._orders.give_up("the robot was given another map")
             if self._memory is not None:
                 self._memory.forget_errand()
-        self._home = home
+        self._home, self._newer = home, None
         self._mission = self._begin(home, senses)
+
+    def _grow(self, mission: Mission, before: KnownHome, home: KnownHome) -> None:
+        """Let the mission go on with more of the map, when that makes a difference to it."""
+        is_more = home.site.occupancy is not before.site.occupancy
+        if not is_more:
+            mission.use_site(home.site)
+        elif mission.cleaning is not None:
+            # Its floor is counted on the map that it began with.
+            return
+        elif home.site.is_growing and not mission.wants_map(home.site.occupancy):
+            return
+        else:
+            self._things = ThingLayer(home.field)
+            mission.use_map(home.site, self._things, DirtMap(home.site.occupancy))
+            if home.digest != before.digest:
+                self._memory = self._memory_of(home)
+        self._home, self._newer = home, None
 
     def _begin(self, home: KnownHome, senses: Senses) -> Mission:
         """Return a mission for a map, that goes on with what was under way there."""
@@ -139,13 +167,17 @@ class MissionNode:
             dirt,
             senses,
         )
-        robot = rospy.get_namespace().strip("/") or "robot"
-        folder = _folder("~memory_folder", "mission") / robot
-        self._memory = MissionMemory(folder, home.digest, self._background)
-        self._memory.recall_dirt(dirt)
+        self._memory = self._memory_of(home)
+        if not home.site.is_growing:
+            self._memory.recall_dirt(dirt)
         if self._memory.recall_errand(mission, senses):
             self._drive.take()
         return mission
+
+    def _memory_of(self, home: KnownHome) -> MissionMemory:
+        robot = rospy.get_namespace().strip("/") or "robot"
+        folder = _folder("~memory_folder", "mission") / robot
+        return MissionMemory(folder, home.digest, self._background)
 
     def _give_way(self, mission: Mission, senses: Senses) -> None:
         """Pause while somebody else drives."""
@@ -173,6 +205,13 @@ class MissionNode:
         state = self._topics.tell(now, mission, senses)
         if state is not None:
             self._orders.tell(state)
+
+    def _finish_map(self, ended: Ended) -> None:
+        """When all was seen the map is whole; whoever makes it is told so."""
+        explored = ended.exploration
+        if explored is not None and explored.outcome is CleanOutcome.COMPLETED:
+            whole = rospy.ServiceProxy("map/finish", Trigger)
+            self._background.do("the map is not finished", lambda: call_service(whole))
 
     def _remember(self, mission: Mission, senses: Senses, *, has_learned: bool) -> None:
         assert self._memory is not None

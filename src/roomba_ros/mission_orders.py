@@ -17,11 +17,10 @@ from std_msgs.msg import Empty, String
 from std_srvs.srv import Trigger, TriggerRequest, TriggerResponse
 
 from roomba.errors import RoombaError
-from roomba.mission.clean_request import CleanResult
 from roomba.mission.machine import Event, Phase
 from roomba.mission.mission import Mission
 from roomba.mission.senses import Senses
-from roomba_ros.mission_goals import GOALS, MissionGoal
+from roomba_ros.mission_goals import GOALS, Ended, MissionGoal
 
 SENSES_DEADLINE: Final = 6.0
 """s of wall time after which goals are taken, and rejected, though nothing is known yet."""
@@ -115,12 +114,12 @@ class MissionOrders:
         for tell in answers:
             tell()
 
-    def follow(self, mission: Mission) -> CleanResult | None:
-        """Tell the end of what ended; return the result of a clean that did, ordered or not."""
-        result = mission.take_result()
-        if self._goal is not None and self._goal.follow(mission, result):
+    def follow(self, mission: Mission) -> Ended:
+        """Tell the end of what ended; return the results of what did, ordered or not."""
+        ended = Ended(mission.take_result(), mission.take_exploration())
+        if self._goal is not None and self._goal.follow(mission, ended):
             self._goal = None
-        return result
+        return ended
 
     def tell(self, state: VacuumState) -> None:
         """Tell whoever ordered what is done now how far it is."""

@@ -41,6 +41,8 @@ from roomba_ros.convert import map_of
 from roomba_ros.convert_mission import names_of, rooms_of, zone_of, zones_markers, zones_message
 from roomba_ros.walk_goals import pose_in_map
 
+GROWING: Final = "growing"
+"""The digest of maps that are being made."""
 MOST_FINE_CELLS: Final = 40_000_000
 """Of a map that is cleaned: 4,000 m2, its walls and surroundings included."""
 _ROOMS_DEADLINE: Final = 3.0
@@ -49,7 +51,10 @@ _ROOMS_DEADLINE: Final = 3.0
 
 @dataclass(frozen=True, slots=True, eq=False)
 class KnownHome:
-    """A site, the field of surfaces of its map, and what tells that map from all others."""
+    """A site, the field of surfaces of its map, and what tells that map from all others.
+
+    All stages of a map that is being made have the same ``digest``.
+    """
 
     site: Site
     field: SurfaceField
@@ -85,6 +90,7 @@ class MissionSite:
         self._map_came = 0.0
         self._made: KnownHome | None = None
         self._wanted = self._tried = 0
+        self._is_edited = False
         self.trouble = ""
         """Why there is no site of this map, in words; empty while one may still come."""
 
@@ -106,9 +112,9 @@ class MissionSite:
 
     @property
     def is_changing(self) -> bool:
-        """Whether another site is being made than the one that there is."""
+        """Whether another site is being made than the one that there is, but for more map."""
         with self._lock:
-            return self._wanted != self._tried
+            return self._wanted != self._tried and self._is_edited
 
     def take(self) -> KnownHome | None:
         """Return a site that was made since the last call."""
@@ -127,8 +133,9 @@ class MissionSite:
             if is_first and (is_late or not waits):
                 self._make()
 
-    def _make(self) -> None:
+    def _make(self, *, is_edited: bool = True) -> None:
         """Let a site be made of what is known now; hold the lock."""
+        self._is_edited = is_edited or (self._is_edited and self._wanted != self._tried)
         self._wanted += 1
         self._background.do("no site for the mission", self._make_now)
 
@@ -136,6 +143,7 @@ class MissionSite:
         with self._lock:
             wanted, occupancy, station = self._wanted, self._map, self._station
             message, zones, field = self._rooms_message, self._zones, self._field
+            digest = self._digest
         made, trouble = None, ""
         began = time.monotonic()
         try:
@@ -152,8 +160,12 @@ class MissionSite:
                     self._docking,
                     _rooms(message, occupancy),
                     zones,
+                    is_growing=digest == GROWING,
                 )
-                made = KnownHome(site, field, self._digest)
+                if not site.is_growing:
+                    # It takes a while, and the mission shall not wait for it.
+                    _ = site.coverage
+                made = KnownHome(site, field, digest)
         except (RoombaError, ValueError, MemoryError) as error:
             trouble = f"nothing can be cleaned in this map: {error}"
             rospy.logwarn(trouble)
@@ -171,19 +183,23 @@ class MissionSite:
         except ValueError as error:
             rospy.logwarn("map refused: %s", error)
             return
-        digest = map_digest(occupancy)
+        # A map that is being made was never loaded.
+        is_growing = message.info.map_load_time.is_zero()
+        digest = GROWING if is_growing else map_digest(occupancy)
         with self._lock:
-            if digest == self._digest:
+            if digest == self._digest and not is_growing:
                 return
+            before, self._digest = self._digest, digest
             is_first = self._map is None
-            self._map, self._digest, self._field = occupancy, digest, None
+            self._map, self._field = occupancy, None
             self._map_came = time.monotonic()
-            self._zones = self._kept(occupancy)
-            self._tell()
+            if not (is_growing and before == GROWING):
+                self._zones = self._kept_or_carried(occupancy, before)
+                self._tell()
             if not is_first:
                 # Rooms of this map are told after it.
                 self._rooms_message = None
-                self._make()
+                self._make(is_edited=not is_growing)
 
     def _on_rooms(self, message: RoomArray) -> None:
         with self._lock:
@@ -204,6 +220,17 @@ class MissionSite:
             is_new, self._station = station != self._station, station
             if is_new and self._wanted > 0:
                 self._make()
+
+    def _kept_or_carried(self, occupancy: OccupancyMap, before: str) -> Zones | None:
+        """Return the zones of a map; those of a map that was made go on in the whole one."""
+        kept, zones = self._kept(occupancy), self._zones
+        if before != GROWING or zones is None or not zones.all or kept is None or kept.all:
+            return kept
+        try:
+            save_zones(zones, occupancy, self._path())
+        except OSError as error:
+            rospy.logerr("the zones cannot be saved: %s", error)
+        return zones
 
     def _kept(self, occupancy: OccupancyMap) -> Zones | None:
         """Return the zones of a map; None when they cannot be read: then nothing is cleaned."""

@@ -17,6 +17,7 @@ from roomba.config import (
     parse_seed_parameters,
 )
 from roomba.errors import ConfigError
+from roomba.perception.slam.mapping_config import MappingConfig, load_mapping_config
 
 _LOOK_PERIOD = 0.5
 """s of wall time between two looks for what may have been set newly."""
@@ -38,6 +39,13 @@ def read_robot_config() -> RobotConfig:
     key = rospy.search_param("robot_config")
     path = rospy.get_param(key) if key else package_folder() / "config" / "robot.yaml"
     return load_robot_config(Path(path))
+
+
+def read_mapping_config() -> MappingConfig:
+    """Return the configuration named by the parameter ``mapping_config``, or the shipped one."""
+    key = rospy.search_param("mapping_config")
+    path = rospy.get_param(key) if key else package_folder() / "config" / "mapping.yaml"
+    return load_mapping_config(Path(path))
 
 
 def package_folder() -> Path:

@@ -12,6 +12,7 @@ from tf2_msgs.msg import TFMessage
 from roomba.geometry import Pose
 from roomba.perception.estimate import Estimate, Knowledge
 from roomba.perception.localizer import Localizer
+from roomba.perception.slam.mapper import Mapper
 from roomba_ros.convert import pose_message, transform_message
 from roomba_ros.convert_localization import (
     covariance_pose_message,
@@ -50,7 +51,9 @@ class PlaceTopics:
         self._cloud = rospy.Publisher("particlecloud", PoseArray, queue_size=1)
         self._transforms = rospy.Publisher("/tf", TFMessage, queue_size=10)
 
-    def tell(self, now: float, stamp: float, localizer: Localizer, estimate: Estimate) -> None:
+    def tell(
+        self, now: float, stamp: float, localizer: Localizer | Mapper, estimate: Estimate
+    ) -> None:
         """Publish what is due at a tick; ``stamp`` is that of the newest odometry, s.
 
         Poses have that stamp: they follow from it, and others can compare them.

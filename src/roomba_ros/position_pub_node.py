@@ -18,6 +18,7 @@ from roomba.mission.look_around import Search
 from roomba.perception.estimate import Estimate, Knowledge
 from roomba_ros.convert import cliff_of, twist_message
 from roomba_ros.localization_topics import LocalizationTopics
+from roomba_ros.map_topics import MapTopics
 from roomba_ros.node import run_node
 from roomba_ros.parameters import LiveSeedParameters, read_robot_config
 from roomba_ros.room_topics import RoomTopics
@@ -68,6 +69,8 @@ class PositionPubNode:
         self._place.start()
         self._rooms = RoomTopics()
         self._rooms.start()
+        self._maps = MapTopics(self._config, self._place, self._rooms)
+        self._maps.start()
         self._command = rospy.Publisher("cmd_vel", TwistMessage, queue_size=1, tcp_nodelay=True)
         self._wishes = rospy.Subscriber(
             "change_position", RobotPosition, self._on_wish, queue_size=1, tcp_nodelay=True
@@ -85,6 +88,7 @@ class PositionPubNode:
         estimate = self._place.tick(now)
         if estimate is None:
             return
+        self._maps.tick(now, estimate)
         self._drop_vanished_wish(now)
         if not estimate.knowledge.is_usable:
             self._forget_wish()

@@ -53,7 +53,7 @@ class RoomTopics:
     def start(self) -> None:
         """Connect."""
         folder = str(rospy.get_param("~rooms_folder", ""))
-        self._folder = Path(folder or Path(rospkg.get_ros_home()) / "roomba_robot" / "rooms")
+        self.folder = Path(folder or Path(rospkg.get_ros_home()) / "roomba_robot" / "rooms")
         self._publisher = rospy.Publisher("rooms", RoomArray, queue_size=1, latch=True)
         self._markers = rospy.Publisher("rooms/markers", MarkerArray, queue_size=1, latch=True)
         rospy.Service("rooms/rename", RenameRoom, self._on_rename)
@@ -63,6 +63,10 @@ class RoomTopics:
         rospy.Subscriber("map", OccupancyGrid, self._on_map, queue_size=1)
 
     def _on_map(self, message: OccupancyGrid) -> None:
+        if message.info.map_load_time.is_zero():
+            # It is being made: its rooms are found when it is whole.
+            self._publisher.publish(RoomArray())
+            return
         # Cut here and not by a tick: nothing waits for rooms, and the robot's place does not.
         try:
             occupancy = map_of(message)
@@ -74,6 +78,21 @@ class RoomTopics:
             if self._rooms is None:
                 self._rooms = _segmented(occupancy)
             self._tell(self._rooms)
+
+    @property
+    def rooms(self) -> Rooms | None:
+        """The rooms as they are now."""
+        with self._lock:
+            return self._rooms
+
+    def use(self, rooms: Rooms) -> None:
+        """Go on with these rooms of the map that there is, and save them; raises OSError."""
+        with self._lock:
+            if self._map is None or rooms.frame != self._map.frame:
+                return
+            save_rooms(rooms, self._map, self._path(self._map))
+            self._rooms = rooms
+            self._tell(rooms)
 
     def _kept(self, occupancy: OccupancyMap) -> Rooms | None:
         """Return the rooms that people made of this map, or None."""
@@ -87,7 +106,7 @@ class RoomTopics:
             return None
 
     def _path(self, occupancy: OccupancyMap) -> Path:
-        return self._folder / f"{map_digest(occupancy)[:16]}.yaml"
+        return self.folder / f"{map_digest(occupancy)[:16]}.yaml"
 
     def _tell(self, rooms: Rooms) -> None:
         now = rospy.get_time()

@@ -55,6 +55,17 @@ class Exploration:
         self.unseen: list[Point] = []
         self.times_stuck = 0
 
+    def values(self) -> list[list[float]]:
+        """Return what must be remembered to go on, as plain values."""
+        return [[x, y] for x, y in self.unseen]
+
+    @staticmethod
+    def of(values: list[list[float]]) -> Exploration:
+        """Return an exploration that goes on; raises ValueError or TypeError for other values."""
+        exploration = Exploration()
+        exploration.unseen = [(float(x), float(y)) for x, y in values]
+        return exploration
+
     def next_path(
         self, here: Pose, site: Site, obstacles: list[RoundObstacle]
     ) -> NDArray[np.float64] | None:

@@ -7,8 +7,8 @@ with the twist it wants. :mod:`.machine` says what comes after what; :mod:`.clea
 
 from __future__ import annotations
 
-import contextlib
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Final
 
@@ -43,7 +43,6 @@ from roomba.mission_config import MissionConfig
 from roomba.perception.dirt_map import DirtMap
 from roomba.perception.estimate import Knowledge
 from roomba.perception.things import ThingLayer
-from roomba.planning.costmap import Point, RoundObstacle
 from roomba.planning.path import NoPathError
 
 _LONGEST_TICK: Final = 2.0
@@ -54,6 +53,10 @@ _CARRIED: Final = 1.0
 """m; farther from where it last knew its place it did not drive itself while it looked around."""
 _MOST_WAYS_HOME: Final = 5
 """So often it looks for a way home before it says that there is none."""
+_WAIT: Final = 30.0
+"""s; so long it waits, where no way leads home, before it looks for one again."""
+_MOST_WAITS: Final = 40
+"""Twenty minutes."""
 _NEAR_STAGING: Final = 0.08
 """m; so near to the place before the station docking takes over."""
 
@@ -108,6 +111,7 @@ class Mission:
         self._last = senses
         self._started = senses.now
         self._dock_retries = 0
+        self._waits_since = -math.inf
 
     # ---------------------------------------------------------------- commands
 
@@ -135,7 +139,8 @@ class Mission:
         self._require_charge(senses)
         self._end_errand(CleanOutcome.STOPPED, "it was told to explore", senses)
         self._forget_errand()
-        self.exploration, self._outcome, self._is_told = Exploration(), None, False
+        self.exploration, self._explored = Exploration(), None
+        self._outcome, self._is_told = None, False
         self.book.begin(senses)
         self._started = senses.now
         self.obstacles.forget()
@@ -171,13 +176,24 @@ class Mission:
             )
 
     def use_site(self, site: Site) -> None:
-        """Go on with other zones or rooms, or a map that has grown, from the next tick on."""
+        """Go on with other zones or rooms, from the next tick on."""
         self.site = site
         self._rejoin = Rejoin(site, self._robot.body.radius, self._config.driving)
         if not self._goes_on_exploring():
             self._drop_driver()
         if self.cleaning is not None:
             self.cleaning.use_site(site)
+
+    def use_map(self, site: Site, things: ThingLayer, dirt: DirtMap) -> None:
+        """Go on with a map of the same frame that has grown; not while it cleans.
+
+        ``things`` and ``dirt`` are those of that map. Raises ValueError while it cleans.
+        """
+        if self.cleaning is not None:
+            raise ValueError("expected no clean under way: its floor is counted on the map it has")
+        self.obstacles.use(things)
+        self.dirt = dirt
+        self.use_site(site)
 
     def wants_map(self, occupancy: OccupancyMap) -> bool:
         """Whether a map that has grown to this makes a difference to what it does."""
@@ -216,6 +232,7 @@ class Mission:
             "message": self.message,
             "outcome": None if self._outcome is None else self._outcome.name,
             "cleaning": None if self.cleaning is None else self.cleaning.values(),
+            "exploration": None if self.exploration is None else self.exploration.values(),
             "book": [self.book.distance, self.book.energy, self.book.dirt],
             "duration": senses.now - self._started,
         }
@@ -240,6 +257,10 @@ class Mission:
                 cleaning.restore(values["cleaning"])
             elif errand is Errand.CLEAN:
                 raise CheckpointError("expected the clean that it was on, got none")
+            unseen = values.get("exploration")
+            exploration = None if unseen is None else Exploration.of(unseen)
+            if errand is Errand.EXPLORE and exploration is None:
+                raise CheckpointError("expected the exploration that it was on, got none")
             outcome = values["outcome"]
             self._outcome = None if outcome is None else CleanOutcome[outcome]
             distance, energy, dirt = (float(value) for value in values["book"])
@@ -253,6 +274,7 @@ class Mission:
         except RoombaError as error:
             raise CheckpointError(f"expected a checkpoint of this map: {error!r}") from error
         self.cleaning, self.message, self._is_told = cleaning, message, False
+        self.exploration = exploration
         self.book.begin(senses)
         self.book.distance, self.book.energy, self.book.dirt = distance, energy, dirt
         self._last = senses
@@ -413,16 +435,24 @@ class Mission:
         if self.book.must_go_home(senses, self._way_home):
             self._go(Event.LOW, senses)
             return MissionStep()
+        if self._is_waiting(senses):
+            return MissionStep()
         if self.driver is None and not self._leave_zone(senses):
             obstacles = self.obstacles.standing(senses.now)
-            points = self.cleaning.next_path(senses.pose, obstacles)
+            try:
+                points = self.cleaning.next_path(senses.pose, obstacles)
+            except NoPathError:
+                points = self._rejoin.way_out(senses, self.obstacles, self.trail)
+                if points is None:
+                    self._wait("no way leads out of where it is", senses)
+                    return MissionStep()
             if points is None:
-                if self.cleaning.wants_another_look():
+                if self.cleaning.wants_another_look(self.obstacles.edges()):
                     self.obstacles.forget()
                 else:
                     self._go(Event.FINISHED, senses)
                 return MissionStep()
-            self.driver = self._drive(points, senses)
+            self.driver = self._drive(points, senses, self.cleaning.plans_anew)
         assert self.driver is not None
         step = self.driver.tick(senses, self.speed_limit(senses))
         if step.state is DriveState.STUCK:
@@ -430,7 +460,6 @@ class Mission:
         elif step.state.is_over:
             if step.state is DriveState.CUT_OFF:
                 self.cleaning.cut_off()
-                self.obstacles.forget_felt()
             self.driver = None
         return MissionStep(step.twist)
 
@@ -465,9 +494,11 @@ class Mission:
         if senses.pose.distance_to(staging.x, staging.y) < _NEAR_STAGING:
             self._go(Event.ARRIVED, senses)
             return MissionStep()
+        if self._is_waiting(senses):
+            return MissionStep()
         if self.driver is None and not self._leave_zone(senses):
             try:
-                points = self._plan_home(senses)
+                points = self._rejoin.way_home(senses, self.obstacles, self.trail)
             except NoPathError as error:
                 self._try_home_again(f"no way home: {error}", senses)
                 return MissionStep()
@@ -495,37 +526,24 @@ class Mission:
         self.driver = self._drive(points, senses)
         return True
 
-    def _plan_home(self, senses: Senses) -> NDArray[np.float64]:
-        """Plan to the place before the station, if need be closely by what stands in the way."""
-        here = (senses.pose.x, senses.pose.y)
-        staging = (self.site.staging.x, self.site.staging.y)
-        try:
-            standing = self.obstacles.standing(senses.now)
-            return self.site.paths.plan(here, staging, standing).points
-        except NoPathError as error:
-            at_least = self.obstacles.at_least(senses.now)
-            with contextlib.suppress(NoPathError):
-                return self.site.squeeze(here, staging, at_least)
-            points, _ = self.trail.back_and_on(lambda place: self._way_to(place, staging, at_least))
-            if points is None:
-                raise error
-            return points
-
-    def _way_to(
-        self, here: Point, there: Point, obstacles: list[RoundObstacle]
-    ) -> NDArray[np.float64] | None:
-        try:
-            return self.site.paths.plan(here, there, obstacles).points
-        except NoPathError:
-            return None
-
     def _try_home_again(self, reason: str, senses: Senses) -> None:
-        """Once more without what was remembered; then it says that there is no way."""
+        """Once more without what was remembered; a door may open; then it says there is no way."""
         self._dock_retries += 1
-        if self._dock_retries > _MOST_WAYS_HOME:
+        if self._dock_retries > _MOST_WAYS_HOME + _MOST_WAITS:
             self._fail(CleanOutcome.NOT_DOCKED, reason, senses)
             return
+        if self._dock_retries > _MOST_WAYS_HOME:
+            self._wait(reason, senses)
         self.obstacles.forget()
+
+    def _wait(self, reason: str, senses: Senses) -> None:
+        """Stand for a while, and then look anew: a door that is shut is opened again."""
+        self.message = f"{reason}; it waits for a way to open"
+        self._waits_since = senses.now
+        self.obstacles.forget()
+
+    def _is_waiting(self, senses: Senses) -> bool:
+        return 0.0 <= senses.now - self._waits_since < _WAIT
 
     def _dock(self, senses: Senses) -> MissionStep:
         if self._docking is None:
@@ -626,7 +644,13 @@ class Mission:
 
     # ---------------------------------------------------------------- parts
 
-    def _drive(self, points: NDArray[np.float64], senses: Senses) -> PathDriver:
+    def _drive(
+        self,
+        points: NDArray[np.float64],
+        senses: Senses,
+        plans_anew: Callable[[float, float], bool] = lambda now, left: False,
+    ) -> PathDriver:
+        self.message = ""
         return PathDriver(
             points,
             self._rejoin,
@@ -636,6 +660,7 @@ class Mission:
             self._robot.tracking,
             self._robot.body,
             senses,
+            plans_anew,
         )
 
     def _dock_senses(self, senses: Senses) -> DockSenses:
@@ -676,12 +701,12 @@ def _taken_up(state: MissionState, is_docked: bool) -> MissionState:
     """Return the state in which a restored mission goes on, wherever the robot stands now."""
     if state.phase is Phase.CHARGING and not is_docked:
         return MissionState(Phase.RETURNING, state.errand)
-    if state.resumes is Phase.CLEANING:
+    if state.resumes in (Phase.CLEANING, Phase.EXPLORING):
         # Should it stand on the station by now, it has to come out first.
         return replace(state, resumes=Phase.UNDOCKING)
     if not state.drives:
         return state
-    if state.errand is Errand.CLEAN:
+    if state.errand in (Errand.CLEAN, Errand.EXPLORE):
         if is_docked and state.phase in (Phase.RETURNING, Phase.DOCKING):
             return MissionState(Phase.CHARGING, state.errand)
         return MissionState(Phase.UNDOCKING, state.errand)

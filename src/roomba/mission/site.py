@@ -53,7 +53,7 @@ class Site:
         self.reach = radius + driving.clearance
         self.tool_width = robot.brush.width
         self.plans, self.planning_time = 0, 0.0
-        self.body_radius = radius
+        self.body_radius, self.is_growing = radius, is_growing
         # Paths may come as near to walls as swaths do, so that they can join them.
         self._clearance, self._least = driving.way_clearance, 0.5 * driving.clearance
         if is_growing:

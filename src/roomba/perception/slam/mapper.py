@@ -115,6 +115,11 @@ class Mapper:
         return self.pose.compose(self._reckoning.odometry.inverse())
 
     @property
+    def hypotheses(self) -> list[Pose]:
+        """Where the robot may be: it knows of no other place than the one where it came along."""
+        return [self.pose]
+
+    @property
     def trajectory(self) -> Floats:
         """Where keyframes were taken, float64 [n, 3], map frame, in the order of time."""
         poses = zip(self._submaps, self._poses, strict=True)

@@ -1,0 +1,138 @@
+"""A floor that was mapped again: its rooms keep their names, and its zones stay where they are."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.perception.rooms import Rooms
+from roomba.perception.zones import Zones
+
+_LEAST_SHARE: Final = 0.5
+"""Of the smaller of two rooms: who shares less with another one is not the same room."""
+
+Overlaps = NDArray[np.float64]
+"""[new rooms, old rooms]: how much of the floor they share, m2; 0 where too little."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CarriedOver:
+    """What a map that was made anew takes over; ``lost`` are names whose rooms are no more."""
+
+    rooms: Rooms
+    zones: Zones
+    lost: tuple[str, ...]
+
+
+def carry_over(new: Rooms, old: Rooms | None, zones: Zones) -> CarriedOver:
+    """Return ``new`` rooms with the names of the ``old`` ones that they overlap most, and zones.
+
+    Both are of the same frame (the station's), on grids of their own, which may lie a few cm apart.
+    Names go one to one, so that rooms share as much floor with their namesakes as can be; a room
+    that is new keeps "Room n", or gets one that is not taken. Zones are places: they stay.
+    """
+    if old is None:
+        return CarriedOver(new, zones, ())
+    partners = _best_partners(_overlaps(new, old))
+    names = tuple(_names(new.names, old.names, partners))
+    lost = tuple(name for label, name in enumerate(old.names) if label not in partners)
+    return CarriedOver(replace(new, names=names), zones, lost)
+
+
+def _overlaps(new: Rooms, old: Rooms) -> Overlaps:
+    """Return the floor that rooms share, as far as they share enough to be the same."""
+    there = _sampled(old, new)
+    shape = len(new.names) + 1, len(old.names) + 1
+    pairs = new.labels.astype(np.int64) * shape[1] + there
+    counts = np.bincount(pairs.ravel(), minlength=shape[0] * shape[1]).reshape(shape)
+    shared = counts[1:, 1:] * new.frame.resolution**2
+    of_new = np.bincount(new.labels.ravel(), minlength=shape[0])[1:] * new.frame.resolution**2
+    of_old = np.bincount(old.labels.ravel(), minlength=shape[1])[1:] * old.frame.resolution**2
+    enough = _LEAST_SHARE * np.minimum(of_new[:, None], of_old[None, :])
+    return np.where(shared >= enough, shared, 0.0)
+
+
+def _sampled(old: Rooms, new: Rooms) -> NDArray[np.int64]:
+    """Return the old label at the middle of each of the new cells, int64 [rows, columns]."""
+    rows = _cells(new.frame.origin_y, new.frame.rows, new, old.frame.origin_y, old)
+    columns = _cells(new.frame.origin_x, new.frame.columns, new, old.frame.origin_x, old)
+    inside = (rows >= 0) & (rows < old.frame.rows)
+    across = (columns >= 0) & (columns < old.frame.columns)
+    there = np.zeros(new.frame.shape, np.int64)
+    there[np.ix_(inside, across)] = old.labels[np.ix_(rows[inside], columns[across])]
+    return there
+
+
+def _cells(begin: float, count: int, new: Rooms, origin: float, old: Rooms) -> NDArray[np.int64]:
+    """Return the old row, or column, in which the middle of each new one lies."""
+    middles = begin + (np.arange(count) + 0.5) * new.frame.resolution
+    cells: NDArray[np.int64] = np.floor((middles - origin) / old.frame.resolution).astype(np.int64)
+    return cells
+
+
+def _best_partners(shared: Overlaps) -> list[int | None]:
+    """Return for each new room its old one: the pairing, one to one, that shares most floor.
+
+    It grows by one pair at a time, along the way of changes that gains most, until none does
+    (successive augmenting paths: Ahuja, Magnanti and Orlin, "Network Flows", 12.4).
+    """
+    partners: list[int | None] = [None] * shared.shape[0]
+    while True:
+        way = _best_way(shared, partners)
+        if way is None:
+            return partners
+        for new, old in way:
+            partners[new] = old
+
+
+def _best_way(shared: Overlaps, partners: list[int | None]) -> list[tuple[int, int]] | None:
+    """Return the pairs to make, that of the first new one last, so that most is gained."""
+    count_new, count_old = shared.shape
+    owner = {old: new for new, old in enumerate(partners) if old is not None}
+    # What is gained at most when a new room loses its partner, and the pair that comes of it.
+    gain = [0.0 if partner is None else -np.inf for partner in partners]
+    before: list[tuple[int, int] | None] = [None] * count_new
+    for _ in range(count_new):
+        for new, old in itertools.product(range(count_new), range(count_old)):
+            if shared[new, old] <= 0.0 or old not in owner or owner[old] == new:
+                continue
+            freed = owner[old]
+            through = gain[new] + shared[new, old] - shared[freed, old]
+            if through > gain[freed] + 1e-12:
+                gain[freed], before[freed] = through, (new, old)
+    best, end = 1e-12, None
+    for new, old in itertools.product(range(count_new), range(count_old)):
+        if shared[new, old] > 0.0 and old not in owner and gain[new] + shared[new, old] > best:
+            best, end = gain[new] + shared[new, old], (new, old)
+    if end is None:
+        return None
+    way = [end]
+    while (previous := before[way[-1][0]]) is not None:
+        way.append(previous)
+    return way
+
+
+def _names(new: tuple[str, ...], old: tuple[str, ...], partners: list[int | None]) -> Iterator[str]:
+    """Yield a name for each new room: its partner's, else its own, else a number that is free."""
+    taken = {old[partner] for partner in partners if partner is not None}
+    kept = {
+        name
+        for name, partner in zip(new, partners, strict=True)
+        if partner is None and name not in taken
+    }
+    taken |= kept
+    for name, partner in zip(new, partners, strict=True):
+        if partner is not None:
+            yield old[partner]
+        elif name in kept:
+            yield name
+        else:
+            tries = (f"Room {number}" for number in itertools.count(1))
+            free = next(each for each in tries if each not in taken)
+            taken.add(free)
+            yield free

@@ -1,0 +1,76 @@
+"""Compiled bookkeeping of what scans say of the cells of a map: counts of a look, and scores."""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from roomba.perception.slam.drawing_kernels import Sheet, draw
+from roomba.perception.slam.surface_kernels import NORMAL_X, NORMAL_Y, X, Y
+
+Floats = NDArray[np.float64]
+
+MOST: Final = 5
+"""A score becomes no more: what changes is noticed soon, however long it was otherwise."""
+NO_BOUNDS: Final = np.array([2**40, -1, 2**40, -1])
+"""First and last row and column with counts, while there are none."""
+_LEAST: Final = 2
+"""Beams in a cell; fewer say nothing."""
+_SOLID_SHARE: Final = 0.25
+"""Of a cell's beams that end there: the noise of ranges and poses lets many end in the next one."""
+_OPEN_SHARE: Final = 0.1
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def count_scan(
+    sheet: Sheet,
+    ranges: NDArray[np.float32],
+    directions: Floats,
+    mount: Floats,
+    nearest: float,
+    farthest: float,
+    pose: Floats,
+    points: NDArray[np.float32],
+) -> None:
+    """Count where the beams of a scan, seen from ``pose`` [3], ended, and what they passed.
+
+    ``ranges`` is float32 [beams], m, of which those from ``nearest`` to ``farthest`` count;
+    ``directions`` [beams, 2], cosine and sine in the lidar's frame; ``mount`` [3] the lidar's place
+    in the robot's frame. It works in ``points`` [beams, 4].
+    """
+    turn_cosine, turn_sine = math.cos(mount[2]), math.sin(mount[2])
+    count = 0
+    for beam in range(ranges.size):
+        length = ranges[beam]
+        if not nearest <= length <= farthest:
+            continue
+        cosine, sine = directions[beam, 0], directions[beam, 1]
+        points[count, X] = mount[0] + length * (turn_cosine * cosine - turn_sine * sine)
+        points[count, Y] = mount[1] + length * (turn_sine * cosine + turn_cosine * sine)
+        # Which way surfaces face would place them better by half a cell, for as much time again.
+        points[count, NORMAL_X], points[count, NORMAL_Y] = 0.0, 0.0
+        count += 1
+    draw(sheet, points[:count], mount[:2], pose)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def score_look(sheet: Sheet, scores: NDArray[np.int8]) -> None:
+    """Add the counts of a look to the scores, int8 [rows, columns], and begin a new one.
+
+    A cell where enough beams ended gets 1 more, one that nearly all passed 1 less.
+    """
+    for row in range(sheet.bounds[0], sheet.bounds[1] + 1):
+        for column in range(sheet.bounds[2], sheet.bounds[3] + 1):
+            ended, through = int(sheet.hits[row, column]), int(sheet.passes[row, column])
+            sheet.hits[row, column] = sheet.passes[row, column] = 0
+            if ended + through < _LEAST:
+                continue
+            if ended >= _LEAST and ended >= _SOLID_SHARE * (ended + through):
+                scores[row, column] = min(scores[row, column] + 1, MOST)
+            elif ended < _OPEN_SHARE * (ended + through):
+                scores[row, column] = max(scores[row, column] - 1, -MOST)
+    sheet.bounds[:] = NO_BOUNDS
