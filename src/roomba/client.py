@@ -219,6 +219,36 @@ class Docking(Protocol):
 
 
 @dataclass(frozen=True, slots=True)
+class ExploreReport:
+    """The end of an exploration: ``known`` m2 of floor, m, s of the robot's clock.
+
+    What is not known, as after LOST, is not a number.
+    """
+
+    outcome: ErrandOutcome
+    message: str
+    known: float
+    distance: float
+    duration: float
+
+
+class Exploring(Protocol):
+    """An exploration under way. It goes on when nobody follows it."""
+
+    def next_feedback(self, timeout: float) -> float | None:
+        """Wait up to ``timeout`` s of wall time for how much floor is known, m2.
+
+        Returns None without news, and at once at its end.
+        """
+
+    def report(self) -> ExploreReport | None:
+        """Return the end of it, or None while it lasts."""
+
+    def cancel(self) -> None:
+        """Ask the robot to stop and stay, without waiting; the report follows."""
+
+
+@dataclass(frozen=True, slots=True)
 class VacuumSnapshot:
     """What the robot does, in the words of smart homes, and how far it is.
 
@@ -288,6 +318,12 @@ class RobotClient(Protocol):
 
     def undock(self) -> Docking:
         """Start backing out of the charging station; raises RobotUnavailableError."""
+
+    def explore(self) -> Exploring:
+        """Start looking at what the robot's own map does not show yet; then it goes home.
+
+        Raises RobotUnavailableError.
+        """
 
     def pause(self) -> None:
         """Let the robot stand until it is told to go on; RequestRefusedError with the reason."""

@@ -7,13 +7,24 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from roomba.client import CleanProgress, CleanReport, DockReport, ErrandOutcome, MissedFloor
+from roomba.client import (
+    CleanProgress,
+    CleanReport,
+    DockReport,
+    ErrandOutcome,
+    ExploreReport,
+    MissedFloor,
+)
 
 if TYPE_CHECKING:
     from roomba.fake_client import Clock
 
 CLEANING_RATE = 0.5
 """m2/s."""
+EXPLORING_RATE = 2.0
+"""m2/s."""
+EXPLORING_TIME = 20.0
+"""s until all is known."""
 HOMING_TIME = 4.0
 """s to the station."""
 FEEDBACK_PERIOD = 1.0
@@ -230,6 +241,27 @@ class FakeClean(FakeErrand):
             energy=0.01 * self.worked if is_known else math.nan,
             missed=self._script.missed,
         )
+
+
+class FakeExploring(FakeErrand):
+    """A :class:`roomba.client.Exploring`, which comes to know :data:`EXPLORING_RATE`."""
+
+    def next_feedback(self, timeout: float) -> float | None:
+        """Let time pass until the next feedback or the end, at most ``timeout`` s."""
+        return self._known if self.waits_for_news(timeout) else None
+
+    def report(self) -> ExploreReport | None:
+        """Return the scripted end once its time has come."""
+        outcome = self.ending
+        if outcome is None:
+            return None
+        is_known = outcome is not ErrandOutcome.LOST
+        way = 0.25 * self.worked if is_known else math.nan
+        return ExploreReport(outcome, self.reason, self._known, way, self.elapsed)
+
+    @property
+    def _known(self) -> float:
+        return EXPLORING_RATE * self.worked
 
 
 class FakeDocking(FakeErrand):

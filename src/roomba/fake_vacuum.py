@@ -13,7 +13,14 @@ from roomba.client import (
     RobotUnavailableError,
     VacuumSnapshot,
 )
-from roomba.fake_errands import HOMING_TIME, ErrandScript, FakeClean, FakeDocking
+from roomba.fake_errands import (
+    EXPLORING_TIME,
+    HOMING_TIME,
+    ErrandScript,
+    FakeClean,
+    FakeDocking,
+    FakeExploring,
+)
 
 if TYPE_CHECKING:
     from roomba.fake_client import Clock
@@ -24,7 +31,7 @@ SPOT_AREA = 2.25
 UNDOCKING_TIME = 2.0
 """s out of the station."""
 
-_Errand = TypeVar("_Errand", FakeClean, FakeDocking)
+_Errand = TypeVar("_Errand", FakeClean, FakeDocking, FakeExploring)
 
 
 class FakeVacuum:
@@ -49,7 +56,7 @@ class FakeVacuum:
         self._room_names = tuple(room_names)
         self._scripts = list(errands)
         self._battery = battery
-        self._errand: FakeClean | FakeDocking | None = None
+        self._errand: FakeClean | FakeDocking | FakeExploring | None = None
         self._is_docked = True
 
     def clean(
@@ -84,6 +91,12 @@ class FakeVacuum:
     def undock(self) -> FakeDocking:
         """Start backing out of the station."""
         return self._move("undocking", UNDOCKING_TIME, is_done=not self._stands_docked)
+
+    def explore(self) -> FakeExploring:
+        """Start exploring by the next script; what was under way ends."""
+        script = self._next_script()
+        exploring = FakeExploring(script, self.clock, 0.0, EXPLORING_TIME, "exploring")
+        return self._begin(exploring, script)
 
     def pause(self) -> None:
         """Stand until it is told to go on."""
@@ -140,9 +153,11 @@ class FakeVacuum:
             return self._is_docked
         if not self._errand.is_fulfilled:
             return False
-        return isinstance(self._errand, FakeClean) or self._errand.phase == "returning"
+        return (
+            isinstance(self._errand, FakeClean | FakeExploring) or self._errand.phase == "returning"
+        )
 
-    def _answering_errand(self) -> FakeClean | FakeDocking | None:
+    def _answering_errand(self) -> FakeClean | FakeDocking | FakeExploring | None:
         self._require_answers(5.0)
         errand = self._errand
         return None if errand is None or errand.is_over else errand

@@ -8,7 +8,8 @@ import sys
 import rospy
 
 from roomba.errors import RoombaError
-from roomba.ui.cleaning import CLEANING, CLEANING_HEADING
+from roomba.ui.cleaning import CLEANING_HEADING
+from roomba.ui.exploring import TASKS
 from roomba.ui.menu import Menu
 from roomba_ros.node import leave, require_master, wait_for_clock
 from roomba_ros.ros_client import RosRobot
@@ -29,4 +30,4 @@ def main() -> None:
     except RoombaError as error:
         print(error, file=sys.stderr)
         sys.exit(1)
-    leave(Menu(robot, more=CLEANING, more_heading=CLEANING_HEADING).run())
+    leave(Menu(robot, more=TASKS, more_heading=CLEANING_HEADING).run())

@@ -96,6 +96,8 @@ class LocalizationTopics:
         self._hear_map(localizer)
         self._hear_odometry(localizer)
         localizer.lift(self._is_lifted)
+        if self.mapper is not None:
+            self.mapper.lift(self._is_lifted)
         self._hear_people(localizer)
         self._hear_scan(localizer)
         localizer.pass_time(now)
@@ -151,6 +153,8 @@ class LocalizationTopics:
             is_asked, self._is_asked = self._is_asked, False
         if told is not None:
             localizer.told(*told)
+            if self.mapper is not None and not self.is_mapping_held:
+                self.mapper.told(told[0])
         if is_asked:
             localizer.forget("it was asked to look for its place anew")
             self.is_asked_to_search = True

@@ -10,6 +10,7 @@ import rospy
 from roomba.config import RobotConfig
 from roomba.geometry import Pose
 from roomba.grid import FREE, OccupancyMap
+from roomba.perception.estimate import Knowledge
 from roomba.perception.slam.mapper import Mapper
 from roomba.perception.slam.mapping_config import MappingConfig
 from roomba_ros.background import Background
@@ -61,10 +62,15 @@ class MapMaker:
     def note_station(self, is_docked: bool) -> bool:
         """Remember where the station is while the robot stands on it; tell whether that is new."""
         mapper = self._mapper
-        if mapper is None or self.station is not None or not (is_docked and mapper.version):
+        if mapper is None or not (is_docked and mapper.version):
             return False
-        self.station = mapper.pose
-        return True
+        if self.station is None:
+            self.station = mapper.pose
+            return True
+        if mapper.estimate.knowledge is Knowledge.LOST and not self._finishes:
+            # Somebody carried it home.
+            mapper.told(self.station)
+        return False
 
     def grown(self, now: float) -> OccupancyMap | None:
         """Return the map as it is by now, if it is time to tell it."""
@@ -99,12 +105,6 @@ class MapMaker:
         self._place.mapper = self._mapper = None
         self._place.is_mapping_held = self._finishes = False
         return whole
-
-    @property
-    def is_lost(self) -> bool:
-        """Whether it makes a map and does not know where on it."""
-        mapper = self._mapper
-        return mapper is not None and not mapper.estimate.knowledge.is_usable
 
     def _finish(self, mapper: Mapper) -> None:
         try:

@@ -95,7 +95,7 @@ class MissionNode:
         self._orders.answer()
         self._act(mission, self._step(mission, senses))
         self._tell(now, mission, senses)
-        ended = self._orders.follow(mission)
+        ended = self._orders.follow(mission, senses)
         self._finish_map(ended)
         self._remember(mission, senses, has_learned=ended.clean is not None)
 

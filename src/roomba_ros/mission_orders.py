@@ -114,10 +114,10 @@ class MissionOrders:
         for tell in answers:
             tell()
 
-    def follow(self, mission: Mission) -> Ended:
+    def follow(self, mission: Mission, senses: Senses) -> Ended:
         """Tell the end of what ended; return the results of what did, ordered or not."""
         ended = Ended(mission.take_result(), mission.take_exploration())
-        if self._goal is not None and self._goal.follow(mission, ended):
+        if self._goal is not None and self._goal.follow(mission, senses, ended):
             self._goal = None
         return ended
 

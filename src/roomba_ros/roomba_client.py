@@ -13,6 +13,7 @@ from roomba.client import (
     CleanProgress,
     CleanReport,
     DockReport,
+    ExploreReport,
     FanLevel,
     RobotClient,
     RobotUnavailableError,
@@ -92,6 +93,13 @@ class RoombaClient:
             # whatever ends the waiting, the robot must not walk on unseen
             walk.cancel()
             raise
+
+    def explore(self, on_progress: Callable[[float], object] | None = None) -> ExploreReport:
+        """Look at what the robot's own map does not show yet, and go back to the station.
+
+        ``on_progress`` is told how much floor is known, m2.
+        """
+        return _wait(self.robot.explore(), on_progress)
 
     def dock(self) -> DockReport:
         """Go to the charging station, by its beams."""

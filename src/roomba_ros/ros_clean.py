@@ -15,6 +15,8 @@ from roomba_robot.msg import (
     CleanGoal,
     DockAction,
     DockGoal,
+    ExploreAction,
+    ExploreGoal,
     Rectangle,
     RoomArray,
     UndockAction,
@@ -27,13 +29,14 @@ from roomba.client import (
     Clean,
     CleanMode,
     Docking,
+    Exploring,
     FanLevel,
     RequestRefusedError,
     RobotUnavailableError,
     VacuumSnapshot,
 )
 from roomba_ros.calls import call_service
-from roomba_ros.ros_errands import RosClean, RosDocking, Server
+from roomba_ros.ros_errands import RosClean, RosDocking, RosExploring, Server
 
 OLDEST_VACUUM_STATE: Final = 6.0
 """s of wall time; it is told every second, but a long plan may hold it up for some."""
@@ -51,7 +54,8 @@ class RosVacuum:
     """The robot in this node's namespace, as a vacuum cleaner.
 
     Subscribes: ``vacuum/state``, ``rooms``, ``clean/{feedback,result,status}``, ``dock/…``,
-    ``undock/…``. Publishes: ``clean/{goal,cancel}``, ``dock/…``, ``undock/…``.
+    ``undock/…``, ``explore/…``. Publishes: ``clean/{goal,cancel}``, ``dock/…``, ``undock/…``,
+    ``explore/…``.
     Calls: ``pause``, ``resume``, ``stop``, ``locate``.
     """
 
@@ -67,6 +71,7 @@ class RosVacuum:
         self._cleans = Server("clean", CleanAction)
         self._docks = Server("dock", DockAction)
         self._undocks = Server("undock", UndockAction)
+        self._explores = Server("explore", ExploreAction)
         self._orders = {
             name: rospy.ServiceProxy(name, Trigger)
             for name in ("pause", "resume", "stop", "locate")
@@ -107,6 +112,10 @@ class RosVacuum:
     def undock(self) -> Docking:
         """Send the goal; raises RobotUnavailableError when no action server answers in time."""
         return RosDocking(self._undocks, UndockGoal())
+
+    def explore(self) -> Exploring:
+        """Send the goal; raises RobotUnavailableError when no action server answers in time."""
+        return RosExploring(self._explores, ExploreGoal())
 
     def pause(self) -> None:
         """Let it stand until it is told to go on."""

@@ -19,6 +19,7 @@ from roomba.client import (
     CleanReport,
     DockReport,
     ErrandOutcome,
+    ExploreReport,
     MissedFloor,
     RobotUnavailableError,
 )
@@ -212,6 +213,24 @@ class RosClean(_Errand[CleanProgress, CleanReport]):
                 for area in result.missed
             ),
         )
+
+
+class RosExploring(_Errand[float, ExploreReport]):
+    """An exploration under way."""
+
+    def _told(self, feedback: Any) -> float:
+        return float(feedback.known)
+
+    def _ended(self, outcome: ErrandOutcome, result: Any, message: str) -> ExploreReport:
+        if result is None:
+            known = math.nan if self._newest is None else self._newest
+            lasted = rospy.get_time() - self._started
+            return ExploreReport(outcome, message, known, math.nan, lasted)
+        if outcome is ErrandOutcome.FAULT:
+            outcome = OUTCOMES.get(result.outcome, ErrandOutcome.FAULT)
+        done = outcome is ErrandOutcome.COMPLETED
+        text = result.message or ("" if done else message)
+        return ExploreReport(outcome, text, result.known, result.distance, result.duration)
 
 
 class RosDocking(_Errand[str, DockReport]):

@@ -92,10 +92,10 @@ def dock(menu: Menu) -> None:
             menu.robot.dock(), show, wants_to_leave=menu.interrupts.noted, clock=menu.clock
         )
     if report is None:
-        _leave(menu)
+        leave_alone(menu)
         return
     end = _DOCK_ENDS.get(report.outcome, "The robot did not get onto its station")
-    _say_end(menu, end, report.outcome, report.message)
+    say_end(menu, end, report.outcome, report.message)
 
 
 def tell_state(menu: Menu) -> None:
@@ -151,16 +151,17 @@ def _follow_clean(menu: Menu, under_way: Clean) -> None:
             under_way, view.show, wants_to_leave=menu.interrupts.noted, clock=menu.clock
         )
     if report is None:
-        _leave(menu)
+        leave_alone(menu)
         return
-    _say_end(menu, _ENDS[report.outcome], report.outcome, report.message)
+    say_end(menu, _ENDS[report.outcome], report.outcome, report.message)
     if report.outcome is not ErrandOutcome.REFUSED:
         _tell_numbers(menu, report)
     if report.outcome is ErrandOutcome.LOST:
         menu.say(f"Press {menu.key_of(tell_state)} to see whether the robot goes on with it.")
 
 
-def _leave(menu: Menu) -> None:
+def leave_alone(menu: Menu) -> None:
+    """Tell what can be done while the robot goes on by itself."""
     pauses, stops, tells = (menu.key_of(act) for act in (pause_or_go_on, stop, tell_state))
     menu.say(
         f"The robot goes on by itself: press {pauses} to pause it, {stops} to stop it, {tells} to "
@@ -168,7 +169,8 @@ def _leave(menu: Menu) -> None:
     )
 
 
-def _say_end(menu: Menu, text: str, outcome: ErrandOutcome, message: str) -> None:
+def say_end(menu: Menu, text: str, outcome: ErrandOutcome, message: str) -> None:
+    """Tell how an errand ended, and why if it did not end well."""
     reason = " ".join(message.split())
     is_good = outcome in (ErrandOutcome.COMPLETED, ErrandOutcome.STOPPED)
     menu.say(f"{text}: {reason}" if reason else f"{text}.", style=None if is_good else "red")

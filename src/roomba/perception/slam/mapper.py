@@ -48,6 +48,13 @@ _REDRAWN_TURN: Final = 0.002
 _SURE: Final = np.diag([0.01**2, 0.01**2, 0.005**2])
 _UNSURE: Final = np.diag([0.1**2, 0.1**2, 0.05**2])
 """m2, rad2; of the pose against what was seen in the last metres."""
+_NOWHERE: Final = np.diag([100.0**2, 100.0**2, math.pi**2])
+_OF_PEOPLE: Final = np.diag([0.05**-2, 0.05**-2, 0.05**-2])
+"""1/m2, 1/rad2; of a link to where people say that the robot is."""
+_WAS_LIFTED: Final = (
+    "the robot was lifted while it made its map: put it on its station, or tell where it is (in "
+    "RViz: 2D Pose Estimate)"
+)
 _NO_MATCH: Final = "what is in sight does not fit what was seen just now; going by wheels and gyro"
 _REFINEMENTS: Final = 2
 """Times that all links are looked for anew when the map is finished."""
@@ -79,7 +86,7 @@ class Mapper:
         self._drawn = self._poses.copy()
         self.version = 0
         self.met = self.close = 0.0
-        self.is_sure = False
+        self.is_sure = self._is_lifted = self._is_lost = False
 
     def move(self, stamp: float, odometry: Pose, turning: float | None = None) -> None:
         """Take the wheels' odometry and the gyro's turning speed, rad/s, if there is one."""
@@ -88,13 +95,32 @@ class Mapper:
     def see(self, stamp: float, ranges: NDArray[np.float32], lidar: LidarModel) -> None:
         """Take a scan, float32 [beams], m; one of long ago is left out."""
         reckoned = self._reckoning.at(stamp)
-        if reckoned is None:
+        if reckoned is None or self._is_lifted or self._is_lost:
             return
         points = self._points_of(ranges, lidar)
         self._track(reckoned, points)
         if self._is_keyframe(len(points)):
             self._keep(points)
         self._at_scan = Pose(*self._placed(self._here).tolist())
+
+    def lift(self, is_lifted: bool) -> None:
+        """Tell whether the wheels hang in the air: set down elsewhere, it must be :meth:`told`."""
+        self._is_lost |= self._is_lifted and not is_lifted
+        self._is_lifted = is_lifted
+
+    def told(self, pose: Pose) -> None:
+        """Go on from where somebody says that the robot is, map frame, to within a few cm."""
+        self._is_lost = False
+        if not self.version:
+            return
+        self._close_submap()
+        self._last = self._reckoning.pose
+        here = _pose_row(pose)
+        away = np.hypot(*(self._poses[:, :2] - here[:2]).T)
+        parent = int(np.argmin(away))
+        relative = relative_to(self._poses[parent : parent + 1], here[None])[0]
+        self._links.append(Link(parent, len(self._submaps), relative, _OF_PEOPLE, False))
+        self._add_submap(here, np.flatnonzero(away < self._config.link_radius).tolist())
 
     @property
     def pose(self) -> Pose:
@@ -105,6 +131,8 @@ class Mapper:
     @property
     def estimate(self) -> Estimate:
         """What is known of where the robot is."""
+        if self._is_lifted or self._is_lost:
+            return Estimate(self.pose, _NOWHERE, Knowledge.LOST, 0.0, _WAS_LIFTED)
         if self.is_sure:
             return Estimate(self.pose, _SURE, Knowledge.KNOWN, self.met * self.close, "")
         return Estimate(self.pose, _UNSURE, Knowledge.ROUGH, self.met * self.close, _NO_MATCH)
@@ -207,17 +235,23 @@ class Mapper:
     def _begin_submap(self) -> None:
         """End the submap and begin one where the robot is; scans are matched to both."""
         self._close_submap()
-        relative, whole = self._here.copy(), self._submaps[-1]
-        self._links.append(self._driven(relative, self._way - whole.way))
-        self._poses = np.vstack((self._poses, self._placed(relative)))
-        self._drawn = np.vstack((self._drawn, self._poses[-1]))
-        self._submaps.append(Submap(self._way))
+        newest = len(self._submaps) - 1
+        self._links.append(self._driven(self._here, self._way - self._submaps[newest].way))
+        self._add_submap(self._placed(self._here), [newest])
+
+    def _add_submap(self, pose: Floats, beside: list[int]) -> None:
+        """Begin a submap at a pose of the map; scans are matched to those ``beside`` it, too."""
         self._surfels.clear()
-        back = _pose_row(Pose(*relative).inverse())
-        for frame in whole.keyframes:
-            pose = composed(back[None], frame.pose[None])[0]
-            self._surfels.add(np.asarray(frame.points, np.float64), pose)
+        for number in beside:
+            relative = relative_to(pose[None], self._poses[number : number + 1])[0]
+            for frame in self._submaps[number].keyframes:
+                seen_from = composed(relative[None], frame.pose[None])[0]
+                self._surfels.add(np.asarray(frame.points, np.float64), seen_from)
+        self._poses = np.vstack((self._poses, pose))
+        self._drawn = np.vstack((self._drawn, pose))
+        self._submaps.append(Submap(self._way))
         self._here = np.zeros(3)
+        self._at_scan = Pose(*pose.tolist())
 
     def _close_submap(self) -> None:
         """Link the newest submap to all that show the same walls, and draw what moved thereby."""
@@ -248,7 +282,8 @@ class Mapper:
             [numbers.way_noise, numbers.way_noise, numbers.turn_noise]
         ) * math.sqrt(max(way, 0.1))
         count = len(self._submaps)
-        return Link(count - 1, count, relative, np.diag(deviations**-2.0), may_be_wrong=False)
+        information = np.diag(deviations**-2.0)
+        return Link(count - 1, count, relative.copy(), information, may_be_wrong=False)
 
     # ---------------------------------------------------------------- drawing
 
