@@ -858,3 +858,30 @@ def test_how_long_it_still_takes_is_told() -> None:
     robot.run()
     assert 0.5 < told / (robot.seen.time - began) < 1.5
     assert robot.mission.seconds_to_go() == 0.0
+
+
+def test_shut_in_a_room_it_waits_for_the_door_and_goes_home() -> None:
+    robot = HeadlessMission(TWO_ROOMS, start=Pose(2.8, 1.2, 0.0))
+    shut_door(robot)
+    robot.mission.clean(CleanRequest(CleanMode.SPOT, spot=(2.9, 0.7)), robot.senses())
+    until(robot, lambda: "waits" in robot.mission.message, 900.0)
+    # Be it to clean on or to go home: it needs a way out for both.
+    assert robot.mission.state.phase in (Phase.CLEANING, Phase.RETURNING)
+    wait(robot, 120.0)
+    assert robot.mission.state.phase in (Phase.CLEANING, Phase.RETURNING)
+    assert robot.mission.take_result() is None
+    robot.simulator.remove_obstacles()
+    until(robot, in_phase(robot, Phase.DOCKED), 900.0)
+    result = robot.mission.take_result()
+    assert result is not None
+    assert result.outcome is CleanOutcome.COMPLETED
+    assert robot.mission.message == ""
+
+
+def test_shut_in_for_good_it_says_so_in_the_end() -> None:
+    robot = HeadlessMission(TWO_ROOMS, start=Pose(2.8, 1.2, 0.0))
+    shut_door(robot)
+    robot.mission.clean(CleanRequest(CleanMode.SPOT, spot=(2.9, 0.7)), robot.senses())
+    result = robot.run().result
+    assert result.outcome is CleanOutcome.NOT_DOCKED
+    assert "no way" in result.message

@@ -6,24 +6,25 @@ missed is found from what was really swept, and planned again until it is done o
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.distance import distance_to_nearest
 from roomba.geometry import Pose
+from roomba.grid import GridFrame
+from roomba.mask_kernels import numbered_regions
 from roomba.mission.checkpoint import CheckpointError, Values, packed, request_values, unpacked
 from roomba.mission.clean_request import (
-    SPOT_SIZE,
     CleanMode,
     CleanRefusedError,
     CleanRequest,
     Missed,
     MissReason,
 )
+from roomba.mission.gaps import closed_gaps
 from roomba.mission.site import Site
+from roomba.mission.stages import Stage, stages_of
 from roomba.mission_config import CleaningConfig
 from roomba.perception.coverage_bits import SWEPT, WANTED
 from roomba.perception.coverage_map import CoverageMap, Patch, patches_of
@@ -42,15 +43,16 @@ _WORTH_A_LOOK: Final = 0.5
 """m2; so much floor out of reach is looked for again, as behind a door: less is below a chair."""
 _WORTH_A_ROUND: Final = 0.02
 """m2; one patch as large as this is worth another round, though enough is clean."""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Stage:
-    """A part of a clean: its ``name``, the floor of it, and whether it is driven again."""
-
-    name: str
-    floor: Mask
-    again: bool = False
+_MOST_WAYS_OUT: Final = 40
+"""So often, in a clean, it gets out of where it is shut in, or waits there; then that part ends."""
+_MOST_CUT_OFFS: Final = 12
+"""So many paths, in a clean, that were given up do not count as rounds."""
+_PLANNED_ANEW: Final = 20.0
+"""s; at least, between two plans that are made because something stood on the path."""
+_MOST_ANEW: Final = 40
+"""Such plans in one clean."""
+_LONG: Final = 8.0
+"""m; less of a path is driven to its end before it is planned anew."""
 
 
 class Cleaning:
@@ -78,6 +80,9 @@ class Cleaning:
         self._looked_again = False
         self._unreachable = False
         self._scrubbed = False
+        self._ways_out = self._cut_offs = 0
+        self._anew, self._planned_anew_at = 0, -np.inf
+        self._is_anew = False
 
     @property
     def stage(self) -> Stage | None:
@@ -106,7 +111,11 @@ class Cleaning:
         return float(np.count_nonzero(self.clean)) * self.coverage.cell_area
 
     def next_path(self, here: Pose, obstacles: list[RoundObstacle]) -> Floats | None:
-        """Return the next points to drive, float64 [n, 2], m, or None when all is done."""
+        """Return the next points to drive, float64 [n, 2], m, or None when all is done.
+
+        Raises NoPathError while it is shut in, so that it has to get out first.
+        """
+        obstacles = obstacles + closed_gaps(obstacles, self._site.reach)
         while (stage := self.stage) is not None:
             points = self._next_round(stage, here, obstacles)
             if points is not None:
@@ -114,22 +123,46 @@ class Cleaning:
             self._next_stage()
         return None
 
-    def wants_another_look(self) -> bool:
-        """Whether floor was out of reach: once, before the end, it is to be looked for again."""
+    def wants_another_look(self, lasting: list[RoundObstacle]) -> bool:
+        """Whether floor was out of reach: once, before the end, it is to be looked for again.
+
+        What is out of reach for ``lasting`` things alone, which nobody moves, is left out.
+        """
         if self._looked_again or not self._unreachable or self.stage is not None:
             return False
         self._looked_again, self._unreachable = True, False
-        self.stages.append(Stage("what was out of reach", self.coverage.wanted & ~self.clean))
+        staging = (self._site.staging.x, self._site.staging.y)
+        left = self.coverage.wanted & ~self.clean & self._reachable(staging, lasting)
+        large = _patches(left, self.coverage.frame, _WORTH_A_LOOK)
+        if not large.any():
+            return False
+        self.stages.append(Stage("what was out of reach", large))
         self._begin_stage()
         return True
 
     def cut_off(self) -> None:
         """Tell that no way led to some of what was planned."""
         self._unreachable, self._last_missed = True, np.inf
+        self._cut_offs += 1
+        if self._cut_offs <= _MOST_CUT_OFFS:
+            self._rounds = min(self._rounds, 1)
 
     def interrupted(self) -> None:
         """Tell that the last path was not driven to its end: it says nothing of what is left."""
         self._rounds, self._last_missed = 0, np.inf
+
+    def plans_anew(self, now: float, left: float) -> bool:
+        """Whether a path, ``left`` m of it, on which something stands is to be planned anew.
+
+        With all that is known by now that takes less way than to go around it and to come back for
+        what is next to it.
+        """
+        since = now - self._planned_anew_at
+        if left < _LONG or self._anew >= _MOST_ANEW or 0.0 <= since < _PLANNED_ANEW:
+            return False
+        self._anew, self._planned_anew_at, self._is_anew = self._anew + 1, now, True
+        self._rounds, self._last_missed = 1, np.inf
+        return True
 
     def use_site(self, site: Site) -> None:
         """Go on with other zones or rooms; what is swept stays so."""
@@ -183,7 +216,8 @@ class Cleaning:
         left = self.coverage.wanted & ~self.clean
         patches = patches_of(left, self.coverage.frame, self._config.least_patch)
         staging = (self._site.staging.x, self._site.staging.y)
-        reachable = self._reachable(staging, obstacles)
+        gaps = closed_gaps(obstacles, self._site.reach)
+        reachable = self._reachable(staging, obstacles + gaps)
         return tuple(
             Missed(
                 patch.area,
@@ -199,16 +233,21 @@ class Cleaning:
         self, patch: Patch, obstacles: list[RoundObstacle], reachable: Mask, is_over: bool
     ) -> MissReason:
         if np.count_nonzero(reachable[patch.cells]) < 0.5 * np.count_nonzero(patch.cells):
-            rows, columns = np.nonzero(patch.cells)
-            frame = self.coverage.frame
-            x = frame.origin_x + (columns + 0.5) * frame.resolution
-            y = frame.origin_y + (rows + 0.5) * frame.resolution
-            near = self._site.reach + 2.0 * self._site.tool_width
-            is_near = np.zeros(len(x), np.bool_)
-            for thing_x, thing_y, radius in obstacles:
-                is_near |= np.hypot(x - thing_x, y - thing_y) < near + radius
-            return MissReason.THING if is_near.mean() > _MOSTLY else MissReason.SHUT
+            is_thing = self._is_where_things_are(patch, obstacles)
+            return MissReason.THING if is_thing else MissReason.SHUT
         return MissReason.LEFT_OVER if is_over else MissReason.STOPPED
+
+    def _is_where_things_are(self, patch: Patch, obstacles: list[RoundObstacle]) -> bool:
+        """Whether a patch is what things stand on and hide, and not a room behind them."""
+        rows, columns = np.nonzero(patch.cells)
+        frame = self.coverage.frame
+        x = frame.origin_x + (columns + 0.5) * frame.resolution
+        y = frame.origin_y + (rows + 0.5) * frame.resolution
+        near = self._site.reach + 2.0 * self._site.tool_width
+        is_near = np.zeros(len(x), np.bool_)
+        for thing_x, thing_y, radius in obstacles:
+            is_near |= np.hypot(x - thing_x, y - thing_y) < near + radius
+        return bool(is_near.mean() > _MOSTLY)
 
     def _next_round(
         self, stage: Stage, here: Pose, obstacles: list[RoundObstacle]
@@ -216,7 +255,11 @@ class Cleaning:
         """Plan what is missed of a stage, if that is worth it."""
         todo = stage.floor & self.coverage.missed
         missed = float(np.count_nonzero(todo)) * self.coverage.cell_area
-        if self._rounds > 0:
+        is_anew, self._is_anew = self._is_anew, False
+        large = _patches(todo, self.coverage.frame, _WORTH_A_ROUND) if is_anew else todo
+        if is_anew and large.any():
+            todo = large
+        elif self._rounds > 0:
             todo = self._worth_it(stage, todo, here, obstacles)
             gained = self._last_missed - missed
             if self._rounds > self._config.most_rounds or gained < _LITTLE_GAIN * self._last_missed:
@@ -227,16 +270,25 @@ class Cleaning:
             return None
         self._rounds += 1
         self._last_missed = missed
+        edges_only = self.request.mode is CleanMode.EDGES
         try:
             plan = self._site.plan_coverage(
-                (here.x, here.y),
-                todo,
-                obstacles,
-                edges_only=self.request.mode is CleanMode.EDGES,
+                (here.x, here.y), todo, obstacles, edges_only=edges_only
             )
         except NoPathError:
             self._unreachable = True
-            return None
+            todo &= self._reachable((here.x, here.y), obstacles)
+            if patches_of(todo, self.coverage.frame, _WORTH_A_LOOK):
+                # The way home is shut, perhaps by a door: meanwhile it cleans where it is.
+                plan = self._site.coverage.plan(
+                    (here.x, here.y), None, todo, obstacles, edges_only=edges_only
+                )
+            elif self._ways_out < _MOST_WAYS_OUT:
+                self._ways_out += 1
+                self._rounds, self._last_missed = self._rounds - 1, np.inf
+                raise
+            else:
+                return None
         return plan.points if plan.length > 0.0 and len(plan.points) > 2 else None
 
     def _worth_it(
@@ -246,20 +298,22 @@ class Cleaning:
 
         Behind and below what stands in the way nothing can be done now.
         """
-        reachable = self._reachable((here.x, here.y), obstacles)
-        self._note_out_of_reach(todo & ~reachable)
+        staging = (self._site.staging.x, self._site.staging.y)
+        reachable = self._reachable(staging, obstacles)
+        if not reachable[self.coverage.frame.cell_of(here.x, here.y)]:
+            # Wherever it is shut in, there it can clean, and from there it has to get out.
+            reachable |= self._reachable((here.x, here.y), obstacles)
+        self._note_out_of_reach(todo & ~reachable, obstacles)
         todo &= reachable
         wanted = max(int(np.count_nonzero(stage.floor & reachable)), 1)
         share = 1.0 - np.count_nonzero(todo) / wanted
         least = _WORTH_A_ROUND if share >= self._config.enough else self._config.least_patch
-        worth = np.zeros_like(todo)
-        for patch in patches_of(todo, self.coverage.frame, least):
-            worth |= patch.cells
-        return worth
+        return _patches(todo, self.coverage.frame, least)
 
-    def _note_out_of_reach(self, floor: Mask) -> None:
+    def _note_out_of_reach(self, floor: Mask, obstacles: list[RoundObstacle]) -> None:
         """Floor that somebody may open later is looked for again before the end."""
-        if patches_of(floor, self.coverage.frame, _WORTH_A_LOOK):
+        patches = patches_of(floor, self.coverage.frame, _WORTH_A_LOOK)
+        if not all(self._is_where_things_are(patch, obstacles) for patch in patches):
             self._unreachable = True
 
     def _reachable(self, here: Point, obstacles: list[RoundObstacle]) -> Mask:
@@ -293,92 +347,9 @@ class Cleaning:
             self.stages[self.stage_number] = Stage(stage.name, stage.floor)
 
 
-def stages_of(
-    request: CleanRequest, site: Site, dirt: DirtMap, coverable: Mask, here: Pose
-) -> list[Stage]:
-    """Return the parts of a clean in their order, all passes; raises CleanRefusedError."""
-    once = _parts(request, site, dirt, coverable, here)
-    return [
-        Stage(part.name, part.floor, again=number > 0)
-        for number in range(request.passes)
-        for part in once
-    ]
-
-
-def _parts(
-    request: CleanRequest, site: Site, dirt: DirtMap, coverable: Mask, here: Pose
-) -> list[Stage]:
-    if request.mode in (CleanMode.WHOLE, CleanMode.EDGES):
-        floor = coverable
-        if request.mode is CleanMode.EDGES:
-            off_edge = distance_to_nearest(~coverable) * site.frame.resolution
-            floor = coverable & (off_edge <= site.tool_width)
-        return [Stage("", floor)]
-    if request.mode is CleanMode.ZONES:
-        return [Stage("", coverable & _inside(site, request.zones))]
-    if request.mode is CleanMode.SPOT:
-        x, y = request.spot or (here.x, here.y)
-        half = 0.5 * SPOT_SIZE
-        square = (x - half, y - half, x + half, y + half)
-        return [Stage("", coverable & _inside(site, (square,)))]
-    if site.rooms is None or not site.rooms.names:
-        raise CleanRefusedError("expected a map with rooms, got one without; clean the whole home")
-    names = _room_names(request, site, dirt)
-    masks = {name: coverable & site.in_room(name) for name in names}
-    stages = [Stage(name, masks[name]) for name in names if masks[name].any()]
-    if request.mode is CleanMode.DIRTIEST:
-        rest = coverable & ~np.logical_or.reduce(list(masks.values()))
-        stages.append(Stage("outside of all rooms", rest))
-    return [stage for stage in stages if stage.floor.any()]
-
-
-def _room_names(request: CleanRequest, site: Site, dirt: DirtMap) -> list[str]:
-    """Return the rooms in the order in which they are cleaned."""
-    assert site.rooms is not None
-    known = site.rooms.names
-    if request.mode is CleanMode.DIRTIEST:
-        dirtiest = {
-            name: dirt.density(
-                site.fine(site.rooms.labels == site.rooms.label_of(name)), site.frame
-            )
-            for name in known
-        }
-        return sorted(known, key=lambda name: -dirtiest[name])
-    for name in request.rooms:
-        if name not in known:
-            raise CleanRefusedError(
-                f"expected the name of a room, got {name!r}; there are: {', '.join(known)}"
-            )
-    names = list(dict.fromkeys(request.rooms))
-    return names if request.in_order else _nearest_first(names, site)
-
-
-def _nearest_first(names: list[str], site: Site) -> list[str]:
-    """Return rooms so that each is the nearest one to that before it, from the station on."""
-    assert site.rooms is not None
-    anchors = {name: site.rooms.anchor(site.rooms.label_of(name)) for name in names}
-    x, y = site.staging.x, site.staging.y
-    ordered: list[str] = []
-    while len(ordered) < len(names):
-        left = [name for name in names if name not in ordered]
-        ordered.append(min(left, key=lambda name: _way(site, (x, y), anchors[name])))
-        x, y = anchors[ordered[-1]]
-    return ordered
-
-
-def _way(site: Site, start: tuple[float, float], end: tuple[float, float]) -> float:
-    try:
-        return site.paths.plan(start, end).length
-    except NoPathError:
-        return float("inf")
-
-
-def _inside(site: Site, rectangles: tuple[tuple[float, float, float, float], ...]) -> Mask:
-    """Return the cells whose middles lie in one of the rectangles."""
-    frame = site.frame
-    x = frame.origin_x + (np.arange(frame.columns) + 0.5) * frame.resolution
-    y = frame.origin_y + (np.arange(frame.rows) + 0.5) * frame.resolution
-    inside = np.zeros(frame.shape, np.bool_)
-    for left, bottom, right, top in rectangles:
-        inside |= np.outer((y >= bottom) & (y <= top), (x >= left) & (x <= right))
-    return inside
+def _patches(floor: Mask, frame: GridFrame, least: float) -> Mask:
+    """Return what of a floor is in patches of ``least`` m2 or more."""
+    labels = numbered_regions(floor)
+    is_large = np.bincount(labels.ravel()) * frame.resolution**2 >= least
+    is_large[0] = False
+    return np.asarray(is_large[labels])

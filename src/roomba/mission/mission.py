@@ -111,7 +111,7 @@ class Mission:
         self._last = senses
         self._started = senses.now
         self._dock_retries = 0
-        self._waits_since = -math.inf
+        self._waits_since, self._gets_out = -math.inf, False
 
     # ---------------------------------------------------------------- commands
 
@@ -257,7 +257,7 @@ class Mission:
                 cleaning.restore(values["cleaning"])
             elif errand is Errand.CLEAN:
                 raise CheckpointError("expected the clean that it was on, got none")
-            unseen = values.get("exploration")
+            unseen = values["exploration"]
             exploration = None if unseen is None else Exploration.of(unseen)
             if errand is Errand.EXPLORE and exploration is None:
                 raise CheckpointError("expected the exploration that it was on, got none")
@@ -439,8 +439,14 @@ class Mission:
             return MissionStep()
         if self.driver is None and not self._leave_zone(senses):
             obstacles = self.obstacles.standing(senses.now)
+            points = None
+            if self._gets_out:
+                # By the middle of gaps: along their sides, as it cleans, it may have been shut in.
+                self._gets_out = False
+                points = self._rejoin.way_out(senses, self.obstacles, self.trail)
             try:
-                points = self.cleaning.next_path(senses.pose, obstacles)
+                if points is None:
+                    points = self.cleaning.next_path(senses.pose, obstacles)
             except NoPathError:
                 points = self._rejoin.way_out(senses, self.obstacles, self.trail)
                 if points is None:
@@ -539,7 +545,7 @@ class Mission:
     def _wait(self, reason: str, senses: Senses) -> None:
         """Stand for a while, and then look anew: a door that is shut is opened again."""
         self.message = f"{reason}; it waits for a way to open"
-        self._waits_since = senses.now
+        self._waits_since, self._gets_out = senses.now, True
         self.obstacles.forget()
 
     def _is_waiting(self, senses: Senses) -> bool:

@@ -7,6 +7,7 @@ What it finds in its way it remembers, leaves the path before it, and joins it a
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum
 from typing import Final
@@ -37,6 +38,10 @@ _LEAVING: Final = 0.25
 """m; on so much of a new way it may still be near to what it goes around."""
 _MOST_FUTILE: Final = 3
 """New ways from one place; then it tries to get free in other ways."""
+_SAME_PLACE: Final = 0.10
+"""m; touches from places nearer to each other are of the same thing."""
+_MOST_TOUCHES: Final = 4
+"""One after the other of the same thing; then this path is given up."""
 _LEAVES_TROUBLE: Final = 0.5
 """m of progress after which earlier recoveries count no more."""
 
@@ -51,6 +56,8 @@ class DriveState(Enum):
     """It came no farther and tries to get free."""
     DONE = "done"
     """At the end of its path."""
+    OVERTAKEN = "overtaken"
+    """Something stands on its path that was not known when that was planned: plan it anew."""
     CUT_OFF = "cut off"
     """No way leads to any of what is left of its path; the reason is told."""
     STUCK = "stuck"
@@ -59,7 +66,12 @@ class DriveState(Enum):
     @property
     def is_over(self) -> bool:
         """Whether it ended."""
-        return self in (DriveState.DONE, DriveState.CUT_OFF, DriveState.STUCK)
+        return self in (
+            DriveState.DONE,
+            DriveState.OVERTAKEN,
+            DriveState.CUT_OFF,
+            DriveState.STUCK,
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,10 +102,16 @@ class PathDriver:
         tracking: TrackingConfig,
         body: BodyConfig,
         senses: Senses,
+        plans_anew: Callable[[float, float], bool] = lambda now, left: False,
     ) -> None:
-        """Begin; the path may begin anywhere: the robot goes to its start first."""
+        """Begin; the path may begin anywhere: the robot goes to its start first.
+
+        ``plans_anew`` is asked, with the time, s, and how much is left, m, whether a path on which
+        something stands is better planned anew than driven around that.
+        """
         self._rejoin, self._obstacles, self._trail = rejoin, obstacles, trail
         self._config, self._tracking, self._body = config, tracking, body
+        self._plans_anew = plans_anew
         self._state = DriveState.DRIVING
         self._reason = ""
         self._was_touching = any(senses.touches)
@@ -106,6 +124,8 @@ class PathDriver:
         self._mark_progress(senses, 0.0, 0)
         self._freed_at = self._leaves_until = 0.0
         self._planned_at, self._futile = (math.inf, math.inf), 0
+        self._nudged_at = (math.inf, math.inf)
+        self._touched_at, self._touches = (math.inf, math.inf), 0
         self.tracker = self._track(points)
         if self.tracker.off_path(senses.pose) > _PROGRESS:
             self._go_around(senses)
@@ -137,7 +157,7 @@ class PathDriver:
         if self._wriggle is not None:
             return self._get_free(senses, self._wriggle)
         if self._needs_new_way(senses):
-            self._go_around(senses)
+            self._leave_path(senses)
         elif self._comes_no_farther(senses):
             self._begin_recovery(senses)
         if self._state is DriveState.DRIVING:
@@ -169,6 +189,9 @@ class PathDriver:
         is_new, self._was_touching = touches and not self._was_touching, touches
         if is_new:
             self._obstacles.feel(senses)
+            is_here = senses.pose.distance_to(*self._touched_at) < _SAME_PLACE
+            self._touches = self._touches + 1 if is_here else 1
+            self._touched_at = senses.pose.x, senses.pose.y
             self._wriggle = None
             self._backs_from = senses.now, senses.pose.x, senses.pose.y
             self._state = DriveState.BACKING
@@ -186,6 +209,9 @@ class PathDriver:
         self._recoveries += 1 if way < 0.25 * config.backing_way else 0
         if any(senses.touches) and way < 0.25 * config.backing_way:
             self._begin_recovery(senses)
+        elif self._touches > _MOST_TOUCHES:
+            self._state = DriveState.CUT_OFF
+            self._reason = f"something stands near {senses.where} that only the bumper feels"
         else:
             self._go_around(senses)
         return DriveStep(self._state, STANDSTILL, self._reason)
@@ -203,6 +229,28 @@ class PathDriver:
             self.clear_to = (blocked or along + _HORIZON) - self._config.look_ahead
         return along >= self.clear_to
 
+    def _leave_path(self, senses: Senses) -> None:
+        """Go around what stands on the path, or have the rest of it planned anew."""
+        if self.tracker.off_path(senses.pose) > self._config.off_path:
+            self._go_around(senses)
+            return
+        moved = senses.pose.distance_to(*self._nudged_at)
+        points = self._rejoin.nudged(senses, self.tracker, self._obstacles)
+        if points is not None and moved > _PROGRESS:
+            self._nudged_at = senses.pose.x, senses.pose.y
+            self._begin(points, senses)
+        elif self._plans_anew(senses.now, self.left):
+            self._state = DriveState.OVERTAKEN
+        else:
+            self._go_around(senses)
+
+    def _begin(self, points: NDArray[np.float64], senses: Senses) -> None:
+        """Drive another path."""
+        self.tracker = self._track(points)
+        self._mark_progress(senses, 0.0, 0)
+        self._checked, self.clear_to = _NEVER, 0.0
+        self._freed_at = self._leaves_until = 0.0
+
     def _go_around(self, senses: Senses) -> None:
         """Plan to the next piece of the path that can be reached; a bump may have shortened it."""
         x, y = self._planned_at
@@ -218,10 +266,7 @@ class PathDriver:
             self._state = DriveState.CUT_OFF
             self._reason = f"no way leads on from {senses.where}: {self._rejoin.trouble}"
             return
-        self.tracker = self._track(points)
-        self._mark_progress(senses, 0.0, 0)
-        self._checked, self.clear_to = _NEVER, 0.0
-        self._freed_at = 0.0
+        self._begin(points, senses)
         self._leaves_until = back + _LEAVING
 
     def _mark_progress(self, senses: Senses, along: float, leg: int) -> None:

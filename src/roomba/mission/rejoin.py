@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 from collections.abc import Sequence
 from typing import Final
@@ -10,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.control.path_tracker import PathTracker
+from roomba.mission.nudge import nudged
 from roomba.mission.obstacles import Obstacles
 from roomba.mission.senses import Senses
 from roomba.mission.site import Site
@@ -27,6 +29,8 @@ _STRETCH: Final = 12
 """Steps ahead in which something stands that makes it leave the path."""
 _FREE_RUN: Final = 3
 """Steps that must be free one after the other to join there."""
+_OUT: Final = 1.0
+"""m; of the way home, after which it is out of where it was shut in."""
 _MOST_TRIES: Final = 8
 """Places to join that are tried before it is given up."""
 
@@ -58,6 +62,46 @@ class Rejoin:
         if points is not None:
             return points, 0.0
         return trail.back_and_on(lambda place: self._around(place, tracker, at_least))
+
+    def way_home(self, senses: Senses, obstacles: Obstacles, trail: Trail) -> Floats:
+        """Return the way to the place before the station, if need be closely by what stands there.
+
+        Raises NoPathError when there is none.
+        """
+        here = (senses.pose.x, senses.pose.y)
+        staging = (self._site.staging.x, self._site.staging.y)
+        try:
+            return self._planner.plan(here, staging, obstacles.standing(senses.now)).points
+        except NoPathError as error:
+            at_least = obstacles.at_least(senses.now)
+            with contextlib.suppress(NoPathError):
+                return self._site.squeeze(here, staging, at_least)
+            points, _ = trail.back_and_on(lambda place: self._way_to(place, staging, at_least))
+            if points is None:
+                raise error
+            return points
+
+    def way_out(self, senses: Senses, obstacles: Obstacles, trail: Trail) -> Floats | None:
+        """Return the first of the way home, or None: out of a place that no path leads out of."""
+        try:
+            points = self.way_home(senses, obstacles, trail)
+        except NoPathError:
+            return None
+        stations = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))))
+        end = [np.interp(_OUT, stations, points[:, axis]) for axis in (0, 1)]
+        first: Floats = np.concatenate((points[stations < _OUT], [end]))
+        return first
+
+    def _way_to(self, here: Point, there: Point, things: Sequence[RoundObstacle]) -> Floats | None:
+        try:
+            return self._planner.plan(here, there, things).points
+        except NoPathError:
+            return None
+
+    def nudged(self, senses: Senses, tracker: PathTracker, obstacles: Obstacles) -> Floats | None:
+        """Return the rest of a path moved aside a little, or None if that does not help."""
+        standing = obstacles.standing(senses.now)
+        return nudged(tracker, self._site.floor, standing, self._body_radius + self._away)
 
     def _around(
         self, here: Point, tracker: PathTracker, obstacles: Sequence[RoundObstacle]

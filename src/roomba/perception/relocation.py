@@ -67,6 +67,10 @@ class Expectation:
         near = pose.distance_to(self.pose.x, self.pose.y) <= self.radius
         return near and abs(wrap_angle(pose.theta - self.pose.theta)) <= self.turn
 
+    def drifted(self, pose: Pose, more: float) -> Expectation:
+        """Return the same around where dead reckoning led since, unsure by so much more, m, rad."""
+        return Expectation(pose, self.radius + more, self.turn + more, self.evidence)
+
 
 @dataclass(slots=True)
 class Hypothesis:

@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 from roomba.config import RobotConfig
 from roomba.grid import FREE, OCCUPIED, OccupancyMap
 from roomba.mission.clean_request import CleanMode, CleanRequest
-from roomba.mission.cleaning import stages_of
 from roomba.mission.docking_config import DockingConfig
 from roomba.mission.site import Site
+from roomba.mission.stages import stages_of
 from roomba.mission_config import MissionConfig
 from roomba.perception.dirt_map import DirtMap
 from roomba.planning.costmap import RoundObstacle

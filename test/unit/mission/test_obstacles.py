@@ -83,21 +83,15 @@ def test_what_was_felt_is_forgotten_after_a_while_and_an_edge_never() -> None:
     assert len(known.standing(DRIVING.felt_memory - 1.0)) == felt + edges
     assert len(known.standing(DRIVING.felt_memory + 1.0)) == edges
     assert len(known.standing(1e9)) == edges
-    known.forget_felt()
     known.forget()
-    assert len(known.standing(1e9)) == edges
+    assert known.standing(1e9) == known.edges()
+    assert len(known.edges()) == edges
 
 
-def test_what_was_felt_can_be_forgotten_and_what_is_seen_stays() -> None:
+def test_all_that_was_felt_and_seen_can_be_forgotten() -> None:
     known, layer = obstacles()
     see_a_thing(layer)
-    seen = len(known.standing(0.0))
-    assert seen > 0
     known.feel(bumped())
-    version = known.version
-    known.forget_felt()
-    assert known.version != version
-    assert len(known.standing(0.0)) == seen
     version = known.version
     known.forget()
     assert known.version != version
@@ -151,3 +145,41 @@ def test_where_something_is_first_in_the_way_of_a_path_is_told() -> None:
     assert known.first_in_way(tracker, 1.4 + BODY + 0.15, 2.0) is None
     aside = PathTracker(points + np.array((0.0, 0.5)), CONFIG.tracking, CONFIG.body, 0.05)
     assert known.first_in_way(aside, 0.0, 2.0) is None
+
+
+def test_what_is_felt_next_to_a_wall_counts_when_it_is_felt_again() -> None:
+    known, _ = obstacles()
+    # Before the wall x = 0: the first touch may be of that.
+    beside_wall = Pose(0.17, 3.0, math.pi)
+    known.feel(bumped(0.0, beside_wall))
+    assert known.standing(0.0) == []
+    known.feel(bumped(5.0, Pose(0.19, 3.01, math.pi)))
+    felt = known.standing(5.0)
+    assert felt
+    assert all(math.hypot(x - 0.17, y - 3.0) < 0.3 for x, y, _ in felt)
+    # It is no guess any more, and remembered for longer.
+    assert known.standing(DRIVING.felt_memory + 10.0) == felt
+    assert all(radius < 0.02 for _, _, radius in known.at_least(5.0))
+    known.forget()
+    assert known.standing(5.0) == []
+
+
+def test_another_place_beside_a_wall_is_another_thing() -> None:
+    known, _ = obstacles()
+    known.feel(bumped(0.0, Pose(0.17, 3.0, math.pi)))
+    known.feel(bumped(5.0, Pose(0.17, 2.8, math.pi)))
+    assert known.standing(5.0) == []
+
+
+def test_what_is_only_a_little_nearer_than_planned_is_not_in_the_way() -> None:
+    known, layer = obstacles()
+    see_a_thing(layer)
+    things = known.standing(0.0)
+    top = max(y + radius for _, y, radius in things)
+    blocked = []
+    for off in (0.005, 0.03):
+        aside = top + BODY - off
+        points = np.array([(1.0, aside), (3.0, aside)])
+        tracker = PathTracker(points, CONFIG.tracking, CONFIG.body, 0.05)
+        blocked.append(known.first_in_way(tracker, 0.0, 2.0) is not None)
+    assert blocked == [False, True]

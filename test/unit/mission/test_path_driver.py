@@ -42,15 +42,15 @@ class Rig:
         points: NDArray[np.float64] = STRAIGHT,
         pose: Pose = HERE,
         discs: list[Disc] | None = None,
+        plans_anew: Callable[[float, float], bool] = lambda now, left: False,
     ) -> None:
         self.pose, self.discs = pose, discs or []
         self.time, self.clock = 0.0, 0.0
         self.is_held = False
         self.poses = [pose]
         self.states: list[DriveState] = []
-        self.obstacles = Obstacles(
-            ThingLayer(SurfaceField.of(HOME.map)), CONFIG.walk, CONFIG.body, DRIVING
-        )
+        self.layer = ThingLayer(SurfaceField.of(HOME.map))
+        self.obstacles = Obstacles(self.layer, CONFIG.walk, CONFIG.body, DRIVING)
         self.driver = PathDriver(
             points,
             Rejoin(SITE, BODY, DRIVING),
@@ -60,6 +60,7 @@ class Rig:
             CONFIG.tracking,
             CONFIG.body,
             self.senses(),
+            plans_anew,
         )
 
     def senses(self) -> Senses:
@@ -262,3 +263,68 @@ def test_whether_it_is_disturbed_is_told() -> None:
     while rig.tick().state is DriveState.DRIVING:
         pass
     assert not rig.driver.is_undisturbed
+
+
+def see(rig: Rig, x: float, y: float) -> None:
+    """Let the lidar see a thin thing."""
+    layer = rig.layer
+    place = layer.arrays
+    frame = HOME.map.frame
+    row, column = frame.cell_of(x, y)
+    cell = row * frame.columns + column
+    place.evidence[cell] = layer.config.most
+    place.spots[cell] = x, y
+    place.listed[int(place.layer["count"][0])] = cell
+    place.layer["count"] += 1
+    place.layer["version"] += 1
+
+
+def asked(answers: list[tuple[float, float]], answer: bool) -> Callable[[float, float], bool]:
+    """Return what writes down when it is asked, and how much of the path was left then."""
+
+    def plans_anew(now: float, left: float) -> bool:
+        answers.append((now, left))
+        return answer
+
+    return plans_anew
+
+
+def test_past_a_thing_at_the_side_it_goes_on_a_little_aside() -> None:
+    answers: list[tuple[float, float]] = []
+    rig = Rig(plans_anew=asked(answers, True))
+    see(rig, 1.5, 0.65)
+    assert rig.run().state is DriveState.DONE
+    beside = min(pose.distance_to(1.5, 0.65) for pose in rig.poses)
+    assert beside == pytest.approx(BODY + 0.02, abs=0.012)
+    # It never leaves the path by more than that, so that what is beside the thing gets clean.
+    assert max(abs(pose.y - 0.5) for pose in rig.poses) < 0.06
+    assert rig.pose.distance_to(2.6, 0.5) < 0.01
+    assert answers == []
+
+
+@pytest.mark.parametrize("answer", [True, False])
+def test_what_stands_in_the_middle_of_its_path_has_it_planned_anew_or_gone_around(
+    answer: bool,
+) -> None:
+    answers: list[tuple[float, float]] = []
+    rig = Rig(plans_anew=asked(answers, answer))
+    see(rig, 1.5, 0.5)
+    step = rig.run()
+    (first, *_) = answers
+    assert 0.8 < first[1] < 1.6
+    if answer:
+        assert step.state is DriveState.OVERTAKEN
+        assert rig.pose.x < 1.5 - BODY
+    else:
+        assert step.state is DriveState.DONE
+
+
+def test_what_only_the_bumper_finds_time_and_again_ends_the_path() -> None:
+    # Whatever is felt is forgotten at once: the robot drives against it as if for the first time.
+    rig = Rig(discs=[(1.5, 0.5, 0.05)])
+    rig.obstacles.feel = lambda senses: None  # type: ignore[method-assign]
+    step = rig.run()
+    assert step.state is DriveState.CUT_OFF
+    assert "only the bumper feels" in step.reason
+    assert rig.states.count(DriveState.BACKING) > 10
+    assert rig.pose.x < 1.5 - BODY

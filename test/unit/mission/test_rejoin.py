@@ -23,6 +23,7 @@ from roomba.mission_config import MissionConfig
 from roomba.perception.surface_field import SurfaceField
 from roomba.perception.things import ThingLayer
 from roomba.planning.costmap import RoundObstacle
+from roomba.planning.path import NoPathError
 
 CONFIG = RobotConfig()
 BODY = CONFIG.body.radius
@@ -152,3 +153,44 @@ def test_the_last_point_counts_even_if_only_that_is_free() -> None:
     points, _, _ = way(Pose(2.2, 0.5, 0.0), (2.5, 0.5, 0.05), *things)
     if points is not None:
         assert points[-1] == pytest.approx(PATH[-1])
+
+
+STAGING = (SITE.staging.x, SITE.staging.y)
+
+
+def home(pose: Pose, *things: RoundObstacle, trail: Trail | None = None) -> NDArray[np.float64]:
+    return Rejoin(SITE, BODY, DRIVING).way_home(
+        Senses(0.0, pose), Standing(*things), trail or Trail()
+    )
+
+
+def test_the_way_home_ends_before_the_station() -> None:
+    points = home(Pose(2.6, 0.5, 0.0))
+    assert points[0] == pytest.approx((2.6, 0.5))
+    assert points[-1] == pytest.approx(STAGING)
+
+
+def test_out_of_a_cage_it_goes_home_as_it_came_in() -> None:
+    trail = Trail()
+    for step in range(26):
+        trail.add(1.9 - 0.04 * step, 0.5)
+    thing = (0.9, 0.5, 0.5)
+    with pytest.raises(NoPathError):
+        home(Pose(0.9, 0.5, 0.0), thing)
+    points = home(Pose(0.9, 0.5, 0.0), (0.9, 0.5, 0.3), trail=trail)
+    assert points[0] == pytest.approx((0.9, 0.5), abs=0.06)
+    assert points[-1] == pytest.approx(STAGING)
+
+
+def test_the_way_out_is_the_first_of_the_way_home() -> None:
+    pose = Pose(2.6, 0.5, 0.0)
+    rejoin = Rejoin(SITE, BODY, DRIVING)
+    points = rejoin.way_out(Senses(0.0, pose), Standing(), Trail())
+    assert points is not None
+    assert points[0] == pytest.approx((2.6, 0.5))
+    assert length(points) == pytest.approx(1.0)
+    near = rejoin.way_out(Senses(0.0, Pose(STAGING[0] + 0.3, STAGING[1], 0.0)), Standing(), Trail())
+    assert near is not None
+    assert near[-1] == pytest.approx(STAGING)
+    cage = (2.6, 0.5, 0.5)
+    assert rejoin.way_out(Senses(0.0, pose), Standing(cage), Trail()) is None

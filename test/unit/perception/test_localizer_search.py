@@ -15,6 +15,7 @@ from fixtures.located import (
     TWO_ROOMS,
     WORST_ERROR,
     Located,
+    Ranges,
     look_until_known,
     started,
     steps,
@@ -236,3 +237,40 @@ def test_a_robot_that_sees_too_little_is_lost_in_the_end_though_it_was_told() ->
             robot.localizer.see(0.05 * step, few, LIDAR)
     assert robot.estimate.position_deviation > CONFIG.localization.lost_deviation
     assert robot.estimate.knowledge is Knowledge.LOST
+
+
+def test_what_closes_in_on_it_does_not_take_its_place_away() -> None:
+    """Things come nearer on three sides, until hardly any beam meets what the map shows."""
+    robot = started()
+    nearest = 4.0
+
+    def closing_in(ranges: Ranges) -> Ranges:
+        seen = ranges.copy()
+        seen[:270] = np.minimum(seen[:270], nearest)
+        return seen
+
+    robot.see_as = closing_in
+    for _ in steps(60.0):
+        nearest = max(0.35, nearest - 0.065 * DT)
+        robot.step(Twist())
+        assert robot.estimate.knowledge is Knowledge.KNOWN
+    assert robot.estimate.agreement < 0.35
+    assert robot.error < WORST_ERROR
+
+
+def test_what_stands_around_it_all_at_once_makes_it_look_for_its_place() -> None:
+    robot = started()
+    robot.stay(2.0)
+    robot.see_as = lambda ranges: np.minimum(ranges, 0.35).astype(np.float32)
+    robot.stay(2.0)
+    assert robot.estimate.knowledge is Knowledge.SEARCHING
+
+
+def test_wrong_all_along_it_finds_that_out_though_nobody_carried_it() -> None:
+    robot = Located(TWO_ROOMS, START)
+    robot.stay(2.0)
+    robot.localizer.belief["pose"] = (6.0, 2.0, 0.3)
+    for _ in steps(8.0):
+        robot.look()
+    assert robot.estimate.knowledge is Knowledge.KNOWN
+    assert robot.error < WORST_ERROR

@@ -32,7 +32,8 @@ def turn_of_walls(cloud: Floats) -> float:
         return 0.0
     for _ in range(5):
         middle = float(np.median(near))
-        near = near[np.abs(near - middle) < 0.5 * _NEAR]
+        # Of all: noise reaches beyond what is near, and half of it would pull.
+        near = off[np.abs(off - middle) < 0.5 * _NEAR]
     return float(near.mean())
 
 
