@@ -44,6 +44,7 @@ class MapMaker:
         self._whole: OccupancyMap | None = None
         self._finishes = False
         self.station: Pose | None = None
+        self._station_from_start: Pose | None = None
 
     @property
     def is_growing(self) -> bool:
@@ -56,7 +57,7 @@ class MapMaker:
         self._mapper = Mapper(self._mapping, config.localization, config.gyro, self._place.place)
         self._place.mapper = self._mapper
         self._told = (-1.0, -1)
-        self.station = None
+        self.station = self._station_from_start = None
         rospy.loginfo("the robot begins a map of its own")
 
     def note_station(self, is_docked: bool) -> bool:
@@ -66,6 +67,7 @@ class MapMaker:
             return False
         if self.station is None:
             self.station = mapper.pose
+            self._station_from_start = mapper.start.inverse().compose(mapper.pose)
             return True
         if mapper.estimate.knowledge is Knowledge.LOST and not self._finishes:
             # Somebody carried it home.
@@ -100,6 +102,9 @@ class MapMaker:
         mapper, localizer = self._mapper, self._place.localizer
         if whole is None or mapper is None or localizer is None:
             return None
+        if self._station_from_start is not None:
+            # To be whole the map was turned a little.
+            self.station = mapper.start.compose(self._station_from_start)
         localizer.use_map(whole)
         localizer.told(mapper.pose, _FINISHED_DEVIATION)
         self._place.mapper = self._mapper = None

@@ -241,7 +241,7 @@ class MapTopics:
         self._message = _NO_STATION if self._station is None else _EXPLORE
         whole = maker.take_whole()
         if whole is not None:
-            self._message = ""
+            self._message, self._station = "", maker.station
             self._tell_map(whole)
             self._tell_station()
             return

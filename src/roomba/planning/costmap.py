@@ -14,7 +14,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from roomba.grid import OccupancyMap
+from roomba.grid import GridFrame, OccupancyMap
 from roomba.mask_kernels import dilated, numbered_regions
 
 Mask = NDArray[np.bool_]
@@ -75,21 +75,10 @@ class FitMap:
 
         Raises ValueError for an obstacle that is not three finite numbers with a radius >= 0.
         """
-        checked = tuple(_checked(obstacle) for obstacle in obstacles)
+        checked = checked_obstacles(obstacles)
         if checked == self.obstacles:
             return self
-        frame = self.map.frame
-        fits = self._fits_walls.copy()
-        for x, y, radius in checked:
-            away = radius + self.reach
-            row, column = frame.cell_of(x - away, y - away)
-            last_row, last_column = frame.cell_of(x + away, y + away)
-            rows = slice(max(row, 0), max(last_row + 1, 0))
-            columns = slice(max(column, 0), max(last_column + 1, 0))
-            dy = frame.origin_y + (np.arange(frame.rows)[rows] + 0.5) * frame.resolution - y
-            dx = frame.origin_x + (np.arange(frame.columns)[columns] + 0.5) * frame.resolution - x
-            fits[rows, columns] &= np.hypot(dy[:, None], dx) >= away - _TOUCH
-        fits.flags.writeable = False
+        fits = clear_of(self._fits_walls, self.map.frame, checked, self.reach - _TOUCH)
         return replace(self, obstacles=checked, fits=fits)
 
     @cached_property
@@ -136,6 +125,14 @@ class FitMap:
         return self.fits_along((x, y), (x, y))
 
 
+def checked_obstacles(obstacles: Iterable[RoundObstacle]) -> tuple[RoundObstacle, ...]:
+    """Return the obstacles as plain numbers.
+
+    Raises ValueError for one that is not three finite numbers with a radius >= 0.
+    """
+    return tuple(_checked(obstacle) for obstacle in obstacles)
+
+
 def _checked(obstacle: RoundObstacle) -> RoundObstacle:
     x, y, radius = (float(value) for value in obstacle)
     if not (math.isfinite(x) and math.isfinite(y) and math.isfinite(radius) and radius >= 0.0):
@@ -143,6 +140,27 @@ def _checked(obstacle: RoundObstacle) -> RoundObstacle:
             f"expected an obstacle as finite (x, y, radius >= 0) in m, got ({x}, {y}, {radius})"
         )
     return x, y, radius
+
+
+def clear_of(
+    fits: Mask, frame: GridFrame, obstacles: Iterable[RoundObstacle], reach: float
+) -> Mask:
+    """Return the cells of ``fits`` whose centres are ``reach``, m, or more from all obstacles.
+
+    Bool [rows, columns] of ``frame``; it cannot be written.
+    """
+    clear = fits.copy()
+    for x, y, radius in obstacles:
+        away = radius + reach
+        row, column = frame.cell_of(x - away, y - away)
+        last_row, last_column = frame.cell_of(x + away, y + away)
+        rows = slice(max(row, 0), max(last_row + 1, 0))
+        columns = slice(max(column, 0), max(last_column + 1, 0))
+        dy = frame.origin_y + (np.arange(frame.rows)[rows] + 0.5) * frame.resolution - y
+        dx = frame.origin_x + (np.arange(frame.columns)[columns] + 0.5) * frame.resolution - x
+        clear[rows, columns] &= np.hypot(dy[:, None], dx) >= away
+    clear.flags.writeable = False
+    return clear
 
 
 @njit(cache=True, nogil=True)

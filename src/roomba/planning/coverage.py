@@ -21,11 +21,11 @@ from roomba.planning.coverage_connection import connected, tidy
 from roomba.planning.coverage_edges import edges
 from roomba.planning.coverage_floor import CoverageFloor
 from roomba.planning.coverage_ground import Ground
-from roomba.planning.coverage_masks import unswept
 from roomba.planning.coverage_order import Weights, ordered
 from roomba.planning.coverage_plan import CoveragePlan
 from roomba.planning.coverage_polish import polished
 from roomba.planning.coverage_swaths import swaths
+from roomba.planning.coverage_sweep import unswept
 from roomba.planning.path import NoPathError, NoPathReason
 
 __all__ = ["CoverageFloor", "CoveragePlan", "CoveragePlanner"]
@@ -37,7 +37,7 @@ _PIECE = 12.0
 _ASIDE = 0.2
 """cells; the tool is a whole number of cells wide, so that seams would lie on their middles, where
 it takes the least error of the drive to leave a whole row unswept."""
-_TURNING = 3.0
+_TURNING = 6.0
 """cells of way that a radian is worth when the way is polished."""
 _UNSWEPT = 1.0
 """cells of way that a cell of floor is worth."""

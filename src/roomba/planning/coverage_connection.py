@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 
 from roomba.mask_kernels import Mask
 from roomba.planning.coverage_masks import way_fits
-from roomba.planning.coverage_ways import Net, taut, way_between
+from roomba.planning.coverage_net import Net
+from roomba.planning.coverage_ways import taut, way_between
 from roomba.planning.grid_path import shortest_grid_path
 
 Line = NDArray[np.float64]

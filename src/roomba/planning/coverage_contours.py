@@ -10,6 +10,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from roomba.mask_kernels import Mask
+from roomba.planning.coverage_compilation import part
 from roomba.planning.coverage_masks import way_fits
 
 Chain = NDArray[np.int32]
@@ -106,7 +107,7 @@ def straightened(fits: Mask, chain: NDArray[np.float64], tolerance: float) -> ND
     return np.flatnonzero(kept)
 
 
-@njit(cache=True, nogil=True)
+@part
 def _is_near(chain: NDArray[np.float64], first: int, last: int, tolerance: float) -> bool:
     """Whether all points between two of a chain are within ``tolerance`` of the straight way."""
     x, y = chain[first]

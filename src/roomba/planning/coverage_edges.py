@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from roomba.mask_kernels import Mask
 from roomba.planning.coverage_contours import outlines, straightened
-from roomba.planning.coverage_masks import Counts, newly_swept, sweep
+from roomba.planning.coverage_sweep import Counts, left_without, room_for_legs, set_leg, sweep_leg
 
 Line = NDArray[np.float64]
 """A polyline, float64 [n >= 2, 2] (x, y)."""
@@ -66,13 +66,15 @@ def cut(line: Line, spacing: float) -> Line:
 def _claim(need: Mask, counts: Counts, stretches: Line, radius: float) -> NDArray[np.bool_]:
     """Return which legs sweep enough new floor, bool [n - 1], and count what they sweep."""
     worth = np.zeros(len(stretches) - 1, np.bool_)
+    legs = room_for_legs()
     for leg in range(len(worth)):
         x, y = stretches[leg]
         to_x, to_y = stretches[leg + 1]
-        found = newly_swept(need, counts, x, y, to_x, to_y, radius)
+        set_leg(legs, 0, x, y, to_x, to_y)
+        found = -left_without(need, counts, legs, 0, 1, radius, np.inf)
         if found > _WORTH * np.hypot(to_x - x, to_y - y):
             worth[leg] = True
-            sweep(counts, stretches[leg : leg + 2], radius, 1)
+            sweep_leg(counts, x, y, to_x, to_y, radius, 1)
     return worth
 
 

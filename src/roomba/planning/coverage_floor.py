@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.grid import GridFrame, OccupancyMap
-from roomba.planning.costmap import Mask, Point, RoundObstacle
+from roomba.planning.costmap import Mask, Point, RoundObstacle, checked_obstacles, clear_of
 from roomba.planning.coverage_masks import filled_from, grown, half_widths
 
 FINE = 0.01
@@ -70,21 +70,10 @@ class CoverageFloor:
 
         Raises ValueError for an obstacle that is not three finite numbers with a radius >= 0.
         """
-        checked = tuple(_checked(obstacle) for obstacle in obstacles)
+        checked = checked_obstacles(obstacles)
         if checked == self.obstacles:
             return self
-        frame = self.frame
-        fits = self._fits_walls.copy()
-        for x, y, radius in checked:
-            away = radius + self.reach
-            row, column = frame.cell_of(x - away, y - away)
-            last_row, last_column = frame.cell_of(x + away, y + away)
-            rows = slice(max(row, 0), max(last_row + 1, 0))
-            columns = slice(max(column, 0), max(last_column + 1, 0))
-            dy = frame.origin_y + (np.arange(frame.rows)[rows] + 0.5) * frame.resolution - y
-            dx = frame.origin_x + (np.arange(frame.columns)[columns] + 0.5) * frame.resolution - x
-            fits[rows, columns] &= np.hypot(dy[:, None], dx) >= away - _TOUCH
-        fits.flags.writeable = False
+        fits = clear_of(self._fits_walls, self.frame, checked, self.reach - _TOUCH)
         return replace(self, obstacles=checked, fits=fits)
 
     def middles(self, start: Point) -> Mask:
@@ -150,12 +139,3 @@ class CoverageFloor:
         solid = ~on_map
         solid[on_map] = self._solid[rows[on_map].astype(int), columns[on_map].astype(int)]
         return bool((solid[1:] & ~solid[:-1]).any())
-
-
-def _checked(obstacle: RoundObstacle) -> RoundObstacle:
-    x, y, radius = (float(value) for value in obstacle)
-    if not (math.isfinite(x) and math.isfinite(y) and math.isfinite(radius) and radius >= 0.0):
-        raise ValueError(
-            f"expected an obstacle as finite (x, y, radius >= 0) in m, got ({x}, {y}, {radius})"
-        )
-    return x, y, radius

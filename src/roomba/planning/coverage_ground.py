@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from roomba.mask_kernels import Mask
 from roomba.planning.coverage_edges import rings
 from roomba.planning.coverage_floor import CoverageFloor
-from roomba.planning.coverage_ways import Net, net_over
+from roomba.planning.coverage_net import Net, net_over
 
 Line = NDArray[np.float64]
 

@@ -1,4 +1,4 @@
-"""Compiled work on masks for coverage: growing them, filling them, and what a tool sweeps.
+"""Compiled work on masks for coverage: growing them, filling them, and straight ways over them.
 
 Lengths and places in cells: (x, y) is (column, row), whole numbers are the cells' centres.
 """
@@ -12,9 +12,10 @@ from numba import njit
 from numpy.typing import NDArray
 
 from roomba.mask_kernels import Mask
+from roomba.planning.coverage_compilation import part
 
-Counts = NDArray[np.int16]
-"""How many pieces of a path sweep each cell, int16 [rows, columns]."""
+_TILE = 32
+"""Cells to a side of the squares that are turned at once: as many lines as the cache holds."""
 
 
 def half_widths(radius: float, to_squares: bool = False) -> NDArray[np.int32]:
@@ -42,7 +43,7 @@ def grown(mask: Mask, widths: NDArray[np.int32]) -> Mask:
 
 
 @njit(cache=True, nogil=True)
-def _mark_changes(mask: Mask, widths: NDArray[np.int32], changes: Counts) -> None:
+def _mark_changes(mask: Mask, widths: NDArray[np.int32], changes: NDArray[np.int16]) -> None:
     """Note where discs around the outermost true cells begin and end in each row."""
     rows, columns = mask.shape
     for row in range(rows):
@@ -68,13 +69,26 @@ def _mark_changes(mask: Mask, widths: NDArray[np.int32], changes: Counts) -> Non
 
 
 @njit(cache=True, nogil=True)
-def _sum_changes(changes: Counts, result: Mask) -> None:
+def _sum_changes(changes: NDArray[np.int16], result: Mask) -> None:
     rows, columns = result.shape
     for row in range(rows):
         depth = 0
         for column in range(columns):
             depth += changes[row, column]
             result[row, column] = depth > 0
+
+
+@njit(cache=True, nogil=True)
+def transposed(mask: Mask) -> Mask:
+    """Return the mask with rows for columns, bool [columns, rows]."""
+    rows, columns = mask.shape
+    result = np.empty((columns, rows), np.bool_)
+    for first_row in range(0, rows, _TILE):
+        for first_column in range(0, columns, _TILE):
+            for row in range(first_row, min(first_row + _TILE, rows)):
+                for column in range(first_column, min(first_column + _TILE, columns)):
+                    result[column, row] = mask[row, column]
+    return result
 
 
 @njit(cache=True, nogil=True)
@@ -115,101 +129,7 @@ def filled_from(mask: Mask, row: int, column: int) -> Mask:
     return filled
 
 
-@njit(cache=True, nogil=True)
-def side_of(x: float, y: float, to_x: float, to_y: float, radius: float) -> tuple[float, float]:
-    """Return the step from a way to the side of the strip that is swept along it."""
-    length = math.hypot(to_x - x, to_y - y)
-    if length == 0.0:
-        return 0.0, 0.0
-    return -(to_y - y) / length * radius, (to_x - x) / length * radius
-
-
-@njit(cache=True, nogil=True)
-def swept_columns(
-    x: float,
-    y: float,
-    to_x: float,
-    to_y: float,
-    side: tuple[float, float],
-    radius: float,
-    row: int,
-) -> tuple[int, int]:
-    """Return the first and last column of a row whose centres are within ``radius`` of a way.
-
-    ``side`` is what :func:`side_of` returns for it.
-    """
-    low, high = np.inf, -np.inf
-    square = radius * radius - (row - y) * (row - y)
-    if square >= 0.0:
-        half = math.sqrt(square)
-        low, high = x - half, x + half
-    square = radius * radius - (row - to_y) * (row - to_y)
-    if square >= 0.0:
-        half = math.sqrt(square)
-        low, high = min(low, to_x - half), max(high, to_x + half)
-    if to_y != y:
-        # The sides of the strip, between its ends, lie beside the way.
-        slope = (to_x - x) / (to_y - y)
-        for sign in (-1.0, 1.0):
-            begin = y + sign * side[1]
-            end = to_y + sign * side[1]
-            if min(begin, end) <= row <= max(begin, end):
-                at = x + sign * side[0] + (row - begin) * slope
-                low, high = min(low, at), max(high, at)
-    if low > high:
-        return 1, 0
-    return math.ceil(low - 1e-6), math.floor(high + 1e-6)
-
-
-@njit(cache=True, nogil=True)
-def sweep(counts: Counts, points: NDArray[np.float64], radius: float, change: int) -> None:
-    """Add ``change`` to the counts of all cells within ``radius`` of each leg of a path.
-
-    ``points`` is float64 [n, 2] (x, y); a path of one point is a leg without length.
-    """
-    rows, columns = counts.shape
-    reach = radius + 1e-7
-    for leg in range(max(len(points) - 1, 1)):
-        x, y = points[leg]
-        to_x, to_y = points[min(leg + 1, len(points) - 1)]
-        side = side_of(x, y, to_x, to_y, reach)
-        first_row = max(math.ceil(min(y, to_y) - reach), 0)
-        last_row = min(math.floor(max(y, to_y) + reach), rows - 1)
-        for row in range(first_row, last_row + 1):
-            first, last = swept_columns(x, y, to_x, to_y, side, reach, row)
-            for column in range(max(first, 0), min(last, columns - 1) + 1):
-                counts[row, column] += change
-
-
-def unswept(need: Mask, lines: list[NDArray[np.float64]], radius: float) -> Mask:
-    """Return the needed cells that no line, float64 [n, 2], sweeps; bool [rows, columns]."""
-    counts = np.zeros(need.shape, np.int16)
-    for line in lines:
-        sweep(counts, line, radius, 1)
-    left: Mask = need & (counts == 0)
-    return left
-
-
-@njit(cache=True, nogil=True)
-def newly_swept(
-    need: Mask, counts: Counts, x: float, y: float, to_x: float, to_y: float, radius: float
-) -> int:
-    """Return how many needed cells within ``radius`` of a leg nothing has swept yet."""
-    rows, columns = counts.shape
-    reach = radius + 1e-7
-    found = 0
-    side = side_of(x, y, to_x, to_y, reach)
-    first_row = max(math.ceil(min(y, to_y) - reach), 0)
-    last_row = min(math.floor(max(y, to_y) + reach), rows - 1)
-    for row in range(first_row, last_row + 1):
-        first, last = swept_columns(x, y, to_x, to_y, side, reach, row)
-        for column in range(max(first, 0), min(last, columns - 1) + 1):
-            if need[row, column] and counts[row, column] == 0:
-                found += 1
-    return found
-
-
-@njit(cache=True, nogil=True)
+@part
 def way_fits(fits: Mask, x: float, y: float, to_x: float, to_y: float) -> bool:
     """Whether the middle may go straight from one point to another.
 

@@ -14,8 +14,18 @@ from numba import njit
 from numpy.typing import NDArray
 
 from roomba.mask_kernels import Mask
+from roomba.planning.coverage_compilation import part
 from roomba.planning.coverage_edges import cut
-from roomba.planning.coverage_masks import Counts, side_of, swept_columns, way_fits
+from roomba.planning.coverage_masks import way_fits
+from roomba.planning.coverage_sweep import (
+    Counts,
+    Legs,
+    left_without,
+    room_for_legs,
+    set_leg,
+    sweep,
+    sweep_leg,
+)
 
 Line = NDArray[np.float64]
 
@@ -36,7 +46,8 @@ class Bent(NamedTuple):
 
     ``points`` float64 [n, 2]; ``before`` and ``after`` int64 [n], -1 past the ends; ``on_way``
     bool [n], which points are left; ``counts`` int16 [rows, columns]; ``need`` the cells that
-    count; ``fits`` where the middle may be; ``spare``, int64 [1], how many more may be left.
+    count; ``fits`` where the middle may be; ``spare``, int64 [1], how many more may be left;
+    ``legs`` those that the change at hand concerns.
     """
 
     points: Line
@@ -47,6 +58,7 @@ class Bent(NamedTuple):
     need: Mask
     fits: Mask
     spare: NDArray[np.int64]
+    legs: Legs
 
 
 def polished(
@@ -70,6 +82,7 @@ def polished(
         need,
         fits,
         np.array([int(_SPARE * need.sum())]),
+        room_for_legs(),
     )
     _polish(bent, radius, turning, floor)
     kept = [0]
@@ -78,31 +91,7 @@ def polished(
     return bent.points[kept]
 
 
-@njit(cache=True, nogil=True)
-def _sweep_leg(
-    bent: Bent, x: float, y: float, to_x: float, to_y: float, radius: float, change: int
-) -> int:
-    """Count a leg in (1) or out (-1); returns how many more needed cells are swept by nothing."""
-    rows, columns = bent.counts.shape
-    reach = radius + 1e-7
-    left = 0
-    side = side_of(x, y, to_x, to_y, reach)
-    first_row = max(math.ceil(min(y, to_y) - reach), 0)
-    last_row = min(math.floor(max(y, to_y) + reach), rows - 1)
-    for row in range(first_row, last_row + 1):
-        first, last = swept_columns(x, y, to_x, to_y, side, reach, row)
-        for column in range(max(first, 0), min(last, columns - 1) + 1):
-            now = bent.counts[row, column] + change
-            bent.counts[row, column] = now
-            if bent.need[row, column]:
-                if change > 0 and now == 1:
-                    left -= 1
-                elif change < 0 and now == 0:
-                    left += 1
-    return left
-
-
-@njit(cache=True, nogil=True)
+@part
 def _turn(points: Line, one: int, two: int, three: int, moved: int, x: float, y: float) -> float:
     """Return how much the way turns at the second of three points, where ``moved`` is at (x, y)."""
     if one < 0 or three < 0:
@@ -120,7 +109,7 @@ def _turn(points: Line, one: int, two: int, three: int, moved: int, x: float, y:
     return abs(math.atan2(in_x * out_y - in_y * out_x, in_x * out_x + in_y * out_y))
 
 
-@njit(cache=True, nogil=True)
+@part
 def _try_shortcut(
     bent: Bent, at: int, span: int, radius: float, turning: float, floor: float
 ) -> bool:
@@ -146,35 +135,49 @@ def _try_shortcut(
     gain = length - straight + turning * turned
     if gain < _LEAST_GAIN or not way_fits(bent.fits, x, y, to_x, to_y):
         return False
-    left = _sweep_leg(bent, x, y, to_x, to_y, radius, 1)
     on = at
+    for leg in range(span):
+        _set_between(bent, leg, on, after[on])
+        on = after[on]
+    set_leg(bent.legs, span, x, y, to_x, to_y)
+    if not _is_worth_it(bent, span, span + 1, gain, radius, floor):
+        return False
+    on = after[at]
     while on != to:
-        next_on = after[on]
-        left += _sweep_leg(
-            bent, points[on, 0], points[on, 1], points[next_on, 0], points[next_on, 1], radius, -1
-        )
-        on = next_on
-    if gain - floor * left >= _LEAST_GAIN and left <= max(bent.spare[0], 0):
-        bent.spare[0] -= left
-        on = after[at]
-        while on != to:
-            bent.on_way[on] = False
-            on = after[on]
-        after[at] = to
-        bent.before[to] = at
-        return True
-    on = at
-    while on != to:
-        next_on = after[on]
-        _sweep_leg(
-            bent, points[on, 0], points[on, 1], points[next_on, 0], points[next_on, 1], radius, 1
-        )
-        on = next_on
-    _sweep_leg(bent, x, y, to_x, to_y, radius, -1)
-    return False
+        bent.on_way[on] = False
+        on = after[on]
+    after[at] = to
+    bent.before[to] = at
+    return True
 
 
-@njit(cache=True, nogil=True)
+@part
+def _set_between(bent: Bent, at: int, one: int, other: int) -> None:
+    """Write the leg between two points as one of those that a change concerns."""
+    points = bent.points
+    set_leg(bent.legs, at, points[one, 0], points[one, 1], points[other, 0], points[other, 1])
+
+
+@part
+def _is_worth_it(
+    bent: Bent, old: int, count: int, gain: float, radius: float, floor: float
+) -> bool:
+    """Whether other legs in place of the first ``old`` cost less for all they leave.
+
+    If so, what is swept is counted anew.
+    """
+    most = min((gain - _LEAST_GAIN) / floor, max(bent.spare[0], 0))
+    left = left_without(bent.need, bent.counts, bent.legs, old, count, radius, most)
+    if left > most:
+        return False
+    bent.spare[0] -= left
+    for leg in range(count):
+        x, y, to_x, to_y = bent.legs.ends[leg]
+        sweep_leg(bent.counts, x, y, to_x, to_y, radius, -1 if leg < old else 1)
+    return True
+
+
+@part
 def _try_move(
     bent: Bent, at: int, x: float, y: float, radius: float, turning: float, floor: float
 ) -> bool:
@@ -200,21 +203,17 @@ def _try_move(
         return False
     if not (way_fits(bent.fits, ax, ay, x, y) and way_fits(bent.fits, x, y, cx, cy)):
         return False
-    left = _sweep_leg(bent, ax, ay, x, y, radius, 1) + _sweep_leg(bent, x, y, cx, cy, radius, 1)
-    left += _sweep_leg(bent, ax, ay, now_x, now_y, radius, -1)
-    left += _sweep_leg(bent, now_x, now_y, cx, cy, radius, -1)
-    if gain - floor * left >= _LEAST_GAIN and left <= max(bent.spare[0], 0):
-        bent.spare[0] -= left
-        points[at, 0], points[at, 1] = x, y
-        return True
-    _sweep_leg(bent, ax, ay, now_x, now_y, radius, 1)
-    _sweep_leg(bent, now_x, now_y, cx, cy, radius, 1)
-    _sweep_leg(bent, ax, ay, x, y, radius, -1)
-    _sweep_leg(bent, x, y, cx, cy, radius, -1)
-    return False
+    _set_between(bent, 0, one, at)
+    _set_between(bent, 1, at, three)
+    set_leg(bent.legs, 2, ax, ay, x, y)
+    set_leg(bent.legs, 3, x, y, cx, cy)
+    if not _is_worth_it(bent, 2, 4, gain, radius, floor):
+        return False
+    points[at, 0], points[at, 1] = x, y
+    return True
 
 
-@njit(cache=True, nogil=True)
+@part
 def _improve_at(bent: Bent, at: int, radius: float, turning: float, floor: float) -> bool:
     """Try all changes around a point; whether one was made."""
     points = bent.points
@@ -227,7 +226,8 @@ def _improve_at(bent: Bent, at: int, radius: float, turning: float, floor: float
         if _try_shortcut(bent, before, span, radius, turning, floor):
             return True
     x, y = points[at]
-    mid_x, mid_y = (points[before] + points[after]) / 2
+    mid_x = (points[before, 0] + points[after, 0]) / 2
+    mid_y = (points[before, 1] + points[after, 1]) / 2
     for step in (6.0, 2.0):
         for goal in range(3):
             if goal == 0:
@@ -257,10 +257,7 @@ def _improve_at(bent: Bent, at: int, radius: float, turning: float, floor: float
 def _polish(bent: Bent, radius: float, turning: float, floor: float) -> None:
     """Change the way point by point, until no change costs less or it has been long enough."""
     points = bent.points
-    for at in range(len(points) - 1):
-        _sweep_leg(
-            bent, points[at, 0], points[at, 1], points[at + 1, 0], points[at + 1, 1], radius, 1
-        )
+    sweep(bent.counts, points, radius)
     waiting = np.ones(len(points), np.bool_)
     for _ in range(_ROUNDS):
         changed = False

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 from roomba.distance import distance_to_nearest
-from roomba.mask_kernels import Labels, Mask, numbered_regions
+from roomba.mask_kernels import Labels, Mask, numbered_regions, root_of
 
 _BLOCK = 5
 """Cells to a side of the blocks that are told apart."""
@@ -16,24 +19,51 @@ _SMALL = 300
 """Blocks; parts with a smaller wide place are no parts of their own."""
 
 
-def regions(floor: Mask) -> Labels:
-    """Return the number of the region of each cell of ``floor``, int32 [rows, columns]; 0: none.
+class Regions(NamedTuple):
+    """Floor in parts, told by runs of cells along rows.
+
+    ``runs`` int32 [n, 4]: row, first and last column, and number of the region, from 0 on, row by
+    row. ``bounds`` int64 [regions, 4]: first and last row and column of each. ``sizes`` int64
+    [regions], cells.
+    """
+
+    runs: NDArray[np.int32]
+    bounds: NDArray[np.int64]
+    sizes: NDArray[np.int64]
+
+
+def regions(floor: Mask) -> Regions:
+    """Return the regions of ``floor``, bool [rows, columns], numbered by their first cells.
 
     A region is a connected wide place with all that is nearer to it than to other wide places, or
     connected floor without any.
     """
-    rows, columns = floor.shape
-    padded = np.pad(floor, ((0, -rows % _BLOCK), (0, -columns % _BLOCK)))
-    parts = padded.reshape(padded.shape[0] // _BLOCK, _BLOCK, padded.shape[1] // _BLOCK, _BLOCK)
-    middles = parts[:, _BLOCK // 2, :, _BLOCK // 2]
+    shape = (-(-floor.shape[0] // _BLOCK), -(-floor.shape[1] // _BLOCK))
+    middles, blocks = np.zeros(shape, np.bool_), np.zeros(shape, np.bool_)
+    _to_blocks(floor, middles, blocks)
     wide = numbered_regions(distance_to_nearest(~middles) > _NARROW)
     sizes = np.bincount(wide.ravel())
     wide[(sizes < _SMALL)[wide]] = 0
-    _spread(parts.any(axis=(1, 3)), wide)
-    fine = np.repeat(np.repeat(wide, _BLOCK, axis=0), _BLOCK, axis=1)[:rows, :columns]
-    labels: Labels = np.zeros(floor.shape, np.int32)
-    _number(floor, fine, labels)
-    return labels
+    _spread(blocks, wide)
+    found: Regions = _joined(_runs(floor, wide))
+    return found
+
+
+@njit(cache=True, nogil=True)
+def _to_blocks(floor: Mask, middles: Mask, blocks: Mask) -> None:
+    """Write which blocks have floor in their middle, and which have any."""
+    rows, columns = floor.shape
+    for row in range(rows):
+        at_row = row // _BLOCK
+        for at_column in range(blocks.shape[1]):
+            for column in range(at_column * _BLOCK, min((at_column + 1) * _BLOCK, columns)):
+                if floor[row, column]:
+                    blocks[at_row, at_column] = True
+                    break
+    half = _BLOCK // 2
+    for at_row in range((rows - half + _BLOCK - 1) // _BLOCK):
+        for at_column in range((columns - half + _BLOCK - 1) // _BLOCK):
+            middles[at_row, at_column] = floor[at_row * _BLOCK + half, at_column * _BLOCK + half]
 
 
 @njit(cache=True, nogil=True)
@@ -69,35 +99,83 @@ def _spread(floor: Mask, labels: Labels) -> None:
 
 
 @njit(cache=True, nogil=True)
-def _number(floor: Mask, kinds: Labels, labels: Labels) -> None:
-    """Number the floor that is connected over sides and of one kind, in the order of cells."""
+def _runs(floor: Mask, kinds: Labels) -> NDArray[np.int32]:
+    """Return the runs of floor of one kind: row, first and last column, and kind; row by row."""
     rows, columns = floor.shape
-    stack = np.empty((floor.size + 1, 2), np.int32)
-    count = 0
+    runs = np.empty((4096, 4), np.int32)
+    size = 0
     for row in range(rows):
-        for column in range(columns):
-            if not floor[row, column] or labels[row, column] > 0:
-                continue
-            count += 1
-            labels[row, column] = count
-            stack[0, 0], stack[0, 1] = row, column
-            size = 1
-            while size > 0:
-                size -= 1
-                at_row, at_column = np.int64(stack[size, 0]), np.int64(stack[size, 1])
-                for to_row, to_column in (
-                    (at_row - 1, at_column),
-                    (at_row + 1, at_column),
-                    (at_row, at_column - 1),
-                    (at_row, at_column + 1),
-                ):
-                    if (
-                        0 <= to_row < rows
-                        and 0 <= to_column < columns
-                        and floor[to_row, to_column]
-                        and labels[to_row, to_column] == 0
-                        and kinds[to_row, to_column] == kinds[at_row, at_column]
-                    ):
-                        labels[to_row, to_column] = count
-                        stack[size, 0], stack[size, 1] = to_row, to_column
-                        size += 1
+        if size + columns > len(runs):
+            larger = np.empty((2 * len(runs) + columns, 4), np.int32)
+            larger[:size] = runs[:size]
+            runs = larger
+        kind = np.int32(-1)
+        for at_column in range(kinds.shape[1]):
+            here = kinds[row // _BLOCK, at_column]
+            for column in range(at_column * _BLOCK, min((at_column + 1) * _BLOCK, columns)):
+                if not floor[row, column]:
+                    kind = np.int32(-1)
+                    continue
+                if kind != here:
+                    kind = here
+                    runs[size, 0], runs[size, 1], runs[size, 3] = row, column, here
+                    size += 1
+                runs[size - 1, 2] = column
+    return runs[:size]
+
+
+@njit(cache=True, nogil=True)
+def _joined(runs: NDArray[np.int32]) -> Regions:
+    """Number the runs that are connected over sides and of one kind."""
+    count = len(runs)
+    parents = np.arange(count).astype(np.int32)
+    above = 0
+    for at in range(count):
+        row, first, last = runs[at, 0], runs[at, 1], runs[at, 2]
+        while runs[above, 0] < row - 1 or (runs[above, 0] == row - 1 and runs[above, 2] < first):
+            above += 1
+        other = above
+        while runs[other, 0] == row - 1 and runs[other, 1] <= last:
+            if runs[other, 3] == runs[at, 3]:
+                low, high = root_of(parents, other), root_of(parents, at)
+                parents[max(low, high)] = min(low, high)
+            other += 1
+    regions = 0
+    for at in range(count):
+        root = root_of(parents, at)
+        if root == at:
+            runs[at, 3] = regions
+            regions += 1
+        else:
+            runs[at, 3] = runs[root, 3]
+    bounds = np.empty((regions, 4), np.int64)
+    bounds[:, 0::2] = 1 << 40
+    bounds[:, 1::2] = -1
+    sizes = np.zeros(regions, np.int64)
+    for at in range(count):
+        row, first, last, region = runs[at]
+        bound = bounds[region]
+        bound[0], bound[1] = min(bound[0], row), max(bound[1], row)
+        bound[2], bound[3] = min(bound[2], first), max(bound[3], last)
+        sizes[region] += last - first + 1
+    return Regions(runs, bounds, sizes)
+
+
+@njit(cache=True, nogil=True)
+def mask_of(found: Regions, region: int) -> Mask:
+    """Return a region's cells within its bounds, bool [rows, columns]."""
+    top, bottom, left, right = found.bounds[region]
+    mask = np.zeros((bottom - top + 1, right - left + 1), np.bool_)
+    low, high = 0, len(found.runs)
+    while low < high:
+        middle = (low + high) // 2
+        if found.runs[middle, 0] < top:
+            low = middle + 1
+        else:
+            high = middle
+    while low < len(found.runs) and found.runs[low, 0] <= bottom:
+        row, first, last, number = found.runs[low]
+        if number == region:
+            mask[row - top, first - left : last - left + 1] = True
+        low += 1
+    return mask

@@ -10,7 +10,8 @@ from numba import njit
 from numpy.typing import NDArray
 
 from roomba.mask_kernels import Mask
-from roomba.planning.coverage_regions import regions
+from roomba.planning.coverage_masks import transposed
+from roomba.planning.coverage_regions import mask_of, regions
 
 Line = NDArray[np.float64]
 
@@ -29,17 +30,15 @@ def swaths(left: Mask, middles: Mask, radius: float) -> list[Line]:
     from where the middle may not be that the middle may be anywhere within ``radius``, cells, of
     it. Each region is swept along rows or along columns, whichever takes less way.
     """
-    labels = regions(left)
-    sizes = np.bincount(labels.ravel())
+    parts = regions(left)
+    across = transposed(middles)
     lines: list[Line] = []
-    for label, box in _boxes(labels, sizes):
-        if sizes[label] < _SPECK:
-            continue
-        region = np.ascontiguousarray(labels[box] == label)
-        offset = np.array([box[1].start, box[0].start], np.float64)
-        floor = middles[box]
-        flat, flat_cost = _along_rows(region, floor, radius)
-        upright, upright_cost = _along_rows(np.ascontiguousarray(region.T), floor.T, radius)
+    for region in np.flatnonzero(parts.sizes >= _SPECK).tolist():
+        mask = mask_of(parts, region)
+        top, _, left_side, _ = parts.bounds[region].tolist()
+        offset = np.array([left_side, top], np.float64)
+        flat, flat_cost = _along_rows(mask, middles, top, left_side, radius)
+        upright, upright_cost = _along_rows(transposed(mask), across, left_side, top, radius)
         if flat_cost <= upright_cost:
             lines.extend(line + offset for line in flat)
         else:
@@ -47,72 +46,49 @@ def swaths(left: Mask, middles: Mask, radius: float) -> list[Line]:
     return lines
 
 
-def _boxes(
-    labels: NDArray[np.int32], sizes: NDArray[np.int64]
-) -> list[tuple[int, tuple[slice, slice]]]:
-    """Return each region's number and the window that it fills."""
-    bounds = np.empty((len(sizes), 4), np.int64)
-    _find_bounds(labels, bounds)
-    return [
-        (label, (slice(b[0], b[1] + 1), slice(b[2], b[3] + 1)))
-        for label, b in enumerate(bounds.tolist())
-        if label > 0
-    ]
+def _along_rows(
+    region: Mask, floor: Mask, top: int, left: int, radius: float
+) -> tuple[Line, float]:
+    """Return swaths along rows that sweep a region, and what they cost, in cells of way.
 
-
-@njit(cache=True, nogil=True)
-def _find_bounds(labels: NDArray[np.int32], bounds: NDArray[np.int64]) -> None:
-    bounds[:, 0::2] = 1 << 40
-    bounds[:, 1::2] = -1
-    for row in range(labels.shape[0]):
-        for column in range(labels.shape[1]):
-            bound = bounds[labels[row, column]]
-            bound[0] = min(bound[0], row)
-            bound[1] = max(bound[1], row)
-            bound[2] = min(bound[2], column)
-            bound[3] = max(bound[3], column)
-
-
-def _along_rows(region: Mask, floor: Mask, radius: float) -> tuple[list[Line], float]:
-    """Return swaths along rows that sweep a region, and what they cost, in cells of way."""
-    runs = _runs_by_row(region, np.ascontiguousarray(floor), int(radius + 1e-6), _GAP)
-    costs = np.zeros(len(region))
-    np.add.at(costs, runs[:, 0], runs[:, 2] - runs[:, 1] + _NEW_SWATH)
+    float64 [n, 2, 2]. The first cell of ``region`` is the one at (``top``, ``left``) of ``floor``.
+    """
+    runs = _runs_by_row(region, floor, top, left, int(radius + 1e-6), _GAP)
+    ways = runs[:, 2] - runs[:, 1] + _NEW_SWATH
+    costs = np.bincount(runs[:, 0], ways, len(region)).astype(np.float64)
     rows = _cheapest_rows(region.any(axis=1), costs, int(2 * radius + 1e-6))
     chosen = runs[np.isin(runs[:, 0], rows)]
-    lines = [
-        np.array([[first, row], [last, row]], np.float64) for row, first, last in chosen.tolist()
-    ]
-    return lines, float(costs[rows].sum())
+    return chosen[:, [[1, 0], [2, 0]]].astype(np.float64), float(costs[rows].sum())
 
 
 @njit(cache=True, nogil=True)
-def _runs_by_row(region: Mask, floor: Mask, radius: int, gap: int) -> NDArray[np.int64]:
+def _runs_by_row(
+    region: Mask, floor: Mask, top: int, left: int, radius: int, gap: int
+) -> NDArray[np.int64]:
     """Return the swaths that each row would need, int64 [n, 3]: row, first and last column."""
     rows, columns = region.shape
     runs = np.empty((1024, 3), np.int64)
     size = 0
-    depth = np.zeros(columns, np.int32)
+    # The last row, up to ``radius`` ahead, where there is something to sweep in each column.
+    seen = np.full(columns, -radius - 1, np.int32)
     for row in range(min(radius, rows)):
-        _add(depth, region[row], 1)
+        _look(seen, region[row], row)
     for row in range(rows):
         if row + radius < rows:
-            _add(depth, region[row + radius], 1)
-        if row - radius - 1 >= 0:
-            _add(depth, region[row - radius - 1], -1)
-        along = floor[row]
+            _look(seen, region[row + radius], row + radius)
+        if size + columns > len(runs):
+            larger = np.empty((2 * len(runs) + columns, 3), np.int64)
+            larger[:size] = runs[:size]
+            runs = larger
+        along = floor[top + row, left : left + columns]
         last = -gap - 2
         for column in range(columns):
             if not along[column]:
                 last = -gap - 2
                 continue
-            if depth[column] == 0:
+            if seen[column] < row - radius:
                 continue
             if column - last > gap:
-                if size == len(runs):
-                    larger = np.empty((2 * size, 3), np.int64)
-                    larger[:size] = runs
-                    runs = larger
                 runs[size, 0], runs[size, 1] = row, column
                 size += 1
             runs[size - 1, 2] = column
@@ -121,9 +97,10 @@ def _runs_by_row(region: Mask, floor: Mask, radius: int, gap: int) -> NDArray[np
 
 
 @njit(cache=True, nogil=True)
-def _add(depth: NDArray[np.int32], cells: NDArray[np.bool_], change: int) -> None:
-    for column in range(depth.size):
-        depth[column] += change * np.int32(cells[column])
+def _look(seen: NDArray[np.int32], cells: NDArray[np.bool_], row: int) -> None:
+    for column in range(seen.size):
+        if cells[column]:
+            seen[column] = row
 
 
 @njit(cache=True, nogil=True)

@@ -1,0 +1,136 @@
+"""Submaps and where they lie on the map: tied together by links, moved until these agree."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.config import LocalizationConfig
+from roomba.perception.slam.linking import Linker
+from roomba.perception.slam.mapping_config import MappingConfig
+from roomba.perception.slam.pose_graph import Link, composed, optimised, relative_to
+from roomba.perception.slam.squaring import phase_of_walls, turn_of_walls
+from roomba.perception.slam.submap import Keyframe, Submap, moved
+
+Floats = NDArray[np.float64]
+
+_CLOUD: Final = 1500
+"""Points of a submap that are matched to others."""
+_OF_PEOPLE: Final = np.diag([0.05**-2, 0.05**-2, 0.05**-2])
+"""1/m2, 1/rad2; of a link to where people say that the robot is."""
+_REFINEMENTS: Final = 2
+"""Times that all links are looked for anew when the map is finished."""
+
+
+class SubmapGraph:
+    """``submaps`` and their ``poses``, float64 [n, 3], map frame; the newest is the last one."""
+
+    def __init__(
+        self, config: MappingConfig, localization: LocalizationConfig, start: Floats
+    ) -> None:
+        """Begin with an empty submap at ``start``, float64 [3]."""
+        self._config, self._localization = config, localization
+        self._linker: Linker | None = None
+        self.submaps = [Submap(0.0)]
+        self.poses = start[None].copy()
+        self.links: list[Link] = []
+
+    def use_reach(self, reach: float) -> None:
+        """Take how far the points of a submap are from its origin at most, m."""
+        self._linker = Linker(self._config, reach)
+
+    @property
+    def newest(self) -> Submap:
+        """The submap that the robot is in."""
+        return self.submaps[-1]
+
+    def placed(self, relative: Floats) -> Floats:
+        """Return a pose in the newest submap, [3], in the map's frame."""
+        placed: Floats = composed(self.poses[-1:], relative[None])[0]
+        return placed
+
+    def begin(self, relative: Floats, way: float) -> None:
+        """Begin a submap at a pose of the newest one, [3]; ``way`` is what was driven in all, m."""
+        information = self._driven(way - self.newest.way)
+        count = len(self.submaps)
+        self.links.append(Link(count - 1, count, relative.copy(), information, False))
+        self._add(self.placed(relative), way)
+
+    def begin_at(self, pose: Floats, way: float) -> None:
+        """Begin a submap at a pose of the map, [3], that somebody told."""
+        parent = int(np.argmin(np.hypot(*(self.poses[:, :2] - pose[:2]).T)))
+        relative = relative_to(self.poses[parent : parent + 1], pose[None])[0]
+        self.links.append(Link(parent, len(self.submaps), relative, _OF_PEOPLE, False))
+        self._add(pose, way)
+
+    def close(self) -> None:
+        """Link the newest submap to all that show the same walls, and let all agree."""
+        child = len(self.submaps) - 1
+        self.newest.close(_CLOUD)
+        self.links += self._links_of(child, self.links)
+        self.poses = optimised(self.poses, self.links)
+
+    def refine(self) -> None:
+        """Look for all links anew, near where submaps lie by the present ones."""
+        for _ in range(_REFINEMENTS):
+            known = self.links
+            self.links = [link for link in known if not link.may_be_wrong]
+            for child in range(1, len(self.submaps)):
+                self.links += self._links_of(child, known)
+            self.poses = optimised(self.poses, self.links)
+
+    def square(self, resolution: float) -> tuple[float, float]:
+        """Turn all around the first submap, so that walls lie along the axes.
+
+        Returns where, x and y, m, walls then lie between the cells of a grid.
+        """
+        turn = turn_of_walls(self._cloud())
+        around = self.poses[0, :2].copy()
+        cosine, sine = math.cos(turn), math.sin(turn)
+        back = np.array([[cosine, -sine], [sine, cosine]])
+        self.poses[:, :2] = (self.poses[:, :2] - around) @ back + around
+        self.poses[:, 2] -= turn
+        return phase_of_walls(self._cloud(), resolution)
+
+    def keyframes(self) -> Iterator[tuple[Keyframe, Floats]]:
+        """Go through all keyframes and their poses, [3], map frame, in the order of time."""
+        for submap, pose in zip(self.submaps, self.poses, strict=True):
+            yield from zip(submap.keyframes, submap.poses(pose), strict=True)
+
+    def keyframes_beside(self, numbers: list[int]) -> Iterator[tuple[Keyframe, Floats]]:
+        """Go through the keyframes of some submaps; their poses, [3], are in the newest one."""
+        for number in numbers:
+            relative = relative_to(self.poses[-1:], self.poses[number : number + 1])[0]
+            submap = self.submaps[number]
+            yield from zip(submap.keyframes, submap.poses(relative), strict=True)
+
+    def near(self, pose: Floats) -> list[int]:
+        """Return the numbers of the submaps that lie near a pose, [3], map frame."""
+        away = np.hypot(*(self.poses[:, :2] - pose[:2]).T)
+        found: list[int] = np.flatnonzero(away < self._config.link_radius).tolist()
+        return found
+
+    def _add(self, pose: Floats, way: float) -> None:
+        self.poses = np.vstack((self.poses, pose))
+        self.submaps.append(Submap(way))
+
+    def _links_of(self, child: int, known: list[Link]) -> list[Link]:
+        if self._linker is None:
+            return []
+        return self._linker.links_to(child, child, self.submaps, self.poses, known)
+
+    def _driven(self, way: float) -> Floats:
+        """Return the information of a link that follows from having driven so far, m."""
+        numbers = self._localization
+        deviations = np.array([numbers.way_noise, numbers.way_noise, numbers.turn_noise])
+        information: Floats = np.diag((deviations * math.sqrt(max(way, 0.1))) ** -2.0)
+        return information
+
+    def _cloud(self) -> Floats:
+        """Return points of all submaps, float64 [n, 4], map frame."""
+        poses = zip(self.submaps, self.poses, strict=True)
+        return np.concatenate([moved(submap.cloud, pose) for submap, pose in poses])
