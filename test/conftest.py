@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -15,6 +16,10 @@ settings.register_profile(
     "project", deadline=None, suppress_health_check=[HealthCheck.too_slow], derandomize=True
 )
 settings.load_profile("project")
+
+# Tests that somebody starts in the background inherit that Ctrl-C is ignored, and so would the
+# programs that they start: these would end after their deadlines only.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 
 GRAPH_FIXTURES = {"graph", "robot", "shared_robot"}
 
