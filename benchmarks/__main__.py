@@ -68,7 +68,7 @@ def _parser() -> argparse.ArgumentParser:
         "--maps",
         type=Path,
         metavar="FOLDER",
-        help="measure lidar, localization, rooms, coverage on the map_server maps in it",
+        help="measure lidar, localization, rooms, coverage, mapping on the map_server maps in it",
     )
     return parser
 

@@ -20,6 +20,7 @@ TOPICS: MappingProxyType[str, str] = MappingProxyType(
         "localization": "where it is: errors on long drives, and finding itself again",
         "rooms": "floors cut into rooms, as people cut them",
         "coverage": "whole homes cleaned: how much of the floor, by how long a way, how fast",
+        "mapping": "homes explored without a map: how true the map becomes, and what that takes",
         "ros": "round trips, and the speed of the whole graph",
     }
 )

@@ -126,8 +126,7 @@ class HeadlessExplorer:
         """Let one tick pass."""
         step = self.mission.tick(self.senses())
         command = self._drive.command(self.seen, step.twist)
-        for _ in range(STEPS_PER_TICK):
-            self.simulator.advance(command, STEP, 1)
+        self.simulator.advance(command, STEP, STEPS_PER_TICK)
         self.seen = self.simulator.observe()
         self._sense()
         self._show_map()

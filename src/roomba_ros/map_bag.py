@@ -20,6 +20,7 @@ from roomba.geometry import Pose
 from roomba.mapping_run.command import COMPLETED, guarded, tell, write_json
 from roomba.mapping_run.files import write_files
 from roomba.mapping_run.options import Output, Parser, output_of
+from roomba.perception.slam.mapping_config import load_mapping_config
 from roomba.sim.progress import progress
 from roomba_ros.convert import pose_of
 from roomba_ros.localize_mounts import Mounts
@@ -94,8 +95,10 @@ def _map(options: _Options, recording: Recording) -> BagMap:
     base = (first[0].child_frame_id if first else "") or "base_link"
     frame = (first[0].header.frame_id.lstrip("/") if first else "") or "odom"
     start = _first_truth(recording, truth)
-    config = load_robot_config(package_folder() / "config" / "robot.yaml")
-    replay = MapReplay(config, _mounts(recording, frame), base, start or Pose())
+    folder = package_folder() / "config"
+    config = load_robot_config(folder / "robot.yaml")
+    mapping = load_mapping_config(folder / "mapping.yaml")
+    replay = MapReplay(config, mapping, _mounts(recording, frame), base, start or Pose())
     true: list[tuple[float, float, float]] = []
     began = time.perf_counter()
     with progress("Mapping", options.output.quiet) as show:

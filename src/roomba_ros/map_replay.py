@@ -31,9 +31,10 @@ class MapReplay:
     ``rows`` are t (s), the mapper's pose, and that by odometry alone, x, y (m), theta (rad) each.
     """
 
-    def __init__(self, config: RobotConfig, mounts: Mounts, base: str, start: Pose) -> None:
+    def __init__(
+        self, config: RobotConfig, mapping: MappingConfig, mounts: Mounts, base: str, start: Pose
+    ) -> None:
         """Begin at ``start``, map frame; ``base`` is the body's frame, to which mounts lead."""
-        mapping = MappingConfig()
         self.mapper = Mapper(mapping, config.localization, config.gyro, start)
         self.blind = BlindMap(mapping, config.localization, config.gyro, start)
         self.scans = 0

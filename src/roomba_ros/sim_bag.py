@@ -96,7 +96,10 @@ class SimBag:
         self._put("/ground_truth/pose", pose_message(now, seen.pose, _MAP), now)
         if seen.scans != self._scans:
             self._scans = seen.scans
-            scan = scan_message(now, robot.simulator.ranges, config.lidar, _LASER)
+            # Taken when it was due, which may be a tick ago.
+            due = float(robot.simulator.numbers["next_scan"]) - 1.0 / config.lidar.rate
+            taken = min(due, now)
+            scan = scan_message(taken, robot.simulator.ranges, config.lidar, _LASER)
             self._put("/scan", scan, now)
         if now - self._battery_at >= _BATTERY_PERIOD - 1e-6:
             self._battery_at = now

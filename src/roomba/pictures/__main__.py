@@ -23,6 +23,7 @@ from roomba.pictures.edge import picture_of_edge
 from roomba.pictures.faults import picture_of_faults
 from roomba.pictures.lidar import picture_of_lidar
 from roomba.pictures.localization import picture_of_localization, picture_of_relocation
+from roomba.pictures.mapping import picture_of_map_errors, picture_of_mapping
 from roomba.pictures.motion import picture_of_motion
 from roomba.pictures.moving import picture_of_moving
 from roomba.pictures.odometry import picture_of_odometry
@@ -55,6 +56,8 @@ PICTURES: dict[str, tuple[str, Callable[[Home], Picture]]] = {
     "relocation": ("empty", picture_of_relocation),
     "rooms": ("family", picture_of_rooms),
     "cleaning": ("flat", picture_of_cleaning),
+    "mapping": ("flat", picture_of_mapping),
+    "map_errors": ("flat", picture_of_map_errors),
 }
 """Each picture by the name of its file: the home that it is of, and what makes it."""
 

@@ -25,6 +25,8 @@ _LOOK_FROM: Final = 1.2
 """m; so near to a frontier the robot goes to look beyond it, at most."""
 _NEARER: Final = 2.0
 """m of way that one metre nearer to the frontier is worth."""
+_STRIDE: Final = 0.3
+"""m; about so far apart are the places of a frontier that are tried."""
 _SMALL: Final = 0.4
 _SMALL_COSTS: Final = 1.0
 """m; a frontier shorter than the one costs the other more: what is large comes first."""
@@ -69,14 +71,10 @@ def frontiers(
     for cells in _by_number(labels, count):
         if len(cells) < _LEAST_CELLS:
             continue
-        row, column = cells[np.argmin(np.abs(cells - cells.mean(axis=0)).sum(axis=1))].tolist()
-        middle = frame.centre_of(row, column)
-        if any(math.dist(middle, point) < away for point in left_out):
+        seen = _seen_from(cells, occupancy, ways, left_out, away)
+        if seen is None:
             continue
-        radius = int(_LOOK_FROM / frame.resolution)
-        to_row, to_column, cost = viewpoint(occupancy.values, ways, row, column, radius, _NEARER)
-        if not math.isfinite(cost):
-            continue
+        middle, (to_row, to_column) = seen
         length = len(cells) * frame.resolution
         way = float(ways[to_row, to_column]) * frame.resolution
         found.append(Frontier(middle, frame.centre_of(to_row, to_column), way, length))
@@ -95,6 +93,31 @@ def is_frontier(occupancy: OccupancyMap, point: Point, radius: float) -> bool:
     if values.size:
         frontier_cells(values, 1, frontier)
     return int(frontier.sum()) >= _LEAST_CELLS
+
+
+def _seen_from(
+    cells: NDArray[np.int64],
+    occupancy: OccupancyMap,
+    ways: NDArray[np.float64],
+    left_out: Sequence[Point],
+    away: float,
+) -> tuple[Point, tuple[int, int]] | None:
+    """Return a place of a frontier, m, near its middle if that can be, and the cell to look from.
+
+    ``cells`` is int64 [n, 2]; None when no place of it can be looked at.
+    """
+    frame = occupancy.frame
+    radius = int(_LOOK_FROM / frame.resolution)
+    nearest_first = np.argsort(np.abs(cells - cells.mean(axis=0)).sum(axis=1))
+    every = max(1, round(_STRIDE / frame.resolution))
+    for row, column in cells[nearest_first[::every]].tolist():
+        place = frame.centre_of(row, column)
+        if any(math.dist(place, point) < away for point in left_out):
+            continue
+        to_row, to_column, cost = viewpoint(occupancy.values, ways, row, column, radius, _NEARER)
+        if math.isfinite(cost):
+            return place, (to_row, to_column)
+    return None
 
 
 def _cost(frontier: Frontier) -> float:

@@ -126,16 +126,17 @@ def _ways(submap: int, poses: Floats, links: list[Link]) -> list[float]:
 
 
 def _starts(thought: Floats, farthest: float) -> list[Floats]:
-    """Return where to begin: where it was thought to be, and around it if it drifted far."""
+    """Return where to begin: where it was thought to be, and ever farther around it."""
     reach = int(max(0.0, farthest - 2.0 * _BESIDE) / _STEP)
     if reach == 0:
         return [thought]
     shifts = np.arange(-reach, reach + 1) * _STEP
-    turns = np.array([-1.0, 0.0, 1.0]) * _TURN_STEP
+    turns = np.array([0.0, -1.0, 1.0]) * _TURN_STEP
+    places = [(float(x), float(y)) for x in shifts for y in shifts]
+    # The nearest first: the first that fits is taken, and rooms look alike from afar.
     return [
         thought + np.array([x, y, turn])
-        for x in shifts
-        for y in shifts
+        for x, y in sorted(places, key=lambda place: math.hypot(*place))
         for turn in turns
         if math.hypot(x, y) <= farthest
     ]

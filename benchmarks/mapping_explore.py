@@ -1,0 +1,81 @@
+"""A robot without a map explores a home; then it cleans that home by the map that it made."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from benchmarks.coverage_clean import home_named, true_floor
+from benchmarks.coverage_floor import drawn
+from roomba.config import RobotConfig
+from roomba.grid import OccupancyMap
+from roomba.headless_mission import HeadlessMission
+from roomba.mapping_run.runs import Drawn, run_trial
+from roomba.mission.clean_request import CleanOutcome
+from roomba.sim.trial import Trial
+
+
+@dataclass(frozen=True)
+class Task:
+    """An exploration: ``folder`` is of map_server maps, or "" for a shipped home."""
+
+    home: str
+    seed: int = 0
+    folder: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class Explored:
+    """What came of it: the robot's map, and the one that dead reckoning makes of its scans.
+
+    ``seconds`` are robot time, ``way`` m; ``is_done`` says that it docked and
+    takes itself to have seen all.
+    """
+
+    task: Task
+    made: Drawn
+    blind: Drawn
+    seconds: float
+    way: float
+    hits: int
+    is_done: bool
+
+
+@dataclass(frozen=True)
+class Cleaned:
+    """What came of a clean: the share of the true floor, 0..1, and whether it came home."""
+
+    share: float
+    is_home_and_done: bool
+
+
+def explore(task: Task) -> Explored:
+    """Make an exploration with the shipped noise."""
+    path = str(Path(task.folder) / f"{task.home}.yaml") if task.folder else task.home
+    run = run_trial(Trial(home=path, seed=task.seed, sensors="noisy"))
+    record = run.record
+    return Explored(
+        task,
+        run.made,
+        run.by_odometry,
+        record.result.duration,
+        record.result.distance,
+        record.hits,
+        run.is_completed,
+    )
+
+
+def clean(task: Task, known: OccupancyMap | None) -> Cleaned:
+    """Clean a home by a map of it, its own true one by default, counted by true poses."""
+    home = home_named(task.home, task.folder)
+    robot = HeadlessMission(home, RobotConfig(sensors="noisy"), seed=task.seed, known=known)
+    here = robot.simulator.pose
+    record = robot.clean()
+    points = np.concatenate([[[here.x, here.y]], record.poses[:, 1:3]])
+    floor = true_floor(home, (robot.site.staging.x, robot.site.staging.y))
+    left = floor.floor & ~drawn(floor.frame, points)
+    share = 1.0 - float(np.count_nonzero(left)) / np.count_nonzero(floor.floor)
+    is_done = record.result.outcome is CleanOutcome.COMPLETED
+    return Cleaned(share, is_done and robot.seen.battery.is_docked)
