@@ -94,13 +94,14 @@ def ranges_of(message: LaserScan) -> NDArray[np.float32]:
 def lidar_of(message: LaserScan, mount: Pose) -> LidarModel:
     """Return the lidar that a scan is of; ``mount`` is its place in the robot's frame.
 
-    Raises ValueError for a scan without beams or with angles that are not finite.
+    Raises ValueError for a scan without beams, with angles that are not finite, or all one angle.
     """
-    beams = len(message.ranges)
-    if not beams or not math.isfinite(message.angle_min + beams * message.angle_increment):
+    beams, step = len(message.ranges), message.angle_increment
+    is_fan = math.isfinite(message.angle_min + beams * step) and (step != 0.0 or beams == 1)
+    if not (beams and is_fan):
         raise ValueError(
-            f"expected a scan with beams at finite angles, got {beams} from "
-            f"{message.angle_min} on by {message.angle_increment} rad"
+            f"expected a scan with beams at finite angles, each at another one, got {beams} from "
+            f"{message.angle_min} on by {step} rad"
         )
     angles = message.angle_min + np.arange(beams) * message.angle_increment
     return LidarModel(angles, message.range_min, message.range_max, mount)

@@ -60,7 +60,7 @@ def reckon(
     if 0.0 < since < math.hypot(ahead, aside) / FASTEST_SPEED - _JOLT:
         # No robot goes as fast: whoever counts the wheels began anew.
         ahead = aside = turn = 0.0
-    elapsed = min(since, _LONGEST_STEP) if since > 0.0 and not is_first else 0.0
+    elapsed = since if 0.0 < since <= _LONGEST_STEP and not is_first else 0.0
     belief.odometry[0], belief.odometry[1] = odometry_x, odometry_y
     belief.odometry[2], belief.stamp = odometry_theta, stamp
     _go(belief, known, ahead, aside, turn, turning, elapsed)

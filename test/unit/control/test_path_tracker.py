@@ -181,6 +181,24 @@ def test_where_it_is_on_its_path_is_told() -> None:
     assert drive.tick() == Twist()
 
 
+def test_the_rest_of_its_path_begins_where_it_is() -> None:
+    points = line((0.0, 0.0), (1.0, 0.0), (1.0, 0.5), (1.6, 0.5))
+    drive = Drive(points)
+    tracker = drive.tracker
+    assert tracker.rest == pytest.approx(points)
+    while not tracker.is_done:
+        drive.tick()
+        rest = tracker.rest
+        assert shapely.LineString(np.vstack((rest, rest[-1:]))).length == pytest.approx(
+            tracker.left, abs=1e-6
+        )
+        assert rest[-1] == pytest.approx(points[-1])
+        assert math.dist(rest[0], (drive.pose.x, drive.pose.y)) < 0.03
+        # Corners behind it are no part of it.
+        assert len(rest) <= len(points) - tracker.leg
+    assert tracker.rest == pytest.approx(points[-1:])
+
+
 def test_how_far_it_is_off_its_path_is_told() -> None:
     tracker = PathTracker(line((0.0, 0.0), (1.0, 0.0), (1.0, 1.0)), TRACKING, BODY, TICK)
     assert tracker.off_path(Pose(0.5, 0.2, 0.0)) == pytest.approx(0.2)

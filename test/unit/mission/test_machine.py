@@ -17,7 +17,15 @@ from roomba.mission.machine import (
     next_state,
 )
 
-DRIVING = (Phase.UNDOCKING, Phase.CLEANING, Phase.RETURNING, Phase.DOCKING)
+DRIVING = (
+    Phase.UNDOCKING,
+    Phase.CLEANING,
+    Phase.EXPLORING,
+    Phase.RETURNING,
+    Phase.DOCKING,
+)
+GOES_ON = {Errand.CLEAN: Phase.CLEANING, Errand.EXPLORE: Phase.EXPLORING}
+"""Errands that a charge only interrupts, and what is done on them."""
 HELD = (Phase.PAUSED, Phase.ERROR)
 STATES = [
     MissionState(phase, errand, resumes)
@@ -48,8 +56,11 @@ def test_every_state_takes_every_event(state: MissionState, event: Event) -> Non
     # Nobody drives for nothing, and no errand is lost but by commands and by its end.
     if after.drives and state.errand is not Errand.NONE:
         assert after.errand is not Errand.NONE
-    if not event.is_command and state.errand is Errand.CLEAN and after.errand is not Errand.CLEAN:
+    if not event.is_command and state.errand in GOES_ON and after.errand is not state.errand:
         assert event is Event.FINISHED or state.phase in (Phase.IDLE, Phase.DOCKED)
+    # Nobody explores on a clean, nor cleans while it explores.
+    if after.phase in GOES_ON.values() and state.phase not in HELD:
+        assert after.phase is GOES_ON.get(after.errand, state.phase)
 
 
 @pytest.mark.parametrize("phase", DRIVING)
@@ -66,6 +77,32 @@ def test_whoever_drives_can_be_stopped_paused_and_can_fail(phase: Phase, errand:
         assert resumed.errand is errand
         assert resumed.phase is (Phase.RETURNING if phase is Phase.DOCKING else phase)
     assert next_state(state, Event.STOP) == MissionState(Phase.IDLE)
+
+
+def test_an_exploration_goes_the_way_of_a_clean() -> None:
+    """All that happens to the one happens to the other; what is done in between has two names."""
+    for phase, event in itertools.product(Phase, Event):
+        if phase in GOES_ON.values():
+            continue
+        for resumes in (None, Phase.UNDOCKING, Phase.RETURNING) if phase in HELD else (None,):
+            of_clean = next_state(MissionState(phase, Errand.CLEAN, resumes), event)
+            of_exploration = next_state(MissionState(phase, Errand.EXPLORE, resumes), event)
+            assert of_exploration == _as_exploration(of_clean, event)
+    for event in Event:
+        of_clean = next_state(MissionState(Phase.CLEANING, Errand.CLEAN), event)
+        of_exploration = next_state(MissionState(Phase.EXPLORING, Errand.EXPLORE), event)
+        assert of_exploration == _as_exploration(of_clean, event)
+
+
+def _as_exploration(state: MissionState | None, event: Event) -> MissionState | None:
+    if state is None or event in (Event.CLEAN, Event.EXPLORE):
+        return state
+    phases = {Phase.CLEANING: Phase.EXPLORING}
+    return MissionState(
+        phases.get(state.phase, state.phase),
+        Errand.EXPLORE if state.errand is Errand.CLEAN else state.errand,
+        phases.get(state.resumes, state.resumes) if state.resumes else None,
+    )
 
 
 @pytest.mark.parametrize(
@@ -122,6 +159,32 @@ def test_whoever_drives_can_be_stopped_paused_and_can_fail(phase: Phase, errand:
             Event.OUT,
             MissionState(Phase.IDLE),
         ),
+        (MissionState(Phase.DOCKED), Event.EXPLORE, MissionState(Phase.UNDOCKING, Errand.EXPLORE)),
+        (
+            MissionState(Phase.UNDOCKING, Errand.EXPLORE),
+            Event.OUT,
+            MissionState(Phase.EXPLORING, Errand.EXPLORE),
+        ),
+        (
+            MissionState(Phase.EXPLORING, Errand.EXPLORE),
+            Event.FINISHED,
+            MissionState(Phase.RETURNING, Errand.HOME),
+        ),
+        (
+            MissionState(Phase.EXPLORING, Errand.EXPLORE),
+            Event.LOW,
+            MissionState(Phase.RETURNING, Errand.EXPLORE),
+        ),
+        (
+            MissionState(Phase.DOCKING, Errand.EXPLORE),
+            Event.CONTACT,
+            MissionState(Phase.CHARGING, Errand.EXPLORE),
+        ),
+        (
+            MissionState(Phase.EXPLORING, Errand.EXPLORE),
+            Event.CLEAN,
+            MissionState(Phase.UNDOCKING, Errand.CLEAN),
+        ),
         (MissionState(Phase.IDLE), Event.PAUSE, None),
         (MissionState(Phase.IDLE), Event.RESUME, None),
         (MissionState(Phase.CLEANING, Errand.CLEAN), Event.RESUME, None),
@@ -140,7 +203,9 @@ def test_each_phase_has_a_word_that_smart_homes_know() -> None:
 
 
 @given(st.lists(st.sampled_from(list(Event)), max_size=40))
-def test_from_anywhere_stop_and_clean_work_once_the_emergency_is_over(events: list[Event]) -> None:
+def test_from_anywhere_stop_clean_and_explore_work_once_the_emergency_is_over(
+    events: list[Event],
+) -> None:
     state = MissionState()
     for event in events:
         state = next_state(state, event) or state
@@ -151,3 +216,5 @@ def test_from_anywhere_stop_and_clean_work_once_the_emergency_is_over(events: li
     assert not stopped.drives
     cleaning = next_state(stopped, Event.CLEAN)
     assert cleaning == MissionState(Phase.UNDOCKING, Errand.CLEAN)
+    exploring = next_state(stopped, Event.EXPLORE)
+    assert exploring == MissionState(Phase.UNDOCKING, Errand.EXPLORE)

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from fixtures.missions import DEN, HALL, HOME, STATION, TWO_ROOMS, WALL_X, two_rooms
+import shapely
+from fixtures.missions import DEN, HALL, HOME, STATION, TABLE, TWO_ROOMS, WALL_X, two_rooms
 
 from roomba.config import RobotConfig
 from roomba.errors import RoomsError
@@ -109,3 +110,26 @@ def test_a_mask_of_the_map_is_laid_over_the_fine_grid() -> None:
     assert fine.sum() == factor**2
     x, y = HOME.map.frame.centre_of(3, 7)
     assert fine[home.frame.cell_of(x, y)]
+
+
+def test_in_a_map_that_grows_paths_keep_farther_away() -> None:
+    """What has only just been seen may stand a little elsewhere."""
+    exploring, driving = MissionConfig().exploring, MissionConfig().driving
+    assert exploring.clearance > driving.way_clearance
+    grows = Site(HOME.map, STATION, ROBOT, MissionConfig(), DockingConfig(), is_growing=True)
+    assert (grows.is_growing, site().is_growing) == (True, False)
+    table = shapely.box(*TABLE)
+    gaps = []
+    for home in (site(), grows):
+        points = home.paths.plan((1.2, 1.25), (2.65, 1.3)).points
+        gaps.append(shapely.LineString(points).distance(table) - ROBOT.body.radius)
+    assert gaps[0] == pytest.approx(driving.way_clearance, abs=0.03)
+    assert exploring.clearance - 0.01 < gaps[1] < exploring.clearance + 0.05
+    # So is the least that it accepts: this gap is too narrow for it.
+    ends = ((0.85, 1.25), (1.5, 1.25))
+    half = ROBOT.body.radius + 0.036
+    away = np.arange(half + 0.05, 1.4, 0.06)
+    fence = [(1.2, 1.25 + side, 0.05) for side in (*away.tolist(), *(-away).tolist())]
+    assert len(site().paths.plan(*ends, fence).points)
+    with pytest.raises(NoPathError):
+        grows.paths.plan(*ends, fence)

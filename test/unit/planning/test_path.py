@@ -399,3 +399,36 @@ def test_long_searches_make_their_arrays_larger() -> None:
     assert over_cells is not None
     # Eight directions make a path at most 1 / cos(22.5 degrees) times as long.
     assert 0.92 * over_cells.length < length < over_cells.length
+
+
+@given(st.tuples(st.floats(-0.7, 2.7), st.floats(-1.7, 1.7)))
+@settings(max_examples=40)
+def test_a_way_is_free_where_the_body_fits_all_along(bend: tuple[float, float]) -> None:
+    """Tight clearance counts: nearer to a box the body stands nowhere, farther it may."""
+    box = (0.5, -0.6, 1.1, 0.4)
+    planner = planner_for(room(box))
+    points = np.array([(-0.5, -1.5), bend, (2.5, 1.5)])
+    along = np.concatenate(
+        [np.linspace(points[at], points[at + 1], 400) for at in range(len(points) - 1)]
+    )
+    aside = np.maximum(np.maximum(box[:2] - along, along - box[2:]), 0.0)
+    to_walls = np.minimum(along - (-0.95, -1.95), (2.95, 1.95) - along).min()
+    gap = min(float(np.hypot(*aside.T).min()), float(to_walls))
+    assume(abs(gap - (RADIUS + TIGHT)) > 0.03)
+    assert planner.is_free(points) == (gap > RADIUS + TIGHT)
+
+
+def test_planned_ways_are_free_until_a_wall_comes_up() -> None:
+    free, shut = two_rooms(0.9), two_rooms(0.0)
+    path = planner_for(free).plan((0.0, 0.4), (2.0, 0.4))
+    assert planner_for(free).is_free(path.points)
+    assert not planner_for(shut).is_free(path.points)
+    # Comfort is not asked for: here it has the tight clearance, and little more.
+    narrow = room((-0.9, -1.9, 2.9, -0.6), (-0.9, -0.2, 2.9, 1.9))
+    between = np.array([(-0.7, -0.4), (2.7, -0.4)])
+    assert planner_for(narrow).is_free(between)
+    assert not PathPlanner(narrow, RADIUS, 0.04, 0.03).is_free(between)
+    # What was driven already counts no more.
+    assert planner_for(shut).is_free(np.array([(1.6, 0.4), (2.0, 0.4)]))
+    assert planner_for(shut).is_free(np.array([(1.6, 0.4)]))
+    assert not planner_for(free).is_free(np.array([(0.0, 0.4), (-9.0, 0.4)]))

@@ -24,7 +24,8 @@ def turn_of_walls(cloud: Floats) -> float:
 
     ``cloud`` is float64 [n, 4], points with normals.
     """
-    angles = np.arctan2(cloud[:, 3], cloud[:, 2])
+    # Of columns apart from each other numpy's last bit depends on where they lie in memory.
+    angles = np.arctan2(np.ascontiguousarray(cloud[:, 3]), np.ascontiguousarray(cloud[:, 2]))
     quarter = math.pi / 2.0
     off = np.remainder(angles + quarter / 2.0, quarter) - quarter / 2.0
     near = off[np.abs(off) < _NEAR]

@@ -1,0 +1,284 @@
+"""Exploring as a mission: commands and what comes up, without a world; the map grows by hand."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+from fixtures.exploring import (
+    AWAY,
+    CONFIG,
+    DOCKED,
+    HALL,
+    HERE,
+    LOW,
+    ROBOT,
+    TICK,
+    WHOLE,
+    Rig,
+    exploring,
+    known_to,
+)
+from fixtures.missions import DOOR, TWO_ROOMS, WALL_X
+
+from roomba.geometry import Twist
+from roomba.grid import OCCUPIED, OccupancyMap
+from roomba.mission.clean_request import CleanOutcome, CleanRequest
+from roomba.mission.exploration import Exploration
+from roomba.mission.machine import Errand, Event, Phase
+from roomba.mission.mission import CommandRefusedError
+from roomba.mission.path_driver import DriveState, DriveStep, PathDriver
+from roomba.mission.senses import Battery
+from roomba.perception.estimate import Knowledge
+
+
+def stuck(rig: Rig, monkeypatch: pytest.MonkeyPatch, state: DriveState) -> None:
+    """Let the drive that is under way end like that."""
+    assert rig.mission.driver is not None
+    with monkeypatch.context() as patched:
+        ended = DriveStep(state, Twist(), "it is stuck")
+        patched.setattr(PathDriver, "tick", lambda driver, senses, limit: ended)
+        rig.tick()
+
+
+def test_told_to_explore_it_drives_and_sweeps_nothing() -> None:
+    rig = exploring()
+    assert rig.phase is Phase.EXPLORING
+    assert rig.mission.state.errand is Errand.EXPLORE
+    assert rig.tick().twist != Twist()
+    assert not rig.mission.sweeps
+    assert not rig.mission.is_undisturbed
+    assert rig.mission.seconds_to_go() == 0.0
+    assert rig.mission.speed_limit(rig.senses) == CONFIG.exploring.speed
+    rough = replace(rig.senses, knowledge=Knowledge.ROUGH)
+    assert rig.mission.speed_limit(rough) == ROBOT.walk.careful_speed
+
+
+def test_from_its_station_it_comes_out_first() -> None:
+    rig = Rig(DOCKED)
+    rig.mission.explore(rig.senses)
+    assert rig.phase is Phase.UNDOCKING
+    assert rig.tick(5).twist.linear < 0.0
+
+
+def test_with_nothing_left_it_goes_home() -> None:
+    rig = exploring(WHOLE)
+    assert rig.phase is Phase.RETURNING
+    assert rig.mission.state.errand is Errand.HOME
+    rig.tick(pose=TWO_ROOMS.station, battery=DOCKED.battery)
+    assert rig.phase is Phase.DOCKED
+    result = rig.result
+    assert (result.outcome, result.message) == (CleanOutcome.COMPLETED, "")
+    assert result.unseen == ()
+    assert result.known == pytest.approx((~WHOLE.solid).sum() * 0.05**2)
+    assert result.duration == pytest.approx(6 * TICK, abs=2 * TICK)
+    assert rig.mission.exploration is None
+    assert rig.mission.take_result() is None
+
+
+def test_a_map_makes_a_difference_when_the_goal_is_seen_or_there_is_none() -> None:
+    rig = Rig()
+    assert rig.mission.wants_map(HALL)
+    rig = exploring()
+    assert not rig.mission.wants_map(HALL)
+    assert rig.mission.wants_map(WHOLE)
+
+
+def test_a_map_that_changes_nothing_leaves_it_on_its_way() -> None:
+    rig = exploring()
+    driver = rig.mission.driver
+    assert driver is not None
+    rig.grow(known_to(WALL_X + 0.2))
+    assert rig.mission.driver is driver
+    # Now the way ahead turns out to be a wall, on the map.
+    values = HALL.values.copy()
+    frame = HALL.frame
+    low = frame.cell_of(0.0, 0.0)[0]
+    values[low:, frame.cell_of(HERE.x + 0.35, 0.0)[1]] = OCCUPIED
+    rig.grow(OccupancyMap(frame, values))
+    assert rig.mission.driver is None
+    rig = exploring()
+    rig.grow(WHOLE)
+    assert rig.mission.driver is None
+    rig.tick()
+    assert rig.phase is Phase.RETURNING
+
+
+def test_a_map_of_other_paths_ends_a_drive_home() -> None:
+    rig = exploring(WHOLE)
+    rig.tick(2)
+    assert rig.mission.driver is not None
+    rig.grow(WHOLE)
+    assert rig.mission.driver is None
+
+
+def test_while_it_cleans_the_map_stays_as_it_is() -> None:
+    rig = Rig(known=WHOLE)
+    rig.mission.clean(CleanRequest(), rig.senses)
+    with pytest.raises(ValueError, match="expected no clean under way"):
+        rig.grow(WHOLE)
+
+
+@pytest.mark.parametrize("state", [DriveState.STUCK, DriveState.CUT_OFF])
+def test_a_place_that_it_does_not_get_to_is_given_up(
+    monkeypatch: pytest.MonkeyPatch, state: DriveState
+) -> None:
+    rig = exploring()
+    assert rig.mission.exploration is not None
+    stuck(rig, monkeypatch, state)
+    assert rig.phase is Phase.EXPLORING
+    assert len(rig.mission.exploration.unseen) == 1
+    rig.tick()
+    # Other places of the doorway may be left; then there is none.
+    while rig.phase is Phase.EXPLORING:
+        assert len(rig.mission.exploration.unseen) < 4
+        stuck(rig, monkeypatch, DriveState.CUT_OFF)
+        rig.tick()
+    assert rig.phase is Phase.RETURNING
+    rig.tick(pose=TWO_ROOMS.station, battery=DOCKED.battery)
+    unseen = rig.result.unseen
+    assert len(set(unseen)) == len(unseen) >= 1
+    for x, y in unseen:
+        assert WALL_X - 0.1 < x < WALL_X + 0.2
+        assert DOOR[0] < y < DOOR[1]
+
+
+def test_before_it_ends_it_tries_all(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What is given up at one tick is no reason to end: others may be left."""
+    rig = exploring()
+    rig.mission.driver = None
+
+    def give_one_up(exploration: Exploration, *asked: object) -> None:
+        if len(exploration.unseen) < 3:
+            exploration.unseen.append((0.0, 0.0))
+
+    monkeypatch.setattr(Exploration, "next_path", give_one_up)
+    rig.tick(3)
+    assert rig.phase is Phase.EXPLORING
+    rig.tick()
+    assert rig.phase is Phase.RETURNING
+
+
+def test_stuck_again_and_again_it_asks_for_help(monkeypatch: pytest.MonkeyPatch) -> None:
+    rig = exploring()
+    for times in range(CONFIG.exploring.most_stuck):
+        assert rig.phase is Phase.EXPLORING
+        stuck(rig, monkeypatch, DriveState.STUCK)
+        assert rig.mission.exploration is not None
+        assert rig.mission.exploration.times_stuck == times + 1
+        rig.mission.exploration.unseen.clear()
+        rig.tick(2)
+    stuck(rig, monkeypatch, DriveState.STUCK)
+    assert rig.phase is Phase.ERROR
+    assert rig.mission.message == "it is stuck"
+    assert rig.result.outcome is CleanOutcome.STUCK
+    rig.command(Event.RESUME)
+    assert rig.phase is Phase.EXPLORING
+    assert rig.tick(3).twist != Twist()
+
+
+def test_a_drive_that_ends_well_is_no_reason_to_give_up(monkeypatch: pytest.MonkeyPatch) -> None:
+    rig = exploring()
+    stuck(rig, monkeypatch, DriveState.DONE)
+    assert rig.mission.exploration is not None
+    assert rig.mission.exploration.unseen == []
+
+
+def test_low_it_goes_home_charges_until_it_is_full_and_goes_on() -> None:
+    rig = exploring()
+    rig.tick(round(6.0 / TICK), battery=LOW)
+    assert rig.phase is Phase.RETURNING
+    assert rig.mission.state.errand is Errand.EXPLORE
+    rig.tick(pose=TWO_ROOMS.station, battery=replace(LOW, is_docked=True))
+    assert rig.phase is Phase.CHARGING
+    assert rig.mission.take_exploration() is None
+    # Nobody knows how much an exploration still needs.
+    rig.tick(20, battery=Battery(CONFIG.energy.full_enough - 0.01, 26.0, is_docked=True))
+    assert rig.phase is Phase.CHARGING
+    rig.tick(battery=Battery(CONFIG.energy.full_enough, 26.0, is_docked=True))
+    assert rig.phase is Phase.UNDOCKING
+    assert rig.mission.exploration is not None
+
+
+def test_paused_it_stands_and_goes_on_from_there() -> None:
+    rig = exploring()
+    rig.command(Event.PAUSE)
+    assert rig.tick(20).twist == Twist()
+    assert rig.phase is Phase.PAUSED
+    assert rig.mission.take_exploration() is None
+    rig.command(Event.RESUME)
+    assert rig.phase is Phase.EXPLORING
+    assert rig.tick(3).twist != Twist()
+
+
+@pytest.mark.parametrize(
+    ("event", "outcome", "phase"),
+    [
+        (Event.STOP, CleanOutcome.STOPPED, Phase.IDLE),
+        (Event.DOCK, CleanOutcome.STOPPED, Phase.RETURNING),
+        (Event.EMERGENCY, CleanOutcome.FAULT, Phase.EMERGENCY),
+    ],
+)
+@pytest.mark.parametrize("is_paused", [False, True])
+def test_commands_end_it(
+    event: Event, outcome: CleanOutcome, phase: Phase, is_paused: bool
+) -> None:
+    rig = exploring()
+    if is_paused:
+        rig.command(Event.PAUSE)
+    rig.command(event, "somebody pressed it")
+    assert rig.phase is phase
+    assert rig.mission.exploration is None
+    assert rig.result.outcome is outcome
+    if event is Event.EMERGENCY:
+        with pytest.raises(CommandRefusedError, match="cannot explore now"):
+            rig.mission.explore(rig.senses)
+        rig.command(Event.RELEASE)
+        assert rig.phase is Phase.IDLE
+    rig.mission.explore(rig.senses)
+    assert rig.mission.state.errand is Errand.EXPLORE
+
+
+def test_a_newer_errand_takes_over() -> None:
+    rig = exploring()
+    rig.mission.explore(rig.senses)
+    # The end of the older one must not be taken for that of the newer.
+    assert rig.mission.take_exploration() is None
+    assert rig.mission.exploration is not None
+    rig.mission.clean(CleanRequest(), rig.senses)
+    assert rig.result.outcome is CleanOutcome.STOPPED
+    assert rig.mission.exploration is None
+    rig.mission.explore(rig.senses)
+    assert rig.mission.cleaning is None
+    cleaned = rig.mission.take_result()
+    assert cleaned is not None
+    assert cleaned.outcome is CleanOutcome.STOPPED
+    assert rig.mission.take_exploration() is None
+
+
+def test_with_too_little_charge_it_does_not_begin() -> None:
+    rig = Rig(replace(AWAY, battery=Battery(0.1, 26.0)))
+    with pytest.raises(CommandRefusedError, match="bring the robot to its station"):
+        rig.mission.explore(rig.senses)
+    assert rig.phase is Phase.IDLE
+
+
+@pytest.mark.parametrize(
+    ("changes", "outcome"),
+    [
+        ({"lifted": True}, CleanOutcome.FAULT),
+        ({"knowledge": Knowledge.LOST, "trouble": "carried"}, CleanOutcome.LOST),
+        ({"battery": Battery(0.001, 26.0)}, CleanOutcome.BATTERY),
+    ],
+)
+def test_what_goes_wrong_is_told_and_can_be_resumed(
+    changes: dict[str, object], outcome: CleanOutcome
+) -> None:
+    rig = exploring()
+    rig.tick(1, **changes)
+    assert rig.phase is Phase.ERROR
+    assert rig.result.outcome is outcome
+    rig.tick(lifted=False, knowledge=Knowledge.KNOWN, battery=Battery())
+    rig.command(Event.RESUME)
+    assert rig.phase is Phase.EXPLORING
+    assert rig.tick(3).twist != Twist()

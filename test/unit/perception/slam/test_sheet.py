@@ -1,0 +1,93 @@
+"""The sheet: it grows wherever something is seen, and loses nothing."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from fixtures.located import Eye
+from fixtures.mapped import FURNISHED, START, points_of, row, wrong_cells
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from roomba.geometry import Pose
+from roomba.grid import FREE, OCCUPIED, UNKNOWN, OccupancyMap
+from roomba.perception.slam.sheet import Sheet
+
+CENTRE = np.zeros(2)
+AHEAD = np.array([[0.5, 0.0, -1.0, 0.0]], np.float32)
+places = st.lists(st.tuples(st.floats(-20.0, 20.0), st.floats(-20.0, 20.0)), min_size=1, max_size=5)
+
+
+def value_at(made: OccupancyMap, x: float, y: float) -> int:
+    row, column = made.frame.cell_of(x, y)
+    if not (0 <= row < made.frame.rows and 0 <= column < made.frame.columns):
+        return UNKNOWN
+    return int(made.values[row, column])
+
+
+@given(places, st.floats(0.0, 0.049), st.floats(0.0, 0.049))
+@settings(max_examples=40)
+def test_it_grows_to_all_sides_and_keeps_all(
+    at: list[tuple[float, float]], phase_x: float, phase_y: float
+) -> None:
+    sheet = Sheet(0.05, (phase_x, phase_y))
+    for x, y in at:
+        sheet.draw(AHEAD, CENTRE, np.array([x, y, 0.0]), 1.0)
+    made = sheet.occupancy(0.3, 1)
+    # Later ones may have gone through the ends of earlier ones.
+    for index, (x, y) in enumerate(at):
+        if all(abs(y - other) > 0.1 for _, other in at[index + 1 :]):
+            assert value_at(made, x + 0.52, y) == OCCUPIED
+            assert value_at(made, x + 0.2, y) == FREE
+            assert value_at(made, x + 0.62, y) in (UNKNOWN, FREE, OCCUPIED)
+    known = made.values != UNKNOWN
+    assert (made.values == OCCUPIED).sum() <= len(at)
+    # One cell of the unknown around all that is known, and no more.
+    assert not known[[0, -1]].any()
+    assert not known[:, [0, -1]].any()
+    assert known[1].any()
+    assert known[-2].any()
+    assert known[:, 1].any()
+    assert known[:, -2].any()
+    corner = np.array([made.frame.origin_x - phase_x, made.frame.origin_y - phase_y]) / 0.05
+    assert corner == pytest.approx(np.round(corner), abs=1e-6)
+
+
+def test_the_order_in_which_it_grows_makes_no_difference() -> None:
+    """Far to all sides, there and back: the counts of before are where they were."""
+    poses = [Pose(0.0, 0.0), Pose(9.0, 0.0), Pose(-9.0, 3.0), Pose(0.0, 11.0), Pose(1.0, -12.0)]
+    maps = []
+    for order in (poses, poses[::-1], poses[2:] + poses[:2]):
+        sheet = Sheet(0.05)
+        for pose in order:
+            sheet.draw(AHEAD, CENTRE, row(pose), 3.0)
+        maps.append(sheet.occupancy(0.3, 1))
+    for made in maps[1:]:
+        assert made.frame == maps[0].frame
+        assert (made.values == maps[0].values).all()
+    assert (maps[0].values == OCCUPIED).sum() == len(poses)
+
+
+def test_a_room_is_drawn_as_it_is() -> None:
+    sheet, eye = Sheet(0.05), Eye(FURNISHED)
+    for pose in (START, Pose(1.0, 2.6, 0.4), Pose(4.4, 3.2, 2.0), Pose(4.2, 0.6, -1.0)):
+        sheet.draw(points_of(eye.scan(pose)).astype(np.float32), CENTRE, row(pose), 12.0)
+    made = sheet.occupancy(0.3, 2)
+    assert wrong_cells(made, FURNISHED) == (0, 0)
+    # 5 x 4 m without cupboard and shelf, but a few cells in corners.
+    area = (made.values == FREE).sum() * 0.05**2
+    assert area == pytest.approx(20.0 - 0.45 - 0.15, abs=0.3)
+
+
+def test_an_empty_sheet_is_no_map() -> None:
+    with pytest.raises(ValueError, match="at least one scan"):
+        Sheet(0.05).occupancy(0.3, 2)
+
+
+def test_a_scan_without_points_shows_where_the_lidar_was() -> None:
+    sheet = Sheet(0.05)
+    sheet.draw(np.zeros((0, 4), np.float32), CENTRE, np.array([1.0, 2.0, 0.0]), 3.0)
+    made = sheet.occupancy(0.3, 2)
+    assert made.values.shape == (3, 3)
+    assert (made.values == UNKNOWN).all()
+    assert made.frame.contains(1.0, 2.0)
