@@ -29,7 +29,7 @@ class DrivingConfig(Frozen):
 class CleaningConfig(Frozen):
     """Covering the floor: shares 0..1, m2."""
 
-    enough: Ratio = 0.9975
+    enough: Ratio = 0.9965
     least_patch: Positive = 0.004
     most_rounds: Annotated[int, Field(ge=0)] = 4
     dirty_times: Positive = 6.0

@@ -99,6 +99,7 @@ class MissReason(Enum):
     SHUT = "no way leads there: a door is shut, or something stands in the way"
     STOPPED = "it was stopped before"
     LEFT_OVER = "it was passed, but not all of it was met"
+    EDGE = "the floor ends there"
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,6 +6,7 @@ missed is found from what was really swept, and planned again until it is done o
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
@@ -20,14 +21,14 @@ from roomba.mission.clean_request import (
     CleanRefusedError,
     CleanRequest,
     Missed,
-    MissReason,
 )
 from roomba.mission.gaps import closed_gaps
+from roomba.mission.missed import is_hidden, missed_floor
 from roomba.mission.site import Site
 from roomba.mission.stages import Stage, stages_of
 from roomba.mission_config import CleaningConfig
 from roomba.perception.coverage_bits import SWEPT, WANTED
-from roomba.perception.coverage_map import CoverageMap, Patch, patches_of
+from roomba.perception.coverage_map import CoverageMap, patches_of
 from roomba.perception.dirt_map import DirtMap
 from roomba.planning.costmap import Point, RoundObstacle
 from roomba.planning.path import NoPathError
@@ -35,8 +36,6 @@ from roomba.planning.path import NoPathError
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
-_MOSTLY: Final = 0.8
-"""Share of a patch that is near to things: it is missed for what stands there."""
 _LITTLE_GAIN: Final = 0.05
 """Share of what was missed; a round that gains less of it than this was for nothing."""
 _WORTH_A_LOOK: Final = 0.5
@@ -83,6 +82,8 @@ class Cleaning:
         self._ways_out = self._cut_offs = 0
         self._anew, self._planned_anew_at = 0, -np.inf
         self._is_anew = False
+        self.broken_off = 0.0
+        """m; of the last path that was not driven to its end, what was left then."""
 
     @property
     def stage(self) -> Stage | None:
@@ -147,9 +148,13 @@ class Cleaning:
         if self._cut_offs <= _MOST_CUT_OFFS:
             self._rounds = min(self._rounds, 1)
 
-    def interrupted(self) -> None:
-        """Tell that the last path was not driven to its end: it says nothing of what is left."""
-        self._rounds, self._last_missed = 0, np.inf
+    def interrupted(self, left: float) -> None:
+        """Tell that the last path was not driven to its end, of which ``left`` m were left.
+
+        So it says nothing of what was missed; what is worth a round is planned first.
+        """
+        self._rounds, self._last_missed, self._is_anew = 1, np.inf, True
+        self.broken_off = left
 
     def plans_anew(self, now: float, left: float) -> bool:
         """Whether a path, ``left`` m of it, on which something stands is to be planned anew.
@@ -210,44 +215,18 @@ class Cleaning:
         self._looked_again = bool(values["looked_again"])
         self._unreachable, self._scrubbed = bool(values["unreachable"]), bool(values["scrubbed"])
 
-    def missed(self, obstacles: list[RoundObstacle], is_over: bool) -> tuple[Missed, ...]:
-        """Return what is not clean, the largest first, with the reason; ``is_over``: it went on to
-        the end."""
-        left = self.coverage.wanted & ~self.clean
-        patches = patches_of(left, self.coverage.frame, self._config.least_patch)
-        staging = (self._site.staging.x, self._site.staging.y)
-        gaps = closed_gaps(obstacles, self._site.reach)
-        reachable = self._reachable(staging, obstacles + gaps)
-        return tuple(
-            Missed(
-                patch.area,
-                patch.x,
-                patch.y,
-                self._site.room_at(patch.x, patch.y),
-                self._reason(patch, obstacles, reachable, is_over),
-            )
-            for patch in patches
-        )
+    def missed(
+        self,
+        obstacles: Sequence[RoundObstacle],
+        is_over: bool,
+        edges: Sequence[RoundObstacle] = (),
+    ) -> tuple[Missed, ...]:
+        """Return what is not clean, the largest first, with the reason.
 
-    def _reason(
-        self, patch: Patch, obstacles: list[RoundObstacle], reachable: Mask, is_over: bool
-    ) -> MissReason:
-        if np.count_nonzero(reachable[patch.cells]) < 0.5 * np.count_nonzero(patch.cells):
-            is_thing = self._is_where_things_are(patch, obstacles)
-            return MissReason.THING if is_thing else MissReason.SHUT
-        return MissReason.LEFT_OVER if is_over else MissReason.STOPPED
-
-    def _is_where_things_are(self, patch: Patch, obstacles: list[RoundObstacle]) -> bool:
-        """Whether a patch is what things stand on and hide, and not a room behind them."""
-        rows, columns = np.nonzero(patch.cells)
-        frame = self.coverage.frame
-        x = frame.origin_x + (columns + 0.5) * frame.resolution
-        y = frame.origin_y + (rows + 0.5) * frame.resolution
-        near = self._site.reach + 2.0 * self._site.tool_width
-        is_near = np.zeros(len(x), np.bool_)
-        for thing_x, thing_y, radius in obstacles:
-            is_near |= np.hypot(x - thing_x, y - thing_y) < near + radius
-        return bool(is_near.mean() > _MOSTLY)
+        ``is_over``: it went on to the end; ``edges`` are ``obstacles`` where the floor ends.
+        """
+        left, least = self.coverage.wanted & ~self.clean, self._config.least_patch
+        return missed_floor(left, least, self._site, obstacles, edges, is_over=is_over)
 
     def _next_round(
         self, stage: Stage, here: Pose, obstacles: list[RoundObstacle]
@@ -313,7 +292,7 @@ class Cleaning:
     def _note_out_of_reach(self, floor: Mask, obstacles: list[RoundObstacle]) -> None:
         """Floor that somebody may open later is looked for again before the end."""
         patches = patches_of(floor, self.coverage.frame, _WORTH_A_LOOK)
-        if not all(self._is_where_things_are(patch, obstacles) for patch in patches):
+        if not all(is_hidden(patch, self._site, obstacles) for patch in patches):
             self._unreachable = True
 
     def _reachable(self, here: Point, obstacles: list[RoundObstacle]) -> Mask:

@@ -54,6 +54,8 @@ class Exploration:
         self.goal: Frontier | None = None
         self.unseen: list[Point] = []
         self.times_stuck = 0
+        self.looked_again = False
+        """Whether what stands in the way was looked for anew before the end."""
 
     def values(self) -> list[list[float]]:
         """Return what must be remembered to go on, as plain values."""

@@ -20,8 +20,9 @@ from roomba.perception.belief import numbers_of, unknown_belief
 from roomba.perception.belief_correct_kernels import ASTRAY, deviation, is_calm
 from roomba.perception.belief_reckon_kernels import SET_BACK
 from roomba.perception.dead_reckoning import DeadReckoning
+from roomba.perception.doubt import Doubt
 from roomba.perception.estimate import Estimate, Knowledge
-from roomba.perception.recent_sight import RecentSight
+from roomba.perception.expecting import searched_for, where_told
 from roomba.perception.relocation import Expectation, Hypothesis, Relocation, Verdict
 from roomba.perception.scan_view import Fit, LidarModel, ScanView
 from roomba.perception.surface_field import SurfaceField
@@ -34,21 +35,10 @@ _FOUND_SPREAD: Final = np.diag([0.05**2, 0.05**2, 0.03**2])
 _PATIENCE: Final = 0.5
 """s; so long it waits for a scan that tells places apart before it moves to get one."""
 _AGAIN: Final = 1.0
-"""s; after which a search that found nothing, or nothing new, is tried anew."""
+"""s; after which a search that found nothing is tried anew."""
 _GOOD_AGREE: Final = 0.95
 _GOOD_THROUGH: Final = 0.03
 """Shares of beams with which a pose that was told needs no comparison with all others."""
-_TOLD_RADIUS: Final = 0.5
-_TOLD_TURN: Final = 0.5
-_HERE_RADIUS: Final = 0.04
-_HERE_TURN: Final = 0.04
-"""m, rad; so far around a pose that was told, and one that was known, the robot is expected."""
-_HERE_DRIFT: Final = 0.01
-"""m and rad, per s of a search: so much dead reckoning may be off while it looks around."""
-_HERE_EVIDENCE: Final = 14.0
-"""More than what is needed to believe a place: where it was it is, unless another is likelier."""
-_STILL_EVIDENCE: Final = 60.0
-"""The same of a robot that sees what it saw before: nobody carried it."""
 _HARDLY_TURNED: Final = 0.02
 """rad; if it turned less since a scan, that was as good as taken where it is now."""
 _HELP: Final = (
@@ -83,7 +73,7 @@ class Localizer:
         self._config, self._body_radius = config, body_radius
         self.belief = unknown_belief()
         self._row, self._numbers = self.belief[0], numbers_of(config, gyro)
-        self._sight = RecentSight()
+        self._doubt = Doubt(config, body_radius)
         self._reckoning = DeadReckoning(config, gyro, self.belief)
         self._is_lifted = self._is_blind = False
         self._now = self._newest_stamp = self._newest_time = -math.inf
@@ -91,8 +81,6 @@ class Localizer:
         self._has_clock = False
         self._told: Expectation | None = None
         self._relocation: Relocation | None = None
-        self._second: Relocation | None = None
-        self._compared = -math.inf
         self._forgotten = ""
         self._expectation: Expectation | None = None
         self._verdict = Verdict.SEARCHING
@@ -129,7 +117,7 @@ class Localizer:
         tells_places_apart = len(view) >= self._config.least_beams
         if not self._forgotten:
             self._follow(view, stamp, reckoned, tells_places_apart)
-            self._sight.note(stamp, reckoned, view)
+            self._doubt.note(stamp, reckoned, view)
         elif tells_places_apart:
             if self._relocation is None:
                 self._relocation = self._begin_search(view, reckoned)
@@ -160,7 +148,7 @@ class Localizer:
         self._reckoning.begin_history()
         turned = (now - seen) * abs(float(self._row["turning"]))
         if turned < _HARDLY_TURNED and not self._is_blind:
-            self._sight.note(seen, self._reckoning.pose, self.view)
+            self._doubt.note(seen, self._reckoning.pose, self.view)
 
     def pass_time(self, now: float) -> None:
         """Tell the time when nothing else does: silence tells something, too."""
@@ -176,7 +164,7 @@ class Localizer:
         ):
             return
         self._map, self.field = occupancy, SurfaceField.of(occupancy)
-        self._second = None
+        self._doubt.drop()
         estimate = self.estimate
         if self._forgotten:
             # Whoever is searched for is searched for in the new map, no longer than before.
@@ -190,11 +178,12 @@ class Localizer:
         spread = np.diag([deviation[0] ** 2, deviation[0] ** 2, deviation[1] ** 2])
         self._tracker = self._tracker_at(pose, spread)
         self._relocation, self._forgotten = None, ""
-        self._told, self._told_since = self._told_to_be(pose, deviation), self._now
+        self._told, self._told_since = where_told(pose, deviation, self._config), self._now
 
     def forget(self, reason: str) -> None:
         """Trust no pose any more; look for the robot in the whole map."""
-        self._told = self._relocation = self._second = None
+        self._told = self._relocation = None
+        self._doubt.drop()
         self._forgotten, self._expectation = reason, None
         self._verdict = Verdict.SEARCHING
         self._searching_since = self._now
@@ -301,7 +290,7 @@ class Localizer:
         unsure = deviation(self._row["covariance"])
         if self._told is None and unsure > ASTRAY:
             spread = (unsure, math.sqrt(tracker.covariance[2, 2]))
-            self._told = self._told_to_be(tracker.pose, spread)
+            self._told = where_told(tracker.pose, spread, self._config)
         tracker.see(view)
         fit = tracker.judge(view) if tells_places_apart else None
         if since is not None:
@@ -311,38 +300,16 @@ class Localizer:
         if self._told is not None:
             self._check_told(self._told, fit)
         elif tracker.is_doubtful:
-            self._doubt(stamp, view, reckoned)
+            self._reconsider(stamp, view, reckoned)
 
-    def _doubt(self, stamp: float, view: ScanView, reckoned: Pose) -> None:
+    def _reconsider(self, stamp: float, view: ScanView, reckoned: Pose) -> None:
         """Forget the pose, unless what is in sight says that the home changed, and not the pose."""
-        if self._sight.is_still(stamp, reckoned, view):
-            evidence = _STILL_EVIDENCE
-            if not self._is_elsewhere(view, reckoned):
-                return
-        else:
-            evidence = _HERE_EVIDENCE
-        self.forget("the scan does not fit the map here any more")
-        # What the place looks like may have changed as well.
-        self._expectation = self._expected(self._tracker.pose, _HERE_RADIUS, _HERE_TURN, evidence)
-
-    def _is_elsewhere(self, view: ScanView, reckoned: Pose) -> bool:
-        """Compare the place with all others, a piece at each scan; tell if it must be another.
-
-        Nobody carried the robot, but it may have been wrong before.
-        """
-        if self._second is None:
-            if 0.0 <= self._now - self._compared < _AGAIN:
-                return False
-            here = self._expected(self._tracker.pose, _HERE_RADIUS, _HERE_TURN, _STILL_EVIDENCE)
-            self._second = Relocation(
-                self.field, self._config, self._body_radius, view, reckoned, here
-            )
-        second = self._second
-        second.advance()
-        if second.verdict is Verdict.SEARCHING:
-            return False
-        self._second, self._compared = None, self._now
-        return second.verdict is Verdict.FOUND and not second.hypotheses[0].is_expected
+        pose = self._tracker.pose
+        expected = self._doubt.expected(self._now, stamp, view, reckoned, pose, self.field)
+        if expected is not None:
+            self.forget("the scan does not fit the map here any more")
+            # What the place looks like may have changed as well.
+            self._expectation = expected
 
     def _check_told(self, told: Expectation, fit: Fit) -> None:
         """Take what was told if the scan fits very well there; else compare it with the map."""
@@ -351,23 +318,12 @@ class Localizer:
             self.forget("what the lidar sees does not fit well where it was told to be")
             self._expectation = told
 
-    def _told_to_be(self, pose: Pose, deviation: tuple[float, float]) -> Expectation:
-        """Return where to expect a robot that is near a pose, unsure by so much, m and rad."""
-        radius = max(_TOLD_RADIUS, 3.0 * deviation[0])
-        return self._expected(pose, radius, max(_TOLD_TURN, 3.0 * deviation[1]))
-
-    def _expected(
-        self, pose: Pose, radius: float, turn: float, evidence: float = _HERE_EVIDENCE
-    ) -> Expectation:
-        return Expectation(pose, radius, turn, self._config.needed_evidence + evidence)
-
     def _begin_search(self, view: ScanView, reckoned: Pose) -> Relocation:
         """Begin to look for the robot in the whole map."""
         since = reckoned.inverse().compose(self._reckoning.pose)
         here = self._tracker.pose.compose(since.inverse())
-        expectation = self._expectation and self._expectation.drifted(
-            here, _HERE_DRIFT * (self._now - self._searching_since)
-        )
+        searched = self._now - self._searching_since
+        expectation = self._expectation and searched_for(self._expectation, here, searched)
         return Relocation(self.field, self._config, self._body_radius, view, reckoned, expectation)
 
     def _tracker_at(self, pose: Pose, covariance: NDArray[np.float64]) -> Tracker:

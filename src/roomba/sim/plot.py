@@ -45,6 +45,7 @@ _SHORT: Final = {
     MissReason.SHUT.value: "no way",
     MissReason.STOPPED.value: "stopped",
     MissReason.LEFT_OVER.value: "left over",
+    MissReason.EDGE.value: "an edge",
 }
 
 

@@ -96,7 +96,7 @@ def test_what_was_not_driven_is_planned_again() -> None:
     points = clean.next_path(HERE, [])
     assert points is not None
     here = drive(clean, points, 0.5)
-    clean.interrupted()
+    clean.interrupted(1.0)
     left = clean.left
     assert 0.1 < left / clean.coverage.wanted_area < 0.9
     again = clean.next_path(here, [])
@@ -317,7 +317,7 @@ def test_passes_are_stages_and_each_sweeps_all_anew() -> None:
             assert clean.stage_number == number + 1
             # What was clean once stays told as clean.
             assert np.count_nonzero(clean.clean) > 0.995 * clean.coverage.wanted_cells
-            clean.interrupted()
+            clean.interrupted(1.0)
     assert clean.next_path(HERE, []) is None
 
 
@@ -391,7 +391,7 @@ def test_with_another_site_it_goes_on_and_wants_less() -> None:
     wall = Zone("wall", ZoneKind.WALL, ((1.5, 0.0), (1.5, 2.5)))
     walled = site(zones=Zones((wall,)))
     clean.use_site(walled)
-    clean.interrupted()
+    clean.interrupted(1.0)
     assert (clean.coverage.swept == swept).all()
     assert not (clean.coverage.wanted & ~walled.coverable()).any()
     assert finish(clean, []) >= 1

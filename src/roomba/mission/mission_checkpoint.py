@@ -1,0 +1,116 @@
+"""Where a mission is, as plain values and back."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+from roomba.errors import RoombaError
+from roomba.mission.checkpoint import VERSION, CheckpointError, Values, request_of
+from roomba.mission.clean_request import CleanOutcome, CleanRequest
+from roomba.mission.cleaning import Cleaning
+from roomba.mission.exploration import Exploration
+from roomba.mission.job import Job
+from roomba.mission.machine import Errand, MissionState, Phase
+from roomba.mission.senses import Senses
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Remembered:
+    """What a checkpoint tells; ``book`` is way, m, energy, Wh, and dirt, g; ``duration`` s."""
+
+    state: MissionState
+    message: str
+    outcome: CleanOutcome | None
+    cleaning: Cleaning | None
+    exploration: Exploration | None
+    book: tuple[float, float, float]
+    duration: float
+
+
+def checkpoint_of(state: MissionState, message: str, job: Job, now: float) -> Values | None:
+    """Return all that must be remembered to go on, as plain values; None without an errand."""
+    if state.errand is Errand.NONE or state.errand is Errand.UNDOCK:
+        return None
+    return {
+        "version": VERSION,
+        "phase": state.phase.name,
+        "errand": state.errand.name,
+        "resumes": None if state.resumes is None else state.resumes.name,
+        "message": message,
+        "outcome": None if job.outcome is None else job.outcome.name,
+        "cleaning": None if job.cleaning is None else job.cleaning.values(),
+        "exploration": None if job.exploration is None else job.exploration.values(),
+        "book": [job.book.distance, job.book.energy, job.book.dirt],
+        "duration": job.duration(now),
+    }
+
+
+def remembered(values: Values, begin: Callable[[CleanRequest], Cleaning]) -> Remembered:
+    """Return what such values tell; ``begin`` makes the clean of a request in the present map.
+
+    Raises CheckpointError for values that are none, or of another map.
+    """
+    try:
+        return _remembered(values, begin)
+    except (LookupError, ArithmeticError, AttributeError, TypeError, ValueError) as error:
+        raise CheckpointError(f"expected a checkpoint of this map: {error!r}") from error
+    except RoombaError as error:
+        raise CheckpointError(f"expected a checkpoint of this map: {error!r}") from error
+
+
+def _remembered(values: Values, begin: Callable[[CleanRequest], Cleaning]) -> Remembered:
+    if values["version"] != VERSION:
+        raise CheckpointError(f"expected version {VERSION}, got {values['version']}")
+    resumes, outcome = values["resumes"], values["outcome"]
+    phase, errand = Phase[values["phase"]], Errand[values["errand"]]
+    state = MissionState(phase, errand, None if resumes is None else Phase[resumes])
+    cleaning = None
+    if values["cleaning"] is not None:
+        cleaning = begin(request_of(values["cleaning"]["request"]))
+        cleaning.restore(values["cleaning"])
+    elif errand is Errand.CLEAN:
+        raise CheckpointError("expected the clean that it was on, got none")
+    unseen = values["exploration"]
+    exploration = None if unseen is None else Exploration.of(unseen)
+    if errand is Errand.EXPLORE and exploration is None:
+        raise CheckpointError("expected the exploration that it was on, got none")
+    distance, energy, dirt = (float(value) for value in values["book"])
+    duration = float(values["duration"])
+    if not all(math.isfinite(value) for value in (distance, energy, dirt, duration)):
+        raise CheckpointError("expected finite numbers")
+    return Remembered(
+        state,
+        str(values["message"]),
+        None if outcome is None else CleanOutcome[outcome],
+        cleaning,
+        exploration,
+        (distance, energy, dirt),
+        duration,
+    )
+
+
+def take_up(found: Remembered, job: Job, senses: Senses) -> None:
+    """Let the job be the one that was remembered."""
+    job.cleaning, job.exploration, job.outcome = found.cleaning, found.exploration, found.outcome
+    job.goes_on_after(found.duration, senses)
+    job.book.distance, job.book.energy, job.book.dirt = found.book
+
+
+def state_after(state: MissionState, *, is_docked: bool) -> MissionState:
+    """Return the state in which a remembered mission goes on, wherever the robot stands now."""
+    if state.phase is Phase.CHARGING and not is_docked:
+        return MissionState(Phase.RETURNING, state.errand)
+    if state.resumes in (Phase.CLEANING, Phase.EXPLORING):
+        # Should it stand on the station by now, it has to come out first.
+        return replace(state, resumes=Phase.UNDOCKING)
+    if not state.drives:
+        return state
+    if state.errand in (Errand.CLEAN, Errand.EXPLORE):
+        if is_docked and state.phase in (Phase.RETURNING, Phase.DOCKING):
+            return MissionState(Phase.CHARGING, state.errand)
+        return MissionState(Phase.UNDOCKING, state.errand)
+    if is_docked:
+        return MissionState(Phase.DOCKED)
+    return MissionState(Phase.RETURNING, state.errand)

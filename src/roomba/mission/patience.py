@@ -1,0 +1,52 @@
+"""Waiting for a way to open: doors that are shut are opened again."""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+_MOST_WAYS_HOME: Final = 5
+"""So often it looks for a way home before it begins to wait."""
+_WAIT: Final = 30.0
+"""s; so long it waits, where no way leads on, before it looks for one again."""
+_MOST_WAITS: Final = 40
+"""Twenty minutes; then there is no way home."""
+
+
+class Patience:
+    """Counts how often there was no way, and tells when to wait and when to give up.
+
+    ``gets_out``: it has waited, and looks for a way out first.
+    """
+
+    def __init__(self) -> None:
+        """Begin with nothing tried."""
+        self._tries = 0
+        self._since = -math.inf
+        self.gets_out = False
+
+    def renew(self) -> None:
+        """Count the ways home anew."""
+        self._tries = 0
+
+    def wait(self, now: float) -> None:
+        """Begin to wait."""
+        self._since, self.gets_out = now, True
+
+    def is_waiting(self, now: float) -> bool:
+        """Whether it still waits; not if the clock was set back."""
+        return 0.0 <= now - self._since < _WAIT
+
+    def found_no_way_home(self) -> None:
+        """Count it."""
+        self._tries += 1
+
+    @property
+    def must_wait(self) -> bool:
+        """Whether looking for a way home at once was tried often enough."""
+        return self._tries > _MOST_WAYS_HOME
+
+    @property
+    def is_over(self) -> bool:
+        """Whether it waited long enough."""
+        return self._tries > _MOST_WAYS_HOME + _MOST_WAITS

@@ -1,0 +1,168 @@
+"""The phases in which it drives through the home: what each of them wants at a tick."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Final
+
+from roomba.mission.clean_request import CleanOutcome
+from roomba.mission.cleaning import Cleaning
+from roomba.mission.drives import Drives
+from roomba.mission.exploration import Exploration
+from roomba.mission.job import Job
+from roomba.mission.machine import Event
+from roomba.mission.path_driver import DriveState
+from roomba.mission.patience import Patience
+from roomba.mission.phase_step import Failure, PhaseStep
+from roomba.mission.senses import Senses
+from roomba.planning.path import NoPathError
+
+_NEAR_STAGING: Final = 0.08
+"""m; so near to the place before the station docking takes over."""
+
+
+def clean(job: Job, drives: Drives, patience: Patience, senses: Senses, limit: float) -> PhaseStep:
+    """Drive over the floor that is left, path by path; ``limit`` is the speed wanted, m/s."""
+    cleaning = job.cleaning
+    assert cleaning is not None
+    if job.book.must_go_home(senses, drives.distance_home):
+        return PhaseStep(event=Event.LOW)
+    if patience.is_waiting(senses.now):
+        return PhaseStep()
+    if drives.driver is not None:
+        return _clean_on(cleaning, drives, senses, limit)
+    ended = None
+    if not drives.leaves_zone(senses):
+        ended = _begin_path(cleaning, drives, patience, senses)
+    return ended or replace(_clean_on(cleaning, drives, senses, limit), message="")
+
+
+def _begin_path(
+    cleaning: Cleaning, drives: Drives, patience: Patience, senses: Senses
+) -> PhaseStep | None:
+    """Begin the next path, or return what is to be done where there is none."""
+    points = None
+    if patience.gets_out:
+        # By the middle of gaps: along their sides, as it cleans, it may have been shut in.
+        patience.gets_out = False
+        points = drives.way_out(senses)
+    try:
+        if points is None:
+            points = cleaning.next_path(senses.pose, drives.obstacles.standing(senses.now))
+    except NoPathError:
+        points = drives.way_out(senses)
+        if points is None:
+            return _wait("no way leads out of where it is", drives, patience, senses)
+    if points is not None:
+        drives.begin(points, senses, cleaning.plans_anew)
+        return None
+    if not cleaning.wants_another_look(drives.obstacles.edges()):
+        return PhaseStep(event=Event.FINISHED)
+    drives.obstacles.forget()
+    return PhaseStep()
+
+
+def _clean_on(cleaning: Cleaning, drives: Drives, senses: Senses, limit: float) -> PhaseStep:
+    assert drives.driver is not None
+    step = drives.driver.tick(senses, limit)
+    if step.state is DriveState.STUCK:
+        return PhaseStep(step.twist, failure=Failure(CleanOutcome.STUCK, step.reason))
+    if step.state.is_over:
+        if step.state is DriveState.CUT_OFF:
+            cleaning.cut_off()
+        drives.driver = None
+    return PhaseStep(step.twist)
+
+
+def explore(job: Job, drives: Drives, senses: Senses, limit: float, most_stuck: int) -> PhaseStep:
+    """Go to the nearest place from where more can be seen; stuck too often it fails."""
+    exploration = job.exploration
+    assert exploration is not None
+    if job.book.must_go_home(senses, drives.distance_home):
+        return PhaseStep(event=Event.LOW)
+    if drives.driver is not None:
+        return _explore_on(exploration, drives, senses, limit, most_stuck)
+    obstacles = drives.obstacles.standing(senses.now)
+    given_up = len(exploration.unseen)
+    points = exploration.next_path(senses.pose, drives.site, obstacles)
+    if points is None:
+        # It may have given up before it tried all.
+        is_done = len(exploration.unseen) == given_up and not _looks_again(exploration, drives)
+        return PhaseStep(event=Event.FINISHED if is_done else None)
+    drives.begin(points, senses)
+    return replace(_explore_on(exploration, drives, senses, limit, most_stuck), message="")
+
+
+def _looks_again(exploration: Exploration, drives: Drives) -> bool:
+    """Look anew, once before the end, for what stands in the way: it may have gone."""
+    if exploration.looked_again:
+        return False
+    exploration.looked_again = True
+    drives.obstacles.forget()
+    return True
+
+
+def _explore_on(
+    exploration: Exploration, drives: Drives, senses: Senses, limit: float, most_stuck: int
+) -> PhaseStep:
+    assert drives.driver is not None
+    step = drives.driver.tick(senses, limit)
+    is_stuck = step.state is DriveState.STUCK
+    if is_stuck and exploration.times_stuck >= most_stuck:
+        return PhaseStep(step.twist, failure=Failure(CleanOutcome.STUCK, step.reason))
+    if step.state.is_over:
+        if step.state is not DriveState.DONE:
+            exploration.cut_off(is_stuck=is_stuck)
+        drives.driver = None
+    return PhaseStep(step.twist)
+
+
+def go_home(drives: Drives, patience: Patience, senses: Senses, limit: float) -> PhaseStep:
+    """Drive to the place before the station; where no way leads there it waits for one."""
+    staging = drives.site.staging
+    if senses.battery.is_docked:
+        return PhaseStep(event=Event.CONTACT)
+    if senses.pose.distance_to(staging.x, staging.y) < _NEAR_STAGING:
+        return PhaseStep(event=Event.ARRIVED)
+    if patience.is_waiting(senses.now):
+        return PhaseStep()
+    if drives.driver is not None:
+        return _go_home_on(drives, patience, senses, limit)
+    if not drives.leaves_zone(senses):
+        try:
+            points = drives.way_home(senses)
+        except NoPathError as error:
+            return _try_home_again(f"no way home: {error}", drives, patience, senses)
+        drives.begin(points, senses)
+    step = _go_home_on(drives, patience, senses, limit)
+    return step if step.message else replace(step, message="")
+
+
+def _go_home_on(drives: Drives, patience: Patience, senses: Senses, limit: float) -> PhaseStep:
+    assert drives.driver is not None
+    step = drives.driver.tick(senses, limit)
+    if step.state is DriveState.STUCK:
+        return PhaseStep(step.twist, failure=Failure(CleanOutcome.STUCK, step.reason))
+    if step.state.is_over:
+        drives.driver = None
+    if step.state is DriveState.CUT_OFF:
+        return _try_home_again(step.reason, drives, patience, senses)
+    return PhaseStep(step.twist)
+
+
+def _try_home_again(reason: str, drives: Drives, patience: Patience, senses: Senses) -> PhaseStep:
+    """Once more without what was remembered; a door may open; then it says there is no way."""
+    patience.found_no_way_home()
+    if patience.is_over:
+        return PhaseStep(failure=Failure(CleanOutcome.NOT_DOCKED, reason))
+    if patience.must_wait:
+        return _wait(reason, drives, patience, senses)
+    drives.obstacles.forget()
+    return PhaseStep()
+
+
+def _wait(reason: str, drives: Drives, patience: Patience, senses: Senses) -> PhaseStep:
+    """Stand for a while, and then look anew: a door that is shut is opened again."""
+    patience.wait(senses.now)
+    drives.obstacles.forget()
+    return PhaseStep(message=f"{reason}; it waits for a way to open")

@@ -1,0 +1,118 @@
+"""A mission as plain values: where one goes on that was ended at any moment, and junk."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import pytest
+from fixtures.missions import HOME
+
+from roomba.config import RobotConfig
+from roomba.geometry import Pose
+from roomba.mission.checkpoint import CheckpointError, Values
+from roomba.mission.clean_request import CleanOutcome, CleanRequest
+from roomba.mission.cleaning import Cleaning
+from roomba.mission.docking_config import DockingConfig
+from roomba.mission.job import Job
+from roomba.mission.machine import Errand, MissionState, Phase
+from roomba.mission.mission_checkpoint import checkpoint_of, remembered, state_after, take_up
+from roomba.mission.senses import Senses
+from roomba.mission.site import Site
+from roomba.mission_config import MissionConfig
+from roomba.perception.dirt_map import DirtMap
+
+SITE = Site(HOME.map, HOME.station, RobotConfig(), MissionConfig(), DockingConfig())
+SENSES = Senses(100.0, Pose(1.0, 0.6, 0.0))
+CLEANING = MissionState(Phase.CLEANING, Errand.CLEAN)
+
+
+def begin(request: CleanRequest) -> Cleaning:
+    return Cleaning(request, SITE, DirtMap(HOME.map), MissionConfig().cleaning, SENSES.pose)
+
+
+def job() -> Job:
+    """A clean that is under way for a minute."""
+    job = Job(DirtMap(HOME.map), MissionConfig().energy, SENSES)
+    job.begin_clean(begin(CleanRequest(passes=2)), Senses(40.0, SENSES.pose))
+    job.book.distance, job.book.energy, job.book.dirt = 12.0, 0.5, 2.0
+    return job
+
+
+def values(**changes: Any) -> Values:
+    made = checkpoint_of(CLEANING, "a message", job(), SENSES.now)
+    assert made is not None
+    return json.loads(json.dumps(made)) | changes  # type: ignore[no-any-return]
+
+
+def test_all_that_matters_comes_back() -> None:
+    found = remembered(values(outcome="COMPLETED"), begin)
+    assert (found.state, found.message) == (CLEANING, "a message")
+    again, now = Job(DirtMap(HOME.map), MissionConfig().energy, SENSES), 7.0
+    take_up(found, again, Senses(now, SENSES.pose))
+    assert again.cleaning is not None
+    assert again.cleaning.request == CleanRequest(passes=2)
+    assert again.exploration is None
+    assert again.outcome is CleanOutcome.COMPLETED
+    assert (again.book.distance, again.book.energy, again.book.dirt) == (12.0, 0.5, 2.0)
+    # By a clock that began anew.
+    assert again.duration(now) == pytest.approx(60.0)
+
+
+@pytest.mark.parametrize("errand", [Errand.NONE, Errand.UNDOCK])
+def test_without_an_errand_there_is_nothing_to_remember(errand: Errand) -> None:
+    assert checkpoint_of(MissionState(Phase.IDLE, errand), "", job(), 0.0) is None
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"version": 0},
+        {"phase": "FLYING"},
+        {"cleaning": None},
+        {"cleaning": {}},
+        {"errand": "EXPLORE"},
+        {"exploration": 3},
+        {"book": [1.0, 2.0]},
+        {"book": [1.0, 2.0, float("nan")]},
+        {"duration": "long"},
+        {"outcome": "WONDERFUL"},
+    ],
+)
+def test_junk_is_refused(changes: Values) -> None:
+    with pytest.raises(CheckpointError, match="expected"):
+        remembered(values(**changes), begin)
+
+
+@pytest.mark.parametrize("errand", [Errand.CLEAN, Errand.EXPLORE])
+@pytest.mark.parametrize(
+    ("before", "away", "docked"),
+    [
+        (Phase.UNDOCKING, Phase.UNDOCKING, Phase.UNDOCKING),
+        (Phase.CLEANING, Phase.UNDOCKING, Phase.UNDOCKING),
+        (Phase.RETURNING, Phase.UNDOCKING, Phase.CHARGING),
+        (Phase.DOCKING, Phase.UNDOCKING, Phase.CHARGING),
+        (Phase.CHARGING, Phase.RETURNING, Phase.CHARGING),
+    ],
+)
+def test_an_errand_goes_on_from_wherever_it_stands(
+    errand: Errand, before: Phase, away: Phase, docked: Phase
+) -> None:
+    state = MissionState(before, errand)
+    assert state_after(state, is_docked=False) == MissionState(away, errand)
+    assert state_after(state, is_docked=True) == MissionState(docked, errand)
+
+
+def test_on_its_way_home_it_goes_on_or_is_there() -> None:
+    state = MissionState(Phase.DOCKING, Errand.HOME)
+    assert state_after(state, is_docked=False) == MissionState(Phase.RETURNING, Errand.HOME)
+    assert state_after(state, is_docked=True) == MissionState(Phase.DOCKED)
+
+
+def test_held_up_it_stays_so_and_comes_out_of_the_station_first() -> None:
+    held = MissionState(Phase.PAUSED, Errand.CLEAN, Phase.CLEANING)
+    for is_docked in (False, True):
+        after = state_after(held, is_docked=is_docked)
+        assert after == MissionState(Phase.PAUSED, Errand.CLEAN, Phase.UNDOCKING)
+    homewards = MissionState(Phase.ERROR, Errand.HOME, Phase.RETURNING)
+    assert state_after(homewards, is_docked=False) == homewards

@@ -1,0 +1,46 @@
+"""Waiting for a way to open: how long, how often, and with a clock that is set."""
+
+from __future__ import annotations
+
+from roomba.mission.patience import Patience
+
+WAIT = 30.0
+
+
+def test_it_waits_half_a_minute_and_then_gets_out_first() -> None:
+    patience = Patience()
+    assert not patience.is_waiting(0.0)
+    assert not patience.gets_out
+    patience.wait(100.0)
+    assert patience.gets_out
+    assert patience.is_waiting(100.0)
+    assert patience.is_waiting(100.0 + WAIT - 0.1)
+    assert not patience.is_waiting(100.0 + WAIT)
+
+
+def test_a_clock_that_is_set_back_does_not_make_it_wait_for_ever() -> None:
+    patience = Patience()
+    patience.wait(1e6)
+    assert not patience.is_waiting(10.0)
+
+
+def test_it_looks_five_times_at_once_and_waits_forty_times() -> None:
+    patience = Patience()
+    told = []
+    while not patience.is_over:
+        patience.found_no_way_home()
+        told.append(patience.must_wait)
+    assert told.count(False) == 5
+    # The last time it gives up instead.
+    assert told.count(True) - 1 == 40
+    assert told == sorted(told)
+
+
+def test_told_to_go_on_it_counts_anew() -> None:
+    patience = Patience()
+    for _ in range(50):
+        patience.found_no_way_home()
+    assert patience.is_over
+    patience.renew()
+    assert not patience.must_wait
+    assert not patience.is_over
