@@ -77,7 +77,7 @@ class MissionGoal(ActionGoal):
         """Tell why it is not begun."""
         self._handle.set_rejected(self._result(reason), reason)
 
-    def stopped(self, result: CleanResult | None, reason: str) -> None:
+    def stopped(self, ended: Ended, reason: str) -> None:
         """Tell that somebody ended it."""
         self._handle.set_canceled(self._result(reason), reason)
 
@@ -141,8 +141,9 @@ class CleaningGoal(MissionGoal):
                 return True
         return False
 
-    def stopped(self, result: CleanResult | None, reason: str) -> None:
+    def stopped(self, ended: Ended, reason: str) -> None:
         """Tell that somebody ended it, and what it achieved."""
+        result = ended.clean
         message = self._result(reason) if result is None else result_message(result)
         self._handle.set_canceled(message, reason)
 
@@ -171,7 +172,7 @@ class DockingGoal(MissionGoal):
         elif state.phase in (Phase.ERROR, Phase.EMERGENCY):
             self.given_up(mission.message)
         elif state.errand is not Errand.DOCK:
-            self.stopped(None, "it was stopped")
+            self.stopped(ended, "it was stopped")
         else:
             return False
         return True
@@ -201,7 +202,7 @@ class UndockingGoal(MissionGoal):
         elif state.phase is Phase.IDLE:
             self._handle.set_succeeded(UndockResult(True, ""), "out of the station")
         elif state.errand is not Errand.UNDOCK:
-            self.stopped(None, "it was stopped")
+            self.stopped(ended, "it was stopped")
         else:
             return False
         return True
@@ -229,12 +230,11 @@ class ExploringGoal(MissionGoal):
         if not mission.site.is_growing:
             raise CommandRefusedError(_MAP_IS_WHOLE)
         mission.explore(senses)
+        self._look_at(mission)
 
     def follow(self, mission: Mission, senses: Senses, ended: Ended) -> bool:
         """Tell its end if there is a result."""
-        exploration = mission.exploration
-        if exploration is not None:
-            self._known = exploration.known_area(mission.site)
+        self._look_at(mission)
         explored = ended.exploration
         if explored is None:
             return False
@@ -248,9 +248,19 @@ class ExploringGoal(MissionGoal):
             self._handle.set_aborted(message, text)
         return True
 
+    def stopped(self, ended: Ended, reason: str) -> None:
+        """Tell that somebody ended it, and what it achieved."""
+        explored = ended.exploration
+        message = self._result(reason) if explored is None else explored_message(explored)
+        self._handle.set_canceled(message, reason)
+
     def tell(self, state: VacuumState) -> None:
         """Tell how much of the home is known."""
         self._handle.publish_feedback(ExploreFeedback(state.state, self._known, state.battery))
+
+    def _look_at(self, mission: Mission) -> None:
+        if mission.exploration is not None:
+            self._known = mission.exploration.known_area(mission.site)
 
     def _result(self, message: str) -> ExploreResultMessage:
         return ExploreResultMessage(

@@ -49,9 +49,10 @@ class MissionOrders:
     What came of an order is told by :meth:`answer` and :meth:`follow`, that are to be called when
     the state is told: whoever has an answer finds the state that it is about.
 
-    Publishes: ``clean/{feedback,result,status}``, ``dock/…``, ``undock/…``, ``beep`` (Empty: here
-    the robot is).
-    Subscribes: ``clean/{goal,cancel}``, ``dock/…``, ``undock/…``, ``emergency_stop`` (String).
+    Publishes: ``clean/{feedback,result,status}``, ``dock/…``, ``undock/…``, ``explore/…``,
+    ``beep`` (Empty: here the robot is).
+    Subscribes: ``clean/{goal,cancel}``, ``dock/…``, ``undock/…``, ``explore/…``,
+    ``emergency_stop`` (String).
     Services: ``pause``, ``resume``, ``stop``, ``locate`` (Trigger).
     """
 
@@ -116,7 +117,7 @@ class MissionOrders:
 
     def follow(self, mission: Mission, senses: Senses) -> Ended:
         """Tell the end of what ended; return the results of what did, ordered or not."""
-        ended = Ended(mission.take_result(), mission.take_exploration())
+        ended = _take_ended(mission)
         if self._goal is not None and self._goal.follow(mission, senses, ended):
             self._goal = None
         return ended
@@ -134,7 +135,7 @@ class MissionOrders:
 
     def _begin(self, goal: MissionGoal, mission: Mission, senses: Senses) -> None:
         if goal.is_recalled:
-            goal.stopped(None, "cancelled before it began")
+            goal.stopped(Ended(), "cancelled before it began")
             return
         try:
             goal.begin(mission, senses)
@@ -142,10 +143,10 @@ class MissionOrders:
             _reject(goal, str(error))
             return
         old, self._goal = self._goal, goal
-        # Of the clean that was under way; nobody waits for one that was taken up after an error.
-        result = mission.take_result()
+        # Of what was under way; nobody waits for one that was taken up after an error.
+        ended = _take_ended(mission)
         if old is not None:
-            self._answers.append(partial(old.stopped, result, _OVERTAKEN))
+            self._answers.append(partial(old.stopped, ended, _OVERTAKEN))
         goal.accept()
         self._takes_drive()
 
@@ -156,9 +157,9 @@ class MissionOrders:
             return False, str(error)
         if event is Event.STOP:
             goal, self._goal = self._goal, None
-            result = mission.take_result()
+            ended = _take_ended(mission)
             if goal is not None:
-                self._answers.append(partial(goal.stopped, result, "it was told to stop"))
+                self._answers.append(partial(goal.stopped, ended, "it was told to stop"))
         elif event is Event.RESUME:
             self._takes_drive()
         return True, _DONE.get(event, event.value)
@@ -197,6 +198,10 @@ class MissionOrders:
 
     def _on_emergency_stop(self, message: String) -> None:
         self._emergency = message.data
+
+
+def _take_ended(mission: Mission) -> Ended:
+    return Ended(mission.take_result(), mission.take_exploration())
 
 
 def _reject(goal: MissionGoal, reason: str) -> None:

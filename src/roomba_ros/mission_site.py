@@ -188,6 +188,7 @@ class MissionSite:
         digest = GROWING if is_growing else map_digest(occupancy)
         with self._lock:
             if digest == self._digest and not is_growing:
+                self._take_carried(occupancy)
                 return
             before, self._digest = self._digest, digest
             is_first = self._map is None
@@ -231,6 +232,16 @@ class MissionSite:
         except OSError as error:
             rospy.logerr("the zones cannot be saved: %s", error)
         return zones
+
+    def _take_carried(self, occupancy: OccupancyMap) -> None:
+        """Go on with other zones that are kept by now: a map that is told again took some over."""
+        kept = self._kept(occupancy)
+        if kept == self._zones:
+            return
+        self._zones = kept
+        self._tell()
+        if self._wanted > 0:
+            self._make()
 
     def _kept(self, occupancy: OccupancyMap) -> Zones | None:
         """Return the zones of a map; None when they cannot be read: then nothing is cleaned."""

@@ -53,7 +53,7 @@ class RoomTopics:
     def start(self) -> None:
         """Connect."""
         folder = str(rospy.get_param("~rooms_folder", ""))
-        self.folder = Path(folder or Path(rospkg.get_ros_home()) / "roomba_robot" / "rooms")
+        self._folder = Path(folder or Path(rospkg.get_ros_home()) / "roomba_robot" / "rooms")
         self._publisher = rospy.Publisher("rooms", RoomArray, queue_size=1, latch=True)
         self._markers = rospy.Publisher("rooms/markers", MarkerArray, queue_size=1, latch=True)
         rospy.Service("rooms/rename", RenameRoom, self._on_rename)
@@ -90,13 +90,13 @@ class RoomTopics:
         with self._lock:
             if self._map is None or rooms.frame != self._map.frame:
                 return
-            save_rooms(rooms, self._map, self._path(self._map))
+            save_rooms(rooms, self._map, self.path_of(self._map))
             self._rooms = rooms
             self._tell(rooms)
 
     def _kept(self, occupancy: OccupancyMap) -> Rooms | None:
         """Return the rooms that people made of this map, or None."""
-        path = self._path(occupancy)
+        path = self.path_of(occupancy)
         if not path.is_file():
             return None
         try:
@@ -105,8 +105,9 @@ class RoomTopics:
             rospy.logwarn("the rooms are cut anew: %s", error)
             return None
 
-    def _path(self, occupancy: OccupancyMap) -> Path:
-        return self.folder / f"{map_digest(occupancy)[:16]}.yaml"
+    def path_of(self, occupancy: OccupancyMap) -> Path:
+        """Return where the rooms of a map are kept."""
+        return self._folder / f"{map_digest(occupancy)[:16]}.yaml"
 
     def _tell(self, rooms: Rooms) -> None:
         now = rospy.get_time()
@@ -120,7 +121,7 @@ class RoomTopics:
                 return False, "there is no map yet; is home_sim_node running?"
             try:
                 rooms = change(self._rooms, self._map)
-                save_rooms(rooms, self._map, self._path(self._map))
+                save_rooms(rooms, self._map, self.path_of(self._map))
             except RoombaError as error:
                 return False, str(error)
             except OSError as error:

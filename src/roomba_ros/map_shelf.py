@@ -1,0 +1,103 @@
+"""The robot's saved maps on ROS: kept by name, with their rooms and zones where others look."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import rospkg
+import rospy
+
+from roomba.errors import RoombaError
+from roomba.grid import OccupancyMap
+from roomba.map_bound_file import map_digest
+from roomba.map_store import MapStore, MapStoreError, StoredMap
+from roomba.perception.carry_over import carry_over
+from roomba.rooms_file import save_rooms
+from roomba.zones_file import save_zones
+from roomba_ros.room_topics import RoomTopics
+
+
+class MapShelf:
+    """Saves, loads and removes maps by name; raises MapStoreError and OSError as the store does.
+
+    Parameters: ``~maps_folder`` (default: roomba_robot/maps in the ROS home folder),
+    ``~zones_folder`` (as the mission node has it).
+    """
+
+    def __init__(self, rooms: RoomTopics) -> None:
+        """Read nothing yet."""
+        self._rooms = rooms
+
+    def start(self) -> None:
+        """Read the parameters."""
+        self._store = MapStore(_folder("~maps_folder", "maps"))
+        self._zones_folder = _folder("~zones_folder", "zones")
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Of all saved maps."""
+        return self._store.names()
+
+    @property
+    def folder(self) -> Path:
+        """Where they are."""
+        return self._store.folder
+
+    def load(self, name: str) -> StoredMap:
+        """Return a saved map."""
+        return self._store.load(name)
+
+    def load_all(self) -> dict[str, StoredMap]:
+        """Return all saved maps by name, but those that are broken."""
+        loaded = {}
+        for name in self._store.names():
+            try:
+                loaded[name] = self._store.load(name)
+            except (MapStoreError, OSError) as error:
+                rospy.logwarn("map %s is left out: %s", name, error)
+        return loaded
+
+    def save(self, name: str, stored: StoredMap) -> None:
+        """Save a map by a name; another one by this name is replaced."""
+        self._store.save(name, stored)
+
+    def save_anew(self, name: str, stored: StoredMap) -> bool:
+        """Save a map that was made anew; return whether it took something over.
+
+        What people did to the old map of this name, if there is one, goes on on the new one.
+        """
+        if name not in self._store.names() or stored.rooms is None:
+            self._store.save(name, stored)
+            return False
+        old = self._store.load(name)
+        zones = stored.zones if stored.zones.all else old.zones
+        carried = carry_over(stored.rooms, old.rooms, zones)
+        new = StoredMap(stored.occupancy, stored.station, carried.rooms, carried.zones)
+        self._store.save(name, new)
+        self._rooms.use(carried.rooms)
+        save_zones(carried.zones, new.occupancy, self._zones_path(new.occupancy))
+        return True
+
+    def remove(self, name: str) -> None:
+        """Forget a saved map."""
+        self._store.remove(name)
+
+    def keep_beside(self, stored: StoredMap) -> None:
+        """Let those find a map's rooms and zones who look for them by the map."""
+        occupancy = stored.occupancy
+        rooms_path, zones_path = self._rooms.path_of(occupancy), self._zones_path(occupancy)
+        try:
+            if stored.rooms is not None and not rooms_path.exists():
+                save_rooms(stored.rooms, occupancy, rooms_path)
+            if stored.zones.all and not zones_path.exists():
+                save_zones(stored.zones, occupancy, zones_path)
+        except (OSError, RoombaError) as error:
+            rospy.logwarn("rooms and zones of the map are not taken over: %s", error)
+
+    def _zones_path(self, occupancy: OccupancyMap) -> Path:
+        return self._zones_folder / f"{map_digest(occupancy)[:16]}.yaml"
+
+
+def _folder(parameter: str, name: str) -> Path:
+    folder = str(rospy.get_param(parameter, ""))
+    return Path(folder or Path(rospkg.get_ros_home()) / "roomba_robot" / name)

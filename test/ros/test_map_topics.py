@@ -1,0 +1,149 @@
+"""The robot's own maps: known again, changed when people agree, and none where one was given."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+import rospy
+from actionlib_msgs.msg import GoalStatus
+from fixtures.explorer import SPEED, Explorer
+from fixtures.graph import RosGraph
+from fixtures.mapping_home import (
+    CHEST,
+    KITCHEN,
+    STATION,
+    ZONE,
+    home_map,
+    keep_home_map,
+    kept_maps,
+    mapping_home,
+    other_home,
+)
+from fixtures.waiting import wait_until
+from roomba_robot.msg import Localization, Rectangle, ZoneArray
+
+from roomba.grid import OCCUPIED
+
+HOME = "home"
+BEFORE_CHEST = Rectangle(2.8, 0.6, 4.4, 1.8)
+BY_STATION = Rectangle(0.4, 0.9, 0.9, 1.6)
+
+
+@pytest.fixture
+def graph(tmp_path: Path) -> Iterator[RosGraph]:
+    """Nothing yet, but a saved map of the home."""
+    with RosGraph(tmp_path) as own:
+        keep_home_map(tmp_path / "ros_home", HOME)
+        yield own
+
+
+def knows_its_place(robot: Explorer) -> None:
+    """Wait until it does, and see that it is right."""
+    wait_until(
+        lambda: robot.probe.next("/localization", Localization).state == Localization.KNOWN,
+        15.0,
+        "it knows its place",
+    )
+    wait_until(lambda: STATION.distance_to(*robot.probe.position()) < 0.06, 5.0, "it is right")
+
+
+def chest_cells(robot: Explorer) -> int:
+    """Return how many cells are occupied where the chest stands, on the newest map."""
+    shown = robot.map
+    x_min, y_min, x_max, y_max = CHEST
+    low, left = shown.frame.cell_of(x_min, y_min)
+    high, right = shown.frame.cell_of(x_max - 0.01, y_max - 0.01)
+    return int((shown.values[low : high + 1, left : right + 1] == OCCUPIED).sum())
+
+
+def test_a_floor_is_known_again(graph: RosGraph) -> None:
+    graph.launch(f"home:={mapping_home(graph.folder)}", "map:=own", SPEED)
+    robot = Explorer(graph)
+    zones: list[ZoneArray] = []
+    rospy.Subscriber("/zones", ZoneArray, zones.append)
+    robot.has_whole_map()
+    wait_until(lambda: robot.mapping.name == HOME, 5.0, "it is known by name")
+    assert (robot.mapping.is_own, robot.mapping.message) == (True, "")
+    assert np.array_equal(robot.map.values, home_map().values)
+    knows_its_place(robot)
+    wait_until(lambda: KITCHEN in robot.rooms, 5.0, "its room's name")
+    wait_until(
+        lambda: zones and [zone.name for zone in zones[-1].zones] == [ZONE.name], 5.0, "its zone"
+    )
+    refused = robot.explore().ends(GoalStatus.REJECTED, 3.0)
+    assert "map:=none" in refused.message
+
+
+def test_another_floor_is_mapped_and_then_cleaned(graph: RosGraph) -> None:
+    graph.launch(f"home:={other_home(graph.folder)}", "map:=own", SPEED)
+    robot = Explorer(graph)
+    robot.maps_with("explore")
+    assert "was never on this floor" in graph.programs[0].output
+    assert (robot.mapping.is_growing, robot.mapping.name) == (True, "")
+    refused = robot.on_maps("load", HOME)
+    assert not refused.success
+    assert "map/finish" in refused.message
+    refused = robot.on_maps("save", HOME)
+    assert not refused.success
+    assert "explore first" in refused.message
+
+    exploring = robot.explore()
+    wait_until(robot.drives, 10.0, "it drives")
+    robot.inject("lifted")
+    exploring.ends(GoalStatus.ABORTED, 10.0)
+    robot.inject("put", x=STATION.x, y=STATION.y, theta=STATION.theta)
+    knows_its_place(robot)
+
+    robot.cleans(BY_STATION)
+    robot.has_whole_map(1.0)
+    assert "exploring" in robot.phases
+    assert "cleaning" in robot.phases
+
+
+def test_what_changed_is_offered_refused_and_accepted(graph: RosGraph) -> None:
+    home = mapping_home(graph.folder, "with_chest", has_chest=True)
+    graph.launch(f"home:={home}", f"map:={HOME}", SPEED)
+    robot = Explorer(graph)
+    robot.has_whole_map()
+    knows_its_place(robot)
+    assert not robot.trigger("/map/update/accept").success
+    before = chest_cells(robot)
+
+    robot.cleans(BEFORE_CHEST)
+    wait_until(lambda: robot.offers, 5.0, "the chest is offered")
+    offer = robot.offers[0]
+    assert (len(robot.offers), offer.appeared) == (1, True)
+    assert offer.middle.x == pytest.approx(0.5 * (CHEST[0] + CHEST[2]), abs=0.2)
+    assert offer.middle.y == pytest.approx(0.5 * (CHEST[1] + CHEST[3]), abs=0.2)
+    assert robot.trigger("/map/update/refuse").success
+    wait_until(lambda: not robot.offers, 2.0, "it is offered no more")
+    robot.cleans(BY_STATION)
+    assert robot.offers == []
+    assert chest_cells(robot) == before
+
+    assert robot.on_maps("load", HOME).success
+    robot.cleans(BEFORE_CHEST)
+    wait_until(lambda: robot.offers, 5.0, "the chest is offered")
+    assert robot.trigger("/map/update/accept").success
+    wait_until(lambda: chest_cells(robot) > before + 10, 5.0, "the map shows it")
+    wait_until(lambda: not robot.offers, 2.0, "nothing more is offered")
+    stored = kept_maps(graph.folder / "ros_home").load(HOME)
+    assert np.array_equal(stored.occupancy.values, robot.map.values)
+    assert stored.zones.all == (ZONE,)
+    assert stored.rooms is not None
+    assert KITCHEN in stored.rooms.names
+
+
+def test_a_robot_that_was_given_its_map_makes_none(graph: RosGraph) -> None:
+    graph.launch(f"home:={mapping_home(graph.folder)}", SPEED)
+    robot = Explorer(graph)
+    wait_until(lambda: "/mapping" in robot.probe.newest, 5.0, "whose map it is")
+    assert not robot.mapping.is_own
+    refused = robot.explore().ends(GoalStatus.REJECTED, 3.0)
+    assert "nothing to explore" in refused.message
+    answers = [robot.trigger(f"/map/{name}") for name in ("finish", "update/accept")]
+    answers += [robot.on_maps(deed, HOME) for deed in ("save", "load", "remove")]
+    assert not any(answer.success for answer in answers)
+    assert all("was given its map" in answer.message for answer in answers)
+    assert robot.saved_maps() == ([HOME], "")
