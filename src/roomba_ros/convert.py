@@ -149,7 +149,7 @@ def map_message(
     """Return an occupancy map as a message; one that ``is_growing`` was never loaded: 0 s."""
     message = OccupancyGrid(header=header(now, frame_id))
     if not is_growing:
-        message.info.map_load_time = message.header.stamp
+        message.info.map_load_time = max(message.header.stamp, genpy.Time(0, 1))
     message.info.resolution = known.frame.resolution
     message.info.width = known.frame.columns
     message.info.height = known.frame.rows

@@ -73,6 +73,7 @@ class MapTopics:
         self._background = Background()
         self._lock = threading.RLock()
         self._maker = MapMaker(config, read_mapping_config(), place, self._background)
+        rooms.is_growing = lambda: self._maker.is_growing
         self._map: OccupancyMap | None = None
         self._station: Pose | None = None
         self._name = self._message = self._trouble = ""

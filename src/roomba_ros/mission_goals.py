@@ -77,6 +77,15 @@ class MissionGoal(ActionGoal):
         """Tell why it is not begun."""
         self._handle.set_rejected(self._result(reason), reason)
 
+    def _tell_end(self, outcome: CleanOutcome, message: Any, text: str) -> None:
+        """Tell how it ended."""
+        if outcome is CleanOutcome.COMPLETED:
+            self._handle.set_succeeded(message, text)
+        elif outcome is CleanOutcome.STOPPED:
+            self._handle.set_canceled(message, text)
+        else:
+            self._handle.set_aborted(message, text)
+
     def stopped(self, ended: Ended, reason: str) -> None:
         """Tell that somebody ended it."""
         self._handle.set_canceled(self._result(reason), reason)
@@ -114,12 +123,7 @@ class CleaningGoal(MissionGoal):
             return False
         message = result_message(result)
         text = result.message or result.outcome.value
-        if result.outcome is CleanOutcome.COMPLETED:
-            self._handle.set_succeeded(message, text)
-        elif result.outcome is CleanOutcome.STOPPED:
-            self._handle.set_canceled(message, text)
-        else:
-            self._handle.set_aborted(message, text)
+        self._tell_end(result.outcome, message, text)
         return True
 
     def _follow_exploration(
@@ -240,12 +244,7 @@ class ExploringGoal(MissionGoal):
             return False
         message = explored_message(explored)
         text = explored.message or explored.outcome.value
-        if explored.outcome is CleanOutcome.COMPLETED:
-            self._handle.set_succeeded(message, text)
-        elif explored.outcome is CleanOutcome.STOPPED:
-            self._handle.set_canceled(message, text)
-        else:
-            self._handle.set_aborted(message, text)
+        self._tell_end(explored.outcome, message, text)
         return True
 
     def stopped(self, ended: Ended, reason: str) -> None:

@@ -12,7 +12,7 @@ from typing import Final
 import rospy
 from geometry_msgs.msg import PoseStamped
 from nav_msgs.msg import OccupancyGrid
-from roomba_robot.msg import RoomArray, ZoneArray
+from roomba_robot.msg import Mapping, RoomArray, ZoneArray
 from roomba_robot.srv import (
     RemoveZone,
     RemoveZoneRequest,
@@ -45,6 +45,8 @@ GROWING: Final = "growing"
 """The digest of maps that are being made."""
 MOST_FINE_CELLS: Final = 40_000_000
 """Of a map that is cleaned: 4,000 m2, its walls and surroundings included."""
+_MAPPING_DEADLINE: Final = 1.0
+"""s of wall time that a map without a load time waits to be told whole or growing."""
 _ROOMS_DEADLINE: Final = 3.0
 """s of wall time that a site waits for the map's rooms; later ones make a new site."""
 
@@ -65,7 +67,8 @@ class MissionSite:
     """Makes sites in the background: a new one for each map, edit of rooms, and edit of zones.
 
     Publishes: ``zones`` (ZoneArray, latched), ``zones/markers`` (MarkerArray, latched, for RViz).
-    Subscribes: ``map``, ``rooms``, ``station_pose`` (PoseStamped: where the docked robot stands).
+    Subscribes: ``map``, ``mapping`` (whether it is being made), ``rooms``, ``station_pose``
+    (PoseStamped: where the docked robot stands).
     Services: ``set_zone`` (SetZone), ``remove_zone`` (RemoveZone). Edits are saved at once.
     """
 
@@ -91,6 +94,8 @@ class MissionSite:
         self._made: KnownHome | None = None
         self._wanted = self._tried = 0
         self._is_edited = False
+        self._is_mapped: bool | None = None
+        self._held: tuple[float, OccupancyGrid] | None = None
         self.trouble = ""
         """Why there is no site of this map, in words; empty while one may still come."""
 
@@ -98,6 +103,7 @@ class MissionSite:
         """Connect."""
         self._zones_publisher = rospy.Publisher("zones", ZoneArray, queue_size=1, latch=True)
         self._markers = rospy.Publisher("zones/markers", MarkerArray, queue_size=1, latch=True)
+        rospy.Subscriber("mapping", Mapping, self._on_mapping, queue_size=1)
         rospy.Subscriber("map", OccupancyGrid, self._on_map, queue_size=1)
         rospy.Subscriber("rooms", RoomArray, self._on_rooms, queue_size=1)
         rospy.Subscriber("station_pose", PoseStamped, self._on_station, queue_size=1)
@@ -126,6 +132,9 @@ class MissionSite:
 
     def tick(self) -> None:
         """Let the first site be made as soon as all that it takes was heard."""
+        held = self._held
+        if held is not None and time.monotonic() > held[0] + _MAPPING_DEADLINE:
+            self._take_held()
         with self._lock:
             is_first = self._tried == self._wanted == 0 and not self.missing
             waits = self._rooms_message is None
@@ -177,14 +186,33 @@ class MissionSite:
             self._tried, self._made, self.trouble = wanted, made, trouble
             self._field = field
 
+    def _on_mapping(self, message: Mapping) -> None:
+        self._is_mapped = message.is_growing
+        self._take_held()
+
     def _on_map(self, message: OccupancyGrid) -> None:
+        if message.info.map_load_time.is_zero() and self._is_mapped is None:
+            # It may be one that is being made; who makes it says so, if there is somebody.
+            with self._lock:
+                self._held = (time.monotonic(), message)
+            return
+        self._hear_map(message, time.monotonic())
+
+    def _take_held(self) -> None:
+        """Take the map that waited to be known for a whole or a growing one."""
+        with self._lock:
+            held, self._held = self._held, None
+        if held is not None:
+            self._hear_map(held[1], held[0])
+
+    def _hear_map(self, message: OccupancyGrid, came: float) -> None:
         try:
             occupancy = map_of(message)
         except ValueError as error:
             rospy.logwarn("map refused: %s", error)
             return
-        # A map that is being made was never loaded.
-        is_growing = message.info.map_load_time.is_zero()
+        # A map that is being made was never loaded; other people's may not say when they were.
+        is_growing = bool(self._is_mapped) and message.info.map_load_time.is_zero()
         digest = GROWING if is_growing else map_digest(occupancy)
         with self._lock:
             if digest == self._digest and not is_growing:
@@ -193,7 +221,7 @@ class MissionSite:
             before, self._digest = self._digest, digest
             is_first = self._map is None
             self._map, self._field = occupancy, None
-            self._map_came = time.monotonic()
+            self._map_came = came
             if not (is_growing and before == GROWING):
                 self._zones = self._kept_or_carried(occupancy, before)
                 self._tell()

@@ -98,7 +98,7 @@ class SimBag:
             self._scans = seen.scans
             # Taken when it was due, which may be a tick ago.
             due = float(robot.simulator.numbers["next_scan"]) - 1.0 / config.lidar.rate
-            taken = min(due, now)
+            taken = min(max(due, 0.0), now)
             scan = scan_message(taken, robot.simulator.ranges, config.lidar, _LASER)
             self._put("/scan", scan, now)
         if now - self._battery_at >= _BATTERY_PERIOD - 1e-6:

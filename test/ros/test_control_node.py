@@ -23,7 +23,7 @@ def test_ctrl_c_at_the_menu_ends_it_within_a_second(graph: RosGraph) -> None:
 def test_a_wrong_choice_is_asked_again(graph: RosGraph) -> None:
     menu = graph.rosrun("control_node.py")
     menu.says("press 1-4", 10.0)
-    for wrong in ("10", "one", ""):
+    for wrong in ("11", "one", ""):
         menu.type(wrong)
     menu.end_of_input()
     assert menu.ends(5.0) == 0

@@ -46,6 +46,7 @@ class Rig:
         self.senses = AWAY
         self.world = MagicMock()
         self.node = MissionNode()
+        self.node._newer = None
         self.node._mission = Mission(
             SITE,
             CONFIG,
