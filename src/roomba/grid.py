@@ -80,3 +80,8 @@ class OccupancyMap:
         """Cells that no body may enter: all that is not known to be free, bool [rows, columns]."""
         solid: NDArray[np.bool_] = self.values != FREE
         return solid
+
+    @property
+    def free_area(self) -> float:
+        """How much floor is known to be free, m2."""
+        return float(np.count_nonzero(self.values == FREE)) * self.frame.resolution**2

@@ -1,7 +1,7 @@
 """Compiles the hot loops once, so that the first start of the robot is as quick as every other.
 
-Numba keeps what it compiled in a cache on disk; ``./roomba`` runs this after each build, and
-:mod:`roomba.sim.warm`, for all that a clean needs, beside it.
+Numba keeps what it compiled in a cache on disk; ``./roomba`` runs this after each build, and beside
+it :mod:`roomba.sim.warm` and :mod:`roomba.mapping_run.warm`, for all that cleans and maps need.
 """
 
 from __future__ import annotations
@@ -10,14 +10,11 @@ import numpy as np
 
 from roomba.config import RobotConfig
 from roomba.geometry import Pose, Twist
-from roomba.grid import FREE, OCCUPIED, UNKNOWN, GridFrame, OccupancyMap
+from roomba.grid import FREE, OCCUPIED, GridFrame, OccupancyMap
 from roomba.perception.localizer import Localizer
 from roomba.perception.map_changes import MapChanges
 from roomba.perception.rooms import segment
 from roomba.perception.scan_view import LidarModel
-from roomba.perception.slam.mapper import Mapper
-from roomba.perception.slam.mapping_config import MappingConfig
-from roomba.planning.frontiers import frontiers, is_frontier
 from roomba.planning.grid_path import shortest_grid_path
 from roomba.planning.path import PathPlanner
 from roomba.world.camera import Camera, Scene
@@ -33,7 +30,7 @@ def main() -> None:
     for _ in range(40):
         simulator.step(Twist(0.5, 0.1), 0.025)
     _find_place(home, config, simulator)
-    _make_map(home, config, simulator)
+    _look_for_changes(home, config, simulator)
     segment(home.map)
     planner = PathPlanner(
         home.map, config.body.radius, config.walk.clearance, config.walk.tight_clearance
@@ -59,26 +56,15 @@ def _find_place(home: Home, config: RobotConfig, simulator: Simulator) -> None:
         localizer.see(0.1 * step, simulator.ranges, model)
 
 
-def _make_map(home: Home, config: RobotConfig, simulator: Simulator) -> None:
-    """Map the room from a few places, look where to go next, and for what has changed."""
+def _look_for_changes(home: Home, config: RobotConfig, simulator: Simulator) -> None:
+    """Look from a few places for what stands otherwise than the map shows it."""
     lidar = config.lidar
     model = LidarModel.all_around(lidar.beams, lidar.min_range, lidar.max_range)
-    mapper = Mapper(
-        MappingConfig(submap_keyframes=4), config.localization, config.gyro, simulator.pose
-    )
     changes = MapChanges(home.map)
     for _ in range(60):
         seen = simulator.step(Twist(0.1, 1.0), 0.1)
-        mapper.move(seen.time, seen.odometry, seen.angular_velocity)
-        mapper.see(seen.time, simulator.ranges, model)
-        changes.see(seen.time, simulator.ranges, model.arrays(), mapper.pose)
+        changes.see(seen.time, simulator.ranges, model.arrays(), seen.pose)
     changes.changes()
-    mapper.finish()
-    frame, values = home.map.frame, home.map.values.copy()
-    values[20:30, 20:30] = UNKNOWN
-    half_known = OccupancyMap(frame, values)
-    frontiers(half_known, values == FREE, (2.0, 2.0))
-    is_frontier(half_known, (1.0, 1.0), 0.2)
 
 
 def _small_room() -> Home:

@@ -17,11 +17,12 @@ import rosbag
 
 from roomba.config import load_robot_config
 from roomba.geometry import Pose
-from roomba.mapping_run.command import COMPLETED, guarded, tell, write_json
+from roomba.mapping_run.command import COMPLETED, guarded
 from roomba.mapping_run.files import write_files
 from roomba.mapping_run.options import Output, Parser, output_of
 from roomba.perception.slam.mapping_config import load_mapping_config
 from roomba.sim.progress import progress
+from roomba.sim.telling import tell_tables, write_json
 from roomba_ros.convert import pose_of
 from roomba_ros.localize_mounts import Mounts
 from roomba_ros.localize_recording import Heard, Kind, Recording, RecordingError
@@ -64,7 +65,7 @@ def _run(arguments: list[str] | None) -> int:
 
         write_plot(output.plot, done)
     summary = summary_of(done)
-    tell(output, [table_of(summary)])
+    tell_tables([table_of(summary)], output.json, quiet=output.quiet)
     if output.json is not None:
         write_json(output.json, summary.as_json())
     return COMPLETED

@@ -9,7 +9,7 @@ import rospy
 
 from roomba.config import RobotConfig
 from roomba.geometry import Pose
-from roomba.grid import FREE, OccupancyMap
+from roomba.grid import OccupancyMap
 from roomba.perception.estimate import Knowledge
 from roomba.perception.slam.mapper import Mapper
 from roomba.perception.slam.mapping_config import MappingConfig
@@ -119,8 +119,3 @@ class MapMaker:
             raise
         with self._lock:
             self._whole = whole
-
-
-def known_area(occupancy: OccupancyMap) -> float:
-    """Return how much floor is on a map, m2."""
-    return float((occupancy.values == FREE).sum()) * occupancy.frame.resolution**2

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import rospkg
 import rospy
 
 from roomba.errors import RoombaError
@@ -14,6 +13,7 @@ from roomba.map_store import MapStore, MapStoreError, StoredMap
 from roomba.perception.carry_over import carry_over
 from roomba.rooms_file import save_rooms
 from roomba.zones_file import save_zones
+from roomba_ros.parameters import folder_of
 from roomba_ros.room_topics import RoomTopics
 
 
@@ -30,8 +30,8 @@ class MapShelf:
 
     def start(self) -> None:
         """Read the parameters."""
-        self._store = MapStore(_folder("~maps_folder", "maps"))
-        self._zones_folder = _folder("~zones_folder", "zones")
+        self._store = MapStore(folder_of("~maps_folder", "maps"))
+        self._zones_folder = folder_of("~zones_folder", "zones")
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -96,8 +96,3 @@ class MapShelf:
 
     def _zones_path(self, occupancy: OccupancyMap) -> Path:
         return self._zones_folder / f"{map_digest(occupancy)[:16]}.yaml"
-
-
-def _folder(parameter: str, name: str) -> Path:
-    folder = str(rospy.get_param(parameter, ""))
-    return Path(folder or Path(rospkg.get_ros_home()) / "roomba_robot" / name)

@@ -34,7 +34,7 @@ from roomba_ros.convert import header, map_message, pose_message
 from roomba_ros.convert_mission import zone_of
 from roomba_ros.floor_search import FloorSearch
 from roomba_ros.localization_topics import LocalizationTopics
-from roomba_ros.map_maker import MapMaker, known_area
+from roomba_ros.map_maker import MapMaker
 from roomba_ros.map_shelf import MapShelf
 from roomba_ros.parameters import read_mapping_config
 from roomba_ros.room_topics import RoomTopics
@@ -75,6 +75,7 @@ class MapTopics:
         self._maker = MapMaker(config, read_mapping_config(), place, self._background)
         rooms.is_growing = lambda: self._maker.is_growing
         self._map: OccupancyMap | None = None
+        self._known = 0.0
         self._station: Pose | None = None
         self._name = self._message = self._trouble = ""
         self._zones = Zones()
@@ -201,7 +202,7 @@ class MapTopics:
             return
         grown = maker.grown(now)
         if grown is not None:
-            self._map = grown
+            self._map, self._known = grown, grown.free_area
             self._background.do(
                 "the map is not told",
                 lambda: self._publisher.publish(map_message(now, grown, "map", is_growing=True)),
@@ -291,7 +292,7 @@ class MapTopics:
 
     def _tell_map(self, occupancy: OccupancyMap) -> None:
         now = rospy.get_time()
-        self._map = occupancy
+        self._map, self._known = occupancy, occupancy.free_area
         self._changes.begin(now, occupancy)
         self._publisher.publish(map_message(now, occupancy, "map"))
 
@@ -302,12 +303,11 @@ class MapTopics:
 
     def _say(self, now: float) -> None:
         """Tell whose map it is, when that is news."""
-        known = 0.0 if self._map is None else known_area(self._map)
-        said = (self._is_own, self._maker.is_growing, self._name, round(known), self._message)
+        said = (self._is_own, self._maker.is_growing, self._name, round(self._known), self._message)
         if said != self._said:
             self._said = said
             self._mapping.publish(
-                header(now, "map"), self._is_own, said[1], self._name, known, self._message
+                header(now, "map"), self._is_own, said[1], self._name, self._known, self._message
             )
 
     # ---------------------------------------------------------------- hearing

@@ -22,6 +22,7 @@ from roomba_robot.msg import CleanResult as CleanResultMessage
 from roomba_robot.msg import ExploreResult as ExploreResultMessage
 
 from roomba.errors import RoombaError
+from roomba.grid import OccupancyMap
 from roomba.mission.clean_request import CleanOutcome, CleanRequest, CleanResult
 from roomba.mission.exploration import ExploreResult
 from roomba.mission.machine import Errand, Event, Phase
@@ -228,6 +229,7 @@ class ExploringGoal(MissionGoal):
         """Take the goal's handle."""
         super().__init__(handle)
         self._known = 0.0
+        self._looked_at: OccupancyMap | None = None
 
     def begin(self, mission: Mission, senses: Senses) -> None:
         """Let the mission explore."""
@@ -258,8 +260,9 @@ class ExploringGoal(MissionGoal):
         self._handle.publish_feedback(ExploreFeedback(state.state, self._known, state.battery))
 
     def _look_at(self, mission: Mission) -> None:
-        if mission.exploration is not None:
-            self._known = mission.exploration.known_area(mission.site)
+        occupancy = mission.site.occupancy
+        if mission.exploration is not None and occupancy is not self._looked_at:
+            self._looked_at, self._known = occupancy, occupancy.free_area
 
     def _result(self, message: str) -> ExploreResultMessage:
         return ExploreResultMessage(

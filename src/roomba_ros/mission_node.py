@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import rospkg
 import rospy
 from std_srvs.srv import Trigger
 
@@ -30,7 +29,7 @@ from roomba_ros.mission_senses import MissionSenses
 from roomba_ros.mission_site import KnownHome, MissionSite
 from roomba_ros.mission_topics import MissionTopics
 from roomba_ros.node import require_master, run_node
-from roomba_ros.parameters import package_folder, read_robot_config
+from roomba_ros.parameters import folder_of, package_folder, read_robot_config
 
 NAME = "mission_node"
 _OTHERS = "somebody else drives the robot (a walk, or cmd_vel); resume when that is done"
@@ -63,7 +62,7 @@ class MissionNode:
             self._mission_config,
             self._docking_config,
             self._background,
-            _folder("~zones_folder", "zones"),
+            folder_of("~zones_folder", "zones"),
         )
         self._drive = MissionDrive(self._config)
         self._orders = MissionOrders(self._drive.take)
@@ -176,7 +175,7 @@ class MissionNode:
 
     def _memory_of(self, home: KnownHome) -> MissionMemory:
         robot = rospy.get_namespace().strip("/") or "robot"
-        folder = _folder("~memory_folder", "mission") / robot
+        folder = folder_of("~memory_folder", "mission") / robot
         return MissionMemory(folder, home.digest, self._background)
 
     def _give_way(self, mission: Mission, senses: Senses) -> None:
@@ -225,11 +224,6 @@ def read_mission_config() -> MissionConfig:
     key = rospy.search_param("mission_config")
     path = rospy.get_param(key) if key else package_folder() / "config" / "mission.yaml"
     return load_mission_config(Path(path))
-
-
-def _folder(parameter: str, name: str) -> Path:
-    folder = str(rospy.get_param(parameter, ""))
-    return Path(folder or Path(rospkg.get_ros_home()) / "roomba_robot" / name)
 
 
 def main() -> None:

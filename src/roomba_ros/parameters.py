@@ -48,6 +48,14 @@ def read_mapping_config() -> MappingConfig:
     return load_mapping_config(Path(path))
 
 
+def folder_of(parameter: str, name: str) -> Path:
+    """Return the folder that a parameter names; by default one of that name for this robot's files,
+    in roomba_robot in the ROS home folder.
+    """
+    folder = str(rospy.get_param(parameter, ""))
+    return Path(folder or Path(rospkg.get_ros_home()) / "roomba_robot" / name)
+
+
 def package_folder() -> Path:
     """Return where this package's launch, config and homes folders are."""
     return Path(rospkg.RosPack().get_path("roomba_robot"))

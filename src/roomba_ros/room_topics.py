@@ -7,7 +7,6 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-import rospkg
 import rospy
 from nav_msgs.msg import OccupancyGrid
 from roomba_robot.msg import RoomArray
@@ -32,6 +31,7 @@ from roomba.perception.rooms import Rooms, segment
 from roomba.rooms_file import load_rooms, save_rooms
 from roomba_ros.convert import map_of
 from roomba_ros.convert_rooms import rooms_markers, rooms_message
+from roomba_ros.parameters import folder_of
 
 
 class RoomTopics:
@@ -57,8 +57,7 @@ class RoomTopics:
 
     def start(self) -> None:
         """Connect."""
-        folder = str(rospy.get_param("~rooms_folder", ""))
-        self._folder = Path(folder or Path(rospkg.get_ros_home()) / "roomba_robot" / "rooms")
+        self._folder = folder_of("~rooms_folder", "rooms")
         self._publisher = rospy.Publisher("rooms", RoomArray, queue_size=1, latch=True)
         self._markers = rospy.Publisher("rooms/markers", MarkerArray, queue_size=1, latch=True)
         rospy.Service("rooms/rename", RenameRoom, self._on_rename)

@@ -2,28 +2,22 @@
 
 from __future__ import annotations
 
-import json
 import os
 import sys
 import time
 from collections.abc import Callable
-from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
-
-from rich.console import Console
-from rich.table import Table
+from typing import TYPE_CHECKING, Final
 
 from roomba.errors import RoombaError
 from roomba.mapping_run.options import PROGRAM, Options, Output, options_of
 from roomba.sim.progress import Show, progress
+from roomba.sim.telling import tell_tables, write_json
 from roomba.sim.trial import UsageError
 
 if TYPE_CHECKING:
     from roomba.mapping_run.runs import MapRun, MapScene, Watch, WatchedExplorer
 
 COMPLETED, ENDED_OTHERWISE, USAGE, INTERRUPTED = 0, 1, 2, 130
-_WIDTH: Final = 120
-"""Columns of a table that nobody sees on a terminal."""
 _SHOWN: Final = 0.25
 """s between two looks at how far it is."""
 
@@ -113,26 +107,6 @@ def _tell_run(output: Output, run: MapRun) -> None:
         from roomba.mapping_run.plot import write_plot
 
         write_plot(output.plot, run)
-    tell(output, [run_table(run), error_table(run)])
+    tell_tables([run_table(run), error_table(run)], output.json, quiet=output.quiet)
     if output.json is not None:
         write_json(output.json, run_as_json(run))
-
-
-def tell(output: Output, tables: list[Table]) -> None:
-    """Print tables; with figures on standard output they go to standard error."""
-    if output.quiet:
-        return
-    console = Console(stderr=output.json == "-")
-    if not console.is_terminal:
-        console.width = _WIDTH
-    for table in tables:
-        console.print(table, highlight=False)
-
-
-def write_json(target: str, values: dict[str, Any]) -> None:
-    """Write figures to a file, or standard output; raises OSError."""
-    text = json.dumps(values, allow_nan=False)
-    if target == "-":
-        print(text, flush=True)
-    else:
-        Path(target).write_text(f"{text}\n", encoding="utf-8")

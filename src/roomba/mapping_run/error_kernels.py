@@ -78,10 +78,7 @@ def offsets(
                 continue
             if not is_side(ground, at_row, at_column, facing):
                 continue
-            plane = (at_column + 0.5 + 0.5 * step_column) * abs(step_column)
-            plane += (at_row + 0.5 + 0.5 * step_row) * abs(step_row)
-            along = u * abs(step_column) + v * abs(step_row)
-            before = (along - plane) * (step_column + step_row) * size
+            before = _before_side(u, v, at_row, at_column, step_row, step_column) * size
             if abs(before) <= best:
                 best = abs(before)
                 off[index] = before
@@ -115,10 +112,7 @@ def count_surfaces(
                     continue
                 if not is_side(ground, at_row, at_column, facing):
                     continue
-                plane = (at_column + 0.5 + 0.5 * step_column) * abs(step_column)
-                plane += (at_row + 0.5 + 0.5 * step_row) * abs(step_row)
-                along = u * abs(step_column) + v * abs(step_row)
-                before = (along - plane) * (step_column + step_row) * size
+                before = _before_side(u, v, at_row, at_column, step_row, step_column) * size
                 if -beside - 1e-9 <= before <= behind + beside + 1e-9:
                     found += 1
             most = max(most, found)
@@ -133,6 +127,17 @@ def is_side(ground: Ground, row: int, column: int, facing: int) -> bool:
     if not (0 <= beside_row < rows and 0 <= beside_column < columns):
         return False
     return bool(ground.solid[row, column] and ground.seen[beside_row, beside_column])
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _before_side(
+    u: float, v: float, row: int, column: int, step_row: int, step_column: int
+) -> float:
+    """Return how far a point lies before a cell's side that faces along a step, in cells."""
+    plane = (column + 0.5 + 0.5 * step_column) * abs(step_column)
+    plane += (row + 0.5 + 0.5 * step_row) * abs(step_row)
+    along = u * abs(step_column) + v * abs(step_row)
+    return (along - plane) * (step_column + step_row)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

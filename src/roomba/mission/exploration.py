@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.geometry import Pose
-from roomba.grid import FREE, OccupancyMap
+from roomba.grid import OccupancyMap
 from roomba.mission.clean_request import CleanOutcome
 from roomba.mission.site import Site
 from roomba.planning.costmap import Point, RoundObstacle
@@ -101,10 +101,6 @@ class Exploration:
         if self.goal is not None:
             self.unseen.append(self.goal.middle)
         self.goal = None
-
-    def known_area(self, site: Site) -> float:
-        """Return how much floor is known to be free, m2."""
-        return float((site.occupancy.values == FREE).sum()) * site.occupancy.frame.resolution**2
 
     def _leave_behind(self, here: Pose, site: Site) -> None:
         """Give the last frontier up if it was looked at from its viewpoint, and is still one."""

@@ -115,7 +115,7 @@ class Job:
             self._explored = ExploreResult(
                 outcome,
                 message,
-                self.exploration.known_area(site),
+                site.occupancy.free_area,
                 self.book.distance,
                 self.duration(senses.now),
                 tuple(self.exploration.unseen),

@@ -3,22 +3,21 @@
 from __future__ import annotations
 
 import contextlib
-import json
 import os
 import sys
 import time
 from collections.abc import Callable
 from contextlib import AbstractContextManager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
-from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
 from roomba.errors import RoombaError
 from roomba.sim.options import PROGRAM, Options, options_of
 from roomba.sim.progress import Show, progress
+from roomba.sim.telling import tell_tables, write_json
 from roomba.sim.trial import RANDOM, Trial, UsageError
 
 if TYPE_CHECKING:
@@ -32,8 +31,6 @@ BagOpener = Callable[[Path, "Scene"], AbstractContextManager["Watch"]]
 
 BAG_BURST: Final = 1
 """Ticks between two looks for a bag: its fastest topics have 10 Hz."""
-_WIDTH: Final = 120
-"""Columns of a table that nobody sees on a terminal."""
 COMPLETED, ENDED_OTHERWISE, USAGE, INTERRUPTED = 0, 1, 2, 130
 
 
@@ -112,9 +109,9 @@ def _tell_run(options: Options, run: Run) -> None:
         from roomba.sim.plot import write_plot
 
         write_plot(options.plot, run)
-    _tell(options, [table_of(run.figures)])
+    tell_tables([table_of(run.figures)], options.json, quiet=options.quiet)
     if options.json is not None:
-        _write_json(options.json, run_as_json(run))
+        write_json(options.json, run_as_json(run))
 
 
 # ---------------------------------------------------------------- many runs
@@ -165,10 +162,10 @@ def _tell_homes(
     rows.add_row("homes", f"{completed} of {count} completed and docked, in {wall:.1f} s")
     for name, text in failure_lines(figures, failures, _again(options.trial)):
         rows.add_row(name, Text(text, "red"))
-    _tell(options, [percentile_table(spread), rows])
+    tell_tables([percentile_table(spread), rows], options.json, quiet=options.quiet)
     if options.json is not None:
         config = robot_config_of(options.trial)
-        _write_json(options.json, runs_as_json(figures, failures, spread, config, wall))
+        write_json(options.json, runs_as_json(figures, failures, spread, config, wall))
 
 
 def _again(trial: Trial) -> str:
@@ -196,22 +193,3 @@ def _again(trial: Trial) -> str:
 
 
 # ---------------------------------------------------------------- telling
-
-
-def _tell(options: Options, tables: list[Table]) -> None:
-    """Print tables; with figures on standard output they go to standard error."""
-    if options.quiet:
-        return
-    console = Console(stderr=options.json == "-")
-    if not console.is_terminal:
-        console.width = _WIDTH
-    for table in tables:
-        console.print(table, highlight=False)
-
-
-def _write_json(target: str, values: dict[str, Any]) -> None:
-    text = json.dumps(values, allow_nan=False)
-    if target == "-":
-        print(text, flush=True)
-    else:
-        Path(target).write_text(f"{text}\n", encoding="utf-8")

@@ -166,8 +166,8 @@ def test_one_to_which_no_way_leads_is_given_up_for_the_next(
 
 def test_how_much_is_known_is_told() -> None:
     area = (TWO_ROOMS.map.values == FREE).sum() * 0.05**2
-    assert Exploration().known_area(ALL_SITE) == pytest.approx(area)
-    assert Exploration().known_area(HALL_SITE) == pytest.approx(2.0 * 2.4 + 0.1 * 0.8, abs=0.01)
+    assert ALL_SITE.occupancy.free_area == pytest.approx(area)
+    assert HALL_SITE.occupancy.free_area == pytest.approx(2.0 * 2.4 + 0.1 * 0.8, abs=0.01)
 
 
 def test_it_comes_back_from_plain_values() -> None:
