@@ -31,6 +31,7 @@ class CleaningConfig(Frozen):
 
     enough: Ratio = 0.9965
     least_patch: Positive = 0.004
+    least_while_growing: Positive = 0.5
     most_rounds: Annotated[int, Field(ge=0)] = 4
     dirty_times: Positive = 6.0
 
@@ -41,6 +42,7 @@ class ExploringConfig(Frozen):
     speed: Positive = 0.40
     clearance: Positive = 0.12
     tight_clearance: Positive = 0.02
+    look_first: Positive = 10.0
     most_stuck: Annotated[int, Field(ge=0)] = 3
 
 

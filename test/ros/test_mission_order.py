@@ -67,6 +67,7 @@ class Rig:
         self.node._site = MagicMock(take=lambda: None, is_changing=False)
         self.node._senses = MagicMock(at=lambda now: self.senses)
         self.node._memory, self.node._things = MagicMock(), MagicMock()
+        self.node._finished = 0.0
         self.world.handle.get_goal_id.return_value = GoalID(id="1")
         self.world.handle.get_goal_status.return_value = GoalStatus(status=GoalStatus.PENDING)
 

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from roomba.errors import RoombaError
 from roomba.mission.clean_request import CleanMode, CleanRequest, FanLevel
 
-VERSION: Final = 1
+VERSION: Final = 2
 Mask = NDArray[np.bool_]
 Values = dict[str, Any]
 

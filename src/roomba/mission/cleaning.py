@@ -1,7 +1,8 @@
-"""One clean: what is wanted, what is done, and where to drive next.
+"""One clean: where to drive next.
 
 The floor is cleaned in stages (rooms, passes). Each is planned as a whole and driven; what was
 missed is found from what was really swept, and planned again until it is done or cannot be reached.
+While the map is being made, large patches of what is known are planned, each once.
 """
 
 from __future__ import annotations
@@ -15,19 +16,19 @@ from numpy.typing import NDArray
 from roomba.geometry import Pose
 from roomba.grid import GridFrame
 from roomba.mask_kernels import numbered_regions
-from roomba.mission.checkpoint import CheckpointError, Values, packed, request_values, unpacked
+from roomba.mission.checkpoint import Values
 from roomba.mission.clean_request import (
     CleanMode,
     CleanRefusedError,
     CleanRequest,
     Missed,
 )
+from roomba.mission.floor_book import FloorBook
 from roomba.mission.gaps import closed_gaps
 from roomba.mission.missed import is_hidden, missed_floor
 from roomba.mission.site import Site
-from roomba.mission.stages import Stage, stages_of
+from roomba.mission.stages import Stage
 from roomba.mission_config import CleaningConfig
-from roomba.perception.coverage_bits import SWEPT, WANTED
 from roomba.perception.coverage_map import CoverageMap, patches_of
 from roomba.perception.dirt_map import DirtMap
 from roomba.planning.costmap import Point, RoundObstacle
@@ -61,19 +62,13 @@ class Cleaning:
         self, request: CleanRequest, site: Site, dirt: DirtMap, config: CleaningConfig, here: Pose
     ) -> None:
         """Find out what is wanted; raises CleanRefusedError when that is nothing."""
-        self.request, self._site, self._config, self._dirt = request, site, config, dirt
-        self._began_at = here
-        coverable = site.coverable()
-        self.stages = stages_of(request, site, dirt, coverable, here)
-        wanted = np.logical_or.reduce([stage.floor for stage in self.stages])
-        if not wanted.any():
+        self._site, self._config, self._dirt = site, config, dirt
+        self._book = FloorBook(request, site, dirt, here)
+        if not (self.coverage.wanted_cells or self.explores):
             raise CleanRefusedError(
                 "expected floor that can be reached, got none: it is outside of the map, in "
                 "furniture, or in a no-go zone"
             )
-        self.coverage = CoverageMap(site.frame, wanted, site.tool_width)
-        self._ever = np.zeros(site.frame.shape, np.bool_)
-        self.stage_number = 0
         self._rounds = 0
         self._last_missed = np.inf
         self._looked_again = False
@@ -86,30 +81,49 @@ class Cleaning:
         """m; of the last path that was not driven to its end, what was left then."""
 
     @property
+    def request(self) -> CleanRequest:
+        """What was asked for."""
+        return self._book.request
+
+    @property
+    def coverage(self) -> CoverageMap:
+        """What is wanted, and swept of the present pass."""
+        return self._book.coverage
+
+    @property
+    def stages(self) -> list[Stage]:
+        """The parts in their order."""
+        return self._book.stages
+
+    @property
     def stage(self) -> Stage | None:
         """The one that it is at, or None at the end."""
-        return self.stages[self.stage_number] if self.stage_number < len(self.stages) else None
+        return self._book.stage
+
+    @property
+    def stage_number(self) -> int:
+        """Which of them that is, from 0."""
+        return self._book.stage_number
 
     @property
     def left(self) -> float:
         """Floor that is still to be cleaned, m2, stages and passes to come included."""
-        cell = self.coverage.cell_area
-        missed = self.coverage.missed
-        now = sum(
-            float(np.count_nonzero(stage.floor & missed if number == 0 else stage.floor))
-            for number, stage in enumerate(self.stages[self.stage_number :])
-        )
-        return now * cell
+        return self._book.left
 
     @property
     def clean(self) -> Mask:
         """What was ever swept of what is wanted."""
-        return self.coverage.wanted & (self.coverage.swept | self._ever)
+        return self._book.clean
 
     @property
     def clean_area(self) -> float:
-        """Of it, m2; it never gets less while nobody edits zones."""
+        """What was ever swept of what is wanted, m2; only edits of zones make it less."""
         return float(np.count_nonzero(self.clean)) * self.coverage.cell_area
+
+    @property
+    def explores(self) -> bool:
+        """Whether it goes to see, for more floor, what the map does not show yet."""
+        return self._site.is_growing and self.request.mode in (CleanMode.WHOLE, CleanMode.EDGES)
 
     def next_path(self, here: Pose, obstacles: list[RoundObstacle]) -> Floats | None:
         """Return the next points to drive, float64 [n, 2], m, or None when all is done.
@@ -117,6 +131,8 @@ class Cleaning:
         Raises NoPathError while it is shut in, so that it has to get out first.
         """
         obstacles = obstacles + closed_gaps(obstacles, self._site.reach)
+        if self._site.is_growing:
+            return self._next_of_known(here, obstacles)
         while (stage := self.stage) is not None:
             points = self._next_round(stage, here, obstacles)
             if points is not None:
@@ -137,7 +153,7 @@ class Cleaning:
         large = _patches(left, self.coverage.frame, _WORTH_A_LOOK)
         if not large.any():
             return False
-        self.stages.append(Stage("what was out of reach", large))
+        self._book.add(Stage("what was out of reach", large))
         self._begin_stage()
         return True
 
@@ -153,7 +169,7 @@ class Cleaning:
 
         So it says nothing of what was missed; what is worth a round is planned first.
         """
-        self._rounds, self._last_missed, self._is_anew = 1, np.inf, True
+        self._begin_anew()
         self.broken_off = left
 
     def plans_anew(self, now: float, left: float) -> bool:
@@ -165,53 +181,39 @@ class Cleaning:
         since = now - self._planned_anew_at
         if left < _LONG or self._anew >= _MOST_ANEW or 0.0 <= since < _PLANNED_ANEW:
             return False
-        self._anew, self._planned_anew_at, self._is_anew = self._anew + 1, now, True
-        self._rounds, self._last_missed = 1, np.inf
+        self._anew, self._planned_anew_at = self._anew + 1, now
+        self._begin_anew()
         return True
 
+    def _begin_anew(self) -> None:
+        """What was planned last counts as no round."""
+        self._rounds, self._last_missed, self._is_anew = 1, np.inf, True
+        self._book.try_again()
+
     def use_site(self, site: Site) -> None:
-        """Go on with other zones or rooms; what is swept stays so."""
-        coverable = site.coverable()
+        """Go on with other zones or rooms, or with more of the map; what is swept stays so."""
+        if self._site.is_growing:
+            self._begin_stage()
+            # With the whole map the first way through is done.
+            self._rounds = 0 if site.is_growing else 1
         self._site = site
-        asked = stages_of(self.request, site, self._dirt, coverable, self._began_at)
-        wanted = np.logical_or.reduce([stage.floor for stage in asked]) if asked else ~coverable
-        cells = self.coverage.cells
-        freed = wanted & ~self.coverage.wanted
-        cells[~(coverable & wanted)] &= np.uint8(0xFF ^ WANTED)
-        cells[freed] |= np.uint8(WANTED)
-        self.stages = [Stage(s.name, s.floor & coverable, s.again) for s in self.stages]
-        if freed.any():
-            self.stages.append(Stage("what was a zone before", freed))
-        self.coverage.count_again()
+        self._book.use_site(site)
 
     def values(self) -> Values:
         """Return all that must be remembered to go on, as plain values."""
         return {
-            "request": request_values(self.request),
-            "stages": [[s.name, packed(s.floor), s.again] for s in self.stages],
-            "stage_number": self.stage_number,
-            "wanted": packed(self.coverage.wanted),
-            "swept": packed(self.coverage.swept),
-            "ever": packed(self._ever),
+            **self._book.values(),
             "looked_again": self._looked_again,
             "unreachable": self._unreachable,
             "scrubbed": self._scrubbed,
         }
 
     def restore(self, values: Values) -> None:
-        """Go on from such values, of the same map; raises CheckpointError, and others for junk."""
-        shape = self._site.frame.shape
-        wanted, swept = unpacked(values["wanted"], shape), unpacked(values["swept"], shape)
-        ever = unpacked(values["ever"], shape)
-        stages = [
-            Stage(str(n), unpacked(f, shape), bool(again)) for n, f, again in values["stages"]
-        ]
-        number = int(values["stage_number"])
-        if not 0 <= number <= len(stages):
-            raise CheckpointError(f"expected a stage from 0 to {len(stages)}, got {number}")
-        self.coverage.cells[:] = wanted * np.uint8(WANTED) + swept * np.uint8(SWEPT)
-        self.coverage.count_again()
-        self._ever, self.stages, self.stage_number = ever, stages, number
+        """Go on from such values, of this map or of less of it.
+
+        Raises CheckpointError, and others for junk.
+        """
+        self._book.restore(values)
         self._looked_again = bool(values["looked_again"])
         self._unreachable, self._scrubbed = bool(values["unreachable"]), bool(values["scrubbed"])
 
@@ -227,6 +229,21 @@ class Cleaning:
         """
         left, least = self.coverage.wanted & ~self.clean, self._config.least_patch
         return missed_floor(left, least, self._site, obstacles, edges, is_over=is_over)
+
+    def _next_of_known(self, here: Pose, obstacles: list[RoundObstacle]) -> Floats | None:
+        """Plan over what is large enough of the floor that is known; None if there is none."""
+        at = (here.x, here.y)
+        todo = self._book.untried & self._reachable(at, obstacles)
+        todo = _patches(todo, self.coverage.frame, self._config.least_while_growing)
+        if not todo.any():
+            return None
+        self._book.note_tried(todo)
+        edges_only = self.request.mode is CleanMode.EDGES
+        try:
+            plan = self._site.coverage.plan(at, None, todo, obstacles, edges_only=edges_only)
+        except NoPathError:
+            return None
+        return plan.points if plan.length > 0.0 and len(plan.points) > 2 else None
 
     def _next_round(
         self, stage: Stage, here: Pose, obstacles: list[RoundObstacle]
@@ -305,25 +322,16 @@ class Cleaning:
         dirty = self._dirt.dirty_now(self.coverage.frame, self._config.dirty_times)
         again = dirty & stage.floor & self.coverage.swept
         if again.any():
-            self._sweep_anew(again)
+            self._book.sweep_anew(again)
             self._last_missed = np.inf
         return again
 
-    def _sweep_anew(self, floor: Mask) -> None:
-        self._ever |= self.coverage.swept
-        self.coverage.cells[floor] &= np.uint8(0xFF ^ SWEPT)
-        self.coverage.count_again()
-
     def _next_stage(self) -> None:
-        self.stage_number += 1
+        self._book.next_stage()
         self._begin_stage()
 
     def _begin_stage(self) -> None:
         self._rounds, self._last_missed, self._scrubbed = 0, np.inf, False
-        stage = self.stage
-        if stage is not None and stage.again:
-            self._sweep_anew(stage.floor)
-            self.stages[self.stage_number] = Stage(stage.name, stage.floor)
 
 
 def _patches(floor: Mask, frame: GridFrame, least: float) -> Mask:

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.config import RobotConfig
+from roomba.mission.give_way import way_aside
 from roomba.mission.obstacles import Obstacles
 from roomba.mission.path_driver import PathDriver
 from roomba.mission.rejoin import Rejoin
@@ -82,6 +83,12 @@ class Drives:
     def way_out(self, senses: Senses) -> Floats | None:
         """Return the first of the way home, out of a place that no path leads out of, or None."""
         return self._rejoin.way_out(senses, self.obstacles, self.trail)
+
+    def make_room(self, senses: Senses) -> None:
+        """Begin to drive aside, so that who stands beside the robot can pass, if it can."""
+        points = way_aside(self.site.paths, senses, self.obstacles, self.trail)
+        if points is not None:
+            self.begin(points, senses)
 
     def distance_home(self, senses: Senses) -> float:
         """Return how far it is home, m; what cannot be told is as far as the map is wide."""

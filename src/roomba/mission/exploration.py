@@ -69,11 +69,16 @@ class Exploration:
         return exploration
 
     def next_path(
-        self, here: Pose, site: Site, obstacles: list[RoundObstacle]
+        self,
+        here: Pose,
+        site: Site,
+        obstacles: list[RoundObstacle],
+        farthest: float = math.inf,
     ) -> NDArray[np.float64] | None:
         """Return the way to the next viewpoint, float64 [n, 2], m; None when there is none left.
 
-        A frontier to which no way leads is given up.
+        Those that are ``farthest`` m of way off and more are left out. A frontier to which no way
+        leads is given up.
         """
         self._leave_behind(here, site)
         at = (here.x, here.y)
@@ -81,7 +86,8 @@ class Exploration:
             fits = site.paths.reachable(at, obstacles)
         except NoPathError:
             return None
-        for frontier in frontiers(site.known, fits, at, self.unseen, _BESIDE)[:_MOST_TRIES]:
+        found = frontiers(site.known, fits, at, self.unseen, _BESIDE)
+        for frontier in [each for each in found if each.way < farthest][:_MOST_TRIES]:
             try:
                 path = site.paths.plan(at, frontier.viewpoint, obstacles)
             except NoPathError:
@@ -94,6 +100,11 @@ class Exploration:
     def wants_another(self, occupancy: OccupancyMap) -> bool:
         """Whether nothing is left of the frontier that it is on its way to, as the map is now."""
         return self.goal is not None and not is_frontier(occupancy, self.goal.middle, _STILL_THERE)
+
+    @property
+    def is_under_way(self) -> bool:
+        """Whether the robot was last sent to a frontier."""
+        return self.goal is not None
 
     def cut_off(self, *, is_stuck: bool = False) -> None:
         """No way leads to the frontier it was on its way to: give that up."""

@@ -23,7 +23,9 @@ _DETOURS: Final = 1.2
 
 
 class Job:
-    """``cleaning`` or ``exploration`` is under way, or none; ``outcome`` is how it will be told.
+    """``cleaning`` or ``exploration`` is under way, or both on a map that is being made, or none.
+
+    ``outcome`` is how it will be told.
 
     Times are s of the robot's clock.
     """
@@ -41,8 +43,9 @@ class Job:
         self._explored: ExploreResult | None = None
 
     def begin_clean(self, cleaning: Cleaning, senses: Senses) -> None:
-        """Begin a clean, with new books."""
+        """Begin a clean, with new books; if it explores, it does so on the way."""
         self.cleaning = cleaning
+        self.exploration = Exploration() if cleaning.explores else None
         self._begin(senses)
 
     def begin_exploration(self, senses: Senses) -> None:
@@ -111,7 +114,7 @@ class Job:
             return
         if self.cleaning is not None:
             self._cleaned = self._clean_result(self.cleaning, outcome, message, obstacles, senses)
-        if self.exploration is not None:
+        elif self.exploration is not None:
             self._explored = ExploreResult(
                 outcome,
                 message,

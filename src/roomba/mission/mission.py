@@ -17,6 +17,7 @@ from roomba.grid import OccupancyMap
 from roomba.mission import phases
 from roomba.mission.at_station import AtStation
 from roomba.mission.checkpoint import Values
+from roomba.mission.clean_phase import CleanPhase
 from roomba.mission.clean_request import CleanOutcome, CleanRequest, CleanResult
 from roomba.mission.cleaning import Cleaning
 from roomba.mission.docking_config import DockingConfig
@@ -47,10 +48,15 @@ class CommandRefusedError(RoombaError):
 
 @dataclass(frozen=True, slots=True)
 class MissionStep:
-    """What is wanted at a tick; ``looks_around``: the place must be found before it can go on."""
+    """What is wanted at a tick.
+
+    ``looks_around``: the place must be found before it can go on. ``wants_whole_map``: all that can
+    be seen of a map in the making was seen; it goes on when it is told the whole one.
+    """
 
     twist: Twist = STANDSTILL
     looks_around: bool = False
+    wants_whole_map: bool = False
 
 
 class Mission:
@@ -76,6 +82,7 @@ class Mission:
         self._drives = Drives(site, robot, config.driving, self.obstacles)
         self.trail = self._drives.trail
         self._patience = Patience()
+        self._clean_phase = CleanPhase(self._job, self._drives, self._patience, config.exploring)
         self._at_station = AtStation(docking, robot)
         self._watch = Watch(robot.walk, self._drives, self.book, senses)
         self._last = senses
@@ -141,18 +148,19 @@ class Mission:
     def use_site(self, site: Site) -> None:
         """Go on with other zones or rooms, from the next tick on."""
         self._drives.use_site(site)
-        if not self._goes_on_exploring():
+        if not self._goes_on_looking():
             self._drop_driver()
         if self.cleaning is not None:
             self.cleaning.use_site(site)
+            if not self.cleaning.explores:
+                self._job.exploration = None
 
     def use_map(self, site: Site, things: ThingLayer, dirt: DirtMap) -> None:
-        """Go on with a map of the same frame that has grown; not while it cleans.
+        """Go on with a map that has grown, or with the whole one, from the next tick on.
 
-        ``things`` and ``dirt`` are those of that map. Raises ValueError while it cleans.
+        ``things`` and ``dirt`` are new ones of that map.
         """
-        if self.cleaning is not None:
-            raise ValueError("expected no clean under way: its floor is counted on the map it has")
+        dirt.carry_on(self.dirt, site.station.compose(self.site.station.inverse()))
         self.obstacles.use(things)
         self._job.dirt = dirt
         self.use_site(site)
@@ -163,9 +171,10 @@ class Mission:
             return True
         return self.exploration is not None and self.exploration.wants_another(occupancy)
 
-    def _goes_on_exploring(self) -> bool:
+    def _goes_on_looking(self) -> bool:
         """Whether it is on its way to a frontier that still is one, and nothing stands between."""
-        if self.exploration is None or self.state.phase is not Phase.EXPLORING:
+        looks = self.state.phase in (Phase.EXPLORING, Phase.CLEANING)
+        if not (looks and self.exploration is not None and self.exploration.is_under_way):
             return False
         if self.driver is None or self.exploration.wants_another(self.site.known):
             return False
@@ -304,7 +313,7 @@ class Mission:
             self._go(step.event, senses)
         if step.failure is not None:
             self._fail(step.failure.outcome, step.failure.reason, senses)
-        return MissionStep(step.twist)
+        return MissionStep(step.twist, wants_whole_map=step.wants_whole_map)
 
     def _step(self, senses: Senses) -> PhaseStep:
         """Let the present phase say what it wants."""
@@ -313,7 +322,7 @@ class Mission:
             case Phase.UNDOCKING:
                 return self._at_station.undock(senses, self.site.station)
             case Phase.CLEANING:
-                return phases.clean(job, drives, self._patience, senses, limit)
+                return self._clean_phase.tick(senses, limit)
             case Phase.EXPLORING:
                 most_stuck = self._config.exploring.most_stuck
                 return phases.explore(job, drives, senses, limit, most_stuck)

@@ -7,9 +7,12 @@ from typing import Final
 
 _MOST_WAYS_HOME: Final = 5
 """So often it looks for a way home before it begins to wait."""
+_FIRST_WAITS: Final = 2
+_FIRST_WAIT: Final = 10.0
 _WAIT: Final = 30.0
-"""s; so long it waits, where no way leads on, before it looks for one again."""
-_MOST_WAITS: Final = 40
+"""s; so long it waits, where no way leads on, before it looks for one again: people pass sooner
+than doors are opened."""
+_MOST_WAITS: Final = 41
 """Twenty minutes; then there is no way home."""
 
 
@@ -21,21 +24,29 @@ class Patience:
 
     def __init__(self) -> None:
         """Begin with nothing tried."""
-        self._tries = 0
+        self._tries = self._waits = 0
         self._since = -math.inf
-        self.gets_out = False
+        self.gets_out = self._has_begun = False
 
     def renew(self) -> None:
         """Count the ways home anew."""
-        self._tries = 0
+        self._tries = self._waits = 0
 
     def wait(self, now: float) -> None:
         """Begin to wait."""
-        self._since, self.gets_out = now, True
+        self._since, self.gets_out, self._has_begun = now, True, True
+        self._waits += 1
 
     def is_waiting(self, now: float) -> bool:
         """Whether it still waits; not if the clock was set back."""
-        return 0.0 <= now - self._since < _WAIT
+        wait = _FIRST_WAIT if self._waits <= _FIRST_WAITS else _WAIT
+        return 0.0 <= now - self._since < wait
+
+    def has_ended(self, now: float) -> bool:
+        """Whether a wait ended since this was asked last."""
+        ended = self._has_begun and not self.is_waiting(now)
+        self._has_begun = self._has_begun and not ended
+        return ended
 
     def found_no_way_home(self) -> None:
         """Count it."""

@@ -21,10 +21,12 @@ class Failure:
 class PhaseStep:
     """The twist wanted, and what ends the phase: an ``event`` or a ``failure``.
 
-    ``message`` is what is told from now on; None leaves that as it is.
+    ``message`` is what is told from now on; None leaves that as it is. ``wants_whole_map``: all
+    that can be seen was seen, and it waits for the map to be finished.
     """
 
     twist: Twist = STANDSTILL
     event: Event | None = None
     failure: Failure | None = None
     message: str | None = None
+    wants_whole_map: bool = False

@@ -1,4 +1,4 @@
-"""The phases in which it drives through the home: what each of them wants at a tick."""
+"""Exploring and going home: what each of these phases wants at a tick."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ from dataclasses import replace
 from typing import Final
 
 from roomba.mission.clean_request import CleanOutcome
-from roomba.mission.cleaning import Cleaning
 from roomba.mission.drives import Drives
 from roomba.mission.exploration import Exploration
 from roomba.mission.job import Job
@@ -21,59 +20,6 @@ _NEAR_STAGING: Final = 0.08
 """m; so near to the place before the station docking takes over."""
 
 
-def clean(job: Job, drives: Drives, patience: Patience, senses: Senses, limit: float) -> PhaseStep:
-    """Drive over the floor that is left, path by path; ``limit`` is the speed wanted, m/s."""
-    cleaning = job.cleaning
-    assert cleaning is not None
-    if job.book.must_go_home(senses, drives.distance_home):
-        return PhaseStep(event=Event.LOW)
-    if patience.is_waiting(senses.now):
-        return PhaseStep()
-    if drives.driver is not None:
-        return _clean_on(cleaning, drives, senses, limit)
-    ended = None
-    if not drives.leaves_zone(senses):
-        ended = _begin_path(cleaning, drives, patience, senses)
-    return ended or replace(_clean_on(cleaning, drives, senses, limit), message="")
-
-
-def _begin_path(
-    cleaning: Cleaning, drives: Drives, patience: Patience, senses: Senses
-) -> PhaseStep | None:
-    """Begin the next path, or return what is to be done where there is none."""
-    points = None
-    if patience.gets_out:
-        # By the middle of gaps: along their sides, as it cleans, it may have been shut in.
-        patience.gets_out = False
-        points = drives.way_out(senses)
-    try:
-        if points is None:
-            points = cleaning.next_path(senses.pose, drives.obstacles.standing(senses.now))
-    except NoPathError:
-        points = drives.way_out(senses)
-        if points is None:
-            return _wait("no way leads out of where it is", drives, patience, senses)
-    if points is not None:
-        drives.begin(points, senses, cleaning.plans_anew)
-        return None
-    if not cleaning.wants_another_look(drives.obstacles.edges()):
-        return PhaseStep(event=Event.FINISHED)
-    drives.obstacles.forget()
-    return PhaseStep()
-
-
-def _clean_on(cleaning: Cleaning, drives: Drives, senses: Senses, limit: float) -> PhaseStep:
-    assert drives.driver is not None
-    step = drives.driver.tick(senses, limit)
-    if step.state is DriveState.STUCK:
-        return PhaseStep(step.twist, failure=Failure(CleanOutcome.STUCK, step.reason))
-    if step.state.is_over:
-        if step.state is DriveState.CUT_OFF:
-            cleaning.cut_off()
-        drives.driver = None
-    return PhaseStep(step.twist)
-
-
 def explore(job: Job, drives: Drives, senses: Senses, limit: float, most_stuck: int) -> PhaseStep:
     """Go to the nearest place from where more can be seen; stuck too often it fails."""
     exploration = job.exploration
@@ -81,19 +27,19 @@ def explore(job: Job, drives: Drives, senses: Senses, limit: float, most_stuck: 
     if job.book.must_go_home(senses, drives.distance_home):
         return PhaseStep(event=Event.LOW)
     if drives.driver is not None:
-        return _explore_on(exploration, drives, senses, limit, most_stuck)
+        return look_on(exploration, drives, senses, limit, most_stuck)
     obstacles = drives.obstacles.standing(senses.now)
     given_up = len(exploration.unseen)
     points = exploration.next_path(senses.pose, drives.site, obstacles)
     if points is None:
         # It may have given up before it tried all.
-        is_done = len(exploration.unseen) == given_up and not _looks_again(exploration, drives)
+        is_done = len(exploration.unseen) == given_up and not looks_again(exploration, drives)
         return PhaseStep(event=Event.FINISHED if is_done else None)
     drives.begin(points, senses)
-    return replace(_explore_on(exploration, drives, senses, limit, most_stuck), message="")
+    return replace(look_on(exploration, drives, senses, limit, most_stuck), message="")
 
 
-def _looks_again(exploration: Exploration, drives: Drives) -> bool:
+def looks_again(exploration: Exploration, drives: Drives) -> bool:
     """Look anew, once before the end, for what stands in the way: it may have gone."""
     if exploration.looked_again:
         return False
@@ -102,9 +48,10 @@ def _looks_again(exploration: Exploration, drives: Drives) -> bool:
     return True
 
 
-def _explore_on(
+def look_on(
     exploration: Exploration, drives: Drives, senses: Senses, limit: float, most_stuck: int
 ) -> PhaseStep:
+    """Drive on to a frontier; one where it got stuck is given up, the last time it fails."""
     assert drives.driver is not None
     step = drives.driver.tick(senses, limit)
     is_stuck = step.state is DriveState.STUCK
@@ -124,8 +71,9 @@ def go_home(drives: Drives, patience: Patience, senses: Senses, limit: float) ->
         return PhaseStep(event=Event.CONTACT)
     if senses.pose.distance_to(staging.x, staging.y) < _NEAR_STAGING:
         return PhaseStep(event=Event.ARRIVED)
-    if patience.is_waiting(senses.now):
-        return PhaseStep()
+    waiting = wait_on(drives, patience, senses, limit)
+    if waiting is not None:
+        return waiting
     if drives.driver is not None:
         return _go_home_on(drives, patience, senses, limit)
     if not drives.leaves_zone(senses):
@@ -156,13 +104,31 @@ def _try_home_again(reason: str, drives: Drives, patience: Patience, senses: Sen
     if patience.is_over:
         return PhaseStep(failure=Failure(CleanOutcome.NOT_DOCKED, reason))
     if patience.must_wait:
-        return _wait(reason, drives, patience, senses)
+        return wait(reason, drives, patience, senses)
     drives.obstacles.forget()
     return PhaseStep()
 
 
-def _wait(reason: str, drives: Drives, patience: Patience, senses: Senses) -> PhaseStep:
-    """Stand for a while, and then look anew: a door that is shut is opened again."""
+def wait(reason: str, drives: Drives, patience: Patience, senses: Senses) -> PhaseStep:
+    """Wait for a while, and then look anew: a door that is shut is opened again.
+
+    Who stands before the robot may be waiting for it to go: it makes room.
+    """
     patience.wait(senses.now)
+    drives.make_room(senses)
     drives.obstacles.forget()
     return PhaseStep(message=f"{reason}; it waits for a way to open")
+
+
+def wait_on(drives: Drives, patience: Patience, senses: Senses, limit: float) -> PhaseStep | None:
+    """While it waits: stand, or drive on to where others can pass; None when it does not wait."""
+    if patience.has_ended(senses.now):
+        drives.driver = None
+    if not patience.is_waiting(senses.now):
+        return None
+    if drives.driver is None:
+        return PhaseStep()
+    step = drives.driver.tick(senses, limit)
+    if step.state.is_over:
+        drives.driver = None
+    return PhaseStep(step.twist)

@@ -9,8 +9,10 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.geometry import Pose
 from roomba.grid import GridFrame
 from roomba.mask_kernels import numbered_regions
+from roomba.perception.carried import carried
 from roomba.perception.coverage_bits import SWEPT, WANTED
 from roomba.perception.coverage_kernels import sweep
 
@@ -62,6 +64,13 @@ class CoverageMap:
     def lift(self) -> None:
         """What follows does not begin where it last was."""
         self.at = None
+
+    def carry(self, frame: GridFrame, moved: Pose) -> None:
+        """Go on over the grid of another map; ``moved`` is where the old map's frame lies in it."""
+        self.cells = carried(self.cells, self.frame, frame, moved)
+        self.frame, self.at = frame, None
+        self.place = np.array([*frame.centre_of(0, 0), frame.resolution])
+        self.count_again()
 
     def count_again(self) -> None:
         """Count anew what is wanted and swept, after cells were changed."""

@@ -9,7 +9,9 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from roomba.geometry import Pose
 from roomba.grid import GridFrame, OccupancyMap
+from roomba.perception.carried import carried
 
 Floats = NDArray[np.float32]
 Mask = NDArray[np.bool_]
@@ -47,6 +49,15 @@ class DirtMap:
     def note(self, x: float, y: float, grains: float, way: float) -> None:
         """Note what was counted at a place over a way, m."""
         note_dirt(self.grains, self.way, self.place, x, y, grains, way)
+
+    def carry_on(self, before: DirtMap, moved: Pose) -> None:
+        """Go on with what the dirt map of an older map of this home knew.
+
+        ``moved`` is where the older map's frame lies in this one.
+        """
+        frames = (before.frame, self.frame, moved)
+        self.learned = carried(before.learned, *frames, nothing=math.nan)
+        self.grains, self.way = carried(before.grains, *frames), carried(before.way, *frames)
 
     def end_run(self) -> None:
         """Learn from the present run, and begin another."""

@@ -115,13 +115,6 @@ def test_a_map_of_other_paths_ends_a_drive_home() -> None:
     assert rig.mission.driver is None
 
 
-def test_while_it_cleans_the_map_stays_as_it_is() -> None:
-    rig = Rig(known=WHOLE)
-    rig.mission.clean(CleanRequest(), rig.senses)
-    with pytest.raises(ValueError, match="expected no clean under way"):
-        rig.grow(WHOLE)
-
-
 @pytest.mark.parametrize("state", [DriveState.STUCK, DriveState.CUT_OFF])
 def test_a_place_that_it_does_not_get_to_is_given_up(
     monkeypatch: pytest.MonkeyPatch, state: DriveState
@@ -251,7 +244,7 @@ def test_a_newer_errand_takes_over() -> None:
     assert rig.mission.exploration is not None
     rig.mission.clean(CleanRequest(), rig.senses)
     assert rig.result.outcome is CleanOutcome.STOPPED
-    assert rig.mission.exploration is None
+    assert rig.mission.cleaning is not None
     rig.mission.explore(rig.senses)
     assert rig.mission.cleaning is None
     cleaned = rig.mission.take_result()

@@ -7,15 +7,21 @@ from roomba.mission.patience import Patience
 WAIT = 30.0
 
 
-def test_it_waits_half_a_minute_and_then_gets_out_first() -> None:
+def test_it_waits_a_while_then_half_a_minute_and_then_gets_out_first() -> None:
     patience = Patience()
     assert not patience.is_waiting(0.0)
     assert not patience.gets_out
+    for wait in (10.0, 10.0, WAIT, WAIT):
+        patience.wait(100.0)
+        assert patience.gets_out
+        assert patience.is_waiting(100.0)
+        assert patience.is_waiting(100.0 + wait - 0.1)
+        assert not patience.has_ended(100.0 + wait - 0.1)
+        assert not patience.is_waiting(100.0 + wait)
+        assert [patience.has_ended(100.0 + wait) for _ in range(2)] == [True, False]
+    patience.renew()
     patience.wait(100.0)
-    assert patience.gets_out
-    assert patience.is_waiting(100.0)
-    assert patience.is_waiting(100.0 + WAIT - 0.1)
-    assert not patience.is_waiting(100.0 + WAIT)
+    assert not patience.is_waiting(110.0)
 
 
 def test_a_clock_that_is_set_back_does_not_make_it_wait_for_ever() -> None:
@@ -24,7 +30,7 @@ def test_a_clock_that_is_set_back_does_not_make_it_wait_for_ever() -> None:
     assert not patience.is_waiting(10.0)
 
 
-def test_it_looks_five_times_at_once_and_waits_forty_times() -> None:
+def test_it_looks_five_times_at_once_and_waits_forty_one_times() -> None:
     patience = Patience()
     told = []
     while not patience.is_over:
@@ -32,7 +38,7 @@ def test_it_looks_five_times_at_once_and_waits_forty_times() -> None:
         told.append(patience.must_wait)
     assert told.count(False) == 5
     # The last time it gives up instead.
-    assert told.count(True) - 1 == 40
+    assert told.count(True) - 1 == 41
     assert told == sorted(told)
 
 

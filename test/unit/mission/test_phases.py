@@ -7,26 +7,25 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from fixtures.missions import TWO_ROOMS, WALL_X
+from fixtures.obstacles import Standing
 
 from roomba.config import RobotConfig
 from roomba.geometry import STANDSTILL, Pose
+from roomba.mission.clean_phase import CleanPhase
 from roomba.mission.clean_request import CleanOutcome, CleanRequest
 from roomba.mission.cleaning import Cleaning
 from roomba.mission.docking_config import DockingConfig
 from roomba.mission.drives import Drives
 from roomba.mission.job import Job
 from roomba.mission.machine import Event
-from roomba.mission.obstacles import Obstacles
 from roomba.mission.patience import Patience
 from roomba.mission.phase_step import PhaseStep
-from roomba.mission.phases import clean, go_home
+from roomba.mission.phases import go_home
 from roomba.mission.senses import Battery, Senses
 from roomba.mission.site import Site
 from roomba.mission_config import MissionConfig
 from roomba.perception.coverage_bits import SWEPT
 from roomba.perception.dirt_map import DirtMap
-from roomba.perception.surface_field import SurfaceField
-from roomba.perception.things import ThingLayer
 from roomba.planning.costmap import RoundObstacle
 
 ROBOT, CONFIG = RobotConfig(), MissionConfig()
@@ -37,27 +36,20 @@ SPEED = 0.3
 MINUTE = 60.0
 
 
-class Fenced(Obstacles):
-    """In the doorway something stands until somebody takes it away."""
-
-    is_shut = True
-
-    def standing(self, now: float) -> list[RoundObstacle]:
-        return FENCE if self.is_shut else []
-
-    def at_least(self, now: float) -> list[RoundObstacle]:
-        return self.standing(now)
-
-
 class Rig:
     def __init__(self) -> None:
-        things = ThingLayer(SurfaceField.of(TWO_ROOMS.map))
-        self.obstacles = Fenced(things, ROBOT.walk, ROBOT.body, CONFIG.driving)
+        self.obstacles = Standing(FENCE)
         self.drives = Drives(SITE, ROBOT, CONFIG.driving, self.obstacles)
         self.patience = Patience()
 
     def go_home(self, senses: Senses = IN_THE_DEN) -> PhaseStep:
         return go_home(self.drives, self.patience, senses, SPEED)
+
+    @property
+    def makes_room(self) -> bool:
+        """Whether it is on its way farther into the den, away from the door."""
+        driver = self.drives.driver
+        return driver is not None and driver.tracker.rest[-1, 0] > IN_THE_DEN.pose.x
 
 
 def test_at_home_or_before_it_there_is_nothing_to_drive() -> None:
@@ -68,7 +60,7 @@ def test_at_home_or_before_it_there_is_nothing_to_drive() -> None:
 
 def test_with_a_way_home_it_drives() -> None:
     rig = Rig()
-    rig.obstacles.is_shut = False
+    rig.obstacles.things = []
     step = rig.go_home()
     assert step.twist != STANDSTILL
     # What was told before is over.
@@ -81,7 +73,6 @@ def test_shut_in_it_waits_twenty_minutes_for_a_way_and_then_says_that_there_is_n
     told, step = set(), PhaseStep()
     while step.failure is None and now < 60.0 * MINUTE:
         step = rig.go_home(replace(IN_THE_DEN, now=now))
-        assert step.twist == STANDSTILL
         told.add(step.message)
         now += 0.5
     assert step.failure is not None
@@ -96,12 +87,15 @@ def test_a_door_that_is_opened_meanwhile_is_driven_through() -> None:
     while not waited.message:
         waited = rig.go_home(replace(IN_THE_DEN, now=now))
         now += 0.05
-    rig.obstacles.is_shut = False
-    # It has time.
-    assert rig.go_home(replace(IN_THE_DEN, now=now + 20.0)) == PhaseStep()
-    step = rig.go_home(replace(IN_THE_DEN, now=now + 31.0))
+    rig.obstacles.things = []
+    # It has time, and makes room for whoever may stand there.
+    assert rig.makes_room
+    aside = rig.go_home(replace(IN_THE_DEN, now=now + 5.0))
+    assert (aside.twist == STANDSTILL, aside.message) == (False, None)
+    step = rig.go_home(replace(IN_THE_DEN, now=now + 11.0))
     assert step.twist != STANDSTILL
     assert step.message == ""
+    assert not rig.makes_room
 
 
 def test_with_nothing_left_the_clean_is_finished_after_another_look() -> None:
@@ -116,9 +110,10 @@ def test_with_nothing_left_the_clean_is_finished_after_another_look() -> None:
     coverage.count_again()
     # The den was found to be out of reach: perhaps its door is open by now.
     job.cleaning.cut_off()
-    steps = [clean(job, rig.drives, rig.patience, here, SPEED)]
+    phase = CleanPhase(job, rig.drives, rig.patience, CONFIG.exploring)
+    steps = [phase.tick(here, SPEED)]
     while steps[-1] == PhaseStep():
-        steps.append(clean(job, rig.drives, rig.patience, here, SPEED))
+        steps.append(phase.tick(here, SPEED))
         assert len(steps) < 10
     assert steps[-1].event is Event.FINISHED
     assert len(steps) > 1

@@ -1,0 +1,112 @@
+"""Cleaning, path by path; while the map is being made it goes to see more of it as well."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+from roomba.mission import phases
+from roomba.mission.clean_request import CleanOutcome
+from roomba.mission.cleaning import Cleaning
+from roomba.mission.drives import Drives
+from roomba.mission.job import Job
+from roomba.mission.machine import Event
+from roomba.mission.path_driver import DriveState
+from roomba.mission.patience import Patience
+from roomba.mission.phase_step import Failure, PhaseStep
+from roomba.mission.senses import Senses
+from roomba.mission_config import ExploringConfig
+from roomba.planning.path import NoPathError
+
+
+class CleanPhase:
+    """Drives over the floor that is left of the job's clean."""
+
+    def __init__(
+        self, job: Job, drives: Drives, patience: Patience, config: ExploringConfig
+    ) -> None:
+        """Begin with no path."""
+        self._job, self._drives, self._patience, self._config = job, drives, patience, config
+
+    def tick(self, senses: Senses, limit: float) -> PhaseStep:
+        """Return what is wanted now; ``limit`` is the speed wanted, m/s."""
+        cleaning, drives = self._job.cleaning, self._drives
+        assert cleaning is not None
+        if self._job.book.must_go_home(senses, drives.distance_home):
+            return PhaseStep(event=Event.LOW)
+        waiting = phases.wait_on(drives, self._patience, senses, limit)
+        if waiting is not None:
+            return waiting
+        if drives.driver is not None:
+            return self._drive_on(cleaning, senses, limit)
+        ended = None
+        if not drives.leaves_zone(senses):
+            ended = self._begin_path(cleaning, senses)
+        return ended or replace(self._drive_on(cleaning, senses, limit), message="")
+
+    def _begin_path(self, cleaning: Cleaning, senses: Senses) -> PhaseStep | None:
+        """Begin the next path, or return what is to be done where there is none."""
+        drives, patience = self._drives, self._patience
+        points = None
+        if patience.gets_out:
+            # By the middle of gaps: along their sides, as it cleans, it may have been shut in.
+            patience.gets_out = False
+            points = drives.way_out(senses)
+        if points is None and self._begin_look(senses, self._config.look_first):
+            return None
+        try:
+            if points is None:
+                points = cleaning.next_path(senses.pose, drives.obstacles.standing(senses.now))
+        except NoPathError:
+            points = drives.way_out(senses)
+            if points is None:
+                return phases.wait("no way leads out of where it is", drives, patience, senses)
+        if points is not None:
+            drives.begin(points, senses, cleaning.plans_anew)
+            return None
+        if cleaning.explores:
+            return self._look_or_wait(senses)
+        if not cleaning.wants_another_look(drives.obstacles.edges()):
+            return PhaseStep(event=Event.FINISHED)
+        drives.obstacles.forget()
+        return PhaseStep()
+
+    def _begin_look(self, senses: Senses, farthest: float) -> bool:
+        """Begin to drive to where more of the home can be seen; tell whether there is such a place.
+
+        It is at most ``farthest`` m of way off.
+        """
+        exploration, drives = self._job.exploration, self._drives
+        if exploration is None:
+            return False
+        obstacles = drives.obstacles.standing(senses.now)
+        points = exploration.next_path(senses.pose, drives.site, obstacles, farthest)
+        if points is not None:
+            drives.begin(points, senses)
+        return points is not None
+
+    def _look_or_wait(self, senses: Senses) -> PhaseStep | None:
+        """Go to see more when all that is known is clean; with all seen the map is to be whole."""
+        exploration = self._job.exploration
+        assert exploration is not None
+        given_up = len(exploration.unseen)
+        if self._begin_look(senses, math.inf):
+            return None
+        # It may have given up before it tried all.
+        is_done = len(exploration.unseen) == given_up
+        is_done = is_done and not phases.looks_again(exploration, self._drives)
+        return PhaseStep(wants_whole_map=is_done)
+
+    def _drive_on(self, cleaning: Cleaning, senses: Senses, limit: float) -> PhaseStep:
+        drives, exploration = self._drives, self._job.exploration
+        assert drives.driver is not None
+        if exploration is not None and exploration.is_under_way:
+            return phases.look_on(exploration, drives, senses, limit, self._config.most_stuck)
+        step = drives.driver.tick(senses, limit)
+        if step.state is DriveState.STUCK:
+            return PhaseStep(step.twist, failure=Failure(CleanOutcome.STUCK, step.reason))
+        if step.state.is_over:
+            if step.state is DriveState.CUT_OFF:
+                cleaning.cut_off()
+            drives.driver = None
+        return PhaseStep(step.twist)

@@ -1,0 +1,58 @@
+"""How fast the simulation goes: as fast as asked for, as long as the robot keeps up."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from typing import Final
+
+_LATEST: Final = 0.5
+"""s of wall time; farther behind than this the simulation goes on slower than asked for."""
+_MOST_BEHIND: Final = 0.3
+"""s of the robot's clock; a robot that thinks of longer ago is waited for."""
+_LONGEST_HOLD: Final = 0.5
+"""s of wall time; a robot that says nothing for longer is not waited for any more."""
+_LOOK: Final = 0.001
+"""s of wall time between two looks whether it caught up."""
+
+
+class Pace:
+    """Says when the next tick is due. The robot tells how far it is by :meth:`heard`.
+
+    On a busy machine a world that goes on while its robot still thinks about what was is another
+    world than the one at real time: commands come too late for it.
+    """
+
+    def __init__(
+        self,
+        period: float,
+        monotonic: Callable[[], float] = time.monotonic,
+        sleep: Callable[[float], None] = time.sleep,
+    ) -> None:
+        """Let ticks come every ``period`` s of wall time."""
+        self._period, self._monotonic, self._sleep = period, monotonic, sleep
+        self._due = monotonic() + period
+        self._stamp, self._heard_at = 0.0, -_LONGEST_HOLD
+        self.is_late = False
+        """Whether it was ever slower than asked for."""
+
+    def heard(self, stamp: float) -> None:
+        """The robot told what it knew at a time of its clock, s."""
+        self._stamp, self._heard_at = stamp, self._monotonic()
+
+    def wait(self, now: float, ended: Callable[[], bool]) -> None:
+        """Return when the next tick is due, or at the end; ``now`` is the robot's clock, s."""
+        wait = self._due - self._monotonic()
+        if wait > 0.0:
+            self._sleep(wait)
+        while self._must_hold(now) and not ended():
+            self._sleep(_LOOK)
+        if self._monotonic() - self._due > _LATEST:
+            self.is_late = True
+            self._due = self._monotonic()
+        self._due += self._period
+
+    def _must_hold(self, now: float) -> bool:
+        """Whether the robot is to be waited for; not if its clock is another one, or was set."""
+        is_behind = _MOST_BEHIND < now - self._stamp < 10.0 * _LONGEST_HOLD
+        return is_behind and self._monotonic() - self._heard_at < _LONGEST_HOLD

@@ -1,0 +1,76 @@
+"""How fast the simulation goes, by a clock of the test's own."""
+
+import pytest
+
+from roomba_ros.pace import Pace
+
+PERIOD = 0.01
+
+
+class Wall:
+    """A wall clock on which only sleeping takes time; ``on_sleep`` happens meanwhile."""
+
+    def __init__(self) -> None:
+        self.now = 100.0
+        self.events: list[tuple[float, float]] = []
+        self.pace = Pace(PERIOD, lambda: self.now, self.sleep)
+
+    def sleep(self, seconds: float) -> None:
+        self.now += seconds
+        while self.events and self.events[0][0] <= self.now:
+            self.pace.heard(self.events.pop(0)[1])
+
+    def ticks(self, count: int, robot: float = 0.0) -> float:
+        """Let ticks pass at a time of the robot's clock; return how long that took."""
+        began = self.now
+        for _ in range(count):
+            self.pace.wait(robot, lambda: False)
+        return self.now - began
+
+
+def test_it_is_as_fast_as_asked_for() -> None:
+    wall = Wall()
+    assert wall.ticks(100) == pytest.approx(1.0)
+    # A tick that took longer is made up for.
+    wall.now += 0.2
+    assert wall.ticks(100) == pytest.approx(0.8)
+    assert not wall.pace.is_late
+
+
+def test_far_behind_it_goes_on_slower_and_says_so() -> None:
+    wall = Wall()
+    wall.now += 2.0
+    assert wall.ticks(1) == 0.0
+    assert wall.pace.is_late
+    assert wall.ticks(100) == pytest.approx(1.0)
+
+
+def test_a_robot_that_is_late_is_waited_for() -> None:
+    wall = Wall()
+    wall.pace.heard(7.6)
+    assert wall.ticks(1, robot=7.8) == pytest.approx(PERIOD)
+    wall.events = [(wall.now + 0.2, 7.9)]
+    assert wall.ticks(1, robot=8.1) == pytest.approx(0.2, abs=0.002)
+
+
+def test_one_that_says_nothing_any_more_is_not() -> None:
+    wall = Wall()
+    wall.pace.heard(7.6)
+    assert 0.4 < wall.ticks(1, robot=8.1) < 0.6
+    assert wall.ticks(1, robot=8.15) == 0.0
+
+
+def test_nor_one_that_was_never_heard_or_has_another_clock() -> None:
+    wall = Wall()
+    assert wall.ticks(10, robot=8.1) == pytest.approx(10 * PERIOD)
+    for stamp in (500.0, 1.0):
+        wall.pace.heard(stamp)
+        assert wall.ticks(1, robot=50.0) == pytest.approx(PERIOD)
+
+
+def test_told_to_end_it_waits_no_more() -> None:
+    wall = Wall()
+    wall.pace.heard(7.6)
+    began = wall.now
+    wall.pace.wait(8.1, lambda: True)
+    assert wall.now - began == pytest.approx(PERIOD)

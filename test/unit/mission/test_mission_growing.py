@@ -1,0 +1,141 @@
+"""Cleaning while the map is being made: what is known is cleaned, and the rest is looked for."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+from fixtures.exploring import AWAY, DOCKED, HALL, HERE, WHOLE, Rig, known_to
+from fixtures.missions import TWO_ROOMS, WALL_X
+
+from roomba.geometry import Pose, Twist
+from roomba.grid import OccupancyMap
+from roomba.mission.clean_request import (
+    CleanMode,
+    CleanOutcome,
+    CleanRefusedError,
+    CleanRequest,
+    CleanResult,
+)
+from roomba.mission.machine import Phase
+from roomba.mission.mission import MissionStep
+from roomba.perception.coverage_bits import SWEPT
+
+CORNER = CleanRequest(CleanMode.ZONES, zones=((0.6, 0.2, 1.4, 0.9),))
+
+
+def cleaning(request: CleanRequest | None = None, known: OccupancyMap = HALL) -> Rig:
+    rig = Rig(known=known)
+    rig.mission.clean(request or CleanRequest(), rig.senses)
+    rig.tick(4)
+    return rig
+
+
+def swept(rig: Rig) -> None:
+    """All that is wanted is clean, and the path over it driven to its end."""
+    assert rig.mission.cleaning is not None
+    coverage = rig.mission.cleaning.coverage
+    coverage.cells[coverage.wanted] |= np.uint8(SWEPT)
+    coverage.count_again()
+    rig.mission.driver = None
+
+
+def result(rig: Rig) -> CleanResult:
+    """Let it be home on its way there; return how its clean ended."""
+    assert rig.phase is Phase.RETURNING
+    rig.tick(2, pose=TWO_ROOMS.station, battery=DOCKED.battery)
+    assert rig.phase is Phase.DOCKED
+    found = rig.mission.take_result()
+    assert found is not None
+    assert rig.mission.take_exploration() is None
+    return found
+
+
+def test_it_looks_first_at_what_is_near_and_sweeps_on_the_way() -> None:
+    rig = cleaning()
+    assert rig.phase is Phase.CLEANING
+    assert rig.mission.exploration is not None
+    assert rig.mission.exploration.is_under_way
+    assert rig.mission.sweeps
+    assert not rig.mission.wants_map(HALL)
+    assert rig.mission.wants_map(WHOLE)
+
+
+def test_with_nothing_near_to_look_at_it_cleans_what_is_known() -> None:
+    rig = cleaning()
+    assert rig.mission.exploration is not None
+    rig.mission.exploration.cut_off()
+    rig.mission.exploration.unseen += [(WALL_X + 0.1, y) for y in np.arange(0.7, 1.8, 0.1).tolist()]
+    rig.mission.driver = None
+    rig.tick(4)
+    assert not rig.mission.exploration.is_under_way
+    assert rig.mission.driver is not None
+    # All of the hall.
+    assert rig.mission.driver.left > 8.0
+    assert not rig.mission.wants_map(WHOLE)
+
+
+def test_with_all_seen_and_clean_it_waits_for_the_whole_map_and_ends_on_it() -> None:
+    rig = cleaning(known=WHOLE)
+    swept(rig)
+    steps = [rig.tick() for _ in range(6)]
+    assert steps[-1] == MissionStep(wants_whole_map=True)
+    assert rig.phase is Phase.CLEANING
+    rig.grow(WHOLE, is_growing=False)
+    assert rig.mission.exploration is None
+    rig.tick(4)
+    end = result(rig)
+    assert (end.outcome, end.fraction) == (CleanOutcome.COMPLETED, 1.0)
+
+
+def test_what_the_whole_map_shows_besides_is_cleaned_as_well() -> None:
+    rig = cleaning(known=known_to(WALL_X + 0.6))
+    swept(rig)
+    rig.grow(WHOLE, is_growing=False)
+    rig.tick(4)
+    assert rig.phase is Phase.CLEANING
+    assert rig.mission.driver is not None
+    assert rig.mission.driver.tracker.rest[:, 0].max() > WALL_X + 0.9
+    assert rig.tick().twist != Twist()
+
+
+def test_a_part_is_cleaned_without_looking_for_more() -> None:
+    rig = cleaning(CORNER)
+    assert rig.mission.exploration is None
+    assert rig.mission.driver is not None
+    swept(rig)
+    rig.tick(3)
+    assert result(rig).outcome is CleanOutcome.COMPLETED
+
+
+def test_a_part_of_which_nothing_is_known_is_refused() -> None:
+    rig = Rig()
+    there = CleanRequest(CleanMode.ZONES, zones=((2.6, 0.4, 3.2, 1.0),))
+    with pytest.raises(CleanRefusedError, match="outside of the map"):
+        rig.mission.clean(there, rig.senses)
+    assert rig.phase is Phase.IDLE
+
+
+def test_where_next_to_nothing_is_known_yet_it_looks_around_first() -> None:
+    rig = cleaning(known=known_to(HERE.x + 0.1))
+    assert rig.mission.cleaning is not None
+    assert rig.phase is Phase.CLEANING
+    assert rig.mission.driver is not None
+
+
+@pytest.mark.parametrize("later", [HALL, WHOLE])
+def test_killed_it_goes_on_with_what_the_map_shows_by_then(later: OccupancyMap) -> None:
+    rig = cleaning()
+    rig.tick(pose=Pose(1.2, 1.0, 0.0))
+    values = json.loads(json.dumps(rig.mission.checkpoint(rig.senses)))
+    assert rig.mission.cleaning is not None
+    clean = rig.mission.cleaning.clean_area
+    assert clean > 0.02
+    again = Rig(AWAY, later)
+    again.mission.restore(values, again.senses)
+    assert again.mission.cleaning is not None
+    assert again.mission.exploration is not None
+    assert again.mission.cleaning.clean_area == pytest.approx(clean)
+    again.tick(5)
+    assert again.phase is Phase.CLEANING
