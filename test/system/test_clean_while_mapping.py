@@ -1,0 +1,58 @@
+"""A clean that begins before the map is whole, in a home that the robot has never seen."""
+
+import signal
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+import rospy
+from actionlib_msgs.msg import GoalStatus
+from fixtures.explorer import LONG, SPEED, Explorer, is_growing
+from fixtures.graph import RosGraph
+from fixtures.mapping_home import other_home
+from fixtures.waiting import wait_until
+from roomba_robot.msg import CleanGoal, VacuumState
+
+FLOOR = 3.6 * 1.8 - 0.4 * 0.8
+"""m2."""
+REMEMBERED = 2.5
+"""s of wall time after which a mission remembers what it did."""
+UNREACHED = 0.25
+"""Of the floor: corners, and what is beside the station, no round tool reaches."""
+
+
+@pytest.fixture
+def graph(tmp_path: Path) -> Iterator[RosGraph]:
+    """A robot that knows nothing of its home."""
+    with RosGraph(tmp_path) as own:
+        own.launch(f"home:={other_home(tmp_path)}", "map:=none", SPEED)
+        yield own
+
+
+def test_a_home_is_cleaned_while_it_is_mapped_though_the_node_is_killed(graph: RosGraph) -> None:
+    robot = Explorer(graph)
+    states: list[VacuumState] = []
+    rospy.Subscriber("/vacuum/state", VacuumState, states.append)
+    rooms = CleanGoal(mode=CleanGoal.ROOMS, rooms=["kitchen"])
+    refused = robot.clean(rooms).ends(GoalStatus.REJECTED, 5.0)
+    assert "clean the whole home" in refused.message
+
+    clean = robot.clean(CleanGoal())
+    robot.does("cleaning")
+    wait_until(lambda: clean.feedback and clean.feedback[-1].covered > 0.3, 30.0, "it cleans")
+    covered, at = states[-1].covered, time.monotonic()
+    wait_until(lambda: time.monotonic() > at + REMEMBERED, 10.0, "that is remembered")
+    assert is_growing(robot.maps[-1]), "the map is not whole yet"
+
+    robot.phases.clear()
+    graph.signal("mission_node", signal.SIGKILL)
+    robot.does("cleaning", 30.0)
+    wait_until(lambda: states[-1].wanted > 0.0, 5.0, "it tells how much there is to do")
+    assert states[-1].covered >= covered, "what was clean is known to be"
+    wait_until(lambda: not is_growing(robot.maps[-1]), LONG, "the map becomes whole")
+    robot.does("docked", LONG)
+    assert "exploring" not in robot.phases
+    done = [state for state in states if state.wanted > 0.0][-1]
+    assert (1.0 - UNREACHED) * FLOOR < done.wanted < FLOOR
+    assert done.fraction > 0.98
