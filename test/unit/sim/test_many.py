@@ -73,7 +73,7 @@ def test_who_stops_listening_ends_all_at_once(tmp_path: Path) -> None:
         time.sleep(0.01)
     began = time.monotonic()
     runs.close()
-    assert time.monotonic() - began < 1.0
+    assert time.monotonic() - began < 5.0
     with pytest.raises(ProcessLookupError):
         os.kill(int(note.read_text()), 0)
 
