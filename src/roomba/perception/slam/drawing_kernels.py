@@ -17,8 +17,18 @@ Counts = NDArray[np.uint16]
 
 _INTO: Final = 0.4
 """cells; so far behind the surface that it met a beam is counted, to be inside the wall's cell."""
+INTO_EDGE: Final = 0.25
+"""cells; the same at edges and thin things, where the way that the surface faces is not known:
+farther along the beam, past a corner, is the next cell."""
 _BEFORE: Final = 0.5
 """cells; so far before the surface a beam counts as through no more."""
+_EDGE: Final = 0.15
+"""cells; a cell that beams met, in the mean, so near to its border, or beyond, may be but the edge
+of what stands in the next one. Two cells for the leg of a chair close the way past it."""
+_SURER: Final = 1.5
+"""Times the share of beams that ended: so much more of them ended in that one."""
+_ROW_STEPS, _COLUMN_STEPS = (0, 1, 0, -1), (1, 0, -1, 0)
+_NOWHERE: Final = np.zeros((0, 0, 2), np.float32)
 _MOST: Final = 60000
 """Counts are halved there: a cell never overflows."""
 
@@ -26,20 +36,29 @@ _MOST: Final = 60000
 class Sheet(NamedTuple):
     """The grid as kernels know it: counts, uint16 [rows, columns]; ``place`` is the lower left
     corner x, y and the cell size, m; ``bounds`` int64 [4] the first and last row and column with
-    counts.
+    counts; ``offsets``, float32 [rows, columns, 2], sums of where the cell's beams met a surface, x
+    and y from its middle, cells: none if nobody asks for :func:`occupancy`.
     """
 
     hits: Counts
     passes: Counts
     place: Floats
     bounds: NDArray[np.int64]
+    offsets: NDArray[np.float32] = _NOWHERE
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def draw(sheet: Sheet, points: NDArray[np.float32], lidar: Floats, pose: Floats) -> None:
+def draw(
+    sheet: Sheet,
+    points: NDArray[np.float32],
+    lidar: Floats,
+    pose: Floats,
+    into_edge: float = _INTO,
+) -> None:
     """Count a scan, ``points`` [n, 4] in the robot's frame, seen from ``pose`` [3].
 
-    ``lidar`` is x, y of the lidar in the robot's frame.
+    ``lidar`` is x, y of the lidar in the robot's frame; ``into_edge`` is how far behind the surface
+    a beam is counted, cells, where the way that it faces is not known.
     """
     per_metre = 1.0 / sheet.place[2]
     cosine, sine = math.cos(pose[2]), math.sin(pose[2])
@@ -56,14 +75,14 @@ def draw(sheet: Sheet, points: NDArray[np.float32], lidar: Floats, pose: Floats)
         along_u, along_v = (u - from_u) / length, (v - from_v) / length
         normal_x, normal_y = points[index, NORMAL_X], points[index, NORMAL_Y]
         into_u, into_v = along_u, along_v
-        before = _BEFORE
+        into, before = into_edge, _BEFORE
         if normal_x != 0.0 or normal_y != 0.0:
             into_u = -(cosine * normal_x - sine * normal_y)
             into_v = -(sine * normal_x + cosine * normal_y)
-            before = _BEFORE / max(into_u * along_u + into_v * along_v, 0.1)
+            into, before = _INTO, _BEFORE / max(into_u * along_u + into_v * along_v, 0.1)
         _pass(sheet.passes, from_u, from_v, along_u, along_v, length - before)
-        row, column = math.floor(v + _INTO * into_v), math.floor(u + _INTO * into_u)
-        _count(sheet.hits, row, column)
+        row, column = math.floor(v + into * into_v), math.floor(u + into * into_u)
+        _hit(sheet, row, column, u, v)
         _bound(sheet, row, column)
     _bound(sheet, math.floor(from_v), math.floor(from_u))
 
@@ -94,6 +113,19 @@ def _pass(
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
+def _hit(sheet: Sheet, row: int, column: int, u: float, v: float) -> None:
+    """Count a beam that ended in a cell, and met the surface at ``u``, ``v``, cells."""
+    rows, columns = sheet.offsets.shape[:2]
+    if 0 <= row < rows and 0 <= column < columns:
+        if sheet.hits[row, column] >= _MOST:
+            sheet.offsets[row, column, 0] *= 0.5
+            sheet.offsets[row, column, 1] *= 0.5
+        sheet.offsets[row, column, 0] += u - column - 0.5
+        sheet.offsets[row, column, 1] += v - row - 0.5
+    _count(sheet.hits, row, column)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
 def _count(counts: Counts, row: int, column: int) -> None:
     if 0 <= row < counts.shape[0] and 0 <= column < counts.shape[1]:
         if counts[row, column] >= _MOST:
@@ -114,8 +146,8 @@ def _bound(sheet: Sheet, row: int, column: int) -> None:
 def occupancy(sheet: Sheet, share: float, least: int, values: NDArray[np.int8]) -> None:
     """Fill ``values``, all within the bounds, from the counts.
 
-    Occupied where ``least`` beams or more, and ``share`` of all, ended; free where beams went
-    through; else unknown.
+    Occupied where ``least`` beams or more, and ``share`` of all, ended, unless that is the edge of
+    what stands in the cell beside it; free where beams went through; else unknown.
     """
     rows, columns = values.shape
     first_row, first_column = sheet.bounds[0], sheet.bounds[2]
@@ -123,9 +155,36 @@ def occupancy(sheet: Sheet, share: float, least: int, values: NDArray[np.int8]) 
         for column in range(columns):
             ended = int(sheet.hits[first_row + row, first_column + column])
             through = int(sheet.passes[first_row + row, first_column + column])
-            if ended >= least and ended >= share * (ended + through):
+            is_met = _is_met(ended, through, share, least)
+            if is_met and not _is_edge(sheet, first_row + row, first_column + column, least):
                 values[row, column] = OCCUPIED
             elif through > 0:
                 values[row, column] = FREE
             else:
                 values[row, column] = OCCUPIED if ended > 0 else UNKNOWN
+
+
+@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+def _is_met(ended: int, through: int, share: float, least: int) -> bool:
+    return ended >= least and ended >= share * (ended + through)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _is_edge(sheet: Sheet, row: int, column: int, least: int) -> bool:
+    """Whether beams met a cell but at its border to one that is more surely occupied."""
+    rows, columns = sheet.offsets.shape[:2]
+    hits = int(sheet.hits[row, column])
+    surer = _SURER * hits / (hits + int(sheet.passes[row, column]))
+    for step in range(4):
+        step_row, step_column = _ROW_STEPS[step], _COLUMN_STEPS[step]
+        beside_row, beside_column = row + step_row, column + step_column
+        if not (0 <= beside_row < rows and 0 <= beside_column < columns):
+            continue
+        offset_x, offset_y = sheet.offsets[row, column]
+        if step_column * offset_x + step_row * offset_y < (0.5 - _EDGE) * hits:
+            continue
+        ended = int(sheet.hits[beside_row, beside_column])
+        through = int(sheet.passes[beside_row, beside_column])
+        if _is_met(ended, through, surer, least):
+            return True
+    return False

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from roomba.grid import UNKNOWN, GridFrame, OccupancyMap
 from roomba.perception.slam import drawing_kernels
-from roomba.perception.slam.drawing_kernels import draw, occupancy
+from roomba.perception.slam.drawing_kernels import INTO_EDGE, draw, occupancy
 
 Floats = NDArray[np.float64]
 
@@ -33,6 +33,7 @@ class Sheet:
         self._row = self._column = 0
         self._hits = np.zeros((0, 0), np.uint16)
         self._passes = np.zeros((0, 0), np.uint16)
+        self._offsets = np.zeros((0, 0, 2), np.float32)
         self._bounds = np.array([_NONE, -1, _NONE, -1])
 
     def draw(self, points: NDArray[np.float32], lidar: Floats, pose: Floats, reach: float) -> None:
@@ -41,7 +42,7 @@ class Sheet:
         ``lidar`` is x, y in the robot's frame, ``reach`` how far its beams go, m.
         """
         self._cover(pose, reach)
-        draw(self._arrays(), points, lidar, pose)
+        draw(self._arrays(), points, lidar, pose, INTO_EDGE)
 
     def occupancy(self, share: float, least: int) -> OccupancyMap:
         """Return the map of what was drawn; see :func:`.drawing_kernels.occupancy`.
@@ -70,7 +71,8 @@ class Sheet:
             self._phase[1] + self._row * resolution,
         )
         place = np.array([*corner, resolution])
-        return drawing_kernels.Sheet(self._hits, self._passes, place, self._bounds)
+        counts = self._hits, self._passes
+        return drawing_kernels.Sheet(*counts, place, self._bounds, self._offsets)
 
     def _cover(self, pose: Floats, reach: float) -> None:
         """Make room for all that can be seen from a pose."""
@@ -88,6 +90,7 @@ class Sheet:
         if below or left or above or right:
             around = ((below, above), (left, right))
             self._hits, self._passes = np.pad(self._hits, around), np.pad(self._passes, around)
+            self._offsets = np.pad(self._offsets, (*around, (0, 0)))
             self._row -= below
             self._column -= left
             if self._bounds[0] != _NONE:

@@ -23,7 +23,8 @@ def sheet() -> Sheet:
     counts = np.zeros((2, SIZE, SIZE), np.uint16)
     corner = -0.5 * SIZE * CELL
     bounds = np.array([2**40, -1, 2**40, -1])
-    return Sheet(counts[0], counts[1], np.array([corner, corner, CELL]), bounds)
+    offsets = np.zeros((SIZE, SIZE, 2), np.float32)
+    return Sheet(counts[0], counts[1], np.array([corner, corner, CELL]), bounds, offsets)
 
 
 def drawn(*points: tuple[float, float, float, float], pose: Floats | None = None) -> Sheet:
@@ -142,3 +143,68 @@ def test_what_a_cell_is_depends_on_its_counts(
         assert value == FREE
     else:
         assert value == OCCUPIED
+
+
+@pytest.mark.parametrize(("up", "right"), [(0, 1), (1, 0), (0, -1), (-1, 0)])
+@pytest.mark.parametrize(
+    ("towards", "ended", "through", "expected"),
+    [
+        (0.45, 20, 0, FREE),
+        (0.70, 20, 0, FREE),
+        (0.20, 20, 0, OCCUPIED),
+        (-0.45, 20, 0, OCCUPIED),
+        (0.45, 20, 20, OCCUPIED),
+        (0.45, 1, 0, OCCUPIED),
+        (0.45, 0, 0, OCCUPIED),
+    ],
+    ids=["at the border", "beyond", "within", "elsewhere", "no surer", "one beam", "nothing"],
+)
+def test_the_edge_of_a_thing_is_not_a_second_one(
+    up: int, right: int, towards: float, ended: int, through: int, expected: int
+) -> None:
+    """10 of 25 beams ended in a cell, met so near to the next one, of which more is known."""
+    made = sheet()
+    made.hits[9, 9], made.passes[9, 9] = 10, 15
+    made.offsets[9, 9] = 10 * towards * right, 10 * towards * up
+    made.hits[9 + up, 9 + right], made.passes[9 + up, 9 + right] = ended, through
+    made.bounds[:] = 9, 9, 9, 9
+    assert values_of(made, 0.3, 2)[0][0, 0] == expected
+
+
+def test_a_cell_at_the_rim_of_the_sheet_has_nothing_beside_it() -> None:
+    made = sheet()
+    # What comes in memory before and after the rim.
+    made.hits[-1, 5] = made.hits[6, 0] = 20
+    for row, column, offset in ((0, 5, (0.0, -1.0)), (5, SIZE - 1, (1.0, 0.0))):
+        made.hits[row, column], made.passes[row, column] = 4, 4
+        made.offsets[row, column] = offset
+        made.bounds[:] = row, row, column, column
+        assert values_of(made)[0][0, 0] == OCCUPIED
+
+
+@given(st.floats(0.15, 1.2), st.floats(-math.pi, math.pi), st.floats(-math.pi, math.pi))
+def test_offsets_tell_where_the_surface_was_met(way: float, angle: float, faces: float) -> None:
+    end = way * np.array([math.cos(angle), math.sin(angle)])
+    made = drawn((*end, math.cos(faces), math.sin(faces)))
+    ((row, column),) = np.argwhere(made.hits).tolist()
+    middle = (np.array([column, row]) + 0.5 - SIZE // 2) * CELL
+    assert made.offsets[row, column] == pytest.approx((end + 0.01 - middle) / CELL, abs=1e-4)
+    assert np.count_nonzero(made.offsets.any(axis=2)) <= 1
+
+
+def test_offsets_are_halved_with_the_counts() -> None:
+    made = drawn((0.5, 0.01, 0.0, 0.0))
+    hit = tuple(np.argwhere(made.hits)[0])
+    one = made.offsets[hit].copy()
+    made.hits[hit], made.offsets[hit] = 60000, 60000 * one
+    draw(made, np.array([[0.5, 0.01, 0.0, 0.0]], np.float32), CENTRE, np.array([0.01, 0.01, 0.0]))
+    assert made.offsets[hit] / made.hits[hit] == pytest.approx(one, rel=1e-4)
+
+
+def test_who_asks_for_no_map_needs_no_offsets() -> None:
+    counts, corner = np.zeros((2, SIZE, SIZE), np.uint16), -0.5 * SIZE * CELL
+    place, bounds = np.array([corner, corner, CELL]), np.array([2**40, -1, 2**40, -1])
+    made = Sheet(counts[0], counts[1], place, bounds)
+    draw(made, np.array([[0.5, 0.0, 0.0, 0.0]], np.float32), CENTRE, np.zeros(3))
+    assert made.hits.sum() == 1
+    assert values_of(made)[0].size
