@@ -20,7 +20,7 @@ EVERY: Final = 2
 """Each such scan corrects the pose and is looked through for things: each 0.2 s."""
 LONGEST_BURST: Final = 60
 """Ticks: three seconds, then the mission looks at its battery and its progress."""
-_MOST_ASIDE: Final = 0.06
+MOST_ASIDE: Final = 0.06
 """m; farther from its path than this the ordinary classes decide."""
 
 
@@ -42,7 +42,7 @@ class ClosedLoop:
         )
         self._loop = np.zeros(1, LOOP).view(np.recarray)
         row = self._loop[0]
-        row.every, row.most_aside = EVERY, _MOST_ASIDE
+        row.every, row.most_aside = EVERY, MOST_ASIDE
         row.step, row.steps = STEP, STEPS_PER_TICK
         self._rows = np.empty((longest_burst, 4))
 

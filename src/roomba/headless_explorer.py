@@ -12,14 +12,17 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.closed_loop import EVERY, STEP, STEPS_PER_TICK
+from roomba.closed_loop import EVERY, LONGEST_BURST, STEP, STEPS_PER_TICK
 from roomba.config import RobotConfig
 from roomba.errors import RoombaError
+from roomba.exploring_loop import ExploringLoop
+from roomba.exploring_loop_kernels import BELIEVED, PASSED, TIME, TRUE, Sight
 from roomba.geometry import STANDSTILL
 from roomba.grid import OccupancyMap
 from roomba.headless_parts import SafeDrive, senses_of
 from roomba.mission.docking_config import DockingConfig
 from roomba.mission.exploration import ExploreResult
+from roomba.mission.machine import Phase
 from roomba.mission.mission import Mission
 from roomba.mission.senses import Senses
 from roomba.mission.site import Site
@@ -34,8 +37,12 @@ from roomba.perception.things import ThingLayer
 from roomba.world.home import Home
 from roomba.world.simulator import Simulator
 
-MAP_PERIOD: Final = 0.5
-"""s; so often the map is looked at, whether it makes a difference to the mission."""
+MAP_PERIOD: Final = 0.3
+"""s; so often a map that grew is looked at, whether it makes a difference to the mission."""
+_AROUND_GOAL: Final = 1.0
+"""m; farther from the frontier that it is on its way to nothing tells whether it still is one."""
+_PLANNING: Final = (Phase.CLEANING, Phase.EXPLORING, Phase.RETURNING)
+"""In the others no way is planned: the map may wait."""
 _LONGEST: Final = 6 * 3600.0
 """s; an exploration that is still under way then is a fault of the program."""
 
@@ -66,8 +73,13 @@ class HeadlessExplorer:
         mapping: MappingConfig | None = None,
         *,
         seed: int = 0,
+        longest_burst: int = LONGEST_BURST,
     ) -> None:
-        """Put the robot on its station and let it look around from there."""
+        """Put the robot on its station and let it look around from there.
+
+        ``longest_burst`` is how many ticks pass at most without an ordinary one, while nothing
+        comes up.
+        """
         self.robot, self.config = robot or RobotConfig(), mission or MissionConfig()
         self._docking = DockingConfig()
         self.simulator = Simulator(home, self.robot, seed=seed)
@@ -80,7 +92,7 @@ class HeadlessExplorer:
         )
         self._drive = SafeDrive(self.robot, self.simulator.max_speed)
         self._things: ThingLayer | None = None
-        self._scans = self._version = 0
+        self._scans = self._used = self._looked = 0
         self._shown = -np.inf
         self.seen = self.simulator.observe()
         self._sense()
@@ -90,18 +102,17 @@ class HeadlessExplorer:
             self.seen = self.simulator.observe()
             self._sense()
         site = self._site(self.mapper.occupancy())
-        self._things = ThingLayer(SurfaceField.of(site.occupancy))
         self.mission = Mission(
             site,
             self.robot,
             self.config,
             self._docking,
-            self._things,
+            self._look_beside(site),
             DirtMap(site.occupancy),
             self.senses(),
         )
-        self._rows: list[tuple[float, ...]] = []
-        self._believed: list[tuple[float, ...]] = []
+        self.passed: list[NDArray[np.float64]] = []
+        self._loop = ExploringLoop(self, longest_burst)
 
     def explore(self) -> ExploreRecord:
         """Explore to the end; raises CommandRefusedError."""
@@ -111,28 +122,51 @@ class HeadlessExplorer:
         while (result := self.mission.take_exploration()) is None:
             if self.seen.time - start > _LONGEST:
                 raise RoombaError("an exploration has no end; that is a fault of the program")
-            self.tick()
+            self.advance()
         occupancy = self.mapper.finish()
+        rows = np.concatenate([np.empty((0, PASSED)), *self.passed])
         return ExploreRecord(
             result,
             occupancy,
-            np.array(self._rows),
-            np.array(self._believed),
+            np.column_stack((rows[:, TIME], rows[:, TRUE])),
+            np.column_stack((rows[:, TIME], rows[:, BELIEVED])),
             int(self.simulator.numbers["hits"] - hits),
             time.perf_counter() - began,
         )
 
+    def advance(self) -> None:
+        """Let time pass: many ticks at once while nothing comes up, else one that looks around."""
+        if self._loop.may_run():
+            self._loop.run(self._shown + MAP_PERIOD if self._has_news else np.inf)
+            self._show_map()
+        else:
+            self.tick()
+
     def tick(self) -> None:
-        """Let one tick pass."""
+        """Let one tick pass, by the ordinary classes."""
         step = self.mission.tick(self.senses())
         command = self._drive.command(self.seen, step.twist)
         self.simulator.advance(command, STEP, STEPS_PER_TICK)
         self.seen = self.simulator.observe()
         self._sense()
+        self.passed.append(self.row())
         self._show_map()
-        pose, believed = self.seen.pose, self.mapper.pose
-        self._rows.append((self.seen.time, pose.x, pose.y, pose.theta))
-        self._believed.append((self.seen.time, believed.x, believed.y, believed.theta))
+        self._loop.was_ticked()
+
+    def caught_up(self, rows: NDArray[np.float64], points: int, way: float) -> None:
+        """Take over after the compiled loop: ``rows`` [n, PASSED] passed, ``way`` m were driven.
+
+        The newest scan is a keyframe if it has so many ``points``.
+        """
+        self.seen = seen = self.simulator.observe()
+        self._scans = seen.scans
+        self.mapper.resumed(points)
+        if points:
+            self._see_things()
+        believed = self.mapper.pose
+        rows[-1, BELIEVED] = believed.x, believed.y, believed.theta
+        self.passed.append(rows)
+        self.mission.caught_up(self.senses(), way)
 
     def senses(self) -> Senses:
         """Return what the robot senses now."""
@@ -147,22 +181,53 @@ class HeadlessExplorer:
         if self._scans % EVERY and mapper.version:
             return
         mapper.see(seen.time, self.simulator.ranges, self.lidar)
-        if mapper.estimate.knowledge is Knowledge.KNOWN and self._things is not None:
-            self._things.see(self.simulator.ranges, self._beams, mapper.pose)
+        if mapper.estimate.knowledge is Knowledge.KNOWN:
+            self._see_things()
+
+    def _see_things(self) -> None:
+        if self._things is not None:
+            self._things.see(self.simulator.ranges, self._beams, self.mapper.pose)
+
+    def row(self) -> NDArray[np.float64]:
+        """Return what is so now, as a tick that passed: float64 [1, PASSED]."""
+        seen, believed = self.seen, self.mapper.pose
+        poses = [(each.x, each.y, each.theta) for each in (seen.pose, believed, seen.odometry)]
+        return np.array([[seen.time, *poses[0], *poses[1], *poses[2], seen.angular_velocity]])
+
+    @property
+    def _has_news(self) -> bool:
+        """Whether the map has grown since it was looked at."""
+        return self.mapper.version != self._looked
 
     def _show_map(self) -> None:
-        """Let the mission go on with the map as it is now, if it has grown."""
-        is_due = self.seen.time - self._shown >= MAP_PERIOD or self.mission.driver is None
-        if not is_due or self.mapper.version == self._version:
+        """Let the mission go on with the map as it is now, if that makes a difference to it."""
+        mission, version = self.mission, self.mapper.version
+        if mission.driver is None:
+            if version == self._used or mission.state.phase not in _PLANNING:
+                return
+        elif self._has_news and self.seen.time - self._shown >= MAP_PERIOD:
+            self._shown, self._looked = self.seen.time, version
+            if not mission.wants_map(self._around_goal()):
+                return
+        else:
             return
-        self._shown = self.seen.time
-        occupancy = self.mapper.occupancy()
-        if not self.mission.wants_map(occupancy):
-            return
-        self._version = self.mapper.version
-        site = self._site(occupancy)
-        self._things = ThingLayer(SurfaceField.of(site.occupancy))
-        self.mission.use_map(site, self._things, DirtMap(site.occupancy))
+        self._shown, self._looked, self._used = self.seen.time, version, version
+        site = self._site(self.mapper.occupancy())
+        mission.use_map(site, self._look_beside(site), DirtMap(site.occupancy))
+
+    def _around_goal(self) -> OccupancyMap:
+        """Return the map around the frontier that it is on its way to: all that it asks for."""
+        exploration = self.mission.exploration
+        goal = None if exploration is None else exploration.goal
+        x, y = self.mission.last_place if goal is None else goal.middle
+        return self.mapper.occupancy_around(x, y, _AROUND_GOAL)
+
+    def _look_beside(self, site: Site) -> ThingLayer:
+        """Look from now on for what a site's map does not show."""
+        field = SurfaceField.of(site.occupancy)
+        self._things = ThingLayer(field)
+        self.sight = Sight(self._things.arrays, field.values, field.place)
+        return self._things
 
     def _site(self, occupancy: OccupancyMap) -> Site:
         return Site(

@@ -29,6 +29,8 @@ class KeptPose:
     def __init__(self) -> None:
         """Keep nothing yet."""
         self._newest: Pose | None = None
+        self.was_found = False
+        """Whether the start pose is a kept one: another process of this node was here before."""
 
     def start(self) -> None:
         """Begin to write what is kept."""
@@ -44,7 +46,8 @@ class KeptPose:
         By what was kept; else by the parameters, which say where odometry began.
         """
         kept = rospy.get_param(PARAMETER, None)
-        if _is_pose(kept):
+        self.was_found = _is_pose(kept)
+        if self.was_found:
             return Pose(*kept).compose(odometry), _KEPT_DEVIATION
         # Read now, not at the start: the simulator puts the robot where its home wants it.
         start = read_seed_parameters()

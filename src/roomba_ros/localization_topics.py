@@ -31,6 +31,8 @@ from roomba_ros.place_topics import PlaceTopics
 
 _KEPT: Final = 40
 """Messages of odometry, and of the gyro, that wait for the next tick: two seconds of them."""
+_PLACED: Final = (0.05, 0.05)
+"""m, rad; how unsure a place on another map is before a scan confirms it."""
 
 
 class LocalizationTopics:
@@ -46,6 +48,7 @@ class LocalizationTopics:
         self._config = config
         self._localizer: Localizer | None = None
         self._lock = threading.Lock()
+        self._turn = threading.RLock()
         self._odometry: deque[tuple[float, Pose]] = deque(maxlen=_KEPT)
         self._gyro: deque[tuple[float, float]] = deque(maxlen=_KEPT)
         self._scan: LaserScan | None = None
@@ -56,6 +59,7 @@ class LocalizationTopics:
         self._lidar: tuple[tuple[object, ...], LidarModel] | None = None
         self._mounts: dict[str, Pose] = {}
         self._stamp = 0.0
+        self._newest: tuple[float, Pose] | None = None
         self._kept = KeptPose()
         self._place = PlaceTopics()
         self.mapper: Mapper | None = None
@@ -64,6 +68,8 @@ class LocalizationTopics:
         """Whether the mapper must not be shown anything just now: its map is being made whole."""
         self.seen: tuple[float, NDArray[np.float32], LidarModel] | None = None
         """The newest scan that was used, and its stamp, s."""
+        self.is_map_own = False
+        """Whether this node makes the map itself: what comes by the topic is left out then."""
         self.is_asked_to_search = False
         """Whether somebody asked it to find its place, and it has not yet."""
 
@@ -90,6 +96,37 @@ class LocalizationTopics:
 
         ``now`` is in s of the ROS clock. None while nothing is known yet.
         """
+        with self._turn:
+            return self._tick(now)
+
+    def use_map(self, occupancy: OccupancyMap) -> None:
+        """Go on with another map; where the robot is on it must be found out."""
+        with self._turn:
+            if self._localizer is not None:
+                self._localizer.use_map(occupancy)
+
+    def go_on(
+        self,
+        occupancy: OccupancyMap,
+        at: Pose | None,
+        deviation: tuple[float, float] = _PLACED,
+    ) -> None:
+        """Go on with another map on which the robot is ``at`` a pose, m and rad unsure.
+
+        None: at the same as before. The place stays known.
+        """
+        with self._turn:
+            if self._localizer is not None:
+                self._localizer.go_on(occupancy, None if at is None else (at, deviation))
+
+    def map_with(self, mapper: Mapper | None) -> None:
+        """Let a mapper know the place from now on; None: the localizer again."""
+        with self._turn:
+            self.mapper, self.is_mapping_held = mapper, False
+            if mapper is not None and self._newest is not None:
+                mapper.move(*self._newest)
+
+    def _tick(self, now: float) -> Estimate | None:
         localizer = self._localizer = self._localizer or self._first_localizer()
         if localizer is None:
             return None
@@ -115,6 +152,20 @@ class LocalizationTopics:
         assert self._localizer is not None
         return self._localizer.estimate.pose
 
+    @property
+    def known_place(self) -> Pose | None:
+        """Where the robot is, map frame, if that is known."""
+        with self._turn:
+            estimate = self._localizer and self._localizer.estimate
+        if estimate is None or not estimate.knowledge.is_usable:
+            return None
+        return estimate.pose
+
+    @property
+    def was_here_before(self) -> bool:
+        """Whether another process of this node knew the place, and odometry went on since."""
+        return self._kept.was_found
+
     def _first_localizer(self) -> Localizer | None:
         """Return a localizer at the place where the first odometry was told; None before that."""
         if not self._odometry:
@@ -134,6 +185,7 @@ class LocalizationTopics:
     def _hear_odometry(self, localizer: Localizer) -> None:
         for _ in range(len(self._odometry)):
             self._stamp, pose = self._odometry.popleft()
+            self._newest = self._stamp, pose
             turning = self._turning_at(self._stamp)
             localizer.move(self._stamp, pose, turning)
             if self.mapper is not None:
@@ -221,6 +273,8 @@ class LocalizationTopics:
         self._scan = message
 
     def _on_map(self, message: OccupancyGrid) -> None:
+        if self.is_map_own:
+            return
         try:
             occupancy = map_of(message)
         except ValueError as error:

@@ -1,4 +1,7 @@
-"""Making a map on ROS: a mapper in place of the localizer, until its map is whole."""
+"""Making a map on ROS: a mapper in place of the localizer, until its map is whole.
+
+What it has is remembered while it grows, and taken up by the next process if this one is killed.
+"""
 
 from __future__ import annotations
 
@@ -12,9 +15,11 @@ from roomba.geometry import Pose
 from roomba.grid import OccupancyMap
 from roomba.perception.estimate import Knowledge
 from roomba.perception.slam.mapper import Mapper
+from roomba.perception.slam.mapper_file import KeptMap
 from roomba.perception.slam.mapping_config import MappingConfig
 from roomba_ros.background import Background
 from roomba_ros.localization_topics import LocalizationTopics
+from roomba_ros.map_memory import MapMemory
 
 MAP_PERIOD: Final = 1.0
 """s of the ROS clock between two maps that are told while it grows."""
@@ -25,7 +30,8 @@ _FINISHED_DEVIATION: Final = (0.03, 0.02)
 class MapMaker:
     """Begins a map where the robot stands, lets it grow, and makes it whole.
 
-    ``station`` is where the robot stood on its station, map frame, once it did.
+    ``station`` is where the robot stood on its station, map frame, once it did; ``is_docked`` is
+    whether it does now, as the last :meth:`note_station` said.
     """
 
     def __init__(
@@ -34,15 +40,17 @@ class MapMaker:
         mapping: MappingConfig,
         place: LocalizationTopics,
         background: Background,
+        memory: MapMemory,
     ) -> None:
         """Begin nothing yet."""
         self._config, self._mapping = config, mapping
-        self._place, self._background = place, background
+        self._place, self._background, self._memory = place, background, memory
         self._mapper: Mapper | None = None
         self._told = (-1.0, -1)
         self._lock = threading.Lock()
         self._whole: OccupancyMap | None = None
         self._finishes = False
+        self.is_docked = False
         self.station: Pose | None = None
         self._station_from_start: Pose | None = None
 
@@ -54,14 +62,32 @@ class MapMaker:
     def begin(self) -> None:
         """Begin where the robot is by what was told; needs odometry."""
         config = self._config
-        self._mapper = Mapper(self._mapping, config.localization, config.gyro, self._place.place)
-        self._place.mapper = self._mapper
-        self._told = (-1.0, -1)
+        self._memory.forget()
+        self._memory.forget_whole()
+        self._map_with(Mapper(self._mapping, config.localization, config.gyro, self._place.place))
         self.station = self._station_from_start = None
         rospy.loginfo("the robot begins a map of its own")
 
+    def take_up(self) -> bool:
+        """Go on with the map that a process which was killed was making; tell whether there is one.
+
+        Needs odometry, which went on since.
+        """
+        kept = self._memory.recall()
+        if kept is None:
+            return False
+        config = self._config
+        here = self._place.place if kept.station is None or not self.is_docked else kept.station
+        self._map_with(
+            Mapper.taken_up(self._mapping, config.localization, config.gyro, kept.state, here)
+        )
+        self.station, self._station_from_start = kept.station, kept.station_from_start
+        rospy.logwarn("this node ended while it made a map; it is taken up")
+        return True
+
     def note_station(self, is_docked: bool) -> bool:
         """Remember where the station is while the robot stands on it; tell whether that is new."""
+        self.is_docked = is_docked
         mapper = self._mapper
         if mapper is None or not (is_docked and mapper.version):
             return False
@@ -73,6 +99,18 @@ class MapMaker:
             # Somebody carried it home.
             mapper.told(self.station)
         return False
+
+    def keep(self, now: float) -> None:
+        """Remember the map, if it is time to."""
+        mapper = self._mapper
+        if mapper is None or self._finishes:
+            return
+        is_lost = mapper.estimate.knowledge is Knowledge.LOST
+        if not self._memory.is_due(now, mapper.version, is_lost=is_lost):
+            return
+        state = mapper.state()
+        if state is not None:
+            self._memory.keep(now, KeptMap(state, "", self.station, self._station_from_start))
 
     def grown(self, now: float) -> OccupancyMap | None:
         """Return the map as it is by now, if it is time to tell it."""
@@ -99,17 +137,21 @@ class MapMaker:
         """Return the whole map, once, as soon as it is; the localizer goes on with it."""
         with self._lock:
             whole, self._whole = self._whole, None
-        mapper, localizer = self._mapper, self._place.localizer
-        if whole is None or mapper is None or localizer is None:
+        mapper = self._mapper
+        if whole is None or mapper is None:
             return None
         if self._station_from_start is not None:
             # To be whole the map was turned a little.
             self.station = mapper.start.compose(self._station_from_start)
-        localizer.use_map(whole)
-        localizer.told(mapper.pose, _FINISHED_DEVIATION)
-        self._place.mapper = self._mapper = None
-        self._place.is_mapping_held = self._finishes = False
+        self._place.go_on(whole, mapper.pose, _FINISHED_DEVIATION)
+        self._place.map_with(None)
+        self._mapper, self._finishes = None, False
         return whole
+
+    def _map_with(self, mapper: Mapper) -> None:
+        self._mapper = mapper
+        self._place.map_with(mapper)
+        self._told = (-1.0, -1)
 
     def _finish(self, mapper: Mapper) -> None:
         try:

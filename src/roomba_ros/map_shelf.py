@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Final
 
 import rospy
 
@@ -11,10 +12,14 @@ from roomba.grid import OccupancyMap
 from roomba.map_bound_file import map_digest
 from roomba.map_store import MapStore, MapStoreError, StoredMap
 from roomba.perception.carry_over import carry_over
+from roomba.perception.floor_recognition import Floor
+from roomba.perception.same_floor import LEAST_FLOOR, LEAST_WALLS, match_floors
 from roomba.rooms_file import save_rooms
 from roomba.zones_file import save_zones
 from roomba_ros.parameters import folder_of
 from roomba_ros.room_topics import RoomTopics
+
+_INSTEAD: Final = "save this one by another name, or remove that one first (map/remove)"
 
 
 class MapShelf:
@@ -64,19 +69,37 @@ class MapShelf:
     def save_anew(self, name: str, stored: StoredMap) -> bool:
         """Save a map that was made anew; return whether it took something over.
 
-        What people did to the old map of this name, if there is one, goes on on the new one.
+        What people did to the old map of this name, if there is one, goes on on the new one. Raises
+        MapStoreError if that is of another floor, or broken so that nobody can tell: it is kept.
         """
         if name not in self._store.names() or stored.rooms is None:
             self._store.save(name, stored)
             return False
-        old = self._store.load(name)
-        zones = stored.zones if stored.zones.all else old.zones
-        carried = carry_over(stored.rooms, old.rooms, zones)
-        new = StoredMap(stored.occupancy, stored.station, carried.rooms, carried.zones)
+        old = self._old(name)
+        match = match_floors(_floor_of(stored), _floor_of(old))
+        if not match.is_same:
+            raise MapStoreError(
+                f"expected the floor of the map {name!r} that is saved already, got another one "
+                f"(of the walls {100 * match.walls:.0f} % agree where at least "
+                f"{100 * LEAST_WALLS:.0f} % should, of the floor {100 * match.floor:.0f} % of "
+                f"{100 * LEAST_FLOOR:.0f} %); {_INSTEAD}"
+            )
+        carried = carry_over(stored.rooms, old.rooms, old.zones, match.old_in_new)
+        zones = stored.zones if stored.zones.all else carried.zones
+        new = StoredMap(stored.occupancy, stored.station, carried.rooms, zones)
         self._store.save(name, new)
         self._rooms.use(carried.rooms)
-        save_zones(carried.zones, new.occupancy, self._zones_path(new.occupancy))
+        save_zones(zones, new.occupancy, self._zones_path(new.occupancy))
         return True
+
+    def _old(self, name: str) -> StoredMap:
+        try:
+            return self._store.load(name)
+        except MapStoreError as error:
+            raise MapStoreError(
+                f"the map {name!r} that is saved already cannot be read, so it may be of another "
+                f"floor ({error}); {_INSTEAD}"
+            ) from error
 
     def remove(self, name: str) -> None:
         """Forget a saved map."""
@@ -96,3 +119,7 @@ class MapShelf:
 
     def _zones_path(self, occupancy: OccupancyMap) -> Path:
         return self._zones_folder / f"{map_digest(occupancy)[:16]}.yaml"
+
+
+def _floor_of(stored: StoredMap) -> Floor:
+    return Floor(stored.occupancy, stored.station)

@@ -10,7 +10,7 @@ _LATEST: Final = 0.5
 """s of wall time; farther behind than this the simulation goes on slower than asked for."""
 _MOST_BEHIND: Final = 0.3
 """s of the robot's clock; a robot that thinks of longer ago is waited for."""
-_LONGEST_HOLD: Final = 0.5
+_LONGEST_HOLD: Final = 2.0
 """s of wall time; a robot that says nothing for longer is not waited for any more."""
 _LOOK: Final = 0.001
 """s of wall time between two looks whether it caught up."""

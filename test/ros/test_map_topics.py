@@ -1,6 +1,7 @@
 """The robot's own maps: known again, changed when people agree, and none where one was given."""
 
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
@@ -46,6 +47,20 @@ def knows_its_place(robot: Explorer) -> None:
         "it knows its place",
     )
     wait_until(lambda: STATION.distance_to(*robot.probe.position()) < 0.06, 5.0, "it is right")
+
+
+@contextmanager
+def stays_known(robot: Explorer) -> Iterator[None]:
+    """See that the place is known all the time, from before something is done until after it."""
+    heard: list[Localization] = []
+    subscriber = rospy.Subscriber("/localization", Localization, heard.append)
+    wait_until(lambda: len(heard) >= 2, 5.0, "its place is told")
+    yield
+    after = len(heard)
+    wait_until(lambda: len(heard) >= after + 4, 10.0, "its place is told on")
+    subscriber.unregister()
+    assert [told.message for told in heard if told.state != Localization.KNOWN] == []
+    assert STATION.distance_to(*robot.probe.position()) < 0.06
 
 
 def chest_cells(robot: Explorer) -> int:
@@ -96,9 +111,32 @@ def test_another_floor_is_mapped_and_then_cleaned(graph: RosGraph) -> None:
     knows_its_place(robot)
 
     robot.cleans(BY_STATION)
-    robot.has_whole_map(1.0)
-    assert "exploring" in robot.phases
     assert "cleaning" in robot.phases
+    robot.explore().ends()
+    robot.has_whole_map()
+
+    # By the name of another floor's map it is not saved, and nothing is lost.
+    maps = kept_maps(graph.folder / "ros_home")
+    before = maps.load(HOME)
+    refused = robot.on_maps("save", HOME)
+    assert not refused.success
+    for words in ("expected the floor of the map 'home'", "another name", "map/remove"):
+        assert words in refused.message
+    assert maps.load(HOME).is_same(before)
+    (maps.folder / HOME / "map.yaml").write_text("no map", encoding="utf-8")
+    refused = robot.on_maps("save", HOME)
+    assert not refused.success
+    for words in ("cannot be read", "map.yaml", "another name", "map/remove"):
+        assert words in refused.message
+    assert (maps.folder / HOME / "map.yaml").read_text(encoding="utf-8") == "no map"
+    assert robot.mapping.name == ""
+    refused = robot.on_maps("save", "own")
+    assert not refused.success
+    assert "says how to begin" in refused.message
+    assert robot.on_maps("save", "hallway").success
+    assert robot.on_maps("remove", HOME).success
+    assert robot.on_maps("save", HOME).success
+    assert robot.saved_maps() == (["hallway", HOME], HOME)
 
 
 def test_what_changed_is_offered_refused_and_accepted(graph: RosGraph) -> None:
@@ -122,11 +160,13 @@ def test_what_changed_is_offered_refused_and_accepted(graph: RosGraph) -> None:
     assert robot.offers == []
     assert chest_cells(robot) == before
 
-    assert robot.on_maps("load", HOME).success
+    with stays_known(robot):
+        assert robot.on_maps("load", HOME).success
     robot.cleans(BEFORE_CHEST)
     wait_until(lambda: robot.offers, 5.0, "the chest is offered")
-    assert robot.trigger("/map/update/accept").success
-    wait_until(lambda: chest_cells(robot) > before + 10, 5.0, "the map shows it")
+    with stays_known(robot):
+        assert robot.trigger("/map/update/accept").success
+        wait_until(lambda: chest_cells(robot) > before + 10, 5.0, "the map shows it")
     wait_until(lambda: not robot.offers, 2.0, "nothing more is offered")
     stored = kept_maps(graph.folder / "ros_home").load(HOME)
     assert np.array_equal(stored.occupancy.values, robot.map.values)

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.config import RobotConfig
+from roomba.exploring_loop_kernels import GYRO, ODOMETRY, TIME, TRUE
 from roomba.geometry import Pose
 from roomba.grid import OccupancyMap
 from roomba.headless_explorer import ExploreRecord, HeadlessExplorer
@@ -72,7 +73,10 @@ class MapRun:
 
 
 Watch = Callable[["WatchedExplorer"], None]
-"""Is shown the robot at each tick."""
+"""Is shown the robot whenever it looked around: every few ticks, or at each."""
+
+_AS_OFTEN: Final = 0.9
+"""Of the way between keyframes: by its own odometry a robot sees each of them a bit sooner."""
 
 
 class WatchedExplorer(HeadlessExplorer):
@@ -83,26 +87,30 @@ class WatchedExplorer(HeadlessExplorer):
     def begin_blind(self, mapping: MappingConfig) -> None:
         """Draw by dead reckoning from now on; it stands on its station."""
         numbers = self.robot.localization, self.robot.gyro
-        self.blind = BlindMap(mapping, *numbers, self.simulator.start)
+        apart = {"keyframe_way": mapping.keyframe_way, "keyframe_turn": mapping.keyframe_turn}
+        often = {name: _AS_OFTEN * value for name, value in apart.items()}
+        self.blind = BlindMap(mapping.model_copy(update=often), *numbers, self.simulator.start)
         self.largest_blind = 0.0
         self._seen_scans = -1
-        self._hear()
+        self._hear(self.row())
 
-    def tick(self) -> None:
-        """Let one tick pass, and look."""
-        super().tick()
-        self._hear()
+    def advance(self) -> None:
+        """Let time pass, and look at what it brought."""
+        super().advance()
+        self._hear(self.passed[-1])
         for watch in self.watches:
             watch(self)
 
-    def _hear(self) -> None:
+    def _hear(self, rows: Floats) -> None:
+        """Let the other map go on by ticks that passed, float64 [n, PASSED]."""
         seen, blind = self.seen, self.blind
-        blind.move(seen.time, seen.odometry, seen.angular_velocity)
+        for row in rows.tolist():
+            blind.move(row[TIME], Pose(*row[ODOMETRY]), row[GYRO])
+            x, y, _ = row[TRUE]
+            self.largest_blind = max(self.largest_blind, blind.pose.distance_to(x, y))
         if seen.scans != self._seen_scans:
             self._seen_scans = seen.scans
             blind.see(seen.time, self.simulator.ranges, self.lidar)
-        off = blind.pose.distance_to(seen.pose.x, seen.pose.y)
-        self.largest_blind = max(self.largest_blind, off)
 
 
 class MapScene:

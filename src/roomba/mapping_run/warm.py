@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 import functools
+from typing import Any, Final
 
 from roomba.config import RobotConfig
 from roomba.headless_explorer import HeadlessExplorer
 from roomba.mapping_run.map_error import map_error
 from roomba.mapping_run.seen_floor import seen_floor
 from roomba.perception.rooms import segment
+from roomba.perception.slam.mapping_config import MappingConfig
 from roomba.sim.warm import closet
+
+_ALWAYS: Final[dict[str, Any]] = {"submap_keyframes": 4, "link_points": 50, "redrawn_shift": 1e-6}
+"""So that submaps are closed, linked, and drawn anew even in a closet."""
 
 
 @functools.cache
@@ -17,7 +22,10 @@ def warm_up() -> None:
     """Explore it once in this process, compare the map with it, and cut it into rooms."""
     home = closet()
     station = (home.station.x, home.station.y)
-    made = HeadlessExplorer(home).explore().occupancy
+    robot = HeadlessExplorer(home, mapping=MappingConfig(**_ALWAYS))
+    made = robot.explore().occupancy
+    # What it does where it got stuck between things that it did not see.
+    robot.mission.site.squeeze((0.6, 0.9), (1.0, 0.5), [(0.8, 0.7, 0.02)])
     seen = seen_floor(home.solid, home.frame, station, RobotConfig())
     map_error(made, home.frame, home.solid, seen)
     segment(made)

@@ -241,7 +241,7 @@ class Mission:
     def is_undisturbed(self) -> bool:
         """Whether the next ticks are the driver's tracker's alone, while nothing comes up."""
         return (
-            self.state.phase in (Phase.CLEANING, Phase.RETURNING)
+            self.state.phase in (Phase.CLEANING, Phase.EXPLORING, Phase.RETURNING)
             and self.driver is not None
             and self.driver.is_undisturbed
             and not self._watch.is_astray

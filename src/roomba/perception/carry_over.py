@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Final
@@ -10,6 +11,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.geometry import Pose
 from roomba.perception.rooms import Rooms
 from roomba.perception.zones import Zones
 
@@ -29,24 +31,49 @@ class CarriedOver:
     lost: tuple[str, ...]
 
 
-def carry_over(new: Rooms, old: Rooms | None, zones: Zones) -> CarriedOver:
+_SAME: Final = Pose()
+"""Where the old map lies on the new one when both have one frame."""
+
+
+def carry_over(
+    new: Rooms, old: Rooms | None, zones: Zones, old_in_new: Pose = _SAME
+) -> CarriedOver:
     """Return ``new`` rooms with the names of the ``old`` ones that they overlap most, and zones.
 
-    Both are of the same frame (the station's), on grids of their own, which may lie a few cm apart.
+    ``old_in_new`` is where the old map's frame lies in the new one, in which rooms and zones are.
     Names go one to one, so that rooms share as much floor with their namesakes as can be; a room
     that is new keeps "Room n", or gets one that is not taken. Zones are places: they stay.
     """
+    there = _moved(zones, old_in_new)
     if old is None:
-        return CarriedOver(new, zones, ())
-    partners = _best_partners(_overlaps(new, old))
+        return CarriedOver(new, there, ())
+    partners = _best_partners(_overlaps(new, old, old_in_new))
     names = tuple(_names(new.names, old.names, partners))
     lost = tuple(name for label, name in enumerate(old.names) if label not in partners)
-    return CarriedOver(replace(new, names=names), zones, lost)
+    return CarriedOver(replace(new, names=names), there, lost)
 
 
-def _overlaps(new: Rooms, old: Rooms) -> Overlaps:
+def _moved(zones: Zones, old_in_new: Pose) -> Zones:
+    """Return zones of the old map in the frame of the new one."""
+    if old_in_new == _SAME:
+        return zones
+    return Zones(
+        tuple(
+            replace(
+                zone,
+                points=tuple(
+                    (corner.x, corner.y)
+                    for corner in (old_in_new.compose(Pose(x, y)) for x, y in zone.points)
+                ),
+            )
+            for zone in zones.all
+        )
+    )
+
+
+def _overlaps(new: Rooms, old: Rooms, old_in_new: Pose) -> Overlaps:
     """Return the floor that rooms share, as far as they share enough to be the same."""
-    there = _sampled(old, new)
+    there = _sampled(old, new, old_in_new.inverse())
     shape = len(new.names) + 1, len(old.names) + 1
     pairs = new.labels.astype(np.int64) * shape[1] + there
     counts = np.bincount(pairs.ravel(), minlength=shape[0] * shape[1]).reshape(shape)
@@ -57,20 +84,22 @@ def _overlaps(new: Rooms, old: Rooms) -> Overlaps:
     return np.where(shared >= enough, shared, 0.0)
 
 
-def _sampled(old: Rooms, new: Rooms) -> NDArray[np.int64]:
+def _sampled(old: Rooms, new: Rooms, new_in_old: Pose) -> NDArray[np.int64]:
     """Return the old label at the middle of each of the new cells, int64 [rows, columns]."""
-    rows = _cells(new.frame.origin_y, new.frame.rows, new, old.frame.origin_y, old)
-    columns = _cells(new.frame.origin_x, new.frame.columns, new, old.frame.origin_x, old)
+    x = new.frame.origin_x + (np.arange(new.frame.columns) + 0.5) * new.frame.resolution
+    y = new.frame.origin_y + (np.arange(new.frame.rows)[:, None] + 0.5) * new.frame.resolution
+    cosine, sine = math.cos(new_in_old.theta), math.sin(new_in_old.theta)
+    columns = _cells(new_in_old.x + cosine * x - sine * y, old.frame.origin_x, old)
+    rows = _cells(new_in_old.y + sine * x + cosine * y, old.frame.origin_y, old)
     inside = (rows >= 0) & (rows < old.frame.rows)
-    across = (columns >= 0) & (columns < old.frame.columns)
+    inside &= (columns >= 0) & (columns < old.frame.columns)
     there = np.zeros(new.frame.shape, np.int64)
-    there[np.ix_(inside, across)] = old.labels[np.ix_(rows[inside], columns[across])]
+    there[inside] = old.labels[rows[inside], columns[inside]]
     return there
 
 
-def _cells(begin: float, count: int, new: Rooms, origin: float, old: Rooms) -> NDArray[np.int64]:
-    """Return the old row, or column, in which the middle of each new one lies."""
-    middles = begin + (np.arange(count) + 0.5) * new.frame.resolution
+def _cells(middles: NDArray[np.float64], origin: float, old: Rooms) -> NDArray[np.int64]:
+    """Return the old rows, or columns, in which middles of new cells lie."""
     cells: NDArray[np.int64] = np.floor((middles - origin) / old.frame.resolution).astype(np.int64)
     return cells
 

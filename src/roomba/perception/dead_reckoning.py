@@ -25,17 +25,17 @@ class DeadReckoning:
     """Keeps a pose in a frame of its own, in which it never jumps but slowly drifts.
 
     Wheels and gyro both measure each turn; the one counts that is the surer by what is known of
-    its errors.
+    its errors. Kernels may go on with its ``belief`` and ``numbers``, until :meth:`begin_history`.
     """
 
     def __init__(
         self, config: LocalizationConfig, gyro: GyroConfig, belief: Rows | None = None
     ) -> None:
         """Begin at the origin; the pose on the map of a ``belief`` goes along."""
-        self._beliefs = unknown_belief() if belief is None else belief
-        self._belief = self._beliefs[0]
+        self.belief = unknown_belief() if belief is None else belief
+        self._belief = self.belief[0]
         self._reckoned: NDArray[np.float64] = self._belief["reckoned"]
-        self._numbers = numbers_of(config, gyro)
+        self.numbers = numbers_of(config, gyro)
         self._past: deque[_Row] = deque()
 
     def move(self, stamp: float, odometry: Pose, turning: float | None) -> None:
@@ -45,8 +45,8 @@ class DeadReckoning:
         the way still counts, but nothing is known of the time that it took.
         """
         done = reckon(
-            self._beliefs,
-            self._numbers,
+            self.belief,
+            self.numbers,
             stamp,
             odometry.x,
             odometry.y,

@@ -81,7 +81,7 @@ class _Watched(HeadlessExplorer):
     """Keeps the map as it is now and then."""
 
     def __init__(self, home: Home, *, seed: int) -> None:
-        super().__init__(home, seed=seed)
+        super().__init__(home, seed=seed, longest_burst=0)
         self.looks: list[_Look] = []
         self._ticks = 0
 

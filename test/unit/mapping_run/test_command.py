@@ -60,14 +60,18 @@ def test_the_same_trial_gives_the_same_run_and_another_seed_another_one(run: Map
     assert figures(other)["trajectory"] != figures(run)["trajectory"]
 
 
-def test_whoever_watches_sees_every_tick() -> None:
+def test_whoever_watches_sees_it_every_now_and_then() -> None:
     seen: list[float] = []
 
     def watch(robot: WatchedExplorer) -> None:
         seen.append(robot.seen.time)
 
     run = MapScene(CLOSET).run([watch])
-    assert seen == run.record.poses[:, 0].tolist()
+    times = run.record.poses[:, 0]
+    assert np.isin(seen, times).all()
+    assert seen[-1] == times[-1]
+    assert len(seen) > 0.2 * len(times)
+    assert 0.0 < np.diff(seen).min() <= np.diff(seen).max() < 3.1
 
 
 def test_json_says_what_the_run_was(run: MapRun) -> None:

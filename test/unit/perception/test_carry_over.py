@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from roomba.geometry import Pose
 from roomba.grid import OCCUPIED, GridFrame, OccupancyMap
 from roomba.perception.carry_over import carry_over
 from roomba.perception.rooms import Rooms, segment
@@ -111,6 +114,28 @@ def test_a_home_on_another_grid_a_little_off_keeps_all_names(name: str) -> None:
     for label, room in enumerate(carried.rooms.names, 1):
         x, y = carried.rooms.anchor(label)
         assert named.names[named.at(x, y) - 1] == room
+
+
+def test_rooms_and_zones_of_another_frame_are_where_they_were() -> None:
+    """The old map is turned by a quarter: what was along x is along y."""
+    old_in_new = Pose(5.0, -2.0, 0.5 * math.pi)
+    old = rooms_of((0, 30, "kitchen"), (30, 60, "hall"), (60, 80, "bath"))
+    corner = old_in_new.compose(Pose(FRAME.origin_x, FRAME.extent[3]))
+    # The new grid lies a third of a cell off.
+    frame = GridFrame(0.05, corner.x - 0.017, corner.y + 0.017, FRAME.columns, FRAME.rows)
+    labels = np.zeros(frame.shape, np.int16)
+    labels[:30], labels[30:60], labels[60:] = 3, 1, 2
+    carried = carry_over(Rooms(frame, labels, ("a", "b", "c")), old, ZONES, old_in_new)
+    assert carried.rooms.names == ("hall", "bath", "kitchen")
+    assert carried.lost == ()
+    (zone,) = carried.zones.all
+    assert (zone.name, zone.kind) == ("bowl", ZoneKind.WALL)
+    assert np.array(zone.points) == pytest.approx(np.array([[2.5, -2.0], [2.5, -1.0]]))
+    # As if it were the same frame they would lie elsewhere.
+    assert carry_over(Rooms(frame, labels, ("a", "b", "c")), old, ZONES).zones == ZONES
+    assert carry_over(Rooms(frame, labels, ("a", "b", "c")), None, ZONES, old_in_new).zones.all == (
+        zone,
+    )
 
 
 @st.composite

@@ -15,14 +15,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.config import GyroConfig, LocalizationConfig
-from roomba.geometry import Pose, wrap_angle
+from roomba.geometry import Pose
 from roomba.grid import OccupancyMap
 from roomba.perception.dead_reckoning import DeadReckoning
 from roomba.perception.estimate import Estimate, Knowledge
 from roomba.perception.scan_view import LidarModel
+from roomba.perception.slam.follow_kernels import LEAST_POINTS, Following, beyond, is_apart
+from roomba.perception.slam.mapper_state import KeptSubmap, LidarNumbers, MapperState
 from roomba.perception.slam.mapping_config import MappingConfig
 from roomba.perception.slam.pose_graph import relative_to
-from roomba.perception.slam.scan_follower import LEAST_POINTS, ScanFollower
+from roomba.perception.slam.scan_follower import ScanFollower
 from roomba.perception.slam.sheet import Sheet
 from roomba.perception.slam.submap import Keyframe
 from roomba.perception.slam.submap_graph import SubmapGraph
@@ -64,13 +66,50 @@ class Mapper:
         self._reckoning = DeadReckoning(localization, gyro)
         self._follower = ScanFollower(config, self._reckoning)
         self._graph = SubmapGraph(config, localization, _row_of(start))
-        self._at_scan = start
+        self.at_scan = start
         self._lidar: LidarModel | None = None
         self._phase = (0.0, 0.0)
         self._sheet = Sheet(config.resolution)
         self._drawn = self._graph.poses.copy()
         self._is_lifted = self._is_lost = False
+        self._beside: list[int] = []
         self.version = 0
+
+    @classmethod
+    def taken_up(
+        cls,
+        config: MappingConfig,
+        localization: LocalizationConfig,
+        gyro: GyroConfig,
+        state: MapperState,
+        here: Pose,
+    ) -> Mapper:
+        """Go on with what another mapper knew; the robot is about ``here``, map frame.
+
+        To within some 0.2 m and 0.1 rad: the next scan tells exactly.
+        """
+        mapper = cls(config, localization, gyro, Pose(*state.poses[0].tolist()))
+        mapper._take_over(state, here)
+        return mapper
+
+    def state(self) -> MapperState | None:
+        """Return all that another one needs to go on; None before the first scan.
+
+        What it consists of is not changed any more, so that another thread may save it.
+        """
+        if self._lidar is None or not self.version:
+            return None
+        graph = self._graph
+        return MapperState(
+            tuple(KeptSubmap(each.way, tuple(each.keyframes)) for each in graph.submaps),
+            graph.poses.copy(),
+            tuple(graph.links),
+            self._follower.way,
+            self._phase,
+            LidarNumbers.of(self._lidar),
+            self.version,
+            self._is_lost or self._is_lifted,
+        )
 
     def move(self, stamp: float, odometry: Pose, turning: float | None = None) -> None:
         """Take the wheels' odometry and the gyro's turning speed, rad/s, if there is one."""
@@ -88,7 +127,38 @@ class Mapper:
         self._follower.follow(reckoned, points, self._surfels)
         if self._is_keyframe(len(points)):
             self._keep(points)
-        self._at_scan = self._place()
+        self.at_scan = self._place()
+
+    @property
+    def is_calm(self) -> bool:
+        """Whether scans follow each other: kernels may take them, until it has :meth:`resumed`."""
+        is_held = self._is_lifted or self._is_lost
+        keyframes = self._graph.newest.keyframes
+        return self.version > 0 and self._follower.is_sure and not is_held and bool(keyframes)
+
+    @property
+    def following(self) -> Following:
+        """What kernels take scans with; it is another one in each submap."""
+        reckoning = self._reckoning
+        return Following(
+            self._follower.state,
+            reckoning.belief,
+            reckoning.numbers,
+            self._surfels.arrays,
+            self._beams,
+            self._points,
+            self._graph.poses[-1],
+            self._graph.newest.keyframes[-1].pose,
+            self._config.keyframe_way,
+            self._config.keyframe_turn,
+        )
+
+    def resumed(self, points: int = 0) -> None:
+        """Take over from kernels; the newest scan is a keyframe if it has so many ``points``."""
+        self._reckoning.begin_history()
+        if points:
+            self._keep(self._points[:points])
+        self.at_scan = self._place()
 
     def lift(self, is_lifted: bool) -> None:
         """Tell whether the wheels hang in the air: set down elsewhere, it must be :meth:`told`."""
@@ -106,12 +176,12 @@ class Mapper:
         self._graph.begin_at(here, self._follower.way)
         self._enter_newest(beside)
         self._follower.jump()
-        self._at_scan = pose
+        self.at_scan = pose
 
     @property
     def pose(self) -> Pose:
         """Where the robot was at the newest scan and moved to since, map frame."""
-        return self._at_scan.compose(self._follower.since)
+        return self._follower.since(self.at_scan)
 
     @property
     def start(self) -> Pose:
@@ -147,6 +217,11 @@ class Mapper:
         """Return the map as it is now; raises ValueError before the first scan."""
         return self._sheet.occupancy(self._config.occupied_share, self._config.occupied_beams)
 
+    def occupancy_around(self, x: float, y: float, reach: float) -> OccupancyMap:
+        """Return what lies up to ``reach`` m off a place of the map as it is now."""
+        config = self._config
+        return self._sheet.around(x, y, reach, config.occupied_share, config.occupied_beams)
+
     def finish(self) -> OccupancyMap:
         """Link all submaps anew, turn the map to its walls, and return it.
 
@@ -156,7 +231,7 @@ class Mapper:
         self._graph.refine()
         self._phase = self._graph.square(self._config.resolution)
         self._redraw()
-        self._at_scan = self._place()
+        self.at_scan = self._place()
         return self.occupancy()
 
     # ---------------------------------------------------------------- keeping what was seen
@@ -169,10 +244,8 @@ class Mapper:
             return False
         if not keyframes:
             return True
-        away = self._follower.here - keyframes[-1].pose
-        turned = abs(wrap_angle(float(away[2])))
-        config = self._config
-        return math.hypot(away[0], away[1]) >= config.keyframe_way or turned >= config.keyframe_turn
+        way, turn = self._config.keyframe_way, self._config.keyframe_turn
+        return bool(is_apart(self._follower.here, keyframes[-1].pose, way, turn))
 
     def _keep(self, points: Floats) -> None:
         """Keep a scan as a keyframe: draw it, and let scans be matched to it."""
@@ -195,6 +268,7 @@ class Mapper:
     def _enter_newest(self, beside: list[int]) -> None:
         """Let scans be matched to the submaps of these numbers, as seen from the newest one."""
         self._drawn = np.vstack((self._drawn, self._graph.poses[-1]))
+        self._beside = beside
         self._fill_surfels(beside)
 
     def _fill_surfels(self, numbers: list[int]) -> None:
@@ -203,16 +277,27 @@ class Mapper:
             self._surfels.add(np.asarray(frame.points, np.float64), pose)
 
     def _close_submap(self) -> None:
-        """Link the newest submap, and draw everything anew if others moved thereby."""
+        """Link the newest submap, and draw those elsewhere that moved thereby."""
         self._graph.close()
         shift = np.abs(relative_to(self._drawn, self._graph.poses))
-        if shift[:, :2].max() > self._config.redrawn_shift or shift[:, 2].max() > _REDRAWN_TURN:
-            self._redraw()
+        far = shift[:, :2].max(axis=1) > self._config.redrawn_shift
+        self._redraw_some(np.flatnonzero(far | (shift[:, 2] > _REDRAWN_TURN)).tolist())
 
     # ---------------------------------------------------------------- drawing
 
     def _draw(self, frame: Keyframe, pose: Floats) -> None:
         self._sheet.draw(frame.points, self._beams.mount[:2], pose, self._beams.farthest)
+
+    def _redraw_some(self, numbers: list[int]) -> None:
+        """Draw the keyframes of some submaps where they are thought to be now."""
+        for number in numbers:
+            submap, pose = self._graph.submaps[number], self._graph.poses[number]
+            before, after = submap.poses(self._drawn[number]), submap.poses(pose)
+            for frame, there, here in zip(submap.keyframes, before, after, strict=True):
+                self._sheet.erase(frame.points, self._beams.mount[:2], there)
+                self._draw(frame, here)
+            self._drawn[number] = pose
+        self.version += bool(numbers)
 
     def _redraw(self) -> None:
         """Draw all keyframes on a new sheet, where they are thought to be now."""
@@ -224,9 +309,20 @@ class Mapper:
 
     # ---------------------------------------------------------------- parts
 
+    def _take_over(self, state: MapperState, here: Pose) -> None:
+        graph = self._graph
+        graph.take_over(state.submaps, state.poses, state.links)
+        self._phase, self.version, self._is_lost = state.phase, state.version, state.is_lost
+        relative = relative_to(graph.poses[-1:], _row_of(here)[None])[0]
+        self._follower.take_up(relative, state.way)
+        self._beside = graph.near(_row_of(here))
+        self._use(state.lidar.model)
+        self._redraw()
+        self.at_scan = here
+
     def _place(self) -> Pose:
         """Return where the robot was at the newest scan."""
-        return Pose(*self._graph.placed(self._follower.here).tolist())
+        return Pose(*beyond(*self._graph.poses[-1].tolist(), *self._follower.here.tolist()))
 
     def _points_of(self, ranges: NDArray[np.float32], lidar: LidarModel) -> Floats:
         """Return what the beams met, float64 [n, 4]."""
@@ -234,8 +330,7 @@ class Mapper:
             raise ValueError(f"expected a scan of {lidar.beams} ranges, got shape {ranges.shape}")
         if lidar is not self._lidar:
             self._use(lidar)
-        beams = self._beams
-        points = np.empty((lidar.beams, POINT))
+        beams, points = self._beams, self._points
         count = surface_points(
             ranges, beams.directions, beams.mount, beams.nearest, beams.farthest, points
         )
@@ -244,10 +339,12 @@ class Mapper:
     def _use(self, lidar: LidarModel) -> None:
         """Make what depends on the lidar."""
         self._lidar, self._beams = lidar, lidar.arrays()
+        self._points = np.empty((lidar.beams, POINT))
         reach = self._beams.farthest + _SPARE
         self._graph.use_reach(reach)
         self._surfels = SurfelGrid(reach)
-        self._fill_surfels([len(self._graph.submaps) - 1])
+        newest = len(self._graph.submaps) - 1
+        self._fill_surfels(sorted({*self._beside, newest}))
 
 
 def _row_of(pose: Pose) -> Floats:

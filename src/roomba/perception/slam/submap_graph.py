@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from roomba.config import LocalizationConfig
 from roomba.perception.slam.linking import Linker
+from roomba.perception.slam.mapper_state import KeptSubmap
 from roomba.perception.slam.mapping_config import MappingConfig
 from roomba.perception.slam.pose_graph import Link, composed, optimised, relative_to
 from roomba.perception.slam.squaring import phase_of_walls, turn_of_walls
@@ -38,6 +39,15 @@ class SubmapGraph:
         self.submaps = [Submap(0.0)]
         self.poses = start[None].copy()
         self.links: list[Link] = []
+
+    def take_over(
+        self, submaps: tuple[KeptSubmap, ...], poses: Floats, links: tuple[Link, ...]
+    ) -> None:
+        """Go on with the submaps, one or more, of a graph that another process had."""
+        self.submaps = [Submap(each.way, list(each.keyframes)) for each in submaps]
+        for whole in self.submaps[:-1]:
+            whole.close(_CLOUD)
+        self.poses, self.links = poses.copy(), list(links)
 
     def use_reach(self, reach: float) -> None:
         """Take how far the points of a submap are from its origin at most, m."""

@@ -23,6 +23,7 @@ _HALF_SPAN: Final = 0.07
 _MOST_BESIDE: Final = 10
 _LEAST_BESIDE: Final = 2
 _LEAST_POINTS: Final = 3
+_SUMS: Final = 6
 _STRAIGHT: Final = 0.009
 """m; root mean square off a line, above which points are not of one plane surface."""
 _GRAZING: Final = 0.12
@@ -46,6 +47,8 @@ def surface_points(
     beams = ranges.size
     turn_cosine, turn_sine = math.cos(mount[2]), math.sin(mount[2])
     step = _angle_between(directions, beams)
+    sums = np.empty((beams + 2 * _MOST_BESIDE + 1, _SUMS))
+    _add_up(ranges, directions, nearest, farthest, sums)
     count = 0
     for beam in range(beams):
         length = ranges[beam]
@@ -59,7 +62,7 @@ def surface_points(
         for side in range(3):
             first = beam if side == 2 else beam - beside
             last = beam if side == 1 else beam + beside
-            is_plane, x, y = _normal(ranges, directions, first, last, nearest, farthest)
+            is_plane, x, y = _normal(sums, first, last)
             if is_plane:
                 normal_x = turn_cosine * x - turn_sine * y
                 normal_y = turn_sine * x + turn_cosine * y
@@ -85,39 +88,52 @@ def _angle_between(directions: Floats, beams: int) -> float:
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _normal(
-    ranges: NDArray[np.float32],
-    directions: Floats,
-    first: int,
-    last: int,
-    nearest: float,
-    farthest: float,
-) -> tuple[bool, float, float]:
-    """Return whether beams ``first`` to ``last`` met one plane, and its normal, lidar's frame."""
+def _add_up(
+    ranges: NDArray[np.float32], directions: Floats, nearest: float, farthest: float, sums: Floats
+) -> None:
+    """Fill ``sums`` [beams + 2 * _MOST_BESIDE + 1, _SUMS], all around and on to both sides.
+
+    Of the ends of all beams before one, the first of which is ``_MOST_BESIDE`` before beam 0: how
+    many there are, and the sums of x, y, and of their squares and product, lidar's frame.
+    """
     beams = ranges.size
-    count = 0
-    sum_x = sum_y = sum_xx = sum_xy = sum_yy = 0.0
-    for each in range(first, last + 1):
-        beam = each % beams
+    sums[0] = 0.0
+    for row in range(sums.shape[0] - 1):
+        beam = (row - _MOST_BESIDE) % beams
         length = ranges[beam]
+        for column in range(_SUMS):
+            sums[row + 1, column] = sums[row, column]
         if not nearest <= length <= farthest:
             continue
         x, y = length * directions[beam, 0], length * directions[beam, 1]
-        sum_x += x
-        sum_y += y
-        sum_xx += x * x
-        sum_xy += x * y
-        sum_yy += y * y
-        count += 1
+        after = sums[row + 1]
+        after[0] += 1.0
+        after[1] += x
+        after[2] += y
+        after[3] += x * x
+        after[4] += x * y
+        after[5] += y * y
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _normal(sums: Floats, first: int, last: int) -> tuple[bool, float, float]:
+    """Return whether beams ``first`` to ``last`` met one plane, and its normal, lidar's frame."""
+    before, after = sums[first + _MOST_BESIDE], sums[last + _MOST_BESIDE + 1]
+    count = after[0] - before[0]
     if count < _LEAST_POINTS:
         return False, 0.0, 0.0
-    xx = sum_xx / count - (sum_x / count) ** 2
-    yy = sum_yy / count - (sum_y / count) ** 2
-    xy = sum_xy / count - sum_x * sum_y / count**2
+    share = 1.0 / count
+    x, y = (after[1] - before[1]) * share, (after[2] - before[2]) * share
+    xx = (after[3] - before[3]) * share - x * x
+    xy = (after[4] - before[4]) * share - x * y
+    yy = (after[5] - before[5]) * share - y * y
     half, middle = 0.5 * (xx - yy), 0.5 * (xx + yy)
-    spread = math.hypot(half, xy)
-    off = max(middle - spread, 0.0)
-    if off > _STRAIGHT * _STRAIGHT:
+    spread = math.sqrt(half * half + xy * xy)
+    if max(middle - spread, 0.0) > _STRAIGHT * _STRAIGHT:
         return False, 0.0, 0.0
-    along = 0.5 * math.atan2(xy, half)
-    return True, -math.sin(along), math.cos(along)
+    if spread == 0.0:
+        return True, 0.0, 1.0
+    # Along the line, by half the angle of (half, xy).
+    cosine = math.sqrt(max(0.5 * (1.0 + half / spread), 0.0))
+    sine = math.copysign(math.sqrt(max(0.5 * (1.0 - half / spread), 0.0)), xy)
+    return True, -sine, cosine

@@ -174,10 +174,12 @@ def _add_matches(
         turned_y = sine * points[index, X] + cosine * points[index, Y]
         facing_x = cosine * normal_x - sine * normal_y
         facing_y = sine * normal_x + cosine * normal_y
-        is_met, off, plane_x, plane_y = _plane_near(
-            surfels, pose[0] + turned_x, pose[1] + turned_y, facing_x, facing_y, reach
-        )
-        if not is_met:
+        x, y = pose[0] + turned_x, pose[1] + turned_y
+        square, off, plane_x, plane_y = _plane_near(surfels, x, y, facing_x, facing_y, 1)
+        if reach > 1 and square > surfels.place[2] * surfels.place[2]:
+            # Nearer ones than that are in the cells beside it.
+            square, off, plane_x, plane_y = _plane_near(surfels, x, y, facing_x, facing_y, reach)
+        if square == math.inf:
             continue
         counts[MATCHED] += 1.0
         if abs(off) < _CLOSE:
@@ -202,15 +204,15 @@ def _add_matches(
 @njit(cache=True, nogil=True, error_model="numpy")
 def _plane_near(
     surfels: Surfels, x: float, y: float, facing_x: float, facing_y: float, reach: int
-) -> tuple[bool, float, float, float]:
-    """Return whether a surfel is near that faces the same way, how far a point is off its plane,
-    m, positive before it, and the plane's normal.
+) -> tuple[float, float, float, float]:
+    """Return of the nearest surfel that faces the same way its squared distance, m2, how far a
+    point is off its plane, m, positive before it, and the plane's normal; infinite: there is none.
     """
     rows, columns = surfels.sums.shape[0], surfels.sums.shape[1]
     size = surfels.place[2]
     u, v = (x - surfels.place[0]) / size, (y - surfels.place[1]) / size
     middle_column, middle_row = math.floor(u), math.floor(v)
-    best, found = math.inf, False
+    best = math.inf
     off = plane_x = plane_y = 0.0
     main = _facing(facing_x, facing_y)
     other = _other_facing(facing_x, facing_y)
@@ -230,10 +232,10 @@ def _plane_near(
                 length = math.sqrt(sums[3] * sums[3] + sums[4] * sums[4])
                 if facing_x * sums[3] + facing_y * sums[4] < _SAME_WAY * length:
                     continue
-                best, found = square, True
+                best = square
                 plane_x, plane_y = sums[3] / length, sums[4] / length
                 off = plane_x * away_x + plane_y * away_y
-    return found, off, plane_x, plane_y
+    return best, off, plane_x, plane_y
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

@@ -45,13 +45,16 @@ class Match:
 
 
 class SurfelGrid:
-    """Surfels in a square of ``half_width``, m, to each side of its frame's origin."""
+    """Surfels in a square of ``half_width``, m, to each side of its frame's origin.
+
+    ``arrays`` is what kernels work on.
+    """
 
     def __init__(self, half_width: float) -> None:
         """Begin empty."""
         cells = 2 * int(np.ceil(half_width / CELL))
         corner = -0.5 * cells * CELL
-        self._surfels = Surfels(
+        self.arrays = Surfels(
             np.zeros((cells, cells, FACINGS, SUMS), np.float32),
             np.array([corner, corner, CELL]),
             np.zeros(_MOST_TOUCHED, np.int32),
@@ -60,11 +63,11 @@ class SurfelGrid:
 
     def clear(self) -> None:
         """Forget all surfels."""
-        clear(self._surfels)
+        clear(self.arrays)
 
     def add(self, points: Floats, pose: Floats) -> None:
         """Add points, float64 [n, 4], seen from a pose [3] in the grid's frame."""
-        add_points(self._surfels, points, len(points), pose)
+        add_points(self.arrays, points, len(points), pose)
 
     def match(
         self,
@@ -86,7 +89,7 @@ class SurfelGrid:
         pose, spread = prior.copy(), covariance.copy()
         information, counts = np.zeros((3, 3)), np.zeros(COUNTS)
         is_solved = align(
-            self._surfels, points, len(points), stride, reach, prior, spread, scales,
+            self.arrays, points, len(points), stride, reach, prior, spread, scales,
             deviation**2, rounds, pose, information, counts,
         )  # fmt: skip
         if not is_solved or not np.isfinite(pose).all():

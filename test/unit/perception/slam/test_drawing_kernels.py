@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from roomba.grid import FREE, OCCUPIED, UNKNOWN
-from roomba.perception.slam.drawing_kernels import Sheet, draw, occupancy
+from roomba.perception.slam.drawing_kernels import Sheet, draw, erase, occupancy
 
 CELL = 0.05
 SIZE = 60
@@ -124,6 +124,23 @@ def test_counts_never_overflow() -> None:
     draw(made, np.array([[0.5, 0.01, 0.0, 0.0]], np.float32), CENTRE, np.array([0.01, 0.01, 0.0]))
     assert made.hits[hit] == 30001
     assert made.passes[cell(0.2, 0.01)] == 30001
+
+
+@given(st.floats(-1.0, 1.0), st.floats(-1.0, 1.0), st.floats(-math.pi, math.pi))
+def test_erased_it_is_as_if_it_had_never_been_drawn(x: float, y: float, theta: float) -> None:
+    random = np.random.default_rng(7)
+    points = random.uniform(-1.5, 1.5, (40, 4)).astype(np.float32)
+    made, here = drawn(*points.tolist()), np.array([x, y, theta])
+    hits, passes = made.hits.copy(), made.passes.copy()
+    draw(made, points, CENTRE, here)
+    assert made.passes.sum() > passes.sum()
+    erase(made, points, CENTRE, here)
+    assert (made.hits == hits).all()
+    assert (made.passes == passes).all()
+    empty = sheet()
+    erase(empty, points, CENTRE, here)
+    assert not empty.hits.any()
+    assert not empty.passes.any()
 
 
 @given(st.integers(0, 50), st.integers(0, 50), st.floats(0.05, 1.0), st.integers(1, 5))

@@ -19,7 +19,7 @@ from fixtures.mapped import (
 )
 
 from roomba.geometry import Pose, Twist, wrap_angle
-from roomba.grid import FREE
+from roomba.grid import FREE, UNKNOWN
 from roomba.perception.estimate import Knowledge
 from roomba.perception.scan_view import LidarModel
 from roomba.perception.slam.mapping_config import MappingConfig
@@ -136,6 +136,26 @@ def test_the_frame_of_the_map_is_that_of_the_start() -> None:
     turned = wrap_angle(mapper.pose.theta - plain.mapper.pose.theta)
     assert turned == pytest.approx(0.0, abs=0.002)
     assert mapper.trajectory[0, :2] == pytest.approx(row(off.compose(START))[:2], abs=0.01)
+
+
+def test_submaps_that_moved_are_drawn_where_they_are_now() -> None:
+    """As if all had been drawn anew: nothing is left where they were."""
+    numbers = MappingConfig(submap_keyframes=6)
+    mapper = Mapped(seed=2, mapping=numbers).drive(CIRCLE, AROUND).mapper
+    graph, version = mapper._graph, mapper.version
+    assert len(graph.submaps) > 4
+    graph.poses[1:3] += (0.3, -0.2, 0.1)
+    mapper._redraw_some([1, 2])
+    assert mapper.version == version + 1
+    made = mapper.occupancy()
+    mapper._redraw()
+    anew = mapper.occupancy()
+    rows, columns = anew.frame.shape
+    row = round((anew.frame.origin_y - made.frame.origin_y) / 0.05)
+    column = round((anew.frame.origin_x - made.frame.origin_x) / 0.05)
+    cut = made.values[row : row + rows, column : column + columns]
+    assert np.mean(cut != anew.values) < 0.001
+    assert (made.values != UNKNOWN).sum() == (cut != UNKNOWN).sum()
 
 
 def test_keyframes_are_as_far_apart_as_wanted() -> None:

@@ -124,3 +124,32 @@ def test_a_scan_without_points_shows_where_the_lidar_was() -> None:
     assert made.values.shape == (3, 3)
     assert (made.values == UNKNOWN).all()
     assert made.frame.contains(1.0, 2.0)
+
+
+@given(st.floats(-1.0, 6.0), st.floats(-1.0, 5.0), st.floats(0.05, 3.0))
+@settings(max_examples=40)
+def test_a_part_of_it_is_cut_out_of_the_whole(x: float, y: float, reach: float) -> None:
+    sheet = Sheet(0.05, (0.01, 0.02))
+    points = points_of(Eye(FURNISHED).scan(START)).astype(np.float32)
+    sheet.draw(points, CENTRE, row(START), 3.0)
+    whole, part = sheet.occupancy(0.3, 1), sheet.around(x, y, reach, 0.3, 1)
+    away = [(x + dx, y + dy) for dx in (-0.99 * reach, 0.3, 0.0) for dy in (0.0, 0.99 * reach)]
+    for at in away:
+        if whole.frame.contains(*at) and abs(at[0] - x) < reach and abs(at[1] - y) < reach:
+            assert part.frame.contains(*at)
+            assert value_at(part, *at) == value_at(whole, *at)
+    left, right, low, high = part.frame.extent
+    assert max(x - left, right - x, y - low, high - y) < max(reach, 0.0) + 0.11
+
+
+def test_a_scan_that_is_erased_leaves_the_others() -> None:
+    first, second = np.array([0.0, 0.0, 0.0]), np.array([0.3, 2.0, 1.0])
+    sheets = Sheet(0.05), Sheet(0.05)
+    for sheet in sheets:
+        sheet.draw(AHEAD, CENTRE, first, 3.0)
+    sheets[0].draw(AHEAD, CENTRE, second, 3.0)
+    assert value_at(sheets[0].occupancy(0.3, 1), 0.4, 2.2) == FREE
+    sheets[0].erase(AHEAD, CENTRE, second)
+    made, expected = (sheet.occupancy(0.3, 1) for sheet in sheets)
+    assert (made.values != UNKNOWN).sum() == (expected.values != UNKNOWN).sum() > 5
+    assert value_at(made, 0.52, 0.0) == OCCUPIED

@@ -1,0 +1,179 @@
+"""Compiled: following the robot from scan to scan, in the frame of the newest submap."""
+
+from __future__ import annotations
+
+import math
+from typing import Final, NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from roomba.perception.belief import Row, Rows
+from roomba.perception.belief_correct_kernels import Beams
+from roomba.perception.belief_reckon_kernels import compose, wrapped
+from roomba.perception.slam.surface_kernels import surface_points
+from roomba.perception.slam.surfel_kernels import ASKED, CLOSE, COUNTS, MATCHED, Surfels, align
+
+Floats = NDArray[np.float64]
+
+FOLLOWER: Final = np.dtype(
+    [
+        ("here", "f8", (3,)),  # at the newest scan: x, y, theta, frame of the newest submap
+        ("reckoned", "f8", (3,)),  # the same by dead reckoning, in its own frame
+        ("spread", "f8", (3, 3)),  # since a scan confirmed it, m2 and rad2, submap's axes
+        ("way", "f8"),  # m; driven in all
+        ("met", "f8"),  # of the newest scan: share of points that met a known surface
+        ("close", "f8"),  # and of those that lie in it
+        ("is_sure", "?"),  # whether it confirmed the pose
+        ("misses", "i8"),  # scans since one did
+        # what does not change
+        ("variance", "f8"),  # m2; of a point
+        ("least_met", "f8"),
+        ("least_close", "f8"),
+    ],
+    align=True,
+)
+"""State and numbers of a follower, one row."""
+
+LEAST_POINTS: Final = 30
+"""Fewer say nothing."""
+_MANY: Final = 5
+"""Misses after which a scan is matched from farther away."""
+_SCALES: Final = np.array([0.1, 0.05, 0.03])
+"""m; of the rounds of a match."""
+_ROUNDS: Final = 6
+_STRIDE: Final = 2
+"""Each such point follows the robot; keyframes have all of them."""
+_FAR_REACH: Final = 3
+"""Cells of surfels; so far a scan is matched after many misses."""
+_LEAST_SPREAD: Final = (0.001**2, 0.001**2, 0.0005**2)
+"""m2, rad2; no prior is surer, be the robot standing or not."""
+
+
+class Following(NamedTuple):
+    """All that a scan needs to be followed by.
+
+    ``follower`` is FOLLOWER [1]; ``belief`` and ``numbers`` are those of dead reckoning;
+    ``points`` float64 [beams, POINT] is filled with what the newest scan met. ``submap`` [3] is
+    where the newest submap lies on the map, ``keyframe`` [3] where in it the last scan was kept;
+    so far from there, ``apart``, m, or ``turned``, rad, another one is kept.
+    """
+
+    follower: Rows
+    belief: Rows
+    numbers: Rows
+    surfels: Surfels
+    beams: Beams
+    points: Floats
+    submap: Floats
+    keyframe: Floats
+    apart: float
+    turned: float
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def follow_scan(parts: Following, ranges: NDArray[np.float32]) -> int:
+    """Take a scan, float32 [beams], m, taken here and now; return how many ``points`` it has."""
+    beams = parts.beams
+    count = surface_points(
+        ranges, beams.directions, beams.mount, beams.nearest, beams.farthest, parts.points
+    )
+    follow(
+        parts.follower, parts.belief, parts.belief[0].reckoned, parts.surfels, parts.points, count
+    )
+    return count
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def follow(
+    followers: Rows, beliefs: Rows, reckoned: Floats, surfels: Surfels, points: Floats, count: int
+) -> None:
+    """Move on to ``reckoned`` [3], and correct that by a scan, points [n, 4] seen from there."""
+    follower = followers[0]
+    _move_on(follower, beliefs[0], reckoned)
+    prior, pose, covariance = np.empty(3), np.empty(3), np.empty((3, 3))
+    for row in range(3):
+        prior[row] = pose[row] = follower.here[row]
+        for column in range(3):
+            covariance[row, column] = follower.spread[row, column]
+        covariance[row, row] += _LEAST_SPREAD[row]
+    reach = _FAR_REACH if follower.misses >= _MANY else 1
+    information, counts = np.zeros((3, 3)), np.zeros(COUNTS)
+    is_solved = align(
+        surfels, points, count, _STRIDE, reach, prior, covariance, _SCALES, follower.variance,
+        _ROUNDS, pose, information, counts,
+    )  # fmt: skip
+    is_solved = is_solved and math.isfinite(pose[0] + pose[1] + pose[2])
+    follower.met = follower.close = 0.0
+    if is_solved and counts[ASKED] >= LEAST_POINTS:
+        follower.met = counts[MATCHED] / counts[ASKED]
+        follower.close = counts[CLOSE] / max(counts[MATCHED], 1.0)
+    follower.is_sure = (
+        is_solved
+        and counts[ASKED] >= LEAST_POINTS
+        and follower.met >= follower.least_met
+        and follower.close >= follower.least_close
+    )
+    if not follower.is_sure:
+        follower.misses += 1
+        return
+    follower.here[0], follower.here[1], follower.here[2] = pose[0], pose[1], wrapped(pose[2])
+    follower.spread[:] = 0.0
+    follower.misses = 0
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _move_on(follower: Row, belief: Row, reckoned: Floats) -> None:
+    """Go by dead reckoning, and be as unsure as that became since the last scan."""
+    ahead, aside, turn = _step_to(follower.reckoned, reckoned)
+    follower.way += math.hypot(ahead, aside)
+    compose(follower.here, ahead, aside, turn)
+    for axis in range(3):
+        follower.reckoned[axis] = reckoned[axis]
+    cosine, sine = math.cos(follower.here[2]), math.sin(follower.here[2])
+    along, across = belief.spread[0], belief.spread[1]
+    spread = follower.spread
+    spread[0, 0] += cosine * cosine * along + sine * sine * across
+    spread[1, 1] += sine * sine * along + cosine * cosine * across
+    spread[0, 1] += cosine * sine * (along - across)
+    spread[1, 0] = spread[0, 1]
+    spread[2, 2] += belief.spread[2]
+    belief.spread[:] = 0.0
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def moved_since(
+    followers: Rows, beliefs: Rows, x: float, y: float, theta: float
+) -> tuple[float, float, float]:
+    """Return where a robot is now, x, y, theta, that was at a pose when the newest scan came."""
+    ahead, aside, turn = _step_to(followers[0].reckoned, beliefs[0].reckoned)
+    return beyond(x, y, theta, ahead, aside, turn)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def beyond(
+    x: float, y: float, theta: float, ahead: float, aside: float, turn: float
+) -> tuple[float, float, float]:
+    """Return the pose, x, y, theta, that another one is seen at from a pose."""
+    cosine, sine = math.cos(theta), math.sin(theta)
+    return (
+        x + cosine * ahead - sine * aside,
+        y + sine * ahead + cosine * aside,
+        wrapped(theta + turn),
+    )
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def is_apart(here: Floats, other: Floats, way: float, turn: float) -> bool:
+    """Whether a pose [3] is so far, m, from another one, or so much turned, rad."""
+    away = math.hypot(here[0] - other[0], here[1] - other[1])
+    return away >= way or abs(wrapped(here[2] - other[2])) >= turn
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _step_to(start: Floats, end: Floats) -> tuple[float, float, float]:
+    """Return a pose [3] as seen from another one: ahead, left, m, and turned, rad."""
+    off_x, off_y = end[0] - start[0], end[1] - start[1]
+    cosine, sine = math.cos(start[2]), math.sin(start[2])
+    return cosine * off_x + sine * off_y, cosine * off_y - sine * off_x, wrapped(end[2] - start[2])
