@@ -13,6 +13,7 @@ from benchmarks.coverage_clean import home_named
 from roomba.config import RobotConfig
 from roomba.geometry import Pose
 from roomba.headless_explorer import HeadlessExplorer
+from roomba.mission.mission import MissionStep
 from roomba.perception.scan_view import LidarModel
 from roomba.perception.slam.mapper import Mapper
 from roomba.perception.slam.mapping_config import MappingConfig
@@ -48,9 +49,10 @@ class _Listener(HeadlessExplorer):
         self._heard_scans = -1
         self._hear()
 
-    def tick(self) -> None:
-        super().tick()
+    def tick(self) -> MissionStep:
+        step = super().tick()
         self._hear()
+        return step
 
     def _hear(self) -> None:
         seen = self.seen

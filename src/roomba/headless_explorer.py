@@ -23,7 +23,7 @@ from roomba.headless_parts import SafeDrive, senses_of
 from roomba.mission.docking_config import DockingConfig
 from roomba.mission.exploration import ExploreResult
 from roomba.mission.machine import Phase
-from roomba.mission.mission import Mission
+from roomba.mission.mission import Mission, MissionStep
 from roomba.mission.senses import Senses
 from roomba.mission.site import Site
 from roomba.mission_config import MissionConfig
@@ -142,8 +142,8 @@ class HeadlessExplorer:
         else:
             self.tick()
 
-    def tick(self) -> None:
-        """Let one tick pass, by the ordinary classes."""
+    def tick(self) -> MissionStep:
+        """Let one tick pass, by the ordinary classes; return what the mission wanted."""
         step = self.mission.tick(self.senses())
         command = self._drive.command(self.seen, step.twist)
         self.simulator.advance(command, STEP, STEPS_PER_TICK)
@@ -152,6 +152,7 @@ class HeadlessExplorer:
         self.passed.append(self.row())
         self._show_map()
         self._loop.was_ticked()
+        return step
 
     def caught_up(self, rows: NDArray[np.float64], points: int, way: float) -> None:
         """Take over after the compiled loop: ``rows`` [n, PASSED] passed, ``way`` m were driven.
@@ -229,7 +230,6 @@ class HeadlessExplorer:
         self.sight = Sight(self._things.arrays, field.values, field.place)
         return self._things
 
-    def _site(self, occupancy: OccupancyMap) -> Site:
-        return Site(
-            occupancy, self._station, self.robot, self.config, self._docking, is_growing=True
-        )
+    def _site(self, occupancy: OccupancyMap, *, is_growing: bool = True) -> Site:
+        parts = self._station, self.robot, self.config, self._docking
+        return Site(occupancy, *parts, is_growing=is_growing)

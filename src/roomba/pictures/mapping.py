@@ -16,6 +16,7 @@ from roomba.grid import FREE, OccupancyMap
 from roomba.headless_explorer import HeadlessExplorer
 from roomba.mapping_run.plot import area_of_maps, draw_map, draw_station, draw_way, picture_of
 from roomba.mapping_run.runs import run_trial
+from roomba.mission.mission import MissionStep
 from roomba.pictures.drawing import BLUE, INK, ORANGE, Area, draw_robot, drawn, empty_figure
 from roomba.planning.costmap import Point
 from roomba.sim.report import clock
@@ -85,8 +86,8 @@ class _Watched(HeadlessExplorer):
         self.looks: list[_Look] = []
         self._ticks = 0
 
-    def tick(self) -> None:
-        super().tick()
+    def tick(self) -> MissionStep:
+        step = super().tick()
         if self._ticks % _EVERY == 0:
             exploration = self.mission.exploration
             goal = exploration.goal if exploration is not None else None
@@ -94,6 +95,7 @@ class _Watched(HeadlessExplorer):
             look = _Look(self.seen.time, self.mapper.occupancy(), self.mapper.pose, middle)
             self.looks.append(look)
         self._ticks += 1
+        return step
 
 
 def _draw(axes: Axes, look: _Look, way: NDArray[np.float64], area: Area, *, is_last: bool) -> None:
