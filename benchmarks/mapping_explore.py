@@ -6,15 +6,21 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from benchmarks.coverage_clean import home_named, true_floor
 from benchmarks.coverage_floor import drawn
 from roomba.config import RobotConfig
+from roomba.geometry import Pose
 from roomba.grid import OccupancyMap
 from roomba.headless_mission import HeadlessMission
+from roomba.headless_newcomer import HeadlessNewcomer
 from roomba.mapping_run.runs import Drawn, run_trial
-from roomba.mission.clean_request import CleanOutcome
+from roomba.mission.clean_request import CleanOutcome, CleanResult
+from roomba.mission.docking import staging_pose
+from roomba.mission.docking_config import DockingConfig
 from roomba.sim.trial import Trial
+from roomba.world.home import Home
 
 
 @dataclass(frozen=True)
@@ -45,9 +51,12 @@ class Explored:
 
 @dataclass(frozen=True)
 class Cleaned:
-    """What came of a clean: the share of the true floor, 0..1, and whether it came home."""
+    """What came of a clean: the share of the true floor, 0..1, s of robot time, and whether it came
+    home.
+    """
 
     share: float
+    seconds: float
     is_home_and_done: bool
 
 
@@ -71,11 +80,28 @@ def clean(task: Task, known: OccupancyMap | None) -> Cleaned:
     """Clean a home by a map of it, its own true one by default, counted by true poses."""
     home = home_named(task.home, task.folder)
     robot = HeadlessMission(home, RobotConfig(sensors="noisy"), seed=task.seed, known=known)
-    here = robot.simulator.pose
+    staging = robot.site.staging
     record = robot.clean()
-    points = np.concatenate([[[here.x, here.y]], record.poses[:, 1:3]])
-    floor = true_floor(home, (robot.site.staging.x, robot.site.staging.y))
+    is_home = robot.seen.battery.is_docked
+    return _cleaned(home, staging, record.poses, record.result, is_home=is_home)
+
+
+def clean_unknown(task: Task) -> Cleaned:
+    """Clean a home that the robot has never seen, counted alike."""
+    home = home_named(task.home, task.folder)
+    robot = HeadlessNewcomer(home, RobotConfig(sensors="noisy"), seed=task.seed)
+    staging = staging_pose(home.station, DockingConfig())
+    record = robot.clean()
+    is_home = robot.seen.battery.is_docked
+    return _cleaned(home, staging, record.poses, record.result, is_home=is_home)
+
+
+def _cleaned(
+    home: Home, staging: Pose, poses: NDArray[np.float64], result: CleanResult, *, is_home: bool
+) -> Cleaned:
+    points = np.concatenate([[[home.station.x, home.station.y]], poses[:, 1:3]])
+    floor = true_floor(home, (staging.x, staging.y))
     left = floor.floor & ~drawn(floor.frame, points)
     share = 1.0 - float(np.count_nonzero(left)) / np.count_nonzero(floor.floor)
-    is_done = record.result.outcome is CleanOutcome.COMPLETED
-    return Cleaned(share, is_done and robot.seen.battery.is_docked)
+    is_done = result.outcome is CleanOutcome.COMPLETED
+    return Cleaned(share, result.duration, is_done and is_home)

@@ -6,6 +6,8 @@ import math
 from collections.abc import Callable, Sequence
 from typing import Final
 
+import numpy as np
+
 from benchmarks.mapping_explore import Cleaned, Explored
 from benchmarks.mapping_loop import WAY, Looped
 from benchmarks.record import Better, PeerFigure, Record
@@ -14,6 +16,7 @@ from roomba.mapping_run.runs import Drawn
 TOPIC = "mapping"
 BLIND: Final = "wheels and gyro alone"
 TRUE_MAP: Final = "by the true map"
+EXPLORED_FIRST: Final = "explored first"
 WALLS_AIM, FLOOR_AIM = 97.0, 97.0
 """%."""
 TIME_AIM: Final = {"flat": 360.0}
@@ -127,6 +130,53 @@ def clean_rows(home: str, done: Sequence[Cleaned], by_truth: Sequence[Cleaned]) 
             (home_again,),
         ),
     ]
+
+
+def newcomer_rows(
+    home: str, done: Sequence[Cleaned], explored: Sequence[Explored], later: Sequence[Cleaned]
+) -> list[Record]:
+    """Return the rows of cleans that began before there was a map.
+
+    Beside them is what exploring first, and cleaning by that map, takes.
+    """
+    case = f"{home}, cleaned while it is mapped, {_seeds(len(done))}"
+    first = _minutes(explored) + _minutes(later)
+    least = 100.0 * min(each.share for each in done)
+    least_later = 100.0 * min(each.share for each in later)
+    return [
+        _row(
+            case,
+            "coverage of the true floor, least",
+            least,
+            "%",
+            Better.HIGHER,
+            CLEAN_AIM,
+            (PeerFigure(EXPLORED_FIRST, value=least_later),),
+        ),
+        _row(
+            case,
+            "robot time, mean",
+            _minutes(done),
+            "min",
+            Better.LOWER,
+            None,
+            (PeerFigure(EXPLORED_FIRST, value=first),),
+        ),
+        _row(
+            case,
+            "home and done",
+            _done(done),
+            "% of the seeds",
+            Better.HIGHER,
+            100.0,
+            (PeerFigure(EXPLORED_FIRST, value=_done(later)),),
+        ),
+    ]
+
+
+def _minutes(done: Sequence[Explored] | Sequence[Cleaned]) -> float:
+    """Return the mean of what they took, min."""
+    return float(np.mean([each.seconds for each in done])) / 60.0
 
 
 def broken_row(case: str, error: Exception) -> Record:

@@ -11,7 +11,7 @@ from typing import TypeVar
 
 from benchmarks.bench import Bench
 from benchmarks.mapping_cost import recorded, share_of_core, speed
-from benchmarks.mapping_explore import Explored, Task, clean, explore
+from benchmarks.mapping_explore import Explored, Task, clean, clean_unknown, explore
 from benchmarks.mapping_loop import loop
 from benchmarks.mapping_rows import (
     broken_row,
@@ -19,6 +19,7 @@ from benchmarks.mapping_rows import (
     cost_rows,
     explored_rows,
     loop_rows,
+    newcomer_rows,
     seeds,
 )
 from benchmarks.record import Record
@@ -104,7 +105,7 @@ def _places(bench: Bench, extent: Extent) -> list[tuple[str, str]]:
 
 
 def _clean_rows(bench: Bench, pool: Executor, done: Sequence[Explored]) -> list[Record]:
-    """Clean the home by each map that was made of it, and by the true one."""
+    """Clean the home by each map that was made of it, by the true one, and while it is mapped."""
     bench.say(f"{_CLEANED}, cleaned by its own map")
     own = [pool.submit(clean, each.task, each.made.occupancy) for each in done]
     true = [pool.submit(clean, each.task, None) for each in done]
@@ -112,7 +113,11 @@ def _clean_rows(bench: Bench, pool: Executor, done: Sequence[Explored]) -> list[
     cleaned, broken = results(own, case)
     by_truth, broken_by_truth = results(true, f"{_CLEANED}, cleaned by the true map")
     rows = clean_rows(_CLEANED, cleaned, by_truth) if cleaned and by_truth else []
-    return rows + broken + broken_by_truth
+    unknown = [pool.submit(clean_unknown, each.task) for each in done]
+    new, broken_new = results(unknown, f"{_CLEANED}, cleaned while it is mapped")
+    if new and cleaned:
+        rows += newcomer_rows(_CLEANED, new, done, cleaned)
+    return rows + broken + broken_by_truth + broken_new
 
 
 def results(futures: Sequence[Future[_Done]], case: str) -> tuple[list[_Done], list[Record]]:

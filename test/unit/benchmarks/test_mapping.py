@@ -16,7 +16,15 @@ from benchmarks.bench import Bench
 from benchmarks.mapping_cost import Heard, Recorded, share_of_core
 from benchmarks.mapping_explore import Cleaned, Explored, Task
 from benchmarks.mapping_loop import LONG, SHORT, WAY, Looped, loop, ring
-from benchmarks.mapping_rows import BLIND, clean_rows, cost_rows, explored_rows, loop_rows, seeds
+from benchmarks.mapping_rows import (
+    BLIND,
+    clean_rows,
+    cost_rows,
+    explored_rows,
+    loop_rows,
+    newcomer_rows,
+    seeds,
+)
 from benchmarks.record import Better, Record
 from benchmarks.rounds import Pace
 from benchmarks.topics import mapping
@@ -70,6 +78,20 @@ def test_of_the_seeds_the_worst_counts() -> None:
     assert _row(explored_rows("x", done, ""), "robot time, longest").aim is None
 
 
+def test_a_clean_of_an_unknown_home_is_beside_one_that_was_explored_first() -> None:
+    good = _error(1.0, 1.0, 0)
+    explored = [_explored(seed, 300.0, good, good) for seed in range(2)]
+    later = [Cleaned(0.997, 1500.0, True), Cleaned(0.995, 2100.0, True)]
+    new = [Cleaned(0.996, 2400.0, True), Cleaned(0.985, 2700.0, True)]
+    rows = newcomer_rows("flat", new, explored, later)
+    least = _row(rows, "coverage of the true floor, least")
+    assert (least.value, least.is_reached) == (pytest.approx(98.5), False)
+    assert least.peers[0].value == pytest.approx(99.5)
+    taken = _row(rows, "robot time, mean")
+    assert (taken.value, taken.peers[0].value) == (pytest.approx(42.5), pytest.approx(35.0))
+    assert _row(rows, "home and done").value == 100.0
+
+
 def test_rows_of_the_ring_of_cleans_and_of_costs() -> None:
     loops = [
         Looped(105.0, end, 0.02, 0.4, _error(1.0, 1.0, 0), _error(0.3, 0.6, 9), NOTHING)
@@ -79,7 +101,11 @@ def test_rows_of_the_ring_of_cleans_and_of_costs() -> None:
     assert end.value == pytest.approx(60.0)
     assert end.is_reached is False
     assert end.peers[0].value == pytest.approx(400.0)
-    cleans = clean_rows("flat", [Cleaned(0.995, True), Cleaned(0.985, False)], [Cleaned(1.0, True)])
+    cleans = clean_rows(
+        "flat",
+        [Cleaned(0.995, 1800.0, True), Cleaned(0.985, 2400.0, False)],
+        [Cleaned(1.0, 1800.0, True)],
+    )
     share = _row(cleans, "coverage of the true floor, least")
     assert share.value == pytest.approx(98.5)
     assert share.is_reached is False
@@ -200,7 +226,8 @@ def test_homes_and_maps_of_a_folder_are_measured(
     monkeypatch.setattr(mapping, "ProcessPoolExecutor", _Pool)
     monkeypatch.setattr(mapping, "warm_up", lambda: None)
     monkeypatch.setattr(mapping, "explore", explored)
-    monkeypatch.setattr(mapping, "clean", lambda task, known: Cleaned(1.0, True))
+    monkeypatch.setattr(mapping, "clean", lambda task, known: Cleaned(1.0, 1800.0, True))
+    monkeypatch.setattr(mapping, "clean_unknown", lambda task: Cleaned(0.99, 2000.0, True))
     monkeypatch.setattr(mapping, "loop", lambda seed: looped)
     monkeypatch.setattr(mapping, "recorded", lambda home, seed: None)
     monkeypatch.setattr(mapping, "share_of_core", lambda drive: 0.05)
@@ -219,6 +246,7 @@ def test_homes_and_maps_of_a_folder_are_measured(
         "flat, headless",
         "flat, 2 seeds",
         "flat, cleaned by its own map, 2 seeds",
+        "flat, cleaned while it is mapped, 2 seeds",
         "map lab, 2 seeds: seed 0",
         "map lab, 2 seeds: seed 1",
         "ring of 100 m, driven around once, 2 seeds",
