@@ -81,28 +81,17 @@ def loop_rows(loops: Sequence[Looped]) -> list[Record]:
     ]
 
 
-def cost_rows(home: str, core: float, speed: float) -> list[Record]:
-    """Return the rows of what mapping costs: a share of a core, and s of robot time per
-    second of a core.
-    """
-    return [
-        _row(
-            f"{home}, in real time, scans of 10 Hz",
-            "one core, while it maps",
-            100.0 * core,
-            "%",
-            Better.LOWER,
-            CORE_AIM,
-        ),
-        _row(
-            f"{home}, headless",
-            "whole exploration",
-            speed,
-            "robot seconds per second of a core",
-            Better.HIGHER,
-            SPEED_AIM,
-        ),
-    ]
+def core_row(home: str, core: float) -> Record:
+    """Return the row of the share of a core, 0..1, that mapping takes in real time."""
+    case = f"{home}, in real time, scans of 10 Hz"
+    return _row(case, "one core, while it maps", 100.0 * core, "%", Better.LOWER, CORE_AIM)
+
+
+def speed_row(home: str, folder: str, speed: float) -> Record:
+    """Return the row of how many s of robot time an exploration takes per second of a core."""
+    unit = "robot seconds per second of a core"
+    case = f"{'map ' if folder else ''}{home}, headless"
+    return _row(case, "whole exploration", speed, unit, Better.HIGHER, SPEED_AIM)
 
 
 def clean_rows(home: str, done: Sequence[Cleaned], by_truth: Sequence[Cleaned]) -> list[Record]:

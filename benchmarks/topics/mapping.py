@@ -16,11 +16,12 @@ from benchmarks.mapping_loop import loop
 from benchmarks.mapping_rows import (
     broken_row,
     clean_rows,
-    cost_rows,
+    core_row,
     explored_rows,
     loop_rows,
     newcomer_rows,
     seeds,
+    speed_row,
 )
 from benchmarks.record import Record
 from roomba.mapping_run.warm import warm_up
@@ -67,8 +68,12 @@ def _timed_rows(bench: Bench, extent: Extent) -> list[Record]:
     bench.say(f"{_TIMED}, what mapping costs")
     drive = recorded(_TIMED, 0)
     core = min(share_of_core(drive) for _ in range(extent.rounds))
-    fastest = max(speed(_TIMED, 0) for _ in range(extent.rounds))
-    return cost_rows(_TIMED, core, fastest)
+    rows = [core_row(_TIMED, core)]
+    for home, folder in _places(bench, extent):
+        bench.say(f"{home}, how fast it is explored")
+        fastest = max(speed(home, 0, folder) for _ in range(extent.rounds))
+        rows.append(speed_row(home, folder, fastest))
+    return rows
 
 
 def _rest(bench: Bench, pool: Executor, extent: Extent) -> list[Record]:

@@ -19,11 +19,12 @@ from benchmarks.mapping_loop import LONG, SHORT, WAY, Looped, loop, ring
 from benchmarks.mapping_rows import (
     BLIND,
     clean_rows,
-    cost_rows,
+    core_row,
     explored_rows,
     loop_rows,
     newcomer_rows,
     seeds,
+    speed_row,
 )
 from benchmarks.record import Better, Record
 from benchmarks.rounds import Pace
@@ -111,7 +112,7 @@ def test_rows_of_the_ring_of_cleans_and_of_costs() -> None:
     assert share.is_reached is False
     assert share.peers[0].value == pytest.approx(100.0)
     assert _row(cleans, "home and done").value == pytest.approx(50.0)
-    core, speed = cost_rows("flat", 0.05, 250.0)
+    core, speed = core_row("flat", 0.05), speed_row("flat", "", 250.0)
     assert core.value == pytest.approx(5.0)
     assert core.better is Better.LOWER
     assert core.is_reached
@@ -231,7 +232,7 @@ def test_homes_and_maps_of_a_folder_are_measured(
     monkeypatch.setattr(mapping, "loop", lambda seed: looped)
     monkeypatch.setattr(mapping, "recorded", lambda home, seed: None)
     monkeypatch.setattr(mapping, "share_of_core", lambda drive: 0.05)
-    monkeypatch.setattr(mapping, "speed", lambda home, seed: 250.0)
+    monkeypatch.setattr(mapping, "speed", lambda home, seed, folder: 250.0)
     bench = Bench(Pace(1, 0.1), tmp_path, tmp_path)
     records = measured(bench, Extent(("flat",), seeds=2, rounds=1))
     assert asked == [
@@ -244,6 +245,7 @@ def test_homes_and_maps_of_a_folder_are_measured(
     assert cases == [
         "flat, in real time, scans of 10 Hz",
         "flat, headless",
+        "map lab, headless",
         "flat, 2 seeds",
         "flat, cleaned by its own map, 2 seeds",
         "flat, cleaned while it is mapped, 2 seeds",
