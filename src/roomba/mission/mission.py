@@ -168,7 +168,8 @@ class Mission:
     def wants_map(self, occupancy: OccupancyMap) -> bool:
         """Whether a map that has grown to this makes a difference to what it does."""
         if self.driver is None:
-            return True
+            # By its station it goes by beams, and a new map would make it late.
+            return self.state.phase not in (Phase.UNDOCKING, Phase.DOCKING)
         return self.exploration is not None and self.exploration.wants_another(occupancy)
 
     def _goes_on_looking(self) -> bool:

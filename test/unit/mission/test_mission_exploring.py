@@ -82,6 +82,11 @@ def test_a_map_makes_a_difference_when_the_goal_is_seen_or_there_is_none() -> No
     rig = exploring()
     assert not rig.mission.wants_map(HALL)
     assert rig.mission.wants_map(WHOLE)
+    rig = Rig(DOCKED)
+    rig.mission.explore(rig.senses)
+    rig.tick()
+    assert rig.phase is Phase.UNDOCKING
+    assert not rig.mission.wants_map(WHOLE)
 
 
 def test_a_map_that_changes_nothing_leaves_it_on_its_way() -> None:
