@@ -39,8 +39,10 @@ from roomba.world.simulator import Simulator
 
 MAP_PERIOD: Final = 0.3
 """s; so often a map that grew is looked at, whether it makes a difference to the mission."""
-_AROUND_GOAL: Final = 1.0
+_AROUND_GOAL: Final = 0.4
 """m; farther from the frontier that it is on its way to nothing tells whether it still is one."""
+_BESIDE_SURFACES: Final = 0.3
+"""m; what is farther from all that the map shows is a thing wherever it is seen."""
 _PLANNING: Final = (Phase.CLEANING, Phase.EXPLORING, Phase.RETURNING)
 """In the others no way is planned: the map may wait."""
 _LONGEST: Final = 6 * 3600.0
@@ -225,7 +227,7 @@ class HeadlessExplorer:
 
     def _look_beside(self, site: Site) -> ThingLayer:
         """Look from now on for what a site's map does not show."""
-        field = SurfaceField.of(site.occupancy)
+        field = SurfaceField.near(site.occupancy, _BESIDE_SURFACES)
         self._things = ThingLayer(field)
         self.sight = Sight(self._things.arrays, field.values, field.place)
         return self._things

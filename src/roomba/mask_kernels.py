@@ -16,11 +16,11 @@ Labels = NDArray[np.int32]
 def dilated(mask: Mask, reach: Mask) -> Mask:
     """Return ``mask`` grown: a cell is true where ``reach``, laid over it, meets a true cell.
 
-    Both bool; ``reach`` is [2 n + 1, 2 n + 1], symmetric, true in its middle.
+    Both bool; ``reach`` is [2 n + 1, 2 n + 1], symmetric, true in its middle and without dents.
     """
-    grown = mask.copy()
-    offsets = np.argwhere(reach) - reach.shape[0] // 2
-    _stamp(mask, np.ascontiguousarray(offsets.astype(np.int32)), grown)
+    grown = np.empty(mask.shape, np.bool_)
+    heights = ((reach.sum(axis=0) - 1) // 2).astype(np.int16)
+    _grow(np.ascontiguousarray(mask), heights, grown)
     return grown
 
 
@@ -32,32 +32,40 @@ def numbered_regions(mask: Mask) -> Labels:
 
 
 @njit(cache=True, nogil=True)
-def _stamp(mask: Mask, offsets: NDArray[np.int32], grown: Mask) -> None:
-    """Set the cells around true cells; inner ones, with true cells on all sides, add nothing new.
+def _grow(mask: Mask, heights: NDArray[np.int16], grown: Mask) -> None:
+    """Set the cells whose column, or one beside it, has a true cell near enough.
 
-    That holds for reaches without dents, whose cells' neighbours towards the middle are in it too.
+    ``heights`` [2 n + 1] is how far the reach goes up and down, in each of its columns; -1 where it
+    is empty.
     """
     rows, columns = mask.shape
+    away = np.empty((rows, columns), np.int16)
+    cells_along_columns(mask, heights.max() + 1, away)
+    aside = heights.size // 2
+    grown[:] = False
     for row in range(rows):
-        for column in range(columns):
-            if not mask[row, column] or _is_inner(mask, row, column):
-                continue
-            for index in range(offsets.shape[0]):
-                at_row = row + offsets[index, 0]
-                at_column = column + offsets[index, 1]
-                if 0 <= at_row < rows and 0 <= at_column < columns:
-                    grown[at_row, at_column] = True
+        for index in range(heights.size):
+            right, height = index - aside, heights[index]
+            # Slices of one length: so the compiler takes many columns at once.
+            beside = away[row, max(right, 0) : max(columns + right, 0)]
+            into = grown[row, max(-right, 0) : max(columns - right, 0)]
+            for column in range(min(beside.size, into.size)):
+                into[column] |= beside[column] <= height
 
 
 @njit(cache=True, nogil=True)
-def _is_inner(mask: Mask, row: int, column: int) -> bool:
+def cells_along_columns(mask: Mask, most: int, away: NDArray[np.int16]) -> None:
+    """Write how many cells it is to the nearest true one of the same column, at most ``most``."""
     rows, columns = mask.shape
-    return (
-        (row == 0 or mask[row - 1, column])
-        and (row == rows - 1 or mask[row + 1, column])
-        and (column == 0 or mask[row, column - 1])
-        and (column == columns - 1 or mask[row, column + 1])
-    )
+    for column in range(columns):
+        away[0, column] = 0 if mask[0, column] else most
+    for row in range(1, rows):
+        for column in range(columns):
+            on = min(away[row - 1, column] + 1, most)
+            away[row, column] = 0 if mask[row, column] else on
+    for row in range(rows - 2, -1, -1):
+        for column in range(columns):
+            away[row, column] = min(away[row, column], away[row + 1, column] + 1)
 
 
 @njit(cache=True, nogil=True)

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from typing import Final
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
+
+from roomba.mask_kernels import cells_along_columns
 
 Field = NDArray[np.float32]
 """[rows, columns], m: see :class:`roomba.perception.surface_field.SurfaceField`."""
@@ -54,3 +57,46 @@ def expected_range(
             return min(way + min(distance, 0.0), most) if distance < _TOUCH else most
         way += max(distance, _LEAST_STEP)
     return most
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def fill_near_surfaces(
+    solid: NDArray[np.bool_], metres: NDArray[np.float32], values: Field
+) -> None:
+    """Fill ``values`` with signed distances, where these are short.
+
+    ``metres`` [most**2 + 1] tells them, m, by the squared distance, in cells, to the nearest cell
+    of the other kind; the last is for all that are farther.
+    """
+    rows, columns = solid.shape
+    last = metres.size - 1
+    most = round(math.sqrt(last))
+    free = ~solid
+    to_solid, to_free = np.empty(solid.shape, np.int16), np.empty(solid.shape, np.int16)
+    cells_along_columns(solid, most, to_solid)
+    cells_along_columns(free, most, to_free)
+    outside, inside = np.empty(columns, np.int32), np.empty(columns, np.int32)
+    for row in range(rows):
+        _nearest_squares(to_solid[row], most, outside)
+        _nearest_squares(to_free[row], most, inside)
+        for column in range(columns):
+            # One of the two is 0: that to its own kind.
+            off = metres[max(outside[column], inside[column])]
+            values[row, column] = off if free[row, column] else -off
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _nearest_squares(up: NDArray[np.int16], most: int, squares: NDArray[np.int32]) -> None:
+    """Fill a row with the least squared distance, from how far it is along each column, in cells.
+
+    Nothing is farther than ``most``.
+    """
+    columns = up.size
+    squares[:] = most * most
+    for right in range(-most, most + 1):
+        # Slices of one length: so the compiler takes many columns at once.
+        beside = up[max(right, 0) : max(columns + right, 0)]
+        into = squares[max(-right, 0) : max(columns - right, 0)]
+        aside = np.int32(right * right)
+        for column in range(min(into.size, beside.size)):
+            into[column] = min(into[column], np.int32(beside[column] * beside[column] + aside))

@@ -65,7 +65,8 @@ class FitMap:
         span = math.ceil(reach / map.frame.resolution)
         outward = np.maximum(np.abs(np.arange(-span, span + 1)) - 0.5, 0.0)
         nearest = np.hypot(outward[:, None], outward) * map.frame.resolution
-        fenced = np.pad(map.solid, 1, constant_values=True)
+        fenced = np.ones((map.frame.rows + 2, map.frame.columns + 2), np.bool_)
+        fenced[1:-1, 1:-1] = map.solid
         fits = ~dilated(fenced, nearest < reach - _TOUCH)[1:-1, 1:-1]
         fits.flags.writeable = False
         return cls(map, reach, (), fits, fits).with_obstacles(obstacles)

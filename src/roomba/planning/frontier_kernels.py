@@ -14,6 +14,9 @@ from roomba.grid import FREE, OCCUPIED, UNKNOWN
 Values = NDArray[np.int8]
 
 _DIAGONAL: Final = math.sqrt(2.0)
+_SMALL: Final = 1
+_LARGE: Final = 2
+"""What is known of the patch of a cell."""
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -60,46 +63,64 @@ def frontier_cells(values: Values, least: int, frontier: NDArray[np.bool_]) -> N
     Smaller patches of the unknown are shadows of chair legs and gaps between beams.
     """
     rows, columns = values.shape
-    sizes = np.zeros(values.shape, np.int32)
-    stack = np.empty(values.size, np.int64)
-    frontier[:] = False
-    for row in range(rows):
-        for column in range(columns):
-            if values[row, column] == UNKNOWN and sizes[row, column] == 0:
-                _measure(values, row, column, sizes, stack)
+    sizes = np.zeros(values.shape, np.int8)
+    patch = np.empty(least, np.int64)
+    _mark_sides(values, frontier)
     for row in range(1, rows - 1):
         for column in range(1, columns - 1):
-            if values[row, column] == FREE:
-                beside = max(
-                    max(sizes[row - 1, column], sizes[row + 1, column]),
-                    max(sizes[row, column - 1], sizes[row, column + 1]),
+            if frontier[row, column]:
+                frontier[row, column] = (
+                    _is_large(values, row - 1, column, sizes, patch)
+                    or _is_large(values, row + 1, column, sizes, patch)
+                    or _is_large(values, row, column - 1, sizes, patch)
+                    or _is_large(values, row, column + 1, sizes, patch)
                 )
-                frontier[row, column] = beside >= least
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _measure(
-    values: Values, row: int, column: int, sizes: NDArray[np.int32], stack: NDArray[np.int64]
-) -> None:
-    """Write into all cells of an unknown patch how many they are."""
+def _mark_sides(values: Values, marked: NDArray[np.bool_]) -> None:
+    """Mark free cells with a side to the unknown, none at the border of the map."""
+    marked[:] = False
+    for row in range(1, values.shape[0] - 1):
+        below, own, above = values[row - 1, 1:-1], values[row], values[row + 1, 1:-1]
+        left, middle, right, into = own[:-2], own[1:-1], own[2:], marked[row, 1:-1]
+        for index in range(into.size):
+            beside = (below[index] == UNKNOWN) | (above[index] == UNKNOWN)
+            beside |= (left[index] == UNKNOWN) | (right[index] == UNKNOWN)
+            into[index] = beside & (middle[index] == FREE)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _is_large(
+    values: Values, row: int, column: int, sizes: NDArray[np.int8], patch: NDArray[np.int64]
+) -> bool:
+    """Whether a cell is of an unknown patch of as many cells as ``patch`` has room for, or more.
+
+    ``sizes`` keeps what was found: of a large patch no more is looked at than that takes.
+    """
+    if values[row, column] != UNKNOWN or sizes[row, column] != 0:
+        return bool(sizes[row, column] == _LARGE)
     rows, columns = values.shape
-    stack[0] = row * columns + column
-    sizes[row, column] = -1
-    first, last = 0, 1
-    while first < last:
-        cell = stack[first]
+    patch[0] = row * columns + column
+    sizes[row, column] = _SMALL
+    first, count, is_large = 0, 1, patch.size == 1
+    while first < count and not is_large:
+        at_row, at_column = patch[first] // columns, patch[first] % columns
         first += 1
         for side in range(4):
-            to_row = cell // columns + (1 if side == 0 else -1 if side == 1 else 0)
-            to_column = cell % columns + (1 if side == 2 else -1 if side == 3 else 0)
-            if not (0 <= to_row < rows and 0 <= to_column < columns):
+            to_row = at_row + (1 if side == 0 else -1 if side == 1 else 0)
+            to_column = at_column + (1 if side == 2 else -1 if side == 3 else 0)
+            if not (0 <= to_row < rows and 0 <= to_column < columns) or is_large:
                 continue
-            if values[to_row, to_column] == UNKNOWN and sizes[to_row, to_column] == 0:
-                sizes[to_row, to_column] = -1
-                stack[last] = to_row * columns + to_column
-                last += 1
-    for index in range(last):
-        sizes[stack[index] // columns, stack[index] % columns] = last
+            if values[to_row, to_column] == UNKNOWN and sizes[to_row, to_column] != _SMALL:
+                is_large = sizes[to_row, to_column] == _LARGE or count + 1 == patch.size
+                sizes[to_row, to_column] = _SMALL
+                patch[count] = to_row * columns + to_column
+                count += 1
+    if is_large:
+        for index in range(count):
+            sizes[patch[index] // columns, patch[index] % columns] = _LARGE
+    return is_large
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -129,6 +150,37 @@ def clusters(frontier: NDArray[np.bool_], labels: NDArray[np.int32]) -> int:
                             stack[size] = to_row * columns + to_column
                             size += 1
     return number
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def seen_from(
+    cells: NDArray[np.int64],
+    middles: NDArray[np.float64],
+    left_out: NDArray[np.float64],
+    away: float,
+    values: Values,
+    ways: NDArray[np.float64],
+    radius: int,
+    aside: float,
+) -> tuple[int, int, int]:
+    """Return the first of ``cells``, int64 [n, 2], that can be looked at, and from which cell.
+
+    Its index, and row and column of that cell, see :func:`viewpoint`; all -1 when there is none.
+    The cells' ``middles`` [n, 2] that are nearer than ``away`` to ``left_out`` [m, 2], m, do not
+    count.
+    """
+    for index in range(cells.shape[0]):
+        is_left_out = False
+        for number in range(left_out.shape[0]):
+            off_x = middles[index, 0] - left_out[number, 0]
+            off_y = middles[index, 1] - left_out[number, 1]
+            is_left_out = is_left_out or math.hypot(off_x, off_y) < away
+        if is_left_out:
+            continue
+        row, column, cost = viewpoint(values, ways, cells[index, 0], cells[index, 1], radius, aside)
+        if math.isfinite(cost):
+            return index, row, column
+    return -1, -1, -1
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

@@ -6,17 +6,17 @@ Going to the nearest one each time explores a floor with little more driving tha
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.grid import OccupancyMap
+from roomba.grid import GridFrame, OccupancyMap
 from roomba.planning.costmap import Point
-from roomba.planning.frontier_kernels import clusters, frontier_cells, viewpoint, ways_from
+from roomba.planning.frontier_kernels import clusters, frontier_cells, seen_from, ways_from
 
 _LEAST_UNKNOWN: Final = 0.03
 """m2; smaller patches of the unknown are not worth a way."""
@@ -67,17 +67,25 @@ def frontiers(
     frontier_cells(occupancy.values, least, frontier)
     labels = np.empty(frame.shape, np.int32)
     count = clusters(frontier, labels)
+    cells, ends = _by_number(labels, count)
+    middles = _middles_of(cells, frame)
+    apart = _from_middle(cells, ends)
+    leave = np.array(left_out, np.float64).reshape(-1, 2)
+    radius, every = int(_LOOK_FROM / frame.resolution), max(1, round(_STRIDE / frame.resolution))
     found = []
-    for cells in _by_number(labels, count):
-        if len(cells) < _LEAST_CELLS:
+    for first, last in pairwise(ends.tolist()):
+        if last - first < _LEAST_CELLS:
             continue
-        seen = _seen_from(cells, occupancy, ways, left_out, away)
-        if seen is None:
+        # A place near its middle, if that can be.
+        tried = first + np.argsort(apart[first:last])[::every]
+        index, row, column = seen_from(
+            cells[tried], middles[tried], leave, away, occupancy.values, ways, radius, _NEARER
+        )
+        if index < 0:
             continue
-        middle, (to_row, to_column) = seen
-        length = len(cells) * frame.resolution
-        way = float(ways[to_row, to_column]) * frame.resolution
-        found.append(Frontier(middle, frame.centre_of(to_row, to_column), way, length))
+        x, y = middles[tried[index]].tolist()
+        length, way = (last - first) * frame.resolution, float(ways[row, column]) * frame.resolution
+        found.append(Frontier((x, y), frame.centre_of(row, column), way, length))
     return sorted(found, key=_cost)
 
 
@@ -95,39 +103,37 @@ def is_frontier(occupancy: OccupancyMap, point: Point, radius: float) -> bool:
     return int(frontier.sum()) >= _LEAST_CELLS
 
 
-def _seen_from(
-    cells: NDArray[np.int64],
-    occupancy: OccupancyMap,
-    ways: NDArray[np.float64],
-    left_out: Sequence[Point],
-    away: float,
-) -> tuple[Point, tuple[int, int]] | None:
-    """Return a place of a frontier, m, near its middle if that can be, and the cell to look from.
-
-    ``cells`` is int64 [n, 2]; None when no place of it can be looked at.
-    """
-    frame = occupancy.frame
-    radius = int(_LOOK_FROM / frame.resolution)
-    nearest_first = np.argsort(np.abs(cells - cells.mean(axis=0)).sum(axis=1))
-    every = max(1, round(_STRIDE / frame.resolution))
-    for row, column in cells[nearest_first[::every]].tolist():
-        place = frame.centre_of(row, column)
-        if any(math.dist(place, point) < away for point in left_out):
-            continue
-        to_row, to_column, cost = viewpoint(occupancy.values, ways, row, column, radius, _NEARER)
-        if math.isfinite(cost):
-            return place, (to_row, to_column)
-    return None
-
-
 def _cost(frontier: Frontier) -> float:
     return frontier.way + (_SMALL_COSTS if frontier.length < _SMALL else 0.0)
 
 
-def _by_number(labels: NDArray[np.int32], count: int) -> list[NDArray[np.int64]]:
-    """Return the cells of each number from 1 on, int64 [n, 2], row and column."""
-    cells = np.argwhere(labels > 0)
-    numbers = labels[cells[:, 0], cells[:, 1]]
+def _by_number(
+    labels: NDArray[np.int32], count: int
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Return the cells of the numbers from 1 on, int64 [n, 2], row and column, one after another.
+
+    And where those of each number begin, int64 [count + 1]: the last is where they all end.
+    """
+    found = np.flatnonzero(labels > 0)
+    numbers = labels.ravel()[found]
     order = np.argsort(numbers, kind="stable")
-    ends = np.searchsorted(numbers[order], np.arange(1, count + 2))
-    return [cells[order[ends[n] : ends[n + 1]]] for n in range(count)]
+    cells = np.column_stack(np.divmod(found[order], labels.shape[1]))
+    return cells, np.searchsorted(numbers[order], np.arange(1, count + 2))
+
+
+def _from_middle(cells: NDArray[np.int64], ends: NDArray[np.int64]) -> NDArray[np.float64]:
+    """Return how far each cell is from the mean of those of its number, in cells, down and aside.
+
+    ``cells`` and ``ends`` as :func:`_by_number` tells them.
+    """
+    counts = np.diff(ends)
+    means = np.add.reduceat(cells, ends[:-1]) / counts[:, None] if len(counts) else cells
+    apart: NDArray[np.float64] = np.abs(cells - np.repeat(means, counts, axis=0)).sum(axis=1)
+    return apart
+
+
+def _middles_of(cells: NDArray[np.int64], frame: GridFrame) -> NDArray[np.float64]:
+    """Return the x and y of the cells' middles, m, float64 [n, 2]."""
+    origin = np.array([frame.origin_x, frame.origin_y])
+    middles: NDArray[np.float64] = origin + (cells[:, ::-1] + 0.5) * frame.resolution
+    return middles

@@ -93,6 +93,23 @@ def test_a_map_without_a_surface_is_far_and_finite_everywhere(is_solid: bool) ->
     assert values == pytest.approx(np.full((4, 7), -0.7 if is_solid else 0.7))
 
 
+@given(SMALL_MAPS, st.sampled_from((0.02, 0.05, 0.25)), st.floats(0.01, 0.4))
+def test_near_surfaces_it_is_the_same_and_nowhere_farther(
+    solid: Mask, resolution: float, farthest: float
+) -> None:
+    frame = GridFrame(resolution, -1.3, 0.7, *solid.shape)
+    occupancy = OccupancyMap(frame, np.where(solid, OCCUPIED, FREE).astype(np.int8))
+    near = SurfaceField.near(occupancy, farthest)
+    assert near.frame == frame
+    assert near.values.dtype == np.float32
+    if solid.any() and not solid.all():
+        whole = SurfaceField.of(occupancy).values
+        assert np.array_equal(near.values, np.clip(whole, -farthest, farthest, dtype=np.float32))
+    else:
+        assert np.abs(near.values) == pytest.approx(farthest)
+        assert np.array_equal(near.values < 0.0, solid)
+
+
 def test_kernels_are_told_where_the_first_middle_is() -> None:
     field = field_of(np.zeros((4, 7), np.bool_), 0.1)
     assert field.place == pytest.approx([*field.frame.centre_of(0, 0), 0.1])

@@ -19,7 +19,7 @@ CELL = 0.05
 Point = tuple[float, float]
 cells = arrays.arrays(
     np.int8, st.tuples(st.integers(4, 14), st.integers(4, 14)),
-    elements=st.sampled_from([FREE, FREE, UNKNOWN, OCCUPIED]),
+    elements=st.sampled_from([FREE, FREE, UNKNOWN, OCCUPIED]), fill=st.nothing(),
 )  # fmt: skip
 
 

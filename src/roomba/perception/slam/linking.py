@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import heapq
 import math
 from typing import Final
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 from roomba.perception.match_kernels import invert
@@ -104,25 +104,31 @@ class Linker:
         return information
 
 
-def _ways(submap: int, poses: Floats, links: list[Link]) -> list[float]:
+def _ways(submap: int, poses: Floats, links: list[Link]) -> Floats:
     """Return how long the shortest chains of links are from one submap to each other one, m."""
-    beside: list[list[int]] = [[] for _ in poses]
-    for link in links:
-        beside[link.parent].append(link.child)
-        beside[link.child].append(link.parent)
-    ways = [math.inf] * len(poses)
+    joined = np.array([(link.parent, link.child) for link in links], np.int64).reshape(-1, 2)
+    away = poses[joined[:, 0], :2] - poses[joined[:, 1], :2]
+    ways = np.full(len(poses), np.inf)
     ways[submap] = 0.0
-    heap = [(0.0, submap)]
-    while heap:
-        way, at = heapq.heappop(heap)
-        if way > ways[at]:
-            continue
-        for other in beside[at]:
-            on = way + math.hypot(*(poses[other, :2] - poses[at, :2]))
-            if on < ways[other]:
-                ways[other] = on
-                heapq.heappush(heap, (on, other))
+    _shorten(joined, np.hypot(away[:, 0], away[:, 1]), ways)
     return ways
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _shorten(joined: NDArray[np.int64], lengths: Floats, ways: Floats) -> None:
+    """Make ``ways`` [n] as short as links between two of them, int64 [m, 2], allow.
+
+    Link by link until nothing changes (Bellman and Ford): chains of links are short.
+    """
+    has_changed = True
+    while has_changed:
+        has_changed = False
+        for index in range(lengths.size):
+            one, other = joined[index, 0], joined[index, 1]
+            if ways[one] + lengths[index] < ways[other]:
+                ways[other], has_changed = ways[one] + lengths[index], True
+            elif ways[other] + lengths[index] < ways[one]:
+                ways[one], has_changed = ways[other] + lengths[index], True
 
 
 def _starts(thought: Floats, farthest: float) -> list[Floats]:

@@ -100,6 +100,20 @@ def test_after_a_long_way_it_is_looked_for_farther_around(
             assert error(link, HERE, THERE)[0] < 0.01
 
 
+@pytest.mark.parametrize("shortcut", [((0, 2), (2, 3)), ((2, 0), (3, 2)), ((2, 3), (0, 2))])
+def test_the_shortest_chain_of_links_tells_how_far_it_may_have_drifted(
+    shortcut: tuple[tuple[int, int], ...],
+) -> None:
+    """At the end of 120 m it is found 0.6 m off; not if links over 3 m join the two as well."""
+    drifted, far = THERE.compose(Pose(0.5, 0.35, 0.05)), Pose(HERE.x + 60.0, HERE.y, 0.0)
+    thought = [HERE, far, Pose(HERE.x, HERE.y + 1.0, 0.0), drifted]
+    submaps = [submap(HERE), Submap(0.0), Submap(0.0), submap(THERE, seed=1)]
+    around = ((0, 1), (1, 3))
+    for ends, count in ((around, 1), ((*around, *shortcut), 0)):
+        links = [Link(*each, np.zeros(3), np.eye(3), False) for each in ends]
+        assert len(linked(submaps, thought, links)) == count
+
+
 def test_other_rooms_are_not_linked() -> None:
     """Of another size, or with walls where the other has none."""
     other = room_home(3.4, 5.3, ((1.0, 3.0, 2.0, 3.6),))
