@@ -75,6 +75,7 @@ class HomeSimNode:
         self._command_age = float("inf")
         self._clock = time.time_ns() // TICK_NANOSECONDS * TICK_NANOSECONDS
         self._ticks = 0
+        self._told = 0.0
         self._pace = Pace(TICK_NANOSECONDS / 1e9 / self._speed)
         self._odom_frame, self._base_frame = frame_id("odom"), frame_id("base_link")
         self._connect()
@@ -83,7 +84,7 @@ class HomeSimNode:
         """Step in real time, or as many times faster as asked for, until shutdown."""
         was_late = False
         while not told_to_end():
-            self._pace.wait(self._now(), told_to_end)
+            self._pace.wait(self._told, told_to_end)
             if self._pace.is_late and not was_late:
                 was_late = True
                 rospy.logwarn("this machine is too slow for speed %g; going on slower", self._speed)
@@ -97,7 +98,7 @@ class HomeSimNode:
                 self._simulator.advance(self._fresh_command(), STEP, 1)
             observation = self._simulator.observe()
             self._clock += TICK_NANOSECONDS
-            now = self._now()
+            now = self._told = self._now()
             self._camera.set_time(now)
         self._ticks += 1
         self._publish(now, observation)

@@ -76,8 +76,13 @@ class MapMemory:
         return kept
 
     def is_due(self, now: float, version: int, *, is_lost: bool) -> bool:
-        """Whether it is time to remember a map of this version: another one, after a while."""
-        if (version, is_lost) == self._kept or 0.0 <= now - self._saved < _PERIOD:
+        """Whether it is time to remember a map of this version: another one, after a while.
+
+        Once also that it went well with it.
+        """
+        went_well = self._taken_up > 0 and time.monotonic() - self._since >= _GOES_WELL
+        is_news = (version, is_lost) != self._kept or went_well
+        if not is_news or 0.0 <= now - self._saved < _PERIOD:
             return False
         return time.monotonic() - self._saved_wall >= _WALL_PER_BYTE * self._bytes
 
@@ -86,7 +91,9 @@ class MapMemory:
         wall = time.monotonic()
         self._saved, self._saved_wall = now, wall
         self._kept = kept.state.version, kept.state.is_lost
-        taken_up = self._taken_up if wall - self._since < _GOES_WELL else 0
+        if wall - self._since >= _GOES_WELL:
+            self._taken_up = 0
+        taken_up = self._taken_up
         self._background.do(
             "the map that is being made is not remembered",
             lambda: self._save(replace(kept, run=self._run, taken_up=taken_up)),
@@ -109,12 +116,16 @@ class MapMemory:
             return None
 
     def keep_whole(self, stored: StoredMap) -> None:
-        """Remember a whole map that has no name, soon."""
+        """Remember a whole map that has no name, soon, instead of the one that was being made."""
         if self._run:
             self._background.do(
-                "the map that was made is not remembered",
-                lambda: self._whole.save(self._run, stored),
+                "the map that was made is not remembered", lambda: self._replace_by(stored)
             )
+
+    def _replace_by(self, stored: StoredMap) -> None:
+        """If the disk refuses, the one that was being made is still there."""
+        self._whole.save(self._run, stored)
+        self.forget()
 
     def forget_whole(self) -> None:
         """Forget the whole map, soon: another one is begun, or it has a name by now."""

@@ -95,11 +95,16 @@ class MapServices:
             raise MapStoreError("the rooms of this map are still being found; try again")
         if name == before:
             self._shelf.save(name, stored)
-        elif self._shelf.save_anew(name, stored):
-            own.tell_again()
+            took_over = False
+        else:
+            took_over = self._shelf.save_anew(name, stored)
         with own.lock:
-            own.name = name
-            own.remember()
+            # Meanwhile somebody may have let the robot go by another map.
+            if own.occupancy is stored.occupancy:
+                own.name = name
+                own.remember()
+                if took_over:
+                    own.tell_again()
         return f"saved as {name} in {self._shelf.folder}"
 
     def _load(self, name: str) -> str:

@@ -72,9 +72,11 @@ class MapShelf:
         What people did to the old map of this name, if there is one, goes on on the new one. Raises
         MapStoreError if that is of another floor, or broken so that nobody can tell: it is kept.
         """
-        if name not in self._store.names() or stored.rooms is None:
+        if name not in self._store.names():
             self._store.save(name, stored)
             return False
+        if stored.rooms is None:
+            raise MapStoreError("the rooms of this map are still being found; try again")
         old = self._old(name)
         match = match_floors(_floor_of(stored), _floor_of(old))
         if not match.is_same:

@@ -152,8 +152,6 @@ class MapTopics:
             own.tell_station(maker.station)
             own.tell_whole(whole)
             own.remember()
-            # After the whole one is on the disk: one of them always is.
-            self._background.do("the map that was made is not forgotten", self._memory.forget)
             return
         grown = maker.grown(now)
         if grown is not None:

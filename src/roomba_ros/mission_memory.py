@@ -39,6 +39,7 @@ class MissionMemory:
         self._checkpoint = folder / f"{digest[:16]}.json"
         self._dirt = folder / f"{digest[:16]}.npz"
         self._background = background
+        self._not_forgotten = f"the errand is not forgotten in {self._checkpoint.name}"
         self._run = str(rospy.get_param("/run_id", ""))
         self._saved = 0.0
         self._phase: Phase | None = None
@@ -85,20 +86,16 @@ class MissionMemory:
         if values is not None:
             self._is_there = True
             self._background.do(
-                "the errand is not remembered",
+                f"the errand is not remembered in {self._checkpoint.name}",
                 lambda: save_checkpoint(values, self._run, self._checkpoint, taken_up),
             )
         elif self._is_there:
             self._is_there = False
-            self._background.do(
-                "the errand is not forgotten", lambda: remove_checkpoint(self._checkpoint)
-            )
+            self._background.do(self._not_forgotten, lambda: remove_checkpoint(self._checkpoint))
 
     def forget_errand(self) -> None:
         """Forget the errand: the robot was given another map."""
-        self._background.do(
-            "the errand is not forgotten", lambda: remove_checkpoint(self._checkpoint)
-        )
+        self._background.do(self._not_forgotten, lambda: remove_checkpoint(self._checkpoint))
 
     def keep_dirt(self, dirt: DirtMap) -> None:
         """Remember where it was dirty."""

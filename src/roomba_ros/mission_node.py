@@ -129,7 +129,7 @@ class MissionNode:
         mission, before = self._mission, self._home
         if mission is not None and before is not None:
             if before.site.is_growing:
-                self._grow(mission, before, home)
+                self._grow(mission, senses, before, home)
                 return
             if home.digest == before.digest:
                 self._newer = None
@@ -141,7 +141,7 @@ class MissionNode:
         self._home, self._newer = home, None
         self._mission = self._begin(home, senses)
 
-    def _grow(self, mission: Mission, before: KnownHome, home: KnownHome) -> None:
+    def _grow(self, mission: Mission, senses: Senses, before: KnownHome, home: KnownHome) -> None:
         """Let the mission go on with more of the map, when that makes a difference to it."""
         is_more = home.site.occupancy is not before.site.occupancy
         if not is_more:
@@ -152,14 +152,15 @@ class MissionNode:
             self._things = ThingLayer(home.field)
             mission.use_map(home.site, self._things, DirtMap(home.site.occupancy))
             if home.digest != before.digest:
-                self._remember_by(home)
+                self._remember_by(home, mission, senses)
         self._home, self._newer = home, None
 
-    def _remember_by(self, home: KnownHome) -> None:
+    def _remember_by(self, home: KnownHome, mission: Mission, senses: Senses) -> None:
         """Remember by the whole map, now that there is one, what is under way."""
         assert self._memory is not None
-        self._memory.forget_errand()
-        self._memory = self._memory_by(home.digest)
+        before, self._memory = self._memory, self._memory_by(home.digest)
+        self._memory.keep(mission, senses)
+        before.forget_errand()
 
     def _begin(self, home: KnownHome, senses: Senses) -> Mission:
         """Return a mission for a map, that goes on with what was under way there."""
@@ -188,6 +189,8 @@ class MissionNode:
         memory = self._memory_by(GROWING)
         if not memory.recall_errand(mission, senses):
             return False
+        assert self._memory is not None
+        self._memory.keep(mission, senses)
         memory.forget_errand()
         return True
 

@@ -37,11 +37,19 @@ class Pace:
         """Whether it was ever slower than asked for."""
 
     def heard(self, stamp: float) -> None:
-        """The robot told what it knew at a time of its clock, s."""
+        """The robot told what it knew at a time of its clock, s.
+
+        One that tells the same again has not got any farther.
+        """
+        if stamp == self._stamp:
+            return
         self._stamp, self._heard_at = stamp, self._monotonic()
 
     def wait(self, now: float, ended: Callable[[], bool]) -> None:
-        """Return when the next tick is due, or at the end; ``now`` is the robot's clock, s."""
+        """Return when the next tick is due, or at the end.
+
+        ``now`` is the time, s of the robot's clock, of what it was told last.
+        """
         wait = self._due - self._monotonic()
         if wait > 0.0:
             self._sleep(wait)

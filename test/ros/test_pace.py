@@ -60,6 +60,13 @@ def test_one_that_says_nothing_any_more_is_not() -> None:
     assert wall.ticks(1, robot=8.15) == pytest.approx(PERIOD)
 
 
+def test_nor_one_that_tells_the_same_again_and_again() -> None:
+    wall = Wall()
+    wall.pace.heard(7.6)
+    wall.events = [(wall.now + 0.05 * count, 7.6) for count in range(1, 100)]
+    assert 1.9 < wall.ticks(1, robot=8.1) < 2.1
+
+
 def test_nor_one_that_was_never_heard_or_has_another_clock() -> None:
     wall = Wall()
     assert wall.ticks(10, robot=8.1) == pytest.approx(10 * PERIOD)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import Final
 
 from roomba.mission import phases
 from roomba.mission.clean_request import CleanOutcome
@@ -15,8 +16,17 @@ from roomba.mission.path_driver import DriveState
 from roomba.mission.patience import Patience
 from roomba.mission.phase_step import Failure, PhaseStep
 from roomba.mission.senses import Senses
+from roomba.mission.site import Site
 from roomba.mission_config import ExploringConfig
 from roomba.planning.path import NoPathError
+
+_WAITS: Final = "all is seen; it waits for the map to be finished"
+_LONGEST_WAIT: Final = 120.0
+"""s; so long it waits for the whole map."""
+_NO_WHOLE_MAP: Final = (
+    "nobody finishes the map: put the robot on its station once, so that the map knows where that "
+    "is, or call map/finish; then resume"
+)
 
 
 class CleanPhase:
@@ -27,6 +37,8 @@ class CleanPhase:
     ) -> None:
         """Begin with no path."""
         self._job, self._drives, self._patience, self._config = job, drives, patience, config
+        self._seen_all_of: Site | None = None
+        self._seen_all_at = 0.0
 
     def tick(self, senses: Senses, limit: float) -> PhaseStep:
         """Return what is wanted now; ``limit`` is the speed wanted, m/s."""
@@ -87,15 +99,28 @@ class CleanPhase:
 
     def _look_or_wait(self, senses: Senses) -> PhaseStep | None:
         """Go to see more when all that is known is clean; with all seen the map is to be whole."""
-        exploration = self._job.exploration
+        exploration, drives = self._job.exploration, self._drives
         assert exploration is not None
+        if drives.site is self._seen_all_of:
+            return self._wait_for_whole_map(senses)
         given_up = len(exploration.unseen)
         if self._begin_look(senses, math.inf):
             return None
         # It may have given up before it tried all.
-        is_done = len(exploration.unseen) == given_up
-        is_done = is_done and not phases.looks_again(exploration, self._drives)
-        return PhaseStep(wants_whole_map=is_done)
+        if len(exploration.unseen) > given_up or phases.looks_again(exploration, drives):
+            return PhaseStep()
+        if not drives.may_go_home(senses):
+            # Shut in it has not seen all.
+            reason = "no way leads out of where it is"
+            return phases.try_home_again(reason, drives, self._patience, senses)
+        self._seen_all_of, self._seen_all_at = drives.site, senses.now
+        return PhaseStep(message=_WAITS, wants_whole_map=True)
+
+    def _wait_for_whole_map(self, senses: Senses) -> PhaseStep:
+        if 0.0 <= senses.now - self._seen_all_at < _LONGEST_WAIT:
+            return PhaseStep(wants_whole_map=True)
+        self._seen_all_of = None
+        return PhaseStep(failure=Failure(CleanOutcome.FAULT, _NO_WHOLE_MAP))
 
     def _drive_on(self, cleaning: Cleaning, senses: Senses, limit: float) -> PhaseStep:
         drives, exploration = self._drives, self._job.exploration

@@ -190,14 +190,17 @@ class Cleaning:
         self._rounds, self._last_missed, self._is_anew = 1, np.inf, True
         self._book.try_again()
 
-    def use_site(self, site: Site) -> None:
-        """Go on with other zones or rooms, or with more of the map; what is swept stays so."""
+    def use_site(self, site: Site, dirt: DirtMap) -> None:
+        """Go on with other zones or rooms, or with more of the map; what is swept stays so.
+
+        ``dirt`` is that of the site's map.
+        """
         if self._site.is_growing:
             self._begin_stage()
             # With the whole map the first way through is done.
             self._rounds = 0 if site.is_growing else 1
-        self._site = site
-        self._book.use_site(site)
+        self._site, self._dirt = site, dirt
+        self._book.use_site(site, dirt)
 
     def values(self) -> Values:
         """Return all that must be remembered to go on, as plain values."""

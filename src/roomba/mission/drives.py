@@ -22,7 +22,10 @@ Floats = NDArray[np.float64]
 
 
 class Drives:
-    """``driver`` is on the present path, if there is one; ``site`` is where it plans."""
+    """``driver`` is on the present path, if there is one; ``site`` is where it plans.
+
+    ``is_round``: the path is one over the floor that a clean planned.
+    """
 
     def __init__(
         self, site: Site, robot: RobotConfig, config: DrivingConfig, obstacles: Obstacles
@@ -31,6 +34,7 @@ class Drives:
         self._robot, self._config = robot, config
         self.obstacles, self.trail = obstacles, Trail()
         self.driver: PathDriver | None = None
+        self.is_round = False
         self.use_site(site)
 
     def use_site(self, site: Site) -> None:
@@ -42,9 +46,13 @@ class Drives:
         self,
         points: Floats,
         senses: Senses,
-        plans_anew: Callable[[float, float], bool] = lambda now, left: False,
+        plans_anew: Callable[[float, float], bool] | None = None,
     ) -> None:
-        """Begin to drive along points, float64 [n, 2], m."""
+        """Begin to drive along points, float64 [n, 2], m.
+
+        A round of a clean has ``plans_anew``: see :class:`PathDriver`.
+        """
+        self.is_round = plans_anew is not None
         self.driver = PathDriver(
             points,
             self._rejoin,
@@ -54,7 +62,7 @@ class Drives:
             self._robot.tracking,
             self._robot.body,
             senses,
-            plans_anew,
+            plans_anew or _never,
         )
 
     def caught_up(self, senses: Senses, way: float) -> None:
@@ -90,6 +98,16 @@ class Drives:
         if points is not None:
             self.begin(points, senses)
 
+    def may_go_home(self, senses: Senses) -> bool:
+        """Whether a way leads home, by what is known to stand in it now."""
+        here, staging = (senses.pose.x, senses.pose.y), self.site.staging
+        standing = self.obstacles.standing(senses.now)
+        try:
+            self.site.paths.plan(here, (staging.x, staging.y), standing)
+        except NoPathError:
+            return False
+        return True
+
     def distance_home(self, senses: Senses) -> float:
         """Return how far it is home, m; what cannot be told is as far as the map is wide."""
         staging = self.site.staging
@@ -105,3 +123,7 @@ class Drives:
         """The robot is somewhere else than it thought: what it remembers is of another place."""
         self.trail.forget()
         self.obstacles.forget()
+
+
+def _never(now: float, left: float) -> bool:
+    return False

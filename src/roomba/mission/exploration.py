@@ -75,7 +75,8 @@ class Exploration:
         obstacles: list[RoundObstacle],
         farthest: float = math.inf,
     ) -> NDArray[np.float64] | None:
-        """Return the way to the next viewpoint, float64 [n, 2], m; None when there is none left.
+        """Return the way to the next viewpoint, float64 [n, 2], m; None when there is none left, or
+        the robot is shut in.
 
         Those that are ``farthest`` m of way off and more are left out. A frontier to which no way
         leads is given up.

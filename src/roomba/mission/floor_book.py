@@ -61,11 +61,8 @@ class FloorBook:
 
     @property
     def untried(self) -> Mask:
-        """What is wanted, and no path over it was planned while the map is being made.
-
-        What was swept on the way to see more is part of it: to leave such trails out takes longer.
-        """
-        untried: Mask = (self.coverage.cells & (WANTED | TRIED)) == WANTED
+        """What is missed, and no path over it was planned while the map is being made."""
+        untried: Mask = (self.coverage.cells & (WANTED | SWEPT | TRIED)) == WANTED
         return untried
 
     def note_tried(self, floor: Mask) -> None:
@@ -73,10 +70,8 @@ class FloorBook:
         self.coverage.cells[floor] |= np.uint8(TRIED)
 
     def try_again(self) -> None:
-        """Plan over all that is missed, and only that, again."""
-        cells = self.coverage.cells
-        cells &= np.uint8(_ALL ^ TRIED)
-        cells[self.coverage.swept] |= np.uint8(TRIED)
+        """Plan over all that is missed again."""
+        self.coverage.cells &= np.uint8(_ALL ^ TRIED)
 
     def add(self, stage: Stage) -> None:
         """Clean some floor at the end."""
@@ -99,8 +94,9 @@ class FloorBook:
 
     # ---------------------------------------------------------------- other sites
 
-    def use_site(self, site: Site) -> None:
+    def use_site(self, site: Site, dirt: DirtMap) -> None:
         """Go on with other zones or rooms, or with more of the map; what is swept stays so."""
+        self._dirt = dirt
         if self._site.is_growing:
             self._use_more_map(site)
         else:
@@ -137,7 +133,7 @@ class FloorBook:
 
     def values(self) -> Values:
         """Return all that must be remembered to go on, as plain values."""
-        frame, station = self._site.frame, self._site.station
+        frame, station, began = self._site.frame, self._site.station, self._began_at
         return {
             "request": request_values(self.request),
             "stages": [[s.name, packed(s.floor), s.again] for s in self.stages],
@@ -148,6 +144,7 @@ class FloorBook:
             "is_growing": self._site.is_growing,
             "grid": [frame.origin_x, frame.origin_y, frame.rows, frame.columns],
             "station": [station.x, station.y, station.theta],
+            "began_at": [began.x, began.y, began.theta],
         }
 
     def restore(self, values: Values) -> None:
@@ -156,12 +153,15 @@ class FloorBook:
         Raises CheckpointError, and others for junk.
         """
         frame, station = self._place_of(values)
+        moved = self._site.station.compose(station.inverse())
+        self._began_at = moved.compose(_pose(values["began_at"]))
         swept, ever = unpacked(values["swept"], frame.shape), unpacked(values["ever"], frame.shape)
         if values["is_growing"]:
             self.coverage = CoverageMap(frame, np.zeros_like(swept), self._site.tool_width)
             self.coverage.cells[swept] = np.uint8(SWEPT)
             self._ever = ever
-            self._carry(frame, self._site.frame, self._site.station.compose(station.inverse()))
+            self._carry(frame, self._site.frame, moved)
+            self.stages = self._asked(self._site)
             self._want(self._union())
             return
         if frame.shape != self._site.frame.shape:
@@ -182,10 +182,9 @@ class FloorBook:
         x, y, rows, columns = values["grid"]
         resolution = self._site.frame.resolution
         frame = GridFrame(resolution, float(x), float(y), int(rows), int(columns))
-        station = Pose(*(float(value) for value in values["station"]))
-        if not (Pose(frame.origin_x, frame.origin_y).is_finite and station.is_finite):
+        if not Pose(frame.origin_x, frame.origin_y).is_finite:
             raise CheckpointError("expected finite numbers")
-        return frame, station
+        return frame, _pose(values["station"])
 
     # ---------------------------------------------------------------- parts
 
@@ -203,3 +202,11 @@ class FloorBook:
         for stage in stages:
             floor |= stage.floor
         return floor
+
+
+def _pose(values: list[float]) -> Pose:
+    x, y, theta = values
+    pose = Pose(float(x), float(y), float(theta))
+    if not pose.is_finite:
+        raise CheckpointError("expected finite numbers")
+    return pose

@@ -151,9 +151,13 @@ class Mission:
         if not self._goes_on_looking():
             self._drop_driver()
         if self.cleaning is not None:
-            self.cleaning.use_site(site)
-            if not self.cleaning.explores:
-                self._job.exploration = None
+            self.cleaning.use_site(site, self.dirt)
+            self._look_no_more()
+
+    def _look_no_more(self) -> None:
+        """On the whole map a clean has nothing left to look for."""
+        if self.cleaning is not None and not self.cleaning.explores:
+            self._job.exploration = None
 
     def use_map(self, site: Site, things: ThingLayer, dirt: DirtMap) -> None:
         """Go on with a map that has grown, or with the whole one, from the next tick on.
@@ -194,12 +198,13 @@ class Mission:
         return checkpoint_of(self.state, self.message, self._job, senses.now)
 
     def restore(self, values: Values, senses: Senses) -> None:
-        """Go on where a checkpoint was made, in the same map; raises CheckpointError.
+        """Go on where a checkpoint was made, in the same map or more of it; raises CheckpointError.
 
         A robot that was under way goes on at once.
         """
         found = remembered(values, lambda request: self._cleaning_of(request, senses))
         take_up(found, self._job, senses)
+        self._look_no_more()
         self.message = found.message
         self._last = senses
         is_docked = self._watch.was_docked = senses.battery.is_docked
@@ -356,7 +361,7 @@ class Mission:
 
     def _drop_driver(self) -> None:
         """Drive there no more; what was not driven of a round is planned again."""
-        if self.driver is not None and self.cleaning is not None:
+        if self.driver is not None and self.cleaning is not None and self._drives.is_round:
             self.cleaning.interrupted(self.driver.left)
         self._drives.driver = None
 

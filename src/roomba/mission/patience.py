@@ -12,6 +12,8 @@ _FIRST_WAIT: Final = 10.0
 _WAIT: Final = 30.0
 """s; so long it waits, where no way leads on, before it looks for one again: people pass sooner
 than doors are opened."""
+_LOOK: Final = 2.0
+"""s; so often it looks whether whoever stood in the way has gone."""
 _MOST_WAITS: Final = 41
 """Twenty minutes; then there is no way home."""
 
@@ -25,7 +27,7 @@ class Patience:
     def __init__(self) -> None:
         """Begin with nothing tried."""
         self._tries = self._waits = 0
-        self._since = -math.inf
+        self._since = self._looked = -math.inf
         self.gets_out = self._has_begun = False
 
     def renew(self) -> None:
@@ -35,12 +37,24 @@ class Patience:
     def wait(self, now: float) -> None:
         """Begin to wait."""
         self._since, self.gets_out, self._has_begun = now, True, True
+        self._looked = now
         self._waits += 1
 
     def is_waiting(self, now: float) -> bool:
         """Whether it still waits; not if the clock was set back."""
         wait = _FIRST_WAIT if self._waits <= _FIRST_WAITS else _WAIT
         return 0.0 <= now - self._since < wait
+
+    def looks_again(self, now: float) -> bool:
+        """Whether it is time, while it waits, to look whether there is a way by now."""
+        if 0.0 <= now - self._looked < _LOOK:
+            return False
+        self._looked = now
+        return True
+
+    def end(self) -> None:
+        """Wait no longer: there is a way."""
+        self._since = -math.inf
 
     def has_ended(self, now: float) -> bool:
         """Whether a wait ended since this was asked last."""

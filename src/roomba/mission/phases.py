@@ -80,7 +80,7 @@ def go_home(drives: Drives, patience: Patience, senses: Senses, limit: float) ->
         try:
             points = drives.way_home(senses)
         except NoPathError as error:
-            return _try_home_again(f"no way home: {error}", drives, patience, senses)
+            return try_home_again(f"no way home: {error}", drives, patience, senses)
         drives.begin(points, senses)
     step = _go_home_on(drives, patience, senses, limit)
     return step if step.message else replace(step, message="")
@@ -94,11 +94,11 @@ def _go_home_on(drives: Drives, patience: Patience, senses: Senses, limit: float
     if step.state.is_over:
         drives.driver = None
     if step.state is DriveState.CUT_OFF:
-        return _try_home_again(step.reason, drives, patience, senses)
+        return try_home_again(step.reason, drives, patience, senses)
     return PhaseStep(step.twist)
 
 
-def _try_home_again(reason: str, drives: Drives, patience: Patience, senses: Senses) -> PhaseStep:
+def try_home_again(reason: str, drives: Drives, patience: Patience, senses: Senses) -> PhaseStep:
     """Once more without what was remembered; a door may open; then it says there is no way."""
     patience.found_no_way_home()
     if patience.is_over:
@@ -121,7 +121,13 @@ def wait(reason: str, drives: Drives, patience: Patience, senses: Senses) -> Pha
 
 
 def wait_on(drives: Drives, patience: Patience, senses: Senses, limit: float) -> PhaseStep | None:
-    """While it waits: stand, or drive on to where others can pass; None when it does not wait."""
+    """While it waits: stand, or drive on to where others can pass; None when it does not wait.
+
+    As soon as there is a way it waits no longer.
+    """
+    stands = drives.driver is None and patience.is_waiting(senses.now)
+    if stands and patience.looks_again(senses.now) and drives.may_go_home(senses):
+        patience.end()
     if patience.has_ended(senses.now):
         drives.driver = None
     if not patience.is_waiting(senses.now):

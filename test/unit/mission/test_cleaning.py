@@ -390,7 +390,7 @@ def test_with_another_site_it_goes_on_and_wants_less() -> None:
     swept = clean.coverage.swept.copy()
     wall = Zone("wall", ZoneKind.WALL, ((1.5, 0.0), (1.5, 2.5)))
     walled = site(zones=Zones((wall,)))
-    clean.use_site(walled)
+    clean.use_site(walled, DirtMap(walled.occupancy))
     clean.interrupted(1.0)
     assert (clean.coverage.swept == swept).all()
     assert not (clean.coverage.wanted & ~walled.coverable()).any()

@@ -6,7 +6,7 @@ import json
 
 import numpy as np
 import pytest
-from fixtures.exploring import AWAY, DOCKED, HALL, HERE, WHOLE, Rig, known_to
+from fixtures.exploring import AWAY, DOCKED, HALL, HERE, TICK, WHOLE, Rig, known_to
 from fixtures.missions import TWO_ROOMS, WALL_X
 
 from roomba.geometry import Pose, Twist
@@ -18,7 +18,7 @@ from roomba.mission.clean_request import (
     CleanRequest,
     CleanResult,
 )
-from roomba.mission.machine import Phase
+from roomba.mission.machine import Event, Phase
 from roomba.mission.mission import MissionStep
 from roomba.perception.coverage_bits import SWEPT
 
@@ -81,6 +81,7 @@ def test_with_all_seen_and_clean_it_waits_for_the_whole_map_and_ends_on_it() -> 
     swept(rig)
     steps = [rig.tick() for _ in range(6)]
     assert steps[-1] == MissionStep(wants_whole_map=True)
+    assert "waits for the map" in rig.mission.message
     assert rig.phase is Phase.CLEANING
     rig.grow(WHOLE, is_growing=False)
     assert rig.mission.exploration is None
@@ -137,5 +138,70 @@ def test_killed_it_goes_on_with_what_the_map_shows_by_then(later: OccupancyMap) 
     assert again.mission.cleaning is not None
     assert again.mission.exploration is not None
     assert again.mission.cleaning.clean_area == pytest.approx(clean)
+    again.tick(5)
+    assert again.phase is Phase.CLEANING
+
+
+def test_a_look_that_is_cut_short_is_no_round_that_was_broken_off() -> None:
+    rig = cleaning()
+    assert rig.mission.cleaning is not None
+    rig.mission.cleaning._book.note_tried(rig.mission.cleaning.coverage.wanted)
+    rig.grow(known_to(WALL_X + 0.3))
+    rig.grow(WHOLE)
+    assert rig.mission.driver is None
+    site = rig.mission.site
+    columns = np.nonzero(rig.mission.cleaning._book.untried)[1]
+    # The hall was planned once.
+    assert site.frame.centre_of(0, int(columns.min()))[0] > WALL_X - 0.3
+
+
+def test_shut_in_it_waits_and_does_not_take_the_map_for_whole() -> None:
+    rig = cleaning(known=WHOLE)
+    swept(rig)
+    around = [
+        (HERE.x + 0.3 * np.cos(turn), HERE.y + 0.3 * np.sin(turn), 0.05)
+        for turn in np.arange(0.0, 2.0 * np.pi, 0.2).tolist()
+    ]
+    rig.mission.obstacles.standing = lambda now: around  # type: ignore[method-assign]
+    rig.mission.obstacles.at_least = lambda now: around  # type: ignore[method-assign]
+    steps = [rig.tick() for _ in range(20)]
+    assert not any(step.wants_whole_map for step in steps)
+    assert "no way leads out of where it is; it waits" in rig.mission.message
+    assert rig.phase is Phase.CLEANING
+
+
+def test_a_map_that_nobody_finishes_is_an_error_that_says_what_to_do() -> None:
+    rig = cleaning(known=WHOLE)
+    swept(rig)
+    rig.tick(6)
+    assert "waits for the map to be finished" in rig.mission.message
+    rig.tick(round(121.0 / TICK))
+    assert rig.phase is Phase.ERROR
+    assert "map/finish" in rig.mission.message
+    rig.command(Event.RESUME)
+    assert rig.tick(3).wants_whole_map
+
+
+def test_dirt_that_is_met_on_a_newer_map_is_cleaned_once_more() -> None:
+    rig = cleaning(known=WHOLE)
+    rig.grow(WHOLE, is_growing=False)
+    assert rig.mission.cleaning is not None
+    swept(rig)
+    dirt = rig.mission.dirt
+    for x in np.arange(0.5, 1.9, 0.1).tolist():
+        dirt.note(x, 1.2, 100.0 if x < 0.7 else 1.0, 0.1)
+    rig.tick(3)
+    assert rig.phase is Phase.CLEANING
+    assert rig.mission.driver is not None
+    assert rig.mission.cleaning.coverage.fraction < 1.0
+
+
+def test_killed_while_the_map_became_whole_it_looks_for_no_more() -> None:
+    rig = cleaning()
+    values = json.loads(json.dumps(rig.mission.checkpoint(rig.senses)))
+    again = Rig(AWAY, WHOLE, is_growing=False)
+    again.mission.restore(values, again.senses)
+    assert again.mission.cleaning is not None
+    assert again.mission.exploration is None
     again.tick(5)
     assert again.phase is Phase.CLEANING

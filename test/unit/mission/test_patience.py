@@ -50,3 +50,12 @@ def test_told_to_go_on_it_counts_anew() -> None:
     patience.renew()
     assert not patience.must_wait
     assert not patience.is_over
+
+
+def test_while_it_waits_it_looks_now_and_then_and_may_wait_no_longer() -> None:
+    patience = Patience()
+    patience.wait(100.0)
+    assert [patience.looks_again(100.0 + 0.5 * count) for count in range(9)].count(True) == 2
+    patience.end()
+    assert not patience.is_waiting(105.0)
+    assert patience.has_ended(105.0)

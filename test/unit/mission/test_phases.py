@@ -98,6 +98,17 @@ def test_a_door_that_is_opened_meanwhile_is_driven_through() -> None:
     assert not rig.makes_room
 
 
+def test_it_waits_no_longer_than_there_is_no_way() -> None:
+    rig, now = Rig(), 0.0
+    while not rig.go_home(replace(IN_THE_DEN, now=now)).message:
+        now += 0.05
+    rig.drives.driver = None
+    assert rig.go_home(replace(IN_THE_DEN, now=now + 2.5)) == PhaseStep()
+    rig.obstacles.things = []
+    assert rig.go_home(replace(IN_THE_DEN, now=now + 3.0)) == PhaseStep()
+    assert rig.go_home(replace(IN_THE_DEN, now=now + 5.0)).twist != STANDSTILL
+
+
 def test_with_nothing_left_the_clean_is_finished_after_another_look() -> None:
     rig = Rig()
     job = Job(DirtMap(TWO_ROOMS.map), CONFIG.energy, IN_THE_DEN)
