@@ -21,15 +21,38 @@ settings.load_profile("project")
 # programs that they start: these would end after their deadlines only.
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
-GRAPH_FIXTURES = {"graph", "robot", "shared_robot"}
+LONGEST_FIRST = (
+    "test_map_topics.py",
+    "test_explore_with_person.py",
+    "test_explore.py",
+    "test_clean.py",
+    "test_faults.py",
+    "test_map_kept.py",
+    "test_workspace.py",
+    "test_localize.py",
+    "test_menu.py",
+    "test_localization.py",
+    "test_walk.py",
+    "test_unknown_things.py",
+    "test_clean_while_mapping.py",
+    "test_bags.py",
+    "test_map_bag.py",
+)
+"""Files that take longest, so that no worker is left with one when the others have ended."""
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Let the files that take longest come first."""
+    rank = {name: rank for rank, name in enumerate(LONGEST_FIRST)}
+    items.sort(key=lambda item: rank.get(item.path.name, len(rank)))
 
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_pyfunc_call(pyfuncitem: pytest.Function) -> bool | None:
     """Run what uses a graph in a process of its own: each test can be a node of its graph."""
-    names = pyfuncitem._fixtureinfo.argnames
-    if not GRAPH_FIXTURES & set(pyfuncitem.fixturenames):
+    if not any(isinstance(value, RosGraph) for value in pyfuncitem.funcargs.values()):
         return None
+    names = pyfuncitem._fixtureinfo.argnames
     arguments = {name: pyfuncitem.funcargs[name] for name in names}
     run_forked(lambda: pyfuncitem.obj(**arguments))
     return True
@@ -39,6 +62,14 @@ def pytest_pyfunc_call(pyfuncitem: pytest.Function) -> bool | None:
 def graph(tmp_path: Path) -> Iterator[RosGraph]:
     """A bare master."""
     with RosGraph(tmp_path) as own:
+        own.start_master()
+        yield own
+
+
+@pytest.fixture(scope="module")
+def master(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RosGraph]:
+    """A bare master for a module whose tests leave it as it was."""
+    with RosGraph(tmp_path_factory.mktemp("master")) as own:
         own.start_master()
         yield own
 

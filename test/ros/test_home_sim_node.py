@@ -1,31 +1,29 @@
 import math
-import time
+from collections.abc import Iterator
 
 import pytest
 import rospy
 from fixtures.graph import RosGraph
-from fixtures.probe import Probe
+from fixtures.refusal import refusal
+from fixtures.simulated import Body, simulated, twist
 from fixtures.waiting import wait_until
-from geometry_msgs.msg import Twist
-from nav_msgs.msg import OccupancyGrid, Odometry
+from nav_msgs.msg import OccupancyGrid
 from roomba_robot.msg import Bumper
 from roomba_robot.srv import SpillDirt, TurnCamera
 from std_msgs.msg import Float32
 
-SCRIPT = "home_sim_node.py"
+from roomba.geometry import Pose
+from roomba_ros.home_sim_node import main
+
+STATION = Pose(0.3, 5.0, math.pi)
+"""Of the apartment."""
 
 
-def start(graph: RosGraph, *arguments: str) -> Probe:
-    graph.set_param("/use_sim_time", True)
-    graph.rosrun(SCRIPT, *arguments)
-    wait_until(lambda: "/clock" in graph.system_state()[0], 30.0, "the simulation runs")
-    return Probe(graph)
-
-
-def forward(speed: float) -> Twist:
-    message = Twist()
-    message.linear.x = speed
-    return message
+@pytest.fixture(scope="module")
+def shared_robot(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RosGraph]:
+    """The simulation of the apartment, twice as fast as real time."""
+    with simulated(tmp_path_factory.mktemp("home"), "_home:=apartment", "_speed:=2") as graph:
+        yield graph
 
 
 @pytest.mark.parametrize(
@@ -37,74 +35,95 @@ def forward(speed: float) -> Twist:
         ("/home_sim_node/home", "no_such_home", "no_such_home"),
         ("/home_sim_node/speed", 0, "speed"),
         ("/home_sim_node/seed", -3, "seed"),
+        ("/home_sim_node/sensors", "broken", "ideal or noisy"),
         ("/initial_post_x", 77.0, "does not fit"),
     ],
 )
 def test_a_wrong_parameter_ends_it_with_one_clear_line(
-    graph: RosGraph, parameter: str, value: object, said: str
+    master: RosGraph, parameter: str, value: object, said: str, capfd: pytest.CaptureFixture[str]
 ) -> None:
     """FAULTS rows 18 and 19."""
-    graph.set_param(parameter, value)
-    node = graph.rosrun(SCRIPT)
-    assert node.ends(20.0) == 1
-    lines = [line for line in node.output.splitlines() if line.strip()]
-    assert len(lines) == 1
-    assert said in lines[0]
+    master.set_param(parameter, value)
+    try:
+        assert said in refusal(main, master, capfd)
+    finally:
+        master.delete_param(parameter)
 
 
-def test_the_body_drives_and_a_command_that_is_not_repeated_stops_it(graph: RosGraph) -> None:
-    probe = start(graph, "_home:=empty")
-    for _ in range(20):
-        probe.send("/cmd_vel_out", forward(-0.4))
-        time.sleep(0.05)
-    assert probe.next("/odom", Odometry).twist.twist.linear.x == pytest.approx(-0.4, abs=0.02)
-    time.sleep(1.0)
-    assert probe.next("/odom", Odometry).twist.twist.linear.x == 0.0
-    assert probe.newest["/odom"].pose.pose.position.x < -0.2
+def test_its_script_ends_by_a_wrong_parameter_too(master: RosGraph) -> None:
+    node = master.rosrun("home_sim_node.py", "_home:=no_such_home")
+    assert node.ends(60.0) == 1
+    assert "no_such_home" in node.output
 
 
-def test_what_cannot_be_driven_is_refused(graph: RosGraph) -> None:
-    probe = start(graph, "_home:=empty")
-    probe.send("/cmd_vel_out", forward(math.nan))
-    time.sleep(0.3)
-    assert probe.next("/odom", Odometry).pose.pose.position.x == 0.0
+def test_the_body_drives_and_a_command_that_is_not_repeated_stops_it(
+    shared_robot: RosGraph,
+) -> None:
+    body = Body(shared_robot, STATION)
+    begin = body.odometry().pose.pose.position
+
+    def has_driven() -> bool:
+        message = body.odometry()
+        here = message.pose.pose.position
+        is_fast = message.twist.twist.linear.x == pytest.approx(-0.4, abs=0.03)
+        return is_fast and math.dist((here.x, here.y), (begin.x, begin.y)) > 0.2
+
+    body.drive(-0.4, 0.0, has_driven, "it drives back")
+    last = rospy.get_time()
+    wait_until(lambda: body.odometry().twist.twist.linear.x == 0.0, 20.0, "it stands")
+    # Of the robot's clock, and several times what the drive's time-out and braking take.
+    assert body.probe.newest["/odom"].header.stamp.to_sec() - last < 4.0
 
 
-def test_it_puts_the_robot_at_the_homes_station_and_says_where(graph: RosGraph) -> None:
-    probe = start(graph, "_home:=apartment")
-    assert graph.param("/initial_post_x") == pytest.approx(0.3)
-    assert graph.param("/initial_post_y") == pytest.approx(5.0)
-    assert graph.param("/initial_post_theta") == pytest.approx(math.pi)
-    known = probe.next("/map", OccupancyGrid)
+def test_what_cannot_be_driven_is_refused(shared_robot: RosGraph) -> None:
+    body = Body(shared_robot, Pose(1.0, 5.0, 0.0))
+    wait_until(lambda: body.odometry().twist.twist.angular.z == 0.0, 10.0, "it stands")
+    before = body.odometry().pose.pose
+    body.probe.send("/cmd_vel_out", twist(math.nan))
+    body.drive(0.0, 1.0, lambda: abs(body.odometry().twist.twist.angular.z) > 0.5, "it turns")
+    after = body.odometry().pose.pose
+    assert math.dist(
+        (after.position.x, after.position.y), (before.position.x, before.position.y)
+    ) == pytest.approx(0.0, abs=0.02)
+    assert after.orientation.z != before.orientation.z
+
+
+def test_it_puts_the_robot_at_the_homes_station_and_says_where(shared_robot: RosGraph) -> None:
+    assert shared_robot.param("/initial_post_x") == pytest.approx(STATION.x)
+    assert shared_robot.param("/initial_post_y") == pytest.approx(STATION.y)
+    assert shared_robot.param("/initial_post_theta") == pytest.approx(STATION.theta)
+    known = Body(shared_robot, STATION).probe.next("/map", OccupancyGrid)
     assert (known.info.width, known.info.height) == (204, 204)
 
 
-def test_the_bumper_is_told(graph: RosGraph) -> None:
-    probe = start(graph, "_home:=empty")
-    for _ in range(60):
-        probe.send("/cmd_vel_out", forward(0.4))
-        time.sleep(0.03)
-        if "/bumper" in probe.newest and probe.newest["/bumper"].is_left_pressed:
-            break
-        probe.hear("/bumper", Bumper)
-    assert probe.newest["/bumper"].is_left_pressed
-    assert probe.newest["/bumper"].is_right_pressed
+def test_the_bumper_is_told(shared_robot: RosGraph) -> None:
+    body = Body(shared_robot, STATION)
+    body.probe.hear("/bumper", Bumper)
+
+    def is_pressed() -> bool:
+        bumper = body.probe.newest.get("/bumper", Bumper())
+        return bumper.is_left_pressed and bumper.is_right_pressed
+
+    assert not is_pressed()
+    body.drive(0.4, 0.0, is_pressed, "it feels the station")
 
 
-def test_crumbs_can_be_spilled_and_are_felt(graph: RosGraph) -> None:
-    probe = start(graph)
+def test_crumbs_can_be_spilled_and_are_felt(shared_robot: RosGraph) -> None:
+    probe = Body(shared_robot, STATION).probe
     spill = rospy.ServiceProxy("/sim/spill", SpillDirt)
     spill.wait_for_service(10.0)
     before = probe.next("/dirt_raw", Float32).data
-    assert spill(0.0, 0.0, 0.05, 7.0).success
-    wait_until(lambda: probe.next("/dirt_raw", Float32).data > before + 5.0, 5.0)
+    assert spill(STATION.x, STATION.y, 0.05, 7.0).success
+    wait_until(lambda: probe.next("/dirt_raw", Float32).data > before + 5.0, 15.0)
     refused = spill(1000.0, 0.0, 0.05, 7.0)
     assert not refused.success
     assert "no floor" in refused.message
 
 
-def test_pictures_are_taken_at_any_angle_that_the_camera_can_turn_to(graph: RosGraph) -> None:
-    start(graph)
+def test_pictures_are_taken_at_any_angle_that_the_camera_can_turn_to(
+    shared_robot: RosGraph,
+) -> None:
+    Body(shared_robot, STATION)
     capture = rospy.ServiceProxy("/camera/capture", TurnCamera)
     capture.wait_for_service(10.0)
     left, right = capture(20.0).image, capture(-20.0).image
@@ -115,11 +134,11 @@ def test_pictures_are_taken_at_any_angle_that_the_camera_can_turn_to(graph: RosG
             capture(wrong)
 
 
-def test_the_clock_moves_by_whole_steps_only(graph: RosGraph) -> None:
+def test_the_clock_moves_by_whole_steps_only(shared_robot: RosGraph) -> None:
     """Time passes by the simulation's steps, not by the wall clock."""
-    probe = start(graph, "_speed:=4")
+    body = Body(shared_robot, STATION)
     first = rospy.get_rostime()
-    probe.next("/odom", Odometry)
+    wait_until(lambda: rospy.get_rostime() > first, 10.0, "time passes")
+    body.odometry()
     passed = rospy.get_rostime() - first
-    assert passed.to_nsec() > 0
     assert passed.to_nsec() % 50_000_000 == 0

@@ -1,17 +1,22 @@
 import math
 import threading
 import time
+from collections.abc import Iterator
 
+import pytest
 import rospy
 from fixtures.graph import RosGraph
 from fixtures.probe import Probe
 from fixtures.processes import Program
+from fixtures.refusal import refusal
 from fixtures.waiting import wait_until
 from geometry_msgs.msg import PoseStamped, Twist
 from nav_msgs.msg import Odometry
 from roomba_robot.msg import RobotPosition
 from rosgraph_msgs.msg import Clock
 from tf2_msgs.msg import TFMessage
+
+from roomba_ros.position_pub_node import main
 
 
 def odometry(x: float, y: float, theta: float = 0.0) -> Odometry:
@@ -20,6 +25,23 @@ def odometry(x: float, y: float, theta: float = 0.0) -> Odometry:
     message.pose.pose.orientation.z = math.sin(theta / 2)
     message.pose.pose.orientation.w = math.cos(theta / 2)
     return message
+
+
+@pytest.fixture(scope="module")
+def at_origin(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RosGraph]:
+    """The node without any parameter, of a robot that has not moved yet."""
+    with RosGraph(tmp_path_factory.mktemp("position")) as graph:
+        graph.start_master()
+        graph.rosrun("position_pub_node.py")
+        yield graph
+
+
+def is_silent(probe: Probe, topic: str) -> bool:
+    """Whether nothing comes on a topic while five positions do."""
+    before = probe.counts[topic]
+    for _ in range(5):
+        probe.next("/position", RobotPosition)
+    return probe.counts[topic] == before
 
 
 def start(graph: RosGraph, x: float = 0.0, y: float = 0.0) -> tuple[Probe, Program]:
@@ -49,47 +71,47 @@ def test_the_pose_is_where_odometry_began_and_the_way_since(graph: RosGraph) -> 
     assert (transform.header.frame_id, transform.child_frame_id) == ("map", "odom")
 
 
-def test_a_single_wish_makes_it_drive_there_and_no_teleport(graph: RosGraph) -> None:
-    probe, _ = start(graph)
+def test_wishes_that_are_no_places_are_refused(at_origin: RosGraph) -> None:
+    """FAULTS row 26: change_position NaN and 9999; and missing parameters have their defaults."""
+    probe, node = Probe(at_origin), at_origin.programs[-1]
+    probe.hear("/cmd_vel", Twist)
+    probe.send("/odom", odometry(0.0, 0.0))
+    assert probe.position() == (0.0, 0.0)
+    for x, y in ((math.nan, 0.0), (9999.0, 0.0), (0.0, -math.inf), (0.0, 100.5)):
+        probe.send("/change_position", RobotPosition(x, y))
+    node.says("change_position refused", 20.0)
+    probe.next("/position", RobotPosition)
+    probe.next("/position", RobotPosition)
+    assert "/cmd_vel" not in probe.newest
+
+
+def test_a_single_wish_makes_it_drive_there_and_no_teleport(at_origin: RosGraph) -> None:
+    probe = Probe(at_origin)
     probe.hear("/cmd_vel", Twist)
     probe.send("/odom", odometry(0.0, 0.0))
     probe.next("/position", RobotPosition)
     probe.send("/change_position", RobotPosition(2.0, 0.0))
-    wait_until(lambda: "/cmd_vel" in probe.newest, 2.0, "a command")
+    wait_until(lambda: "/cmd_vel" in probe.newest, 20.0, "a command")
     # Carefully: without a map and a lidar it knows its place but roughly.
     assert 0.1 < probe.next("/cmd_vel", Twist).linear.x < 0.2
     assert probe.position() == (0.0, 0.0)
 
 
-def test_having_arrived_it_leaves_the_drive_to_others(graph: RosGraph) -> None:
-    probe, _ = start(graph)
+def test_having_arrived_it_leaves_the_drive_to_others(at_origin: RosGraph) -> None:
+    probe = Probe(at_origin)
     probe.hear("/cmd_vel", Twist)
     probe.send("/odom", odometry(0.0, 0.0))
     probe.next("/position", RobotPosition)
     probe.send("/change_position", RobotPosition(1.0, 0.0))
-    wait_until(lambda: "/cmd_vel" in probe.newest, 2.0, "a command")
+    wait_until(lambda: "/cmd_vel" in probe.newest, 20.0, "a command")
     roll(probe, 0.0, 1.0)
-    wait_until(lambda: probe.newest["/cmd_vel"] == Twist(), 2.0, "it stops")
-    time.sleep(1.0)
+    wait_until(lambda: probe.newest["/cmd_vel"] == Twist(), 20.0, "it stops")
+    wait_until(lambda: is_silent(probe, "/cmd_vel"), 20.0, "it leaves the drive")
     before = probe.counts["/cmd_vel"]
     roll(probe, 1.0, 2.0)
     for _ in range(5):
         probe.next("/position", RobotPosition)
     assert probe.counts["/cmd_vel"] == before
-
-
-def test_wishes_that_are_no_places_are_refused(graph: RosGraph) -> None:
-    """FAULTS row 26: change_position NaN and 9999."""
-    probe, node = start(graph)
-    probe.hear("/cmd_vel", Twist)
-    probe.send("/odom", odometry(0.0, 0.0))
-    probe.next("/position", RobotPosition)
-    for x, y in ((math.nan, 0.0), (9999.0, 0.0), (0.0, -math.inf), (0.0, 100.5)):
-        probe.send("/change_position", RobotPosition(x, y))
-    node.says("change_position refused", 3.0)
-    probe.next("/position", RobotPosition)
-    probe.next("/position", RobotPosition)
-    assert "/cmd_vel" not in probe.newest
 
 
 class FastClock:
@@ -119,41 +141,37 @@ def test_it_goes_on_when_the_clock_jumps_back_and_far_ahead(graph: RosGraph) -> 
         before = probe.counts["/position"]
         wait_until(
             lambda before=before: probe.counts["/position"] > before + 20,
-            10.0,
+            30.0,
             f"positions after the jump to {begin}",
         )
     assert node.status is None
 
 
-def test_simulated_time_without_a_clock_is_a_clear_error(graph: RosGraph) -> None:
+def test_simulated_time_without_a_clock_is_a_clear_error(
+    graph: RosGraph, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
     """FAULTS row 17."""
     graph.set_param("/use_sim_time", True)
-    node = graph.rosrun("position_pub_node.py")
-    assert node.ends(20.0) == 1
-    assert "/use_sim_time is true, but nothing published /clock" in node.output
+    monkeypatch.setattr("roomba_ros.node.CLOCK_DEADLINE", 0.5)
+    said = refusal(main, graph, capfd)
+    assert "/use_sim_time is true, but nothing published /clock within 0.5 s" in said
 
 
-def test_missing_parameters_have_their_defaults(graph: RosGraph) -> None:
-    """FAULTS row 18."""
-    graph.rosrun("position_pub_node.py")
-    probe = Probe(graph)
-    probe.send("/odom", odometry(0.5, 0.25))
-    assert probe.next("/position", RobotPosition) == RobotPosition(0.5, 0.25)
-
-
-def test_wrong_parameters_stop_it_with_one_clear_line(graph: RosGraph) -> None:
-    """FAULTS row 19, and limits in the wrong order."""
-    for name, value in (
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
         ("/robot_max_speed", -0.5),
         ("/robot_max_speed", 0),
         ("/robot_max_speed", "fast"),
         ("/max_cordinate", -200.0),
-    ):
-        before = {"/robot_max_speed": 0.5, "/max_cordinate": 100.0}[name]
-        graph.set_param(name, value)
-        node = graph.rosrun("position_pub_node.py")
-        assert node.ends(10.0) == 1
-        complaints = [line for line in node.output.splitlines() if line.strip()]
-        assert len(complaints) == 1
-        assert name.strip("/") in complaints[0]
-        graph.set_param(name, before)
+    ],
+)
+def test_a_wrong_parameter_stops_it_with_one_clear_line(
+    master: RosGraph, name: str, value: object, capfd: pytest.CaptureFixture[str]
+) -> None:
+    """FAULTS row 19, and limits in the wrong order."""
+    master.set_param(name, value)
+    try:
+        assert name.strip("/") in refusal(main, master, capfd)
+    finally:
+        master.delete_param(name)

@@ -26,7 +26,7 @@ def test_a_second_server_is_refused_by_name_and_by_topic(graph: RosGraph) -> Non
     wait_until(lambda: serving(graph), 30.0)
     for arguments in ((), ("__name:=another_server",)):
         second = graph.rosrun(SCRIPT, *arguments)
-        assert second.ends(10.0) == 1
+        assert second.ends(30.0) == 1
         assert f"refused: {SERVER}" in second.output
     assert first.status is None
     assert serving(graph)
@@ -36,9 +36,9 @@ def test_a_server_that_died_is_no_rival(graph: RosGraph) -> None:
     first = graph.rosrun(SCRIPT)
     wait_until(lambda: serving(graph), 30.0)
     graph.signal(SERVER.strip("/"), 9)
-    first.ends(5.0)
+    first.ends(30.0)
     second = graph.rosrun(SCRIPT)
-    wait_until(lambda: graph.answers(SERVER), 15.0, "the new server answers")
+    wait_until(lambda: graph.answers(SERVER), 30.0, "the new server answers")
     assert second.status is None
 
 
@@ -47,7 +47,7 @@ def test_without_map_and_pose_a_goal_is_rejected_with_the_reason(graph: RosGraph
     Probe(graph)
     walker = Walker()
     walker.send(1.0, 1.0)
-    assert walker.ends(5.0) == 5
+    assert walker.ends(30.0) == 5
     assert "map and position" in walker.text
 
 
@@ -74,10 +74,10 @@ def test_move_base_is_the_same_walk_and_the_newest_goal_counts(graph: RosGraph) 
     probe.send("/pose", stamped(0.0, 0.0))
     walker = Walker()
     client = actionlib.SimpleActionClient("move_base", MoveBaseAction)
-    wait_until(lambda: client.wait_for_server(rospy.Duration(0.01)), 10.0)
+    wait_until(lambda: client.wait_for_server(rospy.Duration(0.01)), 30.0)
 
     client.send_goal(MoveBaseGoal(stamped(1.0, 0.0, "odom")))
-    wait_until(lambda: client.get_state() == GoalStatus.REJECTED, 5.0, "another frame")
+    wait_until(lambda: client.get_state() == GoalStatus.REJECTED, 30.0, "another frame")
     assert "'odom'" in client.get_goal_status_text()
 
     poses: list[PoseStamped] = []
@@ -86,16 +86,16 @@ def test_move_base_is_the_same_walk_and_the_newest_goal_counts(graph: RosGraph) 
         feedback_cb=lambda message: poses.append(message.base_position),
     )
     assert 0.0 < probe.next("/change_position", RobotPosition).pos_x <= 1.0
-    wait_until(lambda: poses, 5.0, "where it is")
+    wait_until(lambda: poses, 30.0, "where it is")
 
     walker.send(-1.0, 0.0)
-    wait_until(lambda: client.get_state() == GoalStatus.PREEMPTED, 5.0, "the newer goal counts")
+    wait_until(lambda: client.get_state() == GoalStatus.PREEMPTED, 30.0, "the newer goal counts")
     assert client.get_goal_status_text() == "a newer goal took over"
 
     probe.hear("/move_base/goal", MoveBaseActionGoal)
     probe.send("/move_base_simple/goal", stamped(0.0, 0.0))
-    assert walker.ends(5.0) == GoalStatus.PREEMPTED
-    wait_until(lambda: "/move_base/goal" in probe.newest, 5.0, "RViz's goal is an ordinary one")
+    assert walker.ends(30.0) == GoalStatus.PREEMPTED
+    wait_until(lambda: "/move_base/goal" in probe.newest, 30.0, "RViz's goal is an ordinary one")
 
     wanted = stamped(0.0, 0.0)
     wanted.pose.orientation.z = wanted.pose.orientation.w = math.sqrt(0.5)
@@ -104,4 +104,4 @@ def test_move_base_is_the_same_walk_and_the_newest_goal_counts(graph: RosGraph) 
     assert math.isclose(heading.data, 0.5 * math.pi, rel_tol=1e-6), "there it turns"
     assert client.get_state() == GoalStatus.ACTIVE
     probe.send("/pose", wanted)
-    wait_until(lambda: client.get_state() == GoalStatus.SUCCEEDED, 5.0, "it looks there")
+    wait_until(lambda: client.get_state() == GoalStatus.SUCCEEDED, 30.0, "it looks there")

@@ -24,12 +24,12 @@ def bag(tmp_path_factory: pytest.TempPathFactory) -> Path:
     with RosGraph(folder) as graph:
         graph.launch("speed:=3")
         recorder = graph.run("rosbag", "record", "-a", "-O", str(path))
-        wait_until(lambda: path.with_suffix(".bag.active").exists(), 15.0, "the recorder records")
+        wait_until(lambda: path.with_suffix(".bag.active").exists(), 30.0, "the recorder records")
         topics = ("/position", "/odom", "/clock", "/walk_to_point/status", "/map")
-        wait_until(lambda: recording(graph, *topics), 15.0, "the recorder hears the robot")
+        wait_until(lambda: recording(graph, *topics), 30.0, "the recorder hears the robot")
         run_forked(lambda: walk(graph))
         recorder.send(signal.SIGINT)
-        wait_until(path.exists, 15.0, "the recorder closes the bag")
+        wait_until(path.exists, 30.0, "the recorder closes the bag")
     return path
 
 
@@ -39,10 +39,10 @@ def recording(graph: RosGraph, *topics: str) -> bool:
 
 
 def walk(graph: RosGraph) -> None:
-    Probe(graph)
+    Probe(graph).position()
     walker = Walker()
     # The recorder looks for new topics once a second; this client has just made these.
-    wait_until(lambda: walker.listeners >= 2, 15.0, "server and recorder hear the client")
+    wait_until(lambda: walker.listeners >= 2, 30.0, "server and recorder hear the client")
     walker.send(1.5, 2.0)
     assert walker.ends(30.0) == GoalStatus.SUCCEEDED
 

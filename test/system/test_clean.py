@@ -4,7 +4,6 @@ import contextlib
 import math
 import signal
 import threading
-import time
 from collections.abc import Callable, Iterator
 
 import actionlib
@@ -37,10 +36,10 @@ NODE = "mission_node"
 WHOLE = CleanGoal()
 EAST_OF_NEAR_ROOM = Rectangle(0.9, 0.0, 1.5, 1.4)
 SMALL = CleanGoal(mode=CleanGoal.ZONES, zones=[EAST_OF_NEAR_ROOM])
-AT_ONCE = 0.5
-"""s of wall time, as are all deadlines."""
-LONG = 50.0
-"""s; what a whole clean takes on a busy machine."""
+SOON = 8.0
+"""s of the robot's clock: one on the wall."""
+LONG = 100.0
+"""s of wall time, as are all deadlines: what a whole clean takes on a busy machine."""
 
 
 @pytest.fixture(scope="module")
@@ -59,7 +58,7 @@ class Order:
         self.feedback: list[CleanFeedback] = []
         self._client = actionlib.SimpleActionClient(name, action)
         wait_until(
-            lambda: self._client.wait_for_server(rospy.Duration(0.01)), 15.0, f"a server of {name}"
+            lambda: self._client.wait_for_server(rospy.Duration(0.01)), 40.0, f"a server of {name}"
         )
         self._client.send_goal(goal, feedback_cb=self.feedback.append)
 
@@ -82,7 +81,7 @@ class Vacuum:
         self._inject = rospy.ServiceProxy("/sim/inject_fault", InjectFault)
         self.inject("no_obstacles")
         self.inject("charge", 1.0)
-        wait_until(lambda: self.phases and self.phases[-1] != "starting", 20.0, "it is ready")
+        wait_until(lambda: self.phases and self.phases[-1] != "starting", 60.0, "it is ready")
         if self.state.phase != "docked":
             # Wherever a test before this one failed.
             self.hold(False)
@@ -106,7 +105,7 @@ class Vacuum:
     def dock(self) -> Order:
         return Order("dock", DockAction, DockGoal())
 
-    def does(self, phase: str, deadline: float = 20.0) -> None:
+    def does(self, phase: str, deadline: float = 60.0) -> None:
         try:
             wait_until(lambda: self.state.phase == phase, deadline, phase)
         except AssertionError as error:
@@ -126,19 +125,22 @@ class Vacuum:
 
     def shows_all_clean(self) -> None:
         wait_until(
-            lambda: cleaned(self.probe.newest["/coverage_map"]) > 0.9, 3.0, "the map of all of it"
+            lambda: cleaned(self.probe.newest["/coverage_map"]) > 0.9, 30.0, "the map of all of it"
         )
 
     def is_driving(self) -> bool:
         return self.twist()[0] > 0.1
 
     def stops(self, order: Callable[[], object]) -> float:
-        """Give an order to a driving robot; return after how long it stands, s, and stays."""
-        wait_until(self.is_driving, 10.0, "it drives")
-        begin = time.monotonic()
+        """Give an order to a driving robot; return after how long it stands, s of its clock.
+
+        And it stays so.
+        """
+        wait_until(self.is_driving, 30.0, "it drives")
+        begin = rospy.get_time()
         order()
-        wait_until(lambda: max(self.twist()) < 1e-3, 5.0, "it stands")
-        took = time.monotonic() - begin
+        wait_until(lambda: max(self.twist()) < 1e-3, 30.0, "it stands")
+        took = float(self.probe.newest["/odom"].header.stamp.to_sec() - begin)
         assert self.stands_for(40)
         return took
 
@@ -162,7 +164,7 @@ class Vacuum:
                 publisher.publish(command)
 
         publisher = self.probe.publisher("/cmd_vel", Twist)
-        wait_until(lambda: publisher.get_num_connections() >= 2, 10.0, "ears for /cmd_vel")
+        wait_until(lambda: publisher.get_num_connections() >= 2, 30.0, "ears for /cmd_vel")
         steering = threading.Thread(target=steer)
         steering.start()
         try:
@@ -206,10 +208,10 @@ def test_a_clean_is_held_and_completed(shared_robot: RosGraph) -> None:
     clean = vacuum.clean(WHOLE)
     wait_until(lambda: vacuum.state.fraction > 0.2, LONG, "it cleans")
 
-    assert vacuum.stops(rospy.ServiceProxy("/pause", Trigger)) < AT_ONCE
+    assert vacuum.stops(rospy.ServiceProxy("/pause", Trigger)) < SOON
     assert (vacuum.state.state, vacuum.state.phase) == ("paused", "paused")
     assert rospy.ServiceProxy("/resume", Trigger)().success
-    wait_until(vacuum.is_driving, 2.0, "it goes on")
+    wait_until(vacuum.is_driving, 30.0, "it goes on")
 
     result = clean.ends(GoalStatus.SUCCEEDED)
     assert (result.outcome, result.message) == (CleanResult.COMPLETED, "")
@@ -221,7 +223,7 @@ def test_a_clean_is_held_and_completed(shared_robot: RosGraph) -> None:
     assert fractions[0] < 0.1
     assert max(fractions) > 0.95
     told = {"cleaning", "paused", "returning"}
-    wait_until(lambda: told <= {f.state for f in clean.feedback}, 3.0, f"{told} as feedback")
+    wait_until(lambda: told <= {f.state for f in clean.feedback}, 30.0, f"{told} as feedback")
     assert len({f.room for f in clean.feedback if f.room}) == 2
 
     vacuum.does("docked")
@@ -277,7 +279,7 @@ def test_a_shut_door_is_told(shared_robot: RosGraph) -> None:
 def test_a_blocked_station_is_told_and_found_when_it_is_free(shared_robot: RosGraph) -> None:
     vacuum = Vacuum(shared_robot)
     clean = vacuum.clean(SMALL)
-    wait_until(lambda: vacuum.probe.position()[0] > 1.0, 10.0, "it has left the station")
+    wait_until(lambda: vacuum.probe.position()[0] > 1.0, 30.0, "it has left the station")
     vacuum.inject("obstacle", 0.05, x=STATION[0] + 0.3, y=STATION[1])
     result = clean.ends(GoalStatus.ABORTED)
     assert result.outcome == CleanResult.NOT_DOCKED
@@ -285,7 +287,7 @@ def test_a_blocked_station_is_told_and_found_when_it_is_free(shared_robot: RosGr
     told = ("something stands before it", "does not move")
     assert any(words in result.message for words in told), result.message
     assert result.covered > 0.9 * result.wanted
-    vacuum.does("error", 2.0)
+    vacuum.does("error", 30.0)
     assert (vacuum.state.state, vacuum.state.message) == ("error", result.message)
     vacuum.inject("no_obstacles")
     assert vacuum.dock().ends(GoalStatus.SUCCEEDED).is_docked
@@ -296,12 +298,12 @@ def test_a_killed_mission_node_comes_back_and_ends_the_clean(shared_robot: RosGr
     vacuum = Vacuum(shared_robot)
     vacuum.probe.hear("/coverage_map", OccupancyGrid)
     vacuum.clean(SMALL)
-    wait_until(lambda: vacuum.state.fraction > 0.3, 15.0, "some of it is clean")
+    wait_until(lambda: vacuum.state.fraction > 0.3, 30.0, "some of it is clean")
     wanted = vacuum.state.wanted
-    assert vacuum.stops(lambda: shared_robot.signal(NODE, signal.SIGKILL)) < AT_ONCE
+    assert vacuum.stops(lambda: shared_robot.signal(NODE, signal.SIGKILL)) < SOON
     vacuum.forget()
     # Alone it is back within 5 s: test_mission_node.py.
-    vacuum.does("cleaning", 10.0)
+    vacuum.does("cleaning", 30.0)
     assert vacuum.state.wanted == wanted
     vacuum.does("docked")
     assert in_order(["cleaning", "returning", "docking", "docked"], vacuum.phases)
@@ -315,23 +317,23 @@ def test_after_a_walk_and_an_emergency_stop_it_finds_home(shared_robot: RosGraph
     goal.pose.position, goal.pose.orientation.w = Point(1.3, 0.4, 0.0), 1.0
     vacuum.probe.send("/move_base_simple/goal", goal)
     wait_until(
-        lambda: math.dist(vacuum.probe.position(), (1.3, 0.4)) < 0.05, 15.0, "it walks there"
+        lambda: math.dist(vacuum.probe.position(), (1.3, 0.4)) < 0.05, 30.0, "it walks there"
     )
     vacuum.does("idle")
 
     clean = vacuum.clean(SMALL)
     vacuum.does("cleaning")
-    assert vacuum.stops(lambda: vacuum.hold(True)) < AT_ONCE
-    result = clean.ends(GoalStatus.ABORTED, 2.0)
+    assert vacuum.stops(lambda: vacuum.hold(True)) < SOON
+    result = clean.ends(GoalStatus.ABORTED, 30.0)
     assert result.outcome == CleanResult.FAULT
-    vacuum.does("emergency stop", 2.0)
+    vacuum.does("emergency stop", 30.0)
     assert (vacuum.state.state, vacuum.state.message) == ("error", "a child")
-    vacuum.clean(SMALL).ends(GoalStatus.REJECTED, 2.0)
+    vacuum.clean(SMALL).ends(GoalStatus.REJECTED, 30.0)
     # The mission stands by itself; that nobody else can drive is the speed loop's work.
     with vacuum.steered(0.8):
         assert vacuum.stands_for(80)
         vacuum.hold(False)
-        wait_until(lambda: vacuum.twist()[1] > 0.4, 5.0, "it obeys who steers")
-    vacuum.does("idle", 2.0)
+        wait_until(lambda: vacuum.twist()[1] > 0.4, 30.0, "it obeys who steers")
+    vacuum.does("idle", 30.0)
     assert vacuum.dock().ends(GoalStatus.SUCCEEDED).is_docked
     vacuum.does("docked")

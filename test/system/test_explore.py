@@ -1,36 +1,30 @@
 """The robot makes a map of its own, whatever comes between, and goes on with it."""
 
 import math
-import signal
 from collections.abc import Iterator
-from pathlib import Path
 
 import pytest
 import rospy
 from actionlib_msgs.msg import GoalStatus
-from fixtures.explorer import LONG, SPEED, Explorer, free_cells, is_growing, known
+from fixtures.explorer import SPEED, Explorer, free_cells, is_growing, known
 from fixtures.graph import RosGraph
 from fixtures.mapping_home import (
     FLOOR,
+    GOOD_SHARE,
     KITCHEN,
     STATION,
     ZONE,
-    keep_home_map,
+    is_right,
     kept_maps,
     mapping_home,
-    stray_cells,
 )
 from fixtures.waiting import wait_until
 from geometry_msgs.msg import Point, PoseStamped
-from roomba_robot.msg import CleanGoal, CleanResult, ExploreResult, Zone, ZoneArray
+from roomba_robot.msg import CleanGoal, CleanResult, ExploreResult, Zone
 from roomba_robot.srv import RenameRoom, SetZone
 
-AT_ONCE = 0.5
-"""s of wall time."""
-MARGIN = 0.11
-"""m; two cells, and what is lost by rounding: so far from what stands a map may show it."""
-GOOD_SHARE = 0.02
-"""Of the floor: by so much a map may be wrong about it."""
+SOON = 8.0
+"""s of the robot's clock: one on the wall."""
 
 
 @pytest.fixture(scope="module")
@@ -40,25 +34,6 @@ def shared_robot(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RosGraph]
     with RosGraph(folder) as own:
         own.launch(f"home:={mapping_home(folder)}", "map:=none", SPEED)
         yield own
-
-
-@pytest.fixture
-def graph(tmp_path: Path) -> Iterator[RosGraph]:
-    """Somebody mistyped the name of the robot's map of the home: it begins a new one.
-
-    A person walks about there.
-    """
-    with RosGraph(tmp_path) as own:
-        keep_home_map(tmp_path / "ros_home", "home")
-        own.launch(f"home:={mapping_home(tmp_path, has_walker=True)}", "map:=hom", SPEED)
-        yield own
-
-
-def is_right(robot: Explorer) -> bool:
-    """Whether the map shows the home and nothing else."""
-    message = robot.maps[-1]
-    floor = free_cells(message) * message.info.resolution**2
-    return abs(floor / FLOOR - 1.0) < GOOD_SHARE and stray_cells(robot.map, MARGIN) == 0
 
 
 def test_an_exploration_is_held_ended_and_taken_up(shared_robot: RosGraph) -> None:
@@ -73,14 +48,14 @@ def test_an_exploration_is_held_ended_and_taken_up(shared_robot: RosGraph) -> No
 
     errand = robot.explore()
     robot.does("exploring")
-    assert robot.stops(lambda: robot.trigger("/pause")) < AT_ONCE
-    robot.does("paused", 2.0)
+    assert robot.stops(lambda: robot.trigger("/pause")) < SOON
+    robot.does("paused", 30.0)
     assert robot.trigger("/resume").success
-    robot.does("exploring", 5.0)
-    assert robot.stops(errand.cancel) < AT_ONCE
-    stopped = errand.ends(GoalStatus.PREEMPTED, 3.0)
+    robot.does("exploring", 30.0)
+    assert robot.stops(errand.cancel) < SOON
+    stopped = errand.ends(GoalStatus.PREEMPTED, 30.0)
     assert stopped.outcome == ExploreResult.STOPPED
-    robot.does("idle", 2.0)
+    robot.does("idle", 30.0)
     assert robot.mapping.is_growing
     assert 0.3 * FLOOR < stopped.known < 0.95 * FLOOR
     assert stopped.distance > 0.05
@@ -92,25 +67,25 @@ def test_an_exploration_is_held_ended_and_taken_up(shared_robot: RosGraph) -> No
     assert list(result.unseen) == []
     assert min(known(again.feedback)) > 0.95 * stopped.known
     assert result.known == pytest.approx(FLOOR, rel=GOOD_SHARE)
-    robot.does("docked", 2.0)
+    robot.does("docked", 30.0)
     robot.has_whole_map()
     stages = [free_cells(message) for message in robot.maps if is_growing(message)]
     assert len(set(stages)) >= 3
     assert stages[-1] > 1.1 * stages[0]
-    assert is_right(robot)
+    assert is_right(robot.map)
     assert sorted(robot.rooms) == ["Room 1", "Room 2"]
 
 
 def test_it_goes_by_the_map_that_it_made(shared_robot: RosGraph) -> None:
     robot = Explorer(shared_robot)
     robot.has_whole_map()
-    refused = robot.explore().ends(GoalStatus.REJECTED, 3.0)
+    refused = robot.explore().ends(GoalStatus.REJECTED, 30.0)
     assert "nothing to explore" in refused.message
     walk = PoseStamped()
     walk.header.frame_id = "map"
     walk.pose.position, walk.pose.orientation.w = Point(3.6, 1.0, 0.0), 1.0
     robot.probe.send("/move_base_simple/goal", walk)
-    wait_until(lambda: math.dist(robot.probe.position(), (3.6, 1.0)) < 0.05, 20.0, "it walks there")
+    wait_until(lambda: math.dist(robot.probe.position(), (3.6, 1.0)) < 0.05, 30.0, "it walks there")
     robot.does("idle")
     spot = CleanGoal(mode=CleanGoal.SPOT, spot=Point(4.1, 2.0, 0.0))
     result = robot.clean(spot).ends()
@@ -125,21 +100,21 @@ def test_it_keeps_its_map(shared_robot: RosGraph) -> None:
     assert rospy.ServiceProxy("/rooms/rename", RenameRoom)("Room 1", KITCHEN).success
     zone = Zone(ZONE.name, Zone.NO_GO, [Point(x, y, 0.0) for x, y in ZONE.points])
     assert rospy.ServiceProxy("/set_zone", SetZone)(zone).success
-    wait_until(lambda: KITCHEN in robot.rooms, 5.0, "the room's name")
+    wait_until(lambda: KITCHEN in robot.rooms, 30.0, "the room's name")
     for name in ("", "a/b", "x" * 51):
         refused = robot.on_maps("save", name)
         assert not refused.success
         assert "expected a map's name" in refused.message
     store = kept_maps(shared_robot.folder / "ros_home")
-    wait_until(lambda: robot.on_maps("save", "home").success, 5.0, "it is saved")
-    wait_until(lambda: robot.mapping.name == "home", 2.0, "its name is told")
+    wait_until(lambda: robot.on_maps("save", "home").success, 30.0, "it is saved")
+    wait_until(lambda: robot.mapping.name == "home", 30.0, "its name is told")
 
     def is_all_kept() -> bool:
         robot.on_maps("save", "home")
         stored = store.load("home")
         return stored.rooms is not None and stored.zones.all == (ZONE,)
 
-    wait_until(is_all_kept, 5.0, "the zone is kept")
+    wait_until(is_all_kept, 30.0, "the zone is kept")
     stored = store.load("home")
     assert stored.rooms is not None
     assert KITCHEN in stored.rooms.names
@@ -155,36 +130,3 @@ def test_it_keeps_its_map(shared_robot: RosGraph) -> None:
     assert robot.on_maps("remove", "second").success
     assert robot.saved_maps() == (["home"], "home")
     assert not robot.on_maps("remove", "second").success
-
-
-def test_with_a_person_about_and_killed_it_maps_the_home_anew(graph: RosGraph) -> None:
-    robot = Explorer(graph)
-    assert "did you mean 'home'?" in robot.maps_with("explore").message
-    zones: list[ZoneArray] = []
-    rospy.Subscriber("/zones", ZoneArray, zones.append)
-    robot.explore()
-    robot.does("exploring")
-    wait_until(robot.drives, 10.0, "it drives")
-    before = robot.mapping.known
-    robot.phases.clear()
-    graph.signal("mission_node", signal.SIGKILL)
-    robot.does("exploring", 15.0)
-    assert robot.mapping.is_growing
-    assert robot.mapping.known > 0.95 * before
-    robot.does("docked", LONG)
-    robot.has_whole_map()
-    # Ann walked about all the time.
-    assert is_right(robot)
-
-    assert KITCHEN not in robot.rooms
-    assert robot.on_maps("save", "home").success
-    wait_until(lambda: KITCHEN in robot.rooms, 5.0, "the room has its name again")
-    wait_until(
-        lambda: zones and [zone.name for zone in zones[-1].zones] == [ZONE.name],
-        5.0,
-        "the zone is there again",
-    )
-    stored = kept_maps(graph.folder / "ros_home").load("home")
-    assert stored.zones.all == (ZONE,)
-    assert stored.rooms is not None
-    assert stored.rooms.names[stored.rooms.at(1.0, 1.0) - 1] == KITCHEN

@@ -38,7 +38,7 @@ class Robot:
 
     def carry(self, x: float, y: float, theta: float) -> None:
         self.inject("lifted")
-        self.until(Localization.SEARCHING, 3.0)
+        self.until(Localization.SEARCHING, 30.0)
         self.inject("put", x=x, y=y, theta=theta)
 
     def until(self, state: int, deadline: float) -> Localization:
@@ -68,11 +68,11 @@ def test_what_people_tell_is_checked(shared_robot: RosGraph) -> None:
         hands.probe.send("/initialpose", wrong)
         rospy.sleep(0.5)
         hands.until(Localization.KNOWN, 20.0)
-        wait_until(lambda: hands.is_at(x, y), 5.0, "it corrects the pose that was told")
+        wait_until(lambda: hands.is_at(x, y), 30.0, "it corrects the pose that was told")
     bad = told(math.nan, 0.0, 0.0)
     hands.probe.send("/initialpose", bad)
     refused = "initialpose refused"
-    wait_until(lambda: refused in shared_robot.programs[0].output, 5.0, "the refusal is told")
+    wait_until(lambda: refused in shared_robot.programs[0].output, 30.0, "the refusal is told")
     assert hands.is_at(x, y)
 
 
@@ -93,16 +93,16 @@ def test_asked_to_forget_its_place_it_finds_it(shared_robot: RosGraph) -> None:
 def test_a_robot_whose_lidar_is_blocked_says_so_and_walks_slowly(shared_robot: RosGraph) -> None:
     hands = Robot(shared_robot)
     hands.inject("lidar_blocked")
-    assert "lidar" in hands.until(Localization.ROUGH, 5.0).message
+    assert "lidar" in hands.until(Localization.ROUGH, 30.0).message
     walker = Walker()
     walker.send(1.0, 0.3)
     fastest = 0.0
     while walker.status in (GoalStatus.PENDING, GoalStatus.ACTIVE):
         fastest = max(fastest, hands.probe.speed())
-    assert walker.ends(1.0) == GoalStatus.SUCCEEDED
+    assert walker.ends(30.0) == GoalStatus.SUCCEEDED
     assert 0.1 < fastest < 0.2
     hands.inject("lidar_blocked", 0.0)
-    hands.until(Localization.KNOWN, 10.0)
+    hands.until(Localization.KNOWN, 30.0)
     assert hands.is_at(1.0, 0.3)
 
 
@@ -110,7 +110,7 @@ def test_a_robot_carried_away_on_its_walk_finds_itself_and_arrives(shared_robot:
     hands = Robot(shared_robot)
     walker = Walker()
     walker.send(3.0, 4.0)
-    wait_until(lambda: hands.probe.speed() > 0.3, 15.0, "it walks")
+    wait_until(lambda: hands.probe.speed() > 0.3, 30.0, "it walks")
     hands.carry(7.5, 1.5, 2.0)
     hands.until(Localization.KNOWN, 30.0)
     assert walker.ends(60.0) == GoalStatus.SUCCEEDED

@@ -2,15 +2,17 @@
 
 import math
 import shutil
+from collections.abc import Iterator
 from pathlib import Path
 
+import pytest
 import rospy
 from actionlib_msgs.msg import GoalStatus
-from fixtures.forked import run_forked
 from fixtures.graph import RosGraph
 from fixtures.probe import Probe, Walker
 from roomba_robot.msg import Bumper, WheelDrop
 
+SPEED = "speed:=4"
 HOMES = Path(__file__).parents[2] / "homes"
 
 
@@ -25,63 +27,64 @@ def flat_with(folder: Path, *things: str) -> Path:
     return home
 
 
-def test_it_goes_around_what_the_bumper_finds(tmp_path: Path) -> None:
-    with RosGraph(tmp_path) as graph:
-        graph.launch(
-            f"home:={flat_with(tmp_path, 'name: parcel, kind: box, x: 1.5, y: 2.0')}", "speed:=3"
-        )
-
-        def walk() -> None:
-            probe = Probe(graph)
-            pressed: list[bool] = []
-            walker = Walker()
-            walker.send(3.0, 4.0)
-            rospy.Subscriber(
-                "/bumper", Bumper, lambda m: pressed.append(m.is_left_pressed or m.is_right_pressed)
-            )
-            assert walker.ends(60.0) == GoalStatus.SUCCEEDED
-            assert any(pressed)
-            assert math.dist(probe.position(), (3.0, 4.0)) < 0.05
-
-        run_forked(walk)
-
-
-def test_it_stops_at_the_stairs_and_says_so(tmp_path: Path) -> None:
-    with RosGraph(tmp_path) as graph:
-        graph.launch("home:=family", "speed:=3")
-
-        def walk() -> None:
-            probe = Probe(graph)
-            dropped: list[bool] = []
-            rospy.Subscriber(
-                "/wheel_drop",
-                WheelDrop,
-                lambda m: dropped.append(m.is_left_dropped or m.is_right_dropped),
-            )
-            walker = Walker()
-            walker.send(7.1, -0.7)
-            assert walker.ends(60.0) == GoalStatus.ABORTED
-            assert "the floor ends" in walker.text
-            assert dropped
-            assert not any(dropped)
-            assert probe.position()[0] < 6.5
-
-        run_forked(walk)
-
-
-def test_a_way_that_is_blocked_ends_with_the_reason(tmp_path: Path) -> None:
-    doors = (
+@pytest.fixture(scope="module")
+def flat(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RosGraph]:
+    """The whole robot in a flat where a parcel stands about, and a room is shut by boxes."""
+    folder = tmp_path_factory.mktemp("flat")
+    home = flat_with(
+        folder,
+        "name: parcel, kind: box, x: 1.5, y: 2.0",
         "name: pile 1, kind: box, x: 4.55, y: 3.2, size: {width: 0.6, depth: 0.6}",
         "name: pile 2, kind: box, x: 4.55, y: 3.6, size: {width: 0.6, depth: 0.6}",
     )
-    with RosGraph(tmp_path) as graph:
-        graph.launch(f"home:={flat_with(tmp_path, *doors)}", "speed:=5")
+    with RosGraph(folder) as graph:
+        graph.launch(f"home:={home}", SPEED)
+        yield graph
 
-        def walk() -> None:
-            Probe(graph)
-            walker = Walker()
-            walker.send(5.2, 0.0)
-            assert walker.ends(100.0) == GoalStatus.ABORTED
-            assert "map does not show" in walker.text
 
-        run_forked(walk)
+@pytest.fixture(scope="module")
+def family(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RosGraph]:
+    """The whole robot in a house with stairs."""
+    with RosGraph(tmp_path_factory.mktemp("family")) as graph:
+        graph.launch("home:=family", SPEED)
+        yield graph
+
+
+def test_it_goes_around_what_the_bumper_finds(flat: RosGraph) -> None:
+    probe = Probe(flat)
+    pressed: list[bool] = []
+    rospy.Subscriber(
+        "/bumper", Bumper, lambda m: pressed.append(m.is_left_pressed or m.is_right_pressed)
+    )
+    probe.position()
+    walker = Walker()
+    walker.send(3.0, 4.0)
+    assert walker.ends(60.0) == GoalStatus.SUCCEEDED
+    assert any(pressed)
+    assert math.dist(probe.position(), (3.0, 4.0)) < 0.05
+
+
+def test_a_way_that_is_blocked_ends_with_the_reason(flat: RosGraph) -> None:
+    Probe(flat).position()
+    walker = Walker()
+    walker.send(5.2, 0.0)
+    assert walker.ends(100.0) == GoalStatus.ABORTED
+    assert "map does not show" in walker.text
+
+
+def test_it_stops_at_the_stairs_and_says_so(family: RosGraph) -> None:
+    probe = Probe(family)
+    dropped: list[bool] = []
+    rospy.Subscriber(
+        "/wheel_drop",
+        WheelDrop,
+        lambda m: dropped.append(m.is_left_dropped or m.is_right_dropped),
+    )
+    probe.position()
+    walker = Walker()
+    walker.send(7.1, -0.7)
+    assert walker.ends(60.0) == GoalStatus.ABORTED
+    assert "the floor ends" in walker.text
+    assert dropped
+    assert not any(dropped)
+    assert probe.position()[0] < 6.5

@@ -1,0 +1,64 @@
+"""A robot without a map explores with a person about, and knows the home again when it saves."""
+
+import signal
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+import rospy
+from fixtures.explorer import SPEED, Explorer
+from fixtures.graph import RosGraph
+from fixtures.mapping_home import KITCHEN, ZONE, is_right, keep_home_map, kept_maps, mapping_home
+from fixtures.waiting import wait_until
+from roomba_robot.msg import ZoneArray
+
+LONGEST = 110.0
+"""s of wall time: in a narrow door the two make room for each other, again and again."""
+
+
+@pytest.fixture
+def graph(tmp_path: Path) -> Iterator[RosGraph]:
+    """Somebody mistyped the name of the robot's map of the home: it begins a new one.
+
+    A person walks about there.
+    """
+    with RosGraph(tmp_path) as own:
+        keep_home_map(tmp_path / "ros_home", "home")
+        own.launch(f"home:={mapping_home(tmp_path, has_walker=True)}", "map:=hom", SPEED)
+        yield own
+
+
+def test_with_a_person_about_and_killed_it_maps_the_home_anew(graph: RosGraph) -> None:
+    robot = Explorer(graph)
+    assert "did you mean 'home'?" in robot.maps_with("explore").message
+    zones: list[ZoneArray] = []
+    rospy.Subscriber("/zones", ZoneArray, zones.append)
+    robot.explore()
+    robot.does("exploring")
+    wait_until(robot.drives, 30.0, "it drives")
+    before = robot.mapping.known
+    robot.phases.clear()
+    graph.signal("mission_node", signal.SIGKILL)
+    robot.does("exploring", 30.0)
+    assert robot.mapping.is_growing
+    assert robot.mapping.known > 0.95 * before
+    robot.does("docked", LONGEST)
+    robot.has_whole_map()
+    # Ann walked about all the time.
+    assert is_right(robot.map)
+
+    assert KITCHEN not in robot.rooms
+    assert robot.on_maps("save", "home").success
+    wait_until(lambda: KITCHEN in robot.rooms, 30.0, "the room has its name again")
+    wait_until(
+        lambda: zones and [zone.name for zone in zones[-1].zones] == [ZONE.name],
+        30.0,
+        "the zone is there again",
+    )
+    stored = kept_maps(graph.folder / "ros_home").load("home")
+    assert [zone.name for zone in stored.zones.all] == [ZONE.name]
+    # In the frame of the new map, as it was on the floor.
+    assert np.array(stored.zones.all[0].points) == pytest.approx(np.array(ZONE.points), abs=0.06)
+    assert stored.rooms is not None
+    assert stored.rooms.names[stored.rooms.at(1.0, 1.0) - 1] == KITCHEN
