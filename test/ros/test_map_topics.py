@@ -46,7 +46,7 @@ def knows_its_place(robot: Explorer) -> None:
         15.0,
         "it knows its place",
     )
-    wait_until(lambda: STATION.distance_to(*robot.probe.position()) < 0.06, 5.0, "it is right")
+    wait_until(lambda: STATION.distance_to(*robot.probe.position()) < 0.06, 30.0, "it is right")
 
 
 @contextmanager
@@ -54,10 +54,10 @@ def stays_known(robot: Explorer) -> Iterator[None]:
     """See that the place is known all the time, from before something is done until after it."""
     heard: list[Localization] = []
     subscriber = rospy.Subscriber("/localization", Localization, heard.append)
-    wait_until(lambda: len(heard) >= 2, 5.0, "its place is told")
+    wait_until(lambda: len(heard) >= 2, 30.0, "its place is told")
     yield
     after = len(heard)
-    wait_until(lambda: len(heard) >= after + 4, 10.0, "its place is told on")
+    wait_until(lambda: len(heard) >= after + 4, 30.0, "its place is told on")
     subscriber.unregister()
     assert [told.message for told in heard if told.state != Localization.KNOWN] == []
     assert STATION.distance_to(*robot.probe.position()) < 0.06
@@ -78,11 +78,11 @@ def test_a_floor_is_known_again(graph: RosGraph) -> None:
     zones: list[ZoneArray] = []
     rospy.Subscriber("/zones", ZoneArray, zones.append)
     robot.has_whole_map()
-    wait_until(lambda: robot.mapping.name == HOME, 5.0, "it is known by name")
+    wait_until(lambda: robot.mapping.name == HOME, 30.0, "it is known by name")
     assert (robot.mapping.is_own, robot.mapping.message) == (True, "")
     assert np.array_equal(robot.map.values, home_map().values)
     knows_its_place(robot)
-    wait_until(lambda: KITCHEN in robot.rooms, 5.0, "its room's name")
+    wait_until(lambda: KITCHEN in robot.rooms, 30.0, "its room's name")
     wait_until(
         lambda: zones and [zone.name for zone in zones[-1].zones] == [ZONE.name], 5.0, "its zone"
     )
@@ -104,7 +104,7 @@ def test_another_floor_is_mapped_and_then_cleaned(graph: RosGraph) -> None:
     assert "explore first" in refused.message
 
     exploring = robot.explore()
-    wait_until(robot.drives, 10.0, "it drives")
+    wait_until(robot.drives, 30.0, "it drives")
     robot.inject("lifted")
     exploring.ends(GoalStatus.ABORTED, 10.0)
     robot.inject("put", x=STATION.x, y=STATION.y, theta=STATION.theta)
@@ -149,13 +149,13 @@ def test_what_changed_is_offered_refused_and_accepted(graph: RosGraph) -> None:
     before = chest_cells(robot)
 
     robot.cleans(BEFORE_CHEST)
-    wait_until(lambda: robot.offers, 5.0, "the chest is offered")
+    wait_until(lambda: robot.offers, 30.0, "the chest is offered")
     offer = robot.offers[0]
     assert (len(robot.offers), offer.appeared) == (1, True)
     assert offer.middle.x == pytest.approx(0.5 * (CHEST[0] + CHEST[2]), abs=0.2)
     assert offer.middle.y == pytest.approx(0.5 * (CHEST[1] + CHEST[3]), abs=0.2)
     assert robot.trigger("/map/update/refuse").success
-    wait_until(lambda: not robot.offers, 2.0, "it is offered no more")
+    wait_until(lambda: not robot.offers, 30.0, "it is offered no more")
     robot.cleans(BY_STATION)
     assert robot.offers == []
     assert chest_cells(robot) == before
@@ -163,11 +163,11 @@ def test_what_changed_is_offered_refused_and_accepted(graph: RosGraph) -> None:
     with stays_known(robot):
         assert robot.on_maps("load", HOME).success
     robot.cleans(BEFORE_CHEST)
-    wait_until(lambda: robot.offers, 5.0, "the chest is offered")
+    wait_until(lambda: robot.offers, 30.0, "the chest is offered")
     with stays_known(robot):
         assert robot.trigger("/map/update/accept").success
-        wait_until(lambda: chest_cells(robot) > before + 10, 5.0, "the map shows it")
-    wait_until(lambda: not robot.offers, 2.0, "nothing more is offered")
+        wait_until(lambda: chest_cells(robot) > before + 10, 30.0, "the map shows it")
+    wait_until(lambda: not robot.offers, 30.0, "nothing more is offered")
     stored = kept_maps(graph.folder / "ros_home").load(HOME)
     assert np.array_equal(stored.occupancy.values, robot.map.values)
     assert stored.zones.all == (ZONE,)
@@ -178,7 +178,7 @@ def test_what_changed_is_offered_refused_and_accepted(graph: RosGraph) -> None:
 def test_a_robot_that_was_given_its_map_makes_none(graph: RosGraph) -> None:
     graph.launch(f"home:={mapping_home(graph.folder)}", SPEED)
     robot = Explorer(graph)
-    wait_until(lambda: "/mapping" in robot.probe.newest, 5.0, "whose map it is")
+    wait_until(lambda: "/mapping" in robot.probe.newest, 30.0, "whose map it is")
     assert not robot.mapping.is_own
     refused = robot.explore().ends(GoalStatus.REJECTED, 3.0)
     assert "nothing to explore" in refused.message
