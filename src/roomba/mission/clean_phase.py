@@ -59,6 +59,8 @@ class CleanPhase:
     def _begin_path(self, cleaning: Cleaning, senses: Senses) -> PhaseStep | None:
         """Begin the next path, or return what is to be done where there is none."""
         drives, patience = self._drives, self._patience
+        if drives.site is self._seen_all_of and cleaning.explores:
+            return self._wait_for_whole_map(senses)
         points = None
         if patience.gets_out:
             # By the middle of gaps: along their sides, as it cleans, it may have been shut in.
@@ -101,8 +103,6 @@ class CleanPhase:
         """Go to see more when all that is known is clean; with all seen the map is to be whole."""
         exploration, drives = self._job.exploration, self._drives
         assert exploration is not None
-        if drives.site is self._seen_all_of:
-            return self._wait_for_whole_map(senses)
         given_up = len(exploration.unseen)
         if self._begin_look(senses, math.inf):
             return None
