@@ -97,28 +97,7 @@ def speed_row(home: str, folder: str, speed: float) -> Record:
 def clean_rows(home: str, done: Sequence[Cleaned], by_truth: Sequence[Cleaned]) -> list[Record]:
     """Return the rows of cleans by maps that the robot made, beside those by the true one."""
     case = f"{home}, cleaned by its own map, {_seeds(len(done))}"
-    peers = (PeerFigure(TRUE_MAP, value=100.0 * min(each.share for each in by_truth)),)
-    home_again = PeerFigure(TRUE_MAP, value=_done(by_truth))
-    return [
-        _row(
-            case,
-            "coverage of the true floor, least",
-            100.0 * min(each.share for each in done),
-            "%",
-            Better.HIGHER,
-            CLEAN_AIM,
-            peers,
-        ),
-        _row(
-            case,
-            "home and done",
-            _done(done),
-            "% of the seeds",
-            Better.HIGHER,
-            100.0,
-            (home_again,),
-        ),
-    ]
+    return [_share_row(case, done, TRUE_MAP, by_truth), _home_row(case, done, TRUE_MAP, by_truth)]
 
 
 def newcomer_rows(
@@ -129,38 +108,23 @@ def newcomer_rows(
     Beside them is what exploring first, and cleaning by that map, takes.
     """
     case = f"{home}, cleaned while it is mapped, {_seeds(len(done))}"
-    first = _minutes(explored) + _minutes(later)
-    least = 100.0 * min(each.share for each in done)
-    least_later = 100.0 * min(each.share for each in later)
+    first = (PeerFigure(EXPLORED_FIRST, value=_minutes(explored) + _minutes(later)),)
     return [
-        _row(
-            case,
-            "coverage of the true floor, least",
-            least,
-            "%",
-            Better.HIGHER,
-            CLEAN_AIM,
-            (PeerFigure(EXPLORED_FIRST, value=least_later),),
-        ),
-        _row(
-            case,
-            "robot time, mean",
-            _minutes(done),
-            "min",
-            Better.LOWER,
-            None,
-            (PeerFigure(EXPLORED_FIRST, value=first),),
-        ),
-        _row(
-            case,
-            "home and done",
-            _done(done),
-            "% of the seeds",
-            Better.HIGHER,
-            100.0,
-            (PeerFigure(EXPLORED_FIRST, value=_done(later)),),
-        ),
+        _share_row(case, done, EXPLORED_FIRST, later),
+        _row(case, "robot time, mean", _minutes(done), "min", Better.LOWER, None, first),
+        _home_row(case, done, EXPLORED_FIRST, later),
     ]
+
+
+def _share_row(case: str, done: Sequence[Cleaned], peer: str, beside: Sequence[Cleaned]) -> Record:
+    ours, theirs = (100.0 * min(each.share for each in cleaned) for cleaned in (done, beside))
+    figure, peers = "coverage of the true floor, least", (PeerFigure(peer, value=theirs),)
+    return _row(case, figure, ours, "%", Better.HIGHER, CLEAN_AIM, peers)
+
+
+def _home_row(case: str, done: Sequence[Cleaned], peer: str, beside: Sequence[Cleaned]) -> Record:
+    unit, peers = "% of the seeds", (PeerFigure(peer, value=_done(beside)),)
+    return _row(case, "home and done", _done(done), unit, Better.HIGHER, 100.0, peers)
 
 
 def _minutes(done: Sequence[Explored] | Sequence[Cleaned]) -> float:

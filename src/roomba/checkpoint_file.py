@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import io
 import json
-import zipfile
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.errors import RoombaError
-from roomba.whole_file import write_whole
+from roomba.whole_file import UNREADABLE, write_whole
 
 Values = dict[str, Any]
 Floats = NDArray[np.float32]
@@ -79,7 +78,7 @@ def load_dirt(path: Path, shape: tuple[int, int]) -> Floats | None:
     try:
         with np.load(path, allow_pickle=False) as file:
             learned: Floats = np.asarray(file["learned"], np.float32)
-    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile) as error:
+    except UNREADABLE as error:
         raise CheckpointFileError(f"{path}: expected a dirt map: {error!r}") from error
     if learned.shape != shape:
         raise CheckpointFileError(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -12,6 +12,10 @@ from roomba.perception.belief import numbers_of
 
 if TYPE_CHECKING:
     from roomba.headless_mission import HeadlessMission
+    from roomba.mission.mission import Mission
+    from roomba.mission.senses import Senses
+    from roomba.perception.things_kernels import Things
+    from roomba.world.simulator import Observation
 
 STEPS_PER_TICK: Final = 2
 STEP: Final = PERIOD / STEPS_PER_TICK
@@ -22,6 +26,23 @@ LONGEST_BURST: Final = 60
 """Ticks: three seconds, then the mission looks at its battery and its progress."""
 MOST_ASIDE: Final = 0.06
 """m; farther from its path than this the ordinary classes decide."""
+
+
+def is_untouched(seen: Observation) -> bool:
+    """Whether nothing touches the robot, or is missing below it, and it stands on no station."""
+    hazards = seen.bumper.pressed or seen.cliff.any or seen.wheels.dropped
+    return not (hazards or seen.battery.is_docked)
+
+
+def begin_drive(
+    row: Any, mission: Mission, driver: PathDriver, senses: Senses, things: Things
+) -> None:
+    """Let a row of :data:`DRIVE` be what the drive is at now."""
+    row["limit"] = mission.speed_limit(senses)
+    row["clear_to"] = driver.clear_to
+    row["last_x"], row["last_y"] = mission.last_place
+    row["way"] = 0.0
+    row["things_version"] = things.layer["version"][0]
 
 
 class ClosedLoop:
@@ -50,12 +71,7 @@ class ClosedLoop:
         """Whether the next ticks are undisturbed, as far as can be told."""
         robot = self._robot
         seen = robot.seen
-        return (
-            robot.mission.is_undisturbed
-            and robot.localizer.is_calm
-            and not (seen.bumper.pressed or seen.cliff.any or seen.wheels.dropped)
-            and not seen.battery.is_docked
-        )
+        return robot.mission.is_undisturbed and robot.localizer.is_calm and is_untouched(seen)
 
     def run(self) -> None:
         """Let ticks pass until something comes up, at most a burst of them."""
@@ -79,15 +95,11 @@ class ClosedLoop:
     def _begin(self, driver: PathDriver) -> None:
         """Take over from the ordinary classes."""
         robot = self._robot
-        row, senses = self._loop[0], robot.senses()
-        row.limit = robot.mission.speed_limit(senses)
-        row.clear_to = driver.clear_to
-        row.things_version = int(self._belief.things.layer["version"][0])
+        row = self._loop[0]
+        begin_drive(row, robot.mission, driver, robot.senses(), self._belief.things)
         row.scans = robot.seen.scans
         row.sweeps = 1.0 if robot.mission.sweeps else 0.0
-        row.last_x, row.last_y = robot.mission.last_place
         row.true_x, row.true_y = robot.truth.at or (robot.seen.pose.x, robot.seen.pose.y)
-        row.way = 0.0
         row.swept = row.truth_swept = 0
         row.seen = -1.0
 

@@ -26,25 +26,30 @@ from roomba.world.engine.step_kernels import advance
 Floats = NDArray[np.float64]
 Rows = NDArray[np.void]
 
+DRIVE: Final = [
+    ("limit", "f8"),  # m/s
+    ("clear_to", "f8"),  # m along the path
+    ("most_aside", "f8"),  # m
+    ("step", "f8"),  # s of the world
+    ("steps", "i8"),  # of the world in a tick
+    ("every", "i8"),  # so many scans until one is used
+    ("scans", "i8"),  # seen so far
+    ("last_x", "f8"),  # believed, at the tick before
+    ("last_y", "f8"),
+    ("way", "f8"),  # driven, as believed
+    ("things_version", "i8"),  # of what is known to stand in the way
+]
+"""What a row of any such loop has for driving."""
+
 LOOP: Final = np.dtype(
     [
-        ("limit", "f8"),  # m/s
-        ("clear_to", "f8"),  # m along the path
-        ("most_aside", "f8"),  # m
-        ("step", "f8"),  # s of the world
-        ("steps", "i8"),  # of the world in a tick
-        ("every", "i8"),  # so many scans until one corrects the pose
-        ("scans", "i8"),  # seen so far
-        ("last_x", "f8"),  # believed, at the tick before
-        ("last_y", "f8"),
-        ("way", "f8"),  # driven, as believed
+        *DRIVE,
         ("sweeps", "f8"),  # 1 if what is driven over counts
         ("swept", "i8"),  # wanted cells that became clean
         ("truth_swept", "i8"),
         ("true_x", "f8"),
         ("true_y", "f8"),
         ("seen", "f8"),  # time of the last scan, -1 if there was none
-        ("things_version", "i8"),  # of what is known to stand in the way
     ]
 )
 """State and numbers of the loop, one row."""
@@ -100,35 +105,47 @@ def run(
     loop: Any = loops[0]
     robot: Any = world.state.solid.robots[0]
     known: Any = belief.belief[0]
-    tracker: Any = tracks.state[0]
     period = loop.step * loop.steps
     ticks = rows.shape[0]
     for tick in range(rows.shape[0]):
         x, y, theta = known.pose[0], known.pose[1], known.pose[2]
         account(loop, robot, floor, x, y, period)
-        linear, angular = track(tracker, tracks.course, x, y, theta, loop.limit)
-        robot.wanted_linear, robot.wanted_angular = linear, angular
-        advance(
-            world.state, 0, 1, world.numbers, world.quantiles, world.buffers, loop.step, loop.steps
-        )
-        now = world.state.worlds[0].time
+        now = drive(loop, world, tracks, x, y, theta)
         localize(loop, world, belief, now)
         sweep_truth(loop, robot, floor)
         rows[tick, 0], rows[tick, 1], rows[tick, 2] = now, robot.x, robot.y
         rows[tick, 3] = robot.theta
-        along = tracks.course.stations[tracker.leg] + tracker.along
-        if (
-            is_touched(robot)
-            or tracker.done > 0.0
-            or along >= loop.clear_to
-            or abs(tracker.aside) > loop.most_aside
-            or belief.things.layer[0].version != loop.things_version
-            or not is_calm(belief.belief, belief.numbers, now)
+        if something_comes_up(loop, robot, tracks, belief.things) or not is_calm(
+            belief.belief, belief.numbers, now
         ):
             ticks = tick + 1
             break
     account(loop, robot, floor, known.pose[0], known.pose[1], period)
     return ticks
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def drive(loop: Any, world: World, tracks: Track, x: float, y: float, theta: float) -> float:
+    """Let a tick pass, driving along the path from where it takes itself to be; return the time."""
+    robot: Any = world.state.solid.robots[0]
+    linear, angular = track(tracks.state[0], tracks.course, x, y, theta, loop.limit)
+    robot.wanted_linear, robot.wanted_angular = linear, angular
+    advance(world.state, 0, 1, world.numbers, world.quantiles, world.buffers, loop.step, loop.steps)
+    return float(world.state.worlds[0].time)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def something_comes_up(loop: Any, robot: Any, tracks: Track, things: Things) -> bool:
+    """Tell whether the drive is for the ordinary classes from here on."""
+    tracker: Any = tracks.state[0]
+    along = tracks.course.stations[tracker.leg] + tracker.along
+    return bool(
+        is_touched(robot)
+        or tracker.done > 0.0
+        or along >= loop.clear_to
+        or abs(tracker.aside) > loop.most_aside
+        or things.layer[0].version != loop.things_version
+    )
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

@@ -6,7 +6,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from roomba.closed_loop import EVERY, MOST_ASIDE, STEP, STEPS_PER_TICK
+from roomba.closed_loop import (
+    EVERY,
+    MOST_ASIDE,
+    STEP,
+    STEPS_PER_TICK,
+    begin_drive,
+    is_untouched,
+)
 from roomba.closed_loop_kernels import Track, World
 from roomba.exploring_loop_kernels import EXPLORING_LOOP, PASSED, run
 
@@ -39,8 +46,7 @@ class ExploringLoop:
             and mission.driver is not None
             and abs(mission.driver.tracker.aside) <= MOST_ASIDE
             and robot.mapper.is_calm
-            and not (seen.bumper.pressed or seen.cliff.any or seen.wheels.dropped)
-            and not seen.battery.is_docked
+            and is_untouched(seen)
         )
 
     def was_ticked(self) -> None:
@@ -70,13 +76,9 @@ class ExploringLoop:
         """Take over from the ordinary classes."""
         robot, mission, row = self._robot, self._robot.mission, self._row
         assert mission.driver is not None
-        row["limit"] = mission.speed_limit(robot.senses())
-        row["clear_to"] = mission.driver.clear_to
+        begin_drive(row, mission, mission.driver, robot.senses(), robot.sight.things)
         row["until"] = until
         row["scans"] = robot.seen.scans
         at = robot.mapper.at_scan
         row["at_scan"] = at.x, at.y, at.theta
-        row["last_x"], row["last_y"] = mission.last_place
-        row["way"] = 0.0
         row["points"] = 0
-        row["things_version"] = robot.sight.things.layer["version"][0]

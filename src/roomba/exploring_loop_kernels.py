@@ -13,8 +13,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from roomba.closed_loop_kernels import Track, World, is_touched
-from roomba.control.tracking_kernels import track
+from roomba.closed_loop_kernels import DRIVE, Track, World, drive, something_comes_up
 from roomba.perception.belief_reckon_kernels import reckon
 from roomba.perception.match_kernels import beam_ends
 from roomba.perception.slam.follow_kernels import (
@@ -25,27 +24,16 @@ from roomba.perception.slam.follow_kernels import (
     moved_since,
 )
 from roomba.perception.things_kernels import Things, note
-from roomba.world.engine.step_kernels import advance
 
 Floats = NDArray[np.float64]
 Rows = NDArray[np.void]
 
 EXPLORING_LOOP: Final = np.dtype(
     [
-        ("limit", "f8"),  # m/s
-        ("clear_to", "f8"),  # m along the path
-        ("most_aside", "f8"),  # m
+        *DRIVE,
         ("until", "f8"),  # s; then the ordinary classes have their turn
-        ("step", "f8"),  # s of the world
-        ("steps", "i8"),  # of the world in a tick
-        ("every", "i8"),  # so many scans until one is used
-        ("scans", "i8"),  # seen so far
         ("at_scan", "f8", (3,)),  # where it was at the newest scan, map
-        ("last_x", "f8"),  # believed, at the tick before
-        ("last_y", "f8"),
-        ("way", "f8"),  # driven, as believed
         ("points", "i8"),  # of the newest scan if it is to be kept as a keyframe, else 0
-        ("things_version", "i8"),  # of what is known to stand in the way
     ],
     align=True,
 )
@@ -76,30 +64,19 @@ def run(
     """Let ticks pass until something comes up, or ``rows`` [n, PASSED] is full; return how many."""
     loop: Any = loops[0]
     robot: Any = world.state.solid.robots[0]
-    tracker: Any = tracks.state[0]
     follower, belief = following.follower, following.belief
     at = loop.at_scan
     x, y, theta = moved_since(follower, belief, at[0], at[1], at[2])
     ticks = rows.shape[0]
     for tick in range(rows.shape[0]):
         go_on(loop, x, y)
-        linear, angular = track(tracker, tracks.course, x, y, theta, loop.limit)
-        robot.wanted_linear, robot.wanted_angular = linear, angular
-        advance(
-            world.state, 0, 1, world.numbers, world.quantiles, world.buffers, loop.step, loop.steps
-        )
-        now = world.state.worlds[0].time
+        now = drive(loop, world, tracks, x, y, theta)
         map_on(loop, world, following, sight, now)
         x, y, theta = moved_since(follower, belief, at[0], at[1], at[2])
         write_down(rows[tick], now, robot, x, y, theta)
-        along = tracks.course.stations[tracker.leg] + tracker.along
         if (
             loop.points > 0
-            or is_touched(robot)
-            or tracker.done > 0.0
-            or along >= loop.clear_to
-            or abs(tracker.aside) > loop.most_aside
-            or sight.things.layer[0].version != loop.things_version
+            or something_comes_up(loop, robot, tracks, sight.things)
             or not follower[0].is_sure
             or now >= loop.until
         ):

@@ -1,9 +1,25 @@
-"""Writing a file so that whoever reads it finds all of it, or the one from before."""
+"""Files of which whoever reads them finds all, or the one from before, or is told."""
 
 from __future__ import annotations
 
 import os
+import zipfile
+import zlib
 from pathlib import Path
+from typing import Final
+
+UNREADABLE: Final = (
+    OSError,
+    ValueError,
+    TypeError,
+    KeyError,
+    EOFError,
+    OverflowError,
+    NotImplementedError,
+    zipfile.BadZipFile,
+    zlib.error,
+)
+"""What reading arrays raises that the disk refuses, or that are broken or something else."""
 
 
 def write_whole(path: Path, content: bytes) -> None:

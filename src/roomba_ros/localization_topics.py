@@ -48,7 +48,7 @@ class LocalizationTopics:
         self._config = config
         self._localizer: Localizer | None = None
         self._lock = threading.Lock()
-        self._turn = threading.RLock()
+        self._tick_lock = threading.RLock()
         self._odometry: deque[tuple[float, Pose]] = deque(maxlen=_KEPT)
         self._gyro: deque[tuple[float, float]] = deque(maxlen=_KEPT)
         self._scan: LaserScan | None = None
@@ -96,12 +96,12 @@ class LocalizationTopics:
 
         ``now`` is in s of the ROS clock. None while nothing is known yet.
         """
-        with self._turn:
+        with self._tick_lock:
             return self._tick(now)
 
     def use_map(self, occupancy: OccupancyMap) -> None:
         """Go on with another map; where the robot is on it must be found out."""
-        with self._turn:
+        with self._tick_lock:
             if self._localizer is not None:
                 self._localizer.use_map(occupancy)
 
@@ -115,13 +115,13 @@ class LocalizationTopics:
 
         None: at the same as before. The place stays known.
         """
-        with self._turn:
+        with self._tick_lock:
             if self._localizer is not None:
                 self._localizer.go_on(occupancy, None if at is None else (at, deviation))
 
     def map_with(self, mapper: Mapper | None) -> None:
         """Let a mapper know the place from now on; None: the localizer again."""
-        with self._turn:
+        with self._tick_lock:
             self.mapper, self.is_mapping_held = mapper, False
             if mapper is not None and self._newest is not None:
                 mapper.move(*self._newest)
@@ -155,7 +155,7 @@ class LocalizationTopics:
     @property
     def known_place(self) -> Pose | None:
         """Where the robot is, map frame, if that is known."""
-        with self._turn:
+        with self._tick_lock:
             estimate = self._localizer and self._localizer.estimate
         if estimate is None or not estimate.knowledge.is_usable:
             return None

@@ -15,7 +15,6 @@ from roomba.geometry import Pose
 from roomba.grid import OccupancyMap
 from roomba.perception.estimate import Knowledge
 from roomba.perception.slam.mapper import Mapper
-from roomba.perception.slam.mapper_file import KeptMap
 from roomba.perception.slam.mapping_config import MappingConfig
 from roomba_ros.background import Background
 from roomba_ros.localization_topics import LocalizationTopics
@@ -110,7 +109,7 @@ class MapMaker:
             return
         state = mapper.state()
         if state is not None:
-            self._memory.keep(now, KeptMap(state, "", self.station, self._station_from_start))
+            self._memory.keep(now, state, self.station, self._station_from_start)
 
     def grown(self, now: float) -> OccupancyMap | None:
         """Return the map as it is by now, if it is time to tell it."""

@@ -10,6 +10,7 @@ from typing import Final
 
 import rospy
 
+from roomba.geometry import Pose
 from roomba.map_store import MapStore, MapStoreError, StoredMap
 from roomba.perception.slam.mapper_file import (
     KeptMap,
@@ -18,6 +19,7 @@ from roomba.perception.slam.mapper_file import (
     remove_mapper,
     save_mapper,
 )
+from roomba.perception.slam.mapper_state import MapperState
 from roomba_ros.background import Background
 
 FOLDER: Final = ".being_made"
@@ -86,17 +88,23 @@ class MapMemory:
             return False
         return time.monotonic() - self._saved_wall >= _WALL_PER_BYTE * self._bytes
 
-    def keep(self, now: float, kept: KeptMap) -> None:
-        """Remember a map, soon."""
+    def keep(
+        self,
+        now: float,
+        state: MapperState,
+        station: Pose | None,
+        station_from_start: Pose | None,
+    ) -> None:
+        """Remember a map, soon; for the station see :class:`KeptMap`."""
         wall = time.monotonic()
         self._saved, self._saved_wall = now, wall
-        self._kept = kept.state.version, kept.state.is_lost
+        self._kept = state.version, state.is_lost
         if wall - self._since >= _GOES_WELL:
             self._taken_up = 0
-        taken_up = self._taken_up
+        kept = KeptMap(state, self._run, station, station_from_start, self._taken_up)
         self._background.do(
             "the map that is being made is not remembered",
-            lambda: self._save(replace(kept, run=self._run, taken_up=taken_up)),
+            lambda: self._save(kept),
         )
 
     def forget(self) -> None:
@@ -117,14 +125,14 @@ class MapMemory:
 
     def keep_whole(self, stored: StoredMap) -> None:
         """Remember a whole map that has no name, soon, instead of the one that was being made."""
-        if self._run:
-            self._background.do(
-                "the map that was made is not remembered", lambda: self._replace_by(stored)
-            )
+        self._background.do(
+            "the map that was made is not remembered", lambda: self._replace_by(stored)
+        )
 
     def _replace_by(self, stored: StoredMap) -> None:
         """If the disk refuses, the one that was being made is still there."""
-        self._whole.save(self._run, stored)
+        if self._run:
+            self._whole.save(self._run, stored)
         self.forget()
 
     def forget_whole(self) -> None:

@@ -67,7 +67,7 @@ class MapShelf:
         self._store.save(name, stored)
 
     def save_anew(self, name: str, stored: StoredMap) -> bool:
-        """Save a map that was made anew; return whether it took something over.
+        """Save a map that was made anew, with its rooms; return whether it took something over.
 
         What people did to the old map of this name, if there is one, goes on on the new one. Raises
         MapStoreError if that is of another floor, or broken so that nobody can tell: it is kept.
@@ -75,8 +75,7 @@ class MapShelf:
         if name not in self._store.names():
             self._store.save(name, stored)
             return False
-        if stored.rooms is None:
-            raise MapStoreError("the rooms of this map are still being found; try again")
+        assert stored.rooms is not None
         old = self._old(name)
         match = match_floors(_floor_of(stored), _floor_of(old))
         if not match.is_same:

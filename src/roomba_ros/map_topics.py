@@ -109,7 +109,7 @@ class MapTopics:
             except (MapStoreError, OSError) as error:
                 rospy.logerr("map %s is not loaded, a new one is made: %s", self._wish, error)
                 self._trouble = f"{error}. "
-                self._wish = NONE
+                self._maker.begin()
 
     def _take_up(self) -> bool:
         """Go on with what this node had when it was killed in this run; tell whether it had any."""

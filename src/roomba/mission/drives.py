@@ -100,24 +100,23 @@ class Drives:
 
     def may_go_home(self, senses: Senses) -> bool:
         """Whether a way leads home, by what is known to stand in it now."""
-        here, staging = (senses.pose.x, senses.pose.y), self.site.staging
-        standing = self.obstacles.standing(senses.now)
-        try:
-            self.site.paths.plan(here, (staging.x, staging.y), standing)
-        except NoPathError:
-            return False
-        return True
+        return self._length_home(senses) is not None
 
     def distance_home(self, senses: Senses) -> float:
         """Return how far it is home, m; what cannot be told is as far as the map is wide."""
-        staging = self.site.staging
-        try:
-            obstacles = self.obstacles.standing(senses.now)
-            here = (senses.pose.x, senses.pose.y)
-            return self.site.paths.plan(here, (staging.x, staging.y), obstacles).length
-        except NoPathError:
+        length = self._length_home(senses)
+        if length is None:
             left, right, low, high = self.site.known.frame.extent
             return right - left + high - low
+        return length
+
+    def _length_home(self, senses: Senses) -> float | None:
+        here, staging = (senses.pose.x, senses.pose.y), self.site.staging
+        obstacles = self.obstacles.standing(senses.now)
+        try:
+            return self.site.paths.plan(here, (staging.x, staging.y), obstacles).length
+        except NoPathError:
+            return None
 
     def forget_place(self) -> None:
         """The robot is somewhere else than it thought: what it remembers is of another place."""

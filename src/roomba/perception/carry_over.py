@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Final
@@ -12,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.geometry import Pose
+from roomba.perception.carried import carried
 from roomba.perception.rooms import Rooms
 from roomba.perception.zones import Zones
 
@@ -73,7 +73,7 @@ def _moved(zones: Zones, old_in_new: Pose) -> Zones:
 
 def _overlaps(new: Rooms, old: Rooms, old_in_new: Pose) -> Overlaps:
     """Return the floor that rooms share, as far as they share enough to be the same."""
-    there = _sampled(old, new, old_in_new.inverse())
+    there = carried(old.labels, old.frame, new.frame, old_in_new)
     shape = len(new.names) + 1, len(old.names) + 1
     pairs = new.labels.astype(np.int64) * shape[1] + there
     counts = np.bincount(pairs.ravel(), minlength=shape[0] * shape[1]).reshape(shape)
@@ -82,26 +82,6 @@ def _overlaps(new: Rooms, old: Rooms, old_in_new: Pose) -> Overlaps:
     of_old = np.bincount(old.labels.ravel(), minlength=shape[1])[1:] * old.frame.resolution**2
     enough = _LEAST_SHARE * np.minimum(of_new[:, None], of_old[None, :])
     return np.where(shared >= enough, shared, 0.0)
-
-
-def _sampled(old: Rooms, new: Rooms, new_in_old: Pose) -> NDArray[np.int64]:
-    """Return the old label at the middle of each of the new cells, int64 [rows, columns]."""
-    x = new.frame.origin_x + (np.arange(new.frame.columns) + 0.5) * new.frame.resolution
-    y = new.frame.origin_y + (np.arange(new.frame.rows)[:, None] + 0.5) * new.frame.resolution
-    cosine, sine = math.cos(new_in_old.theta), math.sin(new_in_old.theta)
-    columns = _cells(new_in_old.x + cosine * x - sine * y, old.frame.origin_x, old)
-    rows = _cells(new_in_old.y + sine * x + cosine * y, old.frame.origin_y, old)
-    inside = (rows >= 0) & (rows < old.frame.rows)
-    inside &= (columns >= 0) & (columns < old.frame.columns)
-    there = np.zeros(new.frame.shape, np.int64)
-    there[inside] = old.labels[rows[inside], columns[inside]]
-    return there
-
-
-def _cells(middles: NDArray[np.float64], origin: float, old: Rooms) -> NDArray[np.int64]:
-    """Return the old rows, or columns, in which middles of new cells lie."""
-    cells: NDArray[np.int64] = np.floor((middles - origin) / old.frame.resolution).astype(np.int64)
-    return cells
 
 
 def _best_partners(shared: Overlaps) -> list[int | None]:

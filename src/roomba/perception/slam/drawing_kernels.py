@@ -54,36 +54,14 @@ def draw(
     lidar: Floats,
     pose: Floats,
     into_edge: float = _INTO,
+    times: int = 1,
 ) -> None:
     """Count a scan, ``points`` [n, 4] in the robot's frame, seen from ``pose`` [3].
 
     ``lidar`` is x, y of the lidar in the robot's frame; ``into_edge`` is how far behind the surface
-    a beam is counted, cells, where the way that it faces is not known.
+    a beam is counted, cells, where the way that it faces is not known. -1 ``times`` undoes it; the
+    bounds stay.
     """
-    _count_scan(sheet, points, lidar, pose, into_edge, 1)
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def erase(
-    sheet: Sheet,
-    points: NDArray[np.float32],
-    lidar: Floats,
-    pose: Floats,
-    into_edge: float = _INTO,
-) -> None:
-    """Undo :func:`draw` of the same scan; the bounds stay."""
-    _count_scan(sheet, points, lidar, pose, into_edge, -1)
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def _count_scan(
-    sheet: Sheet,
-    points: NDArray[np.float32],
-    lidar: Floats,
-    pose: Floats,
-    into_edge: float,
-    times: int,
-) -> None:
     per_metre = 1.0 / sheet.place[2]
     rows, columns = sheet.hits.shape
     shape = rows, columns

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import io
-import zipfile
-import zlib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -19,7 +17,7 @@ from roomba.perception.slam.mapper_state import KeptSubmap, LidarNumbers, Mapper
 from roomba.perception.slam.pose_graph import Link
 from roomba.perception.slam.submap import Keyframe
 from roomba.perception.slam.surface_kernels import POINT
-from roomba.whole_file import write_whole
+from roomba.whole_file import UNREADABLE, write_whole
 
 Arrays = Mapping[str, NDArray[Any]]
 
@@ -65,10 +63,7 @@ def load_mapper(path: Path) -> KeptMap | None:
             return _kept_of(_Fields(file))
     except FileNotFoundError:
         return None
-    except (
-        OSError, ValueError, TypeError, KeyError, EOFError, OverflowError, NotImplementedError,
-        zipfile.BadZipFile, zlib.error,
-    ) as error:  # fmt: skip
+    except UNREADABLE as error:
         raise MapperFileError(
             f"{path}: expected a map that is being made: {error}; remove the file"
         ) from error

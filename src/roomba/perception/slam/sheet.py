@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from roomba.grid import UNKNOWN, GridFrame, OccupancyMap
 from roomba.perception.slam import drawing_kernels
-from roomba.perception.slam.drawing_kernels import INTO_EDGE, Counts, draw, erase, occupancy
+from roomba.perception.slam.drawing_kernels import INTO_EDGE, Counts, draw, occupancy
 
 Floats = NDArray[np.float64]
 Offsets = NDArray[np.float32]
@@ -47,7 +47,7 @@ class Sheet:
 
     def erase(self, points: NDArray[np.float32], lidar: Floats, pose: Floats) -> None:
         """Take a scan away that was drawn."""
-        erase(self._arrays, points, lidar, pose, INTO_EDGE)
+        draw(self._arrays, points, lidar, pose, INTO_EDGE, -1)
 
     def occupancy(self, share: float, least: int) -> OccupancyMap:
         """Return the map of what was drawn; see :func:`.drawing_kernels.occupancy`.
