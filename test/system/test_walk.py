@@ -1,6 +1,5 @@
 """Walking in the default home, as a user's action client sees it."""
 
-import itertools
 import math
 from collections.abc import Iterator
 
@@ -13,6 +12,9 @@ from fixtures.waiting import wait_until
 from nav_msgs.msg import OccupancyGrid, Odometry
 from roomba_robot.msg import RobotPosition
 from std_msgs.msg import Float32
+
+ENCODER_COUNT = 0.00045  # m; /odom tells ways in whole counts of the wheels' encoders
+CALIBRATION = 1.005  # its wheels are up to five deviations larger than their makers say
 
 
 @pytest.fixture(scope="module")
@@ -136,8 +138,10 @@ def test_never_above_the_top_speed_nor_a_jump(shared_robot: RosGraph) -> None:
     assert math.dist(probe.position(), (0.0, 0.0)) > 0.5, "that was no braking at the goal"
     shared_robot.set_param("/robot_max_speed", 0.5)
     assert walker.ends(40.0) == GoalStatus.SUCCEEDED
-    for (t1, x1, y1), (t2, x2, y2) in itertools.pairwise(track):
-        assert math.dist((x1, y1), (x2, y2)) <= 0.5 * (t2 - t1) + 1e-6
+    assert len(track) > 100
+    for apart in (1, 20):
+        for (t1, *from_), (t2, *to) in zip(track, track[apart:], strict=False):
+            assert math.dist(from_, to) <= 0.5 * CALIBRATION * (t2 - t1) + ENCODER_COUNT
 
 
 def test_a_single_wish_drives_there_without_an_action(shared_robot: RosGraph) -> None:
