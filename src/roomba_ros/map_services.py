@@ -17,7 +17,7 @@ from roomba_robot.srv import (
 from std_srvs.srv import Trigger, TriggerResponse
 
 from roomba.errors import RoombaError
-from roomba.map_store import MapStoreError
+from roomba.map_store import MapStoreError, StoredMap
 from roomba.perception.rooms_refit import refitted
 from roomba_ros.change_topics import ChangeTopics
 from roomba_ros.localization_topics import LocalizationTopics
@@ -93,19 +93,31 @@ class MapServices:
             before, stored = own.name, own.stored()
         if stored.rooms is None:
             raise MapStoreError("the rooms of this map are still being found; try again")
-        if name == before:
-            self._shelf.save(name, stored)
-            took_over = False
-        else:
-            took_over = self._shelf.save_anew(name, stored)
+        is_made_anew = name != before and name in self._shelf.names
+        saved = self._shelf.taken_over(name, stored) if is_made_anew else stored
+        self._shelf.save(name, saved)
+        said = f"saved as {name} in {self._shelf.folder}"
+        if is_made_anew:
+            said += self._take_over(saved)
         with own.lock:
             # Meanwhile somebody may have let the robot go by another map.
             if own.occupancy is stored.occupancy:
                 own.name = name
                 own.remember()
-                if took_over:
+                if is_made_anew:
                     own.tell_again()
-        return f"saved as {name} in {self._shelf.folder}"
+        return said
+
+    def _take_over(self, saved: StoredMap) -> str:
+        """Go by the rooms and zones of the older map; return what to add to the answer."""
+        try:
+            self._shelf.go_by(saved)
+        except (OSError, RoombaError) as error:
+            return (
+                f"; but the robot does not go by its rooms and zones ({error}): "
+                f"mend that and load it (map/load)"
+            )
+        return ""
 
     def _load(self, name: str) -> str:
         """Go on with a saved map; unless its place there is known the robot finds it out."""

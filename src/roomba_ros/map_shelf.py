@@ -66,15 +66,12 @@ class MapShelf:
         """Save a map by a name; another one by this name is replaced."""
         self._store.save(name, stored)
 
-    def save_anew(self, name: str, stored: StoredMap) -> bool:
-        """Save a map that was made anew, with its rooms; return whether it took something over.
+    def taken_over(self, name: str, stored: StoredMap) -> StoredMap:
+        """Return a map that was made anew, with what people did to the saved one of this name.
 
-        What people did to the old map of this name, if there is one, goes on on the new one. Raises
-        MapStoreError if that is of another floor, or broken so that nobody can tell: it is kept.
+        Raises MapStoreError if that is of another floor, or broken so that nobody can tell: it is
+        kept.
         """
-        if name not in self._store.names():
-            self._store.save(name, stored)
-            return False
         assert stored.rooms is not None
         old = self._old(name)
         match = match_floors(_floor_of(stored), _floor_of(old))
@@ -87,11 +84,13 @@ class MapShelf:
             )
         carried = carry_over(stored.rooms, old.rooms, old.zones, match.old_in_new)
         zones = stored.zones if stored.zones.all else carried.zones
-        new = StoredMap(stored.occupancy, stored.station, carried.rooms, zones)
-        self._store.save(name, new)
-        self._rooms.use(carried.rooms)
-        save_zones(zones, new.occupancy, self._zones_path(new.occupancy))
-        return True
+        return StoredMap(stored.occupancy, stored.station, carried.rooms, zones)
+
+    def go_by(self, stored: StoredMap) -> None:
+        """Let rooms and zones of the map that there is be these; raises OSError and RoombaError."""
+        assert stored.rooms is not None
+        self._rooms.use(stored.rooms)
+        save_zones(stored.zones, stored.occupancy, self._zones_path(stored.occupancy))
 
     def _old(self, name: str) -> StoredMap:
         try:

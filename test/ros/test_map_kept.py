@@ -23,12 +23,15 @@ from fixtures.mapping_home import (
 )
 from fixtures.waiting import wait_until
 from roomba_robot.msg import Localization
+from roomba_robot.srv import NameMapResponse
 
+from roomba.grid import OccupancyMap
+from roomba.map_bound_file import map_digest
 from roomba.perception.slam.mapper_file import KeptMap, load_mapper, save_mapper
 from roomba_ros.map_memory import FOLDER
 
 NODE = "position_pub_node"
-HOME = "home"
+HOME, OLDER = "home", "older"
 
 
 @pytest.fixture
@@ -39,6 +42,16 @@ def graph(tmp_path: Path) -> Iterator[RosGraph]:
 
 def file_of(graph: RosGraph) -> Path:
     return graph.folder / "ros_home" / "roomba_robot" / "maps" / FOLDER / "robot" / "map.npz"
+
+
+def rooms_file(graph: RosGraph, occupancy: OccupancyMap) -> Path:
+    folder = graph.folder / "ros_home" / "roomba_robot" / "rooms"
+    return folder / f"{map_digest(occupancy)[:16]}.yaml"
+
+
+def names_kept(graph: RosGraph, name: str) -> tuple[str, ...]:
+    rooms = kept_maps(graph.folder / "ros_home").load(name).rooms
+    return () if rooms is None else rooms.names
 
 
 def kept_keyframes(graph: RosGraph) -> int:
@@ -80,7 +93,8 @@ def test_a_map_that_is_being_made_outlives_the_node(graph: RosGraph) -> None:
     # Left behind by a run of yesterday, or by nobody knows whom.
     file_of(graph).parent.mkdir(parents=True)
     file_of(graph).write_bytes(b"of something else")
-    keep_home_map(graph.folder / "ros_home", HOME)
+    for name in (HOME, OLDER):
+        keep_home_map(graph.folder / "ros_home", name)
     launch = graph.launch(f"home:={mapping_home(graph.folder)}", "map:=none", SPEED)
     robot = Explorer(graph)
     robot.maps_with("explore")
@@ -116,12 +130,28 @@ def test_a_map_that_is_being_made_outlives_the_node(graph: RosGraph) -> None:
     assert robot.mapping.name == ""
     knows_its_place(robot)
 
+    # What cannot be used at once is saved nevertheless, and said.
+    in_the_way = rooms_file(graph, robot.map)
+    in_the_way.mkdir(parents=True)
+    answers: list[NameMapResponse] = []
+
+    def is_saved() -> bool:
+        answers.append(robot.on_maps("save", OLDER))
+        return answers[-1].success
+
+    wait_until(is_saved, 30.0, "it is saved, its rooms found")
+    for words in ("saved as older", "does not go by its rooms", "map/load"):
+        assert words in answers[-1].message
+    assert robot.saved_maps() == ([HOME, OLDER], OLDER)
+    assert KITCHEN not in robot.rooms
+    assert KITCHEN in names_kept(graph, OLDER)
+    in_the_way.rmdir()
+
     # Saved by the name of an older map of this floor, it takes over what people named on that.
-    wait_until(lambda: robot.on_maps("save", HOME).success, 30.0, "it is saved, its rooms found")
+    assert robot.on_maps("save", HOME).message.endswith("roomba_robot/maps")
     wait_until(lambda: KITCHEN in robot.rooms, 30.0, "its room's name")
+    assert KITCHEN in names_kept(graph, HOME)
     stored = kept_maps(graph.folder / "ros_home").load(HOME)
-    assert stored.rooms is not None
-    assert KITCHEN in stored.rooms.names
     assert [zone.name for zone in stored.zones.all] == [ZONE.name]
     assert np.array(stored.zones.all[0].points) == pytest.approx(np.array(ZONE.points), abs=0.06)
 

@@ -39,13 +39,13 @@ def way_between(
     keys = np.empty(4096, np.float64)
     items = np.empty(4096, np.int32)
     heap = 0
-    before = {}
+    before: dict[int, int] = {}
     best, best_block = np.inf, -1
     for n in range(blocks_near(net, x, y, near)):
-        block = near[n]
+        block = int(np.int64(near[n]))  # as wide as the sums that follow
         cost = leg_to(net, block, x, y)
         costs[block] = cost
-        before[block] = np.int32(-1)
+        before[block] = -1
         heap_push(keys, items, heap, cost + leg_to(net, block, to_x, to_y), block)
         heap += 1
     while heap > 0 and keys[0] < best:
@@ -71,7 +71,7 @@ def way_between(
             reached = cost + leg_to(net, other, knot[0], knot[1])
             if reached < costs[other] - 1e-9:
                 costs[other] = reached
-                before[other] = np.int32(block)
+                before[other] = block
                 heap_push(keys, items, heap, reached + leg_to(net, other, to_x, to_y), other)
                 heap += 1
     for block in before:
