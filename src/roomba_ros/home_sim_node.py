@@ -11,7 +11,7 @@ from geometry_msgs.msg import PoseStamped
 from geometry_msgs.msg import Twist as TwistMessage
 from nav_msgs.msg import OccupancyGrid, Odometry
 from rosgraph_msgs.msg import Clock
-from std_msgs.msg import Float32
+from std_msgs.msg import Float32, Time
 from tf2_msgs.msg import TFMessage
 
 from roomba.config import RobotConfig, SeedParameters
@@ -20,7 +20,7 @@ from roomba.geometry import Pose, Twist
 from roomba.world.home import Home
 from roomba.world.layer import load_home
 from roomba.world.simulator import Observation, Simulator
-from roomba_ros import kept_pose
+from roomba_ros import kept_pose, progress
 from roomba_ros.camera_topics import CameraTopics
 from roomba_ros.convert import (
     map_message,
@@ -52,7 +52,8 @@ class HomeSimNode:
     encoders), ``/tf`` (odom -> base_link), ``/tf_static`` (where the sensors are on the body), and
     what :class:`SensorTopics` and :class:`CameraTopics` tell.
     Subscribes: ``cmd_vel_out`` (Twist; older than the drive's time-out it stops), ``pose``
-    (PoseStamped: a robot that is late, on a busy machine, is waited for),
+    (PoseStamped) and the ``progress`` (Time) of :data:`progress.NODES`: a robot that is late, on a
+    busy machine, is waited for,
     ``main_brush_motor``, ``vacuum_motor`` (Float32, duty 0..1, of brush and fan).
     Services: those of :class:`CameraTopics` and :class:`SimServices`.
     Parameters: ``~home`` (name or path), ``~homes_directory``, ``~speed`` (robot seconds per second
@@ -76,7 +77,7 @@ class HomeSimNode:
         self._clock = time.time_ns() // TICK_NANOSECONDS * TICK_NANOSECONDS
         self._ticks = 0
         self._told = 0.0
-        self._pace = Pace(TICK_NANOSECONDS / 1e9 / self._speed)
+        self._pace = Pace(TICK_NANOSECONDS / 1e9 / self._speed, self._count_parts)
         self._odom_frame, self._base_frame = frame_id("odom"), frame_id("base_link")
         self._connect()
 
@@ -165,7 +166,20 @@ class HomeSimNode:
         rospy.Subscriber(
             "cmd_vel_out", TwistMessage, self._on_command, queue_size=1, tcp_nodelay=True
         )
-        rospy.Subscriber("pose", PoseStamped, self._on_pose, queue_size=1, tcp_nodelay=True)
+        self._parts = [
+            rospy.Subscriber("pose", PoseStamped, self._on_pose, queue_size=1, tcp_nodelay=True)
+        ]
+        for name in progress.NODES:
+            self._parts.append(
+                rospy.Subscriber(
+                    f"{name}/progress",
+                    Time,
+                    self._on_progress,
+                    name,
+                    queue_size=1,
+                    tcp_nodelay=True,
+                )
+            )
         for topic, motor in (("main_brush_motor", "brush"), ("vacuum_motor", "fan")):
             rospy.Subscriber(topic, Float32, self._on_power, callback_args=motor, queue_size=1)
 
@@ -190,8 +204,14 @@ class HomeSimNode:
             ),
         ]
 
+    def _count_parts(self) -> int:
+        return sum(subscriber.get_num_connections() for subscriber in self._parts)
+
     def _on_pose(self, message: PoseStamped) -> None:
-        self._pace.heard(message.header.stamp.to_sec())
+        self._pace.heard("pose", message.header.stamp.to_sec())
+
+    def _on_progress(self, message: Time, name: str) -> None:
+        self._pace.heard(name, message.data.to_sec())
 
     def _on_command(self, message: TwistMessage) -> None:
         twist = twist_of(message)

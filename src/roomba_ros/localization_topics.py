@@ -28,6 +28,7 @@ from roomba_ros.convert import map_of, pose_of_odometry
 from roomba_ros.convert_localization import SAME_TIME, lidar_of, mount_of, ranges_of, told_pose_of
 from roomba_ros.kept_pose import KeptPose
 from roomba_ros.place_topics import PlaceTopics
+from roomba_ros.waiting_scans import WaitingScans
 
 _KEPT: Final = 40
 """Messages of odometry, and of the gyro, that wait for the next tick: two seconds of them."""
@@ -51,7 +52,7 @@ class LocalizationTopics:
         self._tick_lock = threading.RLock()
         self._odometry: deque[tuple[float, Pose]] = deque(maxlen=_KEPT)
         self._gyro: deque[tuple[float, float]] = deque(maxlen=_KEPT)
-        self._scan: LaserScan | None = None
+        self._scans = WaitingScans()
         self._told: tuple[Pose, tuple[float, float]] | None = None
         self._new_map: OccupancyMap | None = None
         self._is_asked = False
@@ -81,7 +82,7 @@ class LocalizationTopics:
         rospy.Subscriber("/tf_static", TFMessage, self._on_mounts, queue_size=10)
         rospy.Subscriber("odom", Odometry, self._on_odometry, queue_size=10, tcp_nodelay=True)
         rospy.Subscriber("imu", Imu, self._on_imu, queue_size=10, tcp_nodelay=True)
-        rospy.Subscriber("scan", LaserScan, self._on_scan, queue_size=1, tcp_nodelay=True)
+        rospy.Subscriber("scan", LaserScan, self._scans.put, queue_size=5, tcp_nodelay=True)
         rospy.Subscriber("wheel_drop", WheelDrop, self._on_wheel_drop, queue_size=1)
         rospy.Subscriber("initialpose", PoseWithCovarianceStamped, self._on_told, queue_size=1)
         rospy.Service("global_localization", Empty, self._on_forget)
@@ -212,21 +213,18 @@ class LocalizationTopics:
             self.is_asked_to_search = True
 
     def _hear_scan(self, localizer: Localizer) -> None:
-        scan = self._scan
+        scan = self._scans.take(self._stamp)
         if scan is None:
-            return
-        stamp = scan.header.stamp.to_sec() or self._stamp
-        if stamp > self._stamp:
-            if stamp > self._stamp + self._config.localization.scan_timeout:
+            oldest = self._scans.oldest
+            if oldest is not None and oldest > self._stamp + self._config.localization.scan_timeout:
                 rospy.logwarn_throttle(
                     10.0,
                     "no scan is used: they are of %.2f s, odometry only of %.2f s",
-                    stamp,
+                    oldest,
                     self._stamp,
                 )
-            # It waits for the odometry of its time, unless a newer scan comes first.
             return
-        self._scan = None
+        stamp = scan.header.stamp.to_sec() or self._stamp
         try:
             lidar = self._lidar_of(scan)
         except ValueError as error:
@@ -268,9 +266,6 @@ class LocalizationTopics:
             rospy.logwarn_throttle(10.0, "imu refused: expected finite rad/s, got %s", turning)
             return
         self._gyro.append((message.header.stamp.to_sec(), turning))
-
-    def _on_scan(self, message: LaserScan) -> None:
-        self._scan = message
 
     def _on_map(self, message: OccupancyGrid) -> None:
         if self.is_map_own:

@@ -26,6 +26,7 @@ from roomba.perception.things import ThingLayer
 from roomba_ros.convert import cliff_of, pose_of, pose_of_odometry, twist_of
 from roomba_ros.convert_localization import knowledge_of, lidar_of, mount_of, ranges_of
 from roomba_ros.convert_mission import battery_of, beams_of
+from roomba_ros.waiting_scans import WaitingScans
 
 OLDEST_POSE: Final = 0.5
 _SILENCE: Final = 0.4
@@ -60,7 +61,7 @@ class MissionSenses:
         self._is_docked: bool | None = None
         self._beams = beams_of(0)
         self._grains = self._in_bin = 0.0
-        self._scan: LaserScan | None = None
+        self._scans = WaitingScans()
         self._mounts: dict[str, Pose] = {}
         self._lidar: tuple[tuple[object, ...], object] | None = None
 
@@ -76,11 +77,11 @@ class MissionSenses:
             ("battery_state", BatteryState, self._on_battery),
             ("dock_status", DockStatus, self._on_dock),
             ("ir_omni", UInt16, self._on_beams),
-            ("scan", LaserScan, self._on_scan),
+            ("scan", LaserScan, self._scans.put),
             ("dirt_detect", UInt16, self._on_dirt),
             ("bin_level", Float32, self._on_bin),
         ):
-            rospy.Subscriber(topic, kind, callback, queue_size=1, tcp_nodelay=True)
+            rospy.Subscriber(topic, kind, callback, queue_size=5, tcp_nodelay=True)
         rospy.Subscriber("/tf_static", TFMessage, self._on_mounts, queue_size=10)
 
     @property
@@ -129,16 +130,13 @@ class MissionSenses:
 
     def show(self, things: ThingLayer) -> None:
         """Show the newest scan to those who look for things, if the robot knows its place."""
-        scan = self._scan
-        if scan is None:
-            return
-        stamp = scan.header.stamp.to_sec()
         with self._lock:
-            if self._corrected is None or stamp > self._odometry[-1][0]:
-                # It waits for the odometry of its time, unless a newer scan comes first.
+            if self._corrected is None:
                 return
-            pose = self._correction.compose(self._odometry_at(stamp))
-        self._scan = None
+            scan = self._scans.take(self._odometry[-1][0])
+            if scan is None:
+                return
+            pose = self._correction.compose(self._odometry_at(scan.header.stamp.to_sec()))
         if self._knowledge is not Knowledge.KNOWN:
             return
         try:
@@ -221,9 +219,6 @@ class MissionSenses:
 
     def _on_beams(self, message: UInt16) -> None:
         self._beams = beams_of(message.data)
-
-    def _on_scan(self, message: LaserScan) -> None:
-        self._scan = message
 
     def _on_dirt(self, message: UInt16) -> None:
         self._grains = float(message.data)

@@ -14,6 +14,7 @@ import rosgraph
 import rospy
 
 from roomba.errors import RoombaError
+from roomba_ros.progress import Progress
 from roomba_ros.ticker import Ticker
 
 _asked_to_end = threading.Event()
@@ -49,7 +50,13 @@ def run_node(name: str, make: Callable[[], Node]) -> None:
     except RoombaError as error:
         give_up(str(error))
     rospy.core.add_preshutdown_hook(lambda reason: _stop(node))
-    Ticker(node.period, told_to_end).run(node.tick)
+    progress = Progress(name)
+
+    def tick(now: float) -> None:
+        node.tick(now)
+        progress.tell(now)
+
+    Ticker(node.period, told_to_end).run(tick)
     leave(0)
 
 

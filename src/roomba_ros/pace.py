@@ -17,7 +17,7 @@ _LOOK: Final = 0.001
 
 
 class Pace:
-    """Says when the next tick is due. The robot tells how far it is by :meth:`heard`.
+    """Says when the next tick is due. The robot's parts tell how far they are by :meth:`heard`.
 
     On a busy machine a world that goes on while its robot still thinks about what was is another
     world than the one at real time: commands come too late for it.
@@ -26,24 +26,28 @@ class Pace:
     def __init__(
         self,
         period: float,
+        count_parts: Callable[[], int],
         monotonic: Callable[[], float] = time.monotonic,
         sleep: Callable[[float], None] = time.sleep,
     ) -> None:
-        """Let ticks come every ``period`` s of wall time."""
+        """Let ticks come every ``period`` s of wall time.
+
+        ``count_parts`` tells how many parts there are to be heard: nobody waits for the dead.
+        """
         self._period, self._monotonic, self._sleep = period, monotonic, sleep
+        self._count_parts, self._parts = count_parts, 0
         self._due = monotonic() + period
-        self._stamp, self._heard_at = 0.0, -_LONGEST_HOLD
+        self._heard: dict[str, tuple[float, float]] = {}
         self.is_late = False
         """Whether it was ever slower than asked for."""
 
-    def heard(self, stamp: float) -> None:
-        """The robot told what it knew at a time of its clock, s.
+    def heard(self, part: str, stamp: float) -> None:
+        """Hear that a part of the robot knows, or did, all up to a time of its clock, s.
 
         One that tells the same again has not got any farther.
         """
-        if stamp == self._stamp:
-            return
-        self._stamp, self._heard_at = stamp, self._monotonic()
+        if part not in self._heard or self._heard[part][0] != stamp:
+            self._heard[part] = stamp, self._monotonic()
 
     def wait(self, now: float, ended: Callable[[], bool]) -> None:
         """Return when the next tick is due, or at the end.
@@ -61,6 +65,18 @@ class Pace:
         self._due += self._period
 
     def _must_hold(self, now: float) -> bool:
-        """Whether the robot is to be waited for; not if its clock is another one, or was set."""
-        is_behind = _MOST_BEHIND < now - self._stamp < 10.0 * _LONGEST_HOLD
-        return is_behind and self._monotonic() - self._heard_at < _LONGEST_HOLD
+        """Whether a part is to be waited for; not if its clock is another one, or was set."""
+        late = [heard_at for stamp, heard_at in list(self._heard.values()) if _is_late(now - stamp)]
+        if not late:
+            return False
+        parts, before = self._count_parts(), self._parts
+        self._parts = parts
+        if parts < before:
+            # Nobody says whose end it was; all others are heard again soon.
+            self._heard.clear()
+            return False
+        return self._monotonic() - max(late) < _LONGEST_HOLD
+
+
+def _is_late(behind: float) -> bool:
+    return _MOST_BEHIND < behind < 10.0 * _LONGEST_HOLD

@@ -5,6 +5,7 @@ import pytest
 from roomba_ros.pace import Pace
 
 PERIOD = 0.01
+PART = "/mission_node"
 
 
 class Wall:
@@ -13,12 +14,13 @@ class Wall:
     def __init__(self) -> None:
         self.now = 100.0
         self.events: list[tuple[float, float]] = []
-        self.pace = Pace(PERIOD, lambda: self.now, self.sleep)
+        self.parts = 2
+        self.pace = Pace(PERIOD, lambda: self.parts, lambda: self.now, self.sleep)
 
     def sleep(self, seconds: float) -> None:
         self.now += seconds
         while self.events and self.events[0][0] <= self.now:
-            self.pace.heard(self.events.pop(0)[1])
+            self.pace.heard(PART, self.events.pop(0)[1])
 
     def ticks(self, count: int, robot: float = 0.0) -> float:
         """Let ticks pass at a time of the robot's clock; return how long that took."""
@@ -47,7 +49,7 @@ def test_far_behind_it_goes_on_slower_and_says_so() -> None:
 
 def test_a_robot_that_is_late_is_waited_for() -> None:
     wall = Wall()
-    wall.pace.heard(7.6)
+    wall.pace.heard(PART, 7.6)
     assert wall.ticks(1, robot=7.8) == pytest.approx(PERIOD)
     wall.events = [(wall.now + 0.2, 7.9)]
     assert wall.ticks(1, robot=8.1) == pytest.approx(0.2, abs=0.002)
@@ -55,14 +57,32 @@ def test_a_robot_that_is_late_is_waited_for() -> None:
 
 def test_one_that_says_nothing_any_more_is_not() -> None:
     wall = Wall()
-    wall.pace.heard(7.6)
+    wall.pace.heard(PART, 7.6)
     assert 1.9 < wall.ticks(1, robot=8.1) < 2.1
     assert wall.ticks(1, robot=8.15) == pytest.approx(PERIOD)
 
 
+def test_each_part_is_waited_for() -> None:
+    wall = Wall()
+    wall.pace.heard("pose", 8.1)
+    wall.pace.heard(PART, 7.6)
+    wall.events = [(wall.now + 0.2, 7.9)]
+    assert wall.ticks(1, robot=8.1) == pytest.approx(0.2, abs=0.002)
+
+
+def test_but_not_the_dead() -> None:
+    wall = Wall()
+    wall.pace.heard(PART, 7.6)
+    wall.pace.wait(8.1, lambda: True)
+    wall.parts = 1
+    assert wall.ticks(1, robot=8.1) == pytest.approx(PERIOD)
+    wall.pace.heard("pose", 7.7)
+    assert 1.9 < wall.ticks(1, robot=8.1) < 2.1
+
+
 def test_nor_one_that_tells_the_same_again_and_again() -> None:
     wall = Wall()
-    wall.pace.heard(7.6)
+    wall.pace.heard(PART, 7.6)
     wall.events = [(wall.now + 0.05 * count, 7.6) for count in range(1, 100)]
     assert 1.9 < wall.ticks(1, robot=8.1) < 2.1
 
@@ -71,13 +91,13 @@ def test_nor_one_that_was_never_heard_or_has_another_clock() -> None:
     wall = Wall()
     assert wall.ticks(10, robot=8.1) == pytest.approx(10 * PERIOD)
     for stamp in (500.0, 1.0):
-        wall.pace.heard(stamp)
+        wall.pace.heard(PART, stamp)
         assert wall.ticks(1, robot=50.0) == pytest.approx(PERIOD)
 
 
 def test_told_to_end_it_waits_no_more() -> None:
     wall = Wall()
-    wall.pace.heard(7.6)
+    wall.pace.heard(PART, 7.6)
     began = wall.now
     wall.pace.wait(8.1, lambda: True)
     assert wall.now - began == pytest.approx(PERIOD)

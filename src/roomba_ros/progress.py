@@ -1,0 +1,33 @@
+"""How far a node is, told to a simulation that waits for those who fall behind."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import rospy
+from std_msgs.msg import Time
+
+NODES: Final = ("speed_pub_node", "walk_to_point_action_server_node", "mission_node")
+"""Who drives, and so is waited for; of position_pub_node its ``/pose`` tells how far it is."""
+_PERIOD: Final = 0.1
+"""s of the ROS clock between two messages."""
+
+
+class Progress:
+    """Publishes ``~progress`` (Time: up to when this node did its work), if it is one who drives.
+
+    Only while the clock is a simulated one.
+    """
+
+    def __init__(self, name: str) -> None:
+        """Connect, for the node of this name."""
+        self._told = 0.0
+        self._publisher: rospy.Publisher | None = None
+        if name in NODES and not rospy.rostime.is_wallclock():
+            self._publisher = rospy.Publisher("~progress", Time, queue_size=1, tcp_nodelay=True)
+
+    def tell(self, now: float) -> None:
+        """Tell that all is done up to a time of the ROS clock, s."""
+        if self._publisher is not None and not 0.0 <= now - self._told < 0.99 * _PERIOD:
+            self._told = now
+            self._publisher.publish(rospy.Time.from_sec(now))

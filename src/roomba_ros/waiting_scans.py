@@ -1,0 +1,42 @@
+"""Scans that wait until it is known where the robot was when they were taken."""
+
+from __future__ import annotations
+
+import threading
+from typing import Final
+
+from sensor_msgs.msg import LaserScan
+
+_KEPT: Final = 5
+"""Scans; on a busy machine odometry comes later than several of them."""
+
+
+class WaitingScans:
+    """The newest scans, for one who puts them in and one who takes them out."""
+
+    def __init__(self) -> None:
+        """Begin with none."""
+        self._lock = threading.Lock()
+        self._scans: list[LaserScan] = []
+
+    def put(self, scan: LaserScan) -> None:
+        """Let a scan wait."""
+        with self._lock:
+            if self._scans and scan.header.stamp < self._scans[-1].header.stamp:
+                # The clock was set back.
+                self._scans.clear()
+            self._scans = [*self._scans[1 - _KEPT :], scan]
+
+    def take(self, stamp: float) -> LaserScan | None:
+        """Return the newest that was taken by ``stamp``, s, if there is one; older ones go."""
+        with self._lock:
+            ready = sum(scan.header.stamp.to_sec() <= stamp for scan in self._scans)
+            scan = self._scans[ready - 1] if ready else None
+            del self._scans[:ready]
+        return scan
+
+    @property
+    def oldest(self) -> float | None:
+        """When the oldest that waits was taken, s."""
+        with self._lock:
+            return self._scans[0].header.stamp.to_sec() if self._scans else None
