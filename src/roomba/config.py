@@ -204,7 +204,7 @@ class ControlConfig(Frozen):
     heading_gain: Positive = 4.0
     turn_in_place_angle: Annotated[float, Field(gt=0.0, lt=math.pi / 2)] = 0.9
     arrival_tolerance: Positive = 0.02
-    restart_distance: Positive = 0.08
+    restart_distance: Positive = 0.03
     turning_speed: Positive = 2.5
     stream_timeout: Positive = 0.3
 
@@ -263,6 +263,17 @@ class RobotConfig(Frozen):
     control: ControlConfig = ControlConfig()
     walk: WalkConfig = WalkConfig()
     tracking: TrackingConfig = TrackingConfig()
+
+    @model_validator(mode="after")
+    def _walks_arrive(self) -> RobotConfig:
+        nearest, again = self.walk.arrival_tolerance, self.control.restart_distance
+        if not self.control.arrival_tolerance <= again <= nearest:
+            raise ValueError(
+                f"expected control.restart_distance ({again}) from control.arrival_tolerance "
+                f"({self.control.arrival_tolerance}) to walk.arrival_tolerance ({nearest}): a "
+                "robot that stands nearer than the one and farther than the other never arrives"
+            )
+        return self
 
 
 def pickup_share(brush: float, fan: float) -> float:

@@ -32,6 +32,7 @@ def test_every_value_of_the_shipped_file_has_a_reason_beside_it() -> None:
         ("brush:\n  pickup: 1.5\n", "brush.pickup"),
         ("body: [\n", "cannot be read as YAML"),
         ("control:\n  heading_gain: .nan\n", "control.heading_gain"),
+        ("control:\n  restart_distance: 0.08\n", r"restart_distance \(0.08\) from .*never arrives"),
     ],
 )
 def test_a_broken_file_is_refused_by_name(tmp_path: Path, text: str, said: str) -> None:

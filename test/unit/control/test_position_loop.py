@@ -1,6 +1,7 @@
 import itertools
 import math
 
+import numpy as np
 import pytest
 from fixtures.rooms import room_home
 from hypothesis import given, settings
@@ -68,8 +69,18 @@ def test_having_arrived_it_does_not_dance() -> None:
     position_loop = loop()
     assert position_loop.tick(Pose(), (0.01, 0.0), 0.5) == Twist()
     assert position_loop.arrived
-    assert position_loop.tick(Pose(-0.04, 0.0, 0.0), (0.01, 0.0), 0.5) == Twist()
-    assert position_loop.tick(Pose(-0.2, 0.0, 0.0), (0.01, 0.0), 0.5).linear > 0.0
+    assert position_loop.tick(Pose(-0.018, 0.0, 0.0), (0.01, 0.0), 0.5) == Twist()
+    assert position_loop.tick(Pose(-0.04, 0.0, 0.0), (0.01, 0.0), 0.5).linear > 0.0
+
+
+def test_whoever_rolled_on_after_it_arrived_goes_back_until_a_walk_arrives() -> None:
+    position_loop = loop()
+    for rolled in np.arange(0.0, 0.1, 0.005):
+        position_loop.tick(Pose(), (0.01, 0.0), 0.5)
+        assert position_loop.arrived
+        pose = Pose(0.01, rolled, 1.0)
+        stands = position_loop.tick(pose, (0.01, 0.0), 0.5) == Twist()
+        assert not stands or pose.distance_to(0.01, 0.0) <= CONFIG.walk.arrival_tolerance
 
 
 def test_a_new_wish_counts_however_near() -> None:
