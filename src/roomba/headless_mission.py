@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from roomba.closed_loop import LONGEST_BURST, STEP, STEPS_PER_TICK, ClosedLoop
 from roomba.config import RobotConfig
 from roomba.errors import RoombaError
-from roomba.geometry import Pose, Twist
+from roomba.geometry import STANDSTILL, Pose, Twist
 from roomba.grid import OccupancyMap
 from roomba.headless_parts import SafeDrive, senses_of
 from roomba.mission.clean_request import CleanRequest, CleanResult
@@ -38,7 +38,12 @@ from roomba.world.home import Home
 from roomba.world.simulator import Simulator
 
 _LONGEST_CLEAN: Final = 12 * 3600.0
-"""s; a clean that is still under way then is a fault of the program."""
+_LONGEST_PER_AREA: Final = 600.0
+"""s, and s for each m2 of floor: a clean that is still under way then, all its charges included, is
+a fault of the program. An office of 1,000 m2 takes 24 hours, 15 of them at the station."""
+_LOOKS: Final = 5
+_TICKS_PER_LOOK: Final = 4
+"""While it charges the mission has its turn after so many looks of so many ticks: each second."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -119,8 +124,9 @@ class HeadlessMission:
         """Let time pass until the clean under way has a result."""
         began, hits = self.seen.time, self.simulator.numbers["hits"]
         distance, turning = self._driven()
+        longest = _LONGEST_CLEAN + _LONGEST_PER_AREA * self.site.known.free_area
         while (result := self.mission.take_result()) is None:
-            if self.seen.time - began > _LONGEST_CLEAN:
+            if self.seen.time - began > longest:
                 raise RoombaError("a clean has no end; that is a fault of the program")
             self.advance()
         now_distance, now_turning = self._driven()
@@ -139,6 +145,8 @@ class HeadlessMission:
         """Let some ticks pass: many at once while nothing comes up, then one that looks around."""
         if self._loop.may_run():
             self._loop.run()
+        elif self.mission.state.phase is Phase.CHARGING and self.seen.battery.is_docked:
+            self._stand()
         self.tick()
 
     def tick(self) -> None:
@@ -148,11 +156,20 @@ class HeadlessMission:
         command = self._command(senses, step.twist, step.looks_around)
         for _ in range(STEPS_PER_TICK):
             self.simulator.advance(command, STEP, 1)
+        self._look()
+
+    def _look(self) -> None:
         self.seen = self.simulator.observe()
         self._localize()
         pose = self.seen.pose
         self.truth.sweep(pose.x, pose.y)
         self.rows.append(np.array([[self.seen.time, pose.x, pose.y, pose.theta]]))
+
+    def _stand(self) -> None:
+        """Let time pass in which the robot stands at its station and nobody asks for anything."""
+        for _ in range(_LOOKS):
+            self.simulator.advance(STANDSTILL, STEP, STEPS_PER_TICK * _TICKS_PER_LOOK)
+            self._look()
 
     def senses(self) -> Senses:
         """Return what the robot senses now."""

@@ -47,6 +47,7 @@ from roomba.mission.docking_config import DockingConfig
 from roomba.mission.machine import Errand, Event, Phase
 from roomba.mission.mission import CommandRefusedError, Mission
 from roomba.mission.site import Site
+from roomba.perception.estimate import Knowledge
 from roomba.perception.zones import Zone, ZoneKind, Zones
 from roomba.world.engine.arrays import Fault
 
@@ -364,6 +365,26 @@ def test_with_a_low_battery_it_goes_home_charges_and_goes_on() -> None:
     robot.simulator.set_charge(0.95)
     until(robot, in_phase(robot, Phase.CLEANING), 20.0)
     assert_all_clean(robot, robot.run())
+
+
+def test_while_it_charges_time_passes_in_few_ticks_and_is_recorded() -> None:
+    robot = begun()
+    robot.simulator.set_charge(0.085)
+    until(robot, in_phase(robot, Phase.CHARGING), 120.0)
+    since, level, calls = robot.seen.time, robot.seen.battery.level, 0
+    robot.rows.clear()
+    while robot.seen.time < since + 60.0:
+        robot.advance()
+        calls += 1
+        assert robot.localizer.estimate.knowledge is Knowledge.KNOWN
+    assert calls < 70
+    assert robot.seen.battery.level > level
+    times = np.concatenate(robot.rows)[:, 0]
+    assert np.diff(times, prepend=since).max() <= 0.2 + 1e-9
+    robot.simulator.set_charge(0.95)
+    robot.advance()
+    robot.advance()
+    assert robot.mission.state.phase is not Phase.CHARGING
 
 
 def test_it_charges_as_much_as_the_rest_needs() -> None:
