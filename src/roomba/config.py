@@ -266,12 +266,17 @@ class RobotConfig(Frozen):
 
     @model_validator(mode="after")
     def _walks_arrive(self) -> RobotConfig:
-        nearest, again = self.walk.arrival_tolerance, self.control.restart_distance
-        if not self.control.arrival_tolerance <= again <= nearest:
+        control, walk = self.control, self.walk
+        if control.restart_distance > walk.arrival_tolerance:
             raise ValueError(
-                f"expected control.restart_distance ({again}) from control.arrival_tolerance "
-                f"({self.control.arrival_tolerance}) to walk.arrival_tolerance ({nearest}): a "
-                "robot that stands nearer than the one and farther than the other never arrives"
+                f"expected control.restart_distance ({control.restart_distance}) of at most "
+                f"walk.arrival_tolerance ({walk.arrival_tolerance}), else a robot between the two "
+                "stands and no walk arrives: lower the first or raise the second"
+            )
+        if control.restart_distance < control.arrival_tolerance:
+            raise ValueError(
+                f"expected control.restart_distance ({control.restart_distance}) of at least "
+                f"control.arrival_tolerance ({control.arrival_tolerance}): raise it"
             )
         return self
 

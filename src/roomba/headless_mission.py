@@ -14,10 +14,9 @@ from numpy.typing import NDArray
 
 from roomba.closed_loop import LONGEST_BURST, STEP, STEPS_PER_TICK, ClosedLoop
 from roomba.config import RobotConfig
-from roomba.errors import RoombaError
 from roomba.geometry import STANDSTILL, Pose, Twist
 from roomba.grid import OccupancyMap
-from roomba.headless_parts import SafeDrive, senses_of
+from roomba.headless_parts import SafeDrive, require_end, senses_of
 from roomba.mission.clean_request import CleanRequest, CleanResult
 from roomba.mission.docking_config import DockingConfig
 from roomba.mission.look_around import Search
@@ -37,12 +36,8 @@ from roomba.perception.zones import Zones
 from roomba.world.home import Home
 from roomba.world.simulator import Simulator
 
-_LONGEST_CLEAN: Final = 12 * 3600.0
-_LONGEST_PER_AREA: Final = 600.0
-"""s, and s for each m2 of floor: a clean that is still under way then, all its charges included, is
-a fault of the program. An office of 1,000 m2 takes 24 hours, 15 of them at the station."""
-_LOOKS: Final = 5
 _TICKS_PER_LOOK: Final = 4
+_MOST_LOOKS: Final = 5
 """While it charges the mission has its turn after so many looks of so many ticks: each second."""
 
 
@@ -111,6 +106,7 @@ class HeadlessMission:
         frame = self.site.frame
         self.truth = CoverageMap(frame, np.ones(frame.shape, np.bool_), self.site.tool_width)
         self.rows: list[NDArray[np.float64]] = []
+        self._longest_burst = longest_burst
         self._loop = ClosedLoop(self, longest_burst)
 
     def clean(self, request: CleanRequest | None = None) -> CleanRecord:
@@ -124,10 +120,8 @@ class HeadlessMission:
         """Let time pass until the clean under way has a result."""
         began, hits = self.seen.time, self.simulator.numbers["hits"]
         distance, turning = self._driven()
-        longest = _LONGEST_CLEAN + _LONGEST_PER_AREA * self.site.known.free_area
         while (result := self.mission.take_result()) is None:
-            if self.seen.time - began > longest:
-                raise RoombaError("a clean has no end; that is a fault of the program")
+            require_end(self.seen.time - began, self.simulator.home)
             self.advance()
         now_distance, now_turning = self._driven()
         return CleanRecord(
@@ -167,7 +161,7 @@ class HeadlessMission:
 
     def _stand(self) -> None:
         """Let time pass in which the robot stands at its station and nobody asks for anything."""
-        for _ in range(_LOOKS):
+        for _ in range(min(_MOST_LOOKS, self._longest_burst // _TICKS_PER_LOOK)):
             self.simulator.advance(STANDSTILL, STEP, STEPS_PER_TICK * _TICKS_PER_LOOK)
             self._look()
 

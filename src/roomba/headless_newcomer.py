@@ -3,24 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from roomba.config import RobotConfig
-from roomba.errors import RoombaError
 from roomba.exploring_loop_kernels import TIME, TRUE
 from roomba.grid import OccupancyMap
 from roomba.headless_explorer import HeadlessExplorer
+from roomba.headless_parts import require_end
 from roomba.mission.clean_request import CleanRequest, CleanResult
 from roomba.mission.mission import MissionStep
 from roomba.mission_config import MissionConfig
 from roomba.perception.dirt_map import DirtMap
 from roomba.world.home import Home
-
-_LONGEST: Final = 12 * 3600.0
-"""s; a clean that is still under way then is a fault of the program."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -57,8 +53,7 @@ class HeadlessNewcomer(HeadlessExplorer):
         start, hits = self.seen.time, self.simulator.numbers["hits"]
         self.mission.clean(request or CleanRequest(), self.senses())
         while (result := self.mission.take_result()) is None:
-            if self.seen.time - start > _LONGEST:
-                raise RoombaError("a clean has no end; that is a fault of the program")
+            require_end(self.seen.time - start, self.simulator.home)
             self.tick()
         rows = np.concatenate(self.passed)
         return NewcomerRecord(

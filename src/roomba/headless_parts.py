@@ -2,13 +2,32 @@
 
 from __future__ import annotations
 
+from typing import Final
+
 from roomba.config import RobotConfig
 from roomba.control.speed_loop import SpeedLoop
+from roomba.errors import RoombaError
 from roomba.geometry import Twist
 from roomba.mission.senses import Battery, Beams, Senses
 from roomba.perception.estimate import Estimate
 from roomba.world.engine.arrays import Infrared
+from roomba.world.home import Home
 from roomba.world.simulator import Observation
+
+_LONGEST_CLEAN: Final = 12 * 3600.0
+_LONGEST_PER_AREA: Final = 150.0
+"""s, and s for each m2 of floor: more than twice what an office of 1,476 m2 takes, 26 hours with
+ten charges."""
+
+
+def require_end(spent: float, home: Home) -> None:
+    """Raise RoombaError if nothing but a fault lets a clean last so long, ``spent`` s."""
+    longest = _LONGEST_CLEAN + _LONGEST_PER_AREA * home.map.free_area
+    if spent > longest:
+        raise RoombaError(
+            f"expected a clean to end within {longest / 3600.0:.0f} h of the robot's time, it is "
+            "still under way; that is a fault of the program"
+        )
 
 
 def senses_of(seen: Observation, estimate: Estimate) -> Senses:

@@ -42,6 +42,8 @@ STEPS_PER_TICK = 2
 STEP = TICK_NANOSECONDS / STEPS_PER_TICK / 1e9
 """s of robot time of one step of the world."""
 _FASTEST = 100.0
+_POSE = "pose"
+"""The part of the robot that knows its place, as the pace is told of it."""
 
 
 class HomeSimNode:
@@ -77,7 +79,7 @@ class HomeSimNode:
         self._clock = time.time_ns() // TICK_NANOSECONDS * TICK_NANOSECONDS
         self._ticks = 0
         self._told = 0.0
-        self._pace = Pace(TICK_NANOSECONDS / 1e9 / self._speed, self._count_parts)
+        self._pace = Pace(TICK_NANOSECONDS / 1e9 / self._speed, self._is_there)
         self._odom_frame, self._base_frame = frame_id("odom"), frame_id("base_link")
         self._connect()
 
@@ -166,19 +168,14 @@ class HomeSimNode:
         rospy.Subscriber(
             "cmd_vel_out", TwistMessage, self._on_command, queue_size=1, tcp_nodelay=True
         )
-        self._parts = [
-            rospy.Subscriber("pose", PoseStamped, self._on_pose, queue_size=1, tcp_nodelay=True)
-        ]
+        self._parts = {
+            _POSE: rospy.Subscriber(
+                "pose", PoseStamped, self._on_pose, queue_size=1, tcp_nodelay=True
+            )
+        }
         for name in progress.NODES:
-            self._parts.append(
-                rospy.Subscriber(
-                    f"{name}/progress",
-                    Time,
-                    self._on_progress,
-                    name,
-                    queue_size=1,
-                    tcp_nodelay=True,
-                )
+            self._parts[name] = rospy.Subscriber(
+                f"{name}/progress", Time, self._on_progress, name, queue_size=1, tcp_nodelay=True
             )
         for topic, motor in (("main_brush_motor", "brush"), ("vacuum_motor", "fan")):
             rospy.Subscriber(topic, Float32, self._on_power, callback_args=motor, queue_size=1)
@@ -204,11 +201,11 @@ class HomeSimNode:
             ),
         ]
 
-    def _count_parts(self) -> int:
-        return sum(subscriber.get_num_connections() for subscriber in self._parts)
+    def _is_there(self, part: str) -> bool:
+        return bool(self._parts[part].get_num_connections() > 0)
 
     def _on_pose(self, message: PoseStamped) -> None:
-        self._pace.heard("pose", message.header.stamp.to_sec())
+        self._pace.heard(_POSE, message.header.stamp.to_sec())
 
     def _on_progress(self, message: Time, name: str) -> None:
         self._pace.heard(name, message.data.to_sec())

@@ -17,7 +17,7 @@ from roomba_robot.srv import (
 from std_srvs.srv import Trigger, TriggerResponse
 
 from roomba.errors import RoombaError
-from roomba.map_store import MapStoreError, StoredMap
+from roomba.map_store import MapStoreError
 from roomba.perception.rooms_refit import refitted
 from roomba_ros.change_topics import ChangeTopics
 from roomba_ros.localization_topics import LocalizationTopics
@@ -96,9 +96,14 @@ class MapServices:
         is_made_anew = name != before and name in self._shelf.names
         saved = self._shelf.taken_over(name, stored) if is_made_anew else stored
         self._shelf.save(name, saved)
-        said = f"saved as {name} in {self._shelf.folder}"
         if is_made_anew:
-            said += self._take_over(saved)
+            try:
+                self._shelf.go_by(saved)
+            except (OSError, RoombaError) as error:
+                return (
+                    f"saved as {name} with the rooms and zones of the older map, but the robot "
+                    f"does not go by them ({error}): mend that, and save it again"
+                )
         with own.lock:
             # Meanwhile somebody may have let the robot go by another map.
             if own.occupancy is stored.occupancy:
@@ -106,18 +111,7 @@ class MapServices:
                 own.remember()
                 if is_made_anew:
                     own.tell_again()
-        return said
-
-    def _take_over(self, saved: StoredMap) -> str:
-        """Go by the rooms and zones of the older map; return what to add to the answer."""
-        try:
-            self._shelf.go_by(saved)
-        except (OSError, RoombaError) as error:
-            return (
-                f"; but the robot does not go by its rooms and zones ({error}): "
-                f"mend that and load it (map/load)"
-            )
-        return ""
+        return f"saved as {name} in {self._shelf.folder}"
 
     def _load(self, name: str) -> str:
         """Go on with a saved map; unless its place there is known the robot finds it out."""

@@ -50,7 +50,8 @@ def run_node(name: str, make: Callable[[], Node]) -> None:
     except RoombaError as error:
         give_up(str(error))
     rospy.core.add_preshutdown_hook(lambda reason: _stop(node))
-    progress = Progress(name)
+    progress = Progress()
+    progress.start(name)
 
     def tick(now: float) -> None:
         node.tick(now)

@@ -26,16 +26,16 @@ class Pace:
     def __init__(
         self,
         period: float,
-        count_parts: Callable[[], int],
+        is_there: Callable[[str], bool],
         monotonic: Callable[[], float] = time.monotonic,
         sleep: Callable[[float], None] = time.sleep,
     ) -> None:
         """Let ticks come every ``period`` s of wall time.
 
-        ``count_parts`` tells how many parts there are to be heard: nobody waits for the dead.
+        ``is_there`` tells whether a part that was heard still runs: nobody waits for the dead.
         """
         self._period, self._monotonic, self._sleep = period, monotonic, sleep
-        self._count_parts, self._parts = count_parts, 0
+        self._is_there = is_there
         self._due = monotonic() + period
         self._heard: dict[str, tuple[float, float]] = {}
         self.is_late = False
@@ -46,7 +46,8 @@ class Pace:
 
         One that tells the same again has not got any farther.
         """
-        if part not in self._heard or self._heard[part][0] != stamp:
+        known = self._heard.get(part)
+        if known is None or known[0] != stamp:
             self._heard[part] = stamp, self._monotonic()
 
     def wait(self, now: float, ended: Callable[[], bool]) -> None:
@@ -66,16 +67,12 @@ class Pace:
 
     def _must_hold(self, now: float) -> bool:
         """Whether a part is to be waited for; not if its clock is another one, or was set."""
-        late = [heard_at for stamp, heard_at in list(self._heard.values()) if _is_late(now - stamp)]
-        if not late:
-            return False
-        parts, before = self._count_parts(), self._parts
-        self._parts = parts
-        if parts < before:
-            # Nobody says whose end it was; all others are heard again soon.
-            self._heard.clear()
-            return False
-        return self._monotonic() - max(late) < _LONGEST_HOLD
+        heard_at = [
+            heard_at
+            for part, (stamp, heard_at) in list(self._heard.items())
+            if _is_late(now - stamp) and self._is_there(part)
+        ]
+        return bool(heard_at) and self._monotonic() - max(heard_at) < _LONGEST_HOLD
 
 
 def _is_late(behind: float) -> bool:

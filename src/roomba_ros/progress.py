@@ -19,10 +19,13 @@ class Progress:
     Only while the clock is a simulated one.
     """
 
-    def __init__(self, name: str) -> None:
-        """Connect, for the node of this name."""
+    def __init__(self) -> None:
+        """Connect nothing yet."""
         self._told = 0.0
         self._publisher: rospy.Publisher | None = None
+
+    def start(self, name: str) -> None:
+        """Connect, for the node of this name."""
         if name in NODES and not rospy.rostime.is_wallclock():
             self._publisher = rospy.Publisher("~progress", Time, queue_size=1, tcp_nodelay=True)
 

@@ -1,16 +1,18 @@
 import math
+import time
 from collections.abc import Iterator
 
 import pytest
 import rospy
 from fixtures.graph import RosGraph
+from fixtures.probe import Probe
 from fixtures.refusal import refusal
 from fixtures.simulated import Body, simulated, twist
 from fixtures.waiting import wait_until
 from nav_msgs.msg import OccupancyGrid
 from roomba_robot.msg import Bumper
 from roomba_robot.srv import SpillDirt, TurnCamera
-from std_msgs.msg import Float32
+from std_msgs.msg import Float32, Time
 
 from roomba.geometry import Pose
 from roomba_ros.home_sim_node import main
@@ -73,6 +75,16 @@ def test_the_body_drives_and_a_command_that_is_not_repeated_stops_it(
     wait_until(lambda: body.odometry().twist.twist.linear.x == 0.0, 20.0, "it stands")
     # Of the robot's clock, and several times what the drive's time-out and braking take.
     assert body.probe.newest["/odom"].header.stamp.to_sec() - last < 4.0
+
+
+def test_a_node_that_drives_and_falls_behind_is_waited_for(shared_robot: RosGraph) -> None:
+    probe = Probe(shared_robot)
+    # Here no mission runs: this test tells how far one is.
+    probe.send("/mission_node/progress", Time(rospy.Time.now()))
+    told = rospy.get_time()
+    time.sleep(1.0)
+    assert rospy.get_time() < told + 1.0, "twice as fast it would be two seconds later"
+    wait_until(lambda: rospy.get_time() > told + 2.0, 30.0, "it goes on without it")
 
 
 def test_what_cannot_be_driven_is_refused(shared_robot: RosGraph) -> None:

@@ -31,7 +31,7 @@ from roomba.perception.slam.mapper_file import KeptMap, load_mapper, save_mapper
 from roomba_ros.map_memory import FOLDER
 
 NODE = "position_pub_node"
-HOME, OLDER = "home", "older"
+HOME = "home"
 
 
 @pytest.fixture
@@ -93,8 +93,7 @@ def test_a_map_that_is_being_made_outlives_the_node(graph: RosGraph) -> None:
     # Left behind by a run of yesterday, or by nobody knows whom.
     file_of(graph).parent.mkdir(parents=True)
     file_of(graph).write_bytes(b"of something else")
-    for name in (HOME, OLDER):
-        keep_home_map(graph.folder / "ros_home", name)
+    keep_home_map(graph.folder / "ros_home", HOME)
     launch = graph.launch(f"home:={mapping_home(graph.folder)}", "map:=none", SPEED)
     robot = Explorer(graph)
     robot.maps_with("explore")
@@ -130,24 +129,23 @@ def test_a_map_that_is_being_made_outlives_the_node(graph: RosGraph) -> None:
     assert robot.mapping.name == ""
     knows_its_place(robot)
 
-    # What cannot be used at once is saved nevertheless, and said.
+    # Saved by the name of an older map of this floor, it takes over what people named on that.
+    # What cannot be used at once is kept with it.
     in_the_way = rooms_file(graph, robot.map)
     in_the_way.mkdir(parents=True)
     answers: list[NameMapResponse] = []
 
     def is_saved() -> bool:
-        answers.append(robot.on_maps("save", OLDER))
+        answers.append(robot.on_maps("save", HOME))
         return answers[-1].success
 
     wait_until(is_saved, 30.0, "it is saved, its rooms found")
-    for words in ("saved as older", "does not go by its rooms", "map/load"):
+    for words in ("saved as home", "does not go by them", "save it again"):
         assert words in answers[-1].message
-    assert robot.saved_maps() == ([HOME, OLDER], OLDER)
+    assert robot.saved_maps() == ([HOME], "")
     assert KITCHEN not in robot.rooms
-    assert KITCHEN in names_kept(graph, OLDER)
+    assert KITCHEN in names_kept(graph, HOME)
     in_the_way.rmdir()
-
-    # Saved by the name of an older map of this floor, it takes over what people named on that.
     assert robot.on_maps("save", HOME).message.endswith("roomba_robot/maps")
     wait_until(lambda: KITCHEN in robot.rooms, 30.0, "its room's name")
     assert KITCHEN in names_kept(graph, HOME)

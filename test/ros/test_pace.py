@@ -14,8 +14,8 @@ class Wall:
     def __init__(self) -> None:
         self.now = 100.0
         self.events: list[tuple[float, float]] = []
-        self.parts = 2
-        self.pace = Pace(PERIOD, lambda: self.parts, lambda: self.now, self.sleep)
+        self.dead: set[str] = set()
+        self.pace = Pace(PERIOD, lambda part: part not in self.dead, lambda: self.now, self.sleep)
 
     def sleep(self, seconds: float) -> None:
         self.now += seconds
@@ -73,8 +73,7 @@ def test_each_part_is_waited_for() -> None:
 def test_but_not_the_dead() -> None:
     wall = Wall()
     wall.pace.heard(PART, 7.6)
-    wall.pace.wait(8.1, lambda: True)
-    wall.parts = 1
+    wall.dead.add(PART)
     assert wall.ticks(1, robot=8.1) == pytest.approx(PERIOD)
     wall.pace.heard("pose", 7.7)
     assert 1.9 < wall.ticks(1, robot=8.1) < 2.1

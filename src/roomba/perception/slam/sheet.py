@@ -43,7 +43,7 @@ class Sheet:
         ``lidar`` is x, y in the robot's frame, ``reach`` how far its beams go, m.
         """
         self._cover(pose, reach)
-        draw(self._arrays, points, lidar, pose, INTO_EDGE)
+        draw(self._arrays, points, lidar, pose, INTO_EDGE, 1)
 
     def erase(self, points: NDArray[np.float32], lidar: Floats, pose: Floats) -> None:
         """Take a scan away that was drawn."""
