@@ -111,6 +111,7 @@ class MapServices:
                 own.remember()
                 if is_made_anew:
                     own.tell_again()
+        own.settle()
         return f"saved as {name} in {self._shelf.folder}"
 
     def _load(self, name: str) -> str:
@@ -126,6 +127,7 @@ class MapServices:
                 # Another state of the same map.
                 at = self._place.known_place
             own.use(name, stored, at)
+        own.settle()
         return f"the robot goes by {name}"
 
     def _remove(self, name: str) -> str:
@@ -134,6 +136,7 @@ class MapServices:
             if self._own.name == name:
                 self._own.name = ""
                 self._own.remember()
+        self._own.settle()
         return f"{name} is removed"
 
     def _accept(self) -> str:

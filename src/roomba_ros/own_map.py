@@ -30,6 +30,8 @@ NONE: Final = "none"
 OWN: Final = "own"
 """Values of the parameter ``~map``: a map that others tell; a new one of its own; the own one of
 this floor. All others are names of saved maps."""
+_SETTLED: Final = 2.0
+"""s of wall time; the master is told within milliseconds."""
 NO_STATION: Final = "the map is being made: put the robot on its station, so that it knows it"
 
 
@@ -117,6 +119,10 @@ class OwnMap:
             self._memory.forget_whole()
         elif self.occupancy is not None and self.station is not None:
             self._memory.keep_whole(StoredMap(self.occupancy, self.station))
+
+    def settle(self) -> None:
+        """Wait, but not for ever, until what is to be remembered is: then people may be told."""
+        self._background.wait(_SETTLED)
 
     def _remember_name(self) -> None:
         try:
