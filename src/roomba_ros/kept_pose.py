@@ -29,12 +29,18 @@ class KeptPose:
     def __init__(self) -> None:
         """Keep nothing yet."""
         self._newest: Pose | None = None
+        self._written: Pose | None = None
         self.was_found = False
         """Whether the start pose is a kept one: another process of this node was here before."""
 
     def start(self) -> None:
         """Begin to write what is kept."""
         threading.Thread(target=self._write, daemon=True).start()
+
+    @property
+    def is_kept(self) -> bool:
+        """Whether the master has a pose by which the next process would know the place."""
+        return self.was_found or self._written is not None
 
     def keep(self, map_to_odometry: Pose) -> None:
         """Take what is to be kept now."""
@@ -55,15 +61,14 @@ class KeptPose:
         return began.compose(odometry), _DEVIATION
 
     def _write(self) -> None:
-        written: Pose | None = None
         while not rospy.is_shutdown():
             time.sleep(_PERIOD)
             newest = self._newest
-            if newest is None or newest == written:
+            if newest is None or newest == self._written:
                 continue
             try:
                 rospy.set_param(PARAMETER, [newest.x, newest.y, newest.theta])
-                written = newest
+                self._written = newest
             except (OSError, http.client.HTTPException, xmlrpc.client.Error) as error:
                 rospy.logwarn_throttle(10.0, "the master does not keep the pose: %s", error)
 

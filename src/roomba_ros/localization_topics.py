@@ -167,6 +167,11 @@ class LocalizationTopics:
         """Whether another process of this node knew the place, and odometry went on since."""
         return self._kept.was_found
 
+    @property
+    def is_place_kept(self) -> bool:
+        """Whether another process of this node would know the place, and that it was here."""
+        return self._kept.is_kept
+
     def _first_localizer(self) -> Localizer | None:
         """Return a localizer at the place where the first odometry was told; None before that."""
         if not self._odometry:

@@ -100,9 +100,9 @@ class MapMaker:
         return False
 
     def keep(self, now: float) -> None:
-        """Remember the map, if it is time to."""
+        """Remember the map, if it is time to, and once its place is remembered as well."""
         mapper = self._mapper
-        if mapper is None or self._finishes:
+        if mapper is None or self._finishes or not self._place.is_place_kept:
             return
         is_lost = mapper.estimate.knowledge is Knowledge.LOST
         if not self._memory.is_due(now, mapper.version, is_lost=is_lost):

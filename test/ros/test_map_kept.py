@@ -187,6 +187,8 @@ def test_what_cannot_be_taken_up_is_said_and_a_new_map_begins(graph: RosGraph) -
         wait_until(lambda: kept_keyframes(graph) > 0, 30.0, "it is kept")
         kept = load_mapper(file_of(graph))
         assert kept is not None
+        # Else the next process would not know that somebody was here, and leave it unread.
+        assert graph.param("/map_to_odometry")
         kill(graph, robot)
         change(kept, file_of(graph))
         grows_again(robot)
