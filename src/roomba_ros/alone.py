@@ -12,7 +12,8 @@ import rosgraph
 import rospy
 from rosgraph.names import ns_join
 
-_PING_TIMEOUT = 1.0
+_PING_TIMEOUT = 5.0
+"""s of wall time; who says nothing for so long is dead, and not only on a busy machine."""
 
 
 def refuse_second(node_name: str, topic: str) -> None:

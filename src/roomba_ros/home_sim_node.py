@@ -79,7 +79,7 @@ class HomeSimNode:
         self._clock = time.time_ns() // TICK_NANOSECONDS * TICK_NANOSECONDS
         self._ticks = 0
         self._told = 0.0
-        self._pace = Pace(TICK_NANOSECONDS / 1e9 / self._speed, self._is_there)
+        self._pace = Pace(TICK_NANOSECONDS / 1e9, self._speed, self._is_there)
         self._odom_frame, self._base_frame = frame_id("odom"), frame_id("base_link")
         self._connect()
 

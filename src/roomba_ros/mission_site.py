@@ -45,7 +45,7 @@ GROWING: Final = "growing"
 """The digest of maps that are being made."""
 MOST_FINE_CELLS: Final = 40_000_000
 """Of a map that is cleaned: 4,000 m2, its walls and surroundings included."""
-_MAPPING_DEADLINE: Final = 1.0
+_MAPPING_DEADLINE: Final = 3.0
 """s of wall time that a map without a load time waits to be told whole or growing."""
 _ROOMS_DEADLINE: Final = 3.0
 """s of wall time that a site waits for the map's rooms; later ones make a new site."""

@@ -8,8 +8,9 @@ from typing import Final
 
 _LATEST: Final = 0.5
 """s of wall time; farther behind than this the simulation goes on slower than asked for."""
-_MOST_BEHIND: Final = 0.3
-"""s of the robot's clock; a robot that thinks of longer ago is waited for."""
+_MOST_BEHIND: Final = 0.12
+"""s of the robot's clock; a robot that thinks of longer ago is waited for. One that keeps up is two
+ticks behind; at 0.3 s a turn on the spot ends no more: it swings to and fro."""
 _LONGEST_HOLD: Final = 2.0
 """s of wall time; a robot that says nothing for longer is not waited for any more."""
 _LOOK: Final = 0.001
@@ -20,23 +21,26 @@ class Pace:
     """Says when the next tick is due. The robot's parts tell how far they are by :meth:`heard`.
 
     On a busy machine a world that goes on while its robot still thinks about what was is another
-    world than the one at real time: commands come too late for it.
+    world than the one at real time: commands come too late for it. And a part that was killed
+    comes back in a few seconds of wall time: faster than real time they would be minutes for it.
     """
 
     def __init__(
         self,
-        period: float,
+        tick: float,
+        speed: float,
         is_there: Callable[[str], bool],
         monotonic: Callable[[], float] = time.monotonic,
         sleep: Callable[[float], None] = time.sleep,
     ) -> None:
-        """Let ticks come every ``period`` s of wall time.
+        """Let ``speed`` times ``tick`` s of the robot's clock pass in one of wall time.
 
-        ``is_there`` tells whether a part that was heard still runs: nobody waits for the dead.
+        ``is_there`` tells whether a part that was heard still runs: nobody waits for the dead, but
+        the clock goes no faster than real time until they are back.
         """
-        self._period, self._monotonic, self._sleep = period, monotonic, sleep
-        self._is_there = is_there
-        self._due = monotonic() + period
+        self._tick, self._speed = tick, speed
+        self._monotonic, self._sleep, self._is_there = monotonic, sleep, is_there
+        self._due = monotonic() + tick / speed
         self._heard: dict[str, tuple[float, float]] = {}
         self.is_late = False
         """Whether it was ever slower than asked for."""
@@ -63,7 +67,12 @@ class Pace:
         if self._monotonic() - self._due > _LATEST:
             self.is_late = True
             self._due = self._monotonic()
-        self._due += self._period
+        self._due += self._tick / self._speed_now()
+
+    def _speed_now(self) -> float:
+        if self._speed > 1.0 and not all(self._is_there(part) for part in list(self._heard)):
+            return 1.0
+        return self._speed
 
     def _must_hold(self, now: float) -> bool:
         """Whether a part is to be waited for; not if its clock is another one, or was set."""

@@ -6,9 +6,7 @@ import math
 import queue
 import threading
 import time
-from typing import Any
 
-import actionlib
 import numpy as np
 import rospy
 from actionlib_msgs.msg import GoalStatus, GoalStatusArray
@@ -37,6 +35,7 @@ from roomba.client import (
     WalkReport,
 )
 from roomba.geometry import Pose
+from roomba_ros.action_client import ActionClient
 from roomba_ros.calls import SERVER_DEADLINE, call_service
 from roomba_ros.convert import path_of, picture_of, pose_message
 from roomba_ros.parameters import LiveSeedParameters
@@ -78,7 +77,7 @@ class RosRobot(RosVacuum):
         """Connect; raises RoombaError for wrong parameters."""
         self._parameters = LiveSeedParameters()
         super().start()
-        self._actions = _Actions("walk_to_point", WalkToPointAction)
+        self._actions = ActionClient("walk_to_point", WalkToPointAction)
         self._make_plan = rospy.ServiceProxy("make_plan", GetPlan)
         rospy.Subscriber("dirt", Float32, self._on_dirt, queue_size=1)
         rospy.Subscriber("speed", Float32, self._on_speed, queue_size=1)
@@ -173,37 +172,13 @@ class RosRobot(RosVacuum):
         self._status_seen = time.monotonic()
 
 
-class _Actions(actionlib.SimpleActionClient):  # type: ignore[misc]
-    """The stock client with one lock around sending and its callbacks.
-
-    Without it an answer that comes while a goal is being sent is taken for one to an older goal
-    and dropped, and the goal never ends (actionlib issue 206).
-    """
-
-    def __init__(self, *arguments: Any) -> None:
-        self._sending = threading.RLock()
-        super().__init__(*arguments)
-
-    def send_goal(self, *arguments: Any, **callbacks: Any) -> None:
-        with self._sending:
-            super().send_goal(*arguments, **callbacks)
-
-    def _handle_transition(self, handle: Any) -> None:
-        with self._sending:
-            super()._handle_transition(handle)
-
-    def _handle_feedback(self, handle: Any, feedback: Any) -> None:
-        with self._sending:
-            super()._handle_feedback(handle, feedback)
-
-
 class _RosWalk:
     """A goal under way; feedback and end arrive through a queue."""
 
     def __init__(
         self,
         robot: RosRobot,
-        actions: _Actions,
+        actions: ActionClient,
         destination: PositionAndDestination,
     ) -> None:
         self._robot = robot

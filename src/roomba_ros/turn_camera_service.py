@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 import threading
+import time
 from pathlib import Path
 
 import rospkg
@@ -22,10 +24,14 @@ _TRAVELLED = 0.1
 """m; a picture taken farther away than this is old."""
 _TURNED = 0.3
 """rad; and so is one taken with another heading."""
+_REST = 1.0
+"""s of wall time between two pictures, at least: a picture is much work, on a fast clock too."""
 
 
 class TurnCameraService:
     """Keeps a picture of each of five angles up to date: one every 3 s while the robot travels.
+
+    On a fast clock it takes no more than one in a second of wall time.
 
     Services: ``turn_camera`` (TurnCamera: the newest picture of the angle nearest to the wish).
     Calls: ``camera/capture`` (TurnCamera) of the robot's camera.
@@ -44,6 +50,7 @@ class TurnCameraService:
         self._capture = rospy.ServiceProxy("camera/capture", TurnCamera)
         self._pose: Pose | None = None
         self._pictured: dict[int, Pose | None] = {}
+        self._taken = -math.inf
         self._round = list(ANGLES)
         rospy.Subscriber("pose", PoseStamped, self._on_pose, queue_size=1)
         rospy.Service("turn_camera", TurnCamera, self._on_turn_camera)
@@ -51,13 +58,14 @@ class TurnCameraService:
     def tick(self, now: float) -> None:
         """Take a first picture of each angle at once, later one that is not up to date."""
         pose = self._pose
-        if pose is None:
+        if pose is None or time.monotonic() < self._taken + _REST:
             return
         old = [angle for angle in self._round if self._is_old(angle, pose)]
         wanted = [angle for angle in old if angle not in self._pictured] or old[:1]
         try:
             for angle in wanted:
                 self._take(angle)
+                self._taken = time.monotonic()
                 # To the end of the round, so that all angles get their turn.
                 self._round.remove(angle)
                 self._round.append(angle)

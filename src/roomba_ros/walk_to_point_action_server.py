@@ -43,6 +43,8 @@ _NOT_TURNING = 0.2
 """rad/s; slower than this it stays so."""
 _LONGEST_TURN = 6.0
 """s; half a turn takes two of them."""
+_HEARD_BY = 0.3
+"""s; a wish to stay where it is has reached its hearer after this, on a busy machine too."""
 _LONGEST_BRAKING = 1.0
 """s; a cancelled walk has ended after this, whatever the odometry says."""
 
@@ -58,7 +60,9 @@ class _Job:
     turned_by: float | None = None
     """When it has turned at the goal at the latest; None before it is there."""
     rest_by: float | None = None
-    """When a cancelled walk has ended at the latest; None while it is wanted."""
+    """When a cancelled walk stands at the latest; None while it is wanted."""
+    free_at: float | None = None
+    """When a cancelled walk leaves the drive to others; None before it stands."""
 
 
 class WalkToPointActionServer:
@@ -265,12 +269,19 @@ class WalkToPointActionServer:
             job.goal.given_up(time_spent, f"it is there, but {wrong:.2f} rad were not turned")
 
     def _come_to_rest(self, job: _Job, sensed: Sensed, rest_by: float) -> None:
-        """Stop a cancelled walk: speed 0 at once, then the place where it stands is the wish."""
-        if abs(sensed.speed) > _STANDSTILL and sensed.now < rest_by:
+        """Stop a cancelled walk: speed 0 at once, then the place where it stands is the wish.
+
+        Only when that was heard the speed is free: else it would set off to the old one.
+        """
+        if job.free_at is None:
             self._change_speed.publish(0.0)
+            if abs(sensed.speed) <= _STANDSTILL or sensed.now >= rest_by:
+                job.free_at = sensed.now + _HEARD_BY
             return
         if sensed.knowledge.is_usable:
             self._change_position.publish(RobotPosition(sensed.pose.x, sensed.pose.y))
+        if sensed.now < job.free_at:
+            return
         self._change_speed.publish(self._parameters.values.robot_max_speed)
         self._job = None
         job.goal.cancelled(job.walk.time_spent(sensed.now), "cancelled")

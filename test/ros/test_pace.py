@@ -4,7 +4,8 @@ import pytest
 
 from roomba_ros.pace import Pace
 
-PERIOD = 0.01
+TICK, SPEED = 0.05, 5.0
+PERIOD = TICK / SPEED
 PART = "/mission_node"
 
 
@@ -15,7 +16,9 @@ class Wall:
         self.now = 100.0
         self.events: list[tuple[float, float]] = []
         self.dead: set[str] = set()
-        self.pace = Pace(PERIOD, lambda part: part not in self.dead, lambda: self.now, self.sleep)
+        self.pace = Pace(
+            TICK, SPEED, lambda part: part not in self.dead, lambda: self.now, self.sleep
+        )
 
     def sleep(self, seconds: float) -> None:
         self.now += seconds
@@ -50,8 +53,8 @@ def test_far_behind_it_goes_on_slower_and_says_so() -> None:
 def test_a_robot_that_is_late_is_waited_for() -> None:
     wall = Wall()
     wall.pace.heard(PART, 7.6)
-    assert wall.ticks(1, robot=7.8) == pytest.approx(PERIOD)
-    wall.events = [(wall.now + 0.2, 7.9)]
+    assert wall.ticks(1, robot=7.7) == pytest.approx(PERIOD)
+    wall.events = [(wall.now + 0.2, 8.0)]
     assert wall.ticks(1, robot=8.1) == pytest.approx(0.2, abs=0.002)
 
 
@@ -66,7 +69,7 @@ def test_each_part_is_waited_for() -> None:
     wall = Wall()
     wall.pace.heard("pose", 8.1)
     wall.pace.heard(PART, 7.6)
-    wall.events = [(wall.now + 0.2, 7.9)]
+    wall.events = [(wall.now + 0.2, 8.0)]
     assert wall.ticks(1, robot=8.1) == pytest.approx(0.2, abs=0.002)
 
 
@@ -77,6 +80,24 @@ def test_but_not_the_dead() -> None:
     assert wall.ticks(1, robot=8.1) == pytest.approx(PERIOD)
     wall.pace.heard("pose", 7.7)
     assert 1.9 < wall.ticks(1, robot=8.1) < 2.1
+
+
+def test_while_one_is_gone_it_goes_no_faster_than_real_time() -> None:
+    wall = Wall()
+    wall.pace.heard(PART, 8.1)
+    assert wall.ticks(100, robot=8.1) == pytest.approx(100 * PERIOD)
+    wall.dead.add(PART)
+    # The first one was due already.
+    assert wall.ticks(101, robot=8.1) == pytest.approx(PERIOD + 100 * TICK)
+    wall.dead.clear()
+    assert wall.ticks(101, robot=8.1) == pytest.approx(TICK + 100 * PERIOD)
+
+
+def test_what_was_asked_for_to_be_slow_stays_so() -> None:
+    wall = Wall()
+    wall.pace = Pace(TICK, 0.5, lambda part: False, lambda: wall.now, wall.sleep)
+    wall.pace.heard(PART, 8.1)
+    assert wall.ticks(100, robot=8.1) == pytest.approx(100 * TICK / 0.5)
 
 
 def test_nor_one_that_tells_the_same_again_and_again() -> None:

@@ -11,6 +11,7 @@ from fixtures.probe import Probe
 from fixtures.waiting import wait_until
 from geometry_msgs.msg import PoseStamped
 from roomba_robot.srv import TurnCamera, TurnCameraRequest, TurnCameraResponse
+from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import Image
 
 ANGLES = (-30, -15, 0, 15, 30)
@@ -23,7 +24,7 @@ def picture(value: int) -> np.ndarray:
 def start(graph: RosGraph, folder: Path) -> rospy.ServiceProxy:
     graph.rosrun("turn_camera_service.py", f"_picture_folder:={folder}")
     service = rospy.ServiceProxy("/turn_camera", TurnCamera)
-    service.wait_for_service(15.0)
+    service.wait_for_service(60.0)
     return service
 
 
@@ -80,6 +81,28 @@ def test_while_it_travels_it_keeps_the_newest_picture_of_each_angle(
         probe.send("/pose", message)
         time.sleep(0.2)
     assert len(asked) <= standing + 5
+
+
+def test_on_a_fast_clock_it_takes_no_more_than_one_a_second(
+    graph: RosGraph, tmp_path: Path
+) -> None:
+    graph.set_param("/use_sim_time", True)
+    clock = graph.run("rostopic", "pub", "-r", "10", "/clock", "rosgraph_msgs/Clock", "clock: 1")
+    probe = Probe(graph)
+    asked = offer_camera()
+    start(graph, tmp_path / "Images")
+    clock.clean_up()
+    now, began = 2.0, time.monotonic()
+    message = PoseStamped()
+    message.pose.orientation.w = 1.0
+    while time.monotonic() < began + 4.0:
+        now += 3.0
+        message.pose.position.x += 1.0
+        probe.send("/pose", message)
+        probe.send("/clock", Clock(rospy.Time(now)))
+        time.sleep(0.1)
+    assert now > 30.0
+    assert 5 < len(asked) <= 5 + 4
 
 
 def test_what_is_no_angle_is_an_error_of_the_service(graph: RosGraph, tmp_path: Path) -> None:

@@ -98,6 +98,10 @@ class Exploration:
             return path.points
         return None
 
+    def still_unseen(self, occupancy: OccupancyMap) -> tuple[Point, ...]:
+        """Return the frontiers that it gave up and that are some on this map, which is newer."""
+        return tuple(point for point in self.unseen if is_frontier(occupancy, point, _STILL_THERE))
+
     def wants_another(self, occupancy: OccupancyMap) -> bool:
         """Whether nothing is left of the frontier that it is on its way to, as the map is now."""
         return self.goal is not None and not is_frontier(occupancy, self.goal.middle, _STILL_THERE)

@@ -121,7 +121,7 @@ class Job:
                 site.occupancy.free_area,
                 self.book.distance,
                 self.duration(senses.now),
-                tuple(self.exploration.unseen),
+                self.exploration.still_unseen(site.known),
             )
         self._is_told = True
         if not can_go_on:

@@ -114,6 +114,15 @@ def test_what_was_looked_at_and_is_still_unknown_is_given_up() -> None:
     assert len(exploration.unseen) == len(set(exploration.unseen)) <= 4
 
 
+def test_what_a_newer_map_shows_is_not_told_as_unseen() -> None:
+    exploration = begun()
+    assert exploration.goal is not None
+    edge = exploration.goal.middle
+    exploration.unseen = [edge, (HERE.x, HERE.y)]
+    assert exploration.still_unseen(HALL) == (edge,)
+    assert exploration.still_unseen(TWO_ROOMS.map) == ()
+
+
 def test_what_was_not_yet_reached_is_not() -> None:
     exploration = begun()
     assert exploration.next_path(at_goal(exploration, 0.3), HALL_SITE, []) is not None
