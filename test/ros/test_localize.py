@@ -525,7 +525,7 @@ def test_the_command_writes_figures_to_standard_output(
         capture_output=True,
         check=False,
         text=True,
-        timeout=60.0,
+        timeout=180.0,
     )
     assert done.returncode == 0, done.stderr
     assert json.loads(done.stdout)["shares"]["known"] > 0.98

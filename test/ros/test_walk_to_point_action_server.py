@@ -1,6 +1,5 @@
 import math
 
-import actionlib
 import rospy
 from actionlib_msgs.msg import GoalStatus
 from fixtures.graph import RosGraph
@@ -11,6 +10,8 @@ from move_base_msgs.msg import MoveBaseAction, MoveBaseActionGoal, MoveBaseGoal
 from nav_msgs.msg import OccupancyGrid
 from roomba_robot.msg import RobotPosition
 from std_msgs.msg import Float32
+
+from roomba_ros.action_client import ActionClient
 
 SCRIPT = "walk_to_point_action_server.py"
 SERVER = "/walk_to_point_action_server_node"
@@ -70,10 +71,11 @@ def room() -> OccupancyGrid:
 def test_move_base_is_the_same_walk_and_the_newest_goal_counts(graph: RosGraph) -> None:
     graph.rosrun(SCRIPT)
     probe = Probe(graph)
+    probe.hear("/move_base/goal", MoveBaseActionGoal)
     probe.send("/map", room())
     probe.send("/pose", stamped(0.0, 0.0))
     walker = Walker()
-    client = actionlib.SimpleActionClient("move_base", MoveBaseAction)
+    client = ActionClient("move_base", MoveBaseAction)
     wait_until(lambda: client.wait_for_server(rospy.Duration(0.01)), 30.0)
 
     client.send_goal(MoveBaseGoal(stamped(1.0, 0.0, "odom")))
@@ -92,16 +94,19 @@ def test_move_base_is_the_same_walk_and_the_newest_goal_counts(graph: RosGraph) 
     wait_until(lambda: client.get_state() == GoalStatus.PREEMPTED, 30.0, "the newer goal counts")
     assert client.get_goal_status_text() == "a newer goal took over"
 
-    probe.hear("/move_base/goal", MoveBaseActionGoal)
     probe.send("/move_base_simple/goal", stamped(0.0, 0.0))
     assert walker.ends(30.0) == GoalStatus.PREEMPTED
-    wait_until(lambda: "/move_base/goal" in probe.newest, 30.0, "RViz's goal is an ordinary one")
+    wait_until(
+        lambda: "-simple-" in probe.newest["/move_base/goal"].goal_id.id,
+        30.0,
+        "RViz's goal is an ordinary one",
+    )
 
     wanted = stamped(0.0, 0.0)
     wanted.pose.orientation.z = wanted.pose.orientation.w = math.sqrt(0.5)
     client.send_goal(MoveBaseGoal(wanted))
     heading = probe.next("/change_heading", Float32)
     assert math.isclose(heading.data, 0.5 * math.pi, rel_tol=1e-6), "there it turns"
-    assert client.get_state() == GoalStatus.ACTIVE
+    wait_until(lambda: client.get_state() == GoalStatus.ACTIVE, 30.0, "it has not ended")
     probe.send("/pose", wanted)
     wait_until(lambda: client.get_state() == GoalStatus.SUCCEEDED, 30.0, "it looks there")

@@ -38,12 +38,16 @@ def recording(graph: RosGraph, *topics: str) -> bool:
 
 
 def walk(graph: RosGraph) -> None:
-    Probe(graph).position()
+    probe = Probe(graph)
+    probe.position()
     walker = Walker()
     # The recorder looks for new topics once a second; this client has just made these.
     wait_until(lambda: walker.listeners >= 2, 30.0, "server and recorder hear the client")
     walker.send(1.5, 2.0)
     walker.arrives(30.0)
+    # A busy recorder hears of that later than this client.
+    for _ in range(20):
+        probe.position()
 
 
 def positions(path: Path) -> list[tuple[float, float]]:
@@ -75,9 +79,9 @@ def test_a_replay_shows_the_same_run(bag: Path, graph: RosGraph, clock: tuple[st
     player = graph.run("rosbag", "play", "-d", "2", "-q", str(bag), *clock)
     assert player.ends(60.0) == 0
     recorded = positions(bag)
+    wait_until(lambda: heard[-1:] == recorded[-1:], 10.0, "the end of the run")
     assert len(heard) > 0.8 * len(recorded)
     assert set(heard) <= set(recorded)
-    assert heard[-1] == recorded[-1]
 
 
 def test_nodes_go_on_while_a_bag_is_played_in_a_loop(bag: Path, graph: RosGraph) -> None:
@@ -90,7 +94,7 @@ def test_nodes_go_on_while_a_bag_is_played_in_a_loop(bag: Path, graph: RosGraph)
 
     probe.hear("/speed_again", Float32)
     jumps, last = 0, 0.0
-    end = time.monotonic() + 40.0
+    end = time.monotonic() + 120.0
     while jumps < 2 and time.monotonic() < end:
         now = rospy.get_time()
         jumps += now < last - 1.0

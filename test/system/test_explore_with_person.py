@@ -38,8 +38,9 @@ def test_with_a_person_about_and_killed_it_maps_the_home_anew(graph: RosGraph) -
     robot.does("exploring")
     wait_until(robot.drives, 30.0, "it drives")
     before = robot.mapping.known
-    robot.phases.clear()
     graph.signal("mission_node", signal.SIGKILL)
+    wait_until(lambda: not graph.answers("mission_node"), 30.0, "it is gone")
+    robot.phases.clear()
     robot.does("exploring", 30.0)
     assert robot.mapping.is_growing
     assert robot.mapping.known > 0.95 * before

@@ -18,16 +18,15 @@ def test_a_second_robot_drives_while_the_first_stands(robot: RosGraph) -> None:
     )
     second = {f"/second/{name}" for name in LAUNCHED}
     wait_until(lambda: second <= nodes(robot), 40.0, "the second robot's nodes")
-    publishers, _, services = robot.system_state()
-    assert publishers["/clock"] == ["/home_sim_node"]
-    assert "/second/turn_camera" in services
+    assert robot.system_state()[0]["/clock"] == ["/home_sim_node"]
+    wait_until(lambda: "/second/turn_camera" in robot.system_state()[2], 30.0, "its camera")
     probe = Probe(robot)
     first = probe.position()
     start = probe.next("/second/position", RobotPosition, deadline=20.0)
-    assert (start.pos_x, start.pos_y) == pytest.approx((1.0, 0.0), abs=0.01)
+    assert (start.pos_x, start.pos_y) == pytest.approx((1.0, 0.0), abs=0.03)
     probe.send("/second/change_position", RobotPosition(1.0, 0.7))
     wait_until(lambda: math.dist(at(probe), (1.0, 0.7)) < 0.05, 30.0, "the second is there")
-    assert probe.position() == pytest.approx(first, abs=0.01)
+    assert probe.position() == pytest.approx(first, abs=0.03)
 
 
 def nodes(graph: RosGraph) -> set[str]:

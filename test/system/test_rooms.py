@@ -17,6 +17,11 @@ def names(probe: Probe) -> list[str]:
     return [room.name for room in probe.newest["/rooms"].rooms]
 
 
+def texts(probe: Probe) -> str:
+    told = probe.newest.get("/rooms/markers", MarkerArray())
+    return " ".join(marker.text for marker in told.markers)
+
+
 def test_rooms_are_told_edited_and_kept(robot: RosGraph) -> None:
     probe = Probe(robot)
     probe.hear("/rooms", RoomArray)
@@ -32,8 +37,7 @@ def test_rooms_are_told_edited_and_kept(robot: RosGraph) -> None:
     assert not refused.success
     assert "'living room'" in refused.message
     wait_until(lambda: "living room" in names(probe), 30.0, "the name is told")
-    texts = [marker.text for marker in probe.newest["/rooms/markers"].markers]
-    assert any("living room" in text for text in texts)
+    wait_until(lambda: "living room" in texts(probe), 30.0, "the marker's text")
     assert probe.newest["/rooms/markers"].markers[0].action == Marker.DELETEALL
 
     anchor = rooms[0].anchor

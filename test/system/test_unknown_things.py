@@ -81,6 +81,8 @@ def test_it_stops_at_the_stairs_and_says_so(family: RosGraph) -> None:
         lambda m: dropped.append(m.is_left_dropped or m.is_right_dropped),
     )
     probe.position()
+    # What the drive is told comes 0.12 s late at most: 4 cm, of 15 from the sensors to the wheels.
+    family.set_param("/robot_max_speed", 0.3)
     walker = Walker()
     walker.send(7.1, -0.7)
     assert walker.ends(60.0) == GoalStatus.ABORTED
