@@ -13,7 +13,7 @@ import rospy
 from rosgraph.names import ns_join
 
 _PING_TIMEOUT = 5.0
-"""s of wall time; who says nothing for so long is dead, and not only on a busy machine."""
+"""s of wall time; who says nothing for so long is dead. A busy one may take more than a second."""
 
 
 def refuse_second(node_name: str, topic: str) -> None:

@@ -35,6 +35,7 @@ from roomba_ros.pace import Pace
 from roomba_ros.parameters import LiveSeedParameters, package_folder, read_robot_config
 from roomba_ros.sensor_topics import SensorTopics
 from roomba_ros.sim_services import SimServices
+from roomba_ros.ticker import Ticker
 
 TICK_NANOSECONDS = 50_000_000
 """Robot time between two messages of the clock: a whole part of every period in the graph."""
@@ -42,6 +43,8 @@ STEPS_PER_TICK = 2
 STEP = TICK_NANOSECONDS / STEPS_PER_TICK / 1e9
 """s of robot time of one step of the world."""
 _FASTEST = 100.0
+_MOST_TICKS_LATE = 20
+"""A clock that went on by more than this at once was set."""
 _POSE = "pose"
 """The part of the robot that knows its place, as the pace is told of it."""
 
@@ -59,7 +62,8 @@ class HomeSimNode:
     ``main_brush_motor``, ``vacuum_motor`` (Float32, duty 0..1, of brush and fan).
     Services: those of :class:`CameraTopics` and :class:`SimServices`.
     Parameters: ``~home`` (name or path), ``~homes_directory``, ``~speed`` (robot seconds per second
-    of wall time), ``~seed``, ``~clock`` (false for all but one of several robots), ``~sensors``
+    of wall time), ``~seed``, ``~clock`` (false for all but one of several robots, which go by that
+    one's clock and wait for nobody), ``~sensors``
     (ideal or noisy; by default what ``robot_config`` says),
     ``robot_max_speed``, ``initial_post_x``, ``initial_post_y``.
     """
@@ -76,7 +80,7 @@ class HomeSimNode:
         self._lock = threading.Lock()
         self._command = Twist()
         self._command_age = float("inf")
-        self._clock = time.time_ns() // TICK_NANOSECONDS * TICK_NANOSECONDS
+        self._clock = self._first_clock()
         self._ticks = 0
         self._told = 0.0
         self._pace = Pace(TICK_NANOSECONDS / 1e9, self._speed, self._is_there)
@@ -84,13 +88,28 @@ class HomeSimNode:
         self._connect()
 
     def run(self) -> None:
-        """Step in real time, or as many times faster as asked for, until shutdown."""
+        """Step until shutdown."""
+        if self._owns_clock:
+            self._keep_clock()
+        else:
+            Ticker(TICK_NANOSECONDS / 1e9, told_to_end).run(self._follow_clock)
+
+    def _keep_clock(self) -> None:
+        """Step in real time, or as many times faster as asked for."""
         was_late = False
         while not told_to_end():
             self._pace.wait(self._told, told_to_end)
             if self._pace.is_late and not was_late:
                 was_late = True
                 rospy.logwarn("this machine is too slow for speed %g; going on slower", self._speed)
+            self._tick()
+
+    def _follow_clock(self, now: float) -> None:
+        """Step as far as the clock of another simulation went."""
+        late = round((now * 1e9 - self._clock) / TICK_NANOSECONDS)
+        if not 0 <= late <= _MOST_TICKS_LATE:
+            self._clock, late = round(now * 1e9) - TICK_NANOSECONDS, 1
+        for _ in range(late):
             self._tick()
 
     def _tick(self) -> None:
@@ -128,7 +147,12 @@ class HomeSimNode:
 
     def _now(self) -> float:
         """Return the time for stamps, s: that of the clock, whoever owns it."""
-        return self._clock / 1e9 if self._owns_clock else float(rospy.get_time())
+        return self._clock / 1e9
+
+    def _first_clock(self) -> int:
+        if not self._owns_clock:
+            return int(rospy.get_rostime().to_nsec())
+        return time.time_ns() // TICK_NANOSECONDS * TICK_NANOSECONDS
 
     def _make_simulator(self) -> Simulator:
         directory = Path(rospy.get_param("~homes_directory", str(package_folder() / "homes")))

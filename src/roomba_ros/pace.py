@@ -10,9 +10,11 @@ _LATEST: Final = 0.5
 """s of wall time; farther behind than this the simulation goes on slower than asked for."""
 _MOST_BEHIND: Final = 0.12
 """s of the robot's clock; a robot that thinks of longer ago is waited for. One that keeps up is two
-ticks behind; at 0.3 s a turn on the spot ends no more: it swings to and fro."""
+ticks behind at most; at 0.3 s a turn on the spot ends no more: it swings to and fro."""
 _LONGEST_HOLD: Final = 2.0
 """s of wall time; a robot that says nothing for longer is not waited for any more."""
+_LONGEST_ABSENCE: Final = 60.0
+"""s of wall time; a part that was not heard for longer does not come back."""
 _LOOK: Final = 0.001
 """s of wall time between two looks whether it caught up."""
 
@@ -33,10 +35,10 @@ class Pace:
         monotonic: Callable[[], float] = time.monotonic,
         sleep: Callable[[float], None] = time.sleep,
     ) -> None:
-        """Let ``speed`` times ``tick`` s of the robot's clock pass in one of wall time.
+        """Let a tick, ``tick`` s of the robot's clock, come every ``tick / speed`` s of wall time.
 
         ``is_there`` tells whether a part that was heard still runs: nobody waits for the dead, but
-        the clock goes no faster than real time until they are back.
+        for a minute the clock goes no faster than real time until they are heard again.
         """
         self._tick, self._speed = tick, speed
         self._monotonic, self._sleep, self._is_there = monotonic, sleep, is_there
@@ -70,9 +72,13 @@ class Pace:
         self._due += self._tick / self._speed_now()
 
     def _speed_now(self) -> float:
-        if self._speed > 1.0 and not all(self._is_there(part) for part in list(self._heard)):
-            return 1.0
-        return self._speed
+        is_missed = self._speed > 1.0 and any(map(self._is_missed, list(self._heard)))
+        return 1.0 if is_missed else self._speed
+
+    def _is_missed(self, part: str) -> bool:
+        silence = self._monotonic() - self._heard[part][1]
+        is_gone = silence > _LONGEST_HOLD or not self._is_there(part)
+        return is_gone and silence < _LONGEST_ABSENCE
 
     def _must_hold(self, now: float) -> bool:
         """Whether a part is to be waited for; not if its clock is another one, or was set."""

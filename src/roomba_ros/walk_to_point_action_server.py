@@ -36,7 +36,7 @@ NAME = "walk_to_point_action_server_node"
 SENSES_DEADLINE = 6.0
 """s of wall time after which goals are taken, and rejected, though map and pose are not there."""
 _STANDSTILL = 0.02
-"""m/s; a cancelled walk has ended when the robot is slower than this."""
+"""m/s; a robot that is slower stands."""
 _AIMED = 0.05
 """rad; so well it looks to where it was asked to."""
 _NOT_TURNING = 0.2
@@ -46,7 +46,7 @@ _LONGEST_TURN = 6.0
 _HEARD_BY = 0.3
 """s; a wish to stay where it is has reached its hearer after this, on a busy machine too."""
 _LONGEST_BRAKING = 1.0
-"""s; a cancelled walk has ended after this, whatever the odometry says."""
+"""s; after this a robot whose walk was cancelled stands, whatever the odometry says."""
 
 
 @dataclass
@@ -280,7 +280,7 @@ class WalkToPointActionServer:
             return
         if sensed.knowledge.is_usable:
             self._change_position.publish(RobotPosition(sensed.pose.x, sensed.pose.y))
-        if sensed.now < job.free_at:
+        if job.free_at - _HEARD_BY <= sensed.now < job.free_at:
             return
         self._change_speed.publish(self._parameters.values.robot_max_speed)
         self._job = None

@@ -62,7 +62,7 @@ def test_one_that_says_nothing_any_more_is_not() -> None:
     wall = Wall()
     wall.pace.heard(PART, 7.6)
     assert 1.9 < wall.ticks(1, robot=8.1) < 2.1
-    assert wall.ticks(1, robot=8.15) == pytest.approx(PERIOD)
+    assert wall.ticks(11, robot=8.15) == pytest.approx(11 * TICK, abs=TICK)
 
 
 def test_each_part_is_waited_for() -> None:
@@ -89,8 +89,19 @@ def test_while_one_is_gone_it_goes_no_faster_than_real_time() -> None:
     wall.dead.add(PART)
     # The first one was due already.
     assert wall.ticks(101, robot=8.1) == pytest.approx(PERIOD + 100 * TICK)
+    # There again it is not back before it is heard.
     wall.dead.clear()
-    assert wall.ticks(101, robot=8.1) == pytest.approx(TICK + 100 * PERIOD)
+    assert wall.ticks(100, robot=8.1) == pytest.approx(100 * TICK)
+    wall.pace.heard(PART, 8.2)
+    assert wall.ticks(101, robot=8.2) == pytest.approx(TICK + 100 * PERIOD)
+
+
+def test_who_does_not_come_back_for_a_minute_counts_no_more() -> None:
+    wall = Wall()
+    wall.pace.heard(PART, 8.1)
+    wall.dead.add(PART)
+    assert wall.ticks(int(60.0 / TICK) + 2, robot=8.1) > 59.0
+    assert wall.ticks(100, robot=8.1) == pytest.approx(100 * PERIOD)
 
 
 def test_what_was_asked_for_to_be_slow_stays_so() -> None:
