@@ -145,7 +145,7 @@ def test_another_floor_is_mapped_and_then_cleaned(graph: RosGraph) -> None:
 
 def test_what_changed_is_offered_refused_and_accepted(graph: RosGraph) -> None:
     home = mapping_home(graph.folder, "with_chest", has_chest=True)
-    graph.launch(f"home:={home}", f"map:={HOME}", "speed:=16")
+    graph.launch(f"home:={home}", f"map:={HOME}", SPEED)
     robot = Explorer(graph)
     robot.has_whole_map()
     knows_its_place(robot)

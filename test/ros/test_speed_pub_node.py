@@ -142,8 +142,6 @@ def test_the_mission_drives_while_nobody_else_does(node: RosGraph) -> None:
     wait_until(lambda: drives(0.5), 20.0, "the mission drives, within the same limit")
     probe.want(-0.2)
     wait_until(lambda: drives(-0.2), 20.0, "who steers directly comes first")
-    time.sleep(0.3)
-    wait_until(lambda: drives(-0.2), 20.0, "still")
     probe.wanted = None
     wait_until(lambda: drives(0.5), 20.0, "the mission drives again")
 

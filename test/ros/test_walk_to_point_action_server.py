@@ -110,3 +110,27 @@ def test_move_base_is_the_same_walk_and_the_newest_goal_counts(graph: RosGraph) 
     wait_until(lambda: client.get_state() == GoalStatus.ACTIVE, 30.0, "it has not ended")
     probe.send("/pose", wanted)
     wait_until(lambda: client.get_state() == GoalStatus.SUCCEEDED, 30.0, "it looks there")
+
+
+def test_a_cancelled_walk_frees_the_speed_when_its_wish_to_stay_was_heard(graph: RosGraph) -> None:
+    graph.rosrun(SCRIPT)
+    probe = Probe(graph)
+    told: list[tuple[str, float]] = []
+    probe.send("/map", room())
+    probe.send("/pose", stamped(0.0, 0.0))
+    walker = Walker()
+    rospy.Subscriber("/change_speed", Float32, lambda m: told.append(("speed", m.data)))
+    rospy.Subscriber("/change_position", RobotPosition, lambda m: told.append(("to", m.pos_x)))
+    walker.send(1.0, 0.0)
+    wait_until(lambda: told and told[-1] != ("speed", 0.0) and len(told) > 20, 30.0, "it walks")
+    walker.cancel()
+    assert walker.ends(30.0) == GoalStatus.PREEMPTED
+    stops = told.index(("speed", 0.0))
+
+    def freed() -> int:
+        speeds = [at for at, (kind, value) in enumerate(told) if kind == "speed" and value > 0.0]
+        return next((at for at in speeds if at > stops), 0)
+
+    wait_until(freed, 30.0, "the speed is free again")
+    stays = [what for what in told[stops : freed()] if what == ("to", 0.0)]
+    assert len(stays) >= 3, "at 20 Hz it was told to stay"

@@ -37,7 +37,7 @@ NODE = "mission_node"
 WHOLE = CleanGoal()
 EAST_OF_NEAR_ROOM = Rectangle(0.9, 0.0, 1.5, 1.4)
 SMALL = CleanGoal(mode=CleanGoal.ZONES, zones=[EAST_OF_NEAR_ROOM])
-SOON = 8.0
+SOON = 12.0
 """s of the robot's clock: one on the wall."""
 LONG = 100.0
 """s of wall time, as are all deadlines: what a whole clean takes on a busy machine."""
@@ -45,10 +45,10 @@ LONG = 100.0
 
 @pytest.fixture(scope="module")
 def shared_robot(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RosGraph]:
-    """The whole robot in two little rooms, eight times as fast as real time."""
+    """The whole robot in two little rooms, twelve times as fast as real time."""
     folder = tmp_path_factory.mktemp("robot")
     with RosGraph(folder) as own:
-        own.launch(f"home:={tiny_home(folder)}", "speed:=8")
+        own.launch(f"home:={tiny_home(folder)}", "speed:=12")
         yield own
 
 

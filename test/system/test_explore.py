@@ -24,13 +24,13 @@ from roomba_robot.msg import CleanGoal, CleanResult, ExploreResult, Zone
 from roomba_robot.srv import RenameRoom, SetZone
 from std_srvs.srv import Trigger
 
-SOON = 8.0
+SOON = 12.0
 """s of the robot's clock: one on the wall."""
 
 
 @pytest.fixture(scope="module")
 def shared_robot(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RosGraph]:
-    """The whole robot without a map, eight times as fast as real time."""
+    """The whole robot without a map, twelve times as fast as real time."""
     folder = tmp_path_factory.mktemp("robot")
     with RosGraph(folder) as own:
         own.launch(f"home:={mapping_home(folder)}", "map:=none", SPEED)

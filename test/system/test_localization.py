@@ -80,7 +80,11 @@ def test_asked_to_forget_its_place_it_finds_it(shared_robot: RosGraph) -> None:
     hands = Robot(shared_robot)
     x, y = hands.probe.position()
     hands.probe.hear("/particlecloud", PoseArray)
+    states: list[int] = []
+    rospy.Subscriber("/localization", Localization, lambda m: states.append(m.state))
+    wait_until(lambda: states[-1:] == [Localization.KNOWN], 30.0, "it knows its place")
     rospy.ServiceProxy("/global_localization", Empty)()
+    wait_until(lambda: set(states) != {Localization.KNOWN}, 30.0, "it forgot it")
 
     def deviation() -> float:
         told = hands.probe.next("/amcl_pose", PoseWithCovarianceStamped)

@@ -44,9 +44,13 @@ def flat(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RosGraph]:
 
 @pytest.fixture(scope="module")
 def family(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RosGraph]:
-    """The whole robot in a house with stairs."""
+    """The whole robot in a house with stairs.
+
+    It brakes in time if the floor's end reaches the drive within 0.13 s of the robot's clock: at
+    twice real time a busy machine manages that.
+    """
     with RosGraph(tmp_path_factory.mktemp("family")) as graph:
-        graph.launch("home:=family", SPEED)
+        graph.launch("home:=family", "speed:=2")
         yield graph
 
 
@@ -81,8 +85,6 @@ def test_it_stops_at_the_stairs_and_says_so(family: RosGraph) -> None:
         lambda m: dropped.append(m.is_left_dropped or m.is_right_dropped),
     )
     probe.position()
-    # What the drive is told comes 0.12 s late at most: 4 cm, of 15 from the sensors to the wheels.
-    family.set_param("/robot_max_speed", 0.3)
     walker = Walker()
     walker.send(7.1, -0.7)
     assert walker.ends(60.0) == GoalStatus.ABORTED
