@@ -1,6 +1,7 @@
 import math
 import time
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 import rospy
@@ -9,9 +10,10 @@ from fixtures.probe import Probe
 from fixtures.refusal import refusal
 from fixtures.simulated import Body, simulated, twist
 from fixtures.waiting import wait_until
-from nav_msgs.msg import OccupancyGrid
+from nav_msgs.msg import OccupancyGrid, Odometry
 from roomba_robot.msg import Bumper
 from roomba_robot.srv import SpillDirt, TurnCamera
+from rosgraph_msgs.msg import Clock
 from std_msgs.msg import Float32, Time
 
 from roomba.geometry import Pose
@@ -160,3 +162,29 @@ def test_the_clock_moves_by_whole_steps_only(shared_robot: RosGraph) -> None:
     body.odometry()
     passed = rospy.get_rostime() - first
     assert passed.to_nsec() % 50_000_000 == 0
+
+
+def test_who_owns_no_clock_goes_by_that_of_another(tmp_path: Path) -> None:
+    with simulated(tmp_path, "_home:=apartment", "_clock:=false") as graph:
+        probe = Probe(graph)
+        track: list[tuple[float, float]] = []
+        rospy.Subscriber(
+            "/odom",
+            Odometry,
+            lambda m: track.append((m.header.stamp.to_sec(), m.pose.pose.position.x)),
+        )
+        now = 100.0
+        while now < 106.0:
+            # Four ticks at once, and twice as fast as real time.
+            now += 0.2
+            probe.send("/cmd_vel_out", twist(-0.2))
+            probe.send("/clock", Clock(rospy.Time.from_sec(now)), receivers=2)
+            time.sleep(0.1)
+        wait_until(lambda: track[-1][0] == pytest.approx(now), 30.0, "it is as far as the clock")
+        steady = [row for row in track if row[0] > 102.0]
+        (begin, from_x), (end, to_x) = steady[0], steady[-1]
+        assert end - begin > 3.0
+        assert abs(to_x - from_x) / (end - begin) == pytest.approx(0.2, rel=0.1)
+        # Nor does it go when that one stands.
+        time.sleep(0.5)
+        assert track[-1][0] == pytest.approx(now)
