@@ -43,7 +43,7 @@ STEPS_PER_TICK = 2
 STEP = TICK_NANOSECONDS / STEPS_PER_TICK / 1e9
 """s of robot time of one step of the world."""
 _FASTEST = 100.0
-_MOST_TICKS_LATE = 20
+_MOST_TICKS_LATE = 100
 """A clock that went on by more than this at once was set."""
 _POSE = "pose"
 """The part of the robot that knows its place, as the pace is told of it."""
