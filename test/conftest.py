@@ -22,20 +22,23 @@ settings.load_profile("project")
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
 LONGEST_FIRST = (
-    "test_map_topics.py",
-    "test_explore_with_person.py",
-    "test_explore.py",
     "test_clean.py",
+    "test_map_topics.py",
     "test_faults.py",
-    "test_map_kept.py",
     "test_workspace.py",
-    "test_localize.py",
-    "test_menu.py",
-    "test_localization.py",
-    "test_walk.py",
-    "test_unknown_things.py",
+    "test_turn_camera.py",
+    "test_explore_with_person.py",
+    "test_map_kept.py",
     "test_clean_while_mapping.py",
+    "test_unknown_things.py",
     "test_bags.py",
+    "test_explore.py",
+    "test_walk_to_point_action_server.py",
+    "test_seed.py",
+    "test_menu.py",
+    "test_walk.py",
+    "test_localize.py",
+    "test_localization.py",
     "test_map_bag.py",
 )
 """Files that take longest, so that no worker is left with one when the others have ended."""

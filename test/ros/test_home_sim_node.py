@@ -30,6 +30,13 @@ def shared_robot(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RosGraph]
         yield graph
 
 
+@pytest.fixture
+def follower(tmp_path: Path) -> Iterator[RosGraph]:
+    """The simulation of the apartment by somebody else's clock."""
+    with simulated(tmp_path, "_home:=apartment", "_clock:=false") as graph:
+        yield graph
+
+
 @pytest.mark.parametrize(
     ("parameter", "value", "said"),
     [
@@ -164,27 +171,26 @@ def test_the_clock_moves_by_whole_steps_only(shared_robot: RosGraph) -> None:
     assert passed.to_nsec() % 50_000_000 == 0
 
 
-def test_who_owns_no_clock_goes_by_that_of_another(tmp_path: Path) -> None:
-    with simulated(tmp_path, "_home:=apartment", "_clock:=false") as graph:
-        probe = Probe(graph)
-        track: list[tuple[float, float]] = []
-        rospy.Subscriber(
-            "/odom",
-            Odometry,
-            lambda m: track.append((m.header.stamp.to_sec(), m.pose.pose.position.x)),
-        )
-        now = 100.0
-        while now < 106.0:
-            # Four ticks at once, and twice as fast as real time.
-            now += 0.2
-            probe.send("/cmd_vel_out", twist(-0.2))
-            probe.send("/clock", Clock(rospy.Time.from_sec(now)), receivers=2)
-            time.sleep(0.1)
-        wait_until(lambda: track[-1][0] == pytest.approx(now), 30.0, "it is as far as the clock")
-        steady = [row for row in track if row[0] > 102.0]
-        (begin, from_x), (end, to_x) = steady[0], steady[-1]
-        assert end - begin > 3.0
-        assert abs(to_x - from_x) / (end - begin) == pytest.approx(0.2, rel=0.1)
-        # Nor does it go when that one stands.
-        time.sleep(0.5)
-        assert track[-1][0] == pytest.approx(now)
+def test_who_owns_no_clock_goes_by_that_of_another(follower: RosGraph) -> None:
+    probe = Probe(follower)
+    track: list[tuple[float, float]] = []
+    rospy.Subscriber(
+        "/odom",
+        Odometry,
+        lambda m: track.append((m.header.stamp.to_sec(), m.pose.pose.position.x)),
+    )
+    now = 100.0
+    while now < 106.0:
+        # Four ticks at once, and twice as fast as real time.
+        now += 0.2
+        probe.send("/cmd_vel_out", twist(-0.2))
+        probe.send("/clock", Clock(rospy.Time.from_sec(now)), receivers=2)
+        time.sleep(0.1)
+    wait_until(lambda: track[-1][0] == pytest.approx(now), 30.0, "it is as far as the clock")
+    steady = [row for row in track if row[0] > 102.0]
+    (begin, from_x), (end, to_x) = steady[0], steady[-1]
+    assert end - begin > 3.0
+    assert abs(to_x - from_x) / (end - begin) == pytest.approx(0.2, rel=0.1)
+    # Nor does it go when that one stands.
+    time.sleep(0.5)
+    assert track[-1][0] == pytest.approx(now)
