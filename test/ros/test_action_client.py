@@ -35,6 +35,7 @@ class Eager:
         return handle
 
 
+@pytest.mark.filterwarnings("ignore:notifyAll:DeprecationWarning")
 def test_what_is_answered_while_it_sends_is_not_lost(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(actionlib.simple_action_client, "ActionClient", Eager)
     client = ActionClient("walk", object)
