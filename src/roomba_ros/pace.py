@@ -44,6 +44,8 @@ class Pace:
         self._monotonic, self._sleep, self._is_there = monotonic, sleep, is_there
         self._due = monotonic() + tick / speed
         self._heard: dict[str, tuple[float, float]] = {}
+        self._answered: dict[str, float] = {}
+        self._ticked = monotonic()
         self.is_late = False
         """Whether it was ever slower than asked for."""
 
@@ -52,6 +54,7 @@ class Pace:
 
         One that tells the same again has not got any farther.
         """
+        self._answered[part] = self._monotonic()
         known = self._heard.get(part)
         if known is None or known[0] != stamp:
             self._heard[part] = stamp, self._monotonic()
@@ -70,6 +73,7 @@ class Pace:
             self.is_late = True
             self._due = self._monotonic()
         self._due += self._tick / self._speed_now()
+        self._ticked = self._monotonic()
 
     def _speed_now(self) -> float:
         is_missed = self._speed > 1.0 and any(map(self._is_missed, list(self._heard)))
@@ -81,11 +85,16 @@ class Pace:
         return is_gone and silence < _LONGEST_ABSENCE
 
     def _must_hold(self, now: float) -> bool:
-        """Whether a part is to be waited for; not if its clock is another one, or was set."""
+        """Whether a part is to be waited for; not if its clock is another one, or was set.
+
+        Nor if it answered since the last tick: it works by the clock, which stands meanwhile.
+        """
         heard_at = [
             heard_at
             for part, (stamp, heard_at) in list(self._heard.items())
-            if _is_late(now - stamp) and self._is_there(part)
+            if _is_late(now - stamp)
+            and self._answered[part] <= self._ticked
+            and self._is_there(part)
         ]
         return bool(heard_at) and self._monotonic() - max(heard_at) < _LONGEST_HOLD
 

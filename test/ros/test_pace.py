@@ -111,11 +111,14 @@ def test_what_was_asked_for_to_be_slow_stays_so() -> None:
     assert wall.ticks(100, robot=8.1) == pytest.approx(100 * TICK / 0.5)
 
 
-def test_nor_one_that_tells_the_same_again_and_again() -> None:
+def test_nor_one_that_answered_since_the_last_tick() -> None:
+    # Of a place that it knows no newer one is told before the clock goes on.
     wall = Wall()
     wall.pace.heard(PART, 7.6)
     wall.events = [(wall.now + 0.05 * count, 7.6) for count in range(1, 100)]
-    assert 1.9 < wall.ticks(1, robot=8.1) < 2.1
+    assert wall.ticks(1, robot=8.1) == pytest.approx(0.05, abs=0.002)
+    # It must answer each tick.
+    assert wall.ticks(4, robot=8.1) == pytest.approx(0.2, abs=0.01)
 
 
 def test_nor_one_that_was_never_heard_or_has_another_clock() -> None:
