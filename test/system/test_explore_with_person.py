@@ -9,12 +9,25 @@ import pytest
 import rospy
 from fixtures.explorer import SPEED, Explorer
 from fixtures.graph import RosGraph
-from fixtures.mapping_home import KITCHEN, ZONE, is_right, keep_home_map, kept_maps, mapping_home
+from fixtures.mapping_home import (
+    FLOOR,
+    GOOD_SHARE,
+    KITCHEN,
+    MARGIN,
+    ZONE,
+    keep_home_map,
+    kept_maps,
+    mapping_home,
+    stray_cells,
+)
 from fixtures.waiting import wait_until
 from roomba_robot.msg import ZoneArray
 
 LONGEST = 110.0
 """s of wall time: in a narrow door the two make room for each other, again and again."""
+
+OUTLINE = 12
+"""Cells: what a lidar sees of a person of 0.3 m, from one side."""
 
 
 @pytest.fixture
@@ -46,8 +59,9 @@ def test_with_a_person_about_and_killed_it_maps_the_home_anew(graph: RosGraph) -
     assert robot.mapping.known > 0.95 * before
     robot.does("docked", LONGEST)
     robot.has_whole_map()
-    # Ann walked about all the time.
-    assert is_right(robot.map)
+    # Ann walked about all the time: of where she was seen last her outline may be left.
+    assert stray_cells(robot.map, MARGIN) <= OUTLINE
+    assert robot.map.free_area == pytest.approx(FLOOR, rel=2.0 * GOOD_SHARE)
 
     assert KITCHEN not in robot.rooms
     assert robot.on_maps("save", "home").success
