@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from typing import Final
+from typing import Final, NamedTuple
 
 _LATEST: Final = 0.5
 """s of wall time; farther behind than this the simulation goes on slower than asked for."""
@@ -17,6 +17,16 @@ _LONGEST_ABSENCE: Final = 60.0
 """s of wall time; a part that was not heard for longer does not come back."""
 _LOOK: Final = 0.001
 """s of wall time between two looks whether it caught up."""
+
+
+class _Heard(NamedTuple):
+    """What a part told last: ``stamp`` in s of the robot's clock, the others in s of wall time."""
+
+    stamp: float
+    advanced: float
+    """When it first told that stamp."""
+    answered: float
+    """When it told anything."""
 
 
 class Pace:
@@ -43,8 +53,7 @@ class Pace:
         self._tick, self._speed = tick, speed
         self._monotonic, self._sleep, self._is_there = monotonic, sleep, is_there
         self._due = monotonic() + tick / speed
-        self._heard: dict[str, tuple[float, float]] = {}
-        self._answered: dict[str, float] = {}
+        self._heard: dict[str, _Heard] = {}
         self._ticked = monotonic()
         self.is_late = False
         """Whether it was ever slower than asked for."""
@@ -54,10 +63,9 @@ class Pace:
 
         One that tells the same again has not got any farther.
         """
-        self._answered[part] = self._monotonic()
-        known = self._heard.get(part)
-        if known is None or known[0] != stamp:
-            self._heard[part] = stamp, self._monotonic()
+        now, before = self._monotonic(), self._heard.get(part)
+        is_same = before is not None and before.stamp == stamp
+        self._heard[part] = _Heard(stamp, before.advanced if is_same else now, now)
 
     def wait(self, now: float, ended: Callable[[], bool]) -> None:
         """Return when the next tick is due, or at the end.
@@ -80,7 +88,7 @@ class Pace:
         return 1.0 if is_missed else self._speed
 
     def _is_missed(self, part: str) -> bool:
-        silence = self._monotonic() - self._heard[part][1]
+        silence = self._monotonic() - self._heard[part].advanced
         is_gone = silence > _LONGEST_HOLD or not self._is_there(part)
         return is_gone and silence < _LONGEST_ABSENCE
 
@@ -89,14 +97,14 @@ class Pace:
 
         Nor if it answered since the last tick: it works by the clock, which stands meanwhile.
         """
-        heard_at = [
-            heard_at
-            for part, (stamp, heard_at) in list(self._heard.items())
-            if _is_late(now - stamp)
-            and self._answered[part] <= self._ticked
+        advanced = [
+            heard.advanced
+            for part, heard in list(self._heard.items())
+            if _is_late(now - heard.stamp)
+            and heard.answered <= self._ticked
             and self._is_there(part)
         ]
-        return bool(heard_at) and self._monotonic() - max(heard_at) < _LONGEST_HOLD
+        return bool(advanced) and self._monotonic() - max(advanced) < _LONGEST_HOLD
 
 
 def _is_late(behind: float) -> bool:

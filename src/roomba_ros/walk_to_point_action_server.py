@@ -280,6 +280,7 @@ class WalkToPointActionServer:
             return
         if sensed.knowledge.is_usable:
             self._change_position.publish(RobotPosition(sensed.pose.x, sensed.pose.y))
+        # By a clock that was set back it is not waited for.
         if job.free_at - _HEARD_BY <= sensed.now < job.free_at:
             return
         self._change_speed.publish(self._parameters.values.robot_max_speed)
