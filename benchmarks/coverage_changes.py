@@ -12,12 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.coverage_floor import Disc
-from roomba.config import BodyConfig
+from roomba.configuration.robot import BodyConfig
 from roomba.geometry import Pose
 from roomba.grid import GridFrame
-from roomba.world.assembly import standing_cells
-from roomba.world.home import Door, Furniture, Home, MovingKind
-from roomba.world.raster import cells_within, covered_cells, outline
+from roomba.world.home.home import Door, Furniture, Home, MovingKind
+from roomba.world.home.raster import cells_within, covered_cells, outline
+from roomba.world.layers.assembly import standing_cells
 
 Mask = NDArray[np.bool_]
 

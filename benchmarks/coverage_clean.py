@@ -24,14 +24,14 @@ from benchmarks.coverage_floor import (
     reachable,
     turning,
 )
-from benchmarks.floors import HOMES
 from benchmarks.localization_robot import WRONG
-from roomba.config import RobotConfig
-from roomba.headless_mission import HeadlessMission
-from roomba.mission.clean_request import CleanOutcome, MissReason
-from roomba.perception.estimate import Knowledge
-from roomba.world.home import Home
-from roomba.world.layer import load_home
+from roomba.configuration.robot import RobotConfig
+from roomba.files.shipped import HOMES
+from roomba.headless.cleaner import HeadlessMission
+from roomba.mission.cleaning.request import CleanOutcome, MissReason
+from roomba.perception.localization.estimate import Knowledge
+from roomba.world.home.home import Home
+from roomba.world.layers.layer import load_home
 
 Sensors = Literal["ideal", "noisy"]
 Floats = NDArray[np.float64]

@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 from benchmarks.coverage_floor import TOOL, length
 from roomba.grid import GridFrame
-from roomba.mask_kernels import numbered_regions
-from roomba.planning.grid_path import GridSearch
-from roomba.world.raster import where_body_fits
+from roomba.planning.path.grid_path import GridSearch
+from roomba.raster.regions import numbered_regions
+from roomba.world.home.raster import where_body_fits
 
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]

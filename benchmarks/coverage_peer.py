@@ -11,10 +11,10 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.config import RobotConfig
+from roomba.configuration.mission import MissionConfig
+from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose, Twist, wrap_angle
-from roomba.mission_config import MissionConfig
-from roomba.world.home import Home
+from roomba.world.home.home import Home
 from roomba.world.simulator import Simulator
 
 TICK: Final = 0.05

@@ -21,14 +21,14 @@ from benchmarks.coverage_floor import (
 )
 from benchmarks.coverage_lanes import Order, boustrophedon
 from benchmarks.coverage_peer import PeerRobot
-from roomba.config import RobotConfig
+from roomba.configuration.docking import DockingConfig
+from roomba.configuration.mission import MissionConfig
+from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose
-from roomba.mission.docking_config import DockingConfig
-from roomba.mission.site import Site
-from roomba.mission_config import MissionConfig
-from roomba.planning.coverage import CoveragePlanner
-from roomba.planning.coverage_plan import CoveragePlan
-from roomba.world.home import Home
+from roomba.mission.inputs.planning_context import Site
+from roomba.planning.coverage.plan import CoveragePlan
+from roomba.planning.coverage.planner import CoveragePlanner
+from roomba.world.home.home import Home
 
 Floats = NDArray[np.float64]
 

@@ -13,10 +13,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.files.occupancy_map import load_map
+from roomba.files.shipped import HOMES
 from roomba.grid import GridFrame
-from roomba.world.map_file import load_map
-
-HOMES = Path(__file__).parents[1] / "homes"
 
 Mask = NDArray[np.bool_]
 Cell = tuple[int, int]

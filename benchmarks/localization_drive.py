@@ -21,7 +21,7 @@ from benchmarks.localization_robot import (
     with_closed_door,
 )
 from roomba.geometry import Twist, wrap_angle
-from roomba.perception.estimate import Knowledge
+from roomba.perception.localization.estimate import Knowledge
 
 STATES = tuple(Knowledge)
 """What the numbers of ``Drive.states`` mean."""

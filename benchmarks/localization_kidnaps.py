@@ -18,9 +18,9 @@ from benchmarks.localization_robot import (
     stand_things,
 )
 from roomba.geometry import Twist
-from roomba.mission.look_around import Search
-from roomba.perception.estimate import Knowledge
-from roomba.world.engine.arrays import Fault
+from roomba.mission.exploring.look_around import Search
+from roomba.perception.localization.estimate import Knowledge
+from roomba.world.engine.state.arrays import Fault
 
 TIME = 30.0
 """s; a try that takes longer has failed."""

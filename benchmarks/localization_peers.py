@@ -24,12 +24,12 @@ from benchmarks.localization_rows import (
 from benchmarks.peers.protocol import Work
 from benchmarks.record import Better, PeerFigure, Record
 from benchmarks.rounds import milliseconds
-from roomba.config import RobotConfig
+from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose
 from roomba.grid import FREE, OccupancyMap
-from roomba.perception.scan_view import LidarModel
-from roomba.perception.surface_field import SurfaceField
-from roomba.perception.tracker import Tracker
+from roomba.perception.localization.tracker import Tracker
+from roomba.perception.matching.scan_view import LidarModel
+from roomba.perception.matching.surface_field import SurfaceField
 
 MATCHERS = (
     ("small_gicp", "small_gicp", "small_gicp"),

@@ -10,15 +10,16 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from benchmarks.floors import HOMES, Floor, room_for
-from roomba.config import RobotConfig
+from benchmarks.floors import Floor, room_for
+from roomba.configuration.robot import RobotConfig
 from roomba.errors import HomeError
+from roomba.files.shipped import HOMES
 from roomba.geometry import Pose, Twist, wrap_angle
-from roomba.perception.estimate import Knowledge
-from roomba.perception.localizer import Localizer
-from roomba.perception.scan_view import LidarModel
-from roomba.world.home import Home, cells_in
-from roomba.world.layer import load_home
+from roomba.perception.localization.estimate import Knowledge
+from roomba.perception.localization.localizer import Localizer
+from roomba.perception.matching.scan_view import LidarModel
+from roomba.world.home.home import Home, cells_in
+from roomba.world.layers.layer import load_home
 from roomba.world.simulator import Observation, Simulator
 
 STEP, STEPS = 0.025, 2

@@ -12,7 +12,7 @@ from benchmarks.localization_drive import STATES, Drive, Errors
 from benchmarks.localization_kidnaps import TIME, Manner, Try
 from benchmarks.localization_robot import WRONG
 from benchmarks.record import Better, PeerFigure, Record
-from roomba.perception.estimate import Knowledge
+from roomba.perception.localization.estimate import Knowledge
 
 TOPIC = "localization"
 RECKONED, ODOMETRY = "wheels and gyro", "wheels alone"

@@ -10,13 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.coverage_clean import home_named
-from roomba.config import RobotConfig
+from roomba.configuration.mapping import MappingConfig
+from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose
-from roomba.headless_explorer import HeadlessExplorer
+from roomba.headless.explorer import HeadlessExplorer
 from roomba.mission.mission import MissionStep
-from roomba.perception.scan_view import LidarModel
+from roomba.perception.matching.scan_view import LidarModel
 from roomba.perception.slam.mapper import Mapper
-from roomba.perception.slam.mapping_config import MappingConfig
 
 _MAP_PERIOD: Final = 1.0
 """s between two looks at the whole map, as on ROS."""

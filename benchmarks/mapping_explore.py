@@ -10,17 +10,17 @@ from numpy.typing import NDArray
 
 from benchmarks.coverage_clean import home_named, true_floor
 from benchmarks.coverage_floor import drawn
-from roomba.config import RobotConfig
+from roomba.commands.map.runs import Drawn, run_trial
+from roomba.commands.sim.trial import Trial
+from roomba.configuration.docking import DockingConfig
+from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose
 from roomba.grid import OccupancyMap
-from roomba.headless_mission import HeadlessMission
-from roomba.headless_newcomer import HeadlessNewcomer
-from roomba.mapping_run.runs import Drawn, run_trial
-from roomba.mission.clean_request import CleanOutcome, CleanResult
-from roomba.mission.docking import staging_pose
-from roomba.mission.docking_config import DockingConfig
-from roomba.sim.trial import Trial
-from roomba.world.home import Home
+from roomba.headless.cleaner import HeadlessMission
+from roomba.headless.newcomer import HeadlessNewcomer
+from roomba.mission.cleaning.request import CleanOutcome, CleanResult
+from roomba.mission.docking.docking import staging_pose
+from roomba.world.home.home import Home
 
 
 @dataclass(frozen=True)

@@ -13,16 +13,16 @@ from typing import Final
 
 import numpy as np
 
-from roomba.config import RobotConfig
+from roomba.commands.map.blind_map import BlindMap
+from roomba.commands.map.map_error import MapError, map_error
+from roomba.commands.map.seen_floor import seen_floor
+from roomba.configuration.mapping import MappingConfig
+from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose, Twist, wrap_angle
 from roomba.grid import FREE, OCCUPIED, GridFrame, OccupancyMap
-from roomba.mapping_run.blind_map import BlindMap
-from roomba.mapping_run.map_error import MapError, map_error
-from roomba.mapping_run.seen_floor import seen_floor
-from roomba.perception.scan_view import LidarModel
+from roomba.perception.matching.scan_view import LidarModel
 from roomba.perception.slam.mapper import Mapper
-from roomba.perception.slam.mapping_config import MappingConfig
-from roomba.world.home import Home
+from roomba.world.home.home import Home
 from roomba.world.simulator import Simulator
 
 LONG, SHORT = 30.0, 20.0

@@ -11,7 +11,7 @@ import numpy as np
 from benchmarks.mapping_explore import Cleaned, Explored
 from benchmarks.mapping_loop import WAY, Looped
 from benchmarks.record import Better, PeerFigure, Record
-from roomba.mapping_run.runs import Drawn
+from roomba.commands.map.runs import Drawn
 
 TOPIC = "mapping"
 BLIND: Final = "wheels and gyro alone"

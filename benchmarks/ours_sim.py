@@ -13,11 +13,11 @@ from numpy.typing import NDArray
 from benchmarks.floors import Floor, free_poses
 from benchmarks.peers.arena import SPEED, TURNING_SPEED
 from benchmarks.peers.protocol import Work
-from roomba.config import LidarConfig, RobotConfig
+from roomba.configuration.robot import LidarConfig, RobotConfig
 from roomba.geometry import Pose
 from roomba.grid import FREE, OCCUPIED, OccupancyMap
 from roomba.world.fleet import Fleet
-from roomba.world.home import Home
+from roomba.world.home.home import Home
 from roomba.world.lidar import Lidar
 
 DT = 0.05

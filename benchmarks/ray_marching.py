@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from benchmarks.floors import Floor
 from benchmarks.peers.arena import LONGEST_TURN, SHORTEST_TURN, SPEED, TURNING_SPEED
 from benchmarks.peers.protocol import Work
-from roomba.distance import distance_to_nearest
+from roomba.raster.distance import distance_to_nearest
 
 Poses = NDArray[np.float64]
 Scans = NDArray[np.float32]

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.distance import distance_to_nearest
+from roomba.configuration.rooms import RoomsConfig
 from roomba.grid import OccupancyMap
-from roomba.mask_kernels import numbered_regions
-from roomba.perception.rooms_config import RoomsConfig
-from roomba.perception.rooms_floor_kernels import clear_small_things, grow
+from roomba.perception.rooms.floor_kernels import clear_small_things, grow
+from roomba.raster.distance import distance_to_nearest
+from roomba.raster.regions import numbered_regions
 
 
 def distance_split(occupancy: OccupancyMap) -> NDArray[np.int32]:

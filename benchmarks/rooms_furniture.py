@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.rooms_truth import KnownRooms
-from roomba.distance import distance_to_nearest
 from roomba.grid import OCCUPIED, OccupancyMap
+from roomba.raster.distance import distance_to_nearest
 
 _AREA = 8.0
 """m² of floor for each piece."""

@@ -16,13 +16,13 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from benchmarks.floors import HOMES
+from roomba.files.image import read_image
+from roomba.files.occupancy_map import load_map
+from roomba.files.shipped import HOMES
 from roomba.grid import OccupancyMap
-from roomba.mask_kernels import numbered_regions
-from roomba.world.home import Home
-from roomba.world.image_file import read_image
-from roomba.world.layer import list_homes, load_home
-from roomba.world.map_file import load_map
+from roomba.raster.regions import numbered_regions
+from roomba.world.home.home import Home
+from roomba.world.layers.layer import list_homes, load_home
 
 RoomLabels = NDArray[np.signedinteger[Any]]
 

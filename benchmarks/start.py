@@ -5,14 +5,11 @@ It loads nothing but the simulator.
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 
+from roomba.files.shipped import HOMES
 from roomba.world.fleet import Fleet
-from roomba.world.layer import load_home
-
-_HOMES = Path(__file__).parents[1] / "homes"
+from roomba.world.layers.layer import load_home
 
 if __name__ == "__main__":
-    Fleet([load_home("apartment", _HOMES)]).step(np.array([[0.3, 0.0]]), 0.05)
+    Fleet([load_home("apartment", HOMES)]).step(np.array([[0.3, 0.0]]), 0.05)

@@ -4,8 +4,8 @@
 ./roomba exec python examples/clean_home.py
 """
 
-from roomba.client import CleanProgress
-from roomba_ros.roomba_client import RoombaClient
+from roomba.client.protocol import CleanProgress
+from roomba_ros.client.roomba_client import RoombaClient
 
 
 def main() -> None:

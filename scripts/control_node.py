@@ -1,4 +1,4 @@
 #!/usr/bin/env python3
-from roomba_ros.control_node import main
+from roomba_ros.client.control_node import main
 
 main()

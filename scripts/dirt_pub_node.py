@@ -1,4 +1,4 @@
 #!/usr/bin/env python3
-from roomba_ros.dirt_pub_node import main
+from roomba_ros.dirt.dirt_pub_node import main
 
 main()

@@ -1,4 +1,4 @@
 #!/usr/bin/env python3
-from roomba_ros.home_sim_node import main
+from roomba_ros.simulation.home_sim_node import main
 
 main()

@@ -1,4 +1,4 @@
 #!/usr/bin/env python3
-from roomba_ros.mission_node import main
+from roomba_ros.mission.mission_node import main
 
 main()

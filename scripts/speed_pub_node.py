@@ -1,4 +1,4 @@
 #!/usr/bin/env python3
-from roomba_ros.speed_pub_node import main
+from roomba_ros.speed.speed_pub_node import main
 
 main()

@@ -1,4 +1,4 @@
 #!/usr/bin/env python3
-from roomba_ros.turn_camera_client import main
+from roomba_ros.camera.turn_camera_client import main
 
 main()

@@ -1,4 +1,4 @@
 #!/usr/bin/env python3
-from roomba_ros.walk_to_point_action_server import main
+from roomba_ros.walking.walk_to_point_action_server import main
 
 main()

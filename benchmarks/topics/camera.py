@@ -11,17 +11,18 @@ from numpy.typing import NDArray
 from benchmarks.bench import Bench
 from benchmarks.checks import agreed
 from benchmarks.contestants import Contestant, Local, Peer
-from benchmarks.floors import HOMES, Floor, free_poses
+from benchmarks.floors import Floor, free_poses
 from benchmarks.peers.boxes import boxes_of
 from benchmarks.peers.protocol import Work
 from benchmarks.record import Better, Record, gain
 from benchmarks.rounds import milliseconds
-from roomba.config import CameraConfig
+from roomba.configuration.robot import CameraConfig
+from roomba.files.shipped import HOMES
 from roomba.geometry import Pose
-from roomba.world.camera import Camera, Scene
-from roomba.world.home import Home
-from roomba.world.layer import load_home
-from roomba.world.materials import MATERIALS
+from roomba.world.camera.camera import Camera, Scene
+from roomba.world.home.home import Home
+from roomba.world.home.materials import MATERIALS
+from roomba.world.layers.layer import load_home
 from roomba.world.simulator import Simulator
 
 _TOPIC = "camera"

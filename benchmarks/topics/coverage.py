@@ -40,8 +40,8 @@ from benchmarks.coverage_rows import (
     over_time_rows,
 )
 from benchmarks.record import PeerFigure, Record
-from roomba.sim.warm import warm_up
-from roomba.world.home import Home
+from roomba.commands.sim.warm import warm_up
+from roomba.world.home.home import Home
 
 _SHIPPED = ("empty", "lshape", "apartment", "flat", "studio", "family")
 """Not the hall: nobody cleans a plane of 200 m."""

@@ -10,14 +10,15 @@ from benchmarks.arithmetic import arithmetic
 from benchmarks.bench import Bench
 from benchmarks.checks import agreed
 from benchmarks.contestants import Contestant, Local, Peer, Unavailable
-from benchmarks.floors import HOMES, Floor, building, floors_of_folder, free_poses
+from benchmarks.floors import Floor, building, floors_of_folder, free_poses
 from benchmarks.peers.protocol import Work
 from benchmarks.ray_marching import RayMarching
 from benchmarks.record import Better, Record, gain
 from benchmarks.rounds import Outcome
-from roomba.config import RobotConfig
+from roomba.configuration.robot import RobotConfig
+from roomba.files.shipped import HOMES
 from roomba.grid import GridFrame
-from roomba.world.layer import load_home
+from roomba.world.layers.layer import load_home
 
 _TOPIC = "lidar"
 _POSES = 1000

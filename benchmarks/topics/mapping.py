@@ -24,7 +24,7 @@ from benchmarks.mapping_rows import (
     speed_row,
 )
 from benchmarks.record import Record
-from roomba.mapping_run.warm import warm_up
+from roomba.commands.map.warm import warm_up
 
 _SHIPPED = ("flat", "studio", "family", "apartment", "empty", "lshape")
 """Not the hall: in a plane of 200 m the lidar sees nothing most of the time."""

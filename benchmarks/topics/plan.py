@@ -9,25 +9,17 @@ import numpy as np
 
 from benchmarks.bench import Bench
 from benchmarks.contestants import Contestant, Local, Peer
-from benchmarks.floors import (
-    HOMES,
-    Cell,
-    Mask,
-    apartment,
-    building,
-    far_corners,
-    free_poses,
-    room_for,
-)
+from benchmarks.floors import Cell, Mask, apartment, building, far_corners, free_poses, room_for
 from benchmarks.peers.protocol import Work, once
 from benchmarks.record import Better, Record, gain
 from benchmarks.rounds import Outcome, milliseconds
 from benchmarks.shortest import ShortestWays
-from roomba.config import RobotConfig
-from roomba.planning.costmap import FitMap, Point
-from roomba.planning.grid_path import shortest_grid_path
-from roomba.planning.path import PathPlanner
-from roomba.world.layer import load_home
+from roomba.configuration.robot import RobotConfig
+from roomba.files.shipped import HOMES
+from roomba.planning.path.costmap import FitMap, Point
+from roomba.planning.path.grid_path import shortest_grid_path
+from roomba.planning.path.planner import PathPlanner
+from roomba.world.layers.layer import load_home
 
 _TOPIC = "plan"
 _BODY_ROOM = 0.20

@@ -15,7 +15,7 @@ from benchmarks.rooms_picture import write_picture
 from benchmarks.rooms_truth import KnownRooms, RoomLabels, known_homes, known_maps, score
 from benchmarks.rounds import milliseconds
 from roomba.grid import OccupancyMap
-from roomba.perception.rooms import segment
+from roomba.perception.rooms.rooms import segment
 
 _TOPIC = "rooms"
 _PICTURES = REPOSITORY / "benchmarks" / "results"

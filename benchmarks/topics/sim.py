@@ -13,15 +13,16 @@ from dataclasses import replace
 from benchmarks import ours_sim
 from benchmarks.bench import Bench
 from benchmarks.contestants import REPOSITORY, Contestant, Local
-from benchmarks.floors import HOMES, Floor, building, free_poses
+from benchmarks.floors import Floor, building, free_poses
 from benchmarks.ours_sim import Drive
 from benchmarks.peers.protocol import Work
 from benchmarks.record import Better, PeerFigure, Record, gain
 from benchmarks.rounds import Outcome
 from benchmarks.topics.lidar import case_of, marching, peers_of
+from roomba.files.shipped import HOMES
 from roomba.grid import GridFrame
-from roomba.world.home import Home
-from roomba.world.layer import load_home
+from roomba.world.home.home import Home
+from roomba.world.layers.layer import load_home
 
 _TOPIC = "sim"
 _AIM = 600_000.0

@@ -13,12 +13,12 @@ from roomba_robot.msg import (
     Zone,
 )
 
-from roomba.mission.clean_request import CleanMode, CleanOutcome, FanLevel, MissReason
-from roomba.mission.machine import VACUUM_STATES, Phase
-from roomba.perception.estimate import Knowledge
-from roomba.perception.zones import ZoneKind
-from roomba_ros.convert_localization import STATES
-from roomba_ros.convert_mission import FANS, KINDS, MODES, OUTCOMES, REASONS
+from roomba.mission.cleaning.request import CleanMode, CleanOutcome, FanLevel, MissReason
+from roomba.mission.phases.machine import VACUUM_STATES, Phase
+from roomba.perception.localization.estimate import Knowledge
+from roomba.perception.rooms.zones import ZoneKind
+from roomba_ros.convert.localization import STATES
+from roomba_ros.convert.mission import FANS, KINDS, MODES, OUTCOMES, REASONS
 
 
 def constants(message: type, names: set[str]) -> dict[str, int]:

@@ -9,7 +9,7 @@ import actionlib
 import pytest
 from actionlib import CommState, SimpleGoalState
 
-from roomba_ros.action_client import ActionClient
+from roomba_ros.runtime.action_client import ActionClient
 
 
 class Eager:

@@ -17,7 +17,7 @@ from rosgraph_msgs.msg import Clock
 from std_msgs.msg import Float32, Time
 
 from roomba.geometry import Pose
-from roomba_ros.home_sim_node import main
+from roomba_ros.simulation.home_sim_node import main
 
 STATION = Pose(0.3, 5.0, math.pi)
 """Of the apartment."""

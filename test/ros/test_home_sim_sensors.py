@@ -32,15 +32,16 @@ from sensor_msgs.msg import (
 from std_msgs.msg import Float32, UInt16
 from tf2_msgs.msg import TFMessage
 
+from roomba.files.shipped import HOMES
 from roomba.geometry import Pose
-from roomba.world.layer import load_home
+from roomba.world.layers.layer import load_home
 from roomba.world.lidar import Lidar
-from roomba_ros.parameters import package_folder
+from roomba_ros.runtime.parameters import package_folder
 
 DESCRIPTION = (package_folder() / "srv" / "InjectFault.srv").read_text(encoding="utf-8")
 
 
-HOME = load_home("apartment", package_folder() / "homes")
+HOME = load_home("apartment", HOMES)
 MIDDLE = Pose(5.0, 5.0, 0.0)
 """Of the empty room of 10 x 10 m."""
 

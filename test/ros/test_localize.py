@@ -25,14 +25,14 @@ from roomba_robot.msg import Localization
 from std_msgs.msg import String
 from tf2_msgs.msg import TFMessage
 
+from roomba.files.occupancy_map import save_map
 from roomba.geometry import Pose
-from roomba.headless import HeadlessRobot
-from roomba.pictures.drawing import BLUE
-from roomba.world.map_file import save_map
+from roomba.headless.walker import HeadlessRobot
+from roomba.plots.style import BLUE
 from roomba.world.simulator import Observation
-from roomba_ros.convert import mount_message, odometry_message, pose_message
-from roomba_ros.convert_sensors import imu_message, scan_message, wheel_drop_message
-from roomba_ros.localize_bag import main
+from roomba_ros.bags.localize_bag import main
+from roomba_ros.convert.common import mount_message, odometry_message, pose_message
+from roomba_ros.convert.sensors import imu_message, scan_message, wheel_drop_message
 
 BEGAN = 1_700_000_000.0
 """s; when the drive was recorded."""

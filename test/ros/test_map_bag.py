@@ -16,17 +16,17 @@ import rosbag
 from fixtures.located import FURNISHED
 from tf2_msgs.msg import TFMessage
 
-from roomba.config import RobotConfig
+from roomba.commands.map.map_error import map_error
+from roomba.commands.map.seen_floor import seen_floor
+from roomba.configuration.robot import RobotConfig
+from roomba.files.occupancy_map import load_map
 from roomba.geometry import Pose
 from roomba.grid import FREE
-from roomba.headless import HeadlessRobot
-from roomba.mapping_run.map_error import map_error
-from roomba.mapping_run.seen_floor import seen_floor
-from roomba.world.map_file import load_map
+from roomba.headless.walker import HeadlessRobot
 from roomba.world.simulator import Observation
-from roomba_ros.convert import mount_message, odometry_message, pose_message
-from roomba_ros.convert_sensors import imu_message, scan_message
-from roomba_ros.map_bag import main
+from roomba_ros.bags.map_bag import main
+from roomba_ros.convert.common import mount_message, odometry_message, pose_message
+from roomba_ros.convert.sensors import imu_message, scan_message
 
 BEGAN = 1_700_000_000.0
 """s; when the drive was recorded."""

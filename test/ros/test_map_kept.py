@@ -26,9 +26,9 @@ from roomba_robot.msg import Localization
 from roomba_robot.srv import NameMapResponse
 
 from roomba.grid import OccupancyMap
-from roomba.map_bound_file import map_digest
-from roomba.perception.slam.mapper_file import KeptMap, load_mapper, save_mapper
-from roomba_ros.map_memory import FOLDER
+from roomba.storage.map_bound import map_digest
+from roomba.storage.mapper import KeptMap, load_mapper, save_mapper
+from roomba_ros.maps.map_memory import FOLDER
 
 NODE = "position_pub_node"
 HOME = "home"

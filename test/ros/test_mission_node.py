@@ -28,7 +28,7 @@ from sensor_msgs.msg import BatteryState
 from std_msgs.msg import String
 from std_srvs.srv import Trigger
 
-from roomba_ros.action_client import ActionClient
+from roomba_ros.runtime.action_client import ActionClient
 
 NODE = "mission_node"
 

@@ -11,7 +11,7 @@ from sensor_msgs.msg import BatteryState
 
 from roomba.geometry import Pose, Twist
 from roomba.grid import GridFrame, OccupancyMap
-from roomba.mission.clean_request import (
+from roomba.mission.cleaning.request import (
     CleanMode,
     CleanOutcome,
     CleanRefusedError,
@@ -20,10 +20,10 @@ from roomba.mission.clean_request import (
     Missed,
     MissReason,
 )
-from roomba.mission.senses import Battery, Beams
-from roomba.perception.coverage_bits import SWEPT, WANTED
-from roomba.perception.zones import Zone, ZoneKind, Zones, ZonesError
-from roomba_ros.convert_mission import (
+from roomba.mission.inputs.senses import Battery, Beams
+from roomba.perception.rooms.zones import Zone, ZoneKind, Zones, ZonesError
+from roomba.perception.swept.coverage_bits import SWEPT, WANTED
+from roomba_ros.convert.mission import (
     battery_of,
     beams_of,
     coverage_message,
@@ -36,7 +36,7 @@ from roomba_ros.convert_mission import (
     zones_markers,
     zones_message,
 )
-from roomba_ros.mission_senses import moved
+from roomba_ros.mission.senses import moved
 
 
 def test_an_empty_goal_cleans_the_whole_home_once() -> None:

@@ -8,22 +8,22 @@ from actionlib_msgs.msg import GoalID, GoalStatus
 from fixtures.missions import HOME
 from roomba_robot.msg import CleanGoal, DockGoal
 
-from roomba.config import RobotConfig
+from roomba.configuration.docking import DockingConfig
+from roomba.configuration.mission import MissionConfig
+from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose
-from roomba.mission.cleaning import Cleaning
-from roomba.mission.docking_config import DockingConfig
-from roomba.mission.machine import Event
+from roomba.mission.cleaning.cleaning import Cleaning
+from roomba.mission.inputs.planning_context import Site
+from roomba.mission.inputs.senses import Battery, Senses
 from roomba.mission.mission import Mission
-from roomba.mission.senses import Battery, Senses
-from roomba.mission.site import Site
-from roomba.mission_config import MissionConfig
-from roomba.perception.dirt_map import DirtMap
-from roomba.perception.surface_field import SurfaceField
-from roomba.perception.things import ThingLayer
-from roomba_ros.mission_goals import CleaningGoal, DockingGoal, MissionGoal
-from roomba_ros.mission_node import MissionNode
-from roomba_ros.mission_orders import MissionOrders, _Cancel, _Order
-from roomba_ros.mission_topics import MissionTopics
+from roomba.mission.phases.machine import Event
+from roomba.perception.matching.surface_field import SurfaceField
+from roomba.perception.swept.dirt_map import DirtMap
+from roomba.perception.things.layer import ThingLayer
+from roomba_ros.mission.goals import CleaningGoal, DockingGoal, MissionGoal
+from roomba_ros.mission.mission_node import MissionNode
+from roomba_ros.mission.orders import MissionOrders, _Cancel, _Order
+from roomba_ros.mission.topics import MissionTopics
 
 CONFIG, MISSION_CONFIG = RobotConfig(), MissionConfig()
 SITE = Site(HOME.map, HOME.station, CONFIG, MISSION_CONFIG, DockingConfig())

@@ -2,7 +2,7 @@
 
 import pytest
 
-from roomba_ros.pace import Pace
+from roomba_ros.runtime.pace import Pace
 
 TICK, SPEED = 0.05, 5.0
 PERIOD = TICK / SPEED

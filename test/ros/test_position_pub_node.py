@@ -16,7 +16,7 @@ from roomba_robot.msg import RobotPosition
 from rosgraph_msgs.msg import Clock
 from tf2_msgs.msg import TFMessage
 
-from roomba_ros.position_pub_node import main
+from roomba_ros.position.position_pub_node import main
 
 
 def odometry(x: float, y: float, theta: float = 0.0) -> Odometry:
@@ -152,7 +152,7 @@ def test_simulated_time_without_a_clock_is_a_clear_error(
 ) -> None:
     """FAULTS row 17."""
     graph.set_param("/use_sim_time", True)
-    monkeypatch.setattr("roomba_ros.node.CLOCK_DEADLINE", 0.5)
+    monkeypatch.setattr("roomba_ros.runtime.node.CLOCK_DEADLINE", 0.5)
     said = refusal(main, graph, capfd)
     assert "/use_sim_time is true, but nothing published /clock within 0.5 s" in said
 

@@ -28,7 +28,7 @@ from roomba_robot.msg import (
 )
 from std_srvs.srv import Trigger, TriggerResponse
 
-from roomba.client import (
+from roomba.client.protocol import (
     CleanMode,
     ErrandOutcome,
     FanLevel,
@@ -36,7 +36,7 @@ from roomba.client import (
     RequestRefusedError,
     RobotUnavailableError,
 )
-from roomba_ros.roomba_client import RoombaClient
+from roomba_ros.client.roomba_client import RoombaClient
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "clean_home.py"
 

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 import rosbag
 
+from roomba.files.occupancy_map import save_map
 from roomba.geometry import Pose
 from roomba.grid import FREE, OCCUPIED, GridFrame, OccupancyMap
-from roomba.world.map_file import save_map
-from roomba_ros.convert import map_of, pose_of
-from roomba_ros.sim_bag import main
+from roomba_ros.bags.sim_bag import main
+from roomba_ros.convert.common import map_of, pose_of
 
 RATES = {
     "/clock": 10.0,

@@ -3,7 +3,7 @@
 import rospy
 from sensor_msgs.msg import LaserScan
 
-from roomba_ros.waiting_scans import WaitingScans
+from roomba_ros.localization.waiting_scans import WaitingScans
 
 
 def scans(*stamps: float) -> WaitingScans:

@@ -11,7 +11,7 @@ from nav_msgs.msg import OccupancyGrid
 from roomba_robot.msg import RobotPosition
 from std_msgs.msg import Float32
 
-from roomba_ros.action_client import ActionClient
+from roomba_ros.runtime.action_client import ActionClient
 
 SCRIPT = "walk_to_point_action_server.py"
 SERVER = "/walk_to_point_action_server_node"

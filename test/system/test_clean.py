@@ -31,7 +31,7 @@ from roomba_robot.srv import EmergencyStop, InjectFault, InjectFaultRequest
 from sensor_msgs.msg import BatteryState
 from std_srvs.srv import Trigger
 
-from roomba_ros.action_client import ActionClient
+from roomba_ros.runtime.action_client import ActionClient
 
 NODE = "mission_node"
 WHOLE = CleanGoal()

@@ -14,7 +14,7 @@ from roomba_robot.msg import Localization
 from roomba_robot.srv import InjectFault, InjectFaultRequest
 from std_srvs.srv import Empty
 
-from roomba_ros.convert import quaternion_of
+from roomba_ros.convert.common import quaternion_of
 
 
 @pytest.fixture(scope="module")

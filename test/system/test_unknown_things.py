@@ -12,8 +12,9 @@ from fixtures.graph import RosGraph
 from fixtures.probe import Probe, Walker
 from roomba_robot.msg import Bumper, WheelDrop
 
+from roomba.files.shipped import HOMES
+
 SPEED = "speed:=4"
-HOMES = Path(__file__).parents[2] / "homes"
 
 
 def flat_with(folder: Path, *things: str) -> Path:

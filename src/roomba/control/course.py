@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.config import TrackingConfig
+from roomba.configuration.robot import TrackingConfig
 from roomba.control.tracking_kernels import Course
 
 Floats = NDArray[np.float64]

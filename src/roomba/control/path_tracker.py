@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.config import BodyConfig, TrackingConfig
+from roomba.configuration.robot import BodyConfig, TrackingConfig
 from roomba.control.course import course_of
 from roomba.control.tracking_kernels import TRACK, track
 from roomba.geometry import Pose, Twist

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from roomba.config import BodyConfig, ControlConfig
+from roomba.configuration.robot import BodyConfig, ControlConfig
 from roomba.geometry import Pose, Twist
 
 _STANDSTILL = Twist()

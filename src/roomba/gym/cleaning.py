@@ -19,8 +19,8 @@ from roomba.geometry import Pose
 from roomba.gym.floor import Coverage, Floor
 from roomba.gym.observation import Senses
 from roomba.gym.task import Task
-from roomba.world.dirt import MICROGRAMS_PER_GRAM
 from roomba.world.fleet import Fleet
+from roomba.world.home.dirt import MICROGRAMS_PER_GRAM
 
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]

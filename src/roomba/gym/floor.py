@@ -8,13 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.config import RobotConfig
-from roomba.distance import distance_to_nearest
+from roomba.configuration.robot import RobotConfig
 from roomba.errors import HomeError
 from roomba.grid import GridFrame
-from roomba.mask_kernels import dilated, numbered_regions
-from roomba.world.dirt import DirtField
-from roomba.world.home import Home
+from roomba.raster.distance import distance_to_nearest
+from roomba.raster.regions import dilated, numbered_regions
+from roomba.world.home.dirt import DirtField
+from roomba.world.home.home import Home
 
 _STANDS_WITHIN = 0.5
 """m; so far from the docked robot there must be floor on which it can stand free."""

@@ -14,10 +14,10 @@ import numpy as np
 from gymnasium.spaces import Box
 from numpy.typing import NDArray
 
-from roomba.config import RobotConfig
-from roomba.world.dirt import MICROGRAMS_PER_GRAM
-from roomba.world.engine.arrays import Infrared
+from roomba.configuration.robot import RobotConfig
+from roomba.world.engine.state.arrays import Infrared
 from roomba.world.fleet import Fleet
+from roomba.world.home.dirt import MICROGRAMS_PER_GRAM
 
 SECTORS: Final = 36
 

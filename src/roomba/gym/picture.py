@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.geometry import Pose
+from roomba.plots.home import draw_plan
 from roomba.world.fleet import Fleet
-from roomba.world.plan import draw_plan
 
 PIXELS_PER_METRE = 40.0
 

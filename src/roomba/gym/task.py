@@ -7,12 +7,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
-from roomba.config import RobotConfig
-from roomba.world.home import Home
-from roomba.world.layer import load_home
-
-HOMES = Path(__file__).parents[3] / "homes"
-"""The homes that come along, in a checkout."""
+from roomba.configuration.robot import RobotConfig
+from roomba.files.shipped import HOMES
+from roomba.world.home.home import Home
+from roomba.world.layers.layer import load_home
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,70 +1,116 @@
-"""What a mission must remember to go on after it was ended at any moment, as plain values.
-
-Everything that can be found out again (paths, what stands in the way) is not part of it: the rest
-of a clean is planned anew from the floor that is left.
-"""
+"""Where a mission is, as plain values and back."""
 
 from __future__ import annotations
 
-import base64
-import binascii
-import zlib
-from typing import Any, Final
-
-import numpy as np
-from numpy.typing import NDArray
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 
 from roomba.errors import RoombaError
-from roomba.mission.clean_request import CleanMode, CleanRequest, FanLevel
-
-VERSION: Final = 2
-Mask = NDArray[np.bool_]
-Values = dict[str, Any]
-
-
-class CheckpointError(RoombaError):
-    """A checkpoint that cannot be used; the message says why."""
+from roomba.mission.cleaning.checkpoint import VERSION, CheckpointError, Values, request_of
+from roomba.mission.cleaning.cleaning import Cleaning
+from roomba.mission.cleaning.request import CleanOutcome, CleanRequest
+from roomba.mission.exploring.exploration import Exploration
+from roomba.mission.inputs.senses import Senses
+from roomba.mission.phases.job import Job
+from roomba.mission.phases.machine import Errand, MissionState, Phase
 
 
-def packed(mask: Mask) -> str:
-    """Return a mask as text: packed bits, compressed, in base 64."""
-    return base64.b64encode(zlib.compress(np.packbits(mask).tobytes(), 6)).decode("ascii")
+@dataclass(frozen=True, slots=True, eq=False)
+class Remembered:
+    """What a checkpoint tells; ``book`` is way, m, energy, Wh, and dirt, g; ``duration`` s."""
+
+    state: MissionState
+    message: str
+    outcome: CleanOutcome | None
+    cleaning: Cleaning | None
+    exploration: Exploration | None
+    book: tuple[float, float, float]
+    duration: float
 
 
-def unpacked(text: str, shape: tuple[int, int]) -> Mask:
-    """Return the mask of a text; raises CheckpointError if it is none of that shape."""
-    try:
-        bits = np.frombuffer(zlib.decompress(base64.b64decode(text, validate=True)), np.uint8)
-    except (binascii.Error, zlib.error, ValueError) as error:
-        raise CheckpointError(f"expected a packed mask: {error}") from error
-    cells = shape[0] * shape[1]
-    if bits.size != (cells + 7) // 8:
-        raise CheckpointError(f"expected a mask of {cells} cells, got {8 * bits.size}")
-    return np.unpackbits(bits, count=cells).astype(np.bool_).reshape(shape)
-
-
-def request_values(request: CleanRequest) -> Values:
-    """Return a request as plain values."""
+def checkpoint_of(state: MissionState, message: str, job: Job, now: float) -> Values | None:
+    """Return all that must be remembered to go on, as plain values; None without an errand."""
+    if state.errand is Errand.NONE or state.errand is Errand.UNDOCK:
+        return None
     return {
-        "mode": request.mode.value,
-        "rooms": list(request.rooms),
-        "zones": [list(zone) for zone in request.zones],
-        "spot": None if request.spot is None else list(request.spot),
-        "passes": request.passes,
-        "fan": request.fan.name,
-        "in_order": request.in_order,
+        "version": VERSION,
+        "phase": state.phase.name,
+        "errand": state.errand.name,
+        "resumes": None if state.resumes is None else state.resumes.name,
+        "message": message,
+        "outcome": None if job.outcome is None else job.outcome.name,
+        "cleaning": None if job.cleaning is None else job.cleaning.values(),
+        "exploration": None if job.exploration is None else job.exploration.values(),
+        "book": [job.book.distance, job.book.energy, job.book.dirt],
+        "duration": job.duration(now),
     }
 
 
-def request_of(values: Values) -> CleanRequest:
-    """Return the request of such values; raises KeyError, ValueError, TypeError or RoombaError."""
-    spot = values["spot"]
-    return CleanRequest(
-        CleanMode(values["mode"]),
-        tuple(str(name) for name in values["rooms"]),
-        tuple((float(a), float(b), float(c), float(d)) for a, b, c, d in values["zones"]),
-        None if spot is None else (float(spot[0]), float(spot[1])),
-        int(values["passes"]),
-        FanLevel[values["fan"]],
-        bool(values["in_order"]),
+def remembered(values: Values, begin: Callable[[CleanRequest], Cleaning]) -> Remembered:
+    """Return what such values tell; ``begin`` makes the clean of a request in the present map.
+
+    Raises CheckpointError for values that are none, or of another map.
+    """
+    try:
+        return _remembered(values, begin)
+    except (LookupError, ArithmeticError, AttributeError, TypeError, ValueError) as error:
+        raise CheckpointError(f"expected a checkpoint of this map: {error!r}") from error
+    except RoombaError as error:
+        raise CheckpointError(f"expected a checkpoint of this map: {error!r}") from error
+
+
+def _remembered(values: Values, begin: Callable[[CleanRequest], Cleaning]) -> Remembered:
+    if values["version"] != VERSION:
+        raise CheckpointError(f"expected version {VERSION}, got {values['version']}")
+    resumes, outcome = values["resumes"], values["outcome"]
+    phase, errand = Phase[values["phase"]], Errand[values["errand"]]
+    state = MissionState(phase, errand, None if resumes is None else Phase[resumes])
+    cleaning = None
+    if values["cleaning"] is not None:
+        cleaning = begin(request_of(values["cleaning"]["request"]))
+        cleaning.restore(values["cleaning"])
+    elif errand is Errand.CLEAN:
+        raise CheckpointError("expected the clean that it was on, got none")
+    unseen = values["exploration"]
+    exploration = None if unseen is None else Exploration.of(unseen)
+    if errand is Errand.EXPLORE and exploration is None:
+        raise CheckpointError("expected the exploration that it was on, got none")
+    distance, energy, dirt = (float(value) for value in values["book"])
+    duration = float(values["duration"])
+    if not all(math.isfinite(value) for value in (distance, energy, dirt, duration)):
+        raise CheckpointError("expected finite numbers")
+    return Remembered(
+        state,
+        str(values["message"]),
+        None if outcome is None else CleanOutcome[outcome],
+        cleaning,
+        exploration,
+        (distance, energy, dirt),
+        duration,
     )
+
+
+def take_up(found: Remembered, job: Job, senses: Senses) -> None:
+    """Let the job be the one that was remembered."""
+    job.cleaning, job.exploration, job.outcome = found.cleaning, found.exploration, found.outcome
+    job.goes_on_after(found.duration, senses)
+    job.book.distance, job.book.energy, job.book.dirt = found.book
+
+
+def state_after(state: MissionState, *, is_docked: bool) -> MissionState:
+    """Return the state in which a remembered mission goes on, wherever the robot stands now."""
+    if state.phase is Phase.CHARGING and not is_docked:
+        return MissionState(Phase.RETURNING, state.errand)
+    if state.resumes in (Phase.CLEANING, Phase.EXPLORING):
+        # Should it stand on the station by now, it has to come out first.
+        return replace(state, resumes=Phase.UNDOCKING)
+    if not state.drives:
+        return state
+    if state.errand in (Errand.CLEAN, Errand.EXPLORE):
+        if is_docked and state.phase in (Phase.RETURNING, Phase.DOCKING):
+            return MissionState(Phase.CHARGING, state.errand)
+        return MissionState(Phase.UNDOCKING, state.errand)
+    if is_docked:
+        return MissionState(Phase.DOCKED)
+    return MissionState(Phase.RETURNING, state.errand)

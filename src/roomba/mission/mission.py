@@ -10,33 +10,33 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Final
 
-from roomba.config import RobotConfig
+from roomba.configuration.docking import DockingConfig
+from roomba.configuration.mission import MissionConfig
+from roomba.configuration.robot import RobotConfig
 from roomba.errors import RoombaError
 from roomba.geometry import STANDSTILL, Twist
 from roomba.grid import OccupancyMap
-from roomba.mission import phases
-from roomba.mission.at_station import AtStation
-from roomba.mission.checkpoint import Values
-from roomba.mission.clean_phase import CleanPhase
-from roomba.mission.clean_request import CleanOutcome, CleanRequest, CleanResult
-from roomba.mission.cleaning import Cleaning
-from roomba.mission.docking_config import DockingConfig
-from roomba.mission.drives import Drives
-from roomba.mission.exploration import Exploration, ExploreResult
-from roomba.mission.job import Job
-from roomba.mission.machine import Errand, Event, MissionState, Phase, next_state
-from roomba.mission.mission_checkpoint import checkpoint_of, remembered, state_after, take_up
-from roomba.mission.obstacles import Obstacles
-from roomba.mission.path_driver import PathDriver
-from roomba.mission.patience import Patience
-from roomba.mission.phase_step import PhaseStep
-from roomba.mission.senses import Senses
-from roomba.mission.site import Site
-from roomba.mission.watch import Watch
-from roomba.mission_config import MissionConfig
-from roomba.perception.dirt_map import DirtMap
-from roomba.perception.estimate import Knowledge
-from roomba.perception.things import ThingLayer
+from roomba.mission.checkpoint import checkpoint_of, remembered, state_after, take_up
+from roomba.mission.cleaning.checkpoint import Values
+from roomba.mission.cleaning.cleaning import Cleaning
+from roomba.mission.cleaning.request import CleanOutcome, CleanRequest, CleanResult
+from roomba.mission.driving.drives import Drives
+from roomba.mission.driving.obstacles import Obstacles
+from roomba.mission.driving.path_driver import PathDriver
+from roomba.mission.driving.retry_policy import Patience
+from roomba.mission.exploring.exploration import Exploration, ExploreResult
+from roomba.mission.inputs.planning_context import Site
+from roomba.mission.inputs.senses import Senses
+from roomba.mission.phases import phases
+from roomba.mission.phases.at_station import AtStation
+from roomba.mission.phases.cleaning import CleanPhase
+from roomba.mission.phases.job import Job
+from roomba.mission.phases.machine import Errand, Event, MissionState, Phase, next_state
+from roomba.mission.phases.monitor import Watch
+from roomba.mission.phases.step import PhaseStep
+from roomba.perception.localization.estimate import Knowledge
+from roomba.perception.swept.dirt_map import DirtMap
+from roomba.perception.things.layer import ThingLayer
 
 _SHARE_OF_SPEED: Final = 0.65
 """Of the speed it is given that a robot comes to on the whole: it turns a lot."""

@@ -1,6 +1,6 @@
 """The menu's options for cleaning: what to clean, pause, stop, dock, and what the robot does.
 
-Speaks to :mod:`roomba.client` alone, and decides nothing, as the rest of the menu.
+Speaks to :mod:`roomba.client.protocol` alone, and decides nothing, as the rest of the menu.
 """
 
 from __future__ import annotations
@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from roomba.client import (
+from roomba.client.protocol import (
     Clean,
     CleanMode,
     CleanReport,

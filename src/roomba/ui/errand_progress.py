@@ -14,7 +14,7 @@ from typing import Protocol, TypeVar
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn
 
-from roomba.client import CleanProgress, RobotUnavailableError
+from roomba.client.protocol import CleanProgress, RobotUnavailableError
 from roomba.ui.progress import POLL_TIME, Clock, quantity, say
 
 ERRAND_SILENCE_LIMIT = 15.0

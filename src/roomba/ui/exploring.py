@@ -1,10 +1,11 @@
-"""The menu's option for making a map. Speaks to :mod:`roomba.client` alone, and decides nothing."""
+"""The menu's option for making a map. Speaks to :mod:`roomba.client.protocol` alone, and decides
+nothing."""
 
 from __future__ import annotations
 
 import math
 
-from roomba.client import ErrandOutcome, ExploreReport
+from roomba.client.protocol import ErrandOutcome, ExploreReport
 from roomba.ui.cleaning import CLEANING, leave_alone, say_end
 from roomba.ui.errand_progress import follow_errand, time_text
 from roomba.ui.menu import Menu, Option

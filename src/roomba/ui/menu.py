@@ -1,7 +1,7 @@
 """The report's menu: four things to ask of the robot, by number; there may be more below.
 
-Speaks to :mod:`roomba.client` alone, and decides nothing: distances, reasons and reports are the
-robot's.
+Speaks to :mod:`roomba.client.protocol` alone, and decides nothing: distances, reasons and reports
+are the robot's.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 from rich.console import Console
 
-from roomba.client import (
+from roomba.client.protocol import (
     RobotClient,
     RobotUnavailableError,
     WalkOutcome,

@@ -23,7 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 from rich.console import Console
 
-from roomba.client import CameraClient, RobotUnavailableError
+from roomba.client.protocol import CameraClient, RobotUnavailableError
 from roomba.errors import PictureError, RoombaError
 from roomba.ui.progress import say
 from roomba.ui.prompt import (

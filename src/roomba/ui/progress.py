@@ -14,7 +14,7 @@ from typing import Any, Protocol
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn
 
-from roomba.client import RobotClient, RobotState, Walk, WalkOutcome, WalkReport
+from roomba.client.protocol import RobotClient, RobotState, Walk, WalkOutcome, WalkReport
 from roomba.errors import RoombaError
 
 POLL_TIME = 0.25

@@ -12,7 +12,7 @@ import threading
 from collections.abc import Callable, Iterator
 from types import FrameType, TracebackType
 
-from roomba.client import RequestRefusedError, RobotUnavailableError
+from roomba.client.protocol import RequestRefusedError, RobotUnavailableError
 from roomba.errors import RoombaError
 
 STATUS_DONE = 0

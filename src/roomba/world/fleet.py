@@ -16,19 +16,19 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.config import RobotConfig
+from roomba.configuration.robot import RobotConfig
 from roomba.errors import HomeError
 from roomba.geometry import Pose
-from roomba.world.dirt import DirtField
-from roomba.world.engine.arrays import MOST_DISCS, Fault, Rows, Solid, State
 from roomba.world.engine.contact_kernels import gap_at
 from roomba.world.engine.layout import layout_of
-from roomba.world.engine.lidar_kernels import ScanBuffers, buffers_for
-from roomba.world.engine.numbers import numbers_of
+from roomba.world.engine.lidar.projection import ScanBuffers, buffers_for
 from roomba.world.engine.populate import first_state, starts_of
-from roomba.world.engine.random_kernels import normal_quantiles
+from roomba.world.engine.state.arrays import MOST_DISCS, Fault, Rows, Solid, State
+from roomba.world.engine.state.numbers import numbers_of
+from roomba.world.engine.state.random_kernels import normal_quantiles
 from roomba.world.engine.step_kernels import advance
-from roomba.world.home import Home
+from roomba.world.home.dirt import DirtField
+from roomba.world.home.home import Home
 
 _CHUNKS_PER_THREAD = 4
 """Worlds are shared out in so many parts for each thread, as some take longer than others."""
@@ -87,12 +87,12 @@ class Fleet:
 
     @property
     def robots(self) -> Rows:
-        """All numbers of the robots: ROBOT of :mod:`roomba.world.engine.arrays`."""
+        """All numbers of the robots: ROBOT of :mod:`roomba.world.engine.state.arrays`."""
         return self._state.solid.robots
 
     @property
     def worlds(self) -> Rows:
-        """All numbers of the worlds: WORLD of :mod:`roomba.world.engine.arrays`."""
+        """All numbers of the worlds: WORLD of :mod:`roomba.world.engine.state.arrays`."""
         return self._state.worlds
 
     @property

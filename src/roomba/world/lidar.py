@@ -7,20 +7,20 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.config import LidarConfig
+from roomba.configuration.robot import LidarConfig
 from roomba.grid import GridFrame
-from roomba.world.engine.arrays import HOME, Edges, Rows
-from roomba.world.engine.compilation import entry
 from roomba.world.engine.layout import joined_edges, seen_by_lidar
-from roomba.world.engine.lidar_edges import LidarEdges, lidar_edges
-from roomba.world.engine.lidar_kernels import (
+from roomba.world.engine.lidar.edges import LidarEdges, lidar_edges
+from roomba.world.engine.lidar.projection import (
     ScanBuffers,
     begin_scan,
     buffers_for,
     end_scan,
     scan_walls,
 )
-from roomba.world.home import Home
+from roomba.world.engine.state.arrays import HOME, Edges, Rows
+from roomba.world.engine.state.compilation import entry
+from roomba.world.home.home import Home
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from roomba.config import BatteryConfig, BrushConfig, FanConfig
+from roomba.configuration.robot import BatteryConfig, BrushConfig, FanConfig
 
 CELLS = 4
 """In series, as in a pack of 14.4 V."""

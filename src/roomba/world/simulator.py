@@ -13,14 +13,14 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.config import RobotConfig
+from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose, Twist
-from roomba.world.dirt import MICROGRAMS_PER_GRAM, DirtField
-from roomba.world.engine.arrays import Fault, Infrared, Rows, State
 from roomba.world.engine.brush_kernels import amount_under_disc
-from roomba.world.engine.lidar_kernels import ScanBuffers
+from roomba.world.engine.lidar.projection import ScanBuffers
+from roomba.world.engine.state.arrays import Fault, Infrared, Rows, State
 from roomba.world.fleet import Fleet
-from roomba.world.home import Home
+from roomba.world.home.dirt import MICROGRAMS_PER_GRAM, DirtField
+from roomba.world.home.home import Home
 from roomba.world.power import STANDING_NOISE, BatteryState, battery_state, noise_level
 
 
@@ -172,7 +172,7 @@ class Simulator:
 
     @property
     def numbers(self) -> dict[str, float]:
-        """All of the robot's numbers by name: ROBOT of :mod:`roomba.world.engine.arrays`."""
+        """All of the robot's numbers by name: ROBOT of :mod:`roomba.world.engine.state.arrays`."""
         names = self._fleet.robots.dtype.names or ()
         return dict(zip(names, self._fleet.robots[0].tolist(), strict=True))
 

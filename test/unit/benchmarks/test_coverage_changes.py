@@ -9,8 +9,8 @@ import pytest
 
 from benchmarks.coverage_changes import Change, changed, pushed_by, row_across
 from benchmarks.coverage_clean import home_named, true_floor
-from roomba.world.engine.arrays import MOST_DISCS
-from roomba.world.home import Door, Home, Rectangle
+from roomba.world.engine.state.arrays import MOST_DISCS
+from roomba.world.home.home import Door, Home, Rectangle
 
 
 @pytest.fixture(scope="module")

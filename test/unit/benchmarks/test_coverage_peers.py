@@ -15,10 +15,10 @@ from benchmarks.coverage_lanes import Order, boustrophedon, lanes_on, way_over
 from benchmarks.coverage_peer import PeerRobot
 from benchmarks.coverage_peers import drive_bounce, drive_lanes, planned, shares_at, site_of
 from benchmarks.coverage_recorded import FAILED, recorded
+from roomba.commands.sim.warm import closet
 from roomba.geometry import Pose
 from roomba.grid import GridFrame
-from roomba.sim.warm import closet
-from roomba.world.home import Home
+from roomba.world.home.home import Home
 
 START = Pose(1.2, 0.9, 0.0)
 

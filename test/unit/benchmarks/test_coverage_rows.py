@@ -28,7 +28,7 @@ from benchmarks.record import Record
 from benchmarks.rounds import QUICK
 from benchmarks.topics import coverage
 from roomba.grid import GridFrame
-from roomba.mission.clean_request import CleanOutcome, MissReason
+from roomba.mission.cleaning.request import CleanOutcome, MissReason
 
 NO_POSES = np.zeros((0, 4))
 CLEAN = Clean(

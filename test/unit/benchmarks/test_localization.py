@@ -20,9 +20,9 @@ from benchmarks.localization_robot import Spots, home_named, with_closed_door
 from benchmarks.localization_rows import drive_rows, figures, kidnap_rows
 from benchmarks.record import Record
 from benchmarks.rounds import Pace
-from roomba.config import RobotConfig
+from roomba.configuration.robot import RobotConfig
 from roomba.grid import FREE, OCCUPIED, GridFrame, OccupancyMap
-from roomba.perception.estimate import Knowledge
+from roomba.perception.localization.estimate import Knowledge
 
 SHORT = Task("studio", 3, 12.0)
 

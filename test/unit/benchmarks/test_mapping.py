@@ -30,12 +30,12 @@ from benchmarks.record import Better, Record
 from benchmarks.rounds import Pace
 from benchmarks.topics import mapping
 from benchmarks.topics.mapping import Extent, measured, results
+from roomba.commands.map.map_error import MapError
+from roomba.commands.map.runs import Drawn
+from roomba.commands.sim.warm import closet
 from roomba.geometry import Pose
 from roomba.grid import FREE, GridFrame, OccupancyMap
-from roomba.mapping_run.map_error import MapError
-from roomba.mapping_run.runs import Drawn
-from roomba.perception.scan_view import LidarModel
-from roomba.sim.warm import closet
+from roomba.perception.matching.scan_view import LidarModel
 
 NOTHING = OccupancyMap(GridFrame(0.05, 0.0, 0.0, 1, 1), np.full((1, 1), FREE, np.int8))
 

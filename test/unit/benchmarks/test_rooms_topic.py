@@ -12,8 +12,8 @@ from benchmarks.rooms_baseline import distance_split
 from benchmarks.rooms_furniture import furnished
 from benchmarks.rooms_picture import write_picture
 from benchmarks.rooms_truth import KnownRooms, known_homes, known_maps, score, without_specks
+from roomba.files.occupancy_map import save_map
 from roomba.grid import FREE, OCCUPIED, GridFrame, OccupancyMap
-from roomba.world.map_file import save_map
 
 
 def two_rooms() -> KnownRooms:

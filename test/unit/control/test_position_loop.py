@@ -7,7 +7,7 @@ from fixtures.rooms import room_home
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from roomba.config import RobotConfig
+from roomba.configuration.robot import RobotConfig
 from roomba.control.position_loop import PositionLoop
 from roomba.geometry import Pose, Twist
 from roomba.world.simulator import Observation, Simulator

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from roomba.config import RobotConfig
+from roomba.configuration.robot import RobotConfig
 from roomba.gym.task import HOMES
 from roomba.world.fleet import Fleet
-from roomba.world.layer import load_home
+from roomba.world.layers.layer import load_home
 
 CONFIG = RobotConfig(sensors="noisy")
 

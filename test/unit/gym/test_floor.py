@@ -2,13 +2,13 @@ import numpy as np
 import pytest
 from fixtures.rooms import room_home
 
-from roomba.config import RobotConfig
+from roomba.configuration.robot import RobotConfig
 from roomba.errors import HomeError
 from roomba.geometry import Pose
 from roomba.gym.floor import Coverage, Floor
 from roomba.gym.task import HOMES
 from roomba.world.fleet import Fleet
-from roomba.world.layer import load_home
+from roomba.world.layers.layer import load_home
 
 CONFIG = RobotConfig()
 

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from fixtures.rooms import room_home
 
-from roomba.config import LidarConfig, RobotConfig
+from roomba.configuration.robot import LidarConfig, RobotConfig
 from roomba.gym import RoombaClean
 from roomba.gym.observation import (
     BATTERY,
@@ -17,9 +17,9 @@ from roomba.gym.observation import (
     VELOCITY,
     Senses,
 )
-from roomba.world.engine.arrays import Fault
+from roomba.world.engine.state.arrays import Fault
 from roomba.world.fleet import Fleet
-from roomba.world.home import DirtSource
+from roomba.world.home.home import DirtSource
 
 PARTS = (LIDAR, BUMPER, CLIFF, VELOCITY, GYRO, BATTERY, GRAINS, BIN, STATION)
 

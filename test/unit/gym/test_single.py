@@ -8,11 +8,11 @@ from fixtures.rooms import room_home
 from gymnasium.utils.env_checker import check_env
 
 import roomba.gym
-from roomba.config import BatteryConfig, BrushConfig, RobotConfig
+from roomba.configuration.robot import BatteryConfig, BrushConfig, RobotConfig
 from roomba.errors import HomeError
 from roomba.gym import RoombaClean
 from roomba.gym.observation import BATTERY, SIZE
-from roomba.world.home import DirtSource, Home
+from roomba.world.home.home import DirtSource, Home
 
 AHEAD = np.array([1.0, 0.0], np.float32)
 STANDING = np.zeros(2, np.float32)

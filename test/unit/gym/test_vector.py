@@ -9,7 +9,7 @@ from gymnasium.vector import AutoresetMode, SyncVectorEnv
 import roomba.gym
 from roomba.gym import RoombaClean, RoombaCleanVector
 from roomba.gym.observation import SIZE
-from roomba.world.home import DirtSource
+from roomba.world.home.home import DirtSource
 
 ROBOTS = 16
 TASK: dict[str, Any] = {

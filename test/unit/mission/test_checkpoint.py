@@ -1,123 +1,118 @@
-"""Masks and requests as plain values, and back; junk is refused by name."""
+"""A mission as plain values: where one goes on that was ended at any moment, and junk."""
 
 from __future__ import annotations
 
-import base64
 import json
-import zlib
+from typing import Any
 
-import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
-from hypothesis.extra import numpy as arrays
+from fixtures.missions import HOME
 
-from roomba.errors import RoombaError
-from roomba.mission.checkpoint import (
-    CheckpointError,
-    Mask,
-    Values,
-    packed,
-    request_of,
-    request_values,
-    unpacked,
-)
-from roomba.mission.clean_request import MOST_PASSES, CleanMode, CleanRequest, FanLevel
+from roomba.configuration.docking import DockingConfig
+from roomba.configuration.mission import MissionConfig
+from roomba.configuration.robot import RobotConfig
+from roomba.geometry import Pose
+from roomba.mission.checkpoint import checkpoint_of, remembered, state_after, take_up
+from roomba.mission.cleaning.checkpoint import CheckpointError, Values
+from roomba.mission.cleaning.cleaning import Cleaning
+from roomba.mission.cleaning.request import CleanOutcome, CleanRequest
+from roomba.mission.inputs.planning_context import Site
+from roomba.mission.inputs.senses import Senses
+from roomba.mission.phases.job import Job
+from roomba.mission.phases.machine import Errand, MissionState, Phase
+from roomba.perception.swept.dirt_map import DirtMap
 
-sizes = st.tuples(st.integers(1, 40), st.integers(1, 40))
-numbers = st.floats(-50.0, 50.0)
-
-
-@given(arrays.arrays(np.bool_, sizes))
-def test_a_mask_comes_back_as_it_was(mask: Mask) -> None:
-    text = packed(mask)
-    assert isinstance(json.loads(json.dumps(text)), str)
-    back = unpacked(text, mask.shape)
-    assert back.dtype == np.bool_
-    assert (back == mask).all()
+SITE = Site(HOME.map, HOME.station, RobotConfig(), MissionConfig(), DockingConfig())
+SENSES = Senses(100.0, Pose(1.0, 0.6, 0.0))
+CLEANING = MissionState(Phase.CLEANING, Errand.CLEAN)
 
 
-def test_a_large_mask_is_small() -> None:
-    mask = np.zeros((1000, 1200), np.bool_)
-    mask[300:700, 200:900] = True
-    assert len(packed(mask)) < 5000
+def begin(request: CleanRequest) -> Cleaning:
+    return Cleaning(request, SITE, DirtMap(HOME.map), MissionConfig().cleaning, SENSES.pose)
 
 
-@pytest.mark.parametrize(
-    "text",
-    [
-        "",
-        "!!!",
-        "AAAA",
-        "ü",
-        base64.b64encode(b"junk").decode(),
-        packed(np.ones((10, 9), np.bool_)),
-        packed(np.ones((10, 11), np.bool_)),
-        base64.b64encode(zlib.compress(b"")).decode(),
-    ],
-)
-def test_what_is_no_such_mask_is_refused(text: str) -> None:
-    with pytest.raises(CheckpointError, match="expected a") as refused:
-        unpacked(text, (10, 10))
-    assert isinstance(refused.value, RoombaError)
+def job() -> Job:
+    """A clean that is under way for a minute."""
+    job = Job(DirtMap(HOME.map), MissionConfig().energy, SENSES)
+    job.begin_clean(begin(CleanRequest(passes=2)), Senses(40.0, SENSES.pose))
+    job.book.distance, job.book.energy, job.book.dirt = 12.0, 0.5, 2.0
+    return job
 
 
-@given(st.binary(max_size=60))
-def test_no_junk_gets_through(junk: bytes) -> None:
-    with pytest.raises(CheckpointError):
-        unpacked(base64.b64encode(zlib.compress(junk) + b"x"[: len(junk) % 2]).decode(), (50, 50))
+def values(**changes: Any) -> Values:
+    made = checkpoint_of(CLEANING, "a message", job(), SENSES.now)
+    assert made is not None
+    return json.loads(json.dumps(made)) | changes  # type: ignore[no-any-return]
 
 
-@st.composite
-def requests(draw: st.DrawFn) -> CleanRequest:
-    zones = [
-        (x, y, x + width, y + height)
-        for x, y, width, height in draw(
-            st.lists(
-                st.tuples(numbers, numbers, st.floats(0.1, 9.0), st.floats(0.1, 9.0)),
-                min_size=1,
-                max_size=3,
-            )
-        )
-    ]
-    return CleanRequest(
-        draw(st.sampled_from(CleanMode)),
-        tuple(draw(st.lists(st.text(min_size=1), min_size=1, max_size=3))),
-        tuple(zones),
-        draw(st.none() | st.tuples(numbers, numbers)),
-        draw(st.integers(1, MOST_PASSES)),
-        draw(st.sampled_from(FanLevel)),
-        draw(st.booleans()),
-    )
+def test_all_that_matters_comes_back() -> None:
+    found = remembered(values(outcome="COMPLETED"), begin)
+    assert (found.state, found.message) == (CLEANING, "a message")
+    again, now = Job(DirtMap(HOME.map), MissionConfig().energy, SENSES), 7.0
+    take_up(found, again, Senses(now, SENSES.pose))
+    assert again.cleaning is not None
+    assert again.cleaning.request == CleanRequest(passes=2)
+    assert again.exploration is None
+    assert again.outcome is CleanOutcome.COMPLETED
+    assert (again.book.distance, again.book.energy, again.book.dirt) == (12.0, 0.5, 2.0)
+    # By a clock that began anew.
+    assert again.duration(now) == pytest.approx(60.0)
 
 
-@given(requests())
-def test_a_request_comes_back_as_it_was(request: CleanRequest) -> None:
-    assert request_of(json.loads(json.dumps(request_values(request)))) == request
+@pytest.mark.parametrize("errand", [Errand.NONE, Errand.UNDOCK])
+def test_without_an_errand_there_is_nothing_to_remember(errand: Errand) -> None:
+    assert checkpoint_of(MissionState(Phase.IDLE, errand), "", job(), 0.0) is None
 
 
 @pytest.mark.parametrize(
-    ("name", "junk"),
+    "changes",
     [
-        ("mode", "thorough"),
-        ("rooms", 5),
-        ("zones", [[1.0, 2.0, 3.0]]),
-        ("zones", [[1.0, 2.0, 0.0, 3.0]]),
-        ("passes", 99),
-        ("passes", None),
-        ("fan", "LOUD"),
-        ("spot", [None, 1.0]),
+        {"version": 0},
+        {"phase": "FLYING"},
+        {"cleaning": None},
+        {"cleaning": {}},
+        {"errand": "EXPLORE"},
+        {"exploration": 3},
+        {"book": [1.0, 2.0]},
+        {"book": [1.0, 2.0, float("nan")]},
+        {"duration": "long"},
+        {"outcome": "WONDERFUL"},
     ],
 )
-def test_a_request_of_junk_is_refused(name: str, junk: object) -> None:
-    values: Values = {**request_values(CleanRequest()), name: junk}
-    with pytest.raises((KeyError, ValueError, TypeError, RoombaError)):
-        request_of(values)
+def test_junk_is_refused(changes: Values) -> None:
+    with pytest.raises(CheckpointError, match="expected"):
+        remembered(values(**changes), begin)
 
 
-@pytest.mark.parametrize("name", list(request_values(CleanRequest())))
-def test_a_request_without_something_is_refused(name: str) -> None:
-    values = request_values(CleanRequest())
-    del values[name]
-    with pytest.raises(KeyError, match=name):
-        request_of(values)
+@pytest.mark.parametrize("errand", [Errand.CLEAN, Errand.EXPLORE])
+@pytest.mark.parametrize(
+    ("before", "away", "docked"),
+    [
+        (Phase.UNDOCKING, Phase.UNDOCKING, Phase.UNDOCKING),
+        (Phase.CLEANING, Phase.UNDOCKING, Phase.UNDOCKING),
+        (Phase.RETURNING, Phase.UNDOCKING, Phase.CHARGING),
+        (Phase.DOCKING, Phase.UNDOCKING, Phase.CHARGING),
+        (Phase.CHARGING, Phase.RETURNING, Phase.CHARGING),
+    ],
+)
+def test_an_errand_goes_on_from_wherever_it_stands(
+    errand: Errand, before: Phase, away: Phase, docked: Phase
+) -> None:
+    state = MissionState(before, errand)
+    assert state_after(state, is_docked=False) == MissionState(away, errand)
+    assert state_after(state, is_docked=True) == MissionState(docked, errand)
+
+
+def test_on_its_way_home_it_goes_on_or_is_there() -> None:
+    state = MissionState(Phase.DOCKING, Errand.HOME)
+    assert state_after(state, is_docked=False) == MissionState(Phase.RETURNING, Errand.HOME)
+    assert state_after(state, is_docked=True) == MissionState(Phase.DOCKED)
+
+
+def test_held_up_it_stays_so_and_comes_out_of_the_station_first() -> None:
+    held = MissionState(Phase.PAUSED, Errand.CLEAN, Phase.CLEANING)
+    for is_docked in (False, True):
+        after = state_after(held, is_docked=is_docked)
+        assert after == MissionState(Phase.PAUSED, Errand.CLEAN, Phase.UNDOCKING)
+    homewards = MissionState(Phase.ERROR, Errand.HOME, Phase.RETURNING)
+    assert state_after(homewards, is_docked=False) == homewards

@@ -7,19 +7,19 @@ from dataclasses import replace
 import pytest
 from fixtures.missions import HOME, STATION
 
-from roomba.config import RobotConfig
+from roomba.configuration.docking import DockingConfig
+from roomba.configuration.mission import MissionConfig
+from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose, Twist
-from roomba.mission.clean_request import CleanOutcome, CleanRequest
-from roomba.mission.docking_config import DockingConfig
-from roomba.mission.machine import Errand, Event, Phase
+from roomba.mission.cleaning.request import CleanOutcome, CleanRequest
+from roomba.mission.inputs.planning_context import Site
+from roomba.mission.inputs.senses import Battery, Senses
 from roomba.mission.mission import CommandRefusedError, Mission, MissionStep
-from roomba.mission.senses import Battery, Senses
-from roomba.mission.site import Site
-from roomba.mission_config import MissionConfig
-from roomba.perception.dirt_map import DirtMap
-from roomba.perception.estimate import Knowledge
-from roomba.perception.surface_field import SurfaceField
-from roomba.perception.things import ThingLayer
+from roomba.mission.phases.machine import Errand, Event, Phase
+from roomba.perception.localization.estimate import Knowledge
+from roomba.perception.matching.surface_field import SurfaceField
+from roomba.perception.swept.dirt_map import DirtMap
+from roomba.perception.things.layer import ThingLayer
 
 CONFIG = RobotConfig()
 SITE = Site(HOME.map, HOME.station, CONFIG, MissionConfig(), DockingConfig())

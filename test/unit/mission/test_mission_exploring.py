@@ -23,13 +23,13 @@ from fixtures.missions import DOOR, TWO_ROOMS, WALL_X
 
 from roomba.geometry import Twist
 from roomba.grid import OCCUPIED, OccupancyMap
-from roomba.mission.clean_request import CleanOutcome, CleanRequest
-from roomba.mission.exploration import Exploration
-from roomba.mission.machine import Errand, Event, Phase
+from roomba.mission.cleaning.request import CleanOutcome, CleanRequest
+from roomba.mission.driving.path_driver import DriveState, DriveStep, PathDriver
+from roomba.mission.exploring.exploration import Exploration
+from roomba.mission.inputs.senses import Battery
 from roomba.mission.mission import CommandRefusedError
-from roomba.mission.path_driver import DriveState, DriveStep, PathDriver
-from roomba.mission.senses import Battery
-from roomba.perception.estimate import Knowledge
+from roomba.mission.phases.machine import Errand, Event, Phase
+from roomba.perception.localization.estimate import Knowledge
 
 
 def stuck(rig: Rig, monkeypatch: pytest.MonkeyPatch, state: DriveState) -> None:

@@ -10,9 +10,9 @@ from fixtures.exploring import AWAY, DOCKED, HALL, LOW, TICK, Rig, exploring
 
 from roomba.geometry import Pose
 from roomba.grid import OccupancyMap
-from roomba.mission.checkpoint import CheckpointError, Values
-from roomba.mission.machine import Errand, Event, Phase
-from roomba.mission.senses import Senses
+from roomba.mission.cleaning.checkpoint import CheckpointError, Values
+from roomba.mission.inputs.senses import Senses
+from roomba.mission.phases.machine import Errand, Event, Phase
 
 
 def taken_up(values: Values, senses: Senses, known: OccupancyMap = HALL) -> Rig:

@@ -11,16 +11,16 @@ from fixtures.missions import TWO_ROOMS, WALL_X
 
 from roomba.geometry import Pose, Twist
 from roomba.grid import OccupancyMap
-from roomba.mission.clean_request import (
+from roomba.mission.cleaning.request import (
     CleanMode,
     CleanOutcome,
     CleanRefusedError,
     CleanRequest,
     CleanResult,
 )
-from roomba.mission.machine import Event, Phase
 from roomba.mission.mission import MissionStep
-from roomba.perception.coverage_bits import SWEPT
+from roomba.mission.phases.machine import Event, Phase
+from roomba.perception.swept.coverage_bits import SWEPT
 
 CORNER = CleanRequest(CleanMode.ZONES, zones=((0.6, 0.2, 1.4, 0.9),))
 

@@ -11,9 +11,9 @@ from collections.abc import Iterable
 import pytest
 from rich.console import Console
 
-from roomba.client import CleanMode, CleanProgress, ErrandOutcome, MissedFloor
-from roomba.fake_client import FakeRobot, SteppedClock
-from roomba.fake_errands import ErrandScript
+from roomba.client.fake.errands import ErrandScript
+from roomba.client.fake.robot import FakeRobot, SteppedClock
+from roomba.client.protocol import CleanMode, CleanProgress, ErrandOutcome, MissedFloor
 from roomba.ui.cleaning import CLEANING, CLEANING_HEADING
 from roomba.ui.errand_progress import (
     ERRAND_SILENCE_LIMIT,

@@ -6,8 +6,8 @@ from collections.abc import Iterable
 import pytest
 from rich.console import Console
 
-from roomba.client import ErrandOutcome
-from roomba.fake_client import ErrandScript, FakeRobot
+from roomba.client.fake.robot import ErrandScript, FakeRobot
+from roomba.client.protocol import ErrandOutcome
 from roomba.ui.cleaning import CLEANING_HEADING
 from roomba.ui.exploring import TASKS
 from roomba.ui.menu import Menu

@@ -16,8 +16,8 @@ from collections.abc import Callable, Iterable, Iterator
 import pytest
 from rich.console import Console
 
+from roomba.client.fake.robot import FakeRobot, SteppedClock, Turn, WalkScript
 from roomba.errors import RoombaError
-from roomba.fake_client import FakeRobot, SteppedClock, Turn, WalkScript
 from roomba.ui.menu import OPTIONS, Menu, Option
 from roomba.ui.prompt import LONGEST_LINE, Keyboard, explain, read_number
 
@@ -307,8 +307,8 @@ WALKING = r"(m left at|m, current speed:) 2\.00 m/s"
 PROGRAM = """
 import signal, sys
 signal.signal(signal.SIGINT, lambda number, frame: None)  # rospy's swallows a Ctrl-C, too
-from roomba.client import Limits
-from roomba.fake_client import REAL_TIME, FakeRobot, Turn, WalkScript
+from roomba.client.protocol import Limits
+from roomba.client.fake.robot import REAL_TIME, FakeRobot, Turn, WalkScript
 from roomba.ui.menu import Menu
 limits = Limits(low=-100.0, high=100.0, max_speed=2.0)
 sys.exit(Menu(FakeRobot(clock=REAL_TIME, limits=limits, scripts=[{scripts}])).run())

@@ -17,9 +17,9 @@ import pytest
 from numpy.typing import NDArray
 from rich.console import Console
 
-from roomba.client import RobotUnavailableError
+from roomba.client.fake.robot import FakeRobot
+from roomba.client.protocol import RobotUnavailableError
 from roomba.errors import PictureError
-from roomba.fake_client import FakeRobot
 from roomba.ui.pictures import (
     PictureViewer,
     ProcessWindow,
@@ -307,7 +307,7 @@ PROMPT = 5.0
 PROGRAM = """
 import signal, sys
 signal.signal(signal.SIGINT, lambda number, frame: None)  # rospy's swallows a Ctrl-C, too
-from roomba.fake_client import FakeRobot
+from roomba.client.fake.robot import FakeRobot
 from roomba.ui.pictures import PictureViewer
 sys.exit(PictureViewer(FakeRobot()).run())
 """

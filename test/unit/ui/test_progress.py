@@ -9,8 +9,8 @@ import re
 import pytest
 from rich.console import Console
 
-from roomba.client import RobotState, RobotUnavailableError, WalkOutcome, WalkReport
-from roomba.fake_client import FakeRobot, SteppedClock, Turn, WalkScript
+from roomba.client.fake.robot import FakeRobot, SteppedClock, Turn, WalkScript
+from roomba.client.protocol import RobotState, RobotUnavailableError, WalkOutcome, WalkReport
 from roomba.ui.progress import (
     CANCEL_DEADLINE,
     POLL_TIME,

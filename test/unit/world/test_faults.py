@@ -9,10 +9,10 @@ import pytest
 from fixtures.rooms import room_home
 from fixtures.worlds import DT, IDEAL, drive
 
-from roomba.config import RobotConfig
+from roomba.configuration.robot import RobotConfig
 from roomba.errors import HomeError
 from roomba.geometry import Pose, Twist
-from roomba.world.engine.arrays import ROBOT, Fault, Infrared
+from roomba.world.engine.state.arrays import ROBOT, Fault, Infrared
 from roomba.world.simulator import Simulator
 
 CONFIG = RobotConfig()

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import itertools
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,16 +13,16 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from roomba.config import LidarConfig, RobotConfig
+from roomba.configuration.robot import LidarConfig, RobotConfig
 from roomba.errors import HomeError
+from roomba.files.shipped import HOMES
 from roomba.geometry import Pose, Twist
-from roomba.world.engine.arrays import MOST_DISCS, Fault
+from roomba.world.engine.state.arrays import MOST_DISCS, Fault
 from roomba.world.fleet import Fleet
-from roomba.world.home import Home, Move
-from roomba.world.layer import list_homes, load_home
+from roomba.world.home.home import Home, Move
+from roomba.world.layers.layer import list_homes, load_home
 from roomba.world.simulator import Simulator
 
-HOMES = Path(__file__).parents[3] / "homes"
 RADIUS = RobotConfig().body.radius
 Twists = NDArray[np.float64]
 

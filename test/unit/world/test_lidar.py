@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,12 +12,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from roomba.config import LidarConfig
+from roomba.configuration.robot import LidarConfig
+from roomba.files.shipped import HOMES
 from roomba.grid import GridFrame
-from roomba.world.layer import list_homes, load_home
+from roomba.world.layers.layer import list_homes, load_home
 from roomba.world.lidar import Lidar
 
-HOMES = Path(__file__).parents[3] / "homes"
 FAR = LidarConfig(min_range=1e-6, max_range=1e3)
 MOST_GRAZING = 1e-4
 """Share of the beams that may see past a corner which they just meet, or the other way round."""

@@ -9,9 +9,9 @@ from fixtures.worlds import DT, IDEAL, block_that_moves, drive
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from roomba.config import BodyConfig, RobotConfig
+from roomba.configuration.robot import BodyConfig, RobotConfig
 from roomba.geometry import Pose, Twist, wrap_angle
-from roomba.world.home import Move
+from roomba.world.home.home import Move
 from roomba.world.simulator import Simulator
 
 NORMAL = RobotConfig()

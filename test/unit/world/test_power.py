@@ -10,7 +10,7 @@ from fixtures.worlds import drive
 from hypothesis import given
 from hypothesis import strategies as st
 
-from roomba.config import BatteryConfig, BrushConfig, FanConfig
+from roomba.configuration.robot import BatteryConfig, BrushConfig, FanConfig
 from roomba.geometry import Pose
 from roomba.world.power import CELLS, BatteryState, battery_state, noise_level, open_circuit_voltage
 from roomba.world.simulator import Simulator

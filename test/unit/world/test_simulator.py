@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from roomba.errors import HomeError
 from roomba.geometry import Pose, Twist
-from roomba.world.home import DirtSource
+from roomba.world.home.home import DirtSource
 from roomba.world.simulator import Simulator
 
 

@@ -9,9 +9,9 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from roomba.perception.belief import Row, Rows
-from roomba.perception.belief_correct_kernels import Beams
-from roomba.perception.belief_reckon_kernels import compose, wrapped
+from roomba.perception.localization.belief import Row, Rows
+from roomba.perception.localization.belief_reckon_kernels import compose, wrapped
+from roomba.perception.matching.beams import Beams
 from roomba.perception.slam.surface_kernels import surface_points
 from roomba.perception.slam.surfel_kernels import ASKED, CLOSE, COUNTS, MATCHED, Surfels, align
 

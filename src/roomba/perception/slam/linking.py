@@ -9,8 +9,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from roomba.perception.match_kernels import invert
-from roomba.perception.slam.mapping_config import MappingConfig
+from roomba.configuration.mapping import MappingConfig
+from roomba.perception.matching.match_kernels import invert
 from roomba.perception.slam.pose_graph import Link, relative_to
 from roomba.perception.slam.submap import Submap
 from roomba.perception.slam.surfels import Match, SurfelGrid

@@ -14,18 +14,18 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.config import GyroConfig, LocalizationConfig
+from roomba.configuration.mapping import MappingConfig
+from roomba.configuration.robot import GyroConfig, LocalizationConfig
 from roomba.geometry import Pose
 from roomba.grid import OccupancyMap
-from roomba.perception.dead_reckoning import DeadReckoning
-from roomba.perception.estimate import Estimate, Knowledge
-from roomba.perception.scan_view import LidarModel
+from roomba.perception.localization.dead_reckoning import DeadReckoning
+from roomba.perception.localization.estimate import Estimate, Knowledge
+from roomba.perception.matching.scan_view import LidarModel
 from roomba.perception.slam.follow_kernels import LEAST_POINTS, Following, beyond, is_apart
 from roomba.perception.slam.mapper_state import KeptSubmap, LidarNumbers, MapperState
-from roomba.perception.slam.mapping_config import MappingConfig
+from roomba.perception.slam.occupancy_counts import Sheet
 from roomba.perception.slam.pose_graph import relative_to
 from roomba.perception.slam.scan_follower import ScanFollower
-from roomba.perception.slam.sheet import Sheet
 from roomba.perception.slam.submap import Keyframe
 from roomba.perception.slam.submap_graph import SubmapGraph
 from roomba.perception.slam.surface_kernels import POINT, surface_points

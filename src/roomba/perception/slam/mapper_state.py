@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.geometry import Pose
-from roomba.perception.scan_view import LidarModel
+from roomba.perception.matching.scan_view import LidarModel
 from roomba.perception.slam.pose_graph import Link
 from roomba.perception.slam.submap import Keyframe
 
@@ -17,7 +17,7 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class LidarNumbers:
-    """The lidar that made the map: see :class:`roomba.perception.scan_view.LidarModel`."""
+    """The lidar that made the map: see :class:`roomba.perception.matching.scan_view.LidarModel`."""
 
     beams: int
     first_angle: float

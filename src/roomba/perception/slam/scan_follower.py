@@ -7,10 +7,10 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.configuration.mapping import MappingConfig
 from roomba.geometry import Pose
-from roomba.perception.dead_reckoning import DeadReckoning
+from roomba.perception.localization.dead_reckoning import DeadReckoning
 from roomba.perception.slam.follow_kernels import FOLLOWER, follow, moved_since
-from roomba.perception.slam.mapping_config import MappingConfig
 from roomba.perception.slam.surfels import SurfelGrid
 
 Floats = NDArray[np.float64]

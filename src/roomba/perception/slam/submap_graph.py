@@ -9,12 +9,12 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.config import LocalizationConfig
+from roomba.configuration.mapping import MappingConfig
+from roomba.configuration.robot import LocalizationConfig
+from roomba.perception.slam.axis_alignment import phase_of_walls, turn_of_walls
 from roomba.perception.slam.linking import Linker
 from roomba.perception.slam.mapper_state import KeptSubmap
-from roomba.perception.slam.mapping_config import MappingConfig
 from roomba.perception.slam.pose_graph import Link, composed, optimised, relative_to
-from roomba.perception.slam.squaring import phase_of_walls, turn_of_walls
 from roomba.perception.slam.submap import Keyframe, Submap, moved
 
 Floats = NDArray[np.float64]

@@ -16,7 +16,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from roomba.perception.match_kernels import invert
+from roomba.perception.matching.match_kernels import invert
 from roomba.perception.slam.surface_kernels import NORMAL_X, NORMAL_Y, X, Y
 
 Floats = NDArray[np.float64]

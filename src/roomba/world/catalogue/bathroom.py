@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from roomba.world.catalogue.parts import Kind, Size, block, post
-from roomba.world.home import Box
+from roomba.world.home.home import Box
 
 
 def _toilet(size: Size, finish: str) -> list[Box]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from roomba.world.catalogue.parts import Kind, Size, block, columns, fronts, legs
-from roomba.world.home import Box
+from roomba.world.home.home import Box
 
 BOOK_COLOURS = ("red", "blue", "cream", "green", "orange", "grey", "yellow")
 

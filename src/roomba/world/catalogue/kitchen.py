@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from roomba.world.catalogue.parts import Kind, Size, block, fronts
-from roomba.world.home import Box
+from roomba.world.home.home import Box
 
 WORKTOP = 0.04
 PLINTH = 0.10

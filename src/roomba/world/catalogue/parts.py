@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from roomba.world.home import Box
+from roomba.world.home.home import Box
 
 Range = tuple[float, float]
 

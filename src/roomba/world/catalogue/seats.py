@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from roomba.world.catalogue.parts import Kind, Size, block, columns, legs, post
-from roomba.world.home import Box
+from roomba.world.home.home import Box
 
 
 def _sofa(size: Size, fabric: str) -> list[Box]:

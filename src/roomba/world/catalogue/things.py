@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from roomba.world.catalogue.parts import Kind, Size, block, post
-from roomba.world.home import Box
+from roomba.world.home.home import Box
 
 PROUD = 0.004
 """m; how far a fixture stands out of its wall: seen, yet too thin to make a floor cell solid."""

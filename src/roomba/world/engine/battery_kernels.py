@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from roomba.world.engine.arrays import CARPET, Row
 from roomba.world.engine.brush_kernels import duty_now
-from roomba.world.engine.compilation import part
-from roomba.world.engine.numbers import TAPER_FROM, TAPER_TO
+from roomba.world.engine.state.arrays import CARPET, Row
+from roomba.world.engine.state.compilation import part
+from roomba.world.engine.state.numbers import TAPER_FROM, TAPER_TO
 
 _HOUR = 3600.0
 

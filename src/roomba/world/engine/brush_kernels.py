@@ -8,9 +8,9 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.world.engine.arrays import CARPET, Row
-from roomba.world.engine.compilation import entry, part
-from roomba.world.engine.random_kernels import next_normal
+from roomba.world.engine.state.arrays import CARPET, Row
+from roomba.world.engine.state.compilation import entry, part
+from roomba.world.engine.state.random_kernels import next_normal
 
 Floats = NDArray[np.float64]
 

@@ -9,8 +9,8 @@ from __future__ import annotations
 import math
 from typing import Final
 
-from roomba.world.engine.arrays import Row, Rows, Solid
-from roomba.world.engine.compilation import part
+from roomba.world.engine.state.arrays import Row, Rows, Solid
+from roomba.world.engine.state.compilation import part
 
 PROBE_STEP: Final = 1e-3
 """m; how finely contact is felt for when something solid is nearer than the way to go."""

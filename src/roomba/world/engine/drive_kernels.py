@@ -8,11 +8,11 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.world.engine.arrays import CARPET, Row, Solid
-from roomba.world.engine.compilation import part
 from roomba.world.engine.contact_kernels import arc, free_share, wrapped
-from roomba.world.engine.numbers import SLIP_LENGTH
-from roomba.world.engine.random_kernels import next_normal
+from roomba.world.engine.state.arrays import CARPET, Row, Solid
+from roomba.world.engine.state.compilation import part
+from roomba.world.engine.state.numbers import SLIP_LENGTH
+from roomba.world.engine.state.random_kernels import next_normal
 
 Quantiles = NDArray[np.float32]
 

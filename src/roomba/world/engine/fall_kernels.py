@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 from typing import Final
 
-from roomba.world.dirt import FULL_CELL
-from roomba.world.engine.arrays import Dirt, Row
-from roomba.world.engine.compilation import part
-from roomba.world.engine.random_kernels import next_exponential, next_uniform
+from roomba.world.engine.state.arrays import Dirt, Row
+from roomba.world.engine.state.compilation import part
+from roomba.world.engine.state.random_kernels import next_exponential, next_uniform
+from roomba.world.home.dirt import FULL_CELL
 
 CRUMB: Final = 2000
 """Micrograms; what falls at once."""

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
-from roomba.world.engine.arrays import DROP, FLOOR, Row, Rows
-from roomba.world.engine.compilation import part
+from roomba.world.engine.state.arrays import DROP, FLOOR, Row, Rows
+from roomba.world.engine.state.compilation import part
 
 
 @part

@@ -10,10 +10,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.config import RobotConfig
-from roomba.distance import distance_to_nearest
-from roomba.world.dirt import MICROGRAMS_PER_GRAM, DirtField
-from roomba.world.engine.arrays import (
+from roomba.configuration.robot import RobotConfig
+from roomba.raster.distance import distance_to_nearest
+from roomba.world.engine.fall_kernels import CRUMB
+from roomba.world.engine.lidar.edges import LidarEdges, lidar_edges
+from roomba.world.engine.state.arrays import (
     BOX,
     CARPET,
     CELL,
@@ -24,9 +25,8 @@ from roomba.world.engine.arrays import (
     Edges,
     Rows,
 )
-from roomba.world.engine.fall_kernels import CRUMB
-from roomba.world.engine.lidar_edges import LidarEdges, lidar_edges
-from roomba.world.home import Home, MovingThing, cells_in
+from roomba.world.home.dirt import MICROGRAMS_PER_GRAM, DirtField
+from roomba.world.home.home import Home, MovingThing, cells_in
 
 _SECONDS_PER_HOUR = 3600.0
 

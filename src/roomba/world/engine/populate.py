@@ -7,10 +7,10 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.config import RobotConfig
+from roomba.configuration.robot import RobotConfig
 from roomba.errors import HomeError
-from roomba.world.dirt import DirtField
-from roomba.world.engine.arrays import (
+from roomba.world.engine.layout import Layout, room_around
+from roomba.world.engine.state.arrays import (
     DISC,
     FALL,
     MOST_DISCS,
@@ -22,9 +22,9 @@ from roomba.world.engine.arrays import (
     Solid,
     State,
 )
-from roomba.world.engine.layout import Layout, room_around
-from roomba.world.home import Box, Home
-from roomba.world.moving import Track, tracks_of
+from roomba.world.home.dirt import DirtField
+from roomba.world.home.home import Box, Home
+from roomba.world.home.moving import Track, tracks_of
 
 _WORLD, _TRACKS, _ROBOT, _PLACES = range(4)
 """What a seed is used for, so that no two things get the same random numbers."""

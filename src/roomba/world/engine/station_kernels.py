@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import math
 
-from roomba.world.engine.arrays import Infrared, Row, Rows
-from roomba.world.engine.compilation import part
 from roomba.world.engine.contact_kernels import wrapped
+from roomba.world.engine.state.arrays import Infrared, Row, Rows
+from roomba.world.engine.state.compilation import part
 
 _HALO, _RED, _GREEN = int(Infrared.HALO), int(Infrared.RED), int(Infrared.GREEN)
 

@@ -5,16 +5,16 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.world.engine.arrays import Row, Rows, State
 from roomba.world.engine.battery_kernels import use_battery
 from roomba.world.engine.brush_kernels import clean
-from roomba.world.engine.compilation import entry, part
 from roomba.world.engine.contact_kernels import feel_bumper
 from roomba.world.engine.drive_kernels import drive
 from roomba.world.engine.fall_kernels import let_dirt_fall
 from roomba.world.engine.ground_kernels import feel_ground, ground_at
-from roomba.world.engine.lidar_kernels import ScanBuffers
-from roomba.world.engine.scan_kernels import is_scan_due, scan
+from roomba.world.engine.lidar.projection import ScanBuffers
+from roomba.world.engine.lidar.scan_kernels import is_scan_due, scan
+from roomba.world.engine.state.arrays import Row, Rows, State
+from roomba.world.engine.state.compilation import entry, part
 from roomba.world.engine.station_kernels import sense_station
 from roomba.world.engine.thing_kernels import move_thing
 

@@ -8,9 +8,9 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.world.engine.arrays import Row, Solid
-from roomba.world.engine.compilation import part
 from roomba.world.engine.contact_kernels import way_to_box, wrapped
+from roomba.world.engine.state.arrays import Row, Solid
+from roomba.world.engine.state.compilation import part
 
 _MARGIN: Final = 2e-3
 """m; nothing moves nearer to a robot than this."""

@@ -10,12 +10,12 @@ from fixtures.located import Eye
 from fixtures.mapped import FURNISHED, points_of, row
 from fixtures.rooms import room_home
 
+from roomba.configuration.mapping import MappingConfig
 from roomba.geometry import Pose, wrap_angle
 from roomba.perception.slam.linking import Linker
-from roomba.perception.slam.mapping_config import MappingConfig
 from roomba.perception.slam.pose_graph import Link, relative_to
 from roomba.perception.slam.submap import Keyframe, Submap
-from roomba.world.home import Home
+from roomba.world.home.home import Home
 
 CONFIG = MappingConfig()
 HERE, THERE = Pose(2.5, 1.2, 0.0), Pose(1.6, 2.6, 1.9)

@@ -18,11 +18,11 @@ from fixtures.mapped import (
     wrong_cells,
 )
 
+from roomba.configuration.mapping import MappingConfig
 from roomba.geometry import Pose, Twist, wrap_angle
 from roomba.grid import FREE, UNKNOWN
-from roomba.perception.estimate import Knowledge
-from roomba.perception.scan_view import LidarModel
-from roomba.perception.slam.mapping_config import MappingConfig
+from roomba.perception.localization.estimate import Knowledge
+from roomba.perception.matching.scan_view import LidarModel
 
 WORST = 0.03
 """m; farther from its true place it never is."""

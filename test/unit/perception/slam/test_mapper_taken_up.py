@@ -9,11 +9,11 @@ import pytest
 from fixtures.mapped import AROUND, CIRCLE, FURNISHED, Mapped, driven_around, wrong_cells
 from fixtures.rooms import room_home
 
+from roomba.configuration.mapping import MappingConfig
 from roomba.geometry import Pose, Twist
-from roomba.perception.estimate import Knowledge
+from roomba.perception.localization.estimate import Knowledge
 from roomba.perception.slam.mapper import Mapper
 from roomba.perception.slam.mapper_state import MapperState
-from roomba.perception.slam.mapping_config import MappingConfig
 
 WORST = 0.03
 

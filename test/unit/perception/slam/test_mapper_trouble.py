@@ -21,9 +21,9 @@ from fixtures.rooms import room_home
 
 from roomba.geometry import Pose, Twist
 from roomba.grid import OCCUPIED
-from roomba.perception.estimate import Knowledge
-from roomba.world.engine.arrays import Fault
-from roomba.world.home import Box, Move, MovingKind, MovingThing, Script
+from roomba.perception.localization.estimate import Knowledge
+from roomba.world.engine.state.arrays import Fault
+from roomba.world.home.home import Box, Move, MovingKind, MovingThing, Script
 
 WORST = 0.03
 

@@ -13,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from roomba.geometry import Pose
-from roomba.perception.scan_view import LidarModel
+from roomba.perception.matching.scan_view import LidarModel
 from roomba.perception.slam.surface_kernels import NORMAL_X, NORMAL_Y, X, Y
 
 ANGLES = np.arange(LIDAR.beams) * (2.0 * np.pi / LIDAR.beams)

@@ -11,9 +11,9 @@ from fixtures.worlds import IDEAL, NOISY, drive
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from roomba.config import RobotConfig
+from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose, Twist
-from roomba.world.engine.arrays import Fault
+from roomba.world.engine.state.arrays import Fault
 from roomba.world.simulator import Simulator
 
 CONFIG = RobotConfig()

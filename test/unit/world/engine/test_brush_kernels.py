@@ -9,11 +9,11 @@ from fixtures.worlds import DT, IDEAL, NOISY, drive
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from roomba.config import RobotConfig, pickup_share
+from roomba.configuration.robot import RobotConfig, pickup_share
 from roomba.geometry import Pose, Twist
-from roomba.world.dirt import DirtField
 from roomba.world.engine.brush_kernels import amount_under_disc, sweep
-from roomba.world.home import DirtSource
+from roomba.world.home.dirt import DirtField
+from roomba.world.home.home import DirtSource
 from roomba.world.simulator import Simulator
 
 KEEP = 0.2

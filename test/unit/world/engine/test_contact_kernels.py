@@ -9,7 +9,6 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from roomba.world.engine.arrays import BOX, CELL, HOME
 from roomba.world.engine.contact_kernels import (
     LEFT,
     RIGHT,
@@ -21,6 +20,7 @@ from roomba.world.engine.contact_kernels import (
     wrapped,
 )
 from roomba.world.engine.layout import room_around
+from roomba.world.engine.state.arrays import BOX, CELL, HOME
 
 angles = st.floats(-20.0, 20.0)
 

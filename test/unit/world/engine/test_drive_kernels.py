@@ -11,11 +11,11 @@ from fixtures.worlds import DT, IDEAL, NOISY, drive
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from roomba.config import RobotConfig
+from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose, Twist, wrap_angle
-from roomba.world.engine.arrays import Fault
 from roomba.world.engine.drive_kernels import MOST_ACCELERATION, ramp
-from roomba.world.home import Home
+from roomba.world.engine.state.arrays import Fault
+from roomba.world.home.home import Home
 from roomba.world.simulator import Simulator
 
 CONFIG = RobotConfig()

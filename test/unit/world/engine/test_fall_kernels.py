@@ -8,7 +8,7 @@ from fixtures.rooms import room_home
 from fixtures.worlds import drive
 
 from roomba.world.engine.fall_kernels import CRUMB
-from roomba.world.home import DirtSource
+from roomba.world.home.home import DirtSource
 from roomba.world.simulator import Simulator
 
 HOUR = 3600.0

@@ -10,7 +10,7 @@ from fixtures.worlds import drive
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from roomba.config import RobotConfig
+from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose, Twist
 from roomba.world.simulator import Cliff, Simulator
 

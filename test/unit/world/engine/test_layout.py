@@ -9,10 +9,10 @@ from fixtures.worlds import block_that_moves
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from roomba.config import RobotConfig
+from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose
-from roomba.world.engine.arrays import CARPET, DROP, FLOOR
 from roomba.world.engine.layout import layout_of, room_around
+from roomba.world.engine.state.arrays import CARPET, DROP, FLOOR
 
 SIZE = 0.05
 

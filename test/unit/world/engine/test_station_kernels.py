@@ -10,10 +10,10 @@ from fixtures.worlds import drive
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from roomba.config import RobotConfig, StationConfig
+from roomba.configuration.robot import RobotConfig, StationConfig
 from roomba.geometry import Pose, Twist
-from roomba.world.engine.arrays import Fault, Infrared
-from roomba.world.furniture import STATION_GAP
+from roomba.world.catalogue.furniture import STATION_GAP
+from roomba.world.engine.state.arrays import Fault, Infrared
 from roomba.world.simulator import Observation, Simulator
 
 CONFIG = RobotConfig()

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,14 +11,14 @@ from fixtures.worlds import DT, block_that_moves, drive
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from roomba.config import BodyConfig
+from roomba.configuration.robot import BodyConfig
+from roomba.files.shipped import HOMES
 from roomba.geometry import Pose, Twist, wrap_angle
-from roomba.world.home import Home, Move, MovingThing
-from roomba.world.layer import load_home
-from roomba.world.moving import Track, pose_at
+from roomba.world.home.home import Home, Move, MovingThing
+from roomba.world.home.moving import Track, pose_at
+from roomba.world.layers.layer import load_home
 from roomba.world.simulator import Simulator
 
-HOMES = Path(__file__).parents[4] / "homes"
 RADIUS = BodyConfig().radius
 ASIDE = Pose(0.5, 0.5, 0.0)
 

@@ -1,0 +1,1 @@
+"""What a user interface can ask of a robot."""

@@ -1,0 +1,1 @@
+"""A robot for tests of user interfaces."""

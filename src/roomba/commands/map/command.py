@@ -1,0 +1,112 @@
+"""``./roomba map``: a home that is explored, told as a table, JSON, a picture and a map's files."""
+
+from __future__ import annotations
+
+import os
+import sys
+import time
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Final
+
+from roomba.commands.map.options import PROGRAM, Options, Output, options_of
+from roomba.commands.progress import Show, progress
+from roomba.commands.sim.trial import UsageError
+from roomba.commands.telling import tell_tables, write_json
+from roomba.errors import RoombaError
+
+if TYPE_CHECKING:
+    from roomba.commands.map.runs import MapRun, MapScene, Watch, WatchedExplorer
+
+COMPLETED, ENDED_OTHERWISE, USAGE, INTERRUPTED = 0, 1, 2, 130
+_SHOWN: Final = 0.25
+"""s between two looks at how far it is."""
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Do what a command line asks for; returns the exit status."""
+    return guarded(lambda: _explore(options_of(_without_ros(arguments))), USAGE)
+
+
+def guarded(work: Callable[[], int], refused: int = ENDED_OTHERWISE) -> int:
+    """Return the status of some work; what goes wrong in it is told in a line.
+
+    ``refused`` is the status for an input that cannot be used.
+    """
+    try:
+        return work()
+    except UsageError as error:
+        return _complain(str(error), USAGE)
+    except RoombaError as error:
+        return _complain(str(error), refused)
+    except BrokenPipeError:
+        # Whoever read the output has had enough; Python must not try to write the rest.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return ENDED_OTHERWISE
+    except OSError as error:
+        return _complain(f"{error}; choose another file", ENDED_OTHERWISE)
+    except KeyboardInterrupt:
+        return _complain("stopped on the way", INTERRUPTED)
+
+
+def _without_ros(arguments: list[str] | None) -> list[str] | None:
+    """Refuse what needs ROS; raises UsageError."""
+    words = sys.argv[1:] if arguments is None else arguments
+    if any(word == "--bag" or word.startswith("--bag=") for word in words):
+        raise UsageError(f"--bag: expected a Python with ROS, got none; call {PROGRAM} --bag")
+    return arguments
+
+
+def _complain(text: str, status: int) -> int:
+    print(f"{PROGRAM}: {' '.join(text.split())}", file=sys.stderr)
+    return status
+
+
+def _explore(options: Options) -> int:
+    # Here, because it takes a second that nobody should wait for who mistyped an option.
+    from roomba.commands.map.runs import MapScene
+    from roomba.commands.map.warm import warm_up
+
+    scene = MapScene(options.trial)
+    with progress("Exploring", options.output.quiet) as show:
+        warm_up()
+        run = scene.run([_shown_by(show, scene)])
+    _tell_run(options.output, run)
+    return COMPLETED if run.is_completed else ENDED_OTHERWISE
+
+
+def _shown_by(show: Show, scene: MapScene) -> Watch:
+    import numpy as np
+
+    from roomba.commands.sim.report import clock
+    from roomba.grid import FREE
+
+    all_of_it = float(np.count_nonzero(scene.seen)) * scene.home.frame.resolution**2
+    looked = time.monotonic()
+
+    def watch(robot: WatchedExplorer) -> None:
+        nonlocal looked
+        if time.monotonic() - looked < _SHOWN:
+            return
+        looked = time.monotonic()
+        known = robot.mission.site.occupancy
+        area = float(np.count_nonzero(known.values == FREE)) * known.frame.resolution**2
+        phase = robot.mission.state.phase.value
+        show(min(area / all_of_it, 1.0), f"{area:.0f} m², {clock(robot.seen.time)}, {phase}")
+
+    return watch
+
+
+def _tell_run(output: Output, run: MapRun) -> None:
+    from roomba.commands.map.files import write_files
+    from roomba.commands.map.json_file import run_as_json
+    from roomba.commands.map.report import error_table, run_table
+
+    if output.out is not None:
+        write_files(output.out, run.made.occupancy, run.station)
+    if output.plot is not None:
+        from roomba.commands.map.plot import write_plot
+
+        write_plot(output.plot, run)
+    tell_tables([run_table(run), error_table(run)], output.json, quiet=output.quiet)
+    if output.json is not None:
+        write_json(output.json, run_as_json(run))

@@ -1,0 +1,161 @@
+"""One run: a robot without a map explores the home of a trial, and its map is compared to it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.commands.map.blind_map import BlindMap
+from roomba.commands.map.map_error import MapError, map_error
+from roomba.commands.map.seen_floor import seen_floor
+from roomba.commands.sim.homes import home_of
+from roomba.commands.sim.runs import mission_config, robot_config_of
+from roomba.commands.sim.trial import Trial
+from roomba.configuration.mapping import MappingConfig, load_mapping_config
+from roomba.configuration.robot import RobotConfig
+from roomba.files.shipped import CONFIGURATION
+from roomba.geometry import Pose
+from roomba.grid import OccupancyMap
+from roomba.headless.explorer import ExploreRecord, HeadlessExplorer
+from roomba.headless.exploring_loop_kernels import GYRO, ODOMETRY, TIME, TRUE
+from roomba.mission.cleaning.request import CleanOutcome
+from roomba.world.home.home import Home
+
+Floats = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Drawn:
+    """A map, how far it is off the truth, and how far off its maker took the robot to be.
+
+    ``largest`` and ``last`` are of the robot's place, m, at any
+    tick, and at the end.
+    """
+
+    occupancy: OccupancyMap
+    error: MapError
+    largest: float
+    last: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class MapRun:
+    """What happened: the map that was ``made``, and beside it the one ``by_odometry`` alone.
+
+    ``seen`` is the floor that counts, bool over the home's grid; ``station`` is where the robot's
+    own map has its station.
+    """
+
+    trial: Trial
+    home: Home
+    robot: RobotConfig
+    record: ExploreRecord
+    made: Drawn
+    by_odometry: Drawn
+    seen: Mask
+    station: Pose
+
+    @property
+    def is_completed(self) -> bool:
+        """Whether the robot saw all that it could get to see, and docked."""
+        return self.record.result.outcome is CleanOutcome.COMPLETED
+
+    @property
+    def times_real_time(self) -> float:
+        """Robot time by time on the clock."""
+        return self.record.result.duration / max(self.record.wall, 1e-9)
+
+
+Watch = Callable[["WatchedExplorer"], None]
+"""Is shown the robot whenever it looked around: every few ticks, or at each."""
+
+_AS_OFTEN: Final = 0.9
+"""Of the way between keyframes: by its own odometry a robot sees each of them a bit sooner."""
+
+
+class WatchedExplorer(HeadlessExplorer):
+    """A robot that makes its map while another map is made by its odometry alone."""
+
+    watches: tuple[Watch, ...] = ()
+
+    def begin_blind(self, mapping: MappingConfig) -> None:
+        """Draw by dead reckoning from now on; it stands on its station."""
+        numbers = self.robot.localization, self.robot.gyro
+        apart = {"keyframe_way": mapping.keyframe_way, "keyframe_turn": mapping.keyframe_turn}
+        often = {name: _AS_OFTEN * value for name, value in apart.items()}
+        self.blind = BlindMap(mapping.model_copy(update=often), *numbers, self.simulator.start)
+        self.largest_blind = 0.0
+        self._seen_scans = -1
+        self._hear(self.row())
+
+    def advance(self) -> None:
+        """Let time pass, and look at what it brought."""
+        super().advance()
+        self._hear(self.passed[-1])
+        for watch in self.watches:
+            watch(self)
+
+    def _hear(self, rows: Floats) -> None:
+        """Let the other map go on by ticks that passed, float64 [n, PASSED]."""
+        seen, blind = self.seen, self.blind
+        for row in rows.tolist():
+            blind.move(row[TIME], Pose(*row[ODOMETRY]), row[GYRO])
+            x, y, _ = row[TRUE]
+            self.largest_blind = max(self.largest_blind, blind.pose.distance_to(x, y))
+        if seen.scans != self._seen_scans:
+            self._seen_scans = seen.scans
+            blind.see(seen.time, self.simulator.ranges, self.lidar)
+
+
+class MapScene:
+    """Everything that is there before a run begins; ``run()`` is the run, once."""
+
+    def __init__(self, trial: Trial) -> None:
+        """Make home and robot; raises RoombaError."""
+        self.trial = trial
+        self.config = robot_config_of(trial)
+        self.home = home_of(trial, self.config.body)
+        station = self.home.station
+        self.seen = seen_floor(
+            self.home.solid, self.home.frame, (station.x, station.y), self.config
+        )
+        mapping = load_mapping_config(CONFIGURATION / "mapping.yaml")
+        self.robot = WatchedExplorer(
+            self.home, self.config, mission_config(), mapping, seed=trial.seed
+        )
+        self.robot.begin_blind(mapping)
+
+    def run(self, watches: Iterable[Watch] = ()) -> MapRun:
+        """Explore; raises CommandRefusedError."""
+        robot = self.robot
+        robot.watches = tuple(watches)
+        record = robot.explore()
+        true, off = robot.seen.pose, record.believed[:, 1:3] - record.poses[:, 1:3]
+        last = robot.mapper.pose.distance_to(true.x, true.y)
+        largest = float(np.hypot(*off.T).max())
+        blind = robot.blind.occupancy()
+        last_blind = robot.blind.pose.distance_to(true.x, true.y)
+        return MapRun(
+            self.trial,
+            self.home,
+            self.config,
+            record,
+            Drawn(record.occupancy, self.error_of(record.occupancy), largest, last),
+            Drawn(blind, self.error_of(blind), robot.largest_blind, last_blind),
+            self.seen,
+            Pose(*robot.mapper.trajectory[0].tolist()),
+        )
+
+    def error_of(self, occupancy: OccupancyMap) -> MapError:
+        """Compare a map with the home."""
+        return map_error(occupancy, self.home.frame, self.home.solid, self.seen)
+
+
+def run_trial(trial: Trial) -> MapRun:
+    """Make the home of a trial and map it; raises RoombaError."""
+    return MapScene(trial).run()

@@ -1,0 +1,90 @@
+"""Makes the pictures of the documents: those of the README, and one of each sensor.
+
+``./roomba pictures [FOLDER] [--only NAME ...]``; no ROS, no screen, the same pictures each time.
+"""
+
+from __future__ import annotations
+
+import argparse
+import functools
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import cv2
+
+from roomba.commands.pictures.battery import picture_of_battery, picture_of_levels
+from roomba.commands.pictures.bumper import picture_of_bumper
+from roomba.commands.pictures.camera import picture_of_depth
+from roomba.commands.pictures.cleaning import picture_of_cleaning
+from roomba.commands.pictures.dirt import picture_of_dirt
+from roomba.commands.pictures.edge import picture_of_edge
+from roomba.commands.pictures.faults import picture_of_faults
+from roomba.commands.pictures.lidar import picture_of_lidar
+from roomba.commands.pictures.localization import picture_of_localization, picture_of_relocation
+from roomba.commands.pictures.mapping import picture_of_map_errors, picture_of_mapping
+from roomba.commands.pictures.motion import picture_of_motion
+from roomba.commands.pictures.moving import picture_of_moving
+from roomba.commands.pictures.odometry import picture_of_odometry
+from roomba.commands.pictures.rooms import picture_of_rooms
+from roomba.commands.pictures.station import picture_of_station
+from roomba.commands.pictures.tour import VIEWS, picture_of_home, picture_of_view, picture_of_walk
+from roomba.errors import RoombaError
+from roomba.files.shipped import HOMES
+from roomba.plots.canvas import Picture
+from roomba.world.home.home import Home
+from roomba.world.layers.layer import load_home
+
+_ROOT = Path(__file__).parents[4]
+
+PICTURES: dict[str, tuple[str, Callable[[Home], Picture]]] = {
+    "home": ("flat", picture_of_home),
+    "walk": ("flat", picture_of_walk),
+    **{name: ("flat", functools.partial(picture_of_view, pose=VIEWS[name])) for name in VIEWS},
+    "lidar": ("flat", picture_of_lidar),
+    "odometry": ("apartment", picture_of_odometry),
+    "motion": ("apartment", picture_of_motion),
+    "bumper": ("empty", picture_of_bumper),
+    "edge": ("family", picture_of_edge),
+    "station": ("flat", picture_of_station),
+    "dirt": ("flat", picture_of_dirt),
+    "battery": ("flat", picture_of_battery),
+    "levels": ("flat", picture_of_levels),
+    "moving": ("family", picture_of_moving),
+    "depth": ("family", picture_of_depth),
+    "faults": ("empty", picture_of_faults),
+    "localization": ("flat", picture_of_localization),
+    "relocation": ("empty", picture_of_relocation),
+    "rooms": ("family", picture_of_rooms),
+    "cleaning": ("flat", picture_of_cleaning),
+    "mapping": ("flat", picture_of_mapping),
+    "map_errors": ("flat", picture_of_map_errors),
+}
+"""Each picture by the name of its file: the home that it is of, and what makes it."""
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Write all pictures; returns the exit status."""
+    parser = argparse.ArgumentParser(prog="./roomba pictures", description=__doc__)
+    parser.add_argument("folder", nargs="?", type=Path, default=_ROOT / "docs" / "pictures")
+    parser.add_argument("--only", nargs="+", choices=PICTURES, default=list(PICTURES))
+    wanted = parser.parse_args(arguments)
+    try:
+        wanted.folder.mkdir(parents=True, exist_ok=True)
+        for name in wanted.only:
+            home, picture_of = PICTURES[name]
+            _write(wanted.folder / f"{name}.png", picture_of(load_home(home, HOMES)))
+    except (RoombaError, OSError) as error:
+        print(f"./roomba pictures: {error}", file=sys.stderr)
+        return 1
+    return 0
+
+
+def _write(path: Path, picture: Picture) -> None:
+    if not cv2.imwrite(str(path), picture[:, :, ::-1], [cv2.IMWRITE_PNG_COMPRESSION, 9]):
+        raise OSError(f"{path}: cannot be written")
+    print(path)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,100 @@
+"""The lidar: a noisy scan over the plan, and how far its ranges are off."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from roomba.configuration.robot import LidarConfig, RobotConfig
+from roomba.geometry import Pose, Twist
+from roomba.plots.style import (
+    BLUE,
+    INK,
+    RED,
+    area_of,
+    draw_robot,
+    drawn,
+    empty_figure,
+    show_plan,
+)
+from roomba.world.home.home import Home
+from roomba.world.lidar import Lidar
+from roomba.world.simulator import Simulator
+
+_STAND = Pose(1.1, 1.4, 0.4)
+"""A place in the flat from which doors and other rooms are seen."""
+_BINS = np.arange(-20.0, 20.1, 1.0)
+"""mm"""
+
+
+@drawn
+def picture_of_lidar(home: Home, stand: Pose = _STAND, scans: int = 100) -> Figure:
+    """Draw one scan over the plan, and the errors of all ranges of so many scans."""
+    config = RobotConfig(sensors="noisy")
+    world = Simulator(home, config, seed=1, start=stand)
+    exact = Lidar.of(home, config.lidar).scan(np.array([[stand.x, stand.y, stand.theta]]))[0]
+    measured = np.array([_next_scan(world) for _ in range(scans)])
+    figure = empty_figure(1150, 520)
+    plan, errors = figure.subplots(1, 2, width_ratios=[1.25, 1.0])
+    show_plan(plan, home, area_of(home))
+    _draw_scan(plan, stand, measured[0], exact)
+    _draw_errors(errors, measured, exact, config.lidar)
+    return figure
+
+
+def _next_scan(world: Simulator) -> NDArray[np.float32]:
+    world.advance(Twist(), 1.0 / world.config.lidar.rate, 1)
+    return world.ranges
+
+
+def _draw_scan(
+    axes: Axes, stand: Pose, measured: NDArray[np.float32], exact: NDArray[np.float32]
+) -> None:
+    angles = stand.theta + np.arange(len(measured)) * (2.0 * math.pi / len(measured))
+    hit = np.isfinite(measured)
+    lost = np.flatnonzero(~hit & np.isfinite(exact))
+    axes.plot(
+        stand.x + measured[hit] * np.cos(angles[hit]),
+        stand.y + measured[hit] * np.sin(angles[hit]),
+        ".",
+        color=BLUE,
+        markersize=4.0,
+        label=f"{np.count_nonzero(hit)} ranges",
+    )
+    for number, beam in enumerate(lost):
+        x = stand.x + exact[beam] * math.cos(angles[beam])
+        y = stand.y + exact[beam] * math.sin(angles[beam])
+        label = f"{len(lost)} beams lost" if number == 0 else None
+        axes.plot(
+            [stand.x, x],
+            [stand.y, y],
+            "--",
+            color=RED,
+            linewidth=1.2,
+            marker="x",
+            label=label,
+            markevery=[1],
+            markersize=7.0,
+            markeredgewidth=2.0,
+        )
+    draw_robot(axes, stand)
+    axes.set_title("One scan")
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.11), ncols=2, columnspacing=3.0)
+
+
+def _draw_errors(
+    axes: Axes, measured: NDArray[np.float32], exact: NDArray[np.float32], config: LidarConfig
+) -> None:
+    errors = 1000.0 * (measured - exact)[np.isfinite(measured) & np.isfinite(exact)]
+    sigma = 1000.0 * config.noise
+    axes.hist(errors, bins=list(_BINS), density=True, color=BLUE, alpha=0.55, label="measured")
+    x = np.linspace(_BINS[0], _BINS[-1], 200)
+    normal = np.exp(-0.5 * (x / sigma) ** 2) / (sigma * math.sqrt(2.0 * math.pi))
+    axes.plot(x, normal, color=INK, label=f"normal, σ = {sigma:g} mm")
+    axes.set(xlabel="error of a range, mm", ylabel="share per mm")
+    axes.set_title(f"{len(errors)} ranges: σ = {errors.std():.2f} mm, mean {errors.mean():+.2f} mm")
+    axes.legend(loc="upper right")

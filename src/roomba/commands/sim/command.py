@@ -1,0 +1,195 @@
+"""``./roomba sim``: one headless run, or many, told as a table, JSON, a picture and a bag."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import sys
+import time
+from collections.abc import Callable
+from contextlib import AbstractContextManager
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+from rich.table import Table
+from rich.text import Text
+
+from roomba.commands.progress import Show, progress
+from roomba.commands.sim.options import PROGRAM, Options, options_of
+from roomba.commands.sim.trial import RANDOM, Trial, UsageError
+from roomba.commands.telling import tell_tables, write_json
+from roomba.errors import RoombaError
+
+if TYPE_CHECKING:
+    from roomba.commands.sim.figures import Figures
+    from roomba.commands.sim.many import Outcome
+    from roomba.commands.sim.runs import Run, Scene, Watch
+    from roomba.headless.cleaner import HeadlessMission
+
+BagOpener = Callable[[Path, "Scene"], AbstractContextManager["Watch"]]
+"""Opens a bag; what it gives is shown the robot again and again."""
+
+BAG_BURST: Final = 1
+"""Ticks between two looks for a bag: its fastest topics have 10 Hz."""
+COMPLETED, ENDED_OTHERWISE, USAGE, INTERRUPTED = 0, 1, 2, 130
+
+
+def main(arguments: list[str] | None = None, open_bag: BagOpener | None = None) -> int:
+    """Do what a command line asks for; returns the exit status."""
+    try:
+        options = options_of(arguments)
+        if options.bag is not None and open_bag is None:
+            raise UsageError(f"--bag: expected a Python with ROS, got none; call {PROGRAM} --bag")
+        if options.homes is not None:
+            return _run_homes(options, options.homes)
+        return _run_one(options, open_bag)
+    except RoombaError as error:
+        return _complain(str(error), USAGE)
+    except BrokenPipeError:
+        # Whoever read the output has had enough; Python must not try to write the rest.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return ENDED_OTHERWISE
+    except OSError as error:
+        return _complain(f"{error}; choose another file", ENDED_OTHERWISE)
+    except KeyboardInterrupt:
+        return _complain("stopped on the way", INTERRUPTED)
+
+
+def _complain(text: str, status: int) -> int:
+    print(f"{PROGRAM}: {' '.join(text.split())}", file=sys.stderr)
+    return status
+
+
+# ---------------------------------------------------------------- one run
+
+
+def _run_one(options: Options, open_bag: BagOpener | None) -> int:
+    # Here, because it takes a second that nobody should wait for who mistyped an option.
+    from roomba.commands.sim.runs import Scene
+    from roomba.commands.sim.warm import warm_up
+    from roomba.headless.closed_loop import LONGEST_BURST
+
+    burst = LONGEST_BURST if options.bag is None else BAG_BURST
+    scene = Scene(options.trial, burst)
+    with contextlib.ExitStack() as stack:
+        watches: list[Watch] = []
+        show = stack.enter_context(progress("Cleaning", options.quiet))
+        warm_up()
+        watches.append(_shown_by(show))
+        if options.bag is not None and open_bag is not None:
+            watches.append(stack.enter_context(open_bag(options.bag, scene)))
+        run = scene.run(watches)
+    _tell_run(options, run)
+    return COMPLETED if run.figures.is_completed else ENDED_OTHERWISE
+
+
+def _shown_by(show: Show) -> Watch:
+    from roomba.commands.sim.report import clock
+
+    began = time.monotonic()
+
+    def watch(robot: HeadlessMission) -> None:
+        nonlocal began
+        # The words cost more than some ticks of the robot: seldom is enough.
+        if time.monotonic() - began < 0.1:
+            return
+        began = time.monotonic()
+        passed, left = robot.seen.time, robot.mission.seconds_to_go()
+        share = passed / max(passed + left, 1e-9)
+        show(share, f"{clock(passed)} of robot time, {robot.mission.state.phase.value}")
+
+    return watch
+
+
+def _tell_run(options: Options, run: Run) -> None:
+    from roomba.commands.sim.json_file import run_as_json
+    from roomba.commands.sim.report import table_of
+
+    if options.plot is not None:
+        from roomba.commands.sim.plot import write_plot
+
+        write_plot(options.plot, run)
+    tell_tables([table_of(run.figures)], options.json, quiet=options.quiet)
+    if options.json is not None:
+        write_json(options.json, run_as_json(run))
+
+
+# ---------------------------------------------------------------- many runs
+
+
+def _run_homes(options: Options, homes: int) -> int:
+    from roomba.commands.sim.many import run_many
+
+    first = options.trial.seed
+    trials = [options.trial.with_seed(first + number) for number in range(homes)]
+    figures: dict[int, Figures] = {}
+    failures: dict[int, str] = {}
+    began = time.monotonic()
+    with progress("Homes", options.quiet) as show:
+        for trial, outcome in run_many(trials):
+            _sort_in(trial, outcome, figures, failures)
+            done = len(figures) + len(failures)
+            bad = done - sum(each.is_completed for each in figures.values())
+            show(done / homes, f"{done} of {homes}, {bad} not completed")
+    _tell_homes(options, figures, failures, time.monotonic() - began)
+    is_fine = not failures and all(each.is_completed for each in figures.values())
+    return COMPLETED if is_fine else ENDED_OTHERWISE
+
+
+def _sort_in(
+    trial: Trial, outcome: Outcome, figures: dict[int, Figures], failures: dict[int, str]
+) -> None:
+    if isinstance(outcome, str):
+        failures[trial.seed] = outcome
+    else:
+        figures[trial.seed] = outcome
+
+
+def _tell_homes(
+    options: Options, figures: dict[int, Figures], failures: dict[int, str], wall: float
+) -> None:
+    from roomba.commands.sim.json_file import runs_as_json
+    from roomba.commands.sim.percentiles import percentiles_of
+    from roomba.commands.sim.report import failure_lines, percentile_table
+    from roomba.commands.sim.runs import robot_config_of
+
+    spread = percentiles_of(figures.values())
+    completed = sum(each.is_completed for each in figures.values())
+    count = len(figures) + len(failures)
+    rows = Table.grid(padding=(0, 2))
+    rows.add_column(style="bold", no_wrap=True)
+    rows.add_column(overflow="fold")
+    rows.add_row("homes", f"{completed} of {count} completed and docked, in {wall:.1f} s")
+    for name, text in failure_lines(figures, failures, _again(options.trial)):
+        rows.add_row(name, Text(text, "red"))
+    tell_tables([percentile_table(spread), rows], options.json, quiet=options.quiet)
+    if options.json is not None:
+        config = robot_config_of(options.trial)
+        write_json(options.json, runs_as_json(figures, failures, spread, config, wall))
+
+
+def _again(trial: Trial) -> str:
+    """Return the command that repeats one of many runs, but for its seed."""
+    words = [PROGRAM, "--home", RANDOM]
+    usual = Trial(home=RANDOM)
+    if trial.sensors is not None:
+        words += ["--sensors", trial.sensors]
+    if trial.things:
+        words += ["--things", str(trial.things)]
+    if trial.shut_doors:
+        words.append("--shut-doors")
+    if trial.battery != usual.battery:
+        words += ["--battery", f"{trial.battery:g}"]
+    if trial.config is not None:
+        words += ["--config", str(trial.config)]
+    request = trial.request
+    if request.mode is not usual.request.mode:
+        words += ["--mode", request.mode.value]
+    if request.passes != usual.request.passes:
+        words += ["--passes", str(request.passes)]
+    if request.fan is not usual.request.fan:
+        words += ["--fan", request.fan.name.lower()]
+    return " ".join(words)
+
+
+# ---------------------------------------------------------------- telling

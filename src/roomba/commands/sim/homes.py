@@ -1,0 +1,54 @@
+"""The home of a trial: of a file or made by the seed, its doors shut if that is asked for."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import shapely
+
+from roomba.commands.sim.trial import RANDOM, Trial, UsageError
+from roomba.configuration.robot import BodyConfig
+from roomba.errors import RoomsError
+from roomba.files.shipped import HOMES
+from roomba.grid import FREE
+from roomba.perception.rooms.rooms import Rooms, segment
+from roomba.world.home.home import Home, MovingKind
+from roomba.world.home.raster import covered_cells, outline
+from roomba.world.layers.layer import load_home
+from roomba.world.random.home import random_home
+
+
+def home_of(trial: Trial, body: BodyConfig) -> Home:
+    """Return the home; raises HomeError, and UsageError for a station of a random home."""
+    if trial.home == RANDOM:
+        if trial.station is not None:
+            raise UsageError("--station: expected a home of a file, got a random one")
+        home = random_home(trial.seed, body)
+    else:
+        home = load_home(trial.home, HOMES, body, trial.station)
+    return with_doors_shut(home) if trial.shut_doors else home
+
+
+def with_doors_shut(home: Home) -> Home:
+    """Return a home whose doors are shut and stay so; the map still shows them open."""
+    if not home.doors:
+        return home
+    shut = covered_cells(home.frame, (outline(door.opening) for door in home.doors))
+    return replace(
+        home,
+        solid=home.solid | shut,
+        doors=tuple(replace(door, is_open=False) for door in home.doors),
+        moving=tuple(thing for thing in home.moving if thing.kind is not MovingKind.DOOR),
+    )
+
+
+def rooms_of(home: Home) -> Rooms:
+    """Return the rooms as the home's layer names them, else as its map shows them."""
+    outlines = [(room.name, shapely.Polygon(room.outline)) for room in home.rooms]
+    if outlines:
+        try:
+            return Rooms.from_outlines(home.frame, home.map.values == FREE, outlines)
+        except RoomsError:
+            # Outlines of a layer are for people and may overlap: the robot's own rooms do not.
+            pass
+    return segment(home.map)

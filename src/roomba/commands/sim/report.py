@@ -1,0 +1,121 @@
+"""A run as a table for people, and many runs as one."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from rich.table import Table
+from rich.text import Text
+
+from roomba.commands.sim.figures import Figures, MissedFloor
+from roomba.commands.sim.percentiles import PERCENTS, ROWS
+
+_SHOWN: Final = 8
+"""So many missed areas or failures are told one by one."""
+
+
+def lines_of(figures: Figures) -> list[tuple[str, str]]:
+    """Return the rows of a run's table: a name and a text."""
+    ratio = figures.path_ratio
+    lines = [
+        ("outcome", _outcome(figures)),
+        ("coverage", _coverage(figures)),
+        (
+            "way",
+            f"{figures.distance_m:.1f} m, path ratio "
+            + ("unknown" if ratio is None else f"{ratio:.3f}"),
+        ),
+        ("turning", f"{figures.turning_rad:.0f} rad"),
+        ("robot time", f"{clock(figures.duration_s)}"),
+        ("energy", f"{figures.energy_wh:.2f} Wh"),
+        ("dirt", f"{figures.dirt_g:.1f} g picked up"),
+        ("hits", f"{figures.hits}"),
+        ("planning", f"{figures.planning_s:.2f} s in {_count(figures.plans, 'plan')}"),
+        (
+            "wall time",
+            f"{figures.wall_s:.2f} s, {figures.times_real_time:.0f} times real time",
+        ),
+    ]
+    lines += [("missed", _missed(each)) for each in figures.missed[:_SHOWN]]
+    rest = figures.missed[_SHOWN:]
+    if rest:
+        area = sum(each.area_m2 for each in rest)
+        lines.append(("missed", f"and {_count(len(rest), 'smaller patch', 'es')}: {area:.3f} m²"))
+    return lines
+
+
+def table_of(figures: Figures) -> Table:
+    """Return a run's table."""
+    table = Table.grid(padding=(0, 2))
+    table.add_column(style="bold", no_wrap=True)
+    table.add_column(overflow="fold")
+    for name, text in lines_of(figures):
+        style = "" if name != "outcome" else "green" if figures.is_completed else "red"
+        table.add_row(name, Text(text, style))
+    return table
+
+
+def percentile_table(spread: dict[str, dict[str, float]]) -> Table:
+    """Return the table of many runs: a row for each figure, a column for each percentile."""
+    table = Table(box=None, padding=(0, 2, 0, 0))
+    table.add_column("", style="bold", no_wrap=True)
+    for percent in PERCENTS:
+        name = {0: "least", 50: "median", 100: "most"}.get(percent, f"{percent} %")
+        table.add_column(name, justify="right", no_wrap=True)
+    for figure, numbers in spread.items():
+        label, form = ROWS[figure]
+        scale = 100.0 if figure == "fraction" else 1.0
+        table.add_row(label, *(f"{scale * numbers[f'p{each}']:{form}}" for each in PERCENTS))
+    return table
+
+
+def failure_lines(
+    figures: dict[int, Figures], failures: dict[int, str], repeat: str
+) -> list[tuple[str, str]]:
+    """Return a row for each run that was not completed, and how to see it again.
+
+    ``repeat`` is the command for one of them, without its seed.
+    """
+    bad = {seed: _outcome(each) for seed, each in figures.items() if not each.is_completed}
+    bad.update(failures)
+    lines = [
+        (f"seed {seed}", f"{why}; again: {repeat} --seed {seed}")
+        for seed, why in sorted(bad.items())[:_SHOWN]
+    ]
+    if len(bad) > _SHOWN:
+        others = ", ".join(str(seed) for seed in sorted(bad)[_SHOWN:])
+        lines.append(("and seeds", others))
+    return lines
+
+
+def clock(seconds: float) -> str:
+    """Return a time as people say it."""
+    minutes, rest = divmod(round(seconds), 60)
+    hours, minutes = divmod(minutes, 60)
+    if hours:
+        return f"{hours} h {minutes:02d} min"
+    return f"{minutes} min {rest:02d} s" if minutes else f"{rest} s"
+
+
+def _outcome(figures: Figures) -> str:
+    where = "docked" if figures.docked else "not docked"
+    outcome = f"{figures.outcome}, {where}"
+    return f"{outcome}: {figures.message}" if figures.message else outcome
+
+
+def _coverage(figures: Figures) -> str:
+    if figures.coverable_m2 <= 0.0:
+        return "the tool can reach nothing of what was asked for"
+    return (
+        f"{100.0 * figures.fraction:.2f} % of the floor that the tool can reach: "
+        f"{figures.covered_m2:.2f} of {figures.coverable_m2:.2f} m²"
+    )
+
+
+def _missed(each: MissedFloor) -> str:
+    room = f" in {each.room}" if each.room else ""
+    return f"{each.area_m2:.3f} m² at ({each.x:.2f}, {each.y:.2f}){room}: {each.reason}"
+
+
+def _count(number: int, word: str, plural: str = "s") -> str:
+    return f"{number} {word}" if number == 1 else f"{number} {word}{plural}"

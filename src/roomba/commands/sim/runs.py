@@ -1,0 +1,195 @@
+"""One run: a robot is put into the home of a trial, cleans it, and what came of it is counted."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.commands.sim.figures import Figures, MissedFloor
+from roomba.commands.sim.homes import home_of, rooms_of
+from roomba.commands.sim.things import Disc, seeded_things
+from roomba.commands.sim.trial import Trial
+from roomba.commands.sim.truth import coverable_floor, true_map
+from roomba.configuration.docking import DockingConfig
+from roomba.configuration.mission import MissionConfig, load_mission_config
+from roomba.configuration.robot import RobotConfig, load_robot_config
+from roomba.files.shipped import CONFIGURATION
+from roomba.geometry import Pose
+from roomba.grid import FREE
+from roomba.headless.cleaner import CleanRecord, HeadlessMission
+from roomba.headless.closed_loop import LONGEST_BURST
+from roomba.perception.rooms.zones import Zone, ZoneKind, Zones
+from roomba.perception.swept.coverage_map import CoverageMap
+from roomba.planning.path.costmap import RoundObstacle
+from roomba.world.home.home import Home
+from roomba.world.home.raster import largest_component, where_body_fits
+
+Floats = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+Watch = Callable[[HeadlessMission], None]
+"""Is shown the robot whenever some of its time has passed."""
+
+TRAJECTORY_STEP: Final = 0.1
+"""s between two poses of the trajectory."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Run:
+    """What happened: ``trajectory`` has rows t (s), x, y (m), theta (rad), true ones.
+
+    ``coverable`` is bool over ``truth.frame``: the floor that could be cleaned.
+    """
+
+    trial: Trial
+    figures: Figures
+    trajectory: Floats
+    home: Home
+    robot: RobotConfig
+    reach: float
+    things: tuple[Disc, ...]
+    coverable: Mask
+    truth: CoverageMap
+
+
+class WatchedMission(HeadlessMission):
+    """A robot that is looked at while it cleans."""
+
+    watches: tuple[Watch, ...] = ()
+
+    def advance(self) -> None:
+        """Let some ticks pass, and look."""
+        super().advance()
+        for watch in self.watches:
+            watch(self)
+
+
+class Scene:
+    """Everything that is there before a run begins; ``run()`` is the run, once."""
+
+    def __init__(self, trial: Trial, longest_burst: int = LONGEST_BURST) -> None:
+        """Make home and robot, watched after ``longest_burst`` ticks; raises RoombaError."""
+        self.trial = trial
+        self.config = robot_config_of(trial)
+        self.home = home_of(trial, self.config.body)
+        mission, docking = mission_config(), DockingConfig()
+        self.robot = WatchedMission(
+            self.home,
+            self.config,
+            mission,
+            docking,
+            seed=trial.seed,
+            rooms=rooms_of(self.home),
+            zones=_zones_of(trial),
+            longest_burst=longest_burst,
+        )
+        self.things = _things_of(trial, self.home, self.config, self.robot.site.staging)
+        for x, y, radius in self.things:
+            self.robot.simulator.place_obstacle(x, y, radius)
+        if trial.battery < 1.0:
+            self.robot.simulator.set_charge(trial.battery)
+            self.robot.seen = self.robot.simulator.observe()
+        self.coverable = coverable_floor(
+            self.home, self.robot.site, trial.request, self.things, self.config, mission, docking
+        )
+
+    def run(self, watches: Iterable[Watch] = ()) -> Run:
+        """Clean; raises CleanRefusedError and CommandRefusedError."""
+        robot = self.robot
+        robot.watches = tuple(watches)
+        seen = robot.seen
+        first = np.array([[seen.time, seen.pose.x, seen.pose.y, seen.pose.theta]])
+        began = time.perf_counter()
+        record = robot.clean(self.trial.request)
+        wall = time.perf_counter() - began
+        covered = record.truth.swept & self.coverable
+        cell = record.truth.cell_area
+        result = record.result
+        figures = Figures(
+            outcome=result.outcome.name,
+            message=result.message,
+            docked=robot.seen.battery.is_docked,
+            duration_s=result.duration,
+            wall_s=wall,
+            planning_s=record.planning,
+            plans=record.plans,
+            distance_m=record.distance,
+            turning_rad=record.turning,
+            energy_wh=result.energy,
+            dirt_g=result.dirt,
+            coverable_m2=float(np.count_nonzero(self.coverable)) * cell,
+            covered_m2=float(np.count_nonzero(covered)) * cell,
+            tool_width_m=robot.site.tool_width,
+            hits=record.hits,
+            missed=tuple(
+                MissedFloor(each.area, each.x, each.y, each.room, each.reason.value)
+                for each in result.missed
+            ),
+        )
+        return Run(
+            self.trial,
+            figures,
+            trajectory_of(record, first),
+            self.home,
+            self.config,
+            robot.site.reach,
+            tuple(self.things),
+            self.coverable,
+            record.truth,
+        )
+
+
+def run_trial(trial: Trial, watches: Iterable[Watch] = ()) -> Run:
+    """Return the run of a trial; raises RoombaError for what cannot be."""
+    return Scene(trial).run(watches)
+
+
+def trajectory_of(record: CleanRecord, first: Floats) -> Floats:
+    """Return true poses ten times a second, from the ``first``, float64 [1, 4], to the last."""
+    poses = np.concatenate([first, record.poses])
+    since = poses[:, 0] - poses[0, 0]
+    step = np.floor(since / TRAJECTORY_STEP + 1e-6)
+    kept = np.diff(step, prepend=-1.0) > 0.0
+    kept[-1] = True
+    trajectory: Floats = poses[kept]
+    return trajectory
+
+
+def robot_config_of(trial: Trial) -> RobotConfig:
+    """Return the robot of a trial; raises ConfigError."""
+    config = load_robot_config(trial.config or CONFIGURATION / "robot.yaml")
+    if trial.sensors is None:
+        return config
+    return config.model_copy(update={"sensors": trial.sensors})
+
+
+def mission_config() -> MissionConfig:
+    """Return the shipped configuration of the mission; raises ConfigError."""
+    path = CONFIGURATION / "mission.yaml"
+    return load_mission_config(path) if path.is_file() else MissionConfig()
+
+
+def _zones_of(trial: Trial) -> Zones:
+    return Zones(
+        tuple(
+            Zone(
+                f"no-go {number + 1}",
+                ZoneKind.NO_GO,
+                ((left, bottom), (right, bottom), (right, top), (left, top)),
+            )
+            for number, (left, bottom, right, top) in enumerate(trial.no_go)
+        )
+    )
+
+
+def _things_of(trial: Trial, home: Home, config: RobotConfig, staging: Pose) -> list[RoundObstacle]:
+    """Return where things stand: on floor where the body fits, that the robot takes for free."""
+    if not trial.things:
+        return []
+    free = (true_map(home).values == FREE) & (home.map.values == FREE)
+    floor = largest_component(where_body_fits(home.frame, ~free, config.body.radius))
+    return seeded_things(home, staging, floor, trial.things, trial.seed)

@@ -1,0 +1,48 @@
+"""What a run is to be: all that decides about it, in one value that can be sent to a process."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Final, Literal
+
+from roomba.errors import RoombaError
+from roomba.geometry import Pose
+from roomba.mission.cleaning.request import CleanRequest, Rectangle
+
+RANDOM: Final = "random"
+"""The name of a home that the seed makes."""
+MOST_THINGS: Final = 16
+"""Of one world: see :data:`roomba.world.engine.state.arrays.MOST_DISCS`."""
+
+Sensors = Literal["noisy", "ideal"]
+
+
+class UsageError(RoombaError):
+    """A command line that cannot be obeyed; the message says what was expected, and came."""
+
+
+@dataclass(frozen=True, slots=True)
+class Trial:
+    """One run: the same trial gives the same run, bit for bit, but for the times that it takes.
+
+    ``home`` is a name or a path as :func:`roomba.world.layers.layer.load_home` takes it, or RANDOM.
+    ``seed`` decides about noise, where ``things`` stand, and a random home. ``sensors`` replaces
+    what the configuration file ``config`` says. ``station`` is the pose of the docked robot
+    in place of the home's own. ``battery`` is its charge at the start, 0..1.
+    """
+
+    home: str = "flat"
+    seed: int = 0
+    request: CleanRequest = field(default_factory=CleanRequest)
+    sensors: Sensors | None = None
+    no_go: tuple[Rectangle, ...] = ()
+    things: int = 0
+    shut_doors: bool = False
+    battery: float = 1.0
+    station: Pose | None = None
+    config: Path | None = None
+
+    def with_seed(self, seed: int) -> Trial:
+        """Return the same with another seed."""
+        return replace(self, seed=seed)

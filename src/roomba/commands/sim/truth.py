@@ -1,0 +1,60 @@
+"""What floor could really be cleaned, and what was: by the true home and true poses alone."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.configuration.docking import DockingConfig
+from roomba.configuration.mission import MissionConfig
+from roomba.configuration.robot import RobotConfig
+from roomba.grid import FREE, OCCUPIED, OccupancyMap
+from roomba.mission.cleaning.request import CleanMode, CleanRequest
+from roomba.mission.cleaning.stages import stages_of
+from roomba.mission.inputs.planning_context import Site
+from roomba.perception.swept.dirt_map import DirtMap
+from roomba.planning.path.costmap import RoundObstacle
+from roomba.world.home.home import Home
+
+Mask = NDArray[np.bool_]
+
+
+def true_map(home: Home) -> OccupancyMap:
+    """Return the map of what is really solid: things off the map, shut doors and drops included.
+
+    What moves by itself is left out.
+    """
+    solid = home.solid | home.drop
+    values = np.where(solid, np.int8(OCCUPIED), np.int8(FREE))
+    return OccupancyMap(home.frame, values)
+
+
+def coverable_floor(
+    home: Home,
+    site: Site,
+    request: CleanRequest,
+    things: Sequence[RoundObstacle],
+    robot: RobotConfig,
+    mission: MissionConfig,
+    docking: DockingConfig,
+) -> Mask:
+    """Return the floor of a request that the tool can truly reach, bool over ``site.frame``.
+
+    ``site`` is the home as the robot knows it; what counts as an edge is what its map shows as one.
+    """
+    truth = Site(true_map(home), home.station, robot, mission, docking, site.rooms, site.zones)
+    staging = (truth.staging.x, truth.staging.y)
+    reachable: Mask = truth.coverage.floor.with_obstacles(list(things)).coverable(staging)
+    if not reachable.any():
+        return reachable
+    dirt = DirtMap(home.map)
+    if request.mode is CleanMode.EDGES:
+        stages = stages_of(request, site, dirt, site.coverable(), home.station)
+    else:
+        stages = stages_of(request, truth, dirt, reachable, home.station)
+    wanted = np.zeros(truth.frame.shape, np.bool_)
+    for stage in stages:
+        wanted |= stage.floor
+    return wanted & reachable

@@ -1,0 +1,87 @@
+"""Compiles the hot loops once, so that the first start of the robot is as quick as every other.
+
+Numba keeps what it compiled in a cache on disk; ``./roomba`` runs this after each build, and beside
+it :mod:`roomba.commands.sim.warm` and :mod:`roomba.commands.map.warm`, for all that cleans and
+maps need.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from roomba.configuration.robot import RobotConfig
+from roomba.geometry import Pose, Twist
+from roomba.grid import FREE, OCCUPIED, GridFrame, OccupancyMap
+from roomba.perception.floors.map_changes import MapChanges
+from roomba.perception.localization.localizer import Localizer
+from roomba.perception.matching.scan_view import LidarModel
+from roomba.perception.rooms.rooms import segment
+from roomba.planning.path.grid_path import shortest_grid_path
+from roomba.planning.path.planner import PathPlanner
+from roomba.world.camera.camera import Camera, Scene
+from roomba.world.home.home import DirtSource, Home
+from roomba.world.simulator import Simulator
+
+
+def main() -> None:
+    """Do a little of everything in a small room."""
+    home = _small_room()
+    config = RobotConfig()
+    simulator = Simulator(home, config)
+    for _ in range(40):
+        simulator.step(Twist(0.5, 0.1), 0.025)
+    _find_place(home, config, simulator)
+    _look_for_changes(home, config, simulator)
+    segment(home.map)
+    planner = PathPlanner(
+        home.map, config.body.radius, config.walk.clearance, config.walk.tight_clearance
+    )
+    planner.plan((1.0, 1.0), (2.0, 2.0), [(1.5, 1.5, 0.1)])
+    shortest_grid_path(np.ones((4, 4), np.bool_), (0, 0), (3, 3))
+    scene = Scene.of(home)
+    for supersampling in (1, 2):
+        camera = Camera(scene, config.camera, supersampling)
+        camera.render(home.station, 0.0, simulator.dirt.micrograms, simulator.dirt.frame)
+
+
+def _find_place(home: Home, config: RobotConfig, simulator: Simulator) -> None:
+    """Look for the robot in the map, and follow it."""
+    lidar = config.lidar
+    localizer = Localizer(
+        home.map, config.localization, config.gyro, config.body.radius, simulator.pose
+    )
+    model = LidarModel.all_around(lidar.beams, lidar.min_range, lidar.max_range)
+    localizer.forget("nobody told")
+    for step in range(40):
+        localizer.move(0.1 * step, Pose(), 0.0)
+        localizer.see(0.1 * step, simulator.ranges, model)
+
+
+def _look_for_changes(home: Home, config: RobotConfig, simulator: Simulator) -> None:
+    """Look from a few places for what stands otherwise than the map shows it."""
+    lidar = config.lidar
+    model = LidarModel.all_around(lidar.beams, lidar.min_range, lidar.max_range)
+    changes = MapChanges(home.map)
+    for _ in range(60):
+        seen = simulator.step(Twist(0.1, 1.0), 0.1)
+        changes.see(seen.time, simulator.ranges, model.arrays(), seen.pose)
+    changes.changes()
+
+
+def _small_room() -> Home:
+    frame = GridFrame(0.05, 0.0, 0.0, 60, 60)
+    values = np.full(frame.shape, OCCUPIED, np.int8)
+    values[2:-2, 2:-2] = FREE
+    solid = values != FREE
+    return Home(
+        name="small room",
+        map=OccupancyMap(frame, values),
+        solid=solid,
+        walls=solid,
+        station=Pose(0.5, 1.5, 0.0),
+        dirt_sources=(DirtSource("crumbs", 1.0, 1.5, 0.2, 1.0, 0.0),),
+    )
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,70 @@
+"""Docking's numbers: how near, how fast, how often, and how long at most."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from roomba.configuration.robot import Positive, Ratio
+
+
+class DockingConfig(BaseModel):
+    """Driving into the charging station and out of it: m, m/s, rad/s, s.
+
+    Distances to the station count from the robot's middle to where it is when it is docked.
+    """
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    staging_distance: Positive = 0.65
+    """In front of the station, where path planning hands over: within its beams."""
+    plate_gap: Positive = 0.03
+    """Between the docked robot's front and the station."""
+    farthest: Positive = 2.5
+    """From the station; farther away path planning has to bring the robot first."""
+    search_reach: Positive = 0.3
+    """To either side of the way to the station, where it looks for beams."""
+
+    speed: Positive = 0.2
+    """While it is not near."""
+    creep_speed: Positive = 0.05
+    """Over the last of the way: it stops within the contacts' tolerance, senses being late."""
+    creep_distance: Positive = 0.08
+    """Of the way; as sure as the believed place and the halo's edge are."""
+    braking: Positive = 0.8
+    """1/s; how much faster it is for each metre that is left before it creeps."""
+    turning_speed: Positive = 1.0
+    steering_gain: Positive = 2.0
+    """1/s; the turning speed for each radian that the heading is wrong."""
+
+    contact_margin: Positive = 0.08
+    """What is felt nearer to the docked place than this is the station."""
+    overrun: Positive = 0.10
+    """Past the docked place; when nothing is felt so far, no station is there."""
+    contact_wait: Positive = 2.0
+    """For the charging current after contact."""
+    settle_time: Positive = 0.4
+    """The current must last so long before the robot is docked."""
+    nudge: Positive = 0.05
+    """So far it creeps when it backs off: where it was pressed too far in, current comes."""
+    back_distance: Positive = 0.4
+    back_turn: Ratio = 0.2
+    """rad; it turns as it backs off, and so crosses the edge of the beams on the next try."""
+    blocked_wait: Positive = 2.0
+    """Before the next attempt, for who stands in the way to leave."""
+
+    max_attempts: Annotated[int, Field(ge=1)] = 4
+    beam_wait: Positive = 0.5
+    """Without a beam it goes on for so long."""
+    lost_timeout: Positive = 10.0
+    """Not knowing where it is and seeing no beam, it waits so long."""
+    stuck_timeout: Positive = 3.0
+    """So long it may drive without moving."""
+    time_limit: Positive = 150.0
+
+    undock_distance: Positive = 0.35
+    undock_speed: Positive = 0.15
+    undocked_distance: Positive = 0.25
+    """From the station; a robot that is farther away is undocked already."""
+    undock_time_limit: Positive = 10.0

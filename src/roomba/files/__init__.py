@@ -1,0 +1,1 @@
+"""Formats of files: read strictly, written atomically."""

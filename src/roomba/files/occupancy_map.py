@@ -1,0 +1,147 @@
+"""Reads and writes floor plans in map_server's format: a YAML file beside a picture.
+
+The meaning of every field is that of map_server's ``image_loader.cpp``, with two differences that
+keep unknown floor from being taken for free: a transparent pixel is unknown whatever its colour (in
+map_server's trinary mode the alpha channel is averaged in as if it were a colour), and raw values
+above 100 are unknown (map_server lets them wrap around).
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+from roomba.errors import HomeError
+from roomba.files.image import Image, read_image
+from roomba.files.strict_yaml import YamlFile, read_yaml
+from roomba.grid import FREE, OCCUPIED, UNKNOWN, GridFrame, OccupancyMap
+
+Number = Annotated[float, Field(allow_inf_nan=False)]
+Threshold = Annotated[float, Field(ge=0.0, le=1.0, allow_inf_nan=False)]
+
+MAP_SAVER_PIXELS = {FREE: 254, OCCUPIED: 0, UNKNOWN: 205}
+"""Grey values that map_saver writes, and that the usual thresholds read back."""
+RAW_UNKNOWN = 255
+
+
+class MapDescription(BaseModel):
+    """The YAML file: keys of other programs beside these are of no concern here."""
+
+    model_config = ConfigDict(extra="ignore", frozen=True)
+
+    image: Annotated[str, Field(min_length=1)]
+    resolution: Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
+    origin: Annotated[list[Number], Field(min_length=3, max_length=3)]
+    negate: Annotated[int, Field(ge=0, le=1)] = 0
+    occupied_thresh: Threshold = 0.65
+    free_thresh: Threshold = 0.196
+    mode: Literal["trinary", "scale", "raw"] = "trinary"
+
+    @model_validator(mode="after")
+    def _thresholds_in_order(self) -> MapDescription:
+        if self.free_thresh > self.occupied_thresh:
+            raise ValueError(
+                f"free_thresh ({self.free_thresh}) must not be above occupied_thresh "
+                f"({self.occupied_thresh})"
+            )
+        return self
+
+
+def load_map(path: Path) -> OccupancyMap:
+    """Return the map that a map_server YAML file describes.
+
+    Row 0 of the values is the lowest y. Raises :class:`HomeError`, which names the file, the line
+    and the reason, for a file that is missing, broken, or turned by an origin's yaw.
+    """
+    file = read_yaml(path)
+    description = file.validated(MapDescription)
+    if description.origin[2] != 0.0:
+        raise file.error(
+            ("origin", 2),
+            f"origin: expected a yaw of 0, got {description.origin[2]}; "
+            "turn the picture instead, maps of this robot lie along the axes",
+        )
+    image = _image_of(file, description)
+    values = np.ascontiguousarray(_occupancy(image, description)[::-1])
+    frame = GridFrame(
+        description.resolution, description.origin[0], description.origin[1], *values.shape
+    )
+    return OccupancyMap(frame, values)
+
+
+def save_map(occupancy: OccupancyMap, path: Path) -> None:
+    """Write a map as ``path`` (YAML) and a PGM beside it; :func:`load_map` returns it identically.
+
+    Maps of free, occupied and unknown are written as map_saver does, others in raw mode. Raises
+    ValueError for values outside -1..100 and OSError when the disk refuses.
+    """
+    values = occupancy.values
+    if values.min() < UNKNOWN or values.max() > OCCUPIED:
+        raise ValueError(
+            f"expected map values from -1 to 100, got {values.min()} to {values.max()}"
+        )
+    trinary = bool(np.isin(values, list(MAP_SAVER_PIXELS)).all())
+    pixels = _map_saver_pixels(values) if trinary else _raw_pixels(values)
+    image = path.with_suffix(".pgm")
+    rows, columns = pixels.shape
+    image.write_bytes(f"P5\n{columns} {rows}\n255\n".encode() + pixels[::-1].tobytes())
+    frame = occupancy.frame
+    lines = [
+        f"image: {image.name}",
+        f"resolution: {frame.resolution!r}",
+        f"origin: [{frame.origin_x!r}, {frame.origin_y!r}, 0.0]",
+        "negate: 0",
+        "occupied_thresh: 0.65",
+        "free_thresh: 0.196",
+        f"mode: {'trinary' if trinary else 'raw'}",
+    ]
+    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
+def _image_of(file: YamlFile, description: MapDescription) -> Image:
+    path = file.path.parent / description.image
+    try:
+        return read_image(path)
+    except HomeError as error:
+        raise file.error(("image",), f"image: {error}") from error
+
+
+def _occupancy(image: Image, description: MapDescription) -> NDArray[np.int8]:
+    """Apply mode, negate and thresholds to the grey values 0..255, row 0 at the top."""
+    grey = 255.0 - image.grey if description.negate else image.grey
+    if description.mode == "raw":
+        return np.where(grey <= OCCUPIED, grey, UNKNOWN).astype(np.int8)
+    occupied_share = (255.0 - grey) / 255.0
+    occupied = occupied_share > description.occupied_thresh
+    free = (occupied_share < description.free_thresh) & ~occupied
+    values = np.full(grey.shape, UNKNOWN, np.int8)
+    if description.mode == "scale":
+        values[:] = _scaled(occupied_share, description)
+    values[occupied] = OCCUPIED
+    values[free] = FREE
+    values[image.transparent] = UNKNOWN
+    return values
+
+
+def _scaled(share: NDArray[np.float64], description: MapDescription) -> NDArray[np.int8]:
+    """Spread what lies between the thresholds over 1..99."""
+    span = description.occupied_thresh - description.free_thresh
+    if span <= 0.0:
+        return np.full(share.shape, 99, np.int8)
+    ratio = np.clip((share - description.free_thresh) / span, 0.0, 1.0)
+    return (1.0 + 98.0 * ratio).astype(np.int8)
+
+
+def _map_saver_pixels(values: NDArray[np.int8]) -> NDArray[np.uint8]:
+    pixels = np.empty(values.shape, np.uint8)
+    for value, pixel in MAP_SAVER_PIXELS.items():
+        pixels[values == value] = pixel
+    return pixels
+
+
+def _raw_pixels(values: NDArray[np.int8]) -> NDArray[np.uint8]:
+    return np.where(values == UNKNOWN, RAW_UNKNOWN, values).astype(np.uint8)

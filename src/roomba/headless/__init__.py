@@ -1,0 +1,1 @@
+"""The robot without ROS, around the simulated world."""

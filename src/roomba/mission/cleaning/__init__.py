@@ -1,0 +1,1 @@
+"""What is to be cleaned, what was, and what was missed."""

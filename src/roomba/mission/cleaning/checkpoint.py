@@ -1,0 +1,70 @@
+"""What a mission must remember to go on after it was ended at any moment, as plain values.
+
+Everything that can be found out again (paths, what stands in the way) is not part of it: the rest
+of a clean is planned anew from the floor that is left.
+"""
+
+from __future__ import annotations
+
+import base64
+import binascii
+import zlib
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.errors import RoombaError
+from roomba.mission.cleaning.request import CleanMode, CleanRequest, FanLevel
+
+VERSION: Final = 2
+Mask = NDArray[np.bool_]
+Values = dict[str, Any]
+
+
+class CheckpointError(RoombaError):
+    """A checkpoint that cannot be used; the message says why."""
+
+
+def packed(mask: Mask) -> str:
+    """Return a mask as text: packed bits, compressed, in base 64."""
+    return base64.b64encode(zlib.compress(np.packbits(mask).tobytes(), 6)).decode("ascii")
+
+
+def unpacked(text: str, shape: tuple[int, int]) -> Mask:
+    """Return the mask of a text; raises CheckpointError if it is none of that shape."""
+    try:
+        bits = np.frombuffer(zlib.decompress(base64.b64decode(text, validate=True)), np.uint8)
+    except (binascii.Error, zlib.error, ValueError) as error:
+        raise CheckpointError(f"expected a packed mask: {error}") from error
+    cells = shape[0] * shape[1]
+    if bits.size != (cells + 7) // 8:
+        raise CheckpointError(f"expected a mask of {cells} cells, got {8 * bits.size}")
+    return np.unpackbits(bits, count=cells).astype(np.bool_).reshape(shape)
+
+
+def request_values(request: CleanRequest) -> Values:
+    """Return a request as plain values."""
+    return {
+        "mode": request.mode.value,
+        "rooms": list(request.rooms),
+        "zones": [list(zone) for zone in request.zones],
+        "spot": None if request.spot is None else list(request.spot),
+        "passes": request.passes,
+        "fan": request.fan.name,
+        "in_order": request.in_order,
+    }
+
+
+def request_of(values: Values) -> CleanRequest:
+    """Return the request of such values; raises KeyError, ValueError, TypeError or RoombaError."""
+    spot = values["spot"]
+    return CleanRequest(
+        CleanMode(values["mode"]),
+        tuple(str(name) for name in values["rooms"]),
+        tuple((float(a), float(b), float(c), float(d)) for a, b, c, d in values["zones"]),
+        None if spot is None else (float(spot[0]), float(spot[1])),
+        int(values["passes"]),
+        FanLevel[values["fan"]],
+        bool(values["in_order"]),
+    )

@@ -1,0 +1,345 @@
+"""One clean: where to drive next.
+
+The floor is cleaned in stages (rooms, passes). Each is planned as a whole and driven; what was
+missed is found from what was really swept, and planned again until it is done or cannot be reached.
+While the map is being made, large patches of what is known are planned, each once.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.configuration.mission import CleaningConfig
+from roomba.geometry import Pose
+from roomba.grid import GridFrame
+from roomba.mission.cleaning.checkpoint import Values
+from roomba.mission.cleaning.ledger import FloorBook
+from roomba.mission.cleaning.missed import is_hidden, missed_floor
+from roomba.mission.cleaning.request import (
+    CleanMode,
+    CleanRefusedError,
+    CleanRequest,
+    Missed,
+)
+from roomba.mission.cleaning.stages import Stage
+from roomba.mission.driving.gaps import closed_gaps
+from roomba.mission.inputs.planning_context import Site
+from roomba.perception.swept.coverage_map import CoverageMap, patches_of
+from roomba.perception.swept.dirt_map import DirtMap
+from roomba.planning.path.costmap import Point, RoundObstacle
+from roomba.planning.path.planner import NoPathError
+from roomba.raster.regions import numbered_regions
+
+Floats = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+_LITTLE_GAIN: Final = 0.05
+"""Share of what was missed; a round that gains less of it than this was for nothing."""
+_WORTH_A_LOOK: Final = 0.5
+"""m2; so much floor out of reach is looked for again, as behind a door: less is below a chair."""
+_WORTH_A_ROUND: Final = 0.02
+"""m2; one patch as large as this is worth another round, though enough is clean."""
+_MOST_WAYS_OUT: Final = 40
+"""So often, in a clean, it gets out of where it is shut in, or waits there; then that part ends."""
+_MOST_CUT_OFFS: Final = 12
+"""So many paths, in a clean, that were given up do not count as rounds."""
+_PLANNED_ANEW: Final = 20.0
+"""s; at least, between two plans that are made because something stood on the path."""
+_MOST_ANEW: Final = 40
+"""Such plans in one clean."""
+_LONG: Final = 8.0
+"""m; less of a path is driven to its end before it is planned anew."""
+
+
+class Cleaning:
+    """Plans piece by piece; ``coverage`` is what was swept of the present pass."""
+
+    def __init__(
+        self, request: CleanRequest, site: Site, dirt: DirtMap, config: CleaningConfig, here: Pose
+    ) -> None:
+        """Find out what is wanted; raises CleanRefusedError when that is nothing."""
+        self._site, self._config, self._dirt = site, config, dirt
+        self._book = FloorBook(request, site, dirt, here)
+        if not (self.coverage.wanted_cells or self.explores):
+            raise CleanRefusedError(
+                "expected floor that can be reached, got none: it is outside of the map, in "
+                "furniture, or in a no-go zone"
+            )
+        self._rounds = 0
+        self._last_missed = np.inf
+        self._looked_again = False
+        self._unreachable = False
+        self._scrubbed = False
+        self._ways_out = self._cut_offs = 0
+        self._anew, self._planned_anew_at = 0, -np.inf
+        self._is_anew = False
+        self.broken_off = 0.0
+        """m; of the last path that was not driven to its end, what was left then."""
+
+    @property
+    def request(self) -> CleanRequest:
+        """What was asked for."""
+        return self._book.request
+
+    @property
+    def coverage(self) -> CoverageMap:
+        """What is wanted, and swept of the present pass."""
+        return self._book.coverage
+
+    @property
+    def stages(self) -> list[Stage]:
+        """The parts in their order."""
+        return self._book.stages
+
+    @property
+    def stage(self) -> Stage | None:
+        """The one that it is at, or None at the end."""
+        return self._book.stage
+
+    @property
+    def stage_number(self) -> int:
+        """Which of them that is, from 0."""
+        return self._book.stage_number
+
+    @property
+    def left(self) -> float:
+        """Floor that is still to be cleaned, m2, stages and passes to come included."""
+        return self._book.left
+
+    @property
+    def clean(self) -> Mask:
+        """What was ever swept of what is wanted."""
+        return self._book.clean
+
+    @property
+    def clean_area(self) -> float:
+        """What was ever swept of what is wanted, m2; only edits of zones make it less."""
+        return float(np.count_nonzero(self.clean)) * self.coverage.cell_area
+
+    @property
+    def explores(self) -> bool:
+        """Whether it goes to see, for more floor, what the map does not show yet."""
+        return self._site.is_growing and self.request.mode in (CleanMode.WHOLE, CleanMode.EDGES)
+
+    def next_path(self, here: Pose, obstacles: list[RoundObstacle]) -> Floats | None:
+        """Return the next points to drive, float64 [n, 2], m, or None when all is done.
+
+        Raises NoPathError while it is shut in, so that it has to get out first.
+        """
+        obstacles = obstacles + closed_gaps(obstacles, self._site.reach)
+        if self._site.is_growing:
+            return self._next_of_known(here, obstacles)
+        while (stage := self.stage) is not None:
+            points = self._next_round(stage, here, obstacles)
+            if points is not None:
+                return points
+            self._next_stage()
+        return None
+
+    def wants_another_look(self, lasting: list[RoundObstacle]) -> bool:
+        """Whether floor was out of reach: once, before the end, it is to be looked for again.
+
+        What is out of reach for ``lasting`` things alone, which nobody moves, is left out.
+        """
+        if self._looked_again or not self._unreachable or self.stage is not None:
+            return False
+        self._looked_again, self._unreachable = True, False
+        staging = (self._site.staging.x, self._site.staging.y)
+        left = self.coverage.wanted & ~self.clean & self._reachable(staging, lasting)
+        large = _patches(left, self.coverage.frame, _WORTH_A_LOOK)
+        if not large.any():
+            return False
+        self._book.add(Stage("what was out of reach", large))
+        self._begin_stage()
+        return True
+
+    def cut_off(self) -> None:
+        """Tell that no way led to some of what was planned."""
+        self._unreachable, self._last_missed = True, np.inf
+        self._cut_offs += 1
+        if self._cut_offs <= _MOST_CUT_OFFS:
+            self._rounds = min(self._rounds, 1)
+
+    def interrupted(self, left: float) -> None:
+        """Tell that the last path was not driven to its end, of which ``left`` m were left.
+
+        So it says nothing of what was missed; what is worth a round is planned first.
+        """
+        self._begin_anew()
+        self.broken_off = left
+
+    def plans_anew(self, now: float, left: float) -> bool:
+        """Whether a path, ``left`` m of it, on which something stands is to be planned anew.
+
+        With all that is known by now that takes less way than to go around it and to come back for
+        what is next to it.
+        """
+        since = now - self._planned_anew_at
+        if left < _LONG or self._anew >= _MOST_ANEW or 0.0 <= since < _PLANNED_ANEW:
+            return False
+        self._anew, self._planned_anew_at = self._anew + 1, now
+        self._begin_anew()
+        return True
+
+    def _begin_anew(self) -> None:
+        """What was planned last counts as no round."""
+        self._rounds, self._last_missed, self._is_anew = 1, np.inf, True
+        self._book.try_again()
+
+    def use_site(self, site: Site, dirt: DirtMap) -> None:
+        """Go on with other zones or rooms, or with more of the map; what is swept stays so.
+
+        ``dirt`` is that of the site's map.
+        """
+        if self._site.is_growing:
+            self._begin_stage()
+            # With the whole map the first way through is done.
+            self._rounds = 0 if site.is_growing else 1
+        self._site, self._dirt = site, dirt
+        self._book.use_site(site, dirt)
+
+    def values(self) -> Values:
+        """Return all that must be remembered to go on, as plain values."""
+        return {
+            **self._book.values(),
+            "looked_again": self._looked_again,
+            "unreachable": self._unreachable,
+            "scrubbed": self._scrubbed,
+        }
+
+    def restore(self, values: Values) -> None:
+        """Go on from such values, of this map or of less of it.
+
+        Raises CheckpointError, and others for junk.
+        """
+        self._book.restore(values)
+        self._looked_again = bool(values["looked_again"])
+        self._unreachable, self._scrubbed = bool(values["unreachable"]), bool(values["scrubbed"])
+
+    def missed(
+        self,
+        obstacles: Sequence[RoundObstacle],
+        is_over: bool,
+        edges: Sequence[RoundObstacle] = (),
+    ) -> tuple[Missed, ...]:
+        """Return what is not clean, the largest first, with the reason.
+
+        ``is_over``: it went on to the end; ``edges`` are ``obstacles`` where the floor ends.
+        """
+        left, least = self.coverage.wanted & ~self.clean, self._config.least_patch
+        return missed_floor(left, least, self._site, obstacles, edges, is_over=is_over)
+
+    def _next_of_known(self, here: Pose, obstacles: list[RoundObstacle]) -> Floats | None:
+        """Plan over what is large enough of the floor that is known; None if there is none."""
+        at = (here.x, here.y)
+        todo = self._book.untried & self._reachable(at, obstacles)
+        todo = _patches(todo, self.coverage.frame, self._config.least_while_growing)
+        if not todo.any():
+            return None
+        self._book.note_tried(todo)
+        edges_only = self.request.mode is CleanMode.EDGES
+        try:
+            plan = self._site.coverage.plan(at, None, todo, obstacles, edges_only=edges_only)
+        except NoPathError:
+            return None
+        return plan.points if plan.length > 0.0 and len(plan.points) > 2 else None
+
+    def _next_round(
+        self, stage: Stage, here: Pose, obstacles: list[RoundObstacle]
+    ) -> Floats | None:
+        """Plan what is missed of a stage, if that is worth it."""
+        todo = stage.floor & self.coverage.missed
+        missed = float(np.count_nonzero(todo)) * self.coverage.cell_area
+        is_anew, self._is_anew = self._is_anew, False
+        large = _patches(todo, self.coverage.frame, _WORTH_A_ROUND) if is_anew else todo
+        if is_anew and large.any():
+            todo = large
+        elif self._rounds > 0:
+            todo = self._worth_it(stage, todo, here, obstacles)
+            gained = self._last_missed - missed
+            if self._rounds > self._config.most_rounds or gained < _LITTLE_GAIN * self._last_missed:
+                todo[:] = False
+        if self._rounds > 0 and not todo.any() and not self._scrubbed:
+            todo = self._dirty_again(stage)
+        if not todo.any():
+            return None
+        self._rounds += 1
+        self._last_missed = missed
+        edges_only = self.request.mode is CleanMode.EDGES
+        try:
+            plan = self._site.plan_coverage(
+                (here.x, here.y), todo, obstacles, edges_only=edges_only
+            )
+        except NoPathError:
+            self._unreachable = True
+            todo &= self._reachable((here.x, here.y), obstacles)
+            if patches_of(todo, self.coverage.frame, _WORTH_A_LOOK):
+                # The way home is shut, perhaps by a door: meanwhile it cleans where it is.
+                plan = self._site.coverage.plan(
+                    (here.x, here.y), None, todo, obstacles, edges_only=edges_only
+                )
+            elif self._ways_out < _MOST_WAYS_OUT:
+                self._ways_out += 1
+                self._rounds, self._last_missed = self._rounds - 1, np.inf
+                raise
+            else:
+                return None
+        return plan.points if plan.length > 0.0 and len(plan.points) > 2 else None
+
+    def _worth_it(
+        self, stage: Stage, todo: Mask, here: Pose, obstacles: list[RoundObstacle]
+    ) -> Mask:
+        """Return the patches that are worth another round, of what a stage missed.
+
+        Behind and below what stands in the way nothing can be done now.
+        """
+        staging = (self._site.staging.x, self._site.staging.y)
+        reachable = self._reachable(staging, obstacles)
+        if not reachable[self.coverage.frame.cell_of(here.x, here.y)]:
+            # Wherever it is shut in, there it can clean, and from there it has to get out.
+            reachable |= self._reachable((here.x, here.y), obstacles)
+        self._note_out_of_reach(todo & ~reachable, obstacles)
+        todo &= reachable
+        wanted = max(int(np.count_nonzero(stage.floor & reachable)), 1)
+        share = 1.0 - np.count_nonzero(todo) / wanted
+        least = _WORTH_A_ROUND if share >= self._config.enough else self._config.least_patch
+        return _patches(todo, self.coverage.frame, least)
+
+    def _note_out_of_reach(self, floor: Mask, obstacles: list[RoundObstacle]) -> None:
+        """Floor that somebody may open later is looked for again before the end."""
+        patches = patches_of(floor, self.coverage.frame, _WORTH_A_LOOK)
+        if not all(is_hidden(patch, self._site, obstacles) for patch in patches):
+            self._unreachable = True
+
+    def _reachable(self, here: Point, obstacles: list[RoundObstacle]) -> Mask:
+        """Return what can be cleaned from a place among what the map does not show."""
+        return self._site.floor.with_obstacles(obstacles).coverable(here)
+
+    def _dirty_again(self, stage: Stage) -> Mask:
+        """Return what was so dirty that it gets another pass, once a stage."""
+        self._scrubbed = True
+        dirty = self._dirt.dirty_now(self.coverage.frame, self._config.dirty_times)
+        again = dirty & stage.floor & self.coverage.swept
+        if again.any():
+            self._book.sweep_anew(again)
+            self._last_missed = np.inf
+        return again
+
+    def _next_stage(self) -> None:
+        self._book.next_stage()
+        self._begin_stage()
+
+    def _begin_stage(self) -> None:
+        self._rounds, self._last_missed, self._scrubbed = 0, np.inf, False
+
+
+def _patches(floor: Mask, frame: GridFrame, least: float) -> Mask:
+    """Return what of a floor is in patches of ``least`` m2 or more."""
+    labels = numbered_regions(floor)
+    is_large = np.bincount(labels.ravel()) * frame.resolution**2 >= least
+    is_large[0] = False
+    return np.asarray(is_large[labels])

@@ -1,0 +1,218 @@
+"""What floor a clean wants, part by part, and what of it is clean by now."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.geometry import Pose
+from roomba.grid import GridFrame
+from roomba.mission.cleaning.checkpoint import (
+    CheckpointError,
+    Values,
+    packed,
+    request_values,
+    unpacked,
+)
+from roomba.mission.cleaning.request import CleanRequest
+from roomba.mission.cleaning.stages import Stage, stages_of
+from roomba.mission.inputs.planning_context import Site
+from roomba.perception.swept.coverage_bits import SWEPT, TRIED, WANTED
+from roomba.perception.swept.coverage_map import CoverageMap
+from roomba.perception.swept.dirt_map import DirtMap
+from roomba.raster.carried import carried
+
+Mask = NDArray[np.bool_]
+
+_ALL: Final = 0xFF
+
+
+class FloorBook:
+    """``coverage`` is what was swept of the present pass, ``stages`` are the parts in their order.
+
+    On a map that is being made there is one stage, all that is known so far.
+    """
+
+    def __init__(self, request: CleanRequest, site: Site, dirt: DirtMap, here: Pose) -> None:
+        """Find out what is wanted; raises CleanRefusedError for rooms that are not there."""
+        self.request, self._site, self._dirt = request, site, dirt
+        self._began_at = here
+        self.stages = self._asked(site)
+        self.coverage = CoverageMap(site.frame, self._union(), site.tool_width)
+        self._ever = np.zeros(site.frame.shape, np.bool_)
+        self.stage_number = 0
+
+    @property
+    def stage(self) -> Stage | None:
+        """The one that it is at, or None at the end."""
+        return self.stages[self.stage_number] if self.stage_number < len(self.stages) else None
+
+    @property
+    def left(self) -> float:
+        """Floor that is still to be cleaned, m2, stages and passes to come included."""
+        cell = self.coverage.cell_area
+        missed = self.coverage.missed
+        now = sum(
+            float(np.count_nonzero(stage.floor & missed if number == 0 else stage.floor))
+            for number, stage in enumerate(self.stages[self.stage_number :])
+        )
+        return now * cell
+
+    @property
+    def clean(self) -> Mask:
+        """What was ever swept of what is wanted."""
+        return self.coverage.wanted & (self.coverage.swept | self._ever)
+
+    @property
+    def untried(self) -> Mask:
+        """What is missed, and no path over it was planned while the map is being made."""
+        untried: Mask = (self.coverage.cells & (WANTED | SWEPT | TRIED)) == WANTED
+        return untried
+
+    def note_tried(self, floor: Mask) -> None:
+        """A path over this floor was planned."""
+        self.coverage.cells[floor] |= np.uint8(TRIED)
+
+    def try_again(self) -> None:
+        """Plan over all that is missed again."""
+        self.coverage.cells &= np.uint8(_ALL ^ TRIED)
+
+    def add(self, stage: Stage) -> None:
+        """Clean some floor at the end."""
+        self.stages.append(stage)
+
+    def next_stage(self) -> Stage | None:
+        """Go on to the next part, and return it; another pass sweeps all anew."""
+        self.stage_number += 1
+        stage = self.stage
+        if stage is not None and stage.again:
+            self.sweep_anew(stage.floor)
+            stage = self.stages[self.stage_number] = Stage(stage.name, stage.floor)
+        return stage
+
+    def sweep_anew(self, floor: Mask) -> None:
+        """Let floor be dirty again; that it was ever clean is not forgotten."""
+        self._ever |= self.coverage.swept
+        self.coverage.cells[floor] &= np.uint8(_ALL ^ SWEPT)
+        self.coverage.count_again()
+
+    # ---------------------------------------------------------------- other sites
+
+    def use_site(self, site: Site, dirt: DirtMap) -> None:
+        """Go on with other zones or rooms, or with more of the map; what is swept stays so."""
+        self._dirt = dirt
+        if self._site.is_growing:
+            self._use_more_map(site)
+        else:
+            self._use_edits(site)
+        self._site = site
+
+    def _use_edits(self, site: Site) -> None:
+        coverable, wanted = site.coverable(), self._floor_of(self._asked(site), site)
+        freed = wanted & ~self.coverage.wanted
+        self.stages = [Stage(s.name, s.floor & coverable, s.again) for s in self.stages]
+        if freed.any():
+            self.stages.append(Stage("what was a zone before", freed))
+        self._want((self.coverage.wanted & coverable & wanted) | freed)
+
+    def _use_more_map(self, site: Site) -> None:
+        """Bring what is swept to the new map, and want all that this one shows."""
+        moved = site.station.compose(self._site.station.inverse())
+        self._carry(self._site.frame, site.frame, moved)
+        self._began_at = moved.compose(self._began_at)
+        self.stages, self.stage_number = self._asked(site), 0
+        self._want(self._floor_of(self.stages, site))
+
+    def _carry(self, before: GridFrame, after: GridFrame, moved: Pose) -> None:
+        self._ever = carried(self._ever.view(np.uint8), before, after, moved).view(np.bool_)
+        self.coverage.carry(after, moved)
+
+    def _want(self, wanted: Mask) -> None:
+        cells = self.coverage.cells
+        cells &= np.uint8(_ALL ^ WANTED)
+        cells[wanted] |= np.uint8(WANTED)
+        self.coverage.count_again()
+
+    # ---------------------------------------------------------------- remembering
+
+    def values(self) -> Values:
+        """Return all that must be remembered to go on, as plain values."""
+        frame, station, began = self._site.frame, self._site.station, self._began_at
+        return {
+            "request": request_values(self.request),
+            "stages": [[s.name, packed(s.floor), s.again] for s in self.stages],
+            "stage_number": self.stage_number,
+            "wanted": packed(self.coverage.wanted),
+            "swept": packed(self.coverage.swept),
+            "ever": packed(self._ever),
+            "is_growing": self._site.is_growing,
+            "grid": [frame.origin_x, frame.origin_y, frame.rows, frame.columns],
+            "station": [station.x, station.y, station.theta],
+            "began_at": [began.x, began.y, began.theta],
+        }
+
+    def restore(self, values: Values) -> None:
+        """Go on from such values, of this map or of less of it.
+
+        Raises CheckpointError, and others for junk.
+        """
+        frame, station = self._place_of(values)
+        moved = self._site.station.compose(station.inverse())
+        self._began_at = moved.compose(_pose(values["began_at"]))
+        swept, ever = unpacked(values["swept"], frame.shape), unpacked(values["ever"], frame.shape)
+        if values["is_growing"]:
+            self.coverage = CoverageMap(frame, np.zeros_like(swept), self._site.tool_width)
+            self.coverage.cells[swept] = np.uint8(SWEPT)
+            self._ever = ever
+            self._carry(frame, self._site.frame, moved)
+            self.stages = self._asked(self._site)
+            self._want(self._union())
+            return
+        if frame.shape != self._site.frame.shape:
+            raise CheckpointError(f"expected a grid of {self._site.frame}, got {frame}")
+        wanted = unpacked(values["wanted"], frame.shape)
+        stages = [
+            Stage(str(n), unpacked(f, frame.shape), bool(again)) for n, f, again in values["stages"]
+        ]
+        number = int(values["stage_number"])
+        if not 0 <= number <= len(stages):
+            raise CheckpointError(f"expected a stage from 0 to {len(stages)}, got {number}")
+        self.coverage.cells[:] = wanted * np.uint8(WANTED) + swept * np.uint8(SWEPT)
+        self.coverage.count_again()
+        self._ever, self.stages, self.stage_number = ever, stages, number
+
+    def _place_of(self, values: Values) -> tuple[GridFrame, Pose]:
+        """Return the grid that values are of, and where the station was on that map."""
+        x, y, rows, columns = values["grid"]
+        resolution = self._site.frame.resolution
+        frame = GridFrame(resolution, float(x), float(y), int(rows), int(columns))
+        if not Pose(frame.origin_x, frame.origin_y).is_finite:
+            raise CheckpointError("expected finite numbers")
+        return frame, _pose(values["station"])
+
+    # ---------------------------------------------------------------- parts
+
+    def _asked(self, site: Site) -> list[Stage]:
+        coverable = site.coverable()
+        stages = stages_of(self.request, site, self._dirt, coverable, self._began_at)
+        return stages[:1] if site.is_growing else stages
+
+    def _union(self) -> Mask:
+        return self._floor_of(self.stages, self._site)
+
+    @staticmethod
+    def _floor_of(stages: list[Stage], site: Site) -> Mask:
+        floor = np.zeros(site.frame.shape, np.bool_)
+        for stage in stages:
+            floor |= stage.floor
+        return floor
+
+
+def _pose(values: list[float]) -> Pose:
+    x, y, theta = values
+    pose = Pose(float(x), float(y), float(theta))
+    if not pose.is_finite:
+        raise CheckpointError("expected finite numbers")
+    return pose

@@ -1,0 +1,95 @@
+"""What floor of a clean is not clean, and why."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.grid import GridFrame
+from roomba.mission.cleaning.request import Missed, MissReason
+from roomba.mission.driving.gaps import closed_gaps
+from roomba.mission.inputs.planning_context import Site
+from roomba.perception.swept.coverage_map import Patch, patches_of
+from roomba.planning.path.costmap import RoundObstacle
+
+Mask = NDArray[np.bool_]
+
+_MOSTLY: Final = 0.8
+"""Share of a patch that is near to things: it is missed for what stands there."""
+_HARDLY_ANY: Final = 0.02
+"""Share of the wanted floor; whoever cleaned no more than this did not do what was asked."""
+_IN_THE_WAY: Final = {
+    MissReason.THING: "something stands there that the map does not show",
+    MissReason.SHUT: "a door is shut, or something stands in the way",
+    MissReason.EDGE: "the floor ends there",
+}
+"""Why floor could not be reached."""
+
+
+def missed_floor(
+    left: Mask,
+    least: float,
+    site: Site,
+    obstacles: Sequence[RoundObstacle],
+    edges: Sequence[RoundObstacle],
+    *,
+    is_over: bool,
+) -> tuple[Missed, ...]:
+    """Return the patches of ``least`` m2 or more of what is ``left``, the largest first.
+
+    ``left`` is bool over the site's frame. ``edges`` are those of the ``obstacles`` where the floor
+    ends. ``is_over``: the clean went on to its end.
+    """
+    patches = patches_of(left, site.frame, least)
+    reachable = _reachable(site, obstacles)
+    before_edges = _reachable(site, edges) if edges else None
+
+    def reason(patch: Patch) -> MissReason:
+        if _is_mostly_in(patch, reachable):
+            return MissReason.LEFT_OVER if is_over else MissReason.STOPPED
+        if before_edges is not None and not _is_mostly_in(patch, before_edges):
+            return MissReason.EDGE
+        return MissReason.THING if is_hidden(patch, site, obstacles) else MissReason.SHUT
+
+    return tuple(
+        Missed(patch.area, patch.x, patch.y, site.room_at(patch.x, patch.y), reason(patch))
+        for patch in patches
+    )
+
+
+def is_hidden(patch: Patch, site: Site, things: Sequence[RoundObstacle]) -> bool:
+    """Whether a patch is what things stand on and hide, and not a room behind them."""
+    rows, columns = np.nonzero(patch.cells)
+    frame: GridFrame = site.frame
+    x = frame.origin_x + (columns + 0.5) * frame.resolution
+    y = frame.origin_y + (rows + 0.5) * frame.resolution
+    near = site.reach + 2.0 * site.tool_width
+    is_near = np.zeros(len(x), np.bool_)
+    for thing_x, thing_y, radius in things:
+        is_near |= np.hypot(x - thing_x, y - thing_y) < near + radius
+    return bool(is_near.mean() > _MOSTLY)
+
+
+def why_hardly_any(wanted: float, covered: float, missed: Sequence[Missed]) -> str:
+    """Return why next to nothing of the ``wanted`` m2 is clean, or nothing if more is."""
+    if not missed or covered > _HARDLY_ANY * wanted:
+        return ""
+    share = "hardly any of it" if covered > 0.0 else "nothing of it"
+    reason = missed[0].reason
+    if reason in _IN_THE_WAY:
+        return f"{share} could be reached: {_IN_THE_WAY[reason]}"
+    return f"{share} is clean: {reason.value}"
+
+
+def _reachable(site: Site, obstacles: Sequence[RoundObstacle]) -> Mask:
+    """Return what can be cleaned from the station among what the map does not show."""
+    things = [*obstacles, *closed_gaps(obstacles, site.reach)]
+    return site.floor.with_obstacles(things).coverable((site.staging.x, site.staging.y))
+
+
+def _is_mostly_in(patch: Patch, floor: Mask) -> bool:
+    cells = np.count_nonzero(patch.cells)
+    return bool(np.count_nonzero(floor[patch.cells]) >= 0.5 * cells)

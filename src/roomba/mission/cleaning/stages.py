@@ -1,0 +1,117 @@
+"""The parts of a clean, in their order: rooms, passes, and what they are cut to."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.geometry import Pose
+from roomba.mission.cleaning.request import SPOT_SIZE, CleanMode, CleanRefusedError, CleanRequest
+from roomba.mission.inputs.planning_context import Site
+from roomba.perception.swept.dirt_map import DirtMap
+from roomba.planning.path.planner import NoPathError
+from roomba.raster.distance import distance_to_nearest
+
+Mask = NDArray[np.bool_]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Stage:
+    """A part of a clean: its ``name``, the floor of it, and whether it is driven again."""
+
+    name: str
+    floor: Mask
+    again: bool = False
+
+
+def stages_of(
+    request: CleanRequest, site: Site, dirt: DirtMap, coverable: Mask, here: Pose
+) -> list[Stage]:
+    """Return the parts of a clean in their order, all passes; raises CleanRefusedError."""
+    once = _parts(request, site, dirt, coverable, here)
+    return [
+        Stage(part.name, part.floor, again=number > 0)
+        for number in range(request.passes)
+        for part in once
+    ]
+
+
+def _parts(
+    request: CleanRequest, site: Site, dirt: DirtMap, coverable: Mask, here: Pose
+) -> list[Stage]:
+    if request.mode in (CleanMode.WHOLE, CleanMode.EDGES):
+        floor = coverable
+        if request.mode is CleanMode.EDGES:
+            off_edge = distance_to_nearest(~coverable) * site.frame.resolution
+            floor = coverable & (off_edge <= site.tool_width)
+        return [Stage("", floor)]
+    if request.mode is CleanMode.ZONES:
+        return [Stage("", coverable & _inside(site, request.zones))]
+    if request.mode is CleanMode.SPOT:
+        x, y = request.spot or (here.x, here.y)
+        half = 0.5 * SPOT_SIZE
+        square = (x - half, y - half, x + half, y + half)
+        return [Stage("", coverable & _inside(site, (square,)))]
+    if site.rooms is None or not site.rooms.names:
+        raise CleanRefusedError("expected a map with rooms, got one without; clean the whole home")
+    names = _room_names(request, site, dirt)
+    masks = {name: coverable & site.in_room(name) for name in names}
+    stages = [Stage(name, masks[name]) for name in names if masks[name].any()]
+    if request.mode is CleanMode.DIRTIEST:
+        rest = coverable & ~np.logical_or.reduce(list(masks.values()))
+        stages.append(Stage("outside of all rooms", rest))
+    return [stage for stage in stages if stage.floor.any()]
+
+
+def _room_names(request: CleanRequest, site: Site, dirt: DirtMap) -> list[str]:
+    """Return the rooms in the order in which they are cleaned."""
+    assert site.rooms is not None
+    known = site.rooms.names
+    if request.mode is CleanMode.DIRTIEST:
+        dirtiest = {
+            name: dirt.density(
+                site.fine(site.rooms.labels == site.rooms.label_of(name)), site.frame
+            )
+            for name in known
+        }
+        return sorted(known, key=lambda name: -dirtiest[name])
+    for name in request.rooms:
+        if name not in known:
+            raise CleanRefusedError(
+                f"expected the name of a room, got {name!r}; there are: {', '.join(known)}"
+            )
+    names = list(dict.fromkeys(request.rooms))
+    return names if request.in_order else _nearest_first(names, site)
+
+
+def _nearest_first(names: list[str], site: Site) -> list[str]:
+    """Return rooms so that each is the nearest one to that before it, from the station on."""
+    assert site.rooms is not None
+    anchors = {name: site.rooms.anchor(site.rooms.label_of(name)) for name in names}
+    x, y = site.staging.x, site.staging.y
+    ordered: list[str] = []
+    while len(ordered) < len(names):
+        left = [name for name in names if name not in ordered]
+        ordered.append(min(left, key=lambda name: _way(site, (x, y), anchors[name])))
+        x, y = anchors[ordered[-1]]
+    return ordered
+
+
+def _way(site: Site, start: tuple[float, float], end: tuple[float, float]) -> float:
+    try:
+        return site.paths.plan(start, end).length
+    except NoPathError:
+        return float("inf")
+
+
+def _inside(site: Site, rectangles: tuple[tuple[float, float, float, float], ...]) -> Mask:
+    """Return the cells whose middles lie in one of the rectangles."""
+    frame = site.frame
+    x = frame.origin_x + (np.arange(frame.columns) + 0.5) * frame.resolution
+    y = frame.origin_y + (np.arange(frame.rows) + 0.5) * frame.resolution
+    inside = np.zeros(frame.shape, np.bool_)
+    for left, bottom, right, top in rectangles:
+        inside |= np.outer((y >= bottom) & (y <= top), (x >= left) & (x <= right))
+    return inside

@@ -1,0 +1,1 @@
+"""Onto the charging station and off it."""

@@ -1,0 +1,272 @@
+"""Docking: driving into the charging station by its beams, until current comes.
+
+No clock and no I/O: it is ticked with what the robot senses and answers with what it wants.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+from roomba.configuration.docking import DockingConfig
+from roomba.configuration.robot import BodyConfig, StationConfig
+from roomba.geometry import Pose, Twist, wrap_angle
+from roomba.mission.docking.expected_time import RobotTime
+from roomba.mission.docking.search import BeamSearch, drive_to, is_at_staging, steered
+from roomba.mission.docking.step import DockSenses, DockState, DockStep, Trouble
+from roomba.mission.docking.track import StationTrack
+
+__all__ = ["DockSenses", "DockState", "DockStep", "Docking", "Trouble", "staging_pose"]
+
+_SHORTEST_REACH: Final = 0.15
+"""m; so far ahead it aims at the middle of the beams, or farther while it is far away."""
+_MOST_ASIDE: Final = 0.5
+"""rad; so far from straight at the station it aims at most, and less when it is near."""
+_LEAST_ASIDE: Final = 0.09
+"""rad; it may still aim so far aside at the end: within what the contacts bear."""
+_NARROW: Final = 0.3
+"""Of the way that is left, it may be so much aside; else it drives to the staging place first."""
+_SHORTEST_WAY: Final = 0.2
+"""m; with less way left it cannot get straight any more."""
+_DOCKED_BLIND: Final = "docked without its beams: wipe the robot's infrared receiver"
+_SIDE_STEP: Final = 0.15
+"""m; so far it backs off from what it meets while it looks for beams."""
+_MOVED: Final = 0.02
+"""m; less than this is standing still."""
+_TURNED: Final = 0.1
+"""rad; the same of turning."""
+
+
+def staging_pose(station: Pose, config: DockingConfig) -> Pose:
+    """Return where path planning should bring the robot, facing the station; map frame."""
+    return station.compose(Pose(-config.staging_distance, 0.0, 0.0))
+
+
+class Docking:
+    """One docking at ``station``; it ends docked or failed, at the latest at the time limit."""
+
+    def __init__(
+        self,
+        config: DockingConfig,
+        body: BodyConfig,
+        beams: StationConfig,
+        station: Pose,
+        senses: DockSenses,
+    ) -> None:
+        """Begin; ``station`` is where the docked robot stands, its nose to the station, map frame.
+
+        Raises ValueError for a pose that is not finite.
+        """
+        if not station.is_finite:
+            raise ValueError(f"expected a finite pose of the station, got {station}")
+        self._config = config
+        self._track = StationTrack(body, beams, config.plate_gap, station)
+        self._time = RobotTime(senses.now)
+        self._state = DockState.SEARCHING
+        self._trouble: Trouble | None = None
+        self._reason = ""
+        self._attempts = 0
+        self._search: BeamSearch | None = None
+        self._is_blind = False
+        self._lines_up = False
+        self._wanted = Twist()
+        self._dt = 0.0
+        # When something was so for the last time, s since the beginning.
+        self._entered = self._led = self._known = self._moved = self._no_current = 0.0
+        self._entered_at = self._moved_at = Pose()
+        self._is_first = True
+
+    def tick(self, senses: DockSenses) -> DockStep:
+        """Return what is wanted now."""
+        wanted = Twist()
+        if self._state not in (DockState.DOCKED, DockState.FAILED):
+            self._follow(senses)
+            self._watch(senses)
+            wanted = self._act(senses)
+        self._wanted = wanted
+        return DockStep(self._state, wanted, self._reason, self._attempts, self._trouble)
+
+    def _follow(self, senses: DockSenses) -> None:
+        """Follow time, place and beams."""
+        self._dt = self._time.tick(senses.now)
+        is_known = senses.is_known and senses.pose.is_finite
+        self._track.move(senses.pose if is_known else None, self._wanted, self._dt)
+        self._track.see(senses.beams)
+        now = self._time.elapsed
+        if senses.beams.leads:
+            self._led = now
+        if is_known:
+            self._known = now
+        if not senses.is_charging:
+            self._no_current = now
+        self._follow_motion(is_known)
+
+    def _follow_motion(self, is_known: bool) -> None:
+        pose, before = self._track.pose, self._moved_at
+        moved = pose.distance_to(before.x, before.y) > _MOVED
+        moved |= abs(wrap_angle(pose.theta - before.theta)) > _TURNED
+        if moved or not is_known:
+            self._moved, self._moved_at = self._time.elapsed, pose
+
+    @property
+    def _is_stuck(self) -> bool:
+        return self._time.elapsed - self._moved > self._config.stuck_timeout
+
+    def _watch(self, senses: DockSenses) -> None:
+        """Notice what changes everything, whatever it does just now."""
+        is_first, self._is_first = self._is_first, False
+        if senses.is_charging:
+            if is_first:
+                self._dock()
+            elif self._state is not DockState.TOUCHING:
+                self._enter(DockState.TOUCHING)
+        elif self._time.elapsed > self._config.time_limit:
+            because = f": {self._trouble.value}" if self._trouble else ""
+            self._fail(Trouble.TIMEOUT, because)
+        elif self._track.is_known and self._track.away > self._config.farthest:
+            self._fail(Trouble.FAR, f" ({self._track.away:.1f} m)")
+
+    def _act(self, senses: DockSenses) -> Twist:
+        match self._state:
+            case DockState.SEARCHING:
+                return self._look_for_beams(senses)
+            case DockState.APPROACHING:
+                return self._approach(senses)
+            case DockState.TOUCHING:
+                return self._wait_for_current(senses)
+            case DockState.BACKING_OFF:
+                return self._back_off(senses)
+            case DockState.WAITING:
+                return self._wait_for_free_way()
+            case _:
+                return Twist()
+
+    def _look_for_beams(self, senses: DockSenses) -> Twist:
+        if not self._track.is_known or not (senses.is_known or senses.beams.leads):
+            if self._time.elapsed - self._known > self._config.lost_timeout:
+                self._fail(Trouble.LOST)
+            return Twist()
+        if senses.beams.leads:
+            return self._begin_attempt(is_blind=False)
+        if self._search is None:
+            self._search = BeamSearch(self._config)
+        if senses.bumper or senses.cliff:
+            return self._give_up_attempt(None)
+        if self._is_stuck:
+            self._search.skip()
+            self._moved = self._time.elapsed
+        wanted = self._search.tick(self._track, self._dt)
+        return self._begin_attempt(is_blind=True) if wanted is None else wanted
+
+    def _begin_attempt(self, *, is_blind: bool) -> Twist:
+        """Drive at the station; blind, by the believed place alone, only to find out what is."""
+        if self._attempts >= self._config.max_attempts:
+            self._fail(self._trouble or Trouble.BEAMS_LOST)
+            return Twist()
+        self._attempts += 1
+        self._search = None
+        self._is_blind = is_blind
+        if is_blind:
+            self._track.forget_beams()
+        left, aside = self._track.left, abs(self._track.pose.y)
+        self._lines_up = left < _SHORTEST_WAY or aside > _NARROW * left
+        self._led = self._time.elapsed
+        if abs(left) < _SHORTEST_WAY and aside < _SHORTEST_WAY and self._looks_at_station:
+            return self._give_up_attempt(None)
+        self._enter(DockState.APPROACHING)
+        return Twist()
+
+    @property
+    def _looks_at_station(self) -> bool:
+        return abs(self._track.pose.theta) < _MOST_ASIDE
+
+    def _approach(self, senses: DockSenses) -> Twist:
+        config, track = self._config, self._track
+        if senses.cliff:
+            return self._give_up_attempt(Trouble.CLIFF)
+        if senses.bumper:
+            if track.left > config.contact_margin or self._lines_up:
+                return self._give_up_attempt(Trouble.HIDDEN if self._is_blind else Trouble.BLOCKED)
+            self._enter(DockState.TOUCHING)
+            return Twist()
+        if self._is_stuck:
+            return self._give_up_attempt(Trouble.STUCK)
+        if self._lines_up:
+            if not is_at_staging(track, config):
+                return drive_to(track, config, -config.staging_distance, 0.0)
+            self._lines_up, self._led = False, self._time.elapsed
+        if senses.beams.leads:
+            self._is_blind = False
+        elif not self._is_blind and self._time.elapsed - self._led > config.beam_wait:
+            self._trouble = Trouble.BEAMS_LOST
+            self._enter(DockState.SEARCHING)
+            return Twist()
+        if track.left < -config.overrun:
+            return self._give_up_attempt(
+                Trouble.NOT_THERE if self._is_blind else Trouble.NO_CONTACT
+            )
+        return self._drive_at_station()
+
+    def _drive_at_station(self) -> Twist:
+        config, left = self._config, max(self._track.left, 0.0)
+        speed = config.creep_speed + config.braking * (left - config.creep_distance)
+        speed = min(max(speed, config.creep_speed), config.speed)
+        reach = max(_SHORTEST_REACH, 0.6 * left)
+        wrong = self._track.steering(reach, min(_MOST_ASIDE, _LEAST_ASIDE + 1.2 * left))
+        return steered(config, speed, wrong)
+
+    def _wait_for_current(self, senses: DockSenses) -> Twist:
+        now, config = self._time.elapsed, self._config
+        if senses.is_charging:
+            if now - self._no_current >= config.settle_time:
+                self._dock()
+        elif now - self._entered > config.contact_wait:
+            return self._give_up_attempt(Trouble.NO_POWER if self._is_blind else Trouble.NO_CURRENT)
+        return Twist()
+
+    def _dock(self) -> None:
+        self._reason = _DOCKED_BLIND if self._is_blind else ""
+        self._enter(DockState.DOCKED)
+
+    def _give_up_attempt(self, trouble: Trouble | None) -> Twist:
+        self._trouble = trouble
+        self._enter(DockState.BACKING_OFF)
+        return Twist()
+
+    def _back_off(self, senses: DockSenses) -> Twist:
+        config, search = self._config, self._search
+        gone = self._track.pose.distance_to(self._entered_at.x, self._entered_at.y)
+        if gone < (_SIDE_STEP if search else config.back_distance) and not self._is_stuck:
+            is_near = self._trouble in (Trouble.NO_CURRENT, Trouble.NO_POWER)
+            if is_near and gone < config.nudge:
+                return Twist(-config.creep_speed, 0.0)
+            side = 1.0 if self._attempts % 2 else -1.0
+            turning = side * config.back_turn / config.back_distance
+            return Twist(-config.speed, turning * config.speed)
+        if senses.bumper or senses.cliff:
+            self._fail(Trouble.CLIFF if senses.cliff else Trouble.BUMPER_STUCK)
+        elif search:
+            search.skip()
+            self._enter(DockState.SEARCHING)
+        elif self._is_blind or self._attempts >= config.max_attempts:
+            self._fail(self._trouble or Trouble.STUCK)
+        elif self._trouble is Trouble.BLOCKED:
+            self._enter(DockState.WAITING)
+        else:
+            self._enter(DockState.SEARCHING)
+        return Twist()
+
+    def _wait_for_free_way(self) -> Twist:
+        if self._time.elapsed - self._entered > self._config.blocked_wait:
+            self._enter(DockState.SEARCHING)
+        return Twist()
+
+    def _enter(self, state: DockState) -> None:
+        self._state = state
+        self._entered = self._moved = self._time.elapsed
+        self._entered_at = self._moved_at = self._track.pose
+
+    def _fail(self, trouble: Trouble, more: str = "") -> None:
+        self._trouble = trouble
+        tries = f" ({self._attempts} attempts)" if self._attempts > 1 else ""
+        self._reason = f"{trouble.value}{more}{tries}"
+        self._enter(DockState.FAILED)

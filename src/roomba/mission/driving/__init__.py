@@ -1,0 +1,1 @@
+"""Driving a path, and around what the map does not show."""

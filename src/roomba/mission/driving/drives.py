@@ -1,0 +1,128 @@
+"""Driving one path after the other through the home, and what is remembered on the way."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.configuration.mission import DrivingConfig
+from roomba.configuration.robot import RobotConfig
+from roomba.mission.driving.give_way import way_aside
+from roomba.mission.driving.obstacles import Obstacles
+from roomba.mission.driving.path_driver import PathDriver
+from roomba.mission.driving.rejoin import Rejoin
+from roomba.mission.driving.trail import Trail
+from roomba.mission.inputs.planning_context import Site
+from roomba.mission.inputs.senses import Senses
+from roomba.planning.path.planner import NoPathError
+
+Floats = NDArray[np.float64]
+
+
+class Drives:
+    """``driver`` is on the present path, if there is one; ``site`` is where it plans.
+
+    ``is_round``: the path is one over the floor that a clean planned.
+    """
+
+    def __init__(
+        self, site: Site, robot: RobotConfig, config: DrivingConfig, obstacles: Obstacles
+    ) -> None:
+        """Begin without a path."""
+        self._robot, self._config = robot, config
+        self.obstacles, self.trail = obstacles, Trail()
+        self.driver: PathDriver | None = None
+        self.is_round = False
+        self.use_site(site)
+
+    def use_site(self, site: Site) -> None:
+        """Plan there from now on; the present path is driven on."""
+        self.site = site
+        self._rejoin = Rejoin(site, self._robot.body.radius, self._config)
+
+    def begin(
+        self,
+        points: Floats,
+        senses: Senses,
+        plans_anew: Callable[[float, float], bool] | None = None,
+    ) -> None:
+        """Begin to drive along points, float64 [n, 2], m.
+
+        A round of a clean has ``plans_anew``: see :class:`PathDriver`.
+        """
+        self.is_round = plans_anew is not None
+        self.driver = PathDriver(
+            points,
+            self._rejoin,
+            self.obstacles,
+            self.trail,
+            self._config,
+            self._robot.tracking,
+            self._robot.body,
+            senses,
+            plans_anew or _never,
+        )
+
+    def caught_up(self, senses: Senses, way: float) -> None:
+        """Go on after ticks that were the tracker's alone: ``way`` m were driven in them."""
+        if self.driver is not None:
+            along = self.driver.tracker.along
+            self.trail.follow(self.driver.tracker, along - way, along)
+            self.driver.caught_up(senses)
+
+    def leaves_zone(self, senses: Senses) -> bool:
+        """Begin to drive out of a no-go zone, should the robot be in one; tell whether it is."""
+        here = (senses.pose.x, senses.pose.y)
+        if not self.site.is_in_zone(here):
+            return False
+        try:
+            points = self.site.way_out_of_zone(here, self.obstacles.standing(senses.now))
+        except NoPathError:
+            return False
+        self.begin(points, senses)
+        return True
+
+    def way_home(self, senses: Senses) -> Floats:
+        """Return the way to the place before the station; raises NoPathError without one."""
+        return self._rejoin.way_home(senses, self.obstacles, self.trail)
+
+    def way_out(self, senses: Senses) -> Floats | None:
+        """Return the first of the way home, out of a place that no path leads out of, or None."""
+        return self._rejoin.way_out(senses, self.obstacles, self.trail)
+
+    def make_room(self, senses: Senses) -> None:
+        """Begin to drive aside, so that who stands beside the robot can pass, if it can."""
+        points = way_aside(self.site.paths, senses, self.obstacles, self.trail)
+        if points is not None:
+            self.begin(points, senses)
+
+    def may_go_home(self, senses: Senses) -> bool:
+        """Whether a way leads home, by what is known to stand in it now."""
+        return self._length_home(senses) is not None
+
+    def distance_home(self, senses: Senses) -> float:
+        """Return how far it is home, m; what cannot be told is as far as the map is wide."""
+        length = self._length_home(senses)
+        if length is None:
+            left, right, low, high = self.site.known.frame.extent
+            return right - left + high - low
+        return length
+
+    def _length_home(self, senses: Senses) -> float | None:
+        here, staging = (senses.pose.x, senses.pose.y), self.site.staging
+        obstacles = self.obstacles.standing(senses.now)
+        try:
+            return self.site.paths.plan(here, (staging.x, staging.y), obstacles).length
+        except NoPathError:
+            return None
+
+    def forget_place(self) -> None:
+        """The robot is somewhere else than it thought: what it remembers is of another place."""
+        self.trail.forget()
+        self.obstacles.forget()
+
+
+def _never(now: float, left: float) -> bool:
+    return False

@@ -1,0 +1,73 @@
+"""Making room for whoever stands in the way: it may be waiting for the robot to go."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.mission.driving.obstacles import Obstacles
+from roomba.mission.driving.trail import Trail
+from roomba.mission.inputs.senses import Senses
+from roomba.planning.frontiers.kernels import ways_from
+from roomba.planning.path.costmap import Point, RoundObstacle
+from roomba.planning.path.planner import NoPathError, PathPlanner
+
+Floats = NDArray[np.float64]
+
+_BESIDE: Final = 1.2
+"""m; what stands nearer may want to pass."""
+_ROOM: Final = 1.2
+"""m; so far off it lets others pass, and farther away it need not go."""
+_LEAST_ROOM: Final = 0.5
+_PER_WAY: Final = 0.25
+"""m of room that a metre of way is worth: it does not squeeze past whom it makes room for."""
+_FARTHEST: Final = 3.0
+"""m of way that it goes for that, at most."""
+
+
+def way_aside(
+    planner: PathPlanner, senses: Senses, obstacles: Obstacles, trail: Trail
+) -> Floats | None:
+    """Return a way, float64 [n, 2], m, to where there is room between the robot and what stands.
+
+    Where nothing is known to stand beside it, it goes away from where it is: who stands there may
+    be on a map that is being made. None when there is no such place.
+    """
+    here = (senses.pose.x, senses.pose.y)
+    standing, at_least = obstacles.standing(senses.now), obstacles.at_least(senses.now)
+    around = [(x, y) for x, y, _ in standing if math.dist(here, (x, y)) < _FARTHEST]
+    beside = [place for place in around if math.dist(here, place) < _BESIDE] or [here, *around]
+    for things in (standing, at_least):
+        points = _way_from(here, planner, things, beside)
+        if points is not None:
+            return points
+    points, _ = trail.back_and_on(lambda place: _way_from(place, planner, at_least, beside))
+    return points
+
+
+def _way_from(
+    start: Point, planner: PathPlanner, things: Sequence[RoundObstacle], beside: list[Point]
+) -> Floats | None:
+    frame = planner.frame
+    try:
+        fits = planner.reachable(start, things)
+    except NoPathError:
+        return None
+    ways = np.empty(frame.shape)
+    ways_from(fits, *frame.cell_of(*start), ways)
+    rows, columns = np.nonzero(ways * frame.resolution < _FARTHEST)
+    x = frame.origin_x + (columns + 0.5) * frame.resolution
+    y = frame.origin_y + (rows + 0.5) * frame.resolution
+    off = np.min([np.hypot(x - at_x, y - at_y) for at_x, at_y in beside], axis=0)
+    room = np.minimum(off, _ROOM)
+    best = int(np.argmax(room - _PER_WAY * frame.resolution * ways[rows, columns]))
+    if room[best] < _LEAST_ROOM:
+        return None
+    try:
+        return planner.plan(start, (float(x[best]), float(y[best])), things).points
+    except NoPathError:
+        return None

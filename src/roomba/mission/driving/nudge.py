@@ -1,0 +1,97 @@
+"""Moving a piece of a path aside a little, from things that stand nearer to it than was thought.
+
+Each look at a thing shows a bit more of it. A path along it, so that the floor beside it gets
+clean, is kept that way, instead of leaving it and coming back another time.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.control.path_tracker import PathTracker
+from roomba.planning.coverage.floor.floor import CoverageFloor
+from roomba.planning.path.costmap import RoundObstacle
+
+Floats = NDArray[np.float64]
+
+_STEP: Final = 0.02
+_AHEAD: Final = 1.0
+"""m; so far ahead the path is looked at, in such steps."""
+_MOST: Final = 0.08
+"""m; farther aside it is another way, which somebody else has to plan."""
+_ROUNDS: Final = 8
+_NEARLY: Final = 0.003
+"""m; so much nearer than wanted is near enough."""
+
+
+def nudged(
+    tracker: PathTracker, floor: CoverageFloor, obstacles: Sequence[RoundObstacle], keep: float
+) -> Floats | None:
+    """Return the rest of a path, float64 [n, 2], m, that keeps ``keep`` m from round things.
+
+    ``floor`` tells where walls leave room. None when that takes more than moving it a little.
+    """
+    along, length = tracker.along, tracker.length
+    last = min(along + _AHEAD, length)
+    stations = np.append(np.arange(along, last, _STEP), last)
+    course = tracker.course
+    before = np.column_stack(
+        [np.interp(stations, course.stations, course.points[:, axis]) for axis in (0, 1)]
+    )
+    things = _near(obstacles, before)
+    if not len(things):
+        return None
+    points = _pushed(before, things, keep)
+    moved = np.hypot(*(points - before).T)
+    is_moved = moved > 1e-6
+    has_room = _fits(floor, points) | ~is_moved
+    # Where it joins what comes then, it must be where it was.
+    if moved.max() > _MOST or not has_room.all() or (last < length and is_moved[-1]):
+        return None
+    if (_too_near(points, things, keep)[0] > _NEARLY).any():
+        return None
+    rest: Floats = np.concatenate((points, course.points[course.stations > last]))
+    return rest
+
+
+def _near(obstacles: Sequence[RoundObstacle], points: Floats) -> Floats:
+    """Return the round things, [n, 3], around the piece of a path."""
+    things = np.array(obstacles, np.float64).reshape(-1, 3)
+    low, high = points.min(axis=0) - 0.5, points.max(axis=0) + 0.5
+    inside = ((things[:, :2] > low) & (things[:, :2] < high)).all(axis=1)
+    near: Floats = things[inside]
+    return near
+
+
+def _pushed(points: Floats, things: Floats, keep: float) -> Floats:
+    """Return points, each moved away from what it is nearest to as far as it takes."""
+    points = points.copy()
+    for _ in range(_ROUNDS):
+        lack, nearest = _too_near(points, things, keep)
+        if not (lack > 0.0).any():
+            break
+        away = points - things[nearest, :2]
+        away /= np.maximum(np.hypot(*away.T), 1e-9)[:, None]
+        points += away * np.maximum(lack, 0.0)[:, None]
+    return points
+
+
+def _too_near(points: Floats, things: Floats, keep: float) -> tuple[Floats, NDArray[np.int64]]:
+    """Return by how much, m, each point is too near to the thing next to it, and which that is."""
+    away = np.hypot(*(points[:, None, :] - things[None, :, :2]).transpose(2, 0, 1))
+    lack = keep + things[:, 2] - away
+    nearest = lack.argmax(axis=1)
+    return lack[np.arange(len(points)), nearest], nearest
+
+
+def _fits(floor: CoverageFloor, points: Floats) -> NDArray[np.bool_]:
+    """Return at which points the body keeps away from walls."""
+    frame = floor.frame
+    rows = np.floor((points[:, 1] - frame.origin_y) / frame.resolution).astype(np.int64)
+    columns = np.floor((points[:, 0] - frame.origin_x) / frame.resolution).astype(np.int64)
+    rows, columns = np.clip(rows, 0, frame.rows - 1), np.clip(columns, 0, frame.columns - 1)
+    return np.asarray(floor.fits[rows, columns])

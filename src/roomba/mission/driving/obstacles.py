@@ -1,0 +1,109 @@
+"""What the map does not show and the robot found: felt by bumper and cliff sensors, or seen.
+
+Nothing of it changes the map: it is remembered for a while, and looked for again.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from typing import Final
+
+from roomba.configuration.mission import DrivingConfig
+from roomba.configuration.robot import BodyConfig, WalkConfig
+from roomba.control.path_tracker import PathTracker
+from roomba.mission.driving.unknown_things import UnknownThings
+from roomba.mission.inputs.senses import Senses
+from roomba.perception.things.layer import ThingLayer
+from roomba.planning.path.costmap import RoundObstacle
+
+_FOREVER: Final = math.inf
+_LASTING: Final = 1800.0
+"""s; so long it is remembered what was felt more than once."""
+_SAME_PLACE: Final = 0.06
+"""m; touches from places nearer to each other are of the same thing."""
+_TOUCHES: Final = 20
+"""The last ones, which are compared."""
+_SPARED: Final = 0.010
+"""m; so much nearer to a thing than planned it may come, of the 0.02 m that a thing is thought
+thicker than it was seen: else each new look at it would break a path along it."""
+_LEAST: Final = 0.01
+"""m; the thinnest thing that stands."""
+
+
+class Obstacles:
+    """Round things in the way; ``version`` changes when there are others."""
+
+    def __init__(
+        self, seen: ThingLayer, walk: WalkConfig, body: BodyConfig, config: DrivingConfig
+    ) -> None:
+        """Begin with what ``seen`` holds, and nothing felt."""
+        self._seen = seen
+        self._felt = UnknownThings(walk, body, config.felt_memory)
+        # What is felt at a place again and again is no wall that it met being late.
+        self._lasting = UnknownThings(walk, body, _LASTING)
+        self._touched: deque[tuple[float, float]] = deque(maxlen=_TOUCHES)
+        # Stairs do not go away.
+        self._edges = UnknownThings(walk, body, _FOREVER)
+        self._felt_version = 0
+        self._keep = body.radius - _SPARED
+
+    @property
+    def version(self) -> int:
+        """A number that is another one when something came or went."""
+        return self._seen.version + self._felt_version
+
+    def use(self, seen: ThingLayer) -> None:
+        """Go on with what is seen besides another map; what was felt stays."""
+        self._felt_version += self._seen.version + 1
+        self._seen = seen
+
+    def feel(self, senses: Senses) -> None:
+        """Remember what bumper or cliff sensors found where the robot stands."""
+        here = senses.pose
+        is_again = any(here.distance_to(x, y) < _SAME_PLACE for x, y in self._touched)
+        self._touched.append((here.x, here.y))
+        where = self._edges if senses.cliff else self._lasting if is_again else self._felt
+        where.felt(senses.now, here, *senses.touches)
+        # A wall that it drove against, being late, is on the map.
+        self._felt.drop(self._seen.is_mapped)
+        self._felt_version += 1
+
+    def forget_felt_at(self, senses: Senses) -> None:
+        """Forget what was felt where the robot itself stands: it cannot be there."""
+        for felt in (self._felt, self._lasting):
+            felt.forget_around(senses.pose.x, senses.pose.y)
+        self._felt_version += 1
+
+    def forget(self) -> None:
+        """Look at everything anew, but for edges."""
+        self._felt.forget()
+        self._lasting.forget()
+        self._touched.clear()
+        self._seen.forget()
+        self._felt_version += 1
+
+    def standing(self, now: float) -> list[RoundObstacle]:
+        """Return all that is in the way now, m, map frame."""
+        return self._edges.at(now) + self._all_felt(now) + self._seen.obstacles()
+
+    def edges(self) -> list[RoundObstacle]:
+        """Return where the floor ends, which is never forgotten, m, map frame."""
+        return self._edges.at(0.0)
+
+    def at_least(self, now: float) -> list[RoundObstacle]:
+        """Return the same, as small as it may be: where the bumper felt something is a guess."""
+        felt = [(x, y, _LEAST) for x, y, _ in self._all_felt(now)]
+        return self._edges.at(now) + felt + [(x, y, _LEAST) for x, y, _ in self._seen.obstacles()]
+
+    def first_in_way(self, tracker: PathTracker, first: float, last: float) -> float | None:
+        """Return where on a path, m, something seen first comes too near, or None.
+
+        It is looked at from station ``first`` to ``last``, m.
+        """
+        return self._seen.first_blocked(
+            tracker.course.points, tracker.course.stations, first, last, self._keep
+        )
+
+    def _all_felt(self, now: float) -> list[RoundObstacle]:
+        return self._felt.at(now) + self._lasting.at(now)

@@ -1,0 +1,304 @@
+"""Driving a path to its end, around whatever stands in the way.
+
+No clock and no I/O: it is ticked with what the robot senses and answers with the twist it wants.
+What it finds in its way it remembers, leaves the path before it, and joins it again behind.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import Enum
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.configuration.mission import DrivingConfig
+from roomba.configuration.robot import BodyConfig, TrackingConfig
+from roomba.control.path_tracker import PathTracker
+from roomba.geometry import STANDSTILL, Twist
+from roomba.mission.driving.obstacles import Obstacles
+from roomba.mission.driving.recovery import Wriggle
+from roomba.mission.driving.rejoin import Rejoin
+from roomba.mission.driving.trail import Trail
+from roomba.mission.inputs.senses import Senses
+
+PERIOD: Final = 0.05
+"""s; between two ticks."""
+_PROGRESS: Final = 0.02
+"""m; less than this along the path is no progress."""
+_LONGEST_TICK: Final = 2.0
+"""s; more between two ticks than this is a clock that was set."""
+_HORIZON: Final = 2.0
+"""m; so far ahead its path is looked at for what stands in the way."""
+_NEVER: Final = -1
+_LEAVING: Final = 0.25
+"""m; on so much of a new way it may still be near to what it goes around."""
+_MOST_FUTILE: Final = 3
+"""New ways from one place; then it tries to get free in other ways."""
+_SAME_PLACE: Final = 0.10
+"""m; touches from places nearer to each other are of the same thing."""
+_MOST_TOUCHES: Final = 4
+"""One after the other of the same thing; then this path is given up."""
+_LEAVES_TROUBLE: Final = 0.5
+"""m of progress after which earlier recoveries count no more."""
+
+
+class DriveState(Enum):
+    """How a drive stands."""
+
+    DRIVING = "driving"
+    BACKING = "backing"
+    """Away from what it touched."""
+    RECOVERING = "recovering"
+    """It came no farther and tries to get free."""
+    DONE = "done"
+    """At the end of its path."""
+    OVERTAKEN = "overtaken"
+    """Something stands on its path that was not known when that was planned: plan it anew."""
+    CUT_OFF = "cut off"
+    """No way leads to any of what is left of its path; the reason is told."""
+    STUCK = "stuck"
+    """It cannot get free; the reason is told."""
+
+    @property
+    def is_over(self) -> bool:
+        """Whether it ended."""
+        return self in (
+            DriveState.DONE,
+            DriveState.OVERTAKEN,
+            DriveState.CUT_OFF,
+            DriveState.STUCK,
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class DriveStep:
+    """What a drive wants at a tick."""
+
+    state: DriveState
+    twist: Twist = STANDSTILL
+    reason: str = ""
+
+
+class PathDriver:
+    """Drives along ``points``, float64 [n, 2], m, from wherever the robot stands.
+
+    Up to ``clear_to``, m along the path, nothing that is known is in its way.
+
+    Each tick ends in bounded time, and so does the drive: what blocks it is remembered, and it
+    gives up after so many recoveries without progress.
+    """
+
+    def __init__(
+        self,
+        points: NDArray[np.float64],
+        rejoin: Rejoin,
+        obstacles: Obstacles,
+        trail: Trail,
+        config: DrivingConfig,
+        tracking: TrackingConfig,
+        body: BodyConfig,
+        senses: Senses,
+        plans_anew: Callable[[float, float], bool] = lambda now, left: False,
+    ) -> None:
+        """Begin; the path may begin anywhere: the robot goes to its start first.
+
+        ``plans_anew`` is asked, with the time, s, and how much is left, m, whether a path on which
+        something stands is better planned anew than driven around that.
+        """
+        self._rejoin, self._obstacles, self._trail = rejoin, obstacles, trail
+        self._config, self._tracking, self._body = config, tracking, body
+        self._plans_anew = plans_anew
+        self._state = DriveState.DRIVING
+        self._reason = ""
+        self._was_touching = any(senses.touches)
+        self._last_tick = senses.now
+        self._backs_from: tuple[float, float, float] | None = None
+        self._wriggle: Wriggle | None = None
+        self._recoveries = 0
+        self._checked = _NEVER
+        self.clear_to = 0.0
+        self._mark_progress(senses, 0.0, 0)
+        self._freed_at = self._leaves_until = 0.0
+        self._planned_at, self._futile = (math.inf, math.inf), 0
+        self._nudged_at = (math.inf, math.inf)
+        self._touched_at, self._touches = (math.inf, math.inf), 0
+        self.tracker = self._track(points)
+        if self.tracker.off_path(senses.pose) > _PROGRESS:
+            self._go_around(senses)
+
+    @property
+    def left(self) -> float:
+        """How much of the path is before the robot, m."""
+        return self.tracker.left
+
+    @property
+    def is_undisturbed(self) -> bool:
+        """Whether the next ticks are those of its tracker alone, while nothing comes up."""
+        return (
+            self._state is DriveState.DRIVING
+            and not self.tracker.is_done
+            and self._checked == self._obstacles.version
+            and self.tracker.along < self.clear_to
+        )
+
+    def tick(self, senses: Senses, limit: float) -> DriveStep:
+        """Return what is wanted now; ``limit`` is the speed wanted, m/s."""
+        self._follow_clock(senses.now)
+        self._trail.add(senses.pose.x, senses.pose.y)
+        if self._state.is_over:
+            return DriveStep(self._state, STANDSTILL, self._reason)
+        self._notice_touch(senses)
+        if self._backs_from is not None:
+            return self._back_off(senses, self._backs_from)
+        if self._wriggle is not None:
+            return self._get_free(senses, self._wriggle)
+        if self._needs_new_way(senses):
+            self._leave_path(senses)
+        elif self._comes_no_farther(senses):
+            self._begin_recovery(senses)
+        if self._state is DriveState.DRIVING:
+            twist = self.tracker.tick(senses.pose, limit)
+            if self.tracker.is_done:
+                self._state = DriveState.DONE
+            return DriveStep(self._state, twist)
+        return DriveStep(self._state, STANDSTILL, self._reason)
+
+    def caught_up(self, senses: Senses) -> None:
+        """Go on after ticks that were the tracker's alone."""
+        self._last_tick = senses.now
+
+    def _track(self, points: NDArray[np.float64]) -> PathTracker:
+        return PathTracker(points, self._tracking, self._body, PERIOD)
+
+    def _follow_clock(self, now: float) -> None:
+        """When the clock was set, move the times that are remembered with it."""
+        jump = now - self._last_tick
+        if not 0.0 <= jump <= _LONGEST_TICK:
+            self._progressed += jump
+            if self._backs_from is not None:
+                since, x, y = self._backs_from
+                self._backs_from = since + jump, x, y
+        self._last_tick = now
+
+    def _notice_touch(self, senses: Senses) -> None:
+        touches = any(senses.touches)
+        is_new, self._was_touching = touches and not self._was_touching, touches
+        if is_new:
+            self._obstacles.feel(senses)
+            is_here = senses.pose.distance_to(*self._touched_at) < _SAME_PLACE
+            self._touches = self._touches + 1 if is_here else 1
+            self._touched_at = senses.pose.x, senses.pose.y
+            self._wriggle = None
+            self._backs_from = senses.now, senses.pose.x, senses.pose.y
+            self._state = DriveState.BACKING
+
+    def _back_off(self, senses: Senses, began: tuple[float, float, float]) -> DriveStep:
+        """Drive back a little, then look for another way."""
+        since, x, y = began
+        config = self._config
+        longest = 2.0 * config.backing_way / config.backing_speed
+        way = senses.pose.distance_to(x, y)
+        if way < config.backing_way and senses.now - since < longest:
+            return DriveStep(self._state, Twist(-config.backing_speed, 0.0))
+        self._backs_from = None
+        self._state = DriveState.DRIVING
+        self._recoveries += 1 if way < 0.25 * config.backing_way else 0
+        if any(senses.touches) and way < 0.25 * config.backing_way:
+            self._begin_recovery(senses)
+        elif self._touches > _MOST_TOUCHES:
+            self._state = DriveState.CUT_OFF
+            self._reason = f"something stands near {senses.where} that only the bumper feels"
+        else:
+            self._go_around(senses)
+        return DriveStep(self._state, STANDSTILL, self._reason)
+
+    def _needs_new_way(self, senses: Senses) -> bool:
+        """Whether it was moved, or something that was seen stands in its way."""
+        if self.tracker.off_path(senses.pose) > self._config.off_path:
+            return True
+        along = self.tracker.along
+        if self._checked != self._obstacles.version or along >= self.clear_to:
+            self._checked = self._obstacles.version
+            # What it has just planned to leave is not in its way.
+            first = max(along, self._leaves_until)
+            blocked = self._obstacles.first_in_way(self.tracker, first, along + _HORIZON)
+            self.clear_to = (blocked or along + _HORIZON) - self._config.look_ahead
+        return along >= self.clear_to
+
+    def _leave_path(self, senses: Senses) -> None:
+        """Go around what stands on the path, or have the rest of it planned anew."""
+        if self.tracker.off_path(senses.pose) > self._config.off_path:
+            self._go_around(senses)
+            return
+        moved = senses.pose.distance_to(*self._nudged_at)
+        points = self._rejoin.nudged(senses, self.tracker, self._obstacles)
+        if points is not None and moved > _PROGRESS:
+            self._nudged_at = senses.pose.x, senses.pose.y
+            self._begin(points, senses)
+        elif self._plans_anew(senses.now, self.left):
+            self._state = DriveState.OVERTAKEN
+        else:
+            self._go_around(senses)
+
+    def _begin(self, points: NDArray[np.float64], senses: Senses) -> None:
+        """Drive another path."""
+        self.tracker = self._track(points)
+        self._mark_progress(senses, 0.0, 0)
+        self._checked, self.clear_to = _NEVER, 0.0
+        self._freed_at = self._leaves_until = 0.0
+
+    def _go_around(self, senses: Senses) -> None:
+        """Plan to the next piece of the path that can be reached; a bump may have shortened it."""
+        x, y = self._planned_at
+        moved = senses.pose.distance_to(x, y)
+        self._futile = self._futile + 1 if moved < _PROGRESS else 0
+        self._planned_at = senses.pose.x, senses.pose.y
+        if self._futile > _MOST_FUTILE:
+            self._futile = 0
+            self._begin_recovery(senses)
+            return
+        points, back = self._rejoin.way(senses, self.tracker, self._obstacles, self._trail)
+        if points is None:
+            self._state = DriveState.CUT_OFF
+            self._reason = f"no way leads on from {senses.where}: {self._rejoin.trouble}"
+            return
+        self._begin(points, senses)
+        self._leaves_until = back + _LEAVING
+
+    def _mark_progress(self, senses: Senses, along: float, leg: int) -> None:
+        self._progressed, self._progress_along, self._progress_leg = senses.now, along, leg
+
+    def _comes_no_farther(self, senses: Senses) -> bool:
+        along, leg = self.tracker.along, self.tracker.leg
+        if along > self._progress_along + _PROGRESS or leg > self._progress_leg:
+            self._mark_progress(senses, max(along, self._progress_along), leg)
+            if along > self._freed_at + _LEAVES_TROUBLE:
+                self._recoveries = 0
+        return senses.now - self._progressed > self._config.progress_timeout
+
+    def _begin_recovery(self, senses: Senses) -> None:
+        self._recoveries += 1
+        if self._recoveries > self._config.most_recoveries:
+            self._state = DriveState.STUCK
+            self._reason = (
+                f"stuck near {senses.where}: backing, turning and wriggling did not help; "
+                "set it free and resume"
+            )
+            return
+        self._state = DriveState.RECOVERING
+        self._wriggle = Wriggle(self._recoveries, self._config, senses)
+
+    def _get_free(self, senses: Senses, wriggle: Wriggle) -> DriveStep:
+        twist = wriggle.tick(senses)
+        if twist is not None:
+            return DriveStep(self._state, twist)
+        self._wriggle = None
+        self._state = DriveState.DRIVING
+        if wriggle.moved(senses):
+            self._obstacles.forget_felt_at(senses)
+        self._go_around(senses)
+        return DriveStep(self._state, STANDSTILL, self._reason)

@@ -1,0 +1,71 @@
+"""Following a path: the setpoint that runs ahead of the robot, and how fast to go there."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from roomba.configuration.robot import WalkConfig
+from roomba.geometry import Pose
+from roomba.planning.path.planner import Path
+
+_SHARP = 0.3
+"""rad; a corner sharper than this is not cut: the setpoint waits there for the robot."""
+_CORNER_REACHED = 0.04
+"""m; the setpoint goes on when the robot is this near to a sharp corner."""
+_SEARCH_AHEAD = 0.6
+"""m; how far along the path the robot is looked for from where it last was."""
+_SLOW_DOWN = 0.4
+"""m/s2; braking before corners."""
+_SLOWEST = 0.08
+"""m/s; never slower than this before it is there."""
+
+
+class PathFollower:
+    """Keeps where on its path the robot is; lengths in m from the path's start."""
+
+    def __init__(self, path: Path, config: WalkConfig) -> None:
+        """Begin at the start of ``path``."""
+        self._path = path
+        self._config = config
+        self._along = 0.0
+        self._corners = path.stations[1:-1]
+        self._angles = np.abs(path.corner_angles[1:-1])
+
+    @property
+    def left(self) -> float:
+        """The length of path still before the robot, m."""
+        return self._path.length - self._along
+
+    def distance_off(self, pose: Pose) -> float:
+        """Return how far a pose is from the path where it was last seen, m."""
+        return pose.distance_to(*self._path.point_at(self._along))
+
+    def tick(self, pose: Pose, max_speed: float) -> tuple[tuple[float, float], float]:
+        """Return the setpoint, map frame, and the cruise speed wanted, m/s."""
+        self._along = self._path.project(pose.x, pose.y, self._along, _SEARCH_AHEAD)
+        setpoint = self._path.point_at(self._carrot(pose))
+        return setpoint, min(max_speed, self._corner_speed(max_speed))
+
+    def _carrot(self, pose: Pose) -> float:
+        """Return how far along the path the setpoint is: ahead, but not beyond a sharp corner."""
+        carrot = min(self._along + self._config.lookahead, self._path.length)
+        for station, angle in zip(self._corners, self._angles, strict=True):
+            if station > carrot:
+                break
+            if angle > _SHARP and station > self._along - 1e-9:
+                corner = self._path.point_at(float(station))
+                if pose.distance_to(*corner) > _CORNER_REACHED:
+                    return float(station)
+        return carrot
+
+    def _corner_speed(self, max_speed: float) -> float:
+        """Return the fastest speed from which all corners ahead can be taken, m/s."""
+        ahead = self._corners - self._along
+        angles = self._angles[ahead >= 0.0]
+        ahead = ahead[ahead >= 0.0]
+        share = np.minimum(angles / (0.5 * math.pi), 1.0)
+        through = max_speed - (max_speed - min(self._config.corner_speed, max_speed)) * share
+        allowed = np.sqrt(through**2 + 2.0 * _SLOW_DOWN * ahead)
+        return max(_SLOWEST, float(allowed.min(initial=max_speed)))

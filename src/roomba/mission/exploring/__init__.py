@@ -1,0 +1,1 @@
+"""Looking at what the map does not show yet."""

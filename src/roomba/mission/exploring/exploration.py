@@ -1,0 +1,127 @@
+"""One exploration: which frontier to go to next, and when there is none left.
+
+No clock and no I/O. The map grows while the robot drives: whenever it did, the frontier that it is
+on its way to is looked at again.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.geometry import Pose
+from roomba.grid import OccupancyMap
+from roomba.mission.cleaning.request import CleanOutcome
+from roomba.mission.inputs.planning_context import Site
+from roomba.planning.frontiers.frontiers import Frontier, frontiers, is_frontier
+from roomba.planning.path.costmap import Point, RoundObstacle
+from roomba.planning.path.planner import NoPathError
+
+_STILL_THERE: Final = 0.25
+"""m; around the middle of a frontier, to see whether something of it is left."""
+_ARRIVED: Final = 0.12
+"""m; as near to a viewpoint it has seen all that is to be seen from there."""
+_BESIDE: Final = 0.3
+"""m; frontiers nearer to one that was given up are the same."""
+_MOST_TRIES: Final = 12
+"""Frontiers to which a way is planned before the next tick has its turn."""
+
+
+@dataclass(frozen=True, slots=True)
+class ExploreResult:
+    """How an exploration ended: the floor that is ``known``, m2, ``distance`` m, ``duration`` s.
+
+    ``unseen`` are frontiers that were given up: nobody can drive to where one would see beyond.
+    """
+
+    outcome: CleanOutcome
+    message: str
+    known: float
+    distance: float
+    duration: float
+    unseen: tuple[Point, ...] = ()
+
+
+class Exploration:
+    """Chooses where to go; ``unseen`` are the frontiers that it gave up, m, map frame."""
+
+    def __init__(self) -> None:
+        """Begin with nothing given up."""
+        self.goal: Frontier | None = None
+        self.unseen: list[Point] = []
+        self.times_stuck = 0
+        self.looked_again = False
+        """Whether what stands in the way was looked for anew before the end."""
+
+    def values(self) -> list[list[float]]:
+        """Return what must be remembered to go on, as plain values."""
+        return [[x, y] for x, y in self.unseen]
+
+    @staticmethod
+    def of(values: list[list[float]]) -> Exploration:
+        """Return an exploration that goes on; raises ValueError or TypeError for other values."""
+        exploration = Exploration()
+        exploration.unseen = [(float(x), float(y)) for x, y in values]
+        return exploration
+
+    def next_path(
+        self,
+        here: Pose,
+        site: Site,
+        obstacles: list[RoundObstacle],
+        farthest: float = math.inf,
+    ) -> NDArray[np.float64] | None:
+        """Return the way to the next viewpoint, float64 [n, 2], m; None when there is none left, or
+        the robot is shut in.
+
+        Those that are ``farthest`` m of way off and more are left out. A frontier to which no way
+        leads is given up.
+        """
+        self._leave_behind(here, site)
+        at = (here.x, here.y)
+        try:
+            fits = site.paths.reachable(at, obstacles)
+        except NoPathError:
+            return None
+        found = frontiers(site.known, fits, at, self.unseen, _BESIDE)
+        for frontier in [each for each in found if each.way < farthest][:_MOST_TRIES]:
+            try:
+                path = site.paths.plan(at, frontier.viewpoint, obstacles)
+            except NoPathError:
+                self.unseen.append(frontier.middle)
+                continue
+            self.goal = frontier
+            return path.points
+        return None
+
+    def still_unseen(self, occupancy: OccupancyMap) -> tuple[Point, ...]:
+        """Return the frontiers that it gave up and that are some on this map, which is newer."""
+        return tuple(point for point in self.unseen if is_frontier(occupancy, point, _STILL_THERE))
+
+    def wants_another(self, occupancy: OccupancyMap) -> bool:
+        """Whether nothing is left of the frontier that it is on its way to, as the map is now."""
+        return self.goal is not None and not is_frontier(occupancy, self.goal.middle, _STILL_THERE)
+
+    @property
+    def is_under_way(self) -> bool:
+        """Whether the robot was last sent to a frontier."""
+        return self.goal is not None
+
+    def cut_off(self, *, is_stuck: bool = False) -> None:
+        """No way leads to the frontier it was on its way to: give that up."""
+        self.times_stuck += is_stuck
+        if self.goal is not None:
+            self.unseen.append(self.goal.middle)
+        self.goal = None
+
+    def _leave_behind(self, here: Pose, site: Site) -> None:
+        """Give the last frontier up if it was looked at from its viewpoint, and is still one."""
+        goal, self.goal = self.goal, None
+        if goal is None or math.dist(goal.viewpoint, (here.x, here.y)) > _ARRIVED:
+            return
+        if is_frontier(site.known, goal.middle, _STILL_THERE):
+            self.unseen.append(goal.middle)

@@ -1,0 +1,155 @@
+"""The home as a mission plans in it: map, zones, rooms, station, and the planners over them."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.configuration.docking import DockingConfig
+from roomba.configuration.mission import MissionConfig
+from roomba.configuration.robot import RobotConfig
+from roomba.geometry import Pose
+from roomba.grid import GridFrame, OccupancyMap
+from roomba.mission.docking.docking import staging_pose
+from roomba.perception.rooms.rooms import Rooms
+from roomba.perception.rooms.zones import Zones
+from roomba.planning.coverage.floor.floor import CoverageFloor
+from roomba.planning.coverage.plan import CoveragePlan
+from roomba.planning.coverage.planner import CoveragePlanner
+from roomba.planning.path.costmap import Point, RoundObstacle
+from roomba.planning.path.planner import NoPathError, NoPathReason, PathPlanner
+
+Mask = NDArray[np.bool_]
+
+
+class Site:
+    """What does not change while nobody edits zones or rooms; an edit makes a new one."""
+
+    def __init__(
+        self,
+        occupancy: OccupancyMap,
+        station: Pose,
+        robot: RobotConfig,
+        mission: MissionConfig,
+        docking: DockingConfig,
+        rooms: Rooms | None = None,
+        zones: Zones | None = None,
+        *,
+        is_growing: bool = False,
+    ) -> None:
+        """Make the planners; ``station`` is where the docked robot stands, map frame.
+
+        In a map that ``is_growing`` paths keep the distances of exploring.
+        """
+        self.occupancy, self.station = occupancy, station
+        self.rooms, self.zones = rooms, zones or Zones()
+        self.known = self.zones.kept_out(occupancy)
+        self.staging = staging_pose(station, docking)
+        driving, radius = mission.driving, robot.body.radius
+        self.reach = radius + driving.clearance
+        self.tool_width = robot.brush.width
+        self.plans, self.planning_time = 0, 0.0
+        self.body_radius, self.is_growing = radius, is_growing
+        # Paths may come as near to walls as swaths do, so that they can join them.
+        self._clearance, self._least = driving.way_clearance, 0.5 * driving.clearance
+        if is_growing:
+            exploring = mission.exploring
+            self._clearance, self._least = exploring.clearance, exploring.tight_clearance
+        self.paths = PathPlanner(self.known, radius, self._clearance, self._least)
+
+    @cached_property
+    def coverage(self) -> CoveragePlanner:
+        """The planner of ways over the floor; made when it is first asked for: that takes time."""
+        return CoveragePlanner(self.known, self.reach, self.tool_width)
+
+    @property
+    def floor(self) -> CoverageFloor:
+        """The floor on the fine grid."""
+        return self.coverage.floor
+
+    def plan_coverage(
+        self, here: Point, todo: Mask, obstacles: Sequence[RoundObstacle], *, edges_only: bool
+    ) -> CoveragePlan:
+        """Plan to sweep ``todo``, bool over ``frame``, from ``here`` and on to the staging place.
+
+        Raises NoPathError when the robot cannot move.
+        """
+        began = time.perf_counter()
+        end = (self.staging.x, self.staging.y)
+        try:
+            return self.coverage.plan(here, end, todo, obstacles, edges_only=edges_only)
+        finally:
+            self.plans += 1
+            self.planning_time += time.perf_counter() - began
+
+    def squeeze(
+        self, here: Point, there: Point, obstacles: Sequence[RoundObstacle]
+    ) -> NDArray[np.float64]:
+        """Return a way, float64 [n, 2], m, through gaps that are too narrow for :attr:`paths`.
+
+        Raises NoPathError when there is none.
+        """
+        nothing = np.zeros(self.frame.shape, np.bool_)
+        return self.coverage.plan(here, there, nothing, obstacles).points
+
+    def is_in_zone(self, here: Point) -> bool:
+        """Whether a robot at a point touches a zone where it must not go."""
+        frame, reach = self.known.frame, self.body_radius
+        row, column = frame.cell_of(here[0] - reach, here[1] - reach)
+        last_row, last_column = frame.cell_of(here[0] + reach, here[1] + reach)
+        rows = slice(max(row, 0), max(last_row + 1, 0))
+        columns = slice(max(column, 0), max(last_column + 1, 0))
+        zone = (self.known.values != self.occupancy.values)[rows, columns]
+        found = np.argwhere(zone)
+        x = frame.origin_x + (found[:, 1] + columns.start + 0.5) * frame.resolution
+        y = frame.origin_y + (found[:, 0] + rows.start + 0.5) * frame.resolution
+        return bool((np.hypot(x - here[0], y - here[1]) < reach).any())
+
+    def way_out_of_zone(
+        self, here: Point, obstacles: Sequence[RoundObstacle]
+    ) -> NDArray[np.float64]:
+        """Return the shortest way, float64 [n, 2], m, out of the zones to where it may be.
+
+        It goes through zones, of course. Raises NoPathError when there is none.
+        """
+        planner = PathPlanner(self.occupancy, self.body_radius, self._clearance, self._least)
+        allowed = self.paths.reachable((self.staging.x, self.staging.y))
+        places = np.argwhere(allowed & planner.reachable(here, obstacles))
+        if not len(places):
+            raise NoPathError(here, NoPathReason.GOAL_UNREACHABLE, None)
+        frame = self.known.frame
+        x = frame.origin_x + (places[:, 1] + 0.5) * frame.resolution
+        y = frame.origin_y + (places[:, 0] + 0.5) * frame.resolution
+        nearest = int(np.argmin(np.hypot(x - here[0], y - here[1])))
+        return planner.plan(here, (float(x[nearest]), float(y[nearest])), obstacles).points
+
+    @property
+    def frame(self) -> GridFrame:
+        """The fine grid that coverage is counted on."""
+        return self.floor.frame
+
+    def coverable(self) -> Mask:
+        """Return the floor that can be cleaned from the station, bool over ``frame``."""
+        return self.floor.coverable((self.staging.x, self.staging.y))
+
+    def in_room(self, name: str) -> Mask:
+        """Return a room's cells over ``frame``; raises RoomsError for a name that is none."""
+        assert self.rooms is not None
+        label = self.rooms.label_of(name)
+        return self.fine(self.rooms.labels == label)
+
+    def fine(self, mask: Mask) -> Mask:
+        """Return a mask over the map's grid as one over ``frame``."""
+        factor = self.frame.rows // self.known.frame.rows
+        return np.repeat(np.repeat(mask, factor, axis=0), factor, axis=1)
+
+    def room_at(self, x: float, y: float) -> str:
+        """Return the name of the room at a point, or nothing."""
+        if self.rooms is None:
+            return ""
+        label = self.rooms.at(x, y)
+        return self.rooms.names[label - 1] if label else ""

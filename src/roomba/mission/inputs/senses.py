@@ -1,0 +1,87 @@
+"""What a mission is told at each tick."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from roomba.geometry import STANDSTILL, Pose, Twist
+from roomba.perception.localization.estimate import Knowledge
+
+
+@dataclass(frozen=True, slots=True)
+class Battery:
+    """``level`` is 0..1 of ``capacity`` (Wh); ``is_docked`` while the station's contacts touch, so
+    that current comes in unless it is full."""
+
+    level: float = 1.0
+    capacity: float = 26.0
+    is_docked: bool = False
+
+    @property
+    def energy(self) -> float:
+        """What is in it, Wh."""
+        return self.level * self.capacity
+
+
+@dataclass(frozen=True, slots=True)
+class Beams:
+    """What of the station's infrared light is seen."""
+
+    halo: bool = False
+    green: bool = False
+    red: bool = False
+
+    @property
+    def any(self) -> bool:
+        """Whether the station is seen at all."""
+        return self.halo or self.green or self.red
+
+
+_FULL = Battery()
+_NO_BEAMS = Beams()
+
+
+@dataclass(frozen=True, slots=True)
+class Senses:
+    """What the robot senses: time s of its clock, pose in the map frame as it is believed.
+
+    ``knowledge`` is how well the pose is known, ``trouble`` why not better; ``twist`` is by the
+    wheels; ``cliff_left`` tells that the left cliff sensors see no floor; ``lifted`` that wheels
+    hang in the air; ``grains`` is what the dirt sensor counts, 1/s; ``in_bin`` what was picked up,
+    g.
+    """
+
+    now: float
+    pose: Pose
+    twist: Twist = STANDSTILL
+    knowledge: Knowledge = Knowledge.KNOWN
+    trouble: str = ""
+    bumper_left: bool = False
+    bumper_right: bool = False
+    cliff_left: bool = False
+    cliff_right: bool = False
+    lifted: bool = False
+    beams: Beams = _NO_BEAMS
+    battery: Battery = _FULL
+    grains: float = 0.0
+    in_bin: float = 0.0
+
+    @property
+    def cliff(self) -> bool:
+        """Whether there is no floor before a side of it."""
+        return self.cliff_left or self.cliff_right
+
+    @property
+    def touches(self) -> tuple[bool, bool]:
+        """Whether something is in the way on the left, on the right: felt, or no floor seen."""
+        return self.bumper_left or self.cliff_left, self.bumper_right or self.cliff_right
+
+    @property
+    def is_disturbed(self) -> bool:
+        """Whether anything touches it, or is missing below it."""
+        return any(self.touches) or self.lifted
+
+    @property
+    def where(self) -> str:
+        """Its place in words."""
+        return f"({self.pose.x:.2f}, {self.pose.y:.2f})"

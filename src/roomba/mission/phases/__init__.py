@@ -1,0 +1,1 @@
+"""The phases of the mission, and what leads from one to another."""

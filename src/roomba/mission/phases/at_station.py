@@ -1,0 +1,76 @@
+"""What is done on the station and before it: out of it, into it, and charging to go on."""
+
+from __future__ import annotations
+
+from roomba.configuration.docking import DockingConfig
+from roomba.configuration.robot import RobotConfig
+from roomba.geometry import Pose
+from roomba.mission.cleaning.request import CleanOutcome
+from roomba.mission.docking.docking import Docking, DockSenses, DockState
+from roomba.mission.docking.undocking import Undocking, UndockState
+from roomba.mission.inputs.senses import Senses
+from roomba.mission.phases.job import Job
+from roomba.mission.phases.machine import Event
+from roomba.mission.phases.step import Failure, PhaseStep
+
+
+class AtStation:
+    """One phase at a time; :meth:`forget` when it is over."""
+
+    def __init__(self, config: DockingConfig, robot: RobotConfig) -> None:
+        """Begin with none."""
+        self._config, self._robot = config, robot
+        self.forget()
+
+    def forget(self) -> None:
+        """Leave what was under way: it begins anew next time."""
+        self._docking: Docking | None = None
+        self._undocking: Undocking | None = None
+        self._needed: float | None = None
+
+    def undock(self, senses: Senses, station: Pose) -> PhaseStep:
+        """Drive out of the station."""
+        sensed = _dock_senses(senses)
+        if self._undocking is None:
+            self._undocking = Undocking(self._config, station, sensed)
+        step = self._undocking.tick(sensed)
+        if step.state is UndockState.OUT:
+            return PhaseStep(step.twist, Event.OUT)
+        if step.state is UndockState.FAILED:
+            return PhaseStep(step.twist, failure=Failure(CleanOutcome.STUCK, step.reason))
+        return PhaseStep(step.twist)
+
+    def dock(self, senses: Senses, station: Pose) -> PhaseStep:
+        """Drive into the station."""
+        sensed = _dock_senses(senses)
+        if self._docking is None:
+            robot = self._robot
+            self._docking = Docking(self._config, robot.body, robot.station, station, sensed)
+        step = self._docking.tick(sensed)
+        if step.state is DockState.DOCKED:
+            return PhaseStep(step.twist, Event.CONTACT)
+        if step.state is DockState.FAILED:
+            return PhaseStep(step.twist, failure=Failure(CleanOutcome.NOT_DOCKED, step.reason))
+        return PhaseStep(step.twist)
+
+    def charge(self, senses: Senses, job: Job, tool_width: float) -> PhaseStep:
+        """Stand until there is enough for the rest of the job."""
+        if self._needed is None:
+            self._needed = job.needed_energy(tool_width)
+        is_charged = job.book.is_charged(senses, self._needed)
+        return PhaseStep(event=Event.CHARGED if is_charged else None)
+
+
+def _dock_senses(senses: Senses) -> DockSenses:
+    return DockSenses(
+        senses.now,
+        senses.pose,
+        senses.beams.halo,
+        senses.beams.green,
+        senses.beams.red,
+        senses.bumper_left,
+        senses.bumper_right,
+        senses.cliff,
+        senses.battery.is_docked,
+        senses.knowledge.is_usable,
+    )

@@ -1,0 +1,137 @@
+"""Cleaning, path by path; while the map is being made it goes to see more of it as well."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import Final
+
+from roomba.configuration.mission import ExploringConfig
+from roomba.mission.cleaning.cleaning import Cleaning
+from roomba.mission.cleaning.request import CleanOutcome
+from roomba.mission.driving.drives import Drives
+from roomba.mission.driving.path_driver import DriveState
+from roomba.mission.driving.retry_policy import Patience
+from roomba.mission.inputs.planning_context import Site
+from roomba.mission.inputs.senses import Senses
+from roomba.mission.phases import phases
+from roomba.mission.phases.job import Job
+from roomba.mission.phases.machine import Event
+from roomba.mission.phases.step import Failure, PhaseStep
+from roomba.planning.path.planner import NoPathError
+
+_WAITS: Final = "all is seen; it waits for the map to be finished"
+_LONGEST_WAIT: Final = 120.0
+"""s; so long it waits for the whole map."""
+_NO_WHOLE_MAP: Final = (
+    "nobody finishes the map: put the robot on its station once, so that the map knows where that "
+    "is, or call map/finish; then resume"
+)
+
+
+class CleanPhase:
+    """Drives over the floor that is left of the job's clean."""
+
+    def __init__(
+        self, job: Job, drives: Drives, patience: Patience, config: ExploringConfig
+    ) -> None:
+        """Begin with no path."""
+        self._job, self._drives, self._patience, self._config = job, drives, patience, config
+        self._seen_all_of: Site | None = None
+        self._seen_all_at = 0.0
+
+    def tick(self, senses: Senses, limit: float) -> PhaseStep:
+        """Return what is wanted now; ``limit`` is the speed wanted, m/s."""
+        cleaning, drives = self._job.cleaning, self._drives
+        assert cleaning is not None
+        if self._job.book.must_go_home(senses, drives.distance_home):
+            return PhaseStep(event=Event.LOW)
+        waiting = phases.wait_on(drives, self._patience, senses, limit)
+        if waiting is not None:
+            return waiting
+        if drives.driver is not None:
+            return self._drive_on(cleaning, senses, limit)
+        ended = None
+        if not drives.leaves_zone(senses):
+            ended = self._begin_path(cleaning, senses)
+        return ended or replace(self._drive_on(cleaning, senses, limit), message="")
+
+    def _begin_path(self, cleaning: Cleaning, senses: Senses) -> PhaseStep | None:
+        """Begin the next path, or return what is to be done where there is none."""
+        drives, patience = self._drives, self._patience
+        if drives.site is self._seen_all_of and cleaning.explores:
+            return self._wait_for_whole_map(senses)
+        points = None
+        if patience.gets_out:
+            # By the middle of gaps: along their sides, as it cleans, it may have been shut in.
+            patience.gets_out = False
+            points = drives.way_out(senses)
+        if points is None and self._begin_look(senses, self._config.look_first):
+            return None
+        try:
+            if points is None:
+                points = cleaning.next_path(senses.pose, drives.obstacles.standing(senses.now))
+        except NoPathError:
+            points = drives.way_out(senses)
+            if points is None:
+                return phases.wait("no way leads out of where it is", drives, patience, senses)
+        if points is not None:
+            drives.begin(points, senses, cleaning.plans_anew)
+            return None
+        if cleaning.explores:
+            return self._look_or_wait(senses)
+        if not cleaning.wants_another_look(drives.obstacles.edges()):
+            return PhaseStep(event=Event.FINISHED)
+        drives.obstacles.forget()
+        return PhaseStep()
+
+    def _begin_look(self, senses: Senses, farthest: float) -> bool:
+        """Begin to drive to where more of the home can be seen; tell whether there is such a place.
+
+        It is at most ``farthest`` m of way off.
+        """
+        exploration, drives = self._job.exploration, self._drives
+        if exploration is None:
+            return False
+        obstacles = drives.obstacles.standing(senses.now)
+        points = exploration.next_path(senses.pose, drives.site, obstacles, farthest)
+        if points is not None:
+            drives.begin(points, senses)
+        return points is not None
+
+    def _look_or_wait(self, senses: Senses) -> PhaseStep | None:
+        """Go to see more when all that is known is clean; with all seen the map is to be whole."""
+        exploration, drives = self._job.exploration, self._drives
+        assert exploration is not None
+        given_up = len(exploration.unseen)
+        if self._begin_look(senses, math.inf):
+            return None
+        # It may have given up before it tried all.
+        if len(exploration.unseen) > given_up or phases.looks_again(exploration, drives):
+            return PhaseStep()
+        if not drives.may_go_home(senses):
+            # Shut in it has not seen all.
+            reason = "no way leads out of where it is"
+            return phases.try_home_again(reason, drives, self._patience, senses)
+        self._seen_all_of, self._seen_all_at = drives.site, senses.now
+        return PhaseStep(message=_WAITS, wants_whole_map=True)
+
+    def _wait_for_whole_map(self, senses: Senses) -> PhaseStep:
+        if 0.0 <= senses.now - self._seen_all_at < _LONGEST_WAIT:
+            return PhaseStep(wants_whole_map=True)
+        self._seen_all_of = None
+        return PhaseStep(failure=Failure(CleanOutcome.FAULT, _NO_WHOLE_MAP))
+
+    def _drive_on(self, cleaning: Cleaning, senses: Senses, limit: float) -> PhaseStep:
+        drives, exploration = self._drives, self._job.exploration
+        assert drives.driver is not None
+        if exploration is not None and exploration.is_under_way:
+            return phases.look_on(exploration, drives, senses, limit, self._config.most_stuck)
+        step = drives.driver.tick(senses, limit)
+        if step.state is DriveState.STUCK:
+            return PhaseStep(step.twist, failure=Failure(CleanOutcome.STUCK, step.reason))
+        if step.state.is_over:
+            if step.state is DriveState.CUT_OFF:
+                cleaning.cut_off()
+            drives.driver = None
+        return PhaseStep(step.twist)

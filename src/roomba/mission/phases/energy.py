@@ -1,0 +1,73 @@
+"""Energy, way and dirt of an errand: what was used, and when it is time to go home."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Final
+
+from roomba.configuration.mission import EnergyConfig
+from roomba.mission.inputs.senses import Senses
+
+_TRUSTED: Final = 10.0
+"""m; after so much way the consumption that was seen counts, before that the configured one."""
+_EMPTY: Final = 0.005
+"""Share of the capacity; with less the drive stops by itself."""
+_CHECK_EVERY: Final = 5.0
+"""s; between two looks at how far it is home."""
+_CARRIED: Final = 0.3
+"""m; between two ticks: nobody drives as far."""
+
+
+class EnergyBook:
+    """Ticked with what is sensed; ``distance`` m, ``energy`` Wh and ``dirt`` g since the begin."""
+
+    def __init__(self, config: EnergyConfig, senses: Senses) -> None:
+        """Begin to count."""
+        self._config = config
+        self.distance = self.energy = self.dirt = 0.0
+        self._last = senses
+        self._checked = senses.now
+
+    def begin(self, senses: Senses) -> None:
+        """Count anew."""
+        self.distance = self.energy = self.dirt = 0.0
+        self._last, self._checked = senses, senses.now
+
+    def note(self, senses: Senses, way: float | None = None) -> None:
+        """Take what was sensed; ``way``, m, if it was more than the straight one."""
+        last, self._last = self._last, senses
+        straight = senses.pose.distance_to(last.pose.x, last.pose.y)
+        if way is not None or straight < _CARRIED:
+            self.distance += straight if way is None else way
+        self.energy += max(0.0, last.battery.energy - senses.battery.energy)
+        self.dirt += max(0.0, senses.in_bin - last.in_bin)
+
+    @property
+    def per_metre(self) -> float:
+        """What a metre of way takes, Wh, as seen on this errand."""
+        if self.distance < _TRUSTED:
+            return self._config.per_metre
+        return max(self.energy / self.distance, 0.2 * self._config.per_metre)
+
+    def must_go_home(self, senses: Senses, way_home: Callable[[Senses], float]) -> bool:
+        """Whether what is left just suffices for the way home; ``way_home`` tells that way, m."""
+        if 0.0 <= senses.now - self._checked < _CHECK_EVERY:
+            return False
+        self._checked = senses.now
+        battery = senses.battery
+        spare = battery.energy - self._config.reserve * battery.capacity
+        # Only when it may come to that is the way home worth planning.
+        if spare > 0.35 * battery.capacity:
+            return False
+        return spare < self._config.margin * self.per_metre * way_home(senses)
+
+    def is_empty(self, senses: Senses) -> bool:
+        """Whether the battery gives nothing any more."""
+        return senses.battery.level < _EMPTY
+
+    def is_charged(self, senses: Senses, needed: float) -> bool:
+        """Whether it is charged enough to go on, with ``needed`` Wh still to be used."""
+        battery, config = senses.battery, self._config
+        if battery.level >= config.full_enough:
+            return True
+        return battery.energy > config.margin * needed + 2.0 * config.reserve * battery.capacity

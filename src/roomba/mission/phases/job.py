@@ -1,0 +1,171 @@
+"""The clean or the exploration that the robot is on: its books, and the result at its end."""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+from roomba.configuration.mission import EnergyConfig
+from roomba.mission.cleaning.cleaning import Cleaning
+from roomba.mission.cleaning.missed import why_hardly_any
+from roomba.mission.cleaning.request import CleanOutcome, CleanResult
+from roomba.mission.driving.obstacles import Obstacles
+from roomba.mission.exploring.exploration import Exploration, ExploreResult
+from roomba.mission.inputs.planning_context import Site
+from roomba.mission.inputs.senses import Senses
+from roomba.mission.phases.energy import EnergyBook
+from roomba.perception.swept.dirt_map import DirtMap
+
+_LONGEST_TICK: Final = 2.0
+"""s; more between two ticks than this is a clock that was set."""
+_DETOURS: Final = 1.2
+"""Way that cleaning takes, by the shortest that could sweep the floor."""
+
+
+class Job:
+    """``cleaning`` or ``exploration`` is under way, or both on a map that is being made, or none.
+
+    ``outcome`` is how it will be told.
+
+    Times are s of the robot's clock.
+    """
+
+    def __init__(self, dirt: DirtMap, config: EnergyConfig, senses: Senses) -> None:
+        """Begin with nothing to do."""
+        self.dirt = dirt
+        self.cleaning: Cleaning | None = None
+        self.exploration: Exploration | None = None
+        self.outcome: CleanOutcome | None = None
+        self.book = EnergyBook(config, senses)
+        self._started = senses.now
+        self._is_told = False
+        self._cleaned: CleanResult | None = None
+        self._explored: ExploreResult | None = None
+
+    def begin_clean(self, cleaning: Cleaning, senses: Senses) -> None:
+        """Begin a clean, with new books; if it explores, it does so on the way."""
+        self.cleaning = cleaning
+        self.exploration = Exploration() if cleaning.explores else None
+        self._begin(senses)
+
+    def begin_exploration(self, senses: Senses) -> None:
+        """Begin an exploration, with new books."""
+        self.exploration, self._explored = Exploration(), None
+        self._begin(senses)
+
+    def _begin(self, senses: Senses) -> None:
+        self.outcome, self._is_told = None, False
+        self.book.begin(senses)
+        self._started = senses.now
+
+    def take_up(self) -> None:
+        """Go on after its result was told: it will have another one."""
+        self._is_told = False
+
+    def duration(self, now: float) -> float:
+        """Return how long it has been under way, s."""
+        return now - self._started
+
+    def goes_on_after(self, duration: float, senses: Senses) -> None:
+        """Go on with a job that has been under way for so long already, s."""
+        self._is_told = False
+        self.book.begin(senses)
+        self._started = senses.now - duration
+
+    def account(self, senses: Senses, last: Senses, *, sweeps: bool) -> None:
+        """Keep the books: energy, way, floor swept, dirt met."""
+        self.book.note(senses)
+        passed = senses.now - last.now
+        if not 0.0 <= passed <= _LONGEST_TICK:
+            self._started += passed
+        if self.cleaning is None:
+            return
+        if not (sweeps and senses.knowledge.is_usable):
+            self.cleaning.coverage.lift()
+            return
+        pose = senses.pose
+        way = pose.distance_to(last.pose.x, last.pose.y)
+        elapsed = min(max(passed, 0.0), _LONGEST_TICK)
+        self.cleaning.coverage.sweep(pose.x, pose.y)
+        self.dirt.note(pose.x, pose.y, senses.grains * elapsed, way)
+
+    def needed_energy(self, tool_width: float) -> float:
+        """Return what the rest of it takes, Wh; nobody knows that of an exploration."""
+        if self.exploration is not None:
+            return math.inf
+        if self.cleaning is None:
+            return 0.0
+        # Behind a few patches that are still missed there may be a long way.
+        way = max(self.cleaning.left / tool_width, self.cleaning.broken_off)
+        return self.book.per_metre * _DETOURS * way
+
+    def end(
+        self,
+        outcome: CleanOutcome,
+        message: str,
+        site: Site,
+        obstacles: Obstacles,
+        senses: Senses,
+        *,
+        can_go_on: bool,
+    ) -> None:
+        """Make its result, unless that was told before; forget it, unless it can be resumed."""
+        if self._is_told or (self.cleaning is None and self.exploration is None):
+            return
+        if self.cleaning is not None:
+            self._cleaned = self._clean_result(self.cleaning, outcome, message, obstacles, senses)
+        elif self.exploration is not None:
+            self._explored = ExploreResult(
+                outcome,
+                message,
+                site.occupancy.free_area,
+                self.book.distance,
+                self.duration(senses.now),
+                self.exploration.still_unseen(site.known),
+            )
+        self._is_told = True
+        if not can_go_on:
+            self.forget()
+
+    def _clean_result(
+        self,
+        cleaning: Cleaning,
+        outcome: CleanOutcome,
+        message: str,
+        obstacles: Obstacles,
+        senses: Senses,
+    ) -> CleanResult:
+        missed = cleaning.missed(
+            obstacles.standing(senses.now), cleaning.stage is None, obstacles.edges()
+        )
+        wanted, covered = cleaning.coverage.wanted_area, cleaning.clean_area
+        if outcome is CleanOutcome.COMPLETED:
+            message = message or why_hardly_any(wanted, covered, missed)
+        return CleanResult(
+            outcome,
+            message,
+            wanted,
+            covered,
+            dirt=self.book.dirt,
+            distance=self.book.distance,
+            duration=self.duration(senses.now),
+            energy=self.book.energy,
+            missed=missed,
+        )
+
+    def forget(self) -> None:
+        """It is over for good."""
+        self.exploration = None
+        if self.cleaning is not None:
+            self.cleaning = None
+            self.dirt.end_run()
+
+    def take_result(self) -> CleanResult | None:
+        """Return the result of a clean that ended, once."""
+        result, self._cleaned = self._cleaned, None
+        return result
+
+    def take_exploration(self) -> ExploreResult | None:
+        """Return the result of an exploration that ended, once."""
+        result, self._explored = self._explored, None
+        return result

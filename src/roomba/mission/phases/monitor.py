@@ -1,0 +1,77 @@
+"""Noticing what nobody ordered: contact with the station, and what holds the robot up."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from roomba.configuration.robot import WalkConfig
+from roomba.mission.cleaning.request import CleanOutcome
+from roomba.mission.driving.drives import Drives
+from roomba.mission.inputs.senses import Senses
+from roomba.mission.phases.energy import EnergyBook
+from roomba.mission.phases.machine import MissionState, Phase
+from roomba.mission.phases.step import Failure
+from roomba.perception.localization.estimate import Knowledge
+
+_CARRIED: Final = 1.0
+"""m; farther from where it last knew its place it did not drive itself while it looked around."""
+
+
+class Watch:
+    """Looks at every tick; ``was_docked`` is whether the station's contact was there before."""
+
+    def __init__(
+        self, config: WalkConfig, drives: Drives, book: EnergyBook, senses: Senses
+    ) -> None:
+        """Begin where the robot stands, knowing its place."""
+        self._config, self._drives, self._book = config, drives, book
+        self.was_docked = senses.battery.is_docked
+        self._astray_since: float | None = None
+        self._known_at = (senses.pose.x, senses.pose.y)
+
+    @property
+    def is_astray(self) -> bool:
+        """Whether it does not know its place."""
+        return self._astray_since is not None
+
+    def contact_changed(self, senses: Senses) -> bool:
+        """Whether the station's contact came or went since it was looked at before."""
+        changed = senses.battery.is_docked != self.was_docked
+        self.was_docked = senses.battery.is_docked
+        return changed
+
+    def failure(
+        self, state: MissionState, senses: Senses, last_place: tuple[float, float]
+    ) -> Failure | None:
+        """Return what ends a drive; ``last_place``, m, is where it was a tick before."""
+        if not state.drives:
+            self._astray_since = None
+            return None
+        if senses.lifted:
+            reason = "a wheel hangs in the air: set it down and resume"
+            return Failure(CleanOutcome.FAULT, reason)
+        if self._book.is_empty(senses):
+            reason = "the battery is empty: carry it to its station"
+            return Failure(CleanOutcome.BATTERY, reason)
+        # Docking finds its way by the station's beams.
+        return None if state.phase is Phase.DOCKING else self._astray(senses, last_place)
+
+    def _astray(self, senses: Senses, last_place: tuple[float, float]) -> Failure | None:
+        if senses.knowledge.is_usable:
+            if self.is_astray:
+                self._found_again(senses)
+            return None
+        if self._astray_since is None or senses.now < self._astray_since:
+            self._astray_since = senses.now
+            self._known_at = last_place
+        waited = senses.now - self._astray_since
+        if senses.knowledge is Knowledge.LOST or waited > self._config.astray_timeout:
+            reason = f"the robot does not know where it is: {senses.trouble}"
+            return Failure(CleanOutcome.LOST, reason)
+        return None
+
+    def _found_again(self, senses: Senses) -> None:
+        self._astray_since = None
+        if senses.pose.distance_to(*self._known_at) > _CARRIED:
+            # It was carried, or wrong before.
+            self._drives.forget_place()

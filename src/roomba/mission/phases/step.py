@@ -1,0 +1,32 @@
+"""What a phase of the mission answers at a tick."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from roomba.geometry import STANDSTILL, Twist
+from roomba.mission.cleaning.request import CleanOutcome
+from roomba.mission.phases.machine import Event
+
+
+@dataclass(frozen=True, slots=True)
+class Failure:
+    """Why the robot cannot go on by itself, as an outcome and in words."""
+
+    outcome: CleanOutcome
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
+class PhaseStep:
+    """The twist wanted, and what ends the phase: an ``event`` or a ``failure``.
+
+    ``message`` is what is told from now on; None leaves that as it is. ``wants_whole_map``: all
+    that can be seen was seen, and it waits for the map to be finished.
+    """
+
+    twist: Twist = STANDSTILL
+    event: Event | None = None
+    failure: Failure | None = None
+    message: str | None = None
+    wants_whole_map: bool = False

@@ -1,0 +1,1 @@
+"""Walking to a point."""

@@ -1,0 +1,1 @@
+"""Which floor the robot is on, and what changed there."""

@@ -1,0 +1,262 @@
+"""A home that changed: what stands there now, and did not, or no longer does.
+
+While the robot goes about its work, and knows its place, its scans are counted on the cells of the
+map. A *look* is what it saw from several places in some time; several looks decide, so that who
+walks or stands about is no change, nor are things too small to be furniture.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from enum import Enum
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.geometry import Pose, wrap_angle
+from roomba.grid import FREE, OCCUPIED, UNKNOWN, OccupancyMap
+from roomba.perception.floors.map_changes_kernels import NO_BOUNDS, count_scan, score_look
+from roomba.perception.matching.beams import Beams
+from roomba.perception.slam.drawing_kernels import Sheet
+from roomba.perception.slam.surface_kernels import POINT
+from roomba.raster.distance import distance_to_nearest
+from roomba.raster.regions import dilated, numbered_regions
+
+Mask = NDArray[np.bool_]
+
+_FARTHEST: Final = 5.0
+"""m; what is farther away is looked at from nearer: there a degree is two cells."""
+_NEW_WAY: Final = 0.05
+_NEW_TURN: Final = 0.2
+"""m, rad; a scan from nearer to the last one says nothing new."""
+_LOOK_WAY: Final = 0.5
+_LOOK_TIME: Final = 15.0
+"""m, s; a look lasts until the robot is so far from where it began, and so much time is over."""
+_SURE: Final = 4
+"""Looks, more than those that say otherwise, of a cell that changed."""
+_BLUR: Final = 0.12
+"""m; nearer to what stands as mapped a cell tells no change: there noise of range and pose, and
+the edges of cells, let beams end and pass by turns, and things are moved a bit.
+"""
+_LEAST_AREA: Final = 0.06
+_LEAST_LENGTH: Final = 0.4
+"""m2, m; what has less of both is no furniture: a bag, feet, a leg of a chair."""
+_BEHIND: Final = 0.8
+"""m; so far behind what vanished the unknown is known now: as deep as furniture is."""
+_NEAR: Final = np.ones((5, 5), np.bool_)
+"""Cells: so near to a change what changed belongs to it."""
+_MOVABLE: Final = 0.7
+_MOVED: Final = 1.0
+"""m; what is not larger, and vanished so near to where such a thing appeared, was moved a bit."""
+
+
+class ChangeKind(Enum):
+    """What happened."""
+
+    APPEARED = "appeared"
+    """Something stands on floor that the map shows free."""
+    VANISHED = "vanished"
+    """Something that the map shows is no longer there."""
+
+
+@dataclass(frozen=True, slots=True)
+class Change:
+    """One change: the middle of the cells that changed, how far they reach along the map's axes, m,
+    and their area, m2.
+
+    ``cells`` is int64 [n, 2], row and column: of what appeared only the sides that were seen.
+    """
+
+    kind: ChangeKind
+    x: float
+    y: float
+    width: float
+    height: float
+    area: float
+    cells: NDArray[np.int64] = field(repr=False, compare=False)
+
+    @property
+    def is_movable(self) -> bool:
+        """Whether it is so small that people move it about."""
+        return max(self.width, self.height) <= _MOVABLE
+
+
+class MapChanges:
+    """Changes of one map; needs the same memory however long it looks.
+
+    When a person takes what is :meth:`proposed`, go on with a new one for that map; what a person
+    does not want is :meth:`dismissed`.
+    """
+
+    def __init__(self, occupancy: OccupancyMap) -> None:
+        """Begin with nothing seen of the map."""
+        self._map = occupancy
+        frame = occupancy.frame
+        place = np.array([frame.origin_x, frame.origin_y, frame.resolution])
+        hits, passes = np.zeros(frame.shape, np.uint16), np.zeros(frame.shape, np.uint16)
+        self._sheet = Sheet(hits, passes, place, NO_BOUNDS.copy())
+        self._scores = np.zeros(frame.shape, np.int8)
+        self._refused = {kind: np.zeros(frame.shape, np.bool_) for kind in ChangeKind}
+        self._is_mapped_near = distance_to_nearest(occupancy.solid) <= _BLUR / frame.resolution
+        self._points = np.empty((0, POINT), np.float32)
+        self._last: Pose | None = None
+        self._look_began = math.inf
+        self._look_from = Pose()
+        self._known: tuple[Change, ...] | None = ()
+        self.looks = 0
+        """How many were finished; changes can be others only when there is one more."""
+
+    def see(self, now: float, ranges: NDArray[np.float32], lidar: Beams, pose: Pose) -> None:
+        """Take a scan, float32 [beams], m, taken at ``now``, s, at a pose of the map that is known.
+
+        Some 2 to 5 a second are enough.
+        """
+        if not self._is_new(pose):
+            return
+        if now < self._look_began:
+            self._look_began, self._look_from = now, pose
+        if len(self._points) < len(ranges):
+            self._points = np.empty((len(ranges), POINT), np.float32)
+        at = np.array([pose.x, pose.y, pose.theta])
+        farthest = min(lidar.farthest, _FARTHEST)
+        count_scan(
+            self._sheet,
+            ranges,
+            lidar.directions,
+            lidar.mount,
+            lidar.nearest,
+            farthest,
+            at,
+            self._points,
+        )
+        self._last = pose
+        way = pose.distance_to(self._look_from.x, self._look_from.y)
+        if way >= _LOOK_WAY and now - self._look_began >= _LOOK_TIME:
+            self._finish_look(now, pose)
+
+    def changes(self) -> tuple[Change, ...]:
+        """Return what changed and was not dismissed, the largest first."""
+        if self._known is None:
+            appeared = list(self._found(ChangeKind.APPEARED))
+            vanished = list(self._found(ChangeKind.VANISHED))
+            found = [*_not_moved(appeared, vanished), *_not_moved(vanished, appeared)]
+            self._known = tuple(sorted(found, key=lambda change: (-change.area, change.x)))
+        return self._known
+
+    def dismissed(self, change: Change) -> None:
+        """Offer a change no more, unless as much as makes a change is added to it."""
+        refused = self._refused[change.kind]
+        cells = np.zeros(refused.shape, np.bool_)
+        cells[change.cells[:, 0], change.cells[:, 1]] = True
+        refused |= dilated(cells, _NEAR)
+        self._known = None
+
+    def proposed(self) -> OccupancyMap:
+        """Return the map with the changes made, and nothing else."""
+        values = self._map.values.copy()
+        for change in self.changes():
+            if change.kind is ChangeKind.APPEARED:
+                self._put(values, change)
+            else:
+                self._take_away(values, change)
+        return OccupancyMap(self._map.frame, values)
+
+    def _is_new(self, pose: Pose) -> bool:
+        last = self._last
+        if last is None:
+            return True
+        turned = abs(wrap_angle(pose.theta - last.theta))
+        return pose.distance_to(last.x, last.y) >= _NEW_WAY or turned >= _NEW_TURN
+
+    def _finish_look(self, now: float, pose: Pose) -> None:
+        score_look(self._sheet, self._scores)
+        self._look_began, self._look_from = now, pose
+        self._known = None
+        self.looks += 1
+
+    def _found(self, kind: ChangeKind) -> Iterator[Change]:
+        """Yield the changes of a kind that are large enough and were not dismissed."""
+        cells = self._appeared() if kind is ChangeKind.APPEARED else self._vanished()
+        regions = numbered_regions(dilated(cells, _NEAR)) * cells
+        for number in np.unique(regions[cells]).tolist():
+            region = regions == number
+            fresh = region & ~self._refused[kind]
+            if self._is_furniture(region) and self._is_furniture(fresh):
+                yield self._change(kind, region)
+
+    def _appeared(self) -> Mask:
+        """Return the cells of floor where something stands now."""
+        candidates = (self._map.values == FREE) & (self._scores >= _SURE)
+        near_core = dilated(candidates & ~self._is_mapped_near, _NEAR)
+        return np.asarray(candidates & near_core)
+
+    def _vanished(self) -> Mask:
+        """Return the cells of things that were seen through."""
+        occupied = self._map.values == OCCUPIED
+        candidates = occupied & (self._scores <= -_SURE)
+        stands = (occupied & ~candidates) | (self._scores >= _SURE)
+        is_near = distance_to_nearest(stands) <= _BLUR / self._map.frame.resolution
+        return np.asarray(candidates & dilated(candidates & ~is_near, _NEAR))
+
+    def _is_furniture(self, cells: Mask) -> bool:
+        rows, columns = np.nonzero(cells)
+        if not len(rows):
+            return False
+        size = self._map.frame.resolution
+        length = math.hypot(np.ptp(rows), np.ptp(columns)) * size
+        return len(rows) * size**2 >= _LEAST_AREA or length >= _LEAST_LENGTH
+
+    def _change(self, kind: ChangeKind, region: Mask) -> Change:
+        cells = np.argwhere(region)
+        frame = self._map.frame
+        (low_row, low_column), (high_row, high_column) = cells.min(axis=0), cells.max(axis=0)
+        x_min, y_min = frame.centre_of(int(low_row), int(low_column))
+        x_max, y_max = frame.centre_of(int(high_row), int(high_column))
+        size = frame.resolution
+        return Change(
+            kind,
+            0.5 * (x_min + x_max),
+            0.5 * (y_min + y_max),
+            x_max - x_min + size,
+            y_max - y_min + size,
+            len(cells) * size**2,
+            cells,
+        )
+
+    def _put(self, values: NDArray[np.int8], change: Change) -> None:
+        """Make cells occupied; floor that they enclose is no longer known."""
+        values[change.cells[:, 0], change.cells[:, 1]] = OCCUPIED
+        low, high = change.cells.min(axis=0) - 1, change.cells.max(axis=0) + 1
+        regions = numbered_regions(values == FREE)
+        outside = np.ones(values.shape, np.bool_)
+        outside[max(low[0], 0) : high[0] + 1, max(low[1], 0) : high[1] + 1] = False
+        reaches_out = np.zeros(int(regions.max(initial=0)) + 1, np.bool_)
+        reaches_out[np.unique(regions[outside])] = True
+        reaches_out[0] = True
+        values[~reaches_out[regions]] = UNKNOWN
+
+    def _take_away(self, values: NDArray[np.int8], change: Change) -> None:
+        """Make cells free, and known what is seen now of the unknown behind them."""
+        gone = np.zeros(values.shape, np.bool_)
+        gone[change.cells[:, 0], change.cells[:, 1]] = True
+        values[gone] = FREE
+        reach = _BEHIND / self._map.frame.resolution
+        behind = (values == UNKNOWN) & (distance_to_nearest(gone) <= reach)
+        values[behind & (self._scores <= -_SURE)] = FREE
+        values[behind & (self._scores >= _SURE)] = OCCUPIED
+
+
+def _not_moved(changes: list[Change], others: list[Change]) -> list[Change]:
+    """Return changes without chairs and the like, which ``others`` show near by."""
+    return [
+        change
+        for change in changes
+        if not change.is_movable
+        or not any(
+            other.is_movable and math.hypot(other.x - change.x, other.y - change.y) <= _MOVED
+            for other in others
+        )
+    ]

@@ -1,0 +1,161 @@
+"""Which of several floors the robot woke on, and where there; or none of them, a new floor.
+
+Every place of every floor is compared by how well the same scans fit there, and so is the guess
+that the floor is a new one. Whichever is clearly the likeliest is believed; until then more scans,
+from other places, are wanted.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import Enum
+from typing import Final
+
+from roomba.configuration.robot import LocalizationConfig
+from roomba.geometry import Pose
+from roomba.grid import OccupancyMap
+from roomba.perception.localization.relocation import Expectation, Relocation, Verdict
+from roomba.perception.matching.scan_view import Fit, ScanView
+from roomba.perception.matching.surface_field import SurfaceField
+
+_STATION_RADIUS: Final = 0.3
+_STATION_TURN: Final = 0.3
+"""m, rad; so far around its station the robot is expected to wake."""
+_STATION_EVIDENCE: Final = 6.0
+"""What that counts: less than what is needed to believe a place, so that it never decides alone."""
+_NEW_EVIDENCE: Final = -0.11
+"""Of each beam, for a new floor: as if 7 of 10 beams agreed with a map and 3 did not at all.
+
+In homes that are known, with noise, a beam has -0.001 to -0.013; with some furniture moved, -0.05.
+The best place in a furnished home that the robot never was in has -0.15 to -0.30.
+"""
+
+
+class FloorVerdict(Enum):
+    """What is known of the floor."""
+
+    SEARCHING = "places are being compared"
+    """Call :meth:`FloorRecognition.advance`; before that, show it a scan."""
+    UNSURE = "more than one place fits"
+    """Scans from other places may tell; on floors that look alike they never will."""
+    KNOWN = "one place fits"
+    """It is :attr:`FloorRecognition.place`."""
+    NEW = "no floor fits"
+    """The robot was never here."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Floor:
+    """A floor that is known: its map, and where the docked robot stands in it."""
+
+    occupancy: OccupancyMap
+    station: Pose
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """Where the robot may be: a floor by name, the pose in its map at the newest scan that counted.
+
+    ``evidence`` compares places and floors, by all scans so far; ``fit`` is that of the newest.
+    """
+
+    floor: str
+    pose: Pose
+    evidence: float
+    fit: Fit
+
+
+class FloorRecognition:
+    """One attempt to recognise the floor; ``reckoned`` poses are those of DeadReckoning.
+
+    Show it scans with :meth:`see` and let it work with :meth:`advance` until the verdict is KNOWN
+    or NEW.
+    """
+
+    def __init__(
+        self, floors: Mapping[str, Floor], config: LocalizationConfig, body_radius: float
+    ) -> None:
+        """``floors`` by name; ``body_radius``, m, tells where the robot can stand."""
+        self._floors = dict(floors)
+        self._fields = {name: SurfaceField.of(each.occupancy) for name, each in floors.items()}
+        self._config, self._body_radius = config, body_radius
+        self._searches: dict[str, Relocation] = {}
+        self._reckoned = Pose()
+        self._beams = 0
+        self.views = 0
+        """How many scans counted."""
+
+    def see(self, view: ScanView, reckoned: Pose) -> None:
+        """Take a scan that was taken at ``reckoned``.
+
+        It counts when it has enough beams, and the robot has moved or turned since the last that
+        did; while places are being searched for it is left out.
+        """
+        if len(view) < self._config.least_beams or not self._floors:
+            return
+        if not self._searches:
+            self._begin(view, reckoned)
+            return
+        if any(search.verdict is Verdict.SEARCHING for search in self._searches.values()):
+            return
+        for search in self._searches.values():
+            search.see(view, reckoned)
+        if max(search.views for search in self._searches.values()) > self.views:
+            self._count(view, reckoned)
+
+    def advance(self) -> None:
+        """Search on for a while, some 10 ms, if that is not done yet."""
+        for search in self._searches.values():
+            if search.verdict is Verdict.SEARCHING:
+                search.advance()
+                return
+
+    @property
+    def verdict(self) -> FloorVerdict:
+        """What is known by now."""
+        if not self._floors:
+            return FloorVerdict.NEW
+        if not self._searches or any(
+            search.verdict is Verdict.SEARCHING for search in self._searches.values()
+        ):
+            return FloorVerdict.SEARCHING
+        places, needed = self.places, self._config.needed_evidence
+        likeliest = [place.evidence for place in places[:2]]
+        if not places or self._new_evidence - likeliest[0] > needed:
+            return FloorVerdict.NEW
+        next_best = max([self._new_evidence, *likeliest[1:]])
+        return FloorVerdict.KNOWN if likeliest[0] - next_best > needed else FloorVerdict.UNSURE
+
+    @property
+    def place(self) -> Place | None:
+        """Where the robot is, when that is known."""
+        return self.places[0] if self.verdict is FloorVerdict.KNOWN else None
+
+    @property
+    def places(self) -> tuple[Place, ...]:
+        """Where it may be on all floors, likeliest first; none while places are searched for."""
+        found = [
+            Place(name, each.frame.compose(self._reckoned), each.evidence, each.fit)
+            for name, search in self._searches.items()
+            for each in search.hypotheses
+        ]
+        return tuple(sorted(found, key=lambda place: (-place.evidence, place.floor)))
+
+    @property
+    def _new_evidence(self) -> float:
+        return _NEW_EVIDENCE * self._beams
+
+    def _begin(self, view: ScanView, reckoned: Pose) -> None:
+        """Search all floors for where the first scan was taken; their stations are tried first."""
+        for name, floor in self._floors.items():
+            docked = Expectation(floor.station, _STATION_RADIUS, _STATION_TURN, _STATION_EVIDENCE)
+            self._searches[name] = Relocation(
+                self._fields[name], self._config, self._body_radius, view, reckoned, docked
+            )
+        self._count(view, reckoned)
+
+    def _count(self, view: ScanView, reckoned: Pose) -> None:
+        self.views += 1
+        self._beams += len(view)
+        self._reckoned = reckoned

@@ -1,0 +1,166 @@
+"""Compiled correction of a believed pose by a scan, and whether scans fit as well as usual."""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from roomba.perception.localization.belief import AGREE, EVIDENCE, SHORT, THROUGH, Row, Rows
+from roomba.perception.localization.belief_reckon_kernels import wrapped
+from roomba.perception.matching.beams import Beams
+from roomba.perception.matching.field_kernels import Field, Place
+from roomba.perception.matching.fit_kernels import AGREEING, LOOKED_AT, judge
+from roomba.perception.matching.fit_kernels import EVIDENCE as ALL_EVIDENCE
+from roomba.perception.matching.fit_kernels import SHORT as ALL_SHORT
+from roomba.perception.matching.fit_kernels import THROUGH as ALL_THROUGH
+from roomba.perception.matching.match_kernels import MATCH_WORK, beam_ends, match_in
+
+Floats = NDArray[np.float64]
+
+ASTRAY: Final = 0.3
+"""m; a pose less sure than this is searched around, as if it had been told."""
+_NARROW: Final = np.array([0.10, 0.05, 0.05])
+_WIDE: Final = np.array([0.40, 0.30, 0.20, 0.10, 0.05, 0.05])
+"""m; beams that end farther off than this lose weight, round by round."""
+_UNSURE: Final = 0.08
+"""m; a pose less sure than this is matched from farther away."""
+_STRIDE: Final = 8
+"""Each such beam is judged; of 360 these are enough to notice a wrong pose."""
+_WORSE: Final = 0.45
+"""Share of beams that agree less than usual, at which the pose is doubted."""
+_THROUGH: Final = 0.15
+"""Share of beams that go through walls more than usual, at which the pose is doubted."""
+_LEAST: Final = 0.35
+"""Share of beams that must agree, whatever is usual."""
+_STILL: Final = (0.0005**2, 0.0005**2, 0.0003**2)
+"""m2, rad2; what a scan leaves unsure however often it is seen: errors of the map."""
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def correct(
+    beliefs: Rows,
+    numbers: Rows,
+    field: Field,
+    place: Place,
+    lidar: Beams,
+    ranges: NDArray[np.float32],
+    stamp: float,
+) -> int:
+    """Correct the pose by a scan, float32 [beams], m, taken here and now; return how many ended.
+
+    ``lidar.ends`` has these beams then. Whether the pose is still to be trusted tells
+    :func:`is_calm`.
+    """
+    belief = beliefs[0]
+    count = beam_ends(
+        ranges, lidar.directions, lidar.mount, lidar.nearest, lidar.farthest, lidar.ends
+    )
+    belief.beams = count
+    if count > 0:
+        belief.seen = stamp
+        match_ends(beliefs, numbers, field, place, lidar.ends, count, lidar.lanes)
+        if count >= numbers[0].least_beams:
+            judge_ends(beliefs, numbers, field, place, lidar.ends, count, lidar.mount, lidar.lanes)
+    return count
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def is_calm(beliefs: Rows, numbers: Rows, now: float) -> bool:
+    """Whether a pose that was known is known still, so that nothing else has to be done for it."""
+    belief, known = beliefs[0], numbers[0]
+    if belief.is_doubtful or belief.beams == 0 or not now - belief.seen <= known.scan_timeout:
+        return False
+    is_sure: bool = deviation(belief.covariance) <= min(known.known_deviation, ASTRAY)
+    return is_sure
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def deviation(covariance: Floats) -> float:
+    """Return the standard deviation along the worst direction of the floor, m; nan is infinite."""
+    xx, xy, yy = covariance[0, 0], covariance[0, 1], covariance[1, 1]
+    variance = 0.5 * (xx + yy) + math.hypot(0.5 * (xx - yy), xy)
+    return math.sqrt(max(0.0, variance)) if variance == variance else math.inf
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def match_ends(
+    beliefs: Rows,
+    numbers: Rows,
+    field: Field,
+    place: Place,
+    ends: Floats,
+    count: int,
+    lanes: Floats,
+) -> None:
+    """Move the pose to where the ends of beams, [n, 4], of a scan taken there, fit best."""
+    belief = beliefs[0]
+    pose, covariance, work = belief.pose, belief.covariance, belief.work
+    prior, after = work[MATCH_WORK], work[MATCH_WORK + 1 : MATCH_WORK + 4]
+    for row in range(3):
+        prior[row] = pose[row]
+        for column in range(3):
+            after[row, column] = covariance[row, column]
+        after[row, row] += _STILL[row]
+    is_unsure = max(after[0, 0], after[1, 1]) > _UNSURE * _UNSURE
+    scales = _WIDE if is_unsure else _NARROW
+    variance = _beam_variance(numbers[0], place, count)
+    match_in(field, place, ends, count, prior, after, scales, variance, pose, work, lanes)
+    pose[2] = wrapped(pose[2])
+    covariance[:] = after
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _beam_variance(numbers: Row, place: Place, count: int) -> float:
+    """Return the variance of a beam, m2.
+
+    Few beams are of one thing: they err together, and so do the scans that follow.
+    """
+    cell = 0.5 * place[2]
+    share = max(1.0, numbers.least_beams / max(count, 1))
+    variance: float = (numbers.beam_variance + cell * cell) * share * share
+    return variance
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def judge_ends(
+    beliefs: Rows,
+    numbers: Rows,
+    field: Field,
+    place: Place,
+    ends: Floats,
+    count: int,
+    mount: Floats,
+    lanes: Floats,
+) -> None:
+    """Judge how well a scan fits the pose, and whether scans do so much worse than usual."""
+    belief, known = beliefs[0], numbers[0]
+    pose, fit = belief.pose, belief.fit
+    counts = belief.counts
+    judge(field, place, ends, count, pose, mount, _STRIDE, counts, lanes)
+    looked_at = max(counts[LOOKED_AT], 1.0)
+    fit[AGREE], fit[SHORT] = counts[AGREEING] / looked_at, counts[ALL_SHORT] / looked_at
+    fit[THROUGH], fit[EVIDENCE] = counts[ALL_THROUGH] / looked_at, counts[ALL_EVIDENCE]
+    if not belief.is_judged:
+        trust(beliefs)
+    newest, adapting = known.newest_share, known.adapting_share
+    belief.agree += newest * (fit[AGREE] - belief.agree)
+    belief.through += newest * (fit[THROUGH] - belief.through)
+    belief.usual_agree += adapting * (fit[AGREE] - belief.usual_agree)
+    belief.usual_through += adapting * (fit[THROUGH] - belief.usual_through)
+    belief.is_doubtful = (
+        belief.agree < max(_LEAST, belief.usual_agree - _WORSE)
+        or belief.through > belief.usual_through + _THROUGH
+    )
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def trust(beliefs: Rows) -> None:
+    """Take the newest fit for the usual one."""
+    belief = beliefs[0]
+    belief.agree = belief.usual_agree = belief.fit[AGREE]
+    belief.through = belief.usual_through = belief.fit[THROUGH]
+    belief.is_judged = True

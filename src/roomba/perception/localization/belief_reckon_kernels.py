@@ -1,0 +1,182 @@
+"""Compiled dead reckoning: a step of the wheels, bent to the turn that is believed."""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+import numpy as np
+from numba import njit
+
+from roomba.configuration.robot import FASTEST_SPEED
+from roomba.perception.localization.belief import Row, Rows
+
+LEFT_OUT: Final = 0
+WENT_ON: Final = 1
+WAS_SET_BACK: Final = 2
+"""What :func:`reckon` did: nothing, as the stamp is old; a step; one over a clock set back."""
+
+_STANDS: Final = 1e-4
+"""m and rad; encoders that went on by less than this stood still."""
+_SETTLING: Final = 0.3
+"""s; so long after it stopped the gyro of a robot that stands shows its bias alone."""
+SET_BACK: Final = 0.1
+"""s; a time so much before the last one is of a clock that was set back."""
+_UNSEEN: Final = 0.3
+"""Share of a change of the turning speed between two samples: so unsure its mean is."""
+_JOLT: Final = 0.05
+"""s; what a step may be quicker than the fastest robot's: its time is not exact."""
+_LONGEST_STEP: Final = 1.0
+"""s; the gyro says nothing of a time that was not sampled."""
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def reckon(
+    beliefs: Rows,
+    numbers: Rows,
+    stamp: float,
+    odometry_x: float,
+    odometry_y: float,
+    odometry_theta: float,
+    turning: float,
+) -> int:
+    """Go on to the wheels' odometry and the gyro's turning speed, rad/s or nan, at a time.
+
+    Moves the reckoned pose, the one on the map and its covariance; all numbers but ``turning`` must
+    be finite. What is a little older than the last is left out, and so is a jump. When a clock is
+    set back the way still counts, but nothing is known of the time that it took.
+    """
+    belief, known = beliefs[0], numbers[0]
+    since = stamp - belief.stamp
+    if -SET_BACK < since <= 0.0:
+        return LEFT_OUT
+    is_first = belief.stamp == -math.inf
+    ahead = aside = turn = 0.0
+    if not is_first:
+        off_x, off_y = odometry_x - belief.odometry[0], odometry_y - belief.odometry[1]
+        cosine, sine = math.cos(belief.odometry[2]), math.sin(belief.odometry[2])
+        ahead, aside = cosine * off_x + sine * off_y, cosine * off_y - sine * off_x
+        turn = wrapped(odometry_theta - belief.odometry[2])
+    if 0.0 < since < math.hypot(ahead, aside) / FASTEST_SPEED - _JOLT:
+        # No robot goes as fast: whoever counts the wheels began anew.
+        ahead = aside = turn = 0.0
+    elapsed = since if 0.0 < since <= _LONGEST_STEP and not is_first else 0.0
+    belief.odometry[0], belief.odometry[1] = odometry_x, odometry_y
+    belief.odometry[2], belief.stamp = odometry_theta, stamp
+    _go(belief, known, ahead, aside, turn, turning, elapsed)
+    return WENT_ON if since > 0.0 else WAS_SET_BACK
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _go(
+    belief: Row,
+    numbers: Row,
+    ahead: float,
+    aside: float,
+    wheels: float,
+    turning: float,
+    elapsed: float,
+) -> None:
+    """Move by a step of the wheels, m and rad, that took so long, s; 0: nobody knows."""
+    way = math.hypot(ahead, aside)
+    _learn_bias(belief, numbers, way, wheels, turning)
+    turn, variance = _turn(belief, numbers, way, wheels, turning, elapsed)
+    half = 0.5 * (turn - wheels)
+    cosine, sine = math.cos(half), math.sin(half)
+    ahead, aside = cosine * ahead - sine * aside, sine * ahead + cosine * aside
+    compose(belief.reckoned, ahead, aside, turn)
+    of_way, of_side = numbers.way_variance * way, numbers.side_variance * way
+    belief.spread[0] += of_way
+    belief.spread[1] += of_side
+    belief.spread[2] += variance
+    carry(belief.pose, belief.covariance, ahead, aside, turn, of_way, of_side, variance)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _learn_bias(belief: Row, numbers: Row, way: float, turn: float, turning: float) -> None:
+    """While the wheels stand, the mean of what the gyro shows is its bias."""
+    if way > _STANDS or abs(turn) > _STANDS or math.isnan(turning):
+        belief.still_since, belief.samples = math.inf, 0
+        return
+    belief.still_since = min(belief.still_since, belief.stamp)
+    # What turns faster than any bias is a robot that somebody turns.
+    is_settling = belief.stamp - belief.still_since < _SETTLING
+    if is_settling or abs(turning) > 5.0 * numbers.worst_bias:
+        return
+    belief.samples += 1
+    belief.bias += (turning - belief.bias) / (belief.samples + 20.0)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _turn(
+    belief: Row, numbers: Row, way: float, wheels: float, turning: float, elapsed: float
+) -> tuple[float, float]:
+    """Return the turn, rad, of both measurements weighed, and its variance, rad2."""
+    before, belief.turning = belief.turning, turning
+    by_wheels = numbers.wheel_variance * way + numbers.turn_variance * abs(wheels) + 1e-9
+    if math.isnan(turning) or elapsed == 0.0:
+        return wheels, by_wheels
+    if math.isnan(before):
+        before = turning
+    gyro = (0.5 * (before + turning) - belief.bias) * elapsed
+    noise = numbers.gyro_noise * elapsed
+    # Sampled now and then, it does not know how the turning changed in between.
+    unseen = _UNSEEN * (turning - before) * elapsed
+    by_gyro = noise * noise + numbers.drift_variance * elapsed
+    by_gyro += numbers.turn_variance * abs(gyro) + unseen * unseen
+    # What the wheels say beside the gyro may be slip.
+    by_wheels += (gyro - wheels) * (gyro - wheels)
+    share = by_wheels / (by_wheels + by_gyro)
+    return wheels + share * (gyro - wheels), share * by_gyro
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def compose(pose: Row, ahead: float, aside: float, turn: float) -> None:
+    """Move a pose, float64 [3], by a step in its own frame, m and rad."""
+    cosine, sine = math.cos(pose[2]), math.sin(pose[2])
+    pose[0] = pose[0] + cosine * ahead - sine * aside
+    pose[1] = pose[1] + sine * ahead + cosine * aside
+    pose[2] = wrapped(pose[2] + turn)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def carry(
+    pose: Row,
+    covariance: Row,
+    ahead: float,
+    aside: float,
+    turn: float,
+    of_way: float,
+    of_side: float,
+    of_turn: float,
+) -> None:
+    """Move a pose, float64 [3], and its covariance, [3, 3], by a step in its own frame.
+
+    The step is unsure by three variances, along the axes of the robot after it, m2 and rad2.
+    """
+    x, y = pose[0], pose[1]
+    compose(pose, ahead, aside, turn)
+    off_x, off_y = pose[0] - x, pose[1] - y
+    cosine, sine = math.cos(pose[2]), math.sin(pose[2])
+    xt, yt, tt = covariance[0, 2], covariance[1, 2], covariance[2, 2]
+    after_xt, after_yt = xt - off_y * tt, yt + off_x * tt
+    xx = covariance[0, 0] - off_y * (xt + after_xt)
+    xy = covariance[0, 1] + off_x * after_xt - off_y * yt
+    yy = covariance[1, 1] + off_x * (yt + after_yt)
+    covariance[0, 0] = xx + cosine * cosine * of_way + sine * sine * of_side
+    covariance[0, 1] = covariance[1, 0] = xy + cosine * sine * (of_way - of_side)
+    covariance[1, 1] = yy + sine * sine * of_way + cosine * cosine * of_side
+    covariance[0, 2] = covariance[2, 0] = after_xt
+    covariance[1, 2] = covariance[2, 1] = after_yt
+    covariance[2, 2] = tt + of_turn
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def wrapped(angle: float) -> float:
+    """Return the same direction in (-pi, pi], rad, as :func:`roomba.geometry.wrap_angle`."""
+    if -math.pi < angle <= math.pi:
+        return angle
+    angle = np.fmod(angle, 2.0 * math.pi)
+    if angle > math.pi:
+        return angle - 2.0 * math.pi
+    return angle if angle > -math.pi else angle + 2.0 * math.pi

@@ -1,0 +1,76 @@
+"""Doubting the pose: the scan does not fit the map there. Did the home change, or is it elsewhere?
+
+What the robot sees now is compared with what it saw a moment ago: if that is the same, nobody
+carried it. It may have been wrong before, though; so the place is compared with all others.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+from roomba.configuration.robot import LocalizationConfig
+from roomba.geometry import Pose
+from roomba.perception.localization.expecting import where_known
+from roomba.perception.localization.recent_sight import RecentSight
+from roomba.perception.localization.relocation import Expectation, Relocation, Verdict
+from roomba.perception.matching.scan_view import ScanView
+from roomba.perception.matching.surface_field import SurfaceField
+
+_AGAIN: Final = 1.0
+"""s; after a comparison that found no other place, before the next one."""
+
+
+class Doubt:
+    """Is shown the scans; ``reckoned`` is always where dead reckoning says that one was taken."""
+
+    def __init__(self, config: LocalizationConfig, body_radius: float) -> None:
+        """Begin with nothing seen."""
+        self._config, self._body_radius = config, body_radius
+        self._sight = RecentSight()
+        self._comparison: Relocation | None = None
+        self._compared = -math.inf
+
+    def note(self, stamp: float, reckoned: Pose, view: ScanView) -> None:
+        """Remember a scan that was taken at a time, s."""
+        self._sight.note(stamp, reckoned, view)
+
+    def drop(self) -> None:
+        """End a comparison that is under way: the map is another one, or the pose not known."""
+        self._comparison = None
+
+    def expected(
+        self,
+        now: float,
+        stamp: float,
+        view: ScanView,
+        reckoned: Pose,
+        pose: Pose,
+        field: SurfaceField,
+    ) -> Expectation | None:
+        """Return where to expect the robot in a search, or None: ``pose`` is to be kept.
+
+        Comparing takes some scans: meanwhile it is kept. ``now`` and ``stamp`` are in s.
+        """
+        is_still = self._sight.is_still(stamp, reckoned, view)
+        here = where_known(pose, self._config, is_still=is_still)
+        if is_still and not self._is_elsewhere(now, view, reckoned, here, field):
+            return None
+        return here
+
+    def _is_elsewhere(
+        self, now: float, view: ScanView, reckoned: Pose, here: Expectation, field: SurfaceField
+    ) -> bool:
+        """Compare the place with all others, a piece at each scan; tell if it must be another."""
+        if self._comparison is None:
+            if 0.0 <= now - self._compared < _AGAIN:
+                return False
+            self._comparison = Relocation(
+                field, self._config, self._body_radius, view, reckoned, here
+            )
+        comparison = self._comparison
+        comparison.advance()
+        if comparison.verdict is Verdict.SEARCHING:
+            return False
+        self._comparison, self._compared = None, now
+        return comparison.verdict is Verdict.FOUND and not comparison.hypotheses[0].is_expected

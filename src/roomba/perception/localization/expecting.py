@@ -1,0 +1,41 @@
+"""Where the robot is expected when places are compared: near a pose that was told, or known."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from roomba.configuration.robot import LocalizationConfig
+from roomba.geometry import Pose
+from roomba.perception.localization.relocation import Expectation
+
+_TOLD_RADIUS: Final = 0.5
+_TOLD_TURN: Final = 0.5
+_HERE_RADIUS: Final = 0.04
+_HERE_TURN: Final = 0.04
+"""m, rad; so far around a pose that was told, and one that was known, the robot is expected."""
+_HERE_DRIFT: Final = 0.01
+"""m and rad, per s of a search: so much dead reckoning may be off while it looks around."""
+_HERE_EVIDENCE: Final = 14.0
+"""More than what is needed to believe a place: where it was it is, unless another is likelier."""
+_STILL_EVIDENCE: Final = 60.0
+"""The same of a robot that sees what it saw before: nobody carried it."""
+
+
+def where_told(
+    pose: Pose, deviation: tuple[float, float], config: LocalizationConfig
+) -> Expectation:
+    """Return where to expect a robot that is near a pose, unsure by so much, m and rad."""
+    radius = max(_TOLD_RADIUS, 3.0 * deviation[0])
+    turn = max(_TOLD_TURN, 3.0 * deviation[1])
+    return Expectation(pose, radius, turn, config.needed_evidence + _HERE_EVIDENCE)
+
+
+def where_known(pose: Pose, config: LocalizationConfig, *, is_still: bool) -> Expectation:
+    """Return where to expect a robot that was there; ``is_still``: nobody carried it."""
+    evidence = _STILL_EVIDENCE if is_still else _HERE_EVIDENCE
+    return Expectation(pose, _HERE_RADIUS, _HERE_TURN, config.needed_evidence + evidence)
+
+
+def searched_for(expectation: Expectation, here: Pose, seconds: float) -> Expectation:
+    """Return the same after a search of so many s, in which dead reckoning led to a pose."""
+    return expectation.drifted(here, _HERE_DRIFT * seconds)

@@ -1,0 +1,377 @@
+"""Knowing where the robot is on a known map: the stages put together.
+
+Dead reckoning says how it moved, a tracker corrects that by each scan, and when scans do not fit
+any more, or somebody carried it, a relocation looks for it in the whole map. Plain values in and
+out; times in s of the robot's clock.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.configuration.robot import GyroConfig, LocalizationConfig
+from roomba.geometry import Pose
+from roomba.grid import OccupancyMap
+from roomba.perception.localization.belief import numbers_of, unknown_belief
+from roomba.perception.localization.belief_correct_kernels import ASTRAY, deviation, is_calm
+from roomba.perception.localization.belief_reckon_kernels import SET_BACK
+from roomba.perception.localization.dead_reckoning import DeadReckoning
+from roomba.perception.localization.doubt import Doubt
+from roomba.perception.localization.estimate import Estimate, Knowledge
+from roomba.perception.localization.expecting import searched_for, where_told
+from roomba.perception.localization.relocation import Expectation, Hypothesis, Relocation, Verdict
+from roomba.perception.localization.tracker import Tracker
+from roomba.perception.matching.scan_view import Fit, LidarModel, ScanView
+from roomba.perception.matching.surface_field import SurfaceField
+
+_ANYWHERE: Final = np.diag([100.0**2, 100.0**2, math.pi**2])
+"""m2, rad2; of a pose that is not known: whoever reads nothing else must not believe it."""
+_FOUND_SPREAD: Final = np.diag([0.05**2, 0.05**2, 0.03**2])
+"""m2, rad2; of a place that was found, before scans narrow it down."""
+_PATIENCE: Final = 0.5
+"""s; so long it waits for a scan that tells places apart before it moves to get one."""
+_AGAIN: Final = 1.0
+"""s; after which a search that found nothing is tried anew."""
+_GOOD_AGREE: Final = 0.95
+_GOOD_THROUGH: Final = 0.03
+"""Shares of beams with which a pose that was told needs no comparison with all others."""
+_FAIR_AGREE: Final = 0.7
+_FAIR_THROUGH: Final = 0.12
+"""The same of a pose of which there is more than somebody's word. On its station a robot has 0.98
+and 0.02 or better on the map of its home, and at most 0.57 on those of 15 other homes.
+"""
+_HARDLY_TURNED: Final = 0.02
+"""rad; if it turned less since a scan, that was as good as taken where it is now."""
+_HELP: Final = (
+    "carry it to its station, or tell where it is (in RViz: 2D Pose Estimate), "
+    "or let it look around (global_localization)"
+)
+
+
+class Localizer:
+    """Keeps the estimate; tell it what the sensors say in the order of time.
+
+    ``view`` is the newest scan. While it :attr:`is_calm`, kernels may do its work on ``belief``
+    (see :mod:`roomba.perception.localization.belief_correct_kernels`), until it has
+    :meth:`resumed`.
+    """
+
+    def __init__(
+        self,
+        occupancy: OccupancyMap | None,
+        config: LocalizationConfig,
+        gyro: GyroConfig,
+        body_radius: float,
+        start: Pose,
+        deviation: tuple[float, float] = (0.05, 0.05),
+    ) -> None:
+        """Begin near ``start``, map frame, unsure by ``deviation``, m and rad.
+
+        Without a map it goes by wheels and gyro, until :meth:`use_map`.
+        """
+        self._map = occupancy
+        self.field = SurfaceField.of(occupancy) if occupancy else SurfaceField.unknown()
+        self.view: ScanView | None = None
+        self._config, self._body_radius = config, body_radius
+        self.belief = unknown_belief()
+        self._row, self._numbers = self.belief[0], numbers_of(config, gyro)
+        self._doubt = Doubt(config, body_radius)
+        self._reckoning = DeadReckoning(config, gyro, self.belief)
+        self._is_lifted = self._is_blind = False
+        self._now = self._newest_stamp = self._newest_time = -math.inf
+        self._searching_since = self._tried = self._told_since = -math.inf
+        self._has_clock = False
+        self._told: Expectation | None = None
+        self._relocation: Relocation | None = None
+        self._forgotten = ""
+        self._expectation: Expectation | None = None
+        self._verdict = Verdict.SEARCHING
+        self.told(start, deviation)
+
+    def move(self, stamp: float, odometry: Pose, turning: float | None = None) -> None:
+        """Take the wheels' odometry and the gyro's turning speed, rad/s, if there is one.
+
+        Raises ValueError for numbers that are not finite.
+        """
+        if not (odometry.is_finite and math.isfinite(turning or 0.0)):
+            raise ValueError(f"expected finite numbers, got {odometry} and {turning} rad/s")
+        self._follow_clock(stamp, self._newest_stamp)
+        self._newest_stamp = stamp
+        self._reckoning.move(stamp, odometry, turning)
+
+    def lift(self, is_lifted: bool) -> None:
+        """Tell whether the wheels hang in the air: somebody holds the robot."""
+        if self._is_lifted and not is_lifted:
+            told = self._told
+            self.forget("it was lifted and set down again")
+            self._expectation = told
+        self._is_lifted = is_lifted
+
+    def see(self, stamp: float, ranges: NDArray[np.float32], lidar: LidarModel) -> None:
+        """Take a scan, float32 [beams], m; raises ValueError for another number of beams."""
+        self.view = view = lidar.view(ranges)
+        reckoned = self._reckoning.at(stamp)
+        self._row["beams"] = len(view)
+        self._is_blind = len(view) == 0
+        if self._is_blind or self._is_lifted or reckoned is None or self._map is None:
+            return
+        self._row["seen"] = stamp
+        tells_places_apart = len(view) >= self._config.least_beams
+        if not self._forgotten:
+            self._follow(view, stamp, reckoned, tells_places_apart)
+            self._doubt.note(stamp, reckoned, view)
+        elif tells_places_apart:
+            if self._relocation is None:
+                self._relocation = self._begin_search(view, reckoned)
+            self._search_on(self._relocation, view, reckoned)
+
+    @property
+    def is_calm(self) -> bool:
+        """Whether the place is known and nothing waits to be done: the belief says it all."""
+        if self._is_lifted or self._forgotten or self._told is not None or self._map is None:
+            return False
+        return bool(is_calm(self.belief, self._numbers, self._now))
+
+    def resumed(
+        self, now: float, seen: float, ranges: NDArray[np.float32], lidar: LidarModel
+    ) -> None:
+        """Go on after kernels that brought the belief up to ``now``, s, from when it was calm.
+
+        ``ranges`` is the newest scan, as of :meth:`see`, taken at ``seen``.
+        """
+        self.view = lidar.view(ranges)
+        self._row["beams"] = len(self.view)
+        self._is_blind = len(self.view) == 0
+        if not self._is_blind:
+            self._row["seen"] = max(seen, self._row["seen"])
+        self._newest_stamp = float(self._row["stamp"])
+        self._newest_time = max(self._newest_time, now)
+        self._now = max(self._now, now)
+        self._reckoning.begin_history()
+        turned = (now - seen) * abs(float(self._row["turning"]))
+        if turned < _HARDLY_TURNED and not self._is_blind:
+            self._doubt.note(seen, self._reckoning.pose, self.view)
+
+    def pass_time(self, now: float) -> None:
+        """Tell the time when nothing else does: silence tells something, too."""
+        if self._has_clock:
+            self._follow_clock(now, self._newest_time)
+            self._newest_time = now
+
+    def use_map(self, occupancy: OccupancyMap) -> None:
+        """Go on with another map of the same frame; a pose that it does not fit is searched for."""
+        if self._map is not None and (
+            occupancy.frame == self._map.frame
+            and np.array_equal(occupancy.values, self._map.values)
+        ):
+            return
+        self._map, self.field = occupancy, SurfaceField.of(occupancy)
+        self._doubt.drop()
+        estimate = self.estimate
+        if self._forgotten:
+            # Whoever is searched for is searched for in the new map, no longer than before.
+            self._relocation = None
+            self._tracker = self._tracker_at(estimate.pose, _ANYWHERE.copy())
+        else:
+            self.told(estimate.pose, (estimate.position_deviation, estimate.heading_deviation))
+
+    def go_on(self, occupancy: OccupancyMap, at: tuple[Pose, tuple[float, float]] | None) -> None:
+        """Go on with another map without a search, as the place on it is known.
+
+        ``at`` is the pose there, m and rad unsure; None: the same as before. Should a scan hardly
+        fit there it is searched for all the same.
+        """
+        if at is None and self._forgotten:
+            self.use_map(occupancy)
+            return
+        self._map, self.field = occupancy, SurfaceField.of(occupancy)
+        self._doubt.drop()
+        if at is None:
+            tracker = self._tracker
+            self._tracker = self._tracker_at(tracker.pose, tracker.covariance)
+        else:
+            self.told(*at)
+            self._needed = _FAIR_AGREE, _FAIR_THROUGH
+
+    def told(self, pose: Pose, deviation: tuple[float, float]) -> None:
+        """Take somebody's word for where the robot is, m and rad unsure; scans will confirm it."""
+        spread = np.diag([deviation[0] ** 2, deviation[0] ** 2, deviation[1] ** 2])
+        self._tracker = self._tracker_at(pose, spread)
+        self._relocation, self._forgotten = None, ""
+        self._told, self._told_since = where_told(pose, deviation, self._config), self._now
+        self._needed = _GOOD_AGREE, _GOOD_THROUGH
+
+    def forget(self, reason: str) -> None:
+        """Trust no pose any more; look for the robot in the whole map."""
+        self._told = self._relocation = None
+        self._doubt.drop()
+        self._forgotten, self._expectation = reason, None
+        self._verdict = Verdict.SEARCHING
+        self._searching_since = self._now
+
+    @property
+    def estimate(self) -> Estimate:
+        """What is known now."""
+        tracker = self._tracker
+        knowledge, reason = self._knowledge()
+        covariance = _ANYWHERE if self._forgotten or self._is_lifted else tracker.covariance
+        agreement = 0.0 if self._is_blind else tracker.agreement
+        return Estimate(tracker.pose, covariance, knowledge, agreement, reason)
+
+    @property
+    def needs_to_look_around(self) -> bool:
+        """Whether more must be seen to know where the robot is, so that driving a little helps."""
+        knowledge, _ = self._knowledge()
+        sees_nothing = self._map is None or self._is_blind or self._is_late
+        if knowledge is not Knowledge.SEARCHING or self._is_lifted or sees_nothing:
+            return False
+        if self._relocation is None:
+            return self._now - self._searching_since > _PATIENCE
+        return self._relocation.verdict is not Verdict.SEARCHING
+
+    @property
+    def reckoned(self) -> Pose:
+        """Where the robot is in a frame of its own, in which it never jumps but slowly drifts."""
+        return self._reckoning.pose
+
+    @property
+    def map_to_odometry(self) -> Pose:
+        """Where the frame of the wheels' odometry lies in the map."""
+        return self._tracker.pose.compose(self._reckoning.odometry.inverse())
+
+    @property
+    def hypotheses(self) -> list[Pose]:
+        """Where the robot may be, likeliest first: while it is searched for there may be many."""
+        if self._relocation is None or not self._relocation.hypotheses:
+            return [self._tracker.pose]
+        reckoned = self._reckoning.pose
+        return [each.frame.compose(reckoned) for each in self._relocation.hypotheses]
+
+    def _follow_clock(self, time: float, newest: float) -> None:
+        """Take the time that a clock shows, which showed ``newest`` before.
+
+        Stamps and the time itself are two clocks: stamps are always a little late.
+        """
+        if not self._has_clock or time < newest - SET_BACK:
+            # The first time, or a clock that was set back: what began before begins now.
+            self._searching_since = self._tried = self._told_since = self._now = time
+            self._row["seen"] = time if self._has_clock else -math.inf
+            self._newest_stamp = self._newest_time = -math.inf
+        self._has_clock = True
+        self._now = max(self._now, time)
+
+    def _knowledge(self) -> tuple[Knowledge, str]:
+        if self._is_lifted:
+            return (
+                Knowledge.SEARCHING,
+                "the wheels hang in the air: set the robot down on the floor",
+            )
+        if self._forgotten:
+            return self._searching(self._forgotten)
+        unsure = deviation(self._row["covariance"])
+        was_just_told = self._now - self._told_since <= self._config.scan_timeout
+        if unsure > self._config.lost_deviation and not was_just_told:
+            return Knowledge.LOST, f"{self._why_unsure()}, for too long; {_HELP}"
+        if self._is_late or self._is_blind or unsure > self._config.known_deviation:
+            return Knowledge.ROUGH, f"{self._why_unsure()}; going by wheels and gyro"
+        return Knowledge.KNOWN, ""
+
+    @property
+    def _is_late(self) -> bool:
+        return not self._now - float(self._row["seen"]) <= self._config.scan_timeout
+
+    def _searching(self, why: str) -> tuple[Knowledge, str]:
+        if self._now - self._searching_since > self._config.search_timeout:
+            unseen = self._is_late or self._is_blind or self._verdict is Verdict.SEARCHING
+            what = self._why_unsure() if unseen else self._verdict.value
+            return Knowledge.LOST, f"{why}, and {what}; {_HELP}"
+        sees_nothing = self._is_blind or self._is_late
+        return Knowledge.SEARCHING, f"{why}; {self._why_unsure()}" if sees_nothing else why
+
+    def _why_unsure(self) -> str:
+        if self._map is None:
+            return "there is no map yet"
+        if self._is_blind:
+            return "the lidar sees next to nothing: it is blocked, or all is out of its reach"
+        if self._is_late:
+            return "the lidar sends no scans"
+        if self._told is not None:
+            return "the pose was told, and no scan has confirmed it yet"
+        return "what is in sight does not tell the place: a bare corridor, or next to nothing"
+
+    def _follow(
+        self, view: ScanView, stamp: float, reckoned: Pose, tells_places_apart: bool
+    ) -> None:
+        """Correct the pose by a scan that was taken at ``reckoned``, perhaps a little ago."""
+        tracker = self._tracker
+        since = None
+        if not self._reckoning.is_newest(stamp):
+            since = reckoned.inverse().compose(self._reckoning.pose)
+            tracker.pose = tracker.pose.compose(since.inverse())
+        unsure = deviation(self._row["covariance"])
+        if self._told is None and unsure > ASTRAY:
+            spread = (unsure, math.sqrt(tracker.covariance[2, 2]))
+            self._told = where_told(tracker.pose, spread, self._config)
+            self._needed = _GOOD_AGREE, _GOOD_THROUGH
+        tracker.see(view)
+        fit = tracker.judge(view) if tells_places_apart else None
+        if since is not None:
+            tracker.pose = tracker.pose.compose(since)
+        if fit is None:
+            return
+        if self._told is not None:
+            self._check_told(self._told, fit)
+        elif tracker.is_doubtful:
+            self._reconsider(stamp, view, reckoned)
+
+    def _reconsider(self, stamp: float, view: ScanView, reckoned: Pose) -> None:
+        """Forget the pose, unless what is in sight says that the home changed, and not the pose."""
+        pose = self._tracker.pose
+        expected = self._doubt.expected(self._now, stamp, view, reckoned, pose, self.field)
+        if expected is not None:
+            self.forget("the scan does not fit the map here any more")
+            # What the place looks like may have changed as well.
+            self._expectation = expected
+
+    def _check_told(self, told: Expectation, fit: Fit) -> None:
+        """Take what was told if the scan fits well there; else compare it with the map."""
+        self._told = None
+        least, most = self._needed
+        if fit.agree < least or fit.through > most:
+            self.forget("what the lidar sees does not fit well where it was told to be")
+            self._expectation = told
+
+    def _begin_search(self, view: ScanView, reckoned: Pose) -> Relocation:
+        """Begin to look for the robot in the whole map."""
+        since = reckoned.inverse().compose(self._reckoning.pose)
+        here = self._tracker.pose.compose(since.inverse())
+        searched = self._now - self._searching_since
+        expectation = self._expectation and searched_for(self._expectation, here, searched)
+        return Relocation(self.field, self._config, self._body_radius, view, reckoned, expectation)
+
+    def _tracker_at(self, pose: Pose, covariance: NDArray[np.float64]) -> Tracker:
+        return Tracker(self.field, self._config, pose, covariance, self.belief)
+
+    def _search_on(self, relocation: Relocation, view: ScanView, reckoned: Pose) -> None:
+        was_searching = relocation.verdict is Verdict.SEARCHING
+        relocation.advance()
+        relocation.see(view, reckoned)
+        if relocation.verdict is Verdict.SEARCHING:
+            return
+        if was_searching:
+            self._tried = self._now
+        self._verdict = relocation.verdict
+        if relocation.verdict is Verdict.FOUND:
+            self._found(relocation.hypotheses[0])
+        elif relocation.verdict is Verdict.NOWHERE and self._now - self._tried > _AGAIN:
+            self._relocation = None
+
+    def _found(self, place: Hypothesis) -> None:
+        pose = place.frame.compose(self._reckoning.pose)
+        self._tracker = self._tracker_at(pose, _FOUND_SPREAD.copy())
+        self._tracker.trust(place.fit)
+        self._relocation, self._forgotten = None, ""

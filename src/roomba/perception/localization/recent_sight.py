@@ -1,0 +1,94 @@
+"""Whether the robot sees now what it saw a moment ago, from where it says that it has gone since.
+
+Then nobody carried it, however badly the map fits: furniture was moved where it is. Of one that was
+carried, what it sees now contradicts what it saw.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.geometry import Pose
+from roomba.perception.matching.scan_view import ScanView
+
+_SECTORS: Final = 360
+"""Directions that are told apart."""
+_APART: Final = 0.4
+"""s; between two scans that are kept."""
+_KEPT: Final = 12
+_OLD_ENOUGH: Final = 1.0
+"""s; doubts take so long: what it saw later it may have seen after it was carried."""
+_TOO_OLD: Final = 6.0
+"""s; by then it may have gone elsewhere by itself."""
+_SLACK: Final = 0.10
+_SLACK_SHARE: Final = 0.03
+"""m, and share of the range: how far from what was seen a beam may end and mean the same."""
+_LEAST_SAME: Final = 0.4
+"""Share of all beams that must end where something was seen."""
+_MOST_OTHER: Final = 0.2
+"""Share, of these and those that end where nothing was, that the latter may have."""
+
+
+class RecentSight:
+    """Scans of the last seconds, each with where dead reckoning said that it was taken."""
+
+    def __init__(self) -> None:
+        """Begin with nothing seen."""
+        self._seen: deque[tuple[float, Pose, ScanView]] = deque(maxlen=_KEPT)
+
+    def note(self, stamp: float, reckoned: Pose, view: ScanView) -> None:
+        """Keep a scan that was taken at a time, s, and a place of dead reckoning's frame."""
+        if self._seen and stamp < self._seen[-1][0]:
+            self._seen.clear()
+        if not self._seen or stamp - self._seen[-1][0] >= _APART:
+            self._seen.append((stamp, reckoned, view))
+
+    def is_still(self, stamp: float, reckoned: Pose, view: ScanView) -> bool:
+        """Whether a newer scan shows what was seen there before it."""
+        for then, place, before in reversed(self._seen):
+            if _OLD_ENOUGH <= stamp - then <= _TOO_OLD:
+                return _is_same(before, view, place.inverse().compose(reckoned))
+        return False
+
+
+def _is_same(before: ScanView, view: ScanView, step: Pose) -> bool:
+    """Whether a scan shows the same as one before it, taken a ``step`` further on.
+
+    What lies behind what was seen then may be new: it was hidden.
+    """
+    if not len(before) or not len(view):
+        return False
+    nearest, farthest = _outline(before)
+    cosine, sine = math.cos(step.theta), math.sin(step.theta)
+    x = step.x + cosine * view.ends[:, 0] - sine * view.ends[:, 1] - before.mount[0]
+    y = step.y + sine * view.ends[:, 0] + cosine * view.ends[:, 1] - before.mount[1]
+    away, sector = np.hypot(x, y), _sectors(x, y)
+    slack = _SLACK + _SLACK_SHARE * away
+    is_before = away < nearest[sector] - slack
+    is_behind = away > farthest[sector] + slack
+    other = int(np.count_nonzero(is_before & np.isfinite(nearest[sector])))
+    same = int(np.count_nonzero(~is_before & ~is_behind))
+    return same >= _LEAST_SAME * len(view) and other <= _MOST_OTHER * (same + other)
+
+
+def _outline(view: ScanView) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return for each sector how near and how far what was seen in it and next to it is, m."""
+    x, y = view.ends[:, 0] - view.mount[0], view.ends[:, 1] - view.mount[1]
+    away, sector = np.hypot(x, y), _sectors(x, y)
+    nearest, farthest = np.full(_SECTORS, np.inf), np.zeros(_SECTORS)
+    for aside in (-1, 0, 1):
+        np.minimum.at(nearest, (sector + aside) % _SECTORS, away)
+        np.maximum.at(farthest, (sector + aside) % _SECTORS, away)
+    farthest[np.isinf(nearest)] = np.inf
+    return nearest, farthest
+
+
+def _sectors(x: NDArray[np.float64], y: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Return in which sector points lie, as seen from the origin."""
+    turns = np.arctan2(y, x) / (2.0 * math.pi)
+    return np.asarray(np.floor(turns * _SECTORS).astype(np.int64) % _SECTORS)

@@ -1,0 +1,222 @@
+"""Finding the robot again: places that fit a scan, compared while it looks at more of the home."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from enum import Enum
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.configuration.robot import LocalizationConfig
+from roomba.geometry import Pose, wrap_angle
+from roomba.perception.localization.place_search import PlaceSearch
+from roomba.perception.matching.match_kernels import match
+from roomba.perception.matching.scan_view import Fit, ScanView
+from roomba.perception.matching.surface_field import SurfaceField
+
+CANDIDATES: Final = 300
+"""Places of a search that are matched and judged."""
+KEPT: Final = 60
+"""Places that are compared further."""
+_ALIKE: Final = 0.2
+_ALIKE_TURN: Final = 0.2
+"""m and rad; places nearer to each other than both are the same."""
+_FROM_AFAR: Final = np.array([0.40, 0.30, 0.20, 0.10, 0.05, 0.05, 0.05])
+_FROM_NEAR: Final = np.array([0.15, 0.10, 0.05, 0.05])
+"""m; beams that end farther off than this lose weight, round by round."""
+_NEW_WAY: Final = 0.12
+_NEW_TURN: Final = 0.4
+"""m, rad; a scan from so far away, or so much turned, says something new."""
+_LEAST_AGREE: Final = 0.7
+_CONVINCING: Final = 0.75
+_MOST_THROUGH_THEN: Final = 0.08
+"""Shares of beams that agree, and that go through walls."""
+_MOST_THROUGH: Final = 0.15
+"""Shares of beams that a place which is found must have, and may have."""
+_HOPELESS: Final = 14.0
+"""Evidence; a place that has so much less than the best is dropped."""
+
+
+class Verdict(Enum):
+    """What is known of where the robot is."""
+
+    SEARCHING = "places are being looked for"
+    AMBIGUOUS = "several places fit"
+    NOWHERE = "no place fits"
+    FOUND = "one place fits"
+
+
+@dataclass(frozen=True, slots=True)
+class Expectation:
+    """Where the robot should be: around a pose, up to so far, m, and so much turned, rad.
+
+    ``evidence`` is what that counts when places are compared. There it is enough if half as many
+    beams agree, and walls may have gone: homes change more often than robots are elsewhere.
+    """
+
+    pose: Pose
+    radius: float
+    turn: float
+    evidence: float
+
+    def is_met(self, pose: Pose) -> bool:
+        """Whether a pose is one of those."""
+        near = pose.distance_to(self.pose.x, self.pose.y) <= self.radius
+        return near and abs(wrap_angle(pose.theta - self.pose.theta)) <= self.turn
+
+    def drifted(self, pose: Pose, more: float) -> Expectation:
+        """Return the same around where dead reckoning led since, unsure by so much more, m, rad."""
+        return Expectation(pose, self.radius + more, self.turn + more, self.evidence)
+
+
+@dataclass(slots=True)
+class Hypothesis:
+    """A place where the robot may be: where dead reckoning's frame lies in the map then."""
+
+    frame: Pose
+    evidence: float
+    fit: Fit
+    is_expected: bool = False
+
+    @property
+    def is_possible(self) -> bool:
+        """Whether the scan fits at all there."""
+        if self.is_expected:
+            return self.fit.agree > 0.5 * _LEAST_AGREE
+        return self.fit.agree >= _LEAST_AGREE and self.fit.through <= _MOST_THROUGH
+
+    @property
+    def is_convincing(self) -> bool:
+        """Whether so much of the scan fits that a robot which nobody lifted was carried there.
+
+        Else furniture was moved where it is, and there another place may look a little likelier.
+        """
+        return self.fit.agree >= _CONVINCING and self.fit.through <= _MOST_THROUGH_THEN
+
+
+class Relocation:
+    """One attempt to find the robot; ``reckoned`` poses are those of DeadReckoning.
+
+    ``hypotheses`` are the places that may be, likeliest first, after so many ``views``.
+    """
+
+    def __init__(
+        self,
+        field: SurfaceField,
+        config: LocalizationConfig,
+        body_radius: float,
+        view: ScanView,
+        reckoned: Pose,
+        expectation: Expectation | None = None,
+    ) -> None:
+        """Search the map for the place that ``view`` was seen from."""
+        self.hypotheses: list[Hypothesis] = []
+        self.views = 0
+        self._field, self._config = field, config
+        self._search: PlaceSearch | None = PlaceSearch(field, view.ends, body_radius)
+        self._view, self._reckoned = view, reckoned
+        self._expectation = expectation
+
+    @property
+    def verdict(self) -> Verdict:
+        """What is known by now."""
+        if self._search is not None:
+            return Verdict.SEARCHING
+        if not self.hypotheses or not self.hypotheses[0].is_possible:
+            return Verdict.NOWHERE
+        best = self.hypotheses[0]
+        if self._expectation is not None and not best.is_expected and not best.is_convincing:
+            return Verdict.NOWHERE
+        return Verdict.FOUND if self._is_clear() else Verdict.AMBIGUOUS
+
+    def advance(self) -> None:
+        """Search on for a while, if that is not done yet."""
+        if self._search is not None and self._search.advance():
+            starts = self._search.best(CANDIDATES)
+            self._search = None
+            self._compare(starts)
+
+    def see(self, view: ScanView, reckoned: Pose) -> None:
+        """Compare the places by another scan; it counts when the robot has moved since the last."""
+        if self._search is not None or not self._is_new(reckoned):
+            return
+        self._view, self._reckoned = view, reckoned
+        for hypothesis in self.hypotheses:
+            pose, fit = self._matched(hypothesis.frame.compose(reckoned), _FROM_NEAR)
+            hypothesis.frame = pose.compose(reckoned.inverse())
+            hypothesis.evidence += fit.evidence
+            hypothesis.fit = fit
+        self.views += 1
+        self._sort()
+
+    def _compare(self, starts: NDArray[np.float64]) -> None:
+        """Match and judge the places that the search found."""
+        back, expected = self._reckoned.inverse(), self._expectation
+        tries = [(Pose(*start), _FROM_AFAR) for start in starts.tolist()]
+        if expected is not None:
+            # From afar what stands there now, and did not before, would draw it away.
+            tries = [(expected.pose, _FROM_NEAR), (expected.pose, _FROM_AFAR), *tries]
+            # And where it was is where it is, as likely as not.
+            self._weigh(expected.pose, self._view.fit(self._field, _array(expected.pose)), back)
+        for start, scales in tries:
+            self._weigh(*self._matched(start, scales), back)
+        self.views = 1
+        self._sort()
+
+    def _weigh(self, pose: Pose, fit: Fit, back: Pose) -> None:
+        """Add a place, with the advantage that an expected one has."""
+        expected = self._expectation
+        hypothesis = Hypothesis(pose.compose(back), fit.evidence, fit)
+        if expected is not None and expected.is_met(pose):
+            hypothesis.evidence += expected.evidence
+            hypothesis.is_expected = True
+        self.hypotheses.append(hypothesis)
+
+    def _matched(self, start: Pose, scales: NDArray[np.float64]) -> tuple[Pose, Fit]:
+        prior = np.array([start.x, start.y, start.theta])
+        pose, covariance = prior.copy(), np.diag([0.3**2, 0.3**2, 0.2**2])
+        match(
+            self._field.values,
+            self._field.place,
+            self._view.ends,
+            len(self._view),
+            prior,
+            covariance,
+            scales,
+            self._config.beam_deviation**2,
+            pose,
+        )
+        return Pose(*pose.tolist()), self._view.fit(self._field, pose)
+
+    def _sort(self) -> None:
+        """Put the best first; leave out what is the same place, or has no hope."""
+        kept: list[Hypothesis] = []
+        for hypothesis in sorted(self.hypotheses, key=lambda each: -each.evidence):
+            if kept and hypothesis.evidence < kept[0].evidence - _HOPELESS:
+                break
+            if not any(self._are_alike(hypothesis, other) for other in kept):
+                kept.append(hypothesis)
+        self.hypotheses = kept[:KEPT]
+
+    def _are_alike(self, one: Hypothesis, other: Hypothesis) -> bool:
+        first, second = one.frame.compose(self._reckoned), other.frame.compose(self._reckoned)
+        near = first.distance_to(second.x, second.y) < _ALIKE
+        return near and abs(wrap_angle(first.theta - second.theta)) < _ALIKE_TURN
+
+    def _is_new(self, reckoned: Pose) -> bool:
+        since = self._reckoned.inverse().compose(reckoned)
+        return math.hypot(since.x, since.y) > _NEW_WAY or abs(since.theta) > _NEW_TURN
+
+    def _is_clear(self) -> bool:
+        """Whether the best place is so much better than the next that it can be believed."""
+        if len(self.hypotheses) == 1:
+            return True
+        lead = self.hypotheses[0].evidence - self.hypotheses[1].evidence
+        return lead > self._config.needed_evidence
+
+
+def _array(pose: Pose) -> NDArray[np.float64]:
+    return np.array([pose.x, pose.y, pose.theta])

@@ -1,0 +1,1 @@
+"""Scans beside the surfaces of a map."""

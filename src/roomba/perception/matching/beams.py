@@ -1,0 +1,30 @@
+"""A lidar's beams as compiled code knows them."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+
+
+class Beams(NamedTuple):
+    """A lidar as kernels know it, and room for the ends of its beams.
+
+    ``directions`` is float64 [beams, 2], cosine and sine in its own frame; ``mount`` [3] its x, y,
+    theta in the robot's frame; ``first_angle`` that of beam 0 in the lidar's and ``step`` from one
+    beam to the next, rad; ranges count from ``nearest`` to ``farthest``, m. ``ends`` is
+    [beams, 4], as of :class:`roomba.perception.matching.scan_view.ScanView`; in ``lanes``
+    [JUDGE_LANES, beams] kernels work.
+    """
+
+    directions: Floats
+    mount: Floats
+    first_angle: float
+    step: float
+    nearest: float
+    farthest: float
+    ends: Floats
+    lanes: Floats

@@ -1,0 +1,102 @@
+"""Compiled looks into a surface field: distances, their slopes, and how far a ray goes."""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from roomba.raster.regions import cells_along_columns
+
+Field = NDArray[np.float32]
+"""[rows, columns], m: see :class:`roomba.perception.matching.surface_field.SurfaceField`."""
+Place = NDArray[np.float64]
+"""[3]: x and y of the middle of the first cell, and the resolution, m."""
+
+OFF_MAP: Final = 1e3
+"""m; the distance to surfaces, where there is no map: as far from fitting as can be."""
+_TOUCH: Final = 0.005
+"""m; a ray that is this near to a surface has met it."""
+_LEAST_STEP: Final = 0.02
+"""m; a ray that grazes a surface goes on by at least this."""
+
+
+@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+def look(field: Field, place: Place, x: float, y: float) -> tuple[float, float, float]:
+    """Return the distance to the nearest surface at a point, m, and its slopes along x and y."""
+    inverse = 1.0 / place[2]
+    u, v = (x - place[0]) * inverse, (y - place[1]) * inverse
+    rows, columns = field.shape
+    if not (0.0 <= u < columns - 1 and 0.0 <= v < rows - 1):
+        return OFF_MAP, 0.0, 0.0
+    column, row = int(u), int(v)
+    a, b = u - column, v - row
+    low, low_next = field[row, column], field[row, column + 1]
+    high, high_next = field[row + 1, column], field[row + 1, column + 1]
+    lower = low + a * (low_next - low)
+    upper = high + a * (high_next - high)
+    slope_x = ((1.0 - b) * (low_next - low) + b * (high_next - high)) * inverse
+    return lower + b * (upper - lower), slope_x, (upper - lower) * inverse
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def expected_range(
+    field: Field, place: Place, x: float, y: float, cosine: float, sine: float, most: float
+) -> float:
+    """Return how far a beam from a point goes before it meets a surface, m, at most ``most``.
+
+    It strides by the distance to the nearest surface (sphere tracing, Hart 1996).
+    """
+    way = 0.0
+    while way < most:
+        distance, _, _ = look(field, place, x + way * cosine, y + way * sine)
+        if distance < _TOUCH or distance >= OFF_MAP:
+            return min(way + min(distance, 0.0), most) if distance < _TOUCH else most
+        way += max(distance, _LEAST_STEP)
+    return most
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def fill_near_surfaces(
+    solid: NDArray[np.bool_], metres: NDArray[np.float32], values: Field
+) -> None:
+    """Fill ``values`` with signed distances, where these are short.
+
+    ``metres`` [most**2 + 1] tells them, m, by the squared distance, in cells, to the nearest cell
+    of the other kind; the last is for all that are farther.
+    """
+    rows, columns = solid.shape
+    last = metres.size - 1
+    most = round(math.sqrt(last))
+    free = ~solid
+    to_solid, to_free = np.empty(solid.shape, np.int16), np.empty(solid.shape, np.int16)
+    cells_along_columns(solid, most, to_solid)
+    cells_along_columns(free, most, to_free)
+    outside, inside = np.empty(columns, np.int32), np.empty(columns, np.int32)
+    for row in range(rows):
+        _nearest_squares(to_solid[row], most, outside)
+        _nearest_squares(to_free[row], most, inside)
+        for column in range(columns):
+            # One of the two is 0: that to its own kind.
+            off = metres[max(outside[column], inside[column])]
+            values[row, column] = off if free[row, column] else -off
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _nearest_squares(up: NDArray[np.int16], most: int, squares: NDArray[np.int32]) -> None:
+    """Fill a row with the least squared distance, from how far it is along each column, in cells.
+
+    Nothing is farther than ``most``.
+    """
+    columns = up.size
+    squares[:] = most * most
+    for right in range(-most, most + 1):
+        # Slices of one length: so the compiler takes many columns at once.
+        beside = up[max(right, 0) : max(columns + right, 0)]
+        into = squares[max(-right, 0) : max(columns - right, 0)]
+        aside = np.int32(right * right)
+        for column in range(min(into.size, beside.size)):
+            into[column] = min(into[column], np.int32(beside[column] * beside[column] + aside))

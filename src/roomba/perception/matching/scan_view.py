@@ -1,0 +1,119 @@
+"""A scan as perception uses it: the ends of the beams that met something, in the robot's frame."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.geometry import Pose
+from roomba.perception.matching.beams import Beams
+from roomba.perception.matching.fit_kernels import (
+    AGREEING,
+    EVIDENCE,
+    JUDGE_LANES,
+    LOOKED_AT,
+    SHORT,
+    THROUGH,
+    judge,
+)
+from roomba.perception.matching.match_kernels import beam_ends
+from roomba.perception.matching.surface_field import SurfaceField
+
+
+@dataclass(frozen=True, slots=True)
+class Fit:
+    """How well a scan fits a pose: shares of its beams, and the evidence to compare poses by.
+
+    Beams that end where the map has a surface ``agree``; ``short`` ones met something that the map
+    does not know; those that go ``through`` something that it does are the worst.
+    """
+
+    agree: float
+    short: float
+    through: float
+    evidence: float
+
+
+class LidarModel:
+    """Where the beams of a lidar go: angles in its own frame, the mount in the robot's frame."""
+
+    def __init__(
+        self,
+        angles: NDArray[np.float64],
+        nearest: float,
+        farthest: float,
+        mount: Pose | None = None,
+    ) -> None:
+        """``angles`` is float64 [beams], rad, evenly spaced; ranges count from ``nearest`` to
+        ``farthest``, m.
+        """
+        mount = mount or Pose()
+        self.beams = len(angles)
+        self.mount = np.array([mount.x, mount.y, mount.theta])
+        self._first_angle = float(angles[0]) if self.beams else 0.0
+        self._step = float(angles[1] - angles[0]) if self.beams > 1 else 2.0 * np.pi
+        self._directions = np.column_stack((np.cos(angles), np.sin(angles)))
+        self._nearest, self._farthest = float(nearest), float(farthest)
+
+    @staticmethod
+    def all_around(beams: int, nearest: float, farthest: float) -> LidarModel:
+        """Return a lidar in the middle of the robot, beam 0 ahead, then counter-clockwise."""
+        return LidarModel(np.arange(beams) * (2.0 * np.pi / beams), nearest, farthest)
+
+    def arrays(self) -> Beams:
+        """Return it as kernels know it, with room of its own for the ends of beams."""
+        ends, lanes = np.empty((self.beams, 4)), np.empty((JUDGE_LANES, self.beams))
+        return Beams(
+            self._directions,
+            self.mount,
+            self._first_angle,
+            self._step,
+            self._nearest,
+            self._farthest,
+            ends,
+            lanes,
+        )
+
+    def view(self, ranges: NDArray[np.float32]) -> ScanView:
+        """Return a scan, float32 [beams], m; raises ValueError for another number of beams."""
+        if ranges.shape != (self.beams,):
+            raise ValueError(f"expected a scan of {self.beams} ranges, got shape {ranges.shape}")
+        ends = np.empty((self.beams, 4))
+        count = beam_ends(ranges, self._directions, self.mount, self._nearest, self._farthest, ends)
+        return ScanView(ends[:count], self.mount)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ScanView:
+    """``ends`` is float64 [n, 4]: end x, y, m, and direction, cosine and sine, robot's frame."""
+
+    ends: NDArray[np.float64]
+    mount: NDArray[np.float64]
+
+    def __len__(self) -> int:
+        """How many beams met something."""
+        return len(self.ends)
+
+    def fit(self, field: SurfaceField, pose: NDArray[np.float64], stride: int = 1) -> Fit:
+        """Return how well it fits a pose, float64 [3]; with a stride only some beams are asked."""
+        counts, lanes = np.empty(5), np.empty((JUDGE_LANES, len(self.ends)))
+        judge(
+            field.values,
+            field.place,
+            self.ends,
+            len(self.ends),
+            pose,
+            self.mount,
+            stride,
+            counts,
+            lanes,
+        )
+        looked_at = max(counts[LOOKED_AT], 1.0)
+        return Fit(
+            float(counts[AGREEING] / looked_at),
+            float(counts[SHORT] / looked_at),
+            float(counts[THROUGH] / looked_at),
+            float(counts[EVIDENCE]),
+        )

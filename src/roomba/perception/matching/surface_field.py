@@ -1,0 +1,64 @@
+"""How far every spot of a map is from the nearest surface: what a scan is matched against."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.grid import GridFrame, OccupancyMap
+from roomba.perception.matching.field_kernels import fill_near_surfaces
+from roomba.raster.distance import distance_to_nearest
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SurfaceField:
+    """Signed distances to the surfaces of a map, at the middles of its cells.
+
+    ``values`` is float32 [rows, columns], m: positive on free floor, negative inside what is not
+    known to be free. Between middles it is bilinear, so that a wall's surface lies where the wall's
+    cells end and not in their middles, to a fraction of a cell (a likelihood field, Thrun, Burgard
+    and Fox, "Probabilistic Robotics", 6.4, but for its sign).
+    """
+
+    frame: GridFrame
+    values: NDArray[np.float32]
+
+    @staticmethod
+    def of(occupancy: OccupancyMap) -> SurfaceField:
+        """Return the field of a map; where a map has no surface at all it is far everywhere."""
+        solid = occupancy.solid
+        outside = distance_to_nearest(solid)
+        inside = distance_to_nearest(~solid)
+        cells = np.where(solid, 0.5 - inside, outside - 0.5)
+        far = float(max(solid.shape))
+        metres = np.clip(cells, -far, far) * occupancy.frame.resolution
+        return SurfaceField(occupancy.frame, np.ascontiguousarray(metres, np.float32))
+
+    @staticmethod
+    def near(occupancy: OccupancyMap, farthest: float) -> SurfaceField:
+        """Return the field of a map as :meth:`of` does, but nowhere more than ``farthest``, m.
+
+        It takes a tenth of the time.
+        """
+        resolution = occupancy.frame.resolution
+        most = math.ceil(farthest / resolution + 0.5)
+        cells = np.sqrt(np.arange(most**2 + 1)).astype(np.float32)
+        metres = np.minimum((cells - 0.5) * resolution, farthest, dtype=np.float32)
+        values = np.empty(occupancy.frame.shape, np.float32)
+        fill_near_surfaces(occupancy.solid, metres, values)
+        return SurfaceField(occupancy.frame, values)
+
+    @staticmethod
+    def unknown() -> SurfaceField:
+        """Return the field of no map: nowhere is a surface."""
+        return SurfaceField(GridFrame(1.0, 0.0, 0.0, 0, 0), np.empty((0, 0), np.float32))
+
+    @property
+    def place(self) -> NDArray[np.float64]:
+        """x and y of the middle of the first cell, and the resolution, m: as kernels read it."""
+        frame = self.frame
+        half = 0.5 * frame.resolution
+        return np.array([frame.origin_x + half, frame.origin_y + half, frame.resolution])

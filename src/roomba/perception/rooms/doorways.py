@@ -1,0 +1,121 @@
+"""Finds doorways: narrow places of the floor where a wall ends."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.configuration.rooms import RoomsConfig
+from roomba.perception.rooms.doorway_kernels import (
+    flood_basins,
+    gaps,
+    opening_at,
+    wall_thicknesses,
+)
+from roomba.perception.rooms.floor_kernels import contacts, draw_line
+from roomba.raster.distance import distance_to_nearest
+
+Mask = NDArray[np.bool_]
+
+
+@dataclass(frozen=True, slots=True)
+class Opening:
+    """A narrow place: the solid cells at its ends, and the clear ``width`` between them, m."""
+
+    row: int
+    column: int
+    to_row: int
+    to_column: int
+    width: float
+
+
+def clearance_of(solid: Mask) -> NDArray[np.float32]:
+    """Return how far each cell's middle is from the nearest solid cell's side, in cells."""
+    return distance_to_nearest(solid) - np.float32(0.5)
+
+
+def doorways(solid: Mask, resolution: float, config: RoomsConfig) -> list[Opening]:
+    """Return the doorways of a floor, ``solid`` bool [rows, columns] with a solid border.
+
+    First come gaps between the ends of two walls that are as wide as a door; with these closed,
+    openings that narrow the floor.
+    """
+    doors = _doors(solid, resolution, config)
+    closed = solid.copy()
+    for door in doors:
+        draw_line(closed, door.row, door.column, door.to_row, door.to_column)
+    return doors + _narrow_places(closed, resolution, config)
+
+
+def _doors(solid: Mask, resolution: float, config: RoomsConfig) -> list[Opening]:
+    """Return gaps between the ends of two walls.
+
+    Of gaps across each other or side by side counts the one whose walls are thinnest: it runs
+    along the walls, and not from one of them to furniture near the door.
+    """
+    thickest = _thickest(resolution, config)
+    found = gaps(
+        solid,
+        config.narrowest_door / resolution - 0.5,
+        config.widest_door / resolution + 0.5,
+        thickest,
+        config.jamb / resolution,
+    )
+    widths = np.hypot(found[:, 2] - found[:, 0], found[:, 3] - found[:, 1]) - 1.0
+    order = np.lexsort((widths, found[:, 4]))
+    middles = (found[:, 0:2] + found[:, 2:4]) / 2.0
+    doors = []
+    while order.size:
+        first = order[0]
+        row, column, to_row, to_column = found[first, :4].tolist()
+        doors.append(Opening(row, column, to_row, to_column, float(widths[first]) * resolution))
+        away = np.hypot(*(middles[order] - middles[first]).T)
+        order = order[away > max(widths[first] / 2.0, thickest)]
+    return doors
+
+
+def _narrow_places(solid: Mask, resolution: float, config: RoomsConfig) -> list[Opening]:
+    """Return openings that narrow the floor, and where a wall ends.
+
+    The floor is flooded from its widest places outwards, as by water that falls, and where two
+    basins meet is a narrow place: a saddle of the distance to the walls.
+    """
+    clearance = clearance_of(solid)
+    cells = np.flatnonzero(clearance * resolution >= config.tightest_passage / 2.0)
+    order = cells[np.argsort(-clearance.ravel()[cells], kind="stable")]
+    basins = np.zeros(solid.shape, np.int32)
+    peaks = flood_basins(order, clearance, config.roughness / resolution, basins)
+    found = []
+    for first, second, row, column in _saddles(contacts(basins), clearance):
+        ends = opening_at(solid, row, column, float(clearance[row, column]))
+        if ends[0] < 0:
+            continue
+        width = (math.hypot(ends[2] - ends[0], ends[3] - ends[1]) - 1.0) * resolution
+        widest = 2.0 * resolution * float(min(peaks[first], peaks[second]))
+        if not config.narrowest_door <= width <= config.narrowing * widest:
+            continue
+        thickest = _thickest(resolution, config)
+        walls = wall_thicknesses(solid, *ends, thickest, config.jamb / resolution)
+        is_between_walls = max(walls) <= thickest
+        is_beside_wall = min(walls) <= thickest and width <= config.widest_door
+        if is_between_walls or is_beside_wall:
+            found.append(Opening(*ends, width))
+    return found
+
+
+def _saddles(
+    touching: NDArray[np.int32], clearance: NDArray[np.float32]
+) -> list[tuple[int, int, int, int]]:
+    """Return the two regions of each opening, and the row and column of its widest place."""
+    widest = -clearance[touching[:, 2], touching[:, 3]]
+    order = np.lexsort((np.arange(len(touching)), widest, touching[:, 4]))
+    _, first = np.unique(touching[order, 4], return_index=True)
+    return [tuple(touching[order[index], :4].tolist()) for index in first]
+
+
+def _thickest(resolution: float, config: RoomsConfig) -> int:
+    """Return the thickest wall in cells; steps are whole cells, so it may seem one thicker."""
+    return round(config.thickest_wall / resolution) + 1

@@ -1,0 +1,1 @@
+"""What floor was cleaned, and how dirty it was."""

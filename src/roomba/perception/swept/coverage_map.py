@@ -1,0 +1,137 @@
+"""What floor was really cleaned, and what was left."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.geometry import Pose
+from roomba.grid import GridFrame
+from roomba.perception.swept.coverage_bits import SWEPT, WANTED
+from roomba.perception.swept.coverage_kernels import sweep
+from roomba.raster.carried import carried
+from roomba.raster.regions import numbered_regions
+
+Mask = NDArray[np.bool_]
+
+GRANTED: Final = 0.002
+"""m; a cell counts as swept when the tool's rim comes so near to its middle: two swaths that touch
+in the middle of a row of cells, each a millimetre off, leave none of it."""
+LONGEST_STEP: Final = 0.3
+"""m; a robot that is farther from where it last was did not drive there: it was carried."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Patch:
+    """Floor that hangs together: its ``area``, m2, its middle, m, and its cells as a mask."""
+
+    area: float
+    x: float
+    y: float
+    cells: Mask
+
+
+class CoverageMap:
+    """Which of the wanted floor the tool, a disc, passed over; cells are of ``frame``.
+
+    ``cells`` is uint8 [rows, columns], bits of :mod:`.coverage_bits`.
+    """
+
+    def __init__(self, frame: GridFrame, wanted: Mask, tool_width: float) -> None:
+        """Begin with nothing swept; ``wanted`` is bool over ``frame``."""
+        if wanted.shape != frame.shape:
+            raise ValueError(f"expected a mask of shape {frame.shape}, got {wanted.shape}")
+        self.frame = frame
+        self.radius = 0.5 * tool_width + GRANTED
+        self.cells: NDArray[np.uint8] = np.where(wanted, np.uint8(WANTED), np.uint8(0))
+        self.place = np.array([*frame.centre_of(0, 0), frame.resolution])
+        self.wanted_cells = int(np.count_nonzero(wanted))
+        self.swept_cells = 0
+        self.at: tuple[float, float] | None = None
+
+    def sweep(self, x: float, y: float) -> None:
+        """The robot drove straight here from where it last was, sweeping."""
+        from_x, from_y = self.at or (x, y)
+        if math.hypot(x - from_x, y - from_y) > LONGEST_STEP:
+            from_x, from_y = x, y
+        self.swept_cells += sweep(self.cells, self.place, from_x, from_y, x, y, self.radius)
+        self.at = (x, y)
+
+    def lift(self) -> None:
+        """What follows does not begin where it last was."""
+        self.at = None
+
+    def carry(self, frame: GridFrame, moved: Pose) -> None:
+        """Go on over the grid of another map; ``moved`` is where the old map's frame lies in it."""
+        self.cells = carried(self.cells, self.frame, frame, moved)
+        self.frame, self.at = frame, None
+        self.place = np.array([*frame.centre_of(0, 0), frame.resolution])
+        self.count_again()
+
+    def count_again(self) -> None:
+        """Count anew what is wanted and swept, after cells were changed."""
+        wanted = (self.cells & WANTED) > 0
+        self.wanted_cells = int(np.count_nonzero(wanted))
+        self.swept_cells = int(np.count_nonzero(wanted & self.swept))
+
+    @property
+    def cell_area(self) -> float:
+        """m2."""
+        return self.frame.resolution**2
+
+    @property
+    def wanted_area(self) -> float:
+        """m2."""
+        return self.wanted_cells * self.cell_area
+
+    @property
+    def swept_area(self) -> float:
+        """Of the wanted floor, m2."""
+        return self.swept_cells * self.cell_area
+
+    @property
+    def fraction(self) -> float:
+        """Share of the wanted floor that is swept, 0..1; all of nothing is 1."""
+        return self.swept_cells / self.wanted_cells if self.wanted_cells else 1.0
+
+    @property
+    def wanted(self) -> Mask:
+        """What shall be cleaned."""
+        return (self.cells & WANTED) > 0
+
+    @property
+    def swept(self) -> Mask:
+        """What the tool passed over, wanted or not."""
+        return (self.cells & SWEPT) > 0
+
+    @property
+    def missed(self) -> Mask:
+        """What is wanted and was not swept."""
+        missed: Mask = (self.cells & (WANTED | SWEPT)) == WANTED
+        return missed
+
+    def patches(self, least_area: float) -> list[Patch]:
+        """Return what was missed, in patches of ``least_area`` m2 or more, the largest first."""
+        return patches_of(self.missed, self.frame, least_area)
+
+
+def patches_of(mask: Mask, frame: GridFrame, least_area: float) -> list[Patch]:
+    """Return the regions of a mask of ``least_area`` m2 or more, the largest first."""
+    labels = numbered_regions(mask)
+    sizes = np.bincount(labels.ravel())
+    cell = frame.resolution**2
+    found = []
+    for label in np.argsort(-sizes[1:], kind="stable") + 1:
+        if sizes[label] * cell < least_area:
+            break
+        cells = labels == label
+        rows, columns = np.nonzero(cells)
+        # The cell nearest to the mean: the mean itself may lie outside of a bent patch.
+        middle = np.argmin((rows - rows.mean()) ** 2 + (columns - columns.mean()) ** 2)
+        x, y = frame.centre_of(int(rows[middle]), int(columns[middle]))
+        found.append(Patch(float(sizes[label] * cell), x, y, cells))
+    return found

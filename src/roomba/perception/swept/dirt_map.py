@@ -1,0 +1,128 @@
+"""Where it was dirty: what the dirt sensor counted, place by place, learned over many runs."""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from roomba.geometry import Pose
+from roomba.grid import GridFrame, OccupancyMap
+from roomba.raster.carried import carried
+
+Floats = NDArray[np.float32]
+Mask = NDArray[np.bool_]
+
+CELL: Final = 0.20
+"""m; about the width of the tool: finer the sensor does not tell places apart."""
+_LEAST_DIRTY: Final = 500.0
+"""Grains/m2; with fewer, 25 mg/m2 of what was picked up, no floor is dirty."""
+_LEARNING: Final = 0.4
+"""Share of the newest run in what a cell is taken for."""
+
+
+class DirtMap:
+    """Grains over m2 of floor, by cells of ``frame``.
+
+    ``learned`` float32 [rows, columns] is that of all runs before, NaN where it never was;
+    ``grains`` and ``way`` are those of the present one: what was counted, and m driven there.
+    """
+
+    def __init__(self, occupancy: OccupancyMap) -> None:
+        """Lay it over a map, with nothing known."""
+        frame = occupancy.frame
+        self.frame = GridFrame(
+            CELL,
+            frame.origin_x,
+            frame.origin_y,
+            math.ceil(frame.rows * frame.resolution / CELL),
+            math.ceil(frame.columns * frame.resolution / CELL),
+        )
+        self.learned: Floats = np.full(self.frame.shape, np.nan, np.float32)
+        self.grains: Floats = np.zeros(self.frame.shape, np.float32)
+        self.way: Floats = np.zeros(self.frame.shape, np.float32)
+        self.place = np.array([frame.origin_x, frame.origin_y, CELL])
+
+    def note(self, x: float, y: float, grains: float, way: float) -> None:
+        """Note what was counted at a place over a way, m."""
+        note_dirt(self.grains, self.way, self.place, x, y, grains, way)
+
+    def carry_on(self, before: DirtMap, moved: Pose) -> None:
+        """Go on with what the dirt map of an older map of this home knew.
+
+        ``moved`` is where the older map's frame lies in this one.
+        """
+        frames = (before.frame, self.frame, moved)
+        self.learned = carried(before.learned, *frames, nothing=math.nan)
+        self.grains, self.way = carried(before.grains, *frames), carried(before.way, *frames)
+
+    def end_run(self) -> None:
+        """Learn from the present run, and begin another."""
+        seen = self.way > 0.5 * CELL
+        now = self._density_now()
+        known = ~np.isnan(self.learned)
+        both, first = seen & known, seen & ~known
+        self.learned[both] += _LEARNING * (now[both] - self.learned[both])
+        self.learned[first] = now[first]
+        self.grains[:] = 0.0
+        self.way[:] = 0.0
+
+    def density(self, mask: Mask, frame: GridFrame) -> float:
+        """Return the mean of what was learned over a mask on another grid, grains/m2; 0 if none."""
+        values = self._over(np.nan_to_num(self.learned), frame)[mask]
+        return float(values.mean()) if values.size else 0.0
+
+    def dirty_now(self, frame: GridFrame, times: float) -> Mask:
+        """Return where the present run counted so many times the usual of it, on another grid."""
+        density, seen = self._density_now(), self.way > 0.5 * CELL
+        dirty: Mask = self._over(density, frame) >= dirty_from(density[seen], times)
+        return dirty
+
+    def known(self) -> Floats:
+        """Return grains/m2 by cells: of this run where it was, else as learned, NaN elsewhere."""
+        known: Floats = np.where(self.way > 0.5 * CELL, self._density_now(), self.learned)
+        return known
+
+    def _density_now(self) -> Floats:
+        area = np.maximum(self.way, 0.05) * CELL
+        density: Floats = self.grains / area
+        return density
+
+    def _over(self, values: Floats, frame: GridFrame) -> Floats:
+        """Return values at the middles of another grid's cells."""
+        rows = ((np.arange(frame.rows) + 0.5) * frame.resolution / CELL).astype(np.int64)
+        columns = ((np.arange(frame.columns) + 0.5) * frame.resolution / CELL).astype(np.int64)
+        over: Floats = values[
+            np.ix_(np.minimum(rows, values.shape[0] - 1), np.minimum(columns, values.shape[1] - 1))
+        ]
+        return over
+
+
+def dirty_from(density: Floats, times: float) -> float:
+    """Return from how many grains/m2 on floor is dirty: so many times the usual, their median.
+
+    ``density`` is of any shape; NaN where nothing is known.
+    """
+    known = density[~np.isnan(density)]
+    usual = float(np.median(known)) if known.size else 0.0
+    return max(times * usual, _LEAST_DIRTY)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def note_dirt(
+    grains_of: Floats,
+    way_of: Floats,
+    place: NDArray[np.float64],
+    x: float,
+    y: float,
+    grains: float,
+    way: float,
+) -> None:
+    """Add what was counted at a place, m, to its cell; ``place`` is the grid's corner and cell."""
+    row, column = math.floor((y - place[1]) / place[2]), math.floor((x - place[0]) / place[2])
+    if 0 <= row < grains_of.shape[0] and 0 <= column < grains_of.shape[1]:
+        grains_of[row, column] += np.float32(grains)
+        way_of[row, column] += np.float32(way)

@@ -1,0 +1,1 @@
+"""What the lidar sees and the map does not show."""

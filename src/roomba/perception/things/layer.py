@@ -1,0 +1,159 @@
+"""What the lidar sees and the map does not know: chairs, shut doors, people."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Final
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field
+
+from roomba.configuration.robot import Frozen, NotNegative, Positive
+from roomba.geometry import Pose
+from roomba.perception.matching.beams import Beams
+from roomba.perception.matching.field_kernels import look
+from roomba.perception.matching.match_kernels import beam_ends
+from roomba.perception.matching.surface_field import SurfaceField
+from roomba.perception.things.kernels import (
+    LAYER,
+    SPOT_RADIUS,
+    Things,
+    first_blocked,
+    forget_around,
+    note,
+)
+
+RoundObstacle = tuple[float, float, float]
+"""x, y and radius of a round thing, m, map frame."""
+
+_NEXT_TO: Final = 0.04
+"""m; about a cell."""
+_MOST_CELLS: Final = 4096
+"""Cells that may have evidence: 10 m2 of a usual map, more than stands about in a home."""
+
+Count = Annotated[int, Field(ge=1, le=1000)]
+
+
+class ThingConfig(Frozen):
+    """What is a thing and what is not; m, and evidence, of which a scan gives ``gain`` to a cell.
+
+    ``margin``, ``margin_share``
+        A beam that ends nearer to a surface of the map saw that surface: noise of the range (3
+        times 0.005), the pose (0.01), half a cell that a surveyed map is off, and 2 degrees that
+        edges and the heading are off, which count by the range.
+    ``farthest``
+        What is farther away is looked at when it is nearer: there beams are a cell apart.
+    ``clearly``
+        So much farther than a cell a beam has to go to have passed it.
+    ``gain``, ``most_gain``
+        What a scan in which a beam ends in a cell adds to it. One that stands for several scans
+        adds as many times as much, up to ``most_gain``, so that one alone is never enough.
+    ``loss``
+        What a scan that passes through the cell takes: more than ``gain``, for people walk on.
+    ``most``
+        More it does not become: seen through, it is gone within ``most / loss`` scans.
+    ``enough``
+        With so much it is a thing.
+    """
+
+    margin: Positive = 0.09
+    margin_share: NotNegative = 0.012
+    farthest: Positive = 4.0
+    clearly: Positive = 0.10
+    gain: Count = 2
+    most_gain: Count = 4
+    loss: Count = 3
+    most: Count = 24
+    enough: Count = 6
+
+
+class ThingLayer:
+    """A grid over the map's frame of what is seen there besides what the map shows.
+
+    While a robot knows its place, show it each scan; ``arrays`` is what kernels work on.
+    """
+
+    def __init__(self, field: SurfaceField, config: ThingConfig | None = None) -> None:
+        """Begin with nothing; ``field`` is that of the map."""
+        self.config = config or ThingConfig()
+        self._field, self._place = field.values, field.place
+        rows, columns = field.values.shape
+        self._columns = columns
+        self.arrays = Things(
+            np.zeros(1, LAYER),
+            np.zeros(rows * columns, np.int16),
+            np.zeros(rows * columns, np.int64),
+            np.zeros(_MOST_CELLS, np.int64),
+            np.zeros((rows * columns, 2), np.float32),
+        )
+        for name, value in self.config.model_dump().items():
+            self.arrays.layer[name] = value
+
+    @property
+    def version(self) -> int:
+        """A number that is another one when a thing came or went."""
+        return int(self.arrays.layer["version"][0])
+
+    def see(self, ranges: NDArray[np.float32], lidar: Beams, pose: Pose, scans: int = 1) -> None:
+        """Take a scan, float32 [beams], m, taken at a pose of the map that is known.
+
+        It stands for so many ``scans`` of the lidar, its own included.
+        """
+        count = beam_ends(
+            ranges, lidar.directions, lidar.mount, lidar.nearest, lidar.farthest, lidar.ends
+        )
+        at = np.array([pose.x, pose.y, pose.theta])
+        note(self.arrays, self._field, self._place, lidar, ranges, count, at, scans)
+
+    def cells(self, least: int | None = None) -> NDArray[np.int64]:
+        """Return the things' cells, int64 [n, 2], row and column: those with enough evidence."""
+        least = self.config.enough if least is None else least
+        listed = self.arrays.listed[: int(self.arrays.layer["count"][0])]
+        standing = np.sort(listed[self.arrays.evidence[listed] >= least])
+        return np.column_stack(np.divmod(standing, max(self._columns, 1)))
+
+    def obstacles(self, least: int | None = None) -> list[RoundObstacle]:
+        """Return round things, one for each cell with so much evidence, m, map frame."""
+        cells = self.cells(least)
+        spots = self.arrays.spots[cells[:, 0] * self._columns + cells[:, 1]]
+        return [(x, y, SPOT_RADIUS) for x, y in spots.tolist()]
+
+    def first_blocked(
+        self,
+        points: NDArray[np.float64],
+        stations: NDArray[np.float64],
+        first: float,
+        last: float,
+        radius: float,
+    ) -> float | None:
+        """Return where along a path, [n, 2], a thing is nearer than ``radius``, m; None: nowhere.
+
+        Between ``first`` and ``last``, m along the path; ``stations`` [n] tells that of each point.
+        """
+        at = first_blocked(self.arrays, points, stations, first, last, radius)
+        return None if math.isnan(at) else float(at)
+
+    def is_blocked(
+        self, points: NDArray[np.float64], first: float, last: float, radius: float
+    ) -> bool:
+        """Whether a thing is nearer than ``radius``, m, to a stretch of a path, [n, 2]."""
+        legs = np.hypot(*np.diff(points, axis=0).T)
+        stations = np.concatenate(([0.0], np.cumsum(legs)))
+        return self.first_blocked(points, stations, first, last, radius) is not None
+
+    def is_mapped(self, x: float, y: float) -> bool:
+        """Whether the map shows a surface at a point, m, or next to it."""
+        off, _, _ = look(self._field, self._place, x, y)
+        return bool(off < _NEXT_TO)
+
+    def forget(self) -> None:
+        """Begin anew with nothing."""
+        had_things = bool(len(self.cells()))
+        self.arrays.evidence[:] = 0
+        self.arrays.layer["count"] = 0
+        self.arrays.layer["version"] += had_things
+
+    def forget_around(self, x: float, y: float, radius: float) -> None:
+        """Forget what has its middle nearer than ``radius`` to a point, m."""
+        forget_around(self.arrays, self._place, self._columns, x, y, radius)

@@ -1,0 +1,1 @@
+"""Paths that cover a floor: floor, passes, tour."""

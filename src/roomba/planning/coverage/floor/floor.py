@@ -1,0 +1,141 @@
+"""What floor the tool can reach: masks over a fine grid of about one centimetre.
+
+Metres in the map frame; everything that is not known to be free, and all outside the map, is solid.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.grid import GridFrame, OccupancyMap
+from roomba.planning.coverage.floor.masks import filled_from, grown, half_widths
+from roomba.planning.path.costmap import Mask, Point, RoundObstacle, checked_obstacles, clear_of
+
+FINE = 0.01
+"""m; about how large the cells are on which floor is counted."""
+_DOCKED = 0.4
+"""m; how far the middle of a robot that stands in its station is from where it can drive freely."""
+_TOUCH = 1e-7
+
+
+@dataclass(frozen=True, eq=False)
+class CoverageFloor:
+    """Where the middle of a robot may be, and what its tool sweeps from there.
+
+    ``frame`` is the fine grid, over the extent of the map. ``fits``, bool [rows, columns] on it,
+    tells for the middle on each fine cell's centre whether it keeps ``reach``, m, from the squares
+    of all solid cells, from the ``obstacles`` and from the outside of the map; exact.
+    """
+
+    frame: GridFrame
+    reach: float
+    tool_width: float
+    obstacles: tuple[RoundObstacle, ...]
+    fits: Mask
+    _fits_walls: Mask
+    _solid: Mask
+
+    @classmethod
+    def build(cls, map: OccupancyMap, reach: float, tool_width: float) -> CoverageFloor:
+        """Return the floor of a map for a middle that keeps ``reach`` and a tool, both m.
+
+        Raises ValueError for lengths that are not finite or not above 0.
+        """
+        for name, length in (("reach", reach), ("tool_width", tool_width)):
+            if not (math.isfinite(length) and length > 0.0):
+                raise ValueError(f"expected a finite {name} above 0 m, got {length}")
+        coarse = map.frame
+        parts = max(1, round(coarse.resolution / FINE))
+        frame = GridFrame(
+            coarse.resolution / parts,
+            coarse.origin_x,
+            coarse.origin_y,
+            coarse.rows * parts,
+            coarse.columns * parts,
+        )
+        solid = np.repeat(np.repeat(map.solid, parts, axis=0), parts, axis=1)
+        fenced = np.pad(solid, 1, constant_values=True)
+        near = half_widths((reach - _TOUCH) / frame.resolution, to_squares=True)
+        fits = np.ascontiguousarray(~grown(fenced, near)[1:-1, 1:-1])
+        fits.flags.writeable = False
+        return cls(frame, reach, tool_width, (), fits, fits, solid)
+
+    def with_obstacles(self, obstacles: Iterable[RoundObstacle]) -> CoverageFloor:
+        """Return the same floor with these round things, (x, y, radius) in m, in place of others.
+
+        Raises ValueError for an obstacle that is not three finite numbers with a radius >= 0.
+        """
+        checked = checked_obstacles(obstacles)
+        if checked == self.obstacles:
+            return self
+        fits = clear_of(self._fits_walls, self.frame, checked, self.reach - _TOUCH)
+        return replace(self, obstacles=checked, fits=fits)
+
+    def middles(self, start: Point) -> Mask:
+        """Return the fine cells where the middle may be and can get to from ``start``.
+
+        Bool [rows, columns] on ``frame``, connected over sides; all false when the robot cannot
+        move from there. A robot that stands where it does not fit, in its station, counts as at the
+        nearest place within 0.4 m where it does, with no wall between.
+        """
+        seed = self.cell_near(start)
+        if seed is None:
+            return np.zeros(self.frame.shape, np.bool_)
+        return filled_from(self.fits, *seed)
+
+    def coverable(self, start: Point) -> Mask:
+        """Return the fine cells that the tool sweeps when the middle goes wherever it can.
+
+        Bool [rows, columns] on ``frame``.
+        """
+        return self.swept_from(self.middles(start))
+
+    def swept_from(self, middles: Mask) -> Mask:
+        """Return the free fine cells within half the tool's width of any of these; bool, on
+        ``frame``."""
+        within = half_widths(self.tool_width / 2 / self.frame.resolution + _TOUCH)
+        return grown(middles, within) & ~self._solid
+
+    def cell_near(self, point: Point) -> tuple[int, int] | None:
+        """Return the (row, column) nearest to a point where the middle may be, and to which no wall
+        bars the way; None if none is within 0.4 m."""
+        frame = self.frame
+        if not (math.isfinite(point[0]) and math.isfinite(point[1])):
+            raise ValueError(f"expected a point of two finite numbers, m, got {point}")
+        row, column = frame.cell_of(*point)
+        if frame.contains(*point) and self.fits[row, column]:
+            return row, column
+        span = math.ceil(_DOCKED / frame.resolution)
+        first_row, first_column = max(row - span, 0), max(column - span, 0)
+        window = self.fits[
+            first_row : max(row + span + 1, 0), first_column : max(column + span + 1, 0)
+        ]
+        cells = np.argwhere(window) + np.array((first_row, first_column))
+        away = np.hypot(
+            frame.origin_x + (cells[:, 1] + 0.5) * frame.resolution - point[0],
+            frame.origin_y + (cells[:, 0] + 0.5) * frame.resolution - point[1],
+        )
+        for index in np.argsort(away, kind="stable"):
+            if away[index] > _DOCKED:
+                break
+            if not self._is_walled_off(point, cells[index]):
+                return int(cells[index, 0]), int(cells[index, 1])
+        return None
+
+    def _is_walled_off(self, point: Point, cell: NDArray[np.int64]) -> bool:
+        """Whether the straight way from a point to a cell enters a wall; leaving one is allowed."""
+        frame = self.frame
+        to_x, to_y = frame.centre_of(int(cell[0]), int(cell[1]))
+        steps = max(2, math.ceil(2 * math.dist(point, (to_x, to_y)) / frame.resolution))
+        shares = np.linspace(0.0, 1.0, steps)
+        columns = (point[0] + shares * (to_x - point[0]) - frame.origin_x) // frame.resolution
+        rows = (point[1] + shares * (to_y - point[1]) - frame.origin_y) // frame.resolution
+        on_map = (rows >= 0) & (rows < frame.rows) & (columns >= 0) & (columns < frame.columns)
+        solid = ~on_map
+        solid[on_map] = self._solid[rows[on_map].astype(int), columns[on_map].astype(int)]
+        return bool((solid[1:] & ~solid[:-1]).any())

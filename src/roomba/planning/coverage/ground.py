@@ -1,0 +1,94 @@
+"""The part of the floor that a robot can get to, cut out, with what every plan over it needs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.planning.coverage.floor.floor import CoverageFloor
+from roomba.planning.coverage.passes.edges import rings
+from roomba.planning.coverage.tour.net import Net, net_over
+from roomba.raster.regions import Mask
+
+Line = NDArray[np.float64]
+
+_MARGIN = 2
+"""cells around what can be swept."""
+
+
+@dataclass(frozen=True, eq=False)
+class Ground:
+    """A window of the floor: ``middles``, where the middle can get to, and ``coverable``, what is
+    swept from there, bool [rows, columns] both.
+
+    Places on it are counted in cells: (x, y) is (column, row) of the window, whole numbers are the
+    cells' centres.
+    """
+
+    floor: CoverageFloor
+    window: tuple[slice, slice]
+    middles: Mask
+    coverable: Mask
+
+    @classmethod
+    def around(cls, floor: CoverageFloor, seed: tuple[int, int]) -> Ground:
+        """Return the ground that can be got to from a (row, column) of the floor's frame."""
+        middles = floor.middles(floor.frame.centre_of(*seed))
+        coverable = floor.swept_from(middles)
+        rows, columns = (np.flatnonzero(coverable.any(axis=axis)) for axis in (1, 0))
+        window = (
+            slice(max(int(rows[0]) - _MARGIN, 0), int(rows[-1]) + _MARGIN + 1),
+            slice(max(int(columns[0]) - _MARGIN, 0), int(columns[-1]) + _MARGIN + 1),
+        )
+        return cls(
+            floor,
+            window,
+            np.ascontiguousarray(middles[window]),
+            np.ascontiguousarray(coverable[window]),
+        )
+
+    def holds(self, cell: tuple[int, int]) -> bool:
+        """Whether the middle can get to a (row, column) of the floor's frame."""
+        row, column = cell[0] - self.window[0].start, cell[1] - self.window[1].start
+        rows, columns = self.middles.shape
+        return bool(0 <= row < rows and 0 <= column < columns and self.middles[row, column])
+
+    def place_of(self, cell: tuple[int, int]) -> Line:
+        """Return the place, float64 [2], of a (row, column) of the floor's frame."""
+        return np.array(
+            (cell[1] - self.window[1].start, cell[0] - self.window[0].start), np.float64
+        )
+
+    def metres(self, places: Line) -> Line:
+        """Return places, float64 [n, 2], in m in the map frame."""
+        frame = self.floor.frame
+        first = np.array((self.window[1].start, self.window[0].start), np.float64)
+        corner = np.array((frame.origin_x, frame.origin_y))
+        metres: Line = corner + (places + first + 0.5) * frame.resolution
+        return metres
+
+    def places(self, points: Line) -> Line:
+        """Return points, float64 [n, 2], m in the map frame, as places."""
+        frame = self.floor.frame
+        first = np.array((self.window[1].start, self.window[0].start), np.float64)
+        corner = np.array((frame.origin_x, frame.origin_y))
+        places: Line = (points - corner) / frame.resolution - 0.5 - first
+        return places
+
+    @property
+    def radius(self) -> float:
+        """Half the tool's width, cells."""
+        return self.floor.tool_width / 2 / self.floor.frame.resolution
+
+    @cached_property
+    def net(self) -> Net:
+        """The net on which ways are searched."""
+        return net_over(self.middles)
+
+    @cached_property
+    def rings(self) -> list[Line]:
+        """The outlines of ``middles``, straightened."""
+        return rings(self.middles)

@@ -1,0 +1,1 @@
+"""Passes over the floor: along its edges and in swaths."""

@@ -1,0 +1,108 @@
+"""Stage edges: ways along walls and furniture, as near to them as the middle may go.
+
+Places in cells of the window: (x, y) is (column, row), whole numbers are the cells' centres.
+"""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from roomba.planning.coverage.passes.contours import outlines, straightened
+from roomba.planning.coverage.passes.sweep import (
+    Counts,
+    left_without,
+    room_for_legs,
+    set_leg,
+    sweep_leg,
+)
+from roomba.raster.regions import Mask
+
+Line = NDArray[np.float64]
+"""A polyline, float64 [n >= 2, 2] (x, y)."""
+
+_SIDEWAYS = 0.45
+"""cells; how far an edge may be off the outline that it straightens."""
+_STRETCH = 10.0
+"""cells; edges are kept or left out by stretches of this length."""
+_WORTH = 1.0
+"""cells of new floor for a cell of way: the least that an edge is driven for."""
+_BRIDGE = 4
+"""stretches without new floor that are driven rather than gone around."""
+
+
+def rings(middles: Mask) -> list[Line]:
+    """Return the outlines of ``middles``, bool [rows, columns], straightened; each is closed."""
+    lines = []
+    for chain in outlines(middles):
+        ring = np.concatenate((chain, chain[:1])).astype(np.float64)
+        lines.append(ring[straightened(middles, ring, _SIDEWAYS)])
+    return lines
+
+
+def edges(rings: list[Line], need: Mask, radius: float, piece_length: float) -> list[Line]:
+    """Return lines along the rings that together sweep the needed floor there.
+
+    ``need`` is bool [rows, columns]; ``radius`` is half the tool's width, cells. Lines are cut to
+    pieces of about ``piece_length`` cells, so that a path can branch off.
+    """
+    counts = np.zeros(need.shape, np.int16)
+    pieces: list[Line] = []
+    for ring in rings:
+        stretches = cut(ring, _STRETCH)
+        worth = _claim(need, counts, stretches, radius)
+        pieces.extend(_joined(stretches, _bridged(worth), piece_length))
+    return pieces
+
+
+def cut(line: Line, spacing: float) -> Line:
+    """Return the line with more points in it, no two more than ``spacing`` apart."""
+    legs = np.hypot(*np.diff(line, axis=0).T)
+    parts = np.maximum(np.ceil(legs / spacing - 1e-9).astype(np.int64), 1)
+    index = np.repeat(np.arange(len(legs)), parts)
+    share = (np.arange(len(index)) - np.repeat(np.cumsum(parts) - parts, parts)) / parts[index]
+    points = line[index] + share[:, None] * (line[index + 1] - line[index])
+    return np.concatenate((points, line[-1:]))
+
+
+@njit(cache=True, nogil=True)
+def _claim(need: Mask, counts: Counts, stretches: Line, radius: float) -> NDArray[np.bool_]:
+    """Return which legs sweep enough new floor, bool [n - 1], and count what they sweep."""
+    worth = np.zeros(len(stretches) - 1, np.bool_)
+    legs = room_for_legs()
+    for leg in range(len(worth)):
+        x, y = stretches[leg]
+        to_x, to_y = stretches[leg + 1]
+        set_leg(legs, 0, x, y, to_x, to_y)
+        found = -left_without(need, counts, legs, 0, 1, radius, np.inf)
+        if found > _WORTH * np.hypot(to_x - x, to_y - y):
+            worth[leg] = True
+            sweep_leg(counts, x, y, to_x, to_y, radius, 1)
+    return worth
+
+
+def _bridged(worth: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Return the same with short gaps between true ones closed."""
+    bridged = worth.copy()
+    true = np.flatnonzero(worth)
+    for first, last in pairwise(true):
+        if last - first <= _BRIDGE:
+            bridged[first:last] = True
+    return bridged
+
+
+def _joined(stretches: Line, kept: NDArray[np.bool_], piece_length: float) -> list[Line]:
+    """Return the kept legs joined to pieces of about a length."""
+    pieces: list[Line] = []
+    runs = np.flatnonzero(np.diff(np.concatenate(([False], kept, [False])).astype(np.int8)))
+    for first, last in runs.reshape(-1, 2):
+        run = stretches[first : last + 1]
+        stations = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(run, axis=0).T))))
+        count = max(1, round(stations[-1] / piece_length))
+        cuts = np.searchsorted(stations, np.linspace(0.0, stations[-1], count + 1))
+        cuts[-1] = len(run) - 1
+        pieces.extend(run[begin : end + 1] for begin, end in pairwise(cuts) if end > begin)
+    return pieces

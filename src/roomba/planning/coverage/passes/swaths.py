@@ -1,0 +1,134 @@
+"""Stage swaths: straight parallel ways over the floor that the edges leave.
+
+Places in cells of the window: (x, y) is (column, row), whole numbers are the cells' centres.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from roomba.planning.coverage.floor.masks import transposed
+from roomba.planning.coverage.floor.regions import mask_of, regions
+from roomba.raster.regions import Mask
+
+Line = NDArray[np.float64]
+
+_SPECK = 20
+"""cells; patches smaller than this are left."""
+_NEW_SWATH = 30.0
+"""cells of way that getting to another swath costs, when the rows are chosen."""
+_GAP = 30
+"""cells; over swept floor narrower than this a swath goes on."""
+
+
+def swaths(left: Mask, middles: Mask, radius: float) -> list[Line]:
+    """Return lines, float64 [2, 2], that sweep the floor in ``left``, bool [rows, columns].
+
+    The lines stay in ``middles``, bool of the same shape. Every cell of ``left`` must be so far
+    from where the middle may not be that the middle may be anywhere within ``radius``, cells, of
+    it. Each region is swept along rows or along columns, whichever takes less way.
+    """
+    parts = regions(left)
+    across = transposed(middles)
+    lines: list[Line] = []
+    for region in np.flatnonzero(parts.sizes >= _SPECK).tolist():
+        mask = mask_of(parts, region)
+        top, _, left_side, _ = parts.bounds[region].tolist()
+        offset = np.array([left_side, top], np.float64)
+        flat, flat_cost = _along_rows(mask, middles, top, left_side, radius)
+        upright, upright_cost = _along_rows(transposed(mask), across, left_side, top, radius)
+        if flat_cost <= upright_cost:
+            lines.extend(line + offset for line in flat)
+        else:
+            lines.extend(line[:, ::-1] + offset for line in upright)
+    return lines
+
+
+def _along_rows(
+    region: Mask, floor: Mask, top: int, left: int, radius: float
+) -> tuple[Line, float]:
+    """Return swaths along rows that sweep a region, and what they cost, in cells of way.
+
+    float64 [n, 2, 2]. The first cell of ``region`` is the one at (``top``, ``left``) of ``floor``.
+    """
+    runs = _runs_by_row(region, floor, top, left, int(radius + 1e-6), _GAP)
+    ways = runs[:, 2] - runs[:, 1] + _NEW_SWATH
+    costs = np.bincount(runs[:, 0], ways, len(region)).astype(np.float64)
+    rows = _cheapest_rows(region.any(axis=1), costs, int(2 * radius + 1e-6))
+    chosen = runs[np.isin(runs[:, 0], rows)]
+    return chosen[:, [[1, 0], [2, 0]]].astype(np.float64), float(costs[rows].sum())
+
+
+@njit(cache=True, nogil=True)
+def _runs_by_row(
+    region: Mask, floor: Mask, top: int, left: int, radius: int, gap: int
+) -> NDArray[np.int64]:
+    """Return the swaths that each row would need, int64 [n, 3]: row, first and last column."""
+    rows, columns = region.shape
+    runs = np.empty((1024, 3), np.int64)
+    size = 0
+    # The last row, up to ``radius`` ahead, where there is something to sweep in each column.
+    seen = np.full(columns, -radius - 1, np.int32)
+    for row in range(min(radius, rows)):
+        _look(seen, region[row], row)
+    for row in range(rows):
+        if row + radius < rows:
+            _look(seen, region[row + radius], row + radius)
+        if size + columns > len(runs):
+            larger = np.empty((2 * len(runs) + columns, 3), np.int64)
+            larger[:size] = runs[:size]
+            runs = larger
+        along = floor[top + row, left : left + columns]
+        last = -gap - 2
+        for column in range(columns):
+            if not along[column]:
+                last = -gap - 2
+                continue
+            if seen[column] < row - radius:
+                continue
+            if column - last > gap:
+                runs[size, 0], runs[size, 1] = row, column
+                size += 1
+            runs[size - 1, 2] = column
+            last = column
+    return runs[:size]
+
+
+@njit(cache=True, nogil=True)
+def _look(seen: NDArray[np.int32], cells: NDArray[np.bool_], row: int) -> None:
+    for column in range(seen.size):
+        if cells[column]:
+            seen[column] = row
+
+
+@njit(cache=True, nogil=True)
+def _cheapest_rows(
+    needed: NDArray[np.bool_], costs: NDArray[np.float64], width: int
+) -> NDArray[np.int64]:
+    """Return the cheapest rows to sweep along of which no two are more than ``width`` apart."""
+    count = len(needed)
+    half = width // 2
+    best = np.full(count, np.inf)
+    before = np.full(count, -1)
+    first = np.flatnonzero(needed)[0]
+    last = np.flatnonzero(needed)[-1]
+    for row in range(count):
+        if row <= first + half:
+            best[row] = costs[row]
+        for other in range(max(row - width, 0), row):
+            if best[other] + costs[row] < best[row]:
+                best[row] = best[other] + costs[row]
+                before[row] = other
+    at = max(last - half, 0)
+    for row in range(at, count):
+        if best[row] < best[at]:
+            at = row
+    chosen = np.empty(count, np.int64)
+    size = 0
+    while at >= 0:
+        chosen[size] = at
+        size += 1
+        at = before[at]
+    return chosen[:size][::-1].copy()

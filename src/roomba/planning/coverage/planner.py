@@ -1,0 +1,141 @@
+"""The coverage planner: one way for a round robot that sweeps all the floor it can get to.
+
+Its stages: :mod:`~roomba.planning.coverage.floor.floor` tells what floor can be swept,
+:mod:`~roomba.planning.coverage.passes.edges` goes along walls and furniture,
+:mod:`~roomba.planning.coverage.passes.swaths` sweeps the floor between them in straight parallel
+ways, :mod:`~roomba.planning.coverage.tour.order` puts these pieces in order,
+:mod:`~roomba.planning.coverage.tour.connection` joins them to one way, and
+:mod:`~roomba.planning.coverage.tour.polish` makes that shorter and straighter.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.grid import OccupancyMap
+from roomba.planning.coverage.floor.floor import CoverageFloor
+from roomba.planning.coverage.ground import Ground
+from roomba.planning.coverage.passes.edges import edges
+from roomba.planning.coverage.passes.swaths import swaths
+from roomba.planning.coverage.passes.sweep import unswept
+from roomba.planning.coverage.plan import CoveragePlan
+from roomba.planning.coverage.tour.connection import connected, tidy
+from roomba.planning.coverage.tour.order import Weights, ordered
+from roomba.planning.coverage.tour.polish import polished
+from roomba.planning.path.costmap import Mask, Point, RoundObstacle
+from roomba.planning.path.planner import NoPathError, NoPathReason
+
+__all__ = ["CoverageFloor", "CoveragePlan", "CoveragePlanner"]
+
+Line = NDArray[np.float64]
+
+_PIECE = 12.0
+"""Widths of the tool; edges can be left for swaths about this often."""
+_ASIDE = 0.2
+"""cells; the tool is a whole number of cells wide, so that seams would lie on their middles, where
+it takes the least error of the drive to leave a whole row unswept."""
+_TURNING = 6.0
+"""cells of way that a radian is worth when the way is polished."""
+_UNSWEPT = 1.0
+"""cells of way that a cell of floor is worth."""
+
+
+class CoveragePlanner:
+    """Plans over one map for one body and one tool; all lengths in m, map frame."""
+
+    def __init__(self, map: OccupancyMap, reach: float, tool_width: float) -> None:
+        """Take the map, how far the middle keeps from all that is solid, and the tool's width.
+
+        Raises ValueError for lengths that are not finite or not above 0.
+        """
+        self.floor = CoverageFloor.build(map, reach, tool_width)
+        self._ground: Ground | None = None
+
+    def plan(
+        self,
+        start: Point,
+        end: Point | None = None,
+        todo: Mask | None = None,
+        obstacles: Iterable[RoundObstacle] = (),
+        edges_only: bool = False,
+    ) -> CoveragePlan:
+        """Return a way from ``start``, to ``end`` if given, that sweeps what is to do.
+
+        ``todo``, bool on ``floor.frame``, marks the floor to sweep, all by default; what cannot be
+        reached does not count. ``obstacles`` are round things that the map does not show. With
+        ``edges_only`` only the floor along walls and furniture is swept. Raises
+        :class:`~roomba.planning.path.planner.NoPathError` when the robot cannot move from the
+        start, or
+        not get to the end, and ValueError for a ``todo`` of another shape or numbers that are not
+        finite.
+        """
+        if todo is not None and (todo.shape != self.floor.frame.shape or todo.dtype != np.bool_):
+            raise ValueError(
+                f"expected todo as bool of shape {self.floor.frame.shape}, "
+                f"got {todo.dtype} of shape {todo.shape}"
+            )
+        ground, first = self._ground_from(start, obstacles)
+        last = None if end is None else _end_on(ground, end)
+        need = ground.coverable if todo is None else ground.coverable & todo[ground.window]
+        edge_pieces = edges(ground.rings, need, ground.radius, _PIECE * 2 * ground.radius)
+        swath_pieces: list[Line] = []
+        if not edges_only:
+            left = unswept(need, edge_pieces, ground.radius) & ground.middles
+            swath_pieces = [
+                _off_middles(line) for line in swaths(left, ground.middles, ground.radius)
+            ]
+        pieces = ordered(ground.net, edge_pieces + swath_pieces, first, last, Weights())
+        line = connected(ground.net, pieces, first, last)
+        line = polished(line, need, ground.middles, ground.radius, _TURNING, _UNSWEPT)
+        return CoveragePlan(
+            _from_to(ground, line, start, end),
+            tuple(ground.metres(piece) for piece in swath_pieces),
+            tuple(ground.metres(piece) for piece in edge_pieces),
+        )
+
+    def _ground_from(self, start: Point, obstacles: Iterable[RoundObstacle]) -> tuple[Ground, Line]:
+        """Return the ground around a start, and the place on it where the way begins.
+
+        The last ground is kept, and serves again for the same obstacles from anywhere on it.
+        """
+        known = self._ground
+        floor = (self.floor if known is None else known.floor).with_obstacles(obstacles)
+        if not floor.obstacles:
+            floor = self.floor
+        seed = floor.cell_near(start)
+        if seed is None:
+            raise NoPathError(start, NoPathReason.START_BLOCKED, None)
+        if known is None or known.floor is not floor or not known.holds(seed):
+            known = Ground.around(floor, seed)
+            self._ground = known
+        return known, known.place_of(seed)
+
+
+def _off_middles(line: Line) -> Line:
+    """Return a swath moved aside a little, so that no seam of two lies on middles of cells."""
+    along = np.abs(line[-1] - line[0])
+    aside = np.array([0.0, _ASIDE]) if along[0] >= along[1] else np.array([_ASIDE, 0.0])
+    moved: Line = line + aside
+    return moved
+
+
+def _end_on(ground: Ground, end: Point) -> Line:
+    """Return the place where the way ends."""
+    cell = ground.floor.cell_near(end)
+    if cell is None or not ground.holds(cell):
+        raise NoPathError(end, NoPathReason.GOAL_UNREACHABLE, None)
+    return ground.place_of(cell)
+
+
+def _from_to(ground: Ground, line: Line, start: Point, end: Point | None) -> Line:
+    """Return the line in m, with exactly these ends and without needless points."""
+    ends = np.array([start] if end is None else [start, end], np.float64)
+    places = ground.places(ends)
+    if end is None and len(line) == 1:
+        line = line[:0]
+    points = ground.metres(tidy(ground.middles, np.concatenate((places[:1], line, places[1:]))))
+    points[-1], points[0] = ends[-1] if end is not None else points[-1], ends[0]
+    return points

@@ -1,0 +1,117 @@
+"""Stage connection: joins the ordered pieces by shortest ways to one line.
+
+Places in cells of the window: (x, y) is (column, row), whole numbers are the cells' centres.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from roomba.planning.coverage.floor.masks import way_fits
+from roomba.planning.coverage.tour.net import Net
+from roomba.planning.coverage.tour.ways import taut, way_between
+from roomba.planning.path.grid_path import shortest_grid_path
+from roomba.raster.regions import Mask
+
+Line = NDArray[np.float64]
+
+_SAME = 0.01
+"""cells; points nearer to each other than this are one."""
+_SHORT = 0.75
+"""cells; legs shorter than this are not driven; those from a point to its cell's centre are."""
+_STRAIGHT = 0.02
+"""cells; points as near as this to the straight way between their neighbours are left out."""
+
+
+def connected(net: Net, pieces: list[Line], start: Line, end: Line | None) -> Line:
+    """Return the line from ``start``, float64 [2], along the pieces, to ``end`` if there is one."""
+    costs = np.full(net.links.size // 8, np.inf)
+    parts = [start[None]]
+    at = start
+    stops = [*pieces] if end is None else [*pieces, end[None]]
+    for piece in stops:
+        parts.append(_way(net, costs, at, piece[0])[1:])
+        parts.append(piece[1:])
+        at = piece[-1]
+    return _without_needless(np.concatenate(parts))
+
+
+def _way(net: Net, costs: NDArray[np.float64], start: Line, goal: Line) -> Line:
+    """Return the shortest way; over the cells themselves where the net is too coarse for it."""
+    way: Line = way_between(net, costs, start[0], start[1], goal[0], goal[1])
+    if len(way):
+        return way
+    column, row = _cell(net, start)
+    to_column, to_row = _cell(net, goal)
+    found = shortest_grid_path(net.fits, (row, column), (to_row, to_column))
+    if found is None:
+        raise ValueError(f"no way between the cells {start} and {goal}, which are connected")
+    cells = found.corners[:, ::-1].astype(np.float64)
+    taut_way: Line = taut(net.fits, np.concatenate((start[None], cells, goal[None])))
+    return taut_way
+
+
+def _cell(net: Net, point: Line) -> tuple[int, int]:
+    """Return the (column, row) of the cell that fits nearest to a point on the floor."""
+    around = [
+        (int(np.floor(point[0])) + right, int(np.floor(point[1])) + up)
+        for up in (0, 1)
+        for right in (0, 1)
+    ]
+    rows, columns = net.fits.shape
+    fitting = [(x, y) for x, y in around if 0 <= x < columns and 0 <= y < rows and net.fits[y, x]]
+    return min(fitting, key=lambda cell: float(np.hypot(*(np.array(cell) - point))))
+
+
+def tidy(fits: Mask, line: Line) -> Line:
+    """Return the line without points that do not bend it, and without legs too short to drive."""
+    tidied: Line = _without_needless(_without_short(fits, line))
+    return tidied
+
+
+@njit(cache=True, nogil=True)
+def _without_short(fits: Mask, line: Line) -> Line:
+    """Return the line without legs below ``_SHORT``, wherever the middle fits without them too."""
+    points = line.copy()
+    size = 1
+    for at in range(1, len(line)):
+        step = line[at] - points[size - 1]
+        short = math.hypot(step[0], step[1]) < _SHORT
+        if short and at < len(line) - 1:
+            x, y = points[size - 1]
+            if way_fits(fits, x, y, line[at + 1, 0], line[at + 1, 1]):
+                continue
+        if short and size > 1:
+            x, y = points[size - 2]
+            if way_fits(fits, x, y, line[at, 0], line[at, 1]):
+                size -= 1
+        points[size] = line[at]
+        size += 1
+    return points[:size].copy()
+
+
+@njit(cache=True, nogil=True)
+def _without_needless(line: Line) -> Line:
+    """Return the line without points that do not bend it."""
+    points = np.empty_like(line)
+    points[0] = line[0]
+    size = 1
+    for at in range(1, len(line)):
+        x, y = line[at]
+        if math.hypot(x - points[size - 1, 0], y - points[size - 1, 1]) < _SAME:
+            continue
+        while size > 1:
+            one_x, one_y = points[size - 1] - points[size - 2]
+            two_x, two_y = x - points[size - 2, 0], y - points[size - 2, 1]
+            ahead = (x - points[size - 1, 0]) * one_x + (y - points[size - 1, 1]) * one_y > 0.0
+            aside = abs(one_x * two_y - one_y * two_x)
+            if not ahead or aside > _STRAIGHT * math.hypot(two_x, two_y):
+                break
+            size -= 1
+        points[size, 0], points[size, 1] = x, y
+        size += 1
+    return points[:size].copy()

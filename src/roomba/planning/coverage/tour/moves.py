@@ -1,0 +1,250 @@
+"""Compiled moves that make a tour over the ends of pieces cheaper.
+
+The first piece keeps its place, and the last one too.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.planning.compilation import part
+from roomba.planning.coverage.tour.costs import Costs, Tour, cost_of, least_cost
+
+_GAIN = 1e-6
+_MOST_MOVES = 20
+"""moves for each end; far more than are ever made."""
+
+
+class Trip(NamedTuple):
+    """A tour that is being changed, ``position`` int32 [ends] of each end in it, and room for work.
+
+    ``touched``, int32 [6], are the ends that the last move concerned. What moves did: ``gain``
+    float64 [1], ``span`` int64 [2], first and last position changed.
+    """
+
+    tour: Tour
+    position: Tour
+    room: Tour
+    touched: Tour
+    gain: NDArray[np.float64]
+    span: NDArray[np.int64]
+
+
+@part
+def _note(trip: Trip, gain: float, first: int, last: int) -> None:
+    trip.gain[0] += gain
+    trip.span[0] = min(trip.span[0], first)
+    trip.span[1] = max(trip.span[1], last)
+
+
+@part
+def _reverse(trip: Trip, first: int, last: int) -> None:
+    tour, position = trip.tour, trip.position
+    while first < last:
+        one, other = tour[first], tour[last]
+        tour[first], tour[last] = other, one
+        position[other], position[one] = first, last
+        first += 1
+        last -= 1
+    if first == last:
+        position[tour[first]] = first
+
+
+@part
+def _try_end(costs: Costs, trip: Trip, end: int) -> int:
+    """Make the first move that a better connection of one end allows.
+
+    Returns how many ends it concerned, written to ``touched``; 0 when there is no such move.
+    """
+    tour, position, touched = trip.tour, trip.position, trip.touched
+    size = tour.size
+    at = position[end]
+    leaves = at % 2 == 1
+    partner_at = at + 1 if leaves else at - 1
+    if partner_at < 0 or partner_at >= size:
+        return 0
+    partner = tour[partner_at]
+    now = cost_of(costs, end, partner)
+    for k in range(costs.nearest.shape[1]):
+        other = costs.nearest[end, k]
+        if other < 0:
+            break
+        gain = now - costs.costs[end, k]
+        if gain <= _GAIN:
+            break
+        other_at = position[other]
+        other_leaves = other_at % 2 == 1
+        other_partner_at = other_at + 1 if other_leaves else other_at - 1
+        if other == partner or other_partner_at < 0 or other_partner_at >= size:
+            continue
+        other_partner = tour[other_partner_at]
+        gain += cost_of(costs, other, other_partner)
+        if leaves == other_leaves:
+            won = gain - least_cost(costs, partner, other_partner)
+            if won > _GAIN:
+                won = gain - cost_of(costs, partner, other_partner)
+            if won > _GAIN:
+                first = min(max(at, partner_at), max(other_at, other_partner_at))
+                last = max(min(at, partner_at), min(other_at, other_partner_at))
+                _reverse(trip, first, last)
+                _note(trip, won, first, last)
+                touched[0], touched[1] = end, other
+                touched[2], touched[3] = partner, other_partner
+                return 4
+        else:
+            moved = _swap_runs(costs, trip, at, other_at, gain)
+            if moved > 0:
+                return moved
+        moved = _move_run(costs, trip, end, other)
+        if moved > 0:
+            return moved
+    return 0
+
+
+@part
+def _swap_runs(costs: Costs, trip: Trip, at: int, other_at: int, gain: float) -> int:
+    """Let two neighbouring runs of pieces change places, without turning either.
+
+    The connection of the ends at ``at`` and ``other_at`` is new and brings ``gain``; which third
+    connection is broken is searched here.
+    """
+    tour, position, touched = trip.tour, trip.position, trip.touched
+    size = tour.size
+    leaver_at, entry_at = (at, other_at) if at % 2 == 1 else (other_at, at)
+    if entry_at > leaver_at:
+        # ... a | b ... c | d ... e | f ...  becomes  a d ... e b ... c f, with a, d given.
+        a, b = tour[leaver_at], tour[leaver_at + 1]
+        c, d = tour[entry_at - 1], tour[entry_at]
+        for k in range(costs.nearest.shape[1]):
+            e = costs.nearest[b, k]
+            if e < 0 or costs.costs[b, k] >= gain - _GAIN:
+                break
+            e_at = position[e]
+            if e_at % 2 == 0 or e_at < entry_at or e_at + 1 >= size:
+                continue
+            f = tour[e_at + 1]
+            won = gain - costs.costs[b, k] + cost_of(costs, e, f)
+            if won - least_cost(costs, c, f) <= _GAIN:
+                continue
+            won -= cost_of(costs, c, f)
+            if won > _GAIN:
+                exchange(trip, leaver_at + 1, entry_at, e_at + 1)
+                _note(trip, won, leaver_at + 1, e_at)
+                touched[0], touched[1], touched[2] = a, b, c
+                touched[3], touched[4], touched[5] = d, e, f
+                return 6
+    else:
+        # ... a | b ... c | d ... e | f ...  with e, b given: the run from b to e would be a circle.
+        b, e = tour[entry_at], tour[leaver_at]
+        if entry_at == 0 or leaver_at == size - 1:
+            return 0
+        a, f = tour[entry_at - 1], tour[leaver_at + 1]
+        for k in range(costs.nearest.shape[1]):
+            d = costs.nearest[a, k]
+            if d < 0 or costs.costs[a, k] >= gain - _GAIN:
+                break
+            d_at = position[d]
+            if d_at % 2 == 1 or d_at <= entry_at or d_at > leaver_at:
+                continue
+            c = tour[d_at - 1]
+            won = gain - costs.costs[a, k] + cost_of(costs, c, d)
+            if won - least_cost(costs, c, f) <= _GAIN:
+                continue
+            won -= cost_of(costs, c, f)
+            if won > _GAIN:
+                exchange(trip, entry_at, d_at, leaver_at + 1)
+                _note(trip, won, entry_at, leaver_at)
+                touched[0], touched[1], touched[2] = a, b, c
+                touched[3], touched[4], touched[5] = d, e, f
+                return 6
+    return 0
+
+
+@part
+def exchange(trip: Trip, first: int, middle: int, stop: int) -> None:
+    """Swap the runs at [first, middle) and [middle, stop)."""
+    tour, room = trip.tour, trip.room
+    size = middle - first
+    for n in range(size):
+        room[n] = tour[first + n]
+    for at in range(middle, stop):
+        tour[at - size] = tour[at]
+    for n in range(size):
+        tour[stop - size + n] = room[n]
+    for at in range(first, stop):
+        trip.position[tour[at]] = at
+
+
+@part
+def _move_run(costs: Costs, trip: Trip, end: int, other: int) -> int:
+    """Move a run of one to three pieces that begins with ``end`` to the side of ``other``."""
+    tour, position, touched = trip.tour, trip.position, trip.touched
+    size = tour.size
+    at = position[end]
+    leaves = at % 2 == 1
+    other_at = position[other]
+    for pieces in range(1, 4):
+        # The run reaches away from the connection of ``end`` that is to be broken.
+        first, last = (at - 2 * pieces + 1, at) if leaves else (at, at + 2 * pieces - 1)
+        if first < 2 or last > size - 3:
+            return 0
+        if first <= other_at <= last:
+            return 0
+        before, after = tour[first - 1], tour[last + 1]
+        far = tour[first] if leaves else tour[last]
+        won = cost_of(costs, before, tour[first]) + cost_of(costs, tour[last], after)
+        partner_at = other_at + 1 if other_at % 2 == 1 else other_at - 1
+        if partner_at < 0 or partner_at >= size or first <= partner_at <= last:
+            continue
+        partner = tour[partner_at]
+        won += cost_of(costs, other, partner) - cost_of(costs, end, other)
+        least = least_cost(costs, before, after) + least_cost(costs, far, partner)
+        if won - least <= _GAIN:
+            continue
+        won -= cost_of(costs, before, after) + cost_of(costs, far, partner)
+        if won > _GAIN:
+            gap = max(other_at, partner_at)
+            _note(trip, won, min(first, gap), max(last, gap - 1))
+            if gap > last:
+                exchange(trip, first, last + 1, gap)
+                first, last = gap - 2 * pieces, gap - 1
+            else:
+                exchange(trip, gap, first, last + 1)
+                first, last = gap, gap + 2 * pieces - 1
+            entered = tour[first - 1]
+            if (entered == other) != (tour[first] == end):
+                _reverse(trip, first, last)
+            touched[0], touched[1], touched[2] = end, other, far
+            touched[3], touched[4], touched[5] = partner, before, after
+            return 6
+    return 0
+
+
+@part
+def improve(costs: Costs, trip: Trip, queue: Tour, count: int, waiting: NDArray[np.bool_]) -> None:
+    """Make moves until none helps, looking again at the ends that a move concerned.
+
+    The first ``count`` of ``queue``, int32 [ends], are looked at first; ``waiting``, bool [ends],
+    is true for them, and all false afterwards.
+    """
+    head = 0
+    moves = 0
+    while count > 0:
+        end = queue[head]
+        head = head + 1 if head + 1 < queue.size else 0
+        count -= 1
+        waiting[end] = False
+        while moves < _MOST_MOVES * queue.size:
+            concerned = _try_end(costs, trip, end)
+            if concerned == 0:
+                break
+            moves += 1
+            for n in range(concerned):
+                other = trip.touched[n]
+                if not waiting[other] and other != end:
+                    waiting[other] = True
+                    queue[(head + count) % queue.size] = other
+                    count += 1

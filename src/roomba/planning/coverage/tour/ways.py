@@ -1,0 +1,161 @@
+"""Compiled shortest ways for the middle from place to place.
+
+The search runs on a coarse net; the way found on it is then pulled straight. Places in cells of the
+window: (x, y) is (column, row).
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from roomba.planning.compilation import part
+from roomba.planning.coverage.floor.masks import way_fits
+from roomba.planning.coverage.tour.net import STEP_X, STEP_Y, Net, blocks_near, leg_to
+from roomba.planning.path.heap_kernels import heap_pop, heap_push
+from roomba.raster.regions import Mask
+
+Line = NDArray[np.float64]
+
+
+@njit(cache=True, nogil=True)
+def way_between(
+    net: Net, costs: NDArray[np.float64], x: float, y: float, to_x: float, to_y: float
+) -> Line:
+    """Return the shortest way over the net from one place to another, pulled straight.
+
+    float64 [n, 2] with both ends; empty when there is none. ``costs`` is float64 [blocks], all
+    infinite, and is left so.
+    """
+    if way_fits(net.fits, x, y, to_x, to_y):
+        return np.array([[x, y], [to_x, to_y]])
+    columns = net.links.shape[1]
+    goals = np.empty(9, np.int32)
+    goal_count = blocks_near(net, to_x, to_y, goals)
+    near = np.empty(9, np.int32)
+    keys = np.empty(4096, np.float64)
+    items = np.empty(4096, np.int32)
+    heap = 0
+    before: dict[int, int] = {}
+    best, best_block = np.inf, -1
+    for n in range(blocks_near(net, x, y, near)):
+        block = int(np.int64(near[n]))  # as wide as the sums that follow
+        cost = leg_to(net, block, x, y)
+        costs[block] = cost
+        before[block] = -1
+        heap_push(keys, items, heap, cost + leg_to(net, block, to_x, to_y), block)
+        heap += 1
+    while heap > 0 and keys[0] < best:
+        block = items[0]
+        key = keys[0]
+        heap_pop(keys, items, heap)
+        heap -= 1
+        cost = costs[block]
+        if key > cost + leg_to(net, block, to_x, to_y) + 1e-9:
+            continue
+        for n in range(goal_count):
+            if goals[n] == block and cost + leg_to(net, block, to_x, to_y) < best:
+                best, best_block = cost + leg_to(net, block, to_x, to_y), block
+        if heap + 8 > len(keys):
+            keys = np.concatenate((keys, np.empty_like(keys)))
+            items = np.concatenate((items, np.empty_like(items)))
+        row, column = block // columns, block % columns
+        for step in range(8):
+            if net.links[row, column, step] == 0:
+                continue
+            other = block + STEP_Y[step] * columns + STEP_X[step]
+            knot = net.knots[row, column]
+            reached = cost + leg_to(net, other, knot[0], knot[1])
+            if reached < costs[other] - 1e-9:
+                costs[other] = reached
+                before[other] = block
+                heap_push(keys, items, heap, reached + leg_to(net, other, to_x, to_y), other)
+                heap += 1
+    for block in before:
+        costs[block] = np.inf
+    if best_block < 0:
+        return np.empty((0, 2))
+    count = 2
+    block = best_block
+    while block >= 0:
+        count += 1
+        block = before[block]
+    way = np.empty((count, 2))
+    way[0, 0], way[0, 1] = x, y
+    way[count - 1, 0], way[count - 1, 1] = to_x, to_y
+    block = best_block
+    for at in range(count - 2, 0, -1):
+        knot = net.knots[block // columns, block % columns]
+        way[at, 0], way[at, 1] = knot[0], knot[1]
+        block = before[block]
+    return taut(net.fits, way)
+
+
+@njit(cache=True, nogil=True)
+def taut(fits: Mask, way: Line) -> Line:
+    """Return a way pulled straight: bends are cut short and moved until none can be."""
+    line = _shortcut(fits, way)
+    for _ in range(4):
+        # New bends halfway along the legs next to each bend let it slide towards its obstacle.
+        finer = np.empty((2 * len(line) - 1, 2))
+        for at in range(len(line)):
+            finer[2 * at] = line[at]
+            if at > 0:
+                finer[2 * at - 1] = (line[at - 1] + line[at]) / 2
+        for _ in range(3):
+            for at in range(1, len(finer) - 1):
+                _pull(fits, finer, at)
+        shorter = _shortcut(fits, finer)
+        if _length(shorter) > _length(line) - 0.05:
+            break
+        line = shorter
+    return line
+
+
+@part
+def _length(line: Line) -> float:
+    length = 0.0
+    for at in range(1, len(line)):
+        length += math.hypot(line[at, 0] - line[at - 1, 0], line[at, 1] - line[at - 1, 1])
+    return length
+
+
+@part
+def _pull(fits: Mask, line: Line, at: int) -> None:
+    """Move a bend towards the straight way between its neighbours as far as the legs fit."""
+    x, y = line[at - 1]
+    to_x, to_y = line[at + 1]
+    along_x, along_y = to_x - x, to_y - y
+    square = along_x * along_x + along_y * along_y
+    if square == 0.0:
+        return
+    share = ((line[at, 0] - x) * along_x + (line[at, 1] - y) * along_y) / square
+    share = min(max(share, 0.0), 1.0)
+    off_x, off_y = x + share * along_x - line[at, 0], y + share * along_y - line[at, 1]
+    part = 1.0
+    while part > 0.02 and part * math.hypot(off_x, off_y) > 0.05:
+        mid_x, mid_y = line[at, 0] + part * off_x, line[at, 1] + part * off_y
+        if way_fits(fits, x, y, mid_x, mid_y) and way_fits(fits, mid_x, mid_y, to_x, to_y):
+            line[at, 0], line[at, 1] = mid_x, mid_y
+            return
+        part /= 2
+
+
+@njit(cache=True, nogil=True)
+def _shortcut(fits: Mask, way: Line) -> Line:
+    """Return the way without the bends that can be left out, farthest view first."""
+    line = np.empty_like(way)
+    line[0] = way[0]
+    size = 1
+    at = 0
+    while at < len(way) - 1:
+        to = len(way) - 1
+        while to > at + 1 and not way_fits(fits, way[at, 0], way[at, 1], way[to, 0], way[to, 1]):
+            to -= 1
+        line[size] = way[to]
+        size += 1
+        at = to
+    return line[:size].copy()

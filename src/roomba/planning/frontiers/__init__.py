@@ -1,0 +1,1 @@
+"""Where the known floor ends."""

@@ -1,0 +1,139 @@
+"""Frontiers: where what is known of a floor ends, and from where to look beyond.
+
+Going to the nearest one each time explores a floor with little more driving than the best order
+(Yamauchi, "A frontier-based approach for autonomous exploration", 1997).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.grid import GridFrame, OccupancyMap
+from roomba.planning.frontiers.kernels import clusters, frontier_cells, seen_from, ways_from
+from roomba.planning.path.costmap import Point
+
+_LEAST_UNKNOWN: Final = 0.03
+"""m2; smaller patches of the unknown are not worth a way."""
+_LEAST_CELLS: Final = 3
+_LOOK_FROM: Final = 1.2
+"""m; so near to a frontier the robot goes to look beyond it, at most."""
+_NEARER: Final = 2.0
+"""m of way that one metre nearer to the frontier is worth."""
+_STRIDE: Final = 0.3
+"""m; about so far apart are the places of a frontier that are tried."""
+_SMALL: Final = 0.4
+_SMALL_COSTS: Final = 1.0
+"""m; a frontier shorter than the one costs the other more: what is large comes first."""
+
+
+@dataclass(frozen=True, slots=True)
+class Frontier:
+    """``middle`` is a cell of it, ``viewpoint`` where to look from, m; ``way`` how far that is, m;
+    ``length`` is about how long it is, m.
+    """
+
+    middle: Point
+    viewpoint: Point
+    way: float
+    length: float
+
+
+def frontiers(
+    occupancy: OccupancyMap,
+    fits: NDArray[np.bool_],
+    here: Point,
+    left_out: Sequence[Point] = (),
+    away: float = 0.3,
+) -> list[Frontier]:
+    """Return the frontiers that can be looked at, the best to go to first.
+
+    ``fits``, bool over the map's grid, tells where the robot's middle may be; ``here`` is where it
+    is, m. Those nearer than ``away``, m, to a point ``left_out`` are not told. Raises ValueError
+    when it is not on the map.
+    """
+    frame = occupancy.frame
+    if not frame.contains(*here):
+        raise ValueError(f"expected a place on the map, got ({here[0]:.2f}, {here[1]:.2f})")
+    ways = np.empty(frame.shape)
+    ways_from(fits, *frame.cell_of(*here), ways)
+    frontier = np.empty(frame.shape, np.bool_)
+    least = max(1, round(_LEAST_UNKNOWN / frame.resolution**2))
+    frontier_cells(occupancy.values, least, frontier)
+    labels = np.empty(frame.shape, np.int32)
+    count = clusters(frontier, labels)
+    cells, ends = _by_number(labels, count)
+    middles = _middles_of(cells, frame)
+    apart = _from_middle(cells, ends)
+    leave = np.array(left_out, np.float64).reshape(-1, 2)
+    radius, every = int(_LOOK_FROM / frame.resolution), max(1, round(_STRIDE / frame.resolution))
+    found = []
+    for first, last in pairwise(ends.tolist()):
+        if last - first < _LEAST_CELLS:
+            continue
+        # A place near its middle, if that can be.
+        tried = first + np.argsort(apart[first:last])[::every]
+        index, row, column = seen_from(
+            cells[tried], middles[tried], leave, away, occupancy.values, ways, radius, _NEARER
+        )
+        if index < 0:
+            continue
+        x, y = middles[tried[index]].tolist()
+        length, way = (last - first) * frame.resolution, float(ways[row, column]) * frame.resolution
+        found.append(Frontier((x, y), frame.centre_of(row, column), way, length))
+    return sorted(found, key=_cost)
+
+
+def is_frontier(occupancy: OccupancyMap, point: Point, radius: float) -> bool:
+    """Whether the known ends nearer than ``radius`` to a point, m."""
+    frame = occupancy.frame
+    row, column = frame.cell_of(*point)
+    reach = int(radius / frame.resolution)
+    rows = slice(max(row - reach - 1, 0), max(row + reach + 2, 0))
+    columns = slice(max(column - reach - 1, 0), max(column + reach + 2, 0))
+    values = np.ascontiguousarray(occupancy.values[rows, columns])
+    frontier = np.zeros(values.shape, np.bool_)
+    if values.size:
+        frontier_cells(values, 1, frontier)
+    return int(frontier.sum()) >= _LEAST_CELLS
+
+
+def _cost(frontier: Frontier) -> float:
+    return frontier.way + (_SMALL_COSTS if frontier.length < _SMALL else 0.0)
+
+
+def _by_number(
+    labels: NDArray[np.int32], count: int
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Return the cells of the numbers from 1 on, int64 [n, 2], row and column, one after another.
+
+    And where those of each number begin, int64 [count + 1]: the last is where they all end.
+    """
+    found = np.flatnonzero(labels > 0)
+    numbers = labels.ravel()[found]
+    order = np.argsort(numbers, kind="stable")
+    cells = np.column_stack(np.divmod(found[order], labels.shape[1]))
+    return cells, np.searchsorted(numbers[order], np.arange(1, count + 2))
+
+
+def _from_middle(cells: NDArray[np.int64], ends: NDArray[np.int64]) -> NDArray[np.float64]:
+    """Return how far each cell is from the mean of those of its number, in cells, down and aside.
+
+    ``cells`` and ``ends`` as :func:`_by_number` tells them.
+    """
+    counts = np.diff(ends)
+    means = np.add.reduceat(cells, ends[:-1]) / counts[:, None] if len(counts) else cells
+    apart: NDArray[np.float64] = np.abs(cells - np.repeat(means, counts, axis=0)).sum(axis=1)
+    return apart
+
+
+def _middles_of(cells: NDArray[np.int64], frame: GridFrame) -> NDArray[np.float64]:
+    """Return the x and y of the cells' middles, m, float64 [n, 2]."""
+    origin = np.array([frame.origin_x, frame.origin_y])
+    middles: NDArray[np.float64] = origin + (cells[:, ::-1] + 0.5) * frame.resolution
+    return middles

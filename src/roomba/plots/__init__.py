@@ -1,0 +1,1 @@
+"""How plots look, and how homes are drawn in them."""

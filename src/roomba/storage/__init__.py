@@ -1,0 +1,1 @@
+"""What the robot keeps between runs: maps, rooms, zones, checkpoints, pictures."""

@@ -1,0 +1,87 @@
+"""What a robot remembers of its work on disk: the errand that it is on, and where it was dirty.
+
+Each file is replaced at once or not at all, so that whoever is killed in between finds the one from
+before.
+"""
+
+from __future__ import annotations
+
+import io
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.errors import RoombaError
+from roomba.files.atomic import UNREADABLE, write_whole
+
+Values = dict[str, Any]
+Floats = NDArray[np.float32]
+
+
+class CheckpointFileError(RoombaError):
+    """A file that cannot be used; the message names it and says why."""
+
+
+def save_checkpoint(values: Values, run: str, path: Path, taken_up: int = 0) -> None:
+    """Write what a mission must remember; ``run`` names the launch of the robot that it is of.
+
+    ``taken_up`` is how often it was taken up without getting anywhere. Raises OSError when the disk
+    refuses, and ValueError for what is no plain value.
+    """
+    text = json.dumps({"run": run, "taken_up": taken_up, "mission": values}, allow_nan=False)
+    write_whole(path, text.encode("utf-8"))
+
+
+def load_checkpoint(path: Path, run: str) -> tuple[Values, int] | None:
+    """Return what was saved in this run of the robot, and how often it was taken up; None: nothing.
+
+    What another run left behind is not taken up: after a launch nobody expects the robot to begin
+    to drive by itself. Raises CheckpointFileError for a file that cannot be read.
+    """
+    try:
+        read = json.loads(path.read_text(encoding="utf-8"))
+        values, its_run, taken_up = read["mission"], read["run"], int(read["taken_up"])
+    except FileNotFoundError:
+        return None
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        raise CheckpointFileError(f"{path}: expected a checkpoint in JSON: {error!r}") from error
+    if not isinstance(values, dict):
+        raise CheckpointFileError(f"{path}: expected a mission's values, got {values!r}")
+    return (values, taken_up) if its_run == run else None
+
+
+def remove_checkpoint(path: Path) -> None:
+    """Forget the errand; raises OSError when the disk refuses."""
+    path.unlink(missing_ok=True)
+
+
+def save_dirt(learned: Floats, path: Path) -> None:
+    """Write where it was dirty, float32 [rows, columns], NaN where the robot never was.
+
+    Raises OSError when the disk refuses.
+    """
+    packed = io.BytesIO()
+    np.savez_compressed(packed, learned=learned)
+    write_whole(path, packed.getvalue())
+
+
+def load_dirt(path: Path, shape: tuple[int, int]) -> Floats | None:
+    """Return where it was dirty, or None if that was never saved.
+
+    Raises CheckpointFileError for a file that cannot be read or is of another grid.
+    """
+    if not path.exists():
+        return None
+    try:
+        with np.load(path, allow_pickle=False) as file:
+            learned: Floats = np.asarray(file["learned"], np.float32)
+    except UNREADABLE as error:
+        raise CheckpointFileError(f"{path}: expected a dirt map: {error!r}") from error
+    if learned.shape != shape:
+        raise CheckpointFileError(
+            f"{path}: expected a dirt map of shape {shape}, got {learned.shape}; remove the file"
+        )
+    return learned

@@ -1,0 +1,80 @@
+"""Files of what belongs to one map alone, in YAML: each says by a digest which map that is."""
+
+from __future__ import annotations
+
+import hashlib
+from pathlib import Path
+from typing import Annotated, TypeVar
+
+import yaml
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from roomba.errors import RoombaError
+from roomba.files.atomic import write_whole
+from roomba.grid import OccupancyMap
+
+Number = Annotated[float, Field(ge=-1e5, le=1e5)]
+"""m; farther from the origin no home is."""
+
+
+class Entry(BaseModel):
+    """A part of such a file; what it does not know is left alone."""
+
+    model_config = ConfigDict(extra="ignore", frozen=True)
+
+
+class MapBound(Entry):
+    """Such a file: ``map`` is the digest of its map."""
+
+    map: str
+
+
+_File = TypeVar("_File", bound=MapBound)
+
+
+def map_digest(occupancy: OccupancyMap) -> str:
+    """Return what tells a map from all others: a SHA-256 of its frame and values, hexadecimal."""
+    frame = occupancy.frame
+    place = f"{frame.resolution:.6f} {frame.origin_x:.6f} {frame.origin_y:.6f} {frame.shape}"
+    return hashlib.sha256(place.encode() + occupancy.values.tobytes()).hexdigest()
+
+
+def save_map_bound(
+    path: Path, occupancy: OccupancyMap, key: str, entries: list[dict[str, object]], comment: str
+) -> None:
+    """Write a map's entries under ``key``; a file that is there is replaced at once or not at all.
+
+    Raises OSError when the disk refuses.
+    """
+    text = yaml.safe_dump(
+        {"map": map_digest(occupancy), key: entries},
+        sort_keys=False,
+        allow_unicode=True,
+        default_flow_style=None,
+        width=100,
+    )
+    write_whole(path, f"# {comment}\n{text}".encode())
+
+
+def load_map_bound(
+    path: Path, occupancy: OccupancyMap, kind: type[_File], what: str, error: type[RoombaError]
+) -> _File:
+    """Return a map's file; ``what`` is in it, in the plural, for people to read.
+
+    Raises ``error``, which names the file and the reason, for one that cannot be read or is of
+    another map.
+    """
+    try:
+        file = kind.model_validate(yaml.safe_load(path.read_text(encoding="utf-8")))
+    except (OSError, UnicodeDecodeError, yaml.YAMLError) as cause:
+        raise error(f"{path}: expected a file of {what} in YAML: {cause}") from cause
+    except ValidationError as cause:
+        first = cause.errors()[0]
+        where = ".".join(str(part) for part in first["loc"])
+        raise error(f"{path}: {where}: {first['msg']}, got {first['input']!r}") from cause
+    if file.map != map_digest(occupancy):
+        raise error(
+            f"{path}: expected the {what} of this map, got those of another; remove the file, or "
+            "bring its map back"
+        )
+    return file

@@ -1,0 +1,154 @@
+"""The files of one stored map: a folder that any map_server reads, and that is a home as well.
+
+``map.yaml`` and ``map.pgm`` are the map, ``home.yaml`` is a home's layer with the station and the
+rooms for people to read, ``rooms.yaml`` and ``zones.yaml`` are the rooms and zones to the cell.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+import shapely
+import yaml
+
+from roomba.errors import HomeError, RoombaError, RoomsError
+from roomba.files.atomic import write_whole
+from roomba.files.occupancy_map import load_map, save_map
+from roomba.geometry import Pose
+from roomba.grid import OccupancyMap
+from roomba.perception.rooms.rooms import Rooms
+from roomba.perception.rooms.zones import Zones, ZonesError
+from roomba.storage.rooms import load_rooms, save_rooms
+from roomba.storage.zones import load_zones, save_zones
+from roomba.world.layers.file import read_layer
+from roomba.world.layers.layer import LAYER_NAME, MAP_NAME
+
+ROOMS_NAME: Final = "rooms.yaml"
+ZONES_NAME: Final = "zones.yaml"
+
+_LAYER_COMMENT: Final = "# Station and rooms of a map that the robot made; m and rad.\n"
+
+
+class MapStoreError(RoombaError):
+    """A stored map, or its name, that cannot be used; says what was expected and what to do."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class StoredMap:
+    """A floor as the robot knows it, all in the map's frame.
+
+    ``station`` is where the docked robot stands; ``rooms`` is None while nobody divided the floor.
+    """
+
+    occupancy: OccupancyMap
+    station: Pose
+    rooms: Rooms | None = None
+    zones: Zones = field(default_factory=Zones)
+
+    def __post_init__(self) -> None:
+        """Check that the parts fit together. Raises MapStoreError."""
+        if not self.station.is_finite:
+            raise MapStoreError(
+                f"expected a station at finite numbers, got {self.station}; dock the robot first"
+            )
+        if self.rooms is not None and self.rooms.frame != self.occupancy.frame:
+            raise MapStoreError(
+                f"expected rooms over the map's own {self.occupancy.frame}, got them over "
+                f"{self.rooms.frame}; divide this map into rooms anew"
+            )
+
+    def is_same(self, other: StoredMap) -> bool:
+        """Whether another one has the same map, station, rooms and zones, to the last bit."""
+        return (
+            self.occupancy.frame == other.occupancy.frame
+            and np.array_equal(self.occupancy.values, other.occupancy.values)
+            and self.station == other.station
+            and self.zones == other.zones
+            and _are_same_rooms(self.rooms, other.rooms)
+        )
+
+
+def write_map(stored: StoredMap, folder: Path) -> None:
+    """Write a map's files into a folder that is there, and check that they say the same.
+
+    Raises MapStoreError for what files cannot say, and OSError when the disk refuses.
+    """
+    try:
+        save_map(stored.occupancy, folder / MAP_NAME)
+        write_whole(folder / LAYER_NAME, _layer_text(stored).encode())
+        save_zones(stored.zones, stored.occupancy, folder / ZONES_NAME)
+        if stored.rooms is not None:
+            save_rooms(stored.rooms, stored.occupancy, folder / ROOMS_NAME)
+    except (ValueError, RoomsError) as error:
+        raise MapStoreError(f"expected a map that files can hold: {error}") from error
+    if not read_map(folder).is_same(stored):
+        raise MapStoreError(
+            "expected a map that comes back from its files as it was, got another; its rooms are "
+            "to be free cells of it, its zones nearer to it than 100 km"
+        )
+
+
+def read_map(folder: Path) -> StoredMap:
+    """Return the map of a folder.
+
+    Without ``rooms.yaml`` it has no rooms, without ``zones.yaml`` no zones. Raises MapStoreError,
+    which names the file and the reason, for files that are missing, broken, or not of one map.
+    """
+    if not folder.is_dir():
+        raise MapStoreError(f"{folder}: expected the folder of a map, got none; save the map anew")
+    try:
+        occupancy = load_map(folder / MAP_NAME)
+        station = _station_of(folder / LAYER_NAME)
+        rooms_path = folder / ROOMS_NAME
+        rooms = load_rooms(rooms_path, occupancy) if rooms_path.exists() else None
+        zones = load_zones(folder / ZONES_NAME, occupancy)
+    except (HomeError, RoomsError, ZonesError, OSError) as error:
+        raise MapStoreError(
+            f"{error}; mend the file, or remove the map and let the robot map this floor again"
+        ) from error
+    return StoredMap(occupancy, station, rooms, zones)
+
+
+def _station_of(path: Path) -> Pose:
+    layer, file = read_layer(path)
+    if layer.station is None:
+        raise file.error(("station",), "station: expected where the docked robot stands, got none")
+    return Pose(layer.station.x, layer.station.y, layer.station.facing)
+
+
+def _layer_text(stored: StoredMap) -> str:
+    station = stored.station
+    layer: dict[str, object] = {
+        "station": {
+            "x": float(station.x),
+            "y": float(station.y),
+            "facing": float(station.theta),
+        }
+    }
+    if stored.rooms is not None:
+        rooms = stored.rooms
+        layer["rooms"] = [
+            {"name": name, "outline": _corners(rooms.outline(label))}
+            for label, name in enumerate(rooms.names, 1)
+        ]
+    text = yaml.safe_dump(
+        layer, sort_keys=False, allow_unicode=True, default_flow_style=None, width=100
+    )
+    return _LAYER_COMMENT + text
+
+
+def _corners(outline: shapely.Geometry) -> list[list[float]]:
+    """Return the corners around a room, m; a home's layer knows no holes."""
+    if not isinstance(outline, shapely.Polygon):
+        raise RoomsError("expected rooms in one piece each, got one in several; split it")
+    # Not rounded: a corner on the map's border must not come to lie outside of it.
+    return [[float(x), float(y)] for x, y in list(outline.exterior.coords)[:-1]]
+
+
+def _are_same_rooms(one: Rooms | None, other: Rooms | None) -> bool:
+    if one is None or other is None:
+        return one is other
+    return one.names == other.names and np.array_equal(one.labels, other.labels)

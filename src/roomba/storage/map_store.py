@@ -1,0 +1,157 @@
+"""Several maps of the robot's own, one for each floor, by name, in a folder.
+
+A map is replaced at once or not at all: it is written whole beside the old one, then takes its
+place. Whoever is killed in between finds the old map or the new one, never half of one.
+"""
+
+from __future__ import annotations
+
+import difflib
+import os
+import shutil
+from pathlib import Path
+from typing import Final
+
+from roomba.storage.map_folder import MapStoreError, StoredMap, read_map, write_map
+
+__all__ = ["MapStore", "MapStoreError", "StoredMap"]
+
+LONGEST_NAME: Final = 50
+"""Characters: with what is added while it is replaced the name fits any file system."""
+_FORBIDDEN: Final = frozenset("/\\.")
+_NEW: Final = "new"
+_OLD: Final = "old"
+_GONE: Final = "gone"
+"""Ends of hidden folders: being written, moved out of the way, being removed."""
+
+
+class MapStore:
+    """Maps by name, each a folder of ``folder``. One writer at a time.
+
+    All methods raise MapStoreError for a name that cannot be one, or that no map has, and OSError
+    when the disk refuses.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        """``folder`` need not be there yet: it is made when the first map is saved."""
+        self.folder = folder
+
+    def names(self) -> tuple[str, ...]:
+        """Return the names of all maps, sorted; those of broken ones, too."""
+        if not self.folder.is_dir():
+            return ()
+        found = {_name_of(entry) for entry in self.folder.iterdir() if entry.is_dir()}
+        return tuple(sorted(name for name in found if name))
+
+    def save(self, name: str, stored: StoredMap) -> None:
+        """Store a map; one that is there by this name is replaced.
+
+        Raises MapStoreError for a map that files cannot hold; then what was there stays.
+        """
+        _check_name(name)
+        self.folder.mkdir(parents=True, exist_ok=True)
+        self._tidy_up(name)
+        unfinished, place = self._beside(name, _NEW), self.folder / name
+        unfinished.mkdir()
+        try:
+            write_map(stored, unfinished)
+            _sync_all(unfinished)
+        except BaseException:
+            shutil.rmtree(unfinished, ignore_errors=True)
+            raise
+        if place.exists():
+            # From here to the next line the old one is found by its other name.
+            place.rename(self._beside(name, _OLD))
+        unfinished.rename(place)
+        _wait_for_disk(self.folder)
+        shutil.rmtree(self._beside(name, _OLD), ignore_errors=True)
+
+    def load(self, name: str) -> StoredMap:
+        """Return a map. Raises MapStoreError, which names the file, for one that is broken."""
+        return read_map(self._folder_of(name))
+
+    def remove(self, name: str) -> None:
+        """Forget a map, a broken one as well."""
+        self._folder_of(name)
+        self._tidy_up(name)
+        (self.folder / name).rename(self._beside(name, _GONE))
+        _wait_for_disk(self.folder)
+        shutil.rmtree(self._beside(name, _GONE))
+
+    def rename(self, name: str, new_name: str) -> None:
+        """Give a map another name; raises MapStoreError if another map has it."""
+        _check_name(new_name)
+        self._folder_of(name)
+        if new_name == name:
+            return
+        if new_name in self.names():
+            raise MapStoreError(
+                f"expected a name that no map has, got {new_name!r}; choose another one, or remove "
+                "that map first"
+            )
+        self._tidy_up(name)
+        self._tidy_up(new_name)
+        (self.folder / name).rename(self.folder / new_name)
+        _wait_for_disk(self.folder)
+
+    def _folder_of(self, name: str) -> Path:
+        """Return where a map is whole, though a writer was killed before it put it in place."""
+        _check_name(name)
+        for path in (self.folder / name, self._beside(name, _OLD)):
+            if path.is_dir():
+                return path
+        near = difflib.get_close_matches(name, self.names(), 1)
+        known = ", ".join(repr(each) for each in self.names()) or "no maps"
+        advice = f"did you mean {near[0]!r}?" if near else "choose one of them, or map this floor"
+        raise MapStoreError(f"{self.folder}: expected one of {known}, got {name!r}; {advice}")
+
+    def _tidy_up(self, name: str) -> None:
+        """End what a writer that was killed began."""
+        place, old = self.folder / name, self._beside(name, _OLD)
+        if old.is_dir() and not place.exists():
+            old.rename(place)
+        for end in (_NEW, _OLD, _GONE):
+            if self._beside(name, end).is_dir():
+                shutil.rmtree(self._beside(name, end))
+
+    def _beside(self, name: str, end: str) -> Path:
+        """Return a hidden folder in the same place: only there a rename is done at once."""
+        return self.folder / f".{name}.{end}"
+
+
+def _check_name(name: str) -> None:
+    """Refuse a name that cannot be a folder's everywhere. Raises MapStoreError."""
+    is_good = (
+        0 < len(name) <= LONGEST_NAME
+        and name == name.strip()
+        and name.isprintable()
+        and not _FORBIDDEN & set(name)
+    )
+    if not is_good:
+        raise MapStoreError(
+            f"expected a map's name of 1 to {LONGEST_NAME} characters without slashes and dots, "
+            f"and no blanks around it, got {name[: 2 * LONGEST_NAME]!r}; choose another name"
+        )
+
+
+def _name_of(entry: Path) -> str:
+    """Return the name of the map that a folder is of; empty for what is no map's."""
+    if not entry.name.startswith("."):
+        return entry.name
+    name, _, end = entry.name[1:].rpartition(".")
+    return name if end == _OLD else ""
+
+
+def _sync_all(folder: Path) -> None:
+    """Wait until a folder and its files are on the disk."""
+    for path in folder.iterdir():
+        _wait_for_disk(path)
+    _wait_for_disk(folder)
+
+
+def _wait_for_disk(path: Path) -> None:
+    descriptor = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)

@@ -1,0 +1,233 @@
+"""A map that is being made, on disk: plain arrays in one file, replaced at once or not at all."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.errors import RoombaError
+from roomba.files.atomic import UNREADABLE, write_whole
+from roomba.geometry import Pose
+from roomba.perception.slam.mapper_state import KeptSubmap, LidarNumbers, MapperState
+from roomba.perception.slam.pose_graph import Link
+from roomba.perception.slam.submap import Keyframe
+from roomba.perception.slam.surface_kernels import POINT
+
+Arrays = Mapping[str, NDArray[Any]]
+
+FORMAT: Final = 1
+"""Of the file; another number is another format."""
+_MOST_BEAMS: Final = 100_000
+
+
+class MapperFileError(RoombaError):
+    """A file that cannot be used; the message names it and says why."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class KeptMap:
+    """A map that is being made, and what its maker knows beside it.
+
+    ``run`` names the launch of the robot that it is of. ``station`` is where the docked robot
+    stands, map frame, None while that is not known; ``station_from_start`` the same seen from where
+    the map began. ``taken_up`` is how often it was taken up without getting anywhere.
+    """
+
+    state: MapperState
+    run: str
+    station: Pose | None = None
+    station_from_start: Pose | None = None
+    taken_up: int = 0
+
+
+def save_mapper(kept: KeptMap, path: Path) -> None:
+    """Write a map that is being made; raises OSError when the disk refuses."""
+    packed = io.BytesIO()
+    np.savez(packed, **_arrays_of(kept))
+    write_whole(path, packed.getvalue())
+
+
+def load_mapper(path: Path) -> KeptMap | None:
+    """Return what was saved, bit for bit; None if nothing was.
+
+    Raises MapperFileError for a file that is broken, of something else, or of another format.
+    """
+    try:
+        with np.load(path, allow_pickle=False) as file:
+            return _kept_of(_Fields(file))
+    except FileNotFoundError:
+        return None
+    except UNREADABLE as error:
+        raise MapperFileError(
+            f"{path}: expected a map that is being made: {error}; remove the file"
+        ) from error
+
+
+def remove_mapper(path: Path) -> None:
+    """Forget the map; raises OSError when the disk refuses."""
+    path.unlink(missing_ok=True)
+
+
+def _arrays_of(kept: KeptMap) -> dict[str, NDArray[Any]]:
+    state = kept.state
+    frames = [frame for submap in state.submaps for frame in submap.keyframes]
+    lidar, links = state.lidar, state.links
+    no_points, no_poses = np.zeros((0, POINT), np.float32), np.zeros((0, 3))
+    return {
+        "format": np.array(FORMAT),
+        "run": np.array(kept.run),
+        "taken_up": np.array(kept.taken_up),
+        "station": _row_of(kept.station),
+        "station_from_start": _row_of(kept.station_from_start),
+        "version": np.array(state.version),
+        "is_lost": np.array(state.is_lost),
+        "way": np.array(state.way),
+        "phase": np.array(state.phase),
+        "lidar_beams": np.array(lidar.beams),
+        "lidar_numbers": np.array([lidar.first_angle, lidar.step, lidar.nearest, lidar.farthest]),
+        "lidar_mount": _row_of(lidar.mount),
+        "poses": state.poses,
+        "submap_ways": np.array([submap.way for submap in state.submaps]),
+        "submap_keyframes": np.array([len(submap.keyframes) for submap in state.submaps]),
+        "keyframe_poses": np.array([frame.pose for frame in frames]) if frames else no_poses,
+        "keyframe_points": np.array([len(frame.points) for frame in frames], np.int64),
+        "points": np.concatenate([no_points, *(frame.points for frame in frames)]),
+        "link_ends": np.array([(link.parent, link.child) for link in links], np.int64).reshape(
+            -1, 2
+        ),
+        "link_relatives": np.array([link.relative for link in links]).reshape(-1, 3),
+        "link_information": np.array([link.information for link in links]).reshape(-1, 3, 3),
+        "link_doubts": np.array([link.may_be_wrong for link in links], np.bool_),
+    }
+
+
+class _Fields:
+    """The arrays of a file, each checked for its kind, its shape, and that all numbers are finite.
+
+    All methods raise ValueError, or KeyError for an array that is not there.
+    """
+
+    def __init__(self, arrays: Arrays) -> None:
+        self._arrays = arrays
+
+    def floats(self, name: str, *shape: int, kind: type = np.float64) -> NDArray[Any]:
+        """Return numbers of a shape, in which -1 is any length."""
+        found = self._of(name, np.dtype(kind), shape)
+        if not np.isfinite(found).all():
+            raise ValueError(f"{name}: expected finite numbers, got others")
+        return found
+
+    def pose(self, name: str) -> Pose | None:
+        """Return a pose; none is three numbers that are none."""
+        found = self._of(name, np.dtype(np.float64), (3,))
+        if np.isnan(found).all():
+            return None
+        return Pose(*self.floats(name, 3).tolist())
+
+    def counts(self, name: str, *shape: int) -> NDArray[np.int64]:
+        """Return whole numbers of 0 or more."""
+        found = self._of(name, np.dtype(np.int64), shape)
+        if found.size and found.min() < 0:
+            raise ValueError(f"{name}: expected 0 or more, got {found.min()}")
+        return found
+
+    def flags(self, name: str, *shape: int) -> NDArray[np.bool_]:
+        """Return yes or no."""
+        return self._of(name, np.dtype(np.bool_), shape)
+
+    def text(self, name: str) -> str:
+        """Return words."""
+        found = self._arrays[name]
+        if found.dtype.kind != "U" or found.shape:
+            raise ValueError(f"{name}: expected words, got {found.dtype} {found.shape}")
+        return str(found)
+
+    def _of(self, name: str, kind: np.dtype[Any], shape: tuple[int, ...]) -> NDArray[Any]:
+        found = self._arrays[name]
+        fits = len(found.shape) == len(shape) and all(
+            wanted in (-1, length) for wanted, length in zip(shape, found.shape, strict=True)
+        )
+        if found.dtype != kind or not fits:
+            raise ValueError(
+                f"{name}: expected {kind} of shape {shape}, got {found.dtype} of {found.shape}"
+            )
+        return found
+
+
+def _kept_of(fields: _Fields) -> KeptMap:
+    its_format = int(fields.counts("format"))
+    if its_format != FORMAT:
+        raise ValueError(f"expected one of format {FORMAT}, got format {its_format}")
+    submaps = _submaps_of(fields)
+    phase = fields.floats("phase", 2).tolist()
+    state = MapperState(
+        submaps,
+        fields.floats("poses", len(submaps), 3),
+        _links_of(fields, len(submaps)),
+        float(fields.floats("way")),
+        (phase[0], phase[1]),
+        _lidar_of(fields),
+        int(fields.counts("version")),
+        bool(fields.flags("is_lost")),
+    )
+    return KeptMap(
+        state,
+        fields.text("run"),
+        fields.pose("station"),
+        fields.pose("station_from_start"),
+        int(fields.counts("taken_up")),
+    )
+
+
+def _submaps_of(fields: _Fields) -> tuple[KeptSubmap, ...]:
+    ways = fields.floats("submap_ways", -1)
+    sizes = fields.counts("submap_keyframes", len(ways))
+    lengths = fields.counts("keyframe_points", -1)
+    if not len(ways) or not len(lengths):
+        raise ValueError("expected one submap with one keyframe, or more, got none")
+    points = fields.floats("points", int(lengths.sum()), POINT, kind=np.float32)
+    poses = fields.floats("keyframe_poses", len(lengths), 3)
+    if sizes.sum() != len(lengths):
+        raise ValueError(f"expected {sizes.sum()} keyframes, got {len(lengths)}")
+    parts = np.split(points, np.cumsum(lengths)[:-1])
+    frames = [Keyframe(part, pose) for part, pose in zip(parts, poses, strict=True)]
+    ends = np.cumsum(sizes).tolist()
+    return tuple(
+        KeptSubmap(way, tuple(frames[end - size : end]))
+        for way, size, end in zip(ways.tolist(), sizes.tolist(), ends, strict=True)
+    )
+
+
+def _links_of(fields: _Fields, submaps: int) -> tuple[Link, ...]:
+    ends = fields.counts("link_ends", -1, 2)
+    if ends.size and ends.max() >= submaps:
+        raise ValueError(f"expected links between {submaps} submaps, got one to {ends.max()}")
+    relatives = fields.floats("link_relatives", len(ends), 3)
+    information = fields.floats("link_information", len(ends), 3, 3)
+    doubts = fields.flags("link_doubts", len(ends)).tolist()
+    return tuple(
+        Link(parent, child, relative, sureness, doubt)
+        for (parent, child), relative, sureness, doubt in zip(
+            ends.tolist(), relatives, information, doubts, strict=True
+        )
+    )
+
+
+def _lidar_of(fields: _Fields) -> LidarNumbers:
+    beams, mount = int(fields.counts("lidar_beams")), fields.pose("lidar_mount")
+    if not 0 < beams <= _MOST_BEAMS or mount is None:
+        raise ValueError(f"expected a lidar with beams and a mount, got {beams} and {mount}")
+    first_angle, step, nearest, farthest = fields.floats("lidar_numbers", 4).tolist()
+    if not 0.0 <= nearest < farthest:
+        raise ValueError(f"expected a lidar that reaches from near to far, got {nearest, farthest}")
+    return LidarNumbers(beams, first_angle, step, nearest, farthest, mount)
+
+
+def _row_of(pose: Pose | None) -> NDArray[np.float64]:
+    return np.full(3, np.nan) if pose is None else np.array([pose.x, pose.y, pose.theta])

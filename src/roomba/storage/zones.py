@@ -1,0 +1,52 @@
+"""Reads and writes a map's no-go zones and virtual walls, in YAML beside the map's rooms."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from roomba.grid import OccupancyMap
+from roomba.perception.rooms.zones import Zone, ZoneKind, Zones, ZonesError
+from roomba.storage.map_bound import Entry, MapBound, Number, load_map_bound, save_map_bound
+
+_COMMENT = "Zones of a map where the robot must not go; lengths in m, map frame."
+
+
+class _ZoneEntry(Entry):
+    name: str
+    kind: ZoneKind
+    points: list[tuple[Number, Number]]
+
+
+class _ZonesFile(MapBound):
+    zones: list[_ZoneEntry]
+
+
+def save_zones(zones: Zones, occupancy: OccupancyMap, path: Path) -> None:
+    """Write the zones of a map; a file that is there is replaced at once or not at all.
+
+    Raises OSError when the disk refuses.
+    """
+    entries: list[dict[str, object]] = [
+        {
+            "name": zone.name,
+            "kind": zone.kind.value,
+            "points": [[float(x), float(y)] for x, y in zone.points],
+        }
+        for zone in zones.all
+    ]
+    save_map_bound(path, occupancy, "zones", entries, _COMMENT)
+
+
+def load_zones(path: Path, occupancy: OccupancyMap) -> Zones:
+    """Return the zones that were saved for a map; none if there is no such file.
+
+    Raises ZonesError, which names the file and the reason, for a file that cannot be read or is of
+    another map: without its zones a robot may go where it must not.
+    """
+    if not path.exists():
+        return Zones()
+    file = load_map_bound(path, occupancy, _ZonesFile, "zones", ZonesError)
+    try:
+        return Zones(tuple(Zone(zone.name, zone.kind, tuple(zone.points)) for zone in file.zones))
+    except ZonesError as error:
+        raise ZonesError(f"{path}: {error}") from error

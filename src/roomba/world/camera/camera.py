@@ -1,0 +1,180 @@
+"""The robot's camera: the home as seen from a low lens that looks level and turns left and right.
+
+Pictures are RGB; depth is the distance along the optical axis, m, as in REP-118. The lens has no
+distortion: a pixel (column, row) looks along ``(width / 2 - column - 0.5) / focal`` to the left and
+``(height / 2 - row - 0.5) / focal`` up, per metre ahead.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.configuration.robot import CameraConfig
+from roomba.errors import PictureError
+from roomba.geometry import Pose
+from roomba.grid import GridFrame
+from roomba.world.camera.kernels.film import develop
+from roomba.world.camera.kernels.quick import render_quick
+from roomba.world.camera.kernels.smooth import render_smooth
+from roomba.world.camera.scene.arrays import SceneArrays, ViewTables, Workspace
+from roomba.world.camera.scene.scene import Scene
+from roomba.world.camera.scene.texture_atlas import tone
+from roomba.world.camera.view import aligned, view_tables, whole_lanes, workspace
+
+__all__ = ["Camera", "Picture", "Scene"]
+
+SUPERSAMPLING = 2
+"""Samples per pixel in each direction, unless asked otherwise."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Picture:
+    """``colour`` uint8 [height, width, 3] RGB, and ``depth`` float32 [height, width] in metres."""
+
+    colour: NDArray[np.uint8]
+    depth: NDArray[np.float32]
+
+
+class Camera:
+    """Takes pictures of a scene. Not for two threads at once: the buffers are its own."""
+
+    def __init__(
+        self, scene: Scene, config: CameraConfig, supersampling: int = SUPERSAMPLING
+    ) -> None:
+        """Make a camera; ``supersampling`` 1 is fast, 2 smooth. Raises PictureError for others."""
+        if supersampling not in (1, 2):
+            raise PictureError(f"expected a supersampling of 1 or 2, got {supersampling}")
+        self.config = config
+        self._scene = scene
+        self._boxes = scene.boxes()
+        self._quick = _Quick(config, len(self._boxes.shapes))
+        self._smooth = _Smooth(config, len(self._boxes.shapes)) if supersampling == 2 else None
+
+    @property
+    def focal(self) -> float:
+        """Focal length, pixels: the same in both directions."""
+        return self._quick.view.focal
+
+    def place_things(self, poses: NDArray[np.float64]) -> None:
+        """Put what moves where it is now, for the pictures to come.
+
+        ``poses`` is float64 [things, 4] in the order of the home's ``moving``: x, y, m, and theta,
+        rad, in the map frame; and 1, or 0 for what is not there. Raises PictureError for another
+        shape, or if a number is not finite.
+        """
+        self._scene.moving.place_things(self._boxes.shapes, poses)
+
+    def place_discs(self, discs: NDArray[np.float64]) -> None:
+        """Show these round bodies, such as other robots, in the pictures to come.
+
+        ``discs`` is float64 [up to MOST_DISCS, 4]: x, y in the map frame, radius, height; m.
+        Upright cylinders from the floor up; the robot that carries the camera must not be one of
+        them. Raises PictureError for another shape, or if a number is not finite.
+        """
+        self._scene.moving.place_discs(self._boxes.shapes, discs)
+
+    def picture(
+        self, pose: Pose, pan: float, dirt: NDArray[np.int32], dirt_frame: GridFrame
+    ) -> NDArray[np.uint8]:
+        """Return what the robot sees: uint8 [height, width, 3], RGB.
+
+        ``pose`` is the body's in the map frame, ``pan`` the camera's turn to the left, rad.
+        ``dirt`` is micrograms per cell of ``dirt_frame``. Raises PictureError if a number is
+        not finite or the dirt does not fit its frame.
+        """
+        if self._smooth is not None:
+            return self._smooth.taken(self._shot(pose, pan, dirt, dirt_frame))
+        return self.render(pose, pan, dirt, dirt_frame).colour
+
+    def depth(self, pose: Pose, pan: float) -> NDArray[np.float32]:
+        """Return the distance along the optical axis, float32 [height, width], m.
+
+        Exact in the middle of each pixel. Arguments and errors as for :meth:`picture`.
+        """
+        return self._quick.taken(self._shot(pose, pan, _NO_DIRT, _NO_DIRT_FRAME)).depth
+
+    def render(
+        self, pose: Pose, pan: float, dirt: NDArray[np.int32], dirt_frame: GridFrame
+    ) -> Picture:
+        """Return colour and depth; arguments and errors as for :meth:`picture`."""
+        shot = self._shot(pose, pan, dirt, dirt_frame)
+        picture = self._quick.taken(shot)
+        if self._smooth is None:
+            return picture
+        return Picture(self._smooth.taken(shot), picture.depth)
+
+    def _shot(
+        self, pose: Pose, pan: float, dirt: NDArray[np.int32], dirt_frame: GridFrame
+    ) -> _Shot:
+        if not all(math.isfinite(value) for value in (pose.x, pose.y, pose.theta, pan)):
+            raise PictureError(
+                f"expected finite numbers for the camera's place, got x={pose.x} y={pose.y} "
+                f"theta={pose.theta} pan={pan}"
+            )
+        if dirt.shape != dirt_frame.shape:
+            raise PictureError(
+                f"expected dirt of the frame's shape {dirt_frame.shape}, got {dirt.shape}"
+            )
+        lens = pose.compose(Pose(self.config.mount_forward, 0.0, pan))
+        return (
+            self._scene.arrays._replace(boxes=self._boxes),
+            lens.x,
+            lens.y,
+            math.cos(lens.theta),
+            math.sin(lens.theta),
+            np.ascontiguousarray(dirt, np.int32),
+            np.array([dirt_frame.resolution, dirt_frame.origin_x, dirt_frame.origin_y]),
+        )
+
+
+_Shot = tuple[SceneArrays, float, float, float, float, NDArray[np.int32], NDArray[np.float64]]
+"""What to take a picture of: scene, x, y, cosine and sine of the lens, dirt, and where it lies."""
+
+
+class _Quick:
+    """Takes pictures of one sample per pixel."""
+
+    def __init__(self, config: CameraConfig, boxes: int) -> None:
+        self.view: ViewTables = view_tables(config, 1)
+        self._config = config
+        self._work: Workspace = workspace(self.view, boxes)
+
+    def taken(self, shot: _Shot) -> Picture:
+        scene, x, y, cosine, sine, dirt, dirt_place = shot
+        height, width, columns = self._config.height, self._config.width, self.view.columns
+        colour = aligned((height, columns, 3), np.uint8)
+        depth = aligned((whole_lanes(height), columns), np.float32)
+        render_quick(
+            scene, self.view, x, y, cosine, sine, dirt, dirt_place, self._work, colour, depth
+        )
+        return Picture(
+            np.ascontiguousarray(colour[:, :width]), np.ascontiguousarray(depth[:height, :width])
+        )
+
+
+class _Smooth:
+    """Takes pictures of four samples per pixel."""
+
+    def __init__(self, config: CameraConfig, boxes: int) -> None:
+        self._config = config
+        self._view: ViewTables = view_tables(config, 2)
+        self._work: Workspace = workspace(self._view, boxes)
+        self._colours = np.zeros((self._view.columns // 2, config.height), np.uint32)
+        self._tone = tone()
+
+    def taken(self, shot: _Shot) -> NDArray[np.uint8]:
+        scene, x, y, cosine, sine, dirt, dirt_place = shot
+        render_smooth(
+            scene, self._view, x, y, cosine, sine, dirt, dirt_place, self._work, self._colours
+        )
+        picture = np.empty((self._config.height, self._config.width, 3), np.uint8)
+        develop(self._colours, self._tone, picture)
+        return picture
+
+
+_NO_DIRT = np.zeros((1, 1), np.int32)
+_NO_DIRT_FRAME = GridFrame(1.0, 0.0, 0.0, 1, 1)

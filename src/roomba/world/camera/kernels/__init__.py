@@ -1,0 +1,1 @@
+"""The camera's compiled loops, a file for each kind of surface."""

@@ -1,0 +1,56 @@
+"""Compiled small steps from a texture to a colour; colours are packed as 0x00BBGGRR."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from roomba.world.camera.lanes.compilation import INLINE
+
+
+@njit(**INLINE)
+def scaled(colour: int, shade: int) -> int:
+    """Return a packed colour times ``shade`` / 256, shade 0..256."""
+    red_blue = ((colour & 0xFF00FF) * shade >> 8) & 0xFF00FF
+    green = ((colour & 0x00FF00) * shade >> 8) & 0x00FF00
+    return red_blue | green
+
+
+@njit(**INLINE)
+def blended(colour: int, other: int, share: int) -> int:
+    """Return a packed colour mixed with ``share`` / 256 of another, share 0..256."""
+    return int(scaled(colour, 256 - share) + scaled(other, share))
+
+
+@njit(**INLINE)
+def level_of(size: float, bits: int) -> int:
+    """Return which halving of a texture has texels about as big as a sample of ``size`` texels."""
+    size *= 1.0 / 1.5
+    # Not from the number's exponent, which takes a call.
+    level = np.int64(0)
+    while size >= 1.0 and level < bits:
+        size *= 0.5
+        level += 1
+    return int(level)
+
+
+@njit(**INLINE)
+def smooth_texel(texels: NDArray[np.uint8], start: int, bits: int, u: float, v: float) -> int:
+    """Return a texture's grey between four texels; ``u``, ``v`` in texels of this level."""
+    mask = (1 << bits) - 1
+    u -= 0.5
+    v -= 0.5
+    low_u = math.floor(u)
+    low_v = math.floor(v)
+    part_u = int((u - low_u) * 256.0)
+    part_v = int((v - low_v) * 256.0)
+    left = int(low_u) & mask
+    right = (left + 1) & mask
+    upper = start + ((int(low_v) & mask) << bits)
+    lower = start + (((int(low_v) + 1) & mask) << bits)
+    one = np.int32(texels[upper + left]) * (256 - part_u) + texels[upper + right] * part_u
+    two = np.int32(texels[lower + left]) * (256 - part_u) + texels[lower + right] * part_u
+    return int((one * (256 - part_v) + two * part_v) >> 16)

@@ -1,0 +1,42 @@
+"""Compiled last steps of a picture: painted columns become rows of pixels."""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from roomba.world.camera.lanes.compilation import INNER, KERNEL
+
+BLOCK = 16
+"""Columns that are turned into rows together: what fits the nearest cache."""
+RED_BLUE, GREEN, TWO = np.uint32(0xFF00FF), np.uint32(0x00FF00), np.uint32(2)
+
+
+@njit(**KERNEL)
+def develop(
+    colours: NDArray[np.uint32], tone: NDArray[np.uint8], picture: NDArray[np.uint8]
+) -> None:
+    """Turn painted columns [width, height] into an RGB picture [height, width, 3], toned."""
+    height, width, _ = picture.shape
+    for low in range(0, width, BLOCK):
+        for row in range(height):
+            for column in range(low, min(low + BLOCK, width)):
+                colour = int(colours[column, row])
+                picture[row, column, 0] = tone[colour & 255]
+                picture[row, column, 1] = tone[(colour >> 8) & 255]
+                picture[row, column, 2] = tone[(colour >> 16) & 255]
+
+
+@njit(**INNER)
+def shrink(colours: NDArray[np.uint32], halved: NDArray[np.uint32]) -> None:
+    """Average two painted columns [2, 2 n] by twos into one, [n]."""
+    for row in range(halved.shape[0]):
+        one = np.uint32(colours[0, 2 * row])
+        two = np.uint32(colours[0, 2 * row + 1])
+        three = np.uint32(colours[1, 2 * row])
+        four = np.uint32(colours[1, 2 * row + 1])
+        # Red and blue in one sum: eight bits between them are free for what is carried.
+        red_blue = (one & RED_BLUE) + (two & RED_BLUE) + (three & RED_BLUE) + (four & RED_BLUE)
+        green = (one & GREEN) + (two & GREEN) + (three & GREEN) + (four & GREEN)
+        halved[row] = ((red_blue >> TWO) & RED_BLUE) | ((green >> TWO) & GREEN)

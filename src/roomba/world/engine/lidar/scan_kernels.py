@@ -1,0 +1,129 @@
+"""Compiled scan of a robot in its world: walls, moving things, round things and other robots."""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.world.engine.lidar.projection import (
+    ScanBuffers,
+    begin_scan,
+    end_scan,
+    scan_disc,
+    scan_segment,
+    scan_walls,
+)
+from roomba.world.engine.state.arrays import Edges, Row, Solid
+from roomba.world.engine.state.compilation import part, scan_part
+from roomba.world.engine.state.random_kernels import add_noise, next_bits
+
+Floats = NDArray[np.float32]
+
+_SLACK: Final = 1e-9
+"""s; a scan is due when the time is as near to it as this."""
+
+
+@part
+def is_scan_due(world: Row, body: Row, period: float) -> bool:
+    """Tell whether it is time for a scan, and set the next time; what was missed stays so."""
+    late = world.time - body.next_scan + _SLACK
+    if late < 0.0:
+        return False
+    body.next_scan += (math.floor(late / period) + 1.0) * period
+    return True
+
+
+@part
+def scan(
+    solid: Solid,
+    edges: Edges,
+    home: Row,
+    world: Row,
+    robot: int,
+    numbers: Row,
+    quantiles: Floats,
+    buffers: ScanBuffers,
+    ranges: Floats,
+) -> None:
+    """Fill the robot's row of ``ranges`` with what its lidar measures now."""
+    body = solid.robots[robot]
+    body.scans += 1
+    if body.lidar_blocked > 0.0:
+        for beam in range(ranges.shape[1]):
+            ranges[robot, beam] = np.float32(math.inf)
+        return
+    x, y = np.float32(body.x - home.left), np.float32(body.y - home.bottom)
+    theta = begin_scan(buffers.rays, buffers.fan, body.theta, numbers.max_range)
+    scan_walls(buffers, edges, home, x, y, theta)
+    beams = ranges.shape[1]
+    scan_things(solid, world, body, buffers.fan, beams, theta, numbers.lidar_height)
+    scan_round_things(solid, world, robot, buffers.fan, beams, theta, numbers.radius)
+    end_scan(buffers.fan, ranges, robot, numbers.min_range, numbers.max_range)
+    if numbers.noisy > 0.0:
+        key = np.uint32(next_bits(body) >> np.uint64(32))
+        sigma, misses = np.float32(numbers.range_noise), np.float32(numbers.misses)
+        add_noise(ranges, robot, key, quantiles, sigma, misses)
+
+
+@scan_part
+def scan_things(
+    solid: Solid,
+    world: Row,
+    body: Row,
+    fan: Floats,
+    beams: int,
+    theta: np.float32,
+    height: float,
+) -> None:
+    """Put the boxes of moving things that reach the lidar's height into the depth buffer."""
+    for number in range(world.things_at, world.things_end):
+        thing = solid.things[number]
+        if thing.present == 0.0:
+            continue
+        cosine, sine = math.cos(thing.theta), math.sin(thing.theta)
+        for index in range(thing.boxes_at, thing.boxes_end):
+            box = solid.boxes[index]
+            if box.bottom <= height < box.top:
+                x = thing.x - body.x + cosine * box.x - sine * box.y
+                y = thing.y - body.y + sine * box.x + cosine * box.y
+                scan_box(fan, beams, box, x, y, thing.theta + box.theta, theta)
+
+
+@scan_part
+def scan_box(
+    fan: Floats, beams: int, box: Row, x: float, y: float, turn: float, theta: np.float32
+) -> None:
+    """Put the sides of a box, its middle as seen from the robot, into the depth buffer."""
+    cosine, sine = math.cos(turn), math.sin(turn)
+    along_x, along_y = cosine * box.half_length, sine * box.half_length
+    across_x, across_y = -sine * box.half_width, cosine * box.half_width
+    for _ in range(4):
+        # One side after the other, clockwise, so that a side's right end comes first from outside.
+        x0, y0 = x + along_x + across_x, y + along_y + across_y
+        x1, y1 = x + along_x - across_x, y + along_y - across_y
+        scan_segment(fan, beams, x0, y0, x1, y1, theta)
+        along_x, along_y, across_x, across_y = -across_x, -across_y, along_x, along_y
+
+
+@scan_part
+def scan_round_things(
+    solid: Solid,
+    world: Row,
+    robot: int,
+    fan: Floats,
+    beams: int,
+    theta: np.float32,
+    radius: float,
+) -> None:
+    """Put round things and other robots, discs of ``radius`` m, into the depth buffer."""
+    body = solid.robots[robot]
+    for number in range(world.discs_at, world.discs_end):
+        disc = solid.discs[number]
+        scan_disc(fan, beams, disc.x - body.x, disc.y - body.y, disc.radius, theta)
+    for number in range(world.robots_at, world.robots_end):
+        if number != robot:
+            other = solid.robots[number]
+            scan_disc(fan, beams, other.x - body.x, other.y - body.y, radius, theta)

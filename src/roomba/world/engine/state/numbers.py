@@ -1,0 +1,99 @@
+"""The numbers of the robot as the kernels read them: one row, made from its configuration.
+
+SI units but for energy (Wh) and dirt (micrograms); what is noise is 0 for ideal sensors.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+import numpy as np
+
+from roomba.configuration.robot import RobotConfig
+from roomba.world.catalogue.furniture import STATION_GAP
+from roomba.world.engine.state.arrays import Rows
+from roomba.world.home.dirt import MICROGRAMS_PER_GRAM
+
+SLIP_LENGTH: Final = 0.1
+"""m; over so much way the slip of a wheel stays about the same (assumed)."""
+TAPER_FROM: Final = 0.9
+"""Share of the charge from which on charging becomes slower, evenly, down to TAPER_TO."""
+TAPER_TO: Final = 0.2
+"""Share of the power that is left when the battery is full."""
+
+
+def numbers_of(config: RobotConfig) -> Rows:
+    """Return a configuration's numbers, an array of one row."""
+    body, brush, battery, lidar = config.body, config.brush, config.battery, config.lidar
+    noise = 1.0 if config.sensors == "noisy" else 0.0
+    fields: dict[str, float] = {
+        "noisy": noise,
+        "radius": body.radius,
+        "track": body.wheel_separation,
+        "wheel_radius": 0.5 * body.wheel_diameter,
+        "max_angular_speed": body.max_angular_speed,
+        "acceleration": body.max_acceleration,
+        "deceleration": body.max_deceleration,
+        "angular_acceleration": body.max_angular_acceleration,
+        "radians_per_count": noise * 2.0 * math.pi / config.wheels.counts_per_turn,
+        "slip": noise * config.wheels.slip,
+        "carpet_slip": noise * config.wheels.carpet_slip,
+        # The sum of a process with this spread and length varies by slip_noise over each metre.
+        "slip_spread": noise * config.wheels.slip_noise / math.sqrt(2.0 * SLIP_LENGTH),
+        "blocked_slip": noise * config.wheels.blocked_slip,
+        "gyro_noise": noise * config.gyro.noise,
+        "gyro_walk": noise * config.gyro.bias_walk,
+        "acceleration_noise": noise * config.gyro.acceleration_noise,
+        "brush_width": brush.width,
+        "brush_depth": brush.depth,
+        "pickup": brush.pickup,
+        "carpet_pickup": brush.carpet_pickup,
+        "brush_power": brush.power,
+        "carpet_power": brush.carpet_power,
+        "current_noise": noise * brush.current_noise,
+        "voltage": battery.nominal_voltage,
+        "fan_pickup": config.fan.pickup,
+        "fan_power": config.fan.power,
+        "bin_capacity": brush.bin_capacity * MICROGRAMS_PER_GRAM,
+        "grain": config.dirt_sensor.grain,
+        "most_grains": config.dirt_sensor.most,
+        "capacity": battery.capacity,
+        "idle_power": battery.idle_power,
+        "drive_power": 0.5 * battery.drive_power / battery.drive_speed,
+        "stall_power": battery.stall_power,
+        "charge_power": charge_power(battery.capacity, battery.charge_hours),
+        "ambient": battery.ambient,
+        "heating": battery.heating,
+        "heating_time": battery.heating_time,
+        "station_ahead": body.radius + STATION_GAP,
+        "halo": config.station.halo,
+        "beam": config.station.beam,
+        "beam_angle": math.radians(config.station.beam_angle),
+        "half_overlap": math.radians(0.5 * config.station.overlap),
+        "position_tolerance": config.station.position_tolerance,
+        "angle_tolerance": math.radians(config.station.angle_tolerance),
+        "min_range": lidar.min_range,
+        "max_range": lidar.max_range,
+        "scan_period": 1.0 / lidar.rate,
+        "range_noise": noise * lidar.noise,
+        "misses": noise * lidar.misses,
+        "lidar_height": lidar.mount_height,
+    }
+    for name, angle in zip("abcd", config.cliff.angles, strict=True):
+        fields[f"cliff_{name}_ahead"] = config.cliff.radius * math.cos(math.radians(angle))
+        fields[f"cliff_{name}_aside"] = config.cliff.radius * math.sin(math.radians(angle))
+    numbers = np.zeros(1, np.dtype([(name, "f8") for name in fields]))
+    for name, value in fields.items():
+        numbers[name] = value
+    return numbers
+
+
+def charge_power(capacity: float, hours: float) -> float:
+    """Return the power, W, that fills ``capacity`` Wh in so many hours, its end ever slower.
+
+    From TAPER_FROM on the power falls evenly with the charge; that part takes ln(1 / TAPER_TO) /
+    (1 - TAPER_TO) times as long as it would at full power.
+    """
+    taper = (1.0 - TAPER_FROM) * math.log(1.0 / TAPER_TO) / (1.0 - TAPER_TO)
+    return capacity * (TAPER_FROM + taper) / hours

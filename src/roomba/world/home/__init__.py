@@ -1,0 +1,1 @@
+"""A home as it is: walls, furniture, materials, what moves, dirt."""

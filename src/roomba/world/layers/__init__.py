@@ -1,0 +1,1 @@
+"""Reading a home from its files."""

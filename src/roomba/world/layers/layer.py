@@ -1,0 +1,173 @@
+"""Reads homes from files: a map_server map, and the layer file beside it.
+
+A home is a folder (``map.yaml`` with its picture, and ``home.yaml``) or any map_server YAML file,
+whose layer is then called ``<stem>.home.yaml``. The layer may be missing: then the home has no
+rooms and no furniture, its station stands where :mod:`roomba.world.layers.automatic_station` finds
+a wall, and :data:`EVEN_DIRT` lies evenly on its floor.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from roomba.configuration.robot import BodyConfig
+from roomba.errors import HomeError
+from roomba.files.occupancy_map import load_map
+from roomba.files.strict_yaml import YamlFile, suggestion
+from roomba.geometry import Pose
+from roomba.grid import OccupancyMap
+from roomba.world.home.home import DirtSource, Home
+from roomba.world.layers.assembly import (
+    Floor,
+    furnished_floor,
+    room_for_body,
+    station_on,
+    with_station,
+)
+from roomba.world.layers.automatic_station import automatic_station
+from roomba.world.layers.file import Layer, read_layer
+from roomba.world.layers.parts import Parts, parts_of
+
+MAP_NAME = "map.yaml"
+LAYER_NAME = "home.yaml"
+
+EVEN_DIRT = 0.5
+"""g/m²; on the floor of a home whose layer names no sources: some days of dust."""
+EVEN_DIRT_RATE = 0.005
+"""g/(m² h); what falls on it later: about 0.1 g/m² a day."""
+
+
+def list_homes(directory: Path) -> list[str]:
+    """Return the names of the homes in a folder, sorted; of a folder that is not there, none."""
+    return sorted(entry.parent.name for entry in directory.glob(f"*/{MAP_NAME}"))
+
+
+def load_home(
+    name_or_path: str,
+    homes_directory: Path,
+    body: BodyConfig | None = None,
+    station: Pose | None = None,
+) -> Home:
+    """Return a home by name (a folder of ``homes_directory``), or by the path of a folder or map.
+
+    ``body`` (default: the shipped robot) decides what is solid at its height and whether it fits
+    its station; ``station`` is the docked robot's pose in place of the layer's. Raises
+    :class:`HomeError`: ``file:line: reason``.
+    """
+    map_path, layer_path = _files_of(name_or_path, homes_directory)
+    occupancy = load_map(map_path)
+    if layer_path is None:
+        layer, file = Layer(), YamlFile(map_path, {}, None)
+    else:
+        layer, file = read_layer(layer_path)
+    parts = parts_of(layer, file, occupancy.frame)
+    if station is not None:
+        parts = replace(parts, station=station)
+    return _assembled(_name_of(map_path), occupancy, parts, file, body or BodyConfig())
+
+
+def _assembled(
+    name: str, occupancy: OccupancyMap, parts: Parts, file: YamlFile, body: BodyConfig
+) -> Home:
+    floor = furnished_floor(occupancy, parts, body.height)
+    docked = parts.station
+    if docked is None:
+        docked = _found_station(floor, file, body)
+    _check_body_fits(floor, docked, file, body)
+    station = station_on(floor, docked, body.radius)
+    floor = with_station(floor, station, docked, body.radius)
+    _check_dirt_on_floor(floor, parts, file)
+    return Home(
+        name,
+        floor.map,
+        floor.solid,
+        floor.walls,
+        docked,
+        rooms=parts.rooms,
+        furniture=(*parts.furniture, station),
+        doors=parts.doors,
+        carpets=parts.carpets,
+        stairs=parts.stairs,
+        dirt_sources=((_even_dirt(floor),) if parts.dirt_sources is None else parts.dirt_sources),
+        moving=parts.moving,
+        wall_height=parts.wall_height,
+    )
+
+
+def _found_station(floor: Floor, file: YamlFile, body: BodyConfig) -> Pose:
+    try:
+        return automatic_station(floor.map, floor.taken, body.radius)
+    except HomeError as error:
+        raise file.error((), str(error)) from error
+
+
+def _check_body_fits(floor: Floor, docked: Pose, file: YamlFile, body: BodyConfig) -> None:
+    room = room_for_body(floor, docked)
+    if room < body.radius - 1e-9:
+        raise file.error(
+            ("station",),
+            f"station: expected {body.radius:.3f} m of free floor around ({docked.x:g}, "
+            f"{docked.y:g}), where the docked body stands, got {room:.3f} m; move it",
+        )
+
+
+def _check_dirt_on_floor(floor: Floor, parts: Parts, file: YamlFile) -> None:
+    for index, source in enumerate(parts.dirt_sources or ()):
+        row, column = floor.map.frame.cell_of(source.x, source.y)
+        inside = floor.map.frame.contains(source.x, source.y)
+        if not inside or not floor.bare[row, column]:
+            raise file.error(
+                ("dirt_sources", index),
+                f"dirt source {source.name!r}: expected a place on free floor, got "
+                f"({source.x:g}, {source.y:g}), which is none; move it",
+            )
+
+
+def _even_dirt(floor: Floor) -> DirtSource:
+    """Return one source so wide that what it spreads is even: within 1 % over the whole map."""
+    frame = floor.map.frame
+    x_min, x_max, y_min, y_max = frame.extent
+    area = float(np.count_nonzero(floor.bare)) * frame.resolution**2
+    return DirtSource(
+        "dust",
+        (x_min + x_max) / 2.0,
+        (y_min + y_max) / 2.0,
+        10.0 * max(x_max - x_min, y_max - y_min),
+        EVEN_DIRT * area,
+        EVEN_DIRT_RATE * area,
+    )
+
+
+def _files_of(name_or_path: str, homes_directory: Path) -> tuple[Path, Path | None]:
+    """Find the map's file, and the layer's if there is one."""
+    named = homes_directory / name_or_path / MAP_NAME
+    path = Path(name_or_path).expanduser()
+    is_name = bool(name_or_path) and Path(name_or_path).name == name_or_path
+    if is_name and named.is_file():
+        map_path = named
+    elif name_or_path and path.is_dir():
+        map_path = path / MAP_NAME
+    elif name_or_path and path.is_file():
+        map_path = path
+    else:
+        hint = suggestion(name_or_path, list_homes(homes_directory))
+        raise HomeError(
+            f"{homes_directory}: expected the name of a home there or the path of a map_server "
+            f"yaml, got {name_or_path!r}; {hint}"
+        )
+    if not map_path.is_file():
+        raise HomeError(f"{map_path.parent}: expected a home with a {MAP_NAME}, got none; add it")
+    beside = map_path.with_name(f"{map_path.stem}.home.yaml")
+    in_folder = map_path.with_name(LAYER_NAME)
+    if beside.is_file():
+        return map_path, beside
+    if map_path.name == MAP_NAME and in_folder.is_file():
+        return map_path, in_folder
+    return map_path, None
+
+
+def _name_of(map_path: Path) -> str:
+    return map_path.resolve().parent.name if map_path.name == MAP_NAME else map_path.stem

@@ -1,0 +1,1 @@
+"""Homes made at random from a seed."""

@@ -1,0 +1,180 @@
+"""Makes a map of a recorded drive, offline: ``./roomba map --bag FILE``.
+
+Any bag will do that has a lidar's scans and odometry; a gyro helps. There is no truth to compare
+with, but in bags of ``./roomba sim --bag``: what is told is how far the drive was, whether it
+closes, and how much was corrected.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+import rosbag
+
+from roomba.commands.map.command import COMPLETED, guarded
+from roomba.commands.map.files import write_files
+from roomba.commands.map.options import Output, Parser, output_of
+from roomba.commands.progress import progress
+from roomba.commands.telling import tell_tables, write_json
+from roomba.configuration.mapping import load_mapping_config
+from roomba.configuration.robot import load_robot_config
+from roomba.files.shipped import CONFIGURATION
+from roomba.geometry import Pose
+from roomba_ros.bags.localize_mounts import Mounts
+from roomba_ros.bags.localize_recording import Heard, Kind, Recording, RecordingError
+from roomba_ros.bags.map_bag_report import BagMap, summary_of, table_of
+from roomba_ros.bags.map_replay import MapReplay
+from roomba_ros.convert.common import pose_of
+
+_MOUNT_MESSAGES: Final = 1000
+_MOVING_MESSAGES: Final = 300
+"""Messages of /tf_static and /tf that are looked through for where the sensors are."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Options:
+    bag: Path
+    scan: str
+    odometry: str
+    gyro: str | None
+    output: Output
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Map; returns the exit status."""
+    return guarded(lambda: _run(arguments))
+
+
+def _run(arguments: list[str] | None) -> int:
+    options = _options_of(arguments)
+    try:
+        with Recording(options.bag) as recording:
+            done = _map(options, recording)
+    except rosbag.ROSBagException as error:
+        raise RecordingError(f"{options.bag}: {error}") from error
+    output = options.output
+    if output.out is not None:
+        write_files(output.out, done.occupancy, done.begin)
+    if output.plot is not None:
+        # Here, because it takes a second that nobody should wait for who wants no picture.
+        from roomba_ros.bags.map_bag_plot import write_plot
+
+        write_plot(output.plot, done)
+    summary = summary_of(done)
+    tell_tables([table_of(summary)], output.json, quiet=output.quiet)
+    if output.json is not None:
+        write_json(output.json, summary.as_json())
+    return COMPLETED
+
+
+def _options_of(arguments: list[str] | None) -> _Options:
+    parser = Parser(
+        "Make a map of a recorded drive: any bag with a lidar and odometry.",
+        "A home without a bag: see ./roomba map --help.",
+    )
+    parser.add_argument("--bag", type=Path, required=True, metavar="FILE.bag")
+    parser.add_argument("--scan-topic", default="/scan", metavar="TOPIC", help="default: /scan")
+    parser.add_argument("--odom-topic", default="/odom", metavar="TOPIC", help="default: /odom")
+    parser.add_argument(
+        "--imu-topic", metavar="TOPIC", help="default: /imu, if there is one; a gyro helps"
+    )
+    parser.add_output()
+    given = parser.parse_args(arguments)
+    output = output_of(given, [("--bag", given.bag)])
+    return _Options(given.bag, given.scan_topic, given.odom_topic, given.imu_topic, output)
+
+
+def _map(options: _Options, recording: Recording) -> BagMap:
+    """Go through the recording, and make the map; raises RecordingError if too little is there."""
+    kinds, truth = _topics(options, recording)
+    odometry = next(topic for topic, kind in kinds.items() if kind is Kind.ODOMETRY)
+    first = recording.first([odometry], 1)
+    base = (first[0].child_frame_id if first else "") or "base_link"
+    frame = (first[0].header.frame_id.lstrip("/") if first else "") or "odom"
+    start = _first_truth(recording, truth)
+    folder = CONFIGURATION
+    config = load_robot_config(folder / "robot.yaml")
+    mapping = load_mapping_config(folder / "mapping.yaml")
+    replay = MapReplay(config, mapping, _mounts(recording, frame), base, start or Pose())
+    true: list[tuple[float, float, float]] = []
+    began = time.perf_counter()
+    with progress("Mapping", options.output.quiet) as show:
+        for heard in recording.messages(kinds):
+            show(heard.share, f"{replay.elapsed:.0f} s, {replay.scans} scans")
+            if heard.kind is Kind.OWN_POSE:
+                _add_truth(true, heard)
+            else:
+                replay.hear(heard)
+        replay.end()
+        if not replay.scans:
+            reasons = "; ".join([*recording.notes, *replay.notes]) or "it has none beside odometry"
+            raise RecordingError(f"{options.bag}: no scan could be used: {reasons}")
+        if not replay.mapper.version:
+            raise RecordingError(
+                f"{options.bag}: expected scans that show walls, got {replay.scans} with hardly "
+                "anything in sight; look at them, or record near walls"
+            )
+        occupancy = replay.mapper.finish()
+    return BagMap(
+        str(options.bag),
+        occupancy,
+        replay,
+        true,
+        Pose(*replay.mapper.trajectory[0].tolist()),
+        time.perf_counter() - began,
+        [*recording.notes, *replay.notes],
+    )
+
+
+def _topics(options: _Options, recording: Recording) -> tuple[dict[str, Kind], str | None]:
+    """Return what is read, and the topic of true poses if there is one."""
+    scan = recording.require(options.scan, Kind.SCAN, "--scan-topic")
+    odometry = recording.require(options.odometry, Kind.ODOMETRY, "--odom-topic")
+    if options.gyro is not None:
+        gyro: str | None = recording.require(options.gyro, Kind.GYRO, "--imu-topic")
+    else:
+        gyro = recording.beside(odometry, "imu", Kind.GYRO)
+    truth = recording.beside(odometry, "ground_truth/pose", Kind.OWN_POSE)
+    kinds = {scan: Kind.SCAN, odometry: Kind.ODOMETRY}
+    if gyro is not None:
+        kinds[gyro] = Kind.GYRO
+    if truth is not None:
+        kinds[truth] = Kind.OWN_POSE
+    return kinds, truth
+
+
+def _mounts(recording: Recording, odometry_frame: str) -> Mounts:
+    """Return where the sensors are."""
+    mounts = Mounts()
+    for message in recording.first(["/tf_static"], _MOUNT_MESSAGES):
+        mounts.add(message.transforms)
+    # Some robots tell again and again on /tf what never changes.
+    mounts.add(
+        each
+        for message in recording.first(["/tf"], _MOVING_MESSAGES)
+        for each in message.transforms
+        if each.header.frame_id.lstrip("/") not in ("map", odometry_frame)
+        and not mounts.knows(each.child_frame_id)
+    )
+    return mounts
+
+
+def _first_truth(recording: Recording, topic: str | None) -> Pose | None:
+    """Return where the drive truly began, so that the map lies as the true one does."""
+    found = recording.first([topic], 1) if topic is not None else []
+    pose = pose_of(found[0]) if found else None
+    return pose if pose is not None and pose.is_finite else None
+
+
+def _add_truth(true: list[tuple[float, float, float]], heard: Heard) -> None:
+    pose = pose_of(heard.message)
+    if pose.is_finite:
+        true.append((heard.stamp, pose.x, pose.y))
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,142 @@
+"""``./roomba sim --bag FILE.bag``: a headless run as a bag, as the live robot would have told it.
+
+Topics: ``/map`` and ``/tf_static`` once; ``/clock``, ``/tf`` (map -> odom -> base_link), ``/odom``,
+``/pose`` (where the robot took itself to be), ``/ground_truth/pose`` and ``/scan`` 10 Hz;
+``/battery_state`` 1 Hz; ``/plan`` whenever it drives another way; ``/coverage_map`` (0: wanted,
+100: swept, -1: neither; cells of the map) every 10 s and at the end.
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Any, Final
+
+import genpy
+import numpy as np
+import rosbag
+from rosgraph_msgs.msg import Clock
+from tf2_msgs.msg import TFMessage
+
+from roomba.commands.sim.command import main as simulate
+from roomba.commands.sim.runs import Scene
+from roomba.control.path_tracker import PathTracker
+from roomba.grid import FREE, OCCUPIED, UNKNOWN, OccupancyMap
+from roomba.headless.cleaner import HeadlessMission
+from roomba_ros.convert.common import (
+    map_message,
+    mount_message,
+    odometry_message,
+    path_message,
+    pose_message,
+    transform_message,
+)
+from roomba_ros.convert.sensors import battery_message, scan_message
+
+_BATTERY_PERIOD: Final = 1.0
+_COVERAGE_PERIOD: Final = 10.0
+"""s between two messages."""
+_EARLIEST: Final = 0.001
+"""s; a bag knows no time 0."""
+_MAP, _ODOM, _BASE, _LASER = "map", "odom", "base_link", "laser"
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Simulate; returns the exit status."""
+    return simulate(arguments, SimBag)
+
+
+class SimBag:
+    """A bag of one run; a context that gives what is to be shown the robot as it goes on."""
+
+    def __init__(self, path: Path, scene: Scene) -> None:
+        """Begin the bag; raises OSError."""
+        self._bag = rosbag.Bag(str(path), "w", compression=rosbag.Compression.LZ4)
+        self._scene = scene
+        self._scans = -1
+        self._tracker: PathTracker | None = None
+        self._battery_at = self._coverage_at = -np.inf
+
+    def __enter__(self) -> SimBag:
+        """Write what never changes."""
+        robot, lidar = self._scene.robot, self._scene.config.lidar
+        mount = mount_message(_BASE, _LASER, (0.0, 0.0, lidar.mount_height))
+        now = robot.seen.time
+        self._put("/tf_static", TFMessage([mount]), now)
+        self._put("/map", map_message(now, self._scene.home.map, _MAP), now)
+        self(robot)
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """Write the floor as it is at the end, and close the bag with its index."""
+        try:
+            self._write_coverage(self._scene.robot)
+        finally:
+            self._bag.close()
+
+    def __call__(self, robot: HeadlessMission) -> None:
+        """Write what the robot would tell now."""
+        seen, config = robot.seen, self._scene.config
+        now, believed = seen.time, robot.localizer.estimate.pose
+        self._put("/clock", Clock(genpy.Time.from_sec(now)), now)
+        drift = believed.compose(seen.odometry.inverse())
+        self._put(
+            "/tf",
+            TFMessage(
+                [
+                    transform_message(now, drift, _MAP, _ODOM),
+                    transform_message(now, seen.odometry, _ODOM, _BASE),
+                ]
+            ),
+            now,
+        )
+        odometry = odometry_message(now, seen.odometry, seen.odometry_twist, _ODOM, _BASE)
+        self._put("/odom", odometry, now)
+        self._put("/pose", pose_message(now, believed, _MAP), now)
+        self._put("/ground_truth/pose", pose_message(now, seen.pose, _MAP), now)
+        if seen.scans != self._scans:
+            self._scans = seen.scans
+            # Taken when it was due, which may be a tick ago.
+            due = float(robot.simulator.numbers["next_scan"]) - 1.0 / config.lidar.rate
+            taken = min(max(due, 0.0), now)
+            scan = scan_message(taken, robot.simulator.ranges, config.lidar, _LASER)
+            self._put("/scan", scan, now)
+        if now - self._battery_at >= _BATTERY_PERIOD - 1e-6:
+            self._battery_at = now
+            self._put("/battery_state", battery_message(now, seen.battery, config.battery), now)
+        driver = robot.mission.driver
+        tracker = None if driver is None else driver.tracker
+        if tracker is not None and tracker is not self._tracker:
+            self._put("/plan", path_message(now, tracker.course.points, _MAP), now)
+        self._tracker = tracker
+        if now - self._coverage_at >= _COVERAGE_PERIOD - 1e-6:
+            self._coverage_at = now
+            self._write_coverage(robot)
+
+    def _write_coverage(self, robot: HeadlessMission) -> None:
+        now = robot.seen.time
+        self._put("/coverage_map", map_message(now, coverage_on_map(self._scene), _MAP), now)
+
+    def _put(self, topic: str, message: Any, now: float) -> None:
+        self._bag.write(topic, message, genpy.Time.from_sec(max(now, _EARLIEST)))
+
+
+def coverage_on_map(scene: Scene) -> OccupancyMap:
+    """Return what was truly swept over the map's own cells: half of a cell and more counts."""
+    frame = scene.home.frame
+    factor = scene.robot.site.frame.rows // frame.rows
+
+    def share(mask: np.ndarray) -> np.ndarray:
+        blocks = mask.reshape(frame.rows, factor, frame.columns, factor)
+        return blocks.mean(axis=(1, 3))
+
+    wanted = share(scene.coverable)
+    swept = share(scene.robot.truth.swept & scene.coverable)
+    values = np.full(frame.shape, UNKNOWN, np.int8)
+    values[wanted > 0.0] = FREE
+    values[(wanted > 0.0) & (swept >= 0.5 * wanted)] = OCCUPIED
+    return OccupancyMap(frame, values)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,1 @@
+"""The picture service and its client."""

@@ -1,0 +1,1 @@
+"""The robot for programs and for the menu, by ROS."""

@@ -1,0 +1,129 @@
+"""The robot for programs: a whole clean in five lines, see examples/clean_home.py."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Protocol, TypeVar
+
+import rosgraph
+import rospy
+
+from roomba.client.protocol import (
+    CleanMode,
+    CleanProgress,
+    CleanReport,
+    DockReport,
+    ExploreReport,
+    FanLevel,
+    RobotClient,
+    RobotUnavailableError,
+    VacuumSnapshot,
+    WalkReport,
+)
+from roomba_ros.client.ros_client import RosRobot
+from roomba_ros.runtime.node import wait_for_clock
+
+_LOOK = 1.0
+"""s of wall time between two looks whether an errand has ended, when nothing is heard of it."""
+
+_News = TypeVar("_News", covariant=True)
+_Report = TypeVar("_Report", covariant=True)
+
+
+class RoombaClient:
+    """Tells the robot what to do and waits for it; reports say how it went.
+
+    What is asked of a robot that does not answer raises RobotUnavailableError, within seconds.
+    Ctrl-C ends a walk, but only the waiting for a clean: the robot goes on with that.
+    """
+
+    def __init__(self, robot: RobotClient) -> None:
+        """Speak to a robot; ``robot`` itself offers more, such as ``pause()`` or ``rooms()``."""
+        self.robot = robot
+
+    @classmethod
+    def connect(cls, node_name: str = "roomba_client") -> RoombaClient:
+        """Become a ROS node, unless the program is one, and connect to the robot.
+
+        Raises RobotUnavailableError without a ROS master, RoombaError for wrong parameters.
+        """
+        if not rosgraph.is_master_online():
+            raise RobotUnavailableError(
+                f"no ROS master answers at {rosgraph.get_master_uri()}; start the robot with "
+                "`./roomba run`, or set ROS_MASTER_URI to where it runs"
+            )
+        if not rospy.core.is_initialized():
+            rospy.init_node(node_name, anonymous=True, disable_signals=True)
+        wait_for_clock()
+        robot = RosRobot()
+        robot.start()
+        return cls(robot)
+
+    @property
+    def state(self) -> VacuumSnapshot:
+        """What the robot does now, its battery, and how far a clean is."""
+        return self.robot.vacuum()
+
+    def clean(
+        self,
+        on_progress: Callable[[CleanProgress], object] | None = None,
+        *,
+        mode: CleanMode = CleanMode.WHOLE,
+        passes: int = 1,
+        fan: FanLevel = FanLevel.STANDARD,
+    ) -> CleanReport:
+        """Clean the home, or what ``mode`` says, and go back to the station."""
+        return _wait(self.robot.clean(mode, passes=passes, fan=fan), on_progress)
+
+    def clean_rooms(
+        self,
+        *names: str,
+        on_progress: Callable[[CleanProgress], object] | None = None,
+        in_order: bool = False,
+    ) -> CleanReport:
+        """Clean rooms, the shortest way unless ``in_order``, and go back to the station."""
+        return _wait(self.robot.clean(CleanMode.ROOMS, rooms=names, in_order=in_order), on_progress)
+
+    def go_to(self, x: float, y: float) -> WalkReport:
+        """Walk to a point, m, map frame."""
+        walk = self.robot.walk_to(x, y)
+        try:
+            return _wait(walk)
+        except BaseException:
+            # whatever ends the waiting, the robot must not walk on unseen
+            walk.cancel()
+            raise
+
+    def explore(self, on_progress: Callable[[float], object] | None = None) -> ExploreReport:
+        """Look at what the robot's own map does not show yet, and go back to the station.
+
+        ``on_progress`` is told how much floor is known, m2.
+        """
+        return _wait(self.robot.explore(), on_progress)
+
+    def dock(self) -> DockReport:
+        """Go to the charging station, by its beams."""
+        return _wait(self.robot.dock())
+
+    def undock(self) -> DockReport:
+        """Back out of the charging station."""
+        return _wait(self.robot.undock())
+
+
+class _Errand(Protocol[_News, _Report]):
+    """A walk, a clean or a way to the station."""
+
+    def next_feedback(self, timeout: float) -> _News | None: ...
+
+    def report(self) -> _Report | None: ...
+
+
+def _wait(
+    errand: _Errand[_News, _Report], on_news: Callable[[_News], object] | None = None
+) -> _Report:
+    """Return the end of an errand, which comes: a server that falls silent ends it."""
+    while (report := errand.report()) is None:
+        news = errand.next_feedback(_LOOK)
+        if news is not None and on_news is not None:
+            on_news(news)
+    return report

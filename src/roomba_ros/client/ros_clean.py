@@ -1,0 +1,190 @@
+"""Cleaning and docking as user interfaces ask for it, over ROS: that half of a RobotClient."""
+
+from __future__ import annotations
+
+import math
+import threading
+import time
+from collections.abc import Callable, Sequence
+from typing import Final
+
+import rospy
+from geometry_msgs.msg import Point
+from roomba_robot.msg import (
+    CleanAction,
+    CleanGoal,
+    DockAction,
+    DockGoal,
+    ExploreAction,
+    ExploreGoal,
+    Rectangle,
+    RoomArray,
+    UndockAction,
+    UndockGoal,
+    VacuumState,
+)
+from std_srvs.srv import Trigger
+
+from roomba.client.protocol import (
+    Clean,
+    CleanMode,
+    Docking,
+    Exploring,
+    FanLevel,
+    RequestRefusedError,
+    RobotUnavailableError,
+    VacuumSnapshot,
+)
+from roomba_ros.client.ros_errands import RosClean, RosDocking, RosExploring, Server
+from roomba_ros.runtime.calls import call_service
+
+OLDEST_VACUUM_STATE: Final = 6.0
+"""s of wall time; it is told every second, but a long plan may hold it up for some."""
+_HELD: Final = ("paused", "error")
+_AT_REST: Final = ("idle", "docked")
+_IS_OBEYED: Final[dict[str, Callable[[str], bool]]] = {
+    "pause": lambda phase: phase == "paused",
+    "resume": lambda phase: phase not in _HELD,
+    "stop": lambda phase: phase in _AT_REST,
+}
+"""By an order whether a phase may come after it; in any other the state is from before."""
+
+
+class RosVacuum:
+    """The robot in this node's namespace, as a vacuum cleaner.
+
+    Subscribes: ``vacuum/state``, ``rooms``, ``clean/{feedback,result,status}``, ``dock/…``,
+    ``undock/…``, ``explore/…``. Publishes: ``clean/{goal,cancel}``, ``dock/…``, ``undock/…``,
+    ``explore/…``.
+    Calls: ``pause``, ``resume``, ``stop``, ``locate``.
+    """
+
+    def __init__(self) -> None:
+        """Connect nothing yet."""
+        self._told = threading.Condition()
+        self._vacuum: VacuumSnapshot | None = None
+        self._vacuum_heard = -math.inf
+        self._rooms: tuple[str, ...] | None = None
+
+    def start(self) -> None:
+        """Connect."""
+        self._cleans = Server("clean", CleanAction)
+        self._docks = Server("dock", DockAction)
+        self._undocks = Server("undock", UndockAction)
+        self._explores = Server("explore", ExploreAction)
+        self._orders = {
+            name: rospy.ServiceProxy(name, Trigger)
+            for name in ("pause", "resume", "stop", "locate")
+        }
+        rospy.Subscriber("vacuum/state", VacuumState, self._on_vacuum_state, queue_size=1)
+        rospy.Subscriber("rooms", RoomArray, self._on_rooms, queue_size=1)
+
+    def clean(
+        self,
+        mode: CleanMode = CleanMode.WHOLE,
+        *,
+        rooms: Sequence[str] = (),
+        in_order: bool = False,
+        zones: Sequence[tuple[float, float, float, float]] = (),
+        spot: tuple[float, float] | None = None,
+        passes: int = 1,
+        fan: FanLevel = FanLevel.STANDARD,
+    ) -> Clean:
+        """Send the goal; raises RobotUnavailableError when no action server answers in time."""
+        if not 1 <= passes <= 255:
+            raise RequestRefusedError(f"expected 1 to 5 passes, got {passes}")
+        goal = CleanGoal(
+            mode=getattr(CleanGoal, mode.name),
+            rooms=list(rooms),
+            in_order=in_order,
+            zones=[Rectangle(*zone) for zone in zones],
+            spot=Point() if spot is None else Point(*spot, 0.0),
+            spot_is_here=spot is None,
+            passes=passes,
+            fan=getattr(CleanGoal, fan.name),
+        )
+        return RosClean(self._cleans, goal)
+
+    def dock(self) -> Docking:
+        """Send the goal; raises RobotUnavailableError when no action server answers in time."""
+        return RosDocking(self._docks, DockGoal())
+
+    def undock(self) -> Docking:
+        """Send the goal; raises RobotUnavailableError when no action server answers in time."""
+        return RosDocking(self._undocks, UndockGoal())
+
+    def explore(self) -> Exploring:
+        """Send the goal; raises RobotUnavailableError when no action server answers in time."""
+        return RosExploring(self._explores, ExploreGoal())
+
+    def pause(self) -> None:
+        """Let it stand until it is told to go on."""
+        self._order("pause")
+
+    def resume(self) -> None:
+        """Let it go on."""
+        self._order("resume")
+
+    def stop(self) -> None:
+        """End what it does."""
+        self._order("stop")
+
+    def locate(self) -> None:
+        """Let it be heard."""
+        self._order("locate")
+
+    def vacuum(self, timeout: float = 5.0) -> VacuumSnapshot:
+        """Return the newest state; waits up to ``timeout`` s of wall time for one that is new."""
+        with self._told:
+            if not self._told.wait_for(self._vacuum_is_new, timeout):
+                raise RobotUnavailableError(
+                    f"nothing came on vacuum/state within {timeout:g} s; is the robot running "
+                    "(`./roomba run`)?"
+                )
+            assert self._vacuum is not None
+            return self._vacuum
+
+    def rooms(self, timeout: float = 5.0) -> tuple[str, ...]:
+        """Return the names of the map's rooms, which are told once."""
+        with self._told:
+            if not self._told.wait_for(lambda: self._rooms is not None, timeout):
+                raise RobotUnavailableError(
+                    f"nothing came on rooms within {timeout:g} s; is the robot running "
+                    "(`./roomba run`), and has it a map?"
+                )
+            assert self._rooms is not None
+            return self._rooms
+
+    def _order(self, name: str) -> None:
+        answer = call_service(self._orders[name])
+        if not answer.success:
+            raise RequestRefusedError(answer.message)
+        is_obeyed = _IS_OBEYED.get(name)
+        with self._told:
+            if is_obeyed and self._vacuum is not None and not is_obeyed(self._vacuum.phase):
+                # The state comes by another connection than the answer, perhaps later.
+                self._vacuum_heard = -math.inf
+
+    def _vacuum_is_new(self) -> bool:
+        return time.monotonic() - self._vacuum_heard < OLDEST_VACUUM_STATE
+
+    def _on_vacuum_state(self, message: VacuumState) -> None:
+        with self._told:
+            self._vacuum = VacuumSnapshot(
+                state=message.state,
+                phase=message.phase,
+                message=message.message,
+                room=message.room,
+                covered=message.covered,
+                wanted=message.wanted,
+                fraction=message.fraction,
+                seconds_to_go=message.seconds_to_go,
+                battery=message.battery,
+            )
+            self._vacuum_heard = time.monotonic()
+            self._told.notify_all()
+
+    def _on_rooms(self, message: RoomArray) -> None:
+        with self._told:
+            self._rooms = tuple(room.name for room in message.rooms)
+            self._told.notify_all()

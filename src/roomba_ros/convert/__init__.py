@@ -1,0 +1,1 @@
+"""Messages become values, and values messages, here alone."""

@@ -1,0 +1,28 @@
+"""Changes of maps as ROS messages: a part of :mod:`roomba_ros.convert.common`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from geometry_msgs.msg import Point
+from roomba_robot.msg import MapChange, MapUpdate
+
+from roomba.perception.floors.map_changes import Change, ChangeKind
+from roomba_ros.convert.common import header
+
+
+def update_message(now: float, changes: Iterable[Change], frame_id: str) -> MapUpdate:
+    """Return what of a map would be changed as a message."""
+    return MapUpdate(
+        header(now, frame_id),
+        [
+            MapChange(
+                change.kind is ChangeKind.APPEARED,
+                Point(change.x, change.y, 0.0),
+                change.width,
+                change.height,
+                change.area,
+            )
+            for change in changes
+        ],
+    )

@@ -1,0 +1,256 @@
+"""The mission's commands, states and zones as ROS messages: a part of
+:mod:`roomba_ros.convert.common`."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import shapely
+from geometry_msgs.msg import Point, Vector3
+from nav_msgs.msg import OccupancyGrid
+from numpy.typing import NDArray
+from roomba_robot.msg import (
+    CleanFeedback,
+    CleanGoal,
+    MissedArea,
+    RoomArray,
+    VacuumState,
+    ZoneArray,
+)
+from roomba_robot.msg import CleanResult as CleanResultMessage
+from roomba_robot.msg import ExploreResult as ExploreResultMessage
+from roomba_robot.msg import Zone as ZoneMessage
+from sensor_msgs.msg import BatteryState
+from std_msgs.msg import ColorRGBA
+from visualization_msgs.msg import Marker, MarkerArray
+
+from roomba.grid import FREE, GridFrame, OccupancyMap
+from roomba.mission.cleaning.request import (
+    CleanMode,
+    CleanOutcome,
+    CleanRefusedError,
+    CleanRequest,
+    CleanResult,
+    FanLevel,
+    Missed,
+    MissReason,
+)
+from roomba.mission.exploring.exploration import ExploreResult
+from roomba.mission.inputs.senses import Battery, Beams
+from roomba.perception.rooms.rooms import Rooms
+from roomba.perception.rooms.zones import WALL_WIDTH, Zone, ZoneKind, Zones, ZonesError
+from roomba.perception.swept.coverage_bits import SWEPT, WANTED
+from roomba_ros.convert.common import header, map_message, quaternion_of
+
+MODES = {getattr(CleanGoal, mode.name): mode for mode in CleanMode}
+FANS = {getattr(CleanGoal, level.name): level for level in FanLevel}
+OUTCOMES = {outcome: getattr(CleanResultMessage, outcome.name) for outcome in CleanOutcome}
+REASONS = {reason: getattr(MissedArea, reason.name) for reason in MissReason}
+KINDS = {getattr(ZoneMessage, kind.name): kind for kind in ZoneKind}
+
+_RED = 8
+_GREEN = 4
+_HALO = 1
+"""Bits of the code that Create 2's receiver has for the station's beams."""
+_BEAMS = 160
+"""Codes from this one on, but for the bits above, are of the station."""
+_DRAWN = 0.003
+"""m; a path that is shown is as near to that which is driven."""
+_OUTLINE = 0.03
+"""m; width of lines around zones."""
+
+
+def request_of(goal: CleanGoal) -> CleanRequest:
+    """Return what a goal asks for; raises CleanRefusedError for what makes no sense."""
+    if goal.mode not in MODES:
+        raise CleanRefusedError(f"expected a mode from 0 to {len(MODES) - 1}, got {goal.mode}")
+    if goal.fan not in FANS:
+        raise CleanRefusedError(f"expected a fan level from 0 to {len(FANS) - 1}, got {goal.fan}")
+    mode = MODES[goal.mode]
+    spot = None if goal.spot_is_here else (goal.spot.x, goal.spot.y)
+    if mode is CleanMode.SPOT and spot is not None and not all(map(math.isfinite, spot)):
+        raise CleanRefusedError(f"expected a spot of finite numbers, m, got {spot}")
+    return CleanRequest(
+        mode,
+        tuple(goal.rooms),
+        tuple((zone.min_x, zone.min_y, zone.max_x, zone.max_y) for zone in goal.zones),
+        spot if mode is CleanMode.SPOT else None,
+        goal.passes or 1,
+        FANS[goal.fan],
+        goal.in_order,
+    )
+
+
+def result_message(result: CleanResult) -> CleanResultMessage:
+    """Return what a clean achieved as a message."""
+    return CleanResultMessage(
+        outcome=OUTCOMES[result.outcome],
+        message=result.message,
+        covered=result.covered,
+        wanted=result.wanted,
+        dirt=result.dirt,
+        distance=result.distance,
+        duration=result.duration,
+        energy=result.energy,
+        missed=[_missed_message(missed) for missed in result.missed],
+    )
+
+
+def explored_message(result: ExploreResult) -> ExploreResultMessage:
+    """Return what an exploration achieved as a message."""
+    return ExploreResultMessage(
+        outcome=OUTCOMES[result.outcome],
+        message=result.message,
+        known=result.known,
+        distance=result.distance,
+        duration=result.duration,
+        unseen=[Point(x, y, 0.0) for x, y in result.unseen],
+    )
+
+
+def _missed_message(missed: Missed) -> MissedArea:
+    return MissedArea(
+        missed.area,
+        Point(missed.x, missed.y, 0.0),
+        missed.room,
+        REASONS[missed.reason],
+        missed.reason.value,
+    )
+
+
+def feedback_message(state: VacuumState) -> CleanFeedback:
+    """Return how far a clean is, by the state that everybody is told."""
+    return CleanFeedback(
+        state.state,
+        state.room,
+        state.covered,
+        state.wanted,
+        state.fraction,
+        state.seconds_to_go,
+        state.battery,
+    )
+
+
+def battery_of(message: BatteryState, voltage: float, is_docked: bool) -> Battery:
+    """Return the battery; charges are in Ah at the nominal ``voltage``, V.
+
+    Raises ValueError for a level that is none.
+    """
+    level = message.percentage
+    if not 0.0 <= level <= 1.0:
+        raise ValueError(f"expected a percentage from 0 to 1, got {level}")
+    energy = message.capacity * voltage
+    if not (math.isfinite(energy) and energy > 0.0):
+        return Battery(level, is_docked=is_docked)
+    return Battery(level, energy, is_docked)
+
+
+def beams_of(code: int) -> Beams:
+    """Return which beams a receiver's code stands for, as Create 2 codes them."""
+    if code & ~(_RED | _GREEN | _HALO) != _BEAMS:
+        return Beams()
+    return Beams(bool(code & _HALO), bool(code & _GREEN), bool(code & _RED))
+
+
+def rooms_of(message: RoomArray, occupancy: OccupancyMap) -> Rooms:
+    """Return the rooms of a map; raises RoomsError for those of another one."""
+    outlines = [
+        (
+            room.name,
+            shapely.Polygon(
+                [(corner.x, corner.y) for corner in room.outline.points],
+                [[(corner.x, corner.y) for corner in hole.points] for hole in room.holes],
+            ),
+        )
+        for room in message.rooms
+    ]
+    return Rooms.from_outlines(occupancy.frame, occupancy.values == FREE, outlines)
+
+
+def zone_of(message: ZoneMessage) -> Zone:
+    """Return a zone; raises ZonesError for one that makes no sense."""
+    if message.kind not in KINDS:
+        raise ZonesError(
+            f"zone {message.name!r}: expected a kind from 0 to {len(KINDS) - 1}, got {message.kind}"
+        )
+    points = tuple((point.x, point.y) for point in message.points)
+    return Zone(message.name, KINDS[message.kind], points)
+
+
+def zones_message(now: float, zones: Zones, frame_id: str) -> ZoneArray:
+    """Return all zones as a message."""
+    codes = {kind: code for code, kind in KINDS.items()}
+    return ZoneArray(
+        header(now, frame_id),
+        [
+            ZoneMessage(zone.name, codes[zone.kind], [Point(x, y, 0.0) for x, y in zone.points])
+            for zone in zones.all
+        ],
+    )
+
+
+def zones_markers(now: float, zones: Zones, frame_id: str) -> MarkerArray:
+    """Return zones to be drawn by RViz; what was drawn before is taken away."""
+    markers = [Marker(header=header(now, frame_id), action=Marker.DELETEALL)]
+    for number, zone in enumerate(zones.all):
+        is_area = zone.kind is ZoneKind.NO_GO
+        marker = Marker(header=header(now, frame_id), ns="zones", id=number, type=Marker.LINE_STRIP)
+        marker.pose.orientation = quaternion_of(0.0)
+        marker.color = ColorRGBA(0.9, 0.1, 0.1, 0.9)
+        marker.scale = Vector3(_OUTLINE if is_area else WALL_WIDTH, 0.0, 0.0)
+        closed = (*zone.points, zone.points[0]) if is_area else zone.points
+        marker.points = [Point(x, y, 0.02) for x, y in closed]
+        markers.append(marker)
+    return MarkerArray(markers)
+
+
+def coverage_message(
+    now: float, cells: NDArray[np.uint8], frame: GridFrame, rows: int, frame_id: str
+) -> OccupancyGrid:
+    """Return how much is cleaned: 0 to 100 of what is wanted in a cell, -1 where nothing is.
+
+    ``cells`` are bits over the fine ``frame``; the message has ``rows`` rows, a whole part of it.
+    """
+    factor = frame.rows // rows
+    coarse = GridFrame(
+        frame.resolution * factor, frame.origin_x, frame.origin_y, rows, frame.columns // factor
+    )
+    wanted = _count(cells & WANTED == WANTED, factor)
+    swept = _count(cells & (WANTED | SWEPT) == (WANTED | SWEPT), factor)
+    share = np.round(100.0 * swept / np.maximum(wanted, 1))
+    values = np.where(wanted > 0, share, -1).astype(np.int8)
+    return map_message(now, OccupancyMap(coarse, values), frame_id)
+
+
+def _count(mask: NDArray[np.bool_], factor: int) -> NDArray[np.int64]:
+    """Return how many are true in each block of ``factor`` by ``factor`` cells."""
+    rows, columns = mask.shape[0] // factor, mask.shape[1] // factor
+    blocks = mask.reshape(rows, factor, columns, factor)
+    counted: NDArray[np.int64] = blocks.sum(axis=(1, 3))
+    return counted
+
+
+def dirt_message(
+    now: float, density: NDArray[np.float32], frame: GridFrame, dirty: float, frame_id: str
+) -> OccupancyGrid:
+    """Return where it is dirty, by grains/m2, NaN where that is not known: -1 there.
+
+    100 stands for ``dirty`` and more, from which on floor is cleaned once more.
+    """
+    share = np.clip(100.0 * np.nan_to_num(density) / dirty, 0.0, 100.0)
+    values = np.where(np.isnan(density), -1, np.round(share)).astype(np.int8)
+    return map_message(now, OccupancyMap(frame, values), frame_id)
+
+
+def shown(points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return a path, float64 [n, 2], with as few points as it needs to be drawn."""
+    if len(points) < 3:
+        return points
+    line = shapely.LineString(points).simplify(_DRAWN, preserve_topology=False)
+    return np.asarray(line.coords, np.float64)
+
+
+def names_of(names: tuple[str, ...]) -> str:
+    """Return names as a list to be read."""
+    return ", ".join(names) or "none"

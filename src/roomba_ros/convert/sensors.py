@@ -1,0 +1,204 @@
+"""What the robot's sensors tell, as ROS messages: the other half of
+:mod:`roomba_ros.convert.common`."""
+
+from __future__ import annotations
+
+import io
+import math
+from collections.abc import Iterable
+
+import numpy as np
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+from numpy.typing import NDArray
+from PIL import Image as Picture
+from roomba_robot.msg import (
+    Bumper as BumperMessage,
+)
+from roomba_robot.msg import (
+    Cliff as CliffMessage,
+)
+from roomba_robot.msg import DockStatus, HazardDetection, HazardDetectionVector, WheelDrop
+from sensor_msgs.msg import (
+    BatteryState as BatteryMessage,
+)
+from sensor_msgs.msg import CameraInfo, CompressedImage, Image, Imu, JointState, LaserScan
+
+from roomba.configuration.robot import BatteryConfig, CameraConfig, GyroConfig, LidarConfig
+from roomba.world.health import PartHealth
+from roomba.world.power import BatteryState
+from roomba.world.simulator import Bumper, Cliff, Observation, Wheels
+from roomba_ros.convert.common import header
+
+WHEEL_JOINTS = ("wheel_left_joint", "wheel_right_joint")
+_JPEG_QUALITY = 85
+_GRAVITY = 9.80665
+_NOT_MEASURED = 1e6
+"""A variance that nobody will take for a measurement."""
+_UNKNOWN = -1.0
+"""In the first element of a covariance: there is no such measurement."""
+
+
+def scan_message(
+    now: float, ranges: NDArray[np.float32], config: LidarConfig, frame_id: str
+) -> LaserScan:
+    """Return a scan, float32 [beams], m, all around counter-clockwise from ahead."""
+    turn = 2.0 * math.pi / len(ranges)
+    return LaserScan(
+        header=header(now, frame_id),
+        angle_min=0.0,
+        angle_max=2.0 * math.pi - turn,
+        angle_increment=turn,
+        time_increment=0.0,
+        scan_time=1.0 / config.rate,
+        range_min=config.min_range,
+        range_max=config.max_range,
+        # A list, not the array: genpy serializes arrays many times slower.
+        ranges=ranges.tolist(),
+    )
+
+
+def imu_message(now: float, seen: Observation, config: GyroConfig, frame_id: str) -> Imu:
+    """Return what gyro (about the vertical) and accelerometer (ahead) measure."""
+    message = Imu(header=header(now, frame_id))
+    message.orientation.w = 1.0
+    message.orientation_covariance[0] = _UNKNOWN
+    message.angular_velocity.z = seen.angular_velocity
+    # The floor is level: about the other axes nothing turns. Sideways is not measured.
+    for axis in (0, 4, 8):
+        message.angular_velocity_covariance[axis] = config.noise**2
+    message.linear_acceleration.x = seen.acceleration
+    message.linear_acceleration.z = _GRAVITY
+    for axis, variance in ((0, config.acceleration_noise**2), (4, _NOT_MEASURED), (8, 0.01)):
+        message.linear_acceleration_covariance[axis] = variance
+    return message
+
+
+def joints_message(now: float, seen: Observation, wheel_radius: float, track: float) -> JointState:
+    """Return how far (rad) and how fast (rad/s) the wheels turned, by the encoders."""
+    twist = seen.odometry_twist
+    half = 0.5 * track * twist.angular
+    return JointState(
+        header=header(now, ""),
+        name=list(WHEEL_JOINTS),
+        position=[seen.wheels.left, seen.wheels.right],
+        velocity=[(twist.linear - half) / wheel_radius, (twist.linear + half) / wheel_radius],
+    )
+
+
+def battery_message(now: float, battery: BatteryState, config: BatteryConfig) -> BatteryMessage:
+    """Return the battery: charges in Ah at its nominal voltage, the percentage 0..1 as ROS says."""
+    whole = battery.capacity / config.nominal_voltage
+    status = BatteryMessage.POWER_SUPPLY_STATUS_DISCHARGING
+    if battery.is_docked:
+        status = BatteryMessage.POWER_SUPPLY_STATUS_CHARGING
+        if battery.is_full:
+            status = BatteryMessage.POWER_SUPPLY_STATUS_FULL
+    return BatteryMessage(
+        header=header(now, ""),
+        voltage=battery.voltage,
+        temperature=battery.temperature,
+        current=battery.current,
+        charge=battery.level * whole,
+        capacity=whole,
+        design_capacity=whole,
+        percentage=battery.level,
+        power_supply_status=status,
+        power_supply_health=BatteryMessage.POWER_SUPPLY_HEALTH_GOOD,
+        power_supply_technology=BatteryMessage.POWER_SUPPLY_TECHNOLOGY_LION,
+        present=True,
+    )
+
+
+def bumper_message(now: float, bumper: Bumper, frame_id: str) -> BumperMessage:
+    """Return the state of the bumper's halves."""
+    return BumperMessage(header(now, frame_id), bumper.left, bumper.right)
+
+
+def cliff_message(now: float, cliff: Cliff, frame_id: str) -> CliffMessage:
+    """Return which cliff sensors see no floor."""
+    return CliffMessage(
+        header(now, frame_id), cliff.left, cliff.front_left, cliff.front_right, cliff.right
+    )
+
+
+def wheel_drop_message(now: float, wheels: Wheels, frame_id: str) -> WheelDrop:
+    """Return which wheels hang in the air."""
+    return WheelDrop(header(now, frame_id), wheels.dropped_left, wheels.dropped_right)
+
+
+def dock_message(now: float, seen: Observation, frame_id: str) -> DockStatus:
+    """Return whether the station is seen, and whether the contacts touch."""
+    return DockStatus(header(now, frame_id), bool(seen.infrared), seen.battery.is_docked)
+
+
+def hazards_of(seen: Observation) -> tuple[int, ...]:
+    """Return the types of HazardDetection that hold now."""
+    found = (
+        (HazardDetection.BUMP, seen.bumper.pressed),
+        (HazardDetection.CLIFF, seen.cliff.any),
+        (HazardDetection.STALL, seen.wheels.stalled),
+        (HazardDetection.WHEEL_DROP, seen.wheels.dropped),
+    )
+    return tuple(kind for kind, holds in found if holds)
+
+
+def hazards_message(now: float, kinds: tuple[int, ...], frame_id: str) -> HazardDetectionVector:
+    """Return hazards by their types."""
+    at = header(now, frame_id)
+    return HazardDetectionVector(at, [HazardDetection(at, kind) for kind in kinds])
+
+
+def diagnostics_message(now: float, parts: Iterable[PartHealth], robot: str) -> DiagnosticArray:
+    """Return the health of a robot's parts (REP 107)."""
+    return DiagnosticArray(
+        header(now, ""),
+        [
+            DiagnosticStatus(
+                level=int(part.level),
+                name=f"{robot}: {part.name}",
+                message=part.message,
+                hardware_id=robot,
+                values=[KeyValue(key, value) for key, value in part.values.items()],
+            )
+            for part in parts
+        ],
+    )
+
+
+def camera_info_message(
+    now: float, config: CameraConfig, focal: float, frame_id: str
+) -> CameraInfo:
+    """Return the geometry of a lens without distortion; ``focal`` in pixels."""
+    middle_x, middle_y = config.width / 2.0 - 0.5, config.height / 2.0 - 0.5
+    return CameraInfo(
+        header=header(now, frame_id),
+        height=config.height,
+        width=config.width,
+        distortion_model="plumb_bob",
+        D=[0.0] * 5,
+        K=[focal, 0.0, middle_x, 0.0, focal, middle_y, 0.0, 0.0, 1.0],
+        R=[1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0],
+        P=[focal, 0.0, middle_x, 0.0, 0.0, focal, middle_y, 0.0, 0.0, 0.0, 1.0, 0.0],
+    )
+
+
+def compressed_message(now: float, picture: NDArray[np.uint8], frame_id: str) -> CompressedImage:
+    """Return a colour picture, uint8 [height, width, 3] RGB, as JPEG."""
+    packed = io.BytesIO()
+    Picture.fromarray(picture).save(packed, "JPEG", quality=_JPEG_QUALITY)
+    # As cv_bridge reads and writes it: OpenCV's order of the colours.
+    return CompressedImage(header(now, frame_id), "rgb8; jpeg compressed bgr8", packed.getvalue())
+
+
+def depth_message(now: float, depth: NDArray[np.float32], frame_id: str) -> Image:
+    """Return distances along the optical axis, float32 [height, width], m (REP 118)."""
+    height, width = depth.shape
+    return Image(
+        header=header(now, frame_id),
+        height=height,
+        width=width,
+        encoding="32FC1",
+        is_bigendian=0,
+        step=4 * width,
+        data=np.ascontiguousarray(depth).tobytes(),
+    )

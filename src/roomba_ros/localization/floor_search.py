@@ -1,0 +1,44 @@
+"""Which of the robot's saved maps is that of this floor, on ROS: found out by the newest scans."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from roomba.configuration.robot import RobotConfig
+from roomba.perception.floors.recognition import Floor, FloorRecognition, FloorVerdict, Place
+from roomba.storage.map_store import StoredMap
+from roomba_ros.localization.topics import LocalizationTopics
+
+_TIMEOUT: Final = 20.0
+"""s; when no floor was recognised by then, it is a new one."""
+
+
+class FloorSearch:
+    """Compares what is in sight with the maps of all ``floors``, by name, a little at a tick."""
+
+    def __init__(
+        self,
+        now: float,
+        config: RobotConfig,
+        place: LocalizationTopics,
+        floors: dict[str, StoredMap],
+    ) -> None:
+        """Begin at ``now``, s of the ROS clock."""
+        self.floors = floors
+        self._place, self._since = place, now
+        known = {name: Floor(each.occupancy, each.station) for name, each in floors.items()}
+        self._recognition = FloorRecognition(known, config.localization, config.body.radius)
+
+    def tick(self) -> Place | None:
+        """Look a little further; return the floor, and the place on it, once it is clear."""
+        seen, localizer = self._place.seen, self._place.localizer
+        if seen is not None and localizer is not None:
+            _, ranges, lidar = seen
+            self._recognition.see(lidar.view(ranges), localizer.reckoned)
+        self._recognition.advance()
+        return self._recognition.place
+
+    def has_failed(self, now: float) -> bool:
+        """Whether the robot was never on this floor, as far as can be told."""
+        is_late = not 0.0 <= now - self._since <= _TIMEOUT
+        return is_late or self._recognition.verdict is FloorVerdict.NEW

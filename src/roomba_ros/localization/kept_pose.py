@@ -1,0 +1,81 @@
+"""Where the robot was, kept by the master: a node that was killed comes back knowing it."""
+
+from __future__ import annotations
+
+import http.client
+import math
+import threading
+import time
+import xmlrpc.client
+from typing import Final
+
+import rospy
+
+from roomba.geometry import Pose
+from roomba_ros.runtime.parameters import read_seed_parameters
+
+PARAMETER: Final = "map_to_odometry"
+"""Name of the parameter: [x, y, theta] of the odometry's frame in the map, m and rad."""
+_PERIOD: Final = 1.0
+"""s of wall time between two times that it is written."""
+_DEVIATION: Final = (0.05, 0.05)
+_KEPT_DEVIATION: Final = (0.10, 0.05)
+"""m, rad; how unsure a pose of the parameters is, and a kept one: it drifted since."""
+
+
+class KeptPose:
+    """Writes now and then, in a thread of its own: a master that hangs must not stop the robot."""
+
+    def __init__(self) -> None:
+        """Keep nothing yet."""
+        self._newest: Pose | None = None
+        self._written: Pose | None = None
+        self.was_found = False
+        """Whether the start pose is a kept one: another process of this node was here before."""
+
+    def start(self) -> None:
+        """Begin to write what is kept."""
+        threading.Thread(target=self._write, daemon=True).start()
+
+    @property
+    def is_kept(self) -> bool:
+        """Whether the master has a pose by which the next process would know the place."""
+        return self.was_found or self._written is not None
+
+    def keep(self, map_to_odometry: Pose) -> None:
+        """Take what is to be kept now."""
+        self._newest = map_to_odometry
+
+    def start_pose(self, odometry: Pose) -> tuple[Pose, tuple[float, float]]:
+        """Return where a robot with this odometry is, map frame, and how unsure, m and rad.
+
+        By what was kept; else by the parameters, which say where odometry began.
+        """
+        kept = rospy.get_param(PARAMETER, None)
+        self.was_found = _is_pose(kept)
+        if self.was_found:
+            return Pose(*kept).compose(odometry), _KEPT_DEVIATION
+        # Read now, not at the start: the simulator puts the robot where its home wants it.
+        start = read_seed_parameters()
+        began = Pose(start.initial_post_x, start.initial_post_y, start.initial_post_theta)
+        return began.compose(odometry), _DEVIATION
+
+    def _write(self) -> None:
+        while not rospy.is_shutdown():
+            time.sleep(_PERIOD)
+            newest = self._newest
+            if newest is None or newest == self._written:
+                continue
+            try:
+                rospy.set_param(PARAMETER, [newest.x, newest.y, newest.theta])
+                self._written = newest
+            except (OSError, http.client.HTTPException, xmlrpc.client.Error) as error:
+                rospy.logwarn_throttle(10.0, "the master does not keep the pose: %s", error)
+
+
+def _is_pose(value: object) -> bool:
+    return (
+        isinstance(value, list)
+        and len(value) == 3
+        and all(isinstance(number, int | float) and math.isfinite(number) for number in value)
+    )

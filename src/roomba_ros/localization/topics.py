@@ -1,0 +1,311 @@
+"""The robot's place on ROS: a localizer fed with what the sensors publish."""
+
+from __future__ import annotations
+
+import math
+import threading
+from collections import deque
+from typing import Final
+
+import numpy as np
+import rospy
+from geometry_msgs.msg import PoseWithCovarianceStamped
+from nav_msgs.msg import OccupancyGrid, Odometry
+from numpy.typing import NDArray
+from roomba_robot.msg import WheelDrop
+from sensor_msgs.msg import Imu, LaserScan
+from std_srvs.srv import Empty, EmptyRequest, EmptyResponse
+from tf2_msgs.msg import TFMessage
+
+from roomba.configuration.robot import RobotConfig
+from roomba.geometry import Pose
+from roomba.grid import OccupancyMap
+from roomba.perception.localization.estimate import Estimate, Knowledge
+from roomba.perception.localization.localizer import Localizer
+from roomba.perception.matching.scan_view import LidarModel
+from roomba.perception.slam.mapper import Mapper
+from roomba_ros.convert.common import map_of, pose_of_odometry
+from roomba_ros.convert.localization import SAME_TIME, lidar_of, mount_of, ranges_of, told_pose_of
+from roomba_ros.localization.kept_pose import KeptPose
+from roomba_ros.localization.place_topics import PlaceTopics
+from roomba_ros.localization.waiting_scans import WaitingScans
+
+_KEPT: Final = 40
+"""Messages of odometry, and of the gyro, that wait for the next tick: two seconds of them."""
+_PLACED: Final = (0.05, 0.05)
+"""m, rad; how unsure a place on another map is before a scan confirms it."""
+
+
+class LocalizationTopics:
+    """Feeds a localizer, and lets :class:`PlaceTopics` tell what it knows.
+
+    Subscribes: ``odom``, ``imu``, ``scan``, ``map``, ``wheel_drop``, ``initialpose``,
+    ``/tf_static`` (where the lidar is mounted).
+    Services: ``global_localization`` (Empty: forget the place, look for it in the whole map).
+    """
+
+    def __init__(self, config: RobotConfig) -> None:
+        """Connect nothing yet."""
+        self._config = config
+        self._localizer: Localizer | None = None
+        self._lock = threading.Lock()
+        self._tick_lock = threading.RLock()
+        self._odometry: deque[tuple[float, Pose]] = deque(maxlen=_KEPT)
+        self._gyro: deque[tuple[float, float]] = deque(maxlen=_KEPT)
+        self._scans = WaitingScans()
+        self._told: tuple[Pose, tuple[float, float]] | None = None
+        self._new_map: OccupancyMap | None = None
+        self._is_asked = False
+        self._is_lifted = False
+        self._lidar: tuple[tuple[object, ...], LidarModel] | None = None
+        self._mounts: dict[str, Pose] = {}
+        self._stamp = 0.0
+        self._newest: tuple[float, Pose] | None = None
+        self._kept = KeptPose()
+        self._place = PlaceTopics()
+        self.mapper: Mapper | None = None
+        """Who knows the place instead, while a map is being made."""
+        self.is_mapping_held = False
+        """Whether the mapper must not be shown anything just now: its map is being made whole."""
+        self.seen: tuple[float, NDArray[np.float32], LidarModel] | None = None
+        """The newest scan that was used, and its stamp, s."""
+        self.is_map_own = False
+        """Whether this node makes the map itself: what comes by the topic is left out then."""
+        self.is_asked_to_search = False
+        """Whether somebody asked it to find its place, and it has not yet."""
+
+    def start(self) -> None:
+        """Connect."""
+        self._kept.start()
+        self._place.start()
+        rospy.Subscriber("map", OccupancyGrid, self._on_map, queue_size=1)
+        rospy.Subscriber("/tf_static", TFMessage, self._on_mounts, queue_size=10)
+        rospy.Subscriber("odom", Odometry, self._on_odometry, queue_size=10, tcp_nodelay=True)
+        rospy.Subscriber("imu", Imu, self._on_imu, queue_size=10, tcp_nodelay=True)
+        rospy.Subscriber("scan", LaserScan, self._scans.put, queue_size=5, tcp_nodelay=True)
+        rospy.Subscriber("wheel_drop", WheelDrop, self._on_wheel_drop, queue_size=1)
+        rospy.Subscriber("initialpose", PoseWithCovarianceStamped, self._on_told, queue_size=1)
+        rospy.Service("global_localization", Empty, self._on_forget)
+
+    @property
+    def localizer(self) -> Localizer | None:
+        """The localizer, as soon as odometry came."""
+        return self._localizer
+
+    def tick(self, now: float) -> Estimate | None:
+        """Take in what came since the last tick, tell where the robot is, and return it.
+
+        ``now`` is in s of the ROS clock. None while nothing is known yet.
+        """
+        with self._tick_lock:
+            return self._tick(now)
+
+    def use_map(self, occupancy: OccupancyMap) -> None:
+        """Go on with another map; where the robot is on it must be found out."""
+        with self._tick_lock:
+            if self._localizer is not None:
+                self._localizer.use_map(occupancy)
+
+    def go_on(
+        self,
+        occupancy: OccupancyMap,
+        at: Pose | None,
+        deviation: tuple[float, float] = _PLACED,
+    ) -> None:
+        """Go on with another map on which the robot is ``at`` a pose, m and rad unsure.
+
+        None: at the same as before. The place stays known.
+        """
+        with self._tick_lock:
+            if self._localizer is not None:
+                self._localizer.go_on(occupancy, None if at is None else (at, deviation))
+
+    def map_with(self, mapper: Mapper | None) -> None:
+        """Let a mapper know the place from now on; None: the localizer again."""
+        with self._tick_lock:
+            self.mapper, self.is_mapping_held = mapper, False
+            if mapper is not None and self._newest is not None:
+                mapper.move(*self._newest)
+
+    def _tick(self, now: float) -> Estimate | None:
+        localizer = self._localizer = self._localizer or self._first_localizer()
+        if localizer is None:
+            return None
+        self._hear_map(localizer)
+        self._hear_odometry(localizer)
+        localizer.lift(self._is_lifted)
+        if self.mapper is not None:
+            self.mapper.lift(self._is_lifted)
+        self._hear_people(localizer)
+        self._hear_scan(localizer)
+        localizer.pass_time(now)
+        knower = self.mapper or localizer
+        estimate = knower.estimate
+        self.is_asked_to_search &= estimate.knowledge is Knowledge.SEARCHING
+        self._place.tell(now, self._stamp, knower, estimate)
+        if estimate.knowledge is Knowledge.KNOWN:
+            self._kept.keep(knower.map_to_odometry)
+        return estimate
+
+    @property
+    def place(self) -> Pose:
+        """Where the robot is by what was told and its wheels, map frame: before there is a map."""
+        assert self._localizer is not None
+        return self._localizer.estimate.pose
+
+    @property
+    def known_place(self) -> Pose | None:
+        """Where the robot is, map frame, if that is known."""
+        with self._tick_lock:
+            estimate = self._localizer and self._localizer.estimate
+        if estimate is None or not estimate.knowledge.is_usable:
+            return None
+        return estimate.pose
+
+    @property
+    def was_here_before(self) -> bool:
+        """Whether another process of this node knew the place, and odometry went on since."""
+        return self._kept.was_found
+
+    @property
+    def is_place_kept(self) -> bool:
+        """Whether another process of this node would know the place, and that it was here."""
+        return self._kept.is_kept
+
+    def _first_localizer(self) -> Localizer | None:
+        """Return a localizer at the place where the first odometry was told; None before that."""
+        if not self._odometry:
+            return None
+        start, deviation = self._kept.start_pose(self._odometry[0][1])
+        config = self._config
+        return Localizer(
+            None, config.localization, config.gyro, config.body.radius, start, deviation
+        )
+
+    def _hear_map(self, localizer: Localizer) -> None:
+        with self._lock:
+            new_map, self._new_map = self._new_map, None
+        if new_map is not None:
+            localizer.use_map(new_map)
+
+    def _hear_odometry(self, localizer: Localizer) -> None:
+        for _ in range(len(self._odometry)):
+            self._stamp, pose = self._odometry.popleft()
+            self._newest = self._stamp, pose
+            turning = self._turning_at(self._stamp)
+            localizer.move(self._stamp, pose, turning)
+            if self.mapper is not None:
+                self.mapper.move(self._stamp, pose, turning)
+
+    def _turning_at(self, stamp: float) -> float | None:
+        """Return the gyro's sample of about that time, rad/s."""
+        samples = list(self._gyro)
+        if not samples:
+            return None
+        nearest = min(samples, key=lambda sample: abs(sample[0] - stamp))
+        return nearest[1] if abs(nearest[0] - stamp) < SAME_TIME else None
+
+    def _hear_people(self, localizer: Localizer) -> None:
+        with self._lock:
+            told, self._told = self._told, None
+            is_asked, self._is_asked = self._is_asked, False
+        if told is not None:
+            localizer.told(*told)
+            if self.mapper is not None and not self.is_mapping_held:
+                self.mapper.told(told[0])
+        if is_asked:
+            localizer.forget("it was asked to look for its place anew")
+            self.is_asked_to_search = True
+
+    def _hear_scan(self, localizer: Localizer) -> None:
+        scan = self._scans.take(self._stamp)
+        if scan is None:
+            oldest = self._scans.oldest
+            if oldest is not None and oldest > self._stamp + self._config.localization.scan_timeout:
+                rospy.logwarn_throttle(
+                    10.0,
+                    "no scan is used: they are of %.2f s, odometry only of %.2f s",
+                    oldest,
+                    self._stamp,
+                )
+            return
+        stamp = scan.header.stamp.to_sec() or self._stamp
+        try:
+            lidar = self._lidar_of(scan)
+        except ValueError as error:
+            rospy.logwarn_throttle(10.0, "scan refused: %s", error)
+            return
+        ranges = ranges_of(scan)
+        self.seen = (stamp, ranges, lidar)
+        if self.mapper is None:
+            localizer.see(stamp, ranges, lidar)
+        elif not self.is_mapping_held:
+            self.mapper.see(stamp, ranges, lidar)
+
+    def _lidar_of(self, scan: LaserScan) -> LidarModel:
+        """Return the lidar of a scan, made anew only when something of it changed."""
+        mount = self._mounts.get(scan.header.frame_id, Pose())
+        key = (
+            len(scan.ranges),
+            scan.angle_min,
+            scan.angle_increment,
+            scan.range_min,
+            scan.range_max,
+            mount,
+        )
+        if self._lidar is None or self._lidar[0] != key:
+            self._lidar = (key, lidar_of(scan, mount))
+        return self._lidar[1]
+
+    def _on_odometry(self, message: Odometry) -> None:
+        stamp = message.header.stamp.to_sec() or rospy.get_time()
+        pose = pose_of_odometry(message)
+        if not pose.is_finite:
+            rospy.logwarn_throttle(10.0, "odom refused: expected finite numbers, got %s", pose)
+            return
+        self._odometry.append((stamp, pose))
+
+    def _on_imu(self, message: Imu) -> None:
+        turning = message.angular_velocity.z
+        if not math.isfinite(turning):
+            rospy.logwarn_throttle(10.0, "imu refused: expected finite rad/s, got %s", turning)
+            return
+        self._gyro.append((message.header.stamp.to_sec(), turning))
+
+    def _on_map(self, message: OccupancyGrid) -> None:
+        if self.is_map_own:
+            return
+        try:
+            occupancy = map_of(message)
+        except ValueError as error:
+            rospy.logwarn("map refused: %s", error)
+            return
+        with self._lock:
+            self._new_map = occupancy
+
+    def _on_mounts(self, message: TFMessage) -> None:
+        for transform in message.transforms:
+            self._mounts[transform.child_frame_id] = mount_of(transform)
+
+    def _on_wheel_drop(self, message: WheelDrop) -> None:
+        # One wheel hangs over an edge; a robot that is held has both in the air.
+        self._is_lifted = message.is_left_dropped and message.is_right_dropped
+
+    def _on_told(self, message: PoseWithCovarianceStamped) -> None:
+        if message.header.frame_id not in ("", "map"):
+            rospy.logwarn(
+                "initialpose refused: expected the frame 'map', got %r", message.header.frame_id
+            )
+            return
+        try:
+            told = told_pose_of(message)
+        except ValueError as error:
+            rospy.logwarn("initialpose refused: %s", error)
+            return
+        with self._lock:
+            self._told = told
+
+    def _on_forget(self, _: EmptyRequest) -> EmptyResponse:
+        with self._lock:
+            self._is_asked = True
+        return EmptyResponse()

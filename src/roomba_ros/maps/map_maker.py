@@ -1,0 +1,162 @@
+"""Making a map on ROS: a mapper in place of the localizer, until its map is whole.
+
+What it has is remembered while it grows, and taken up by the next process if this one is killed.
+"""
+
+from __future__ import annotations
+
+import threading
+from typing import Final
+
+import rospy
+
+from roomba.configuration.mapping import MappingConfig
+from roomba.configuration.robot import RobotConfig
+from roomba.geometry import Pose
+from roomba.grid import OccupancyMap
+from roomba.perception.localization.estimate import Knowledge
+from roomba.perception.slam.mapper import Mapper
+from roomba_ros.localization.topics import LocalizationTopics
+from roomba_ros.maps.map_memory import MapMemory
+from roomba_ros.runtime.background import Background
+
+MAP_PERIOD: Final = 1.0
+"""s of the ROS clock between two maps that are told while it grows."""
+_FINISHED_DEVIATION: Final = (0.03, 0.02)
+"""m, rad; how unsure the place on the whole map is before a scan confirms it."""
+
+
+class MapMaker:
+    """Begins a map where the robot stands, lets it grow, and makes it whole.
+
+    ``station`` is where the robot stood on its station, map frame, once it did; ``is_docked`` is
+    whether it does now, as the last :meth:`note_station` said.
+    """
+
+    def __init__(
+        self,
+        config: RobotConfig,
+        mapping: MappingConfig,
+        place: LocalizationTopics,
+        background: Background,
+        memory: MapMemory,
+    ) -> None:
+        """Begin nothing yet."""
+        self._config, self._mapping = config, mapping
+        self._place, self._background, self._memory = place, background, memory
+        self._mapper: Mapper | None = None
+        self._told = (-1.0, -1)
+        self._lock = threading.Lock()
+        self._whole: OccupancyMap | None = None
+        self._finishes = False
+        self.is_docked = False
+        self.station: Pose | None = None
+        self._station_from_start: Pose | None = None
+
+    @property
+    def is_growing(self) -> bool:
+        """Whether a map is being made."""
+        return self._mapper is not None
+
+    def begin(self) -> None:
+        """Begin where the robot is by what was told; needs odometry."""
+        config = self._config
+        self._memory.forget()
+        self._memory.forget_whole()
+        self._map_with(Mapper(self._mapping, config.localization, config.gyro, self._place.place))
+        self.station = self._station_from_start = None
+        rospy.loginfo("the robot begins a map of its own")
+
+    def take_up(self) -> bool:
+        """Go on with the map that a process which was killed was making; tell whether there is one.
+
+        Needs odometry, which went on since.
+        """
+        kept = self._memory.recall()
+        if kept is None:
+            return False
+        config = self._config
+        here = self._place.place if kept.station is None or not self.is_docked else kept.station
+        self._map_with(
+            Mapper.taken_up(self._mapping, config.localization, config.gyro, kept.state, here)
+        )
+        self.station, self._station_from_start = kept.station, kept.station_from_start
+        rospy.logwarn("this node ended while it made a map; it is taken up")
+        return True
+
+    def note_station(self, is_docked: bool) -> bool:
+        """Remember where the station is while the robot stands on it; tell whether that is new."""
+        self.is_docked = is_docked
+        mapper = self._mapper
+        if mapper is None or not (is_docked and mapper.version):
+            return False
+        if self.station is None:
+            self.station = mapper.pose
+            self._station_from_start = mapper.start.inverse().compose(mapper.pose)
+            return True
+        if mapper.estimate.knowledge is Knowledge.LOST and not self._finishes:
+            # Somebody carried it home.
+            mapper.told(self.station)
+        return False
+
+    def keep(self, now: float) -> None:
+        """Remember the map, if it is time to, and once its place is remembered as well."""
+        mapper = self._mapper
+        if mapper is None or self._finishes or not self._place.is_place_kept:
+            return
+        is_lost = mapper.estimate.knowledge is Knowledge.LOST
+        if not self._memory.is_due(now, mapper.version, is_lost=is_lost):
+            return
+        state = mapper.state()
+        if state is not None:
+            self._memory.keep(now, state, self.station, self._station_from_start)
+
+    def grown(self, now: float) -> OccupancyMap | None:
+        """Return the map as it is by now, if it is time to tell it."""
+        mapper = self._mapper
+        if mapper is None or self._finishes or not mapper.version:
+            return None
+        told, version = self._told
+        if mapper.version == version or 0.0 <= now - told < MAP_PERIOD:
+            return None
+        self._told = (now, mapper.version)
+        return mapper.occupancy()
+
+    def finish(self) -> None:
+        """Make the map whole, in the background; the robot should stand meanwhile."""
+        mapper = self._mapper
+        if mapper is None or self._finishes:
+            return
+        self._finishes = True
+        # Its place is told on, by the wheels, but nothing is added any more.
+        self._place.is_mapping_held = True
+        self._background.do("the map does not become whole", lambda: self._finish(mapper))
+
+    def take_whole(self) -> OccupancyMap | None:
+        """Return the whole map, once, as soon as it is; the localizer goes on with it."""
+        with self._lock:
+            whole, self._whole = self._whole, None
+        mapper = self._mapper
+        if whole is None or mapper is None:
+            return None
+        if self._station_from_start is not None:
+            # To be whole the map was turned a little.
+            self.station = mapper.start.compose(self._station_from_start)
+        self._place.go_on(whole, mapper.pose, _FINISHED_DEVIATION)
+        self._place.map_with(None)
+        self._mapper, self._finishes = None, False
+        return whole
+
+    def _map_with(self, mapper: Mapper) -> None:
+        self._mapper = mapper
+        self._place.map_with(mapper)
+        self._told = (-1.0, -1)
+
+    def _finish(self, mapper: Mapper) -> None:
+        try:
+            whole = mapper.finish()
+        except BaseException:
+            self._finishes = self._place.is_mapping_held = False
+            raise
+        with self._lock:
+            self._whole = whole

@@ -1,0 +1,148 @@
+"""The robot's own map while it has no name, remembered on disk, in case this node is killed."""
+
+from __future__ import annotations
+
+import math
+import time
+from dataclasses import replace
+from pathlib import Path
+from typing import Final
+
+import rospy
+
+from roomba.geometry import Pose
+from roomba.perception.slam.mapper_state import MapperState
+from roomba.storage.map_store import MapStore, MapStoreError, StoredMap
+from roomba.storage.mapper import (
+    KeptMap,
+    MapperFileError,
+    load_mapper,
+    remove_mapper,
+    save_mapper,
+)
+from roomba_ros.runtime.background import Background
+
+FOLDER: Final = ".being_made"
+"""In the maps' folder, where no map's name can be."""
+_WHOLE: Final = "whole"
+_PERIOD: Final = 3.0
+"""s of the ROS clock between two times that it is written, at least."""
+_WALL_PER_BYTE: Final = 1e-6
+"""s of wall time; the same for a large one: 1 MB/s is enough for any disk."""
+_MOST_TAKEN_UP: Final = 5
+_GOES_WELL: Final = 20.0
+"""A map with which this node ended so often, each time within so many s of wall time, is dropped:
+it may be the reason."""
+
+
+class MapMemory:
+    """A map that is being made, or a whole one that was not saved: a folder for each robot.
+
+    It counts in the run of the robot that it is of, and no later.
+    """
+
+    def __init__(self, background: Background) -> None:
+        """Read nothing yet."""
+        self._background = background
+        self._kept = (-1, False)
+        self._saved = self._saved_wall = -math.inf
+        self._bytes = 0
+        self._taken_up = 0
+        self._since = time.monotonic()
+
+    def start(self, maps: Path) -> None:
+        """Take the folder of all maps."""
+        robot = rospy.get_namespace().strip("/").replace("/", "_") or "robot"
+        self._path = maps / FOLDER / robot / "map.npz"
+        self._run = str(rospy.get_param("/run_id", ""))
+        self._whole = MapStore(self._path.parent / _WHOLE)
+
+    @property
+    def is_there(self) -> bool:
+        """Whether a map that was being made was left behind, of whichever run."""
+        return self._path.exists()
+
+    def recall(self) -> KeptMap | None:
+        """Return the map that this run of the robot was making when this node ended, if it was."""
+        try:
+            kept = load_mapper(self._path)
+            if kept is None or kept.run != self._run:
+                return None
+            if kept.taken_up >= _MOST_TAKEN_UP:
+                raise MapperFileError(f"with it this node ended {kept.taken_up} times in a row")
+            self._taken_up = kept.taken_up + 1
+            save_mapper(replace(kept, taken_up=self._taken_up), self._path)
+        except (MapperFileError, OSError) as error:
+            rospy.logwarn("the map that was being made is not taken up, a new one is: %s", error)
+            return None
+        return kept
+
+    def is_due(self, now: float, version: int, *, is_lost: bool) -> bool:
+        """Whether it is time to remember a map of this version: another one, after a while.
+
+        Once also that it went well with it.
+        """
+        went_well = self._taken_up > 0 and time.monotonic() - self._since >= _GOES_WELL
+        is_news = (version, is_lost) != self._kept or went_well
+        if not is_news or 0.0 <= now - self._saved < _PERIOD:
+            return False
+        return time.monotonic() - self._saved_wall >= _WALL_PER_BYTE * self._bytes
+
+    def keep(
+        self,
+        now: float,
+        state: MapperState,
+        station: Pose | None,
+        station_from_start: Pose | None,
+    ) -> None:
+        """Remember a map, soon; for the station see :class:`KeptMap`."""
+        wall = time.monotonic()
+        self._saved, self._saved_wall = now, wall
+        self._kept = state.version, state.is_lost
+        if wall - self._since >= _GOES_WELL:
+            self._taken_up = 0
+        kept = KeptMap(state, self._run, station, station_from_start, self._taken_up)
+        self._background.do(
+            "the map that is being made is not remembered",
+            lambda: self._save(kept),
+        )
+
+    def forget(self) -> None:
+        """Forget the map that was being made, at once: it is whole, or another one is begun."""
+        self._kept = (-1, False)
+        try:
+            remove_mapper(self._path)
+        except OSError as error:
+            rospy.logwarn("the map that was being made is not forgotten: %s", error)
+
+    def recall_whole(self) -> StoredMap | None:
+        """Return the whole map without a name that this run of the robot went by, if it did."""
+        try:
+            return self._whole.load(self._run) if self._run in self._whole.names() else None
+        except (MapStoreError, OSError) as error:
+            rospy.logwarn("the map that was made is lost: %s", error)
+            return None
+
+    def keep_whole(self, stored: StoredMap) -> None:
+        """Remember a whole map that has no name, soon, instead of the one that was being made."""
+        self._background.do(
+            "the map that was made is not remembered", lambda: self._replace_by(stored)
+        )
+
+    def _replace_by(self, stored: StoredMap) -> None:
+        """If the disk refuses, the one that was being made is still there."""
+        if self._run:
+            self._whole.save(self._run, stored)
+        self.forget()
+
+    def forget_whole(self) -> None:
+        """Forget the whole map, soon: another one is begun, or it has a name by now."""
+        self._background.do("the whole map is not forgotten", self._remove_whole)
+
+    def _remove_whole(self) -> None:
+        for run in self._whole.names():
+            self._whole.remove(run)
+
+    def _save(self, kept: KeptMap) -> None:
+        save_mapper(kept, self._path)
+        self._bytes = self._path.stat().st_size

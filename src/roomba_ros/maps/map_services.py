@@ -1,0 +1,173 @@
+"""What people do with the robot's own maps on ROS: finish, save, load, remove, list, change."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Final
+
+import rospy
+from roomba_robot.srv import (
+    ListMaps,
+    ListMapsRequest,
+    ListMapsResponse,
+    NameMap,
+    NameMapResponse,
+)
+from std_srvs.srv import Trigger, TriggerResponse
+
+from roomba.errors import RoombaError
+from roomba.perception.rooms.refit import refitted
+from roomba.storage.map_store import MapStoreError
+from roomba_ros.localization.topics import LocalizationTopics
+from roomba_ros.maps.change_topics import ChangeTopics
+from roomba_ros.maps.map_maker import MapMaker
+from roomba_ros.maps.map_shelf import MapShelf
+from roomba_ros.maps.own_map import GIVEN, NO_STATION, NONE, OWN, OwnMap
+
+_IS_GIVEN: Final = (
+    "the robot was given its map: start it with map:=none (it makes a new one), map:=own (the one "
+    "it made of this floor), or map:= and the name of a saved one"
+)
+
+
+class MapServices:
+    """Answers; what is refused says why, and changes nothing.
+
+    Services: ``map/finish`` (Trigger: the map is whole as it is), ``map/save``, ``map/load``,
+    ``map/remove`` (NameMap), ``map/list`` (ListMaps), ``map/update/accept``,
+    ``map/update/refuse`` (Trigger).
+    """
+
+    def __init__(
+        self,
+        own: OwnMap,
+        maker: MapMaker,
+        shelf: MapShelf,
+        changes: ChangeTopics,
+        place: LocalizationTopics,
+    ) -> None:
+        """Connect nothing yet."""
+        self._own, self._maker, self._place = own, maker, place
+        self._shelf, self._changes = shelf, changes
+
+    def start(self, *, is_own: bool) -> None:
+        """Connect."""
+        self._is_own = is_own
+        for name, work in (
+            ("map/finish", self._finish),
+            ("map/update/accept", self._accept),
+            ("map/update/refuse", self._refuse),
+        ):
+            rospy.Service(name, Trigger, lambda _, work=work: self._answer(TriggerResponse, work))
+        for name, deed in (
+            ("map/save", self._save),
+            ("map/load", self._load),
+            ("map/remove", self._remove),
+        ):
+            rospy.Service(
+                name,
+                NameMap,
+                lambda request, deed=deed: self._answer(
+                    NameMapResponse, lambda: deed(request.name)
+                ),
+            )
+        rospy.Service("map/list", ListMaps, self._on_list)
+
+    def _finish(self) -> str:
+        """Let the map be whole as it is."""
+        with self._own.lock:
+            if not self._maker.is_growing:
+                raise MapStoreError("expected a map that is being made, got none")
+            if self._maker.station is None:
+                raise MapStoreError(NO_STATION)
+            self._maker.finish()
+        return "the map becomes whole"
+
+    def _save(self, name: str) -> str:
+        """Save the map by a name; names of rooms and zones of an older one of it go on."""
+        if name in (GIVEN, NONE, OWN):
+            raise MapStoreError(f"expected a name but {name!r}, which says how to begin (map:=…)")
+        own = self._own
+        with own.lock:
+            before, stored = own.name, own.stored()
+        if stored.rooms is None:
+            raise MapStoreError("the rooms of this map are still being found; try again")
+        is_made_anew = name != before and name in self._shelf.names
+        saved = self._shelf.taken_over(name, stored) if is_made_anew else stored
+        self._shelf.save(name, saved)
+        if is_made_anew:
+            try:
+                self._shelf.go_by(saved)
+            except (OSError, RoombaError) as error:
+                return (
+                    f"saved as {name} with the rooms and zones of the older map, but the robot "
+                    f"does not go by them ({error}): mend that, and save it again"
+                )
+        with own.lock:
+            # Meanwhile somebody may have let the robot go by another map.
+            if own.occupancy is stored.occupancy:
+                own.name = name
+                own.remember()
+                if is_made_anew:
+                    own.tell_again()
+        own.settle()
+        return f"saved as {name} in {self._shelf.folder}"
+
+    def _load(self, name: str) -> str:
+        """Go on with a saved map; unless its place there is known the robot finds it out."""
+        own, stored = self._own, self._shelf.load(name)
+        with own.lock:
+            if self._maker.is_growing:
+                raise MapStoreError("a map is being made: finish it first (map/finish)")
+            at = None
+            if self._maker.is_docked:
+                at = stored.station
+            elif own.occupancy is not None and own.occupancy.frame == stored.occupancy.frame:
+                # Another state of the same map.
+                at = self._place.known_place
+            own.use(name, stored, at)
+        own.settle()
+        return f"the robot goes by {name}"
+
+    def _remove(self, name: str) -> str:
+        self._shelf.remove(name)
+        with self._own.lock:
+            if self._own.name == name:
+                self._own.name = ""
+                self._own.remember()
+        self._own.settle()
+        return f"{name} is removed"
+
+    def _accept(self) -> str:
+        """Change the map as it was offered, its rooms with it; a saved one is saved."""
+        own = self._own
+        with own.lock:
+            name, before, proposed = own.name, own.stored(), self._changes.proposed()
+        rooms = before.rooms and refitted(before.rooms, before.occupancy, proposed)
+        stored = replace(before, occupancy=proposed, rooms=rooms)
+        if name:
+            self._shelf.save(name, stored)
+        with own.lock:
+            own.use_changed(name, stored)
+        return "the map is changed"
+
+    def _refuse(self) -> str:
+        """Leave the map as it is, and do not ask again."""
+        with self._own.lock:
+            self._changes.refuse(rospy.get_time())
+        return "the map stays as it is"
+
+    def _answer(self, kind: type, work: Callable[[], str]) -> object:
+        """Return a service's answer: what was done, or why not."""
+        if not self._is_own:
+            return kind(False, _IS_GIVEN)
+        try:
+            return kind(True, work())
+        except RoombaError as error:
+            return kind(False, str(error))
+        except OSError as error:
+            return kind(False, f"the disk refuses: {error}; nothing was changed")
+
+    def _on_list(self, _: ListMapsRequest) -> ListMapsResponse:
+        return ListMapsResponse(list(self._shelf.names), self._own.name)

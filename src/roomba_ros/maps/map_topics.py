@@ -1,0 +1,162 @@
+"""The robot's own maps on ROS: begun or recognised, made whole, and looked through for changes."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import rospy
+from roomba_robot.msg import DockStatus
+
+from roomba.configuration.robot import RobotConfig
+from roomba.errors import ConfigError
+from roomba.perception.localization.estimate import Estimate
+from roomba.storage.map_store import MapStoreError
+from roomba_ros.localization.floor_search import FloorSearch
+from roomba_ros.localization.topics import LocalizationTopics
+from roomba_ros.maps.change_topics import ChangeTopics
+from roomba_ros.maps.map_maker import MapMaker
+from roomba_ros.maps.map_memory import MapMemory
+from roomba_ros.maps.map_services import MapServices
+from roomba_ros.maps.map_shelf import MapShelf
+from roomba_ros.maps.own_map import GIVEN, NO_STATION, NONE, OWN, OwnMap
+from roomba_ros.rooms.topics import RoomTopics
+from roomba_ros.runtime.background import Background
+from roomba_ros.runtime.parameters import read_mapping_config
+
+_EXPLORE: Final = "the map is being made: explore, or walk about"
+
+
+class MapTopics:
+    """Tells the robot's own map; when it is given one it does nothing but say so.
+
+    Publishes: what :class:`OwnMap` tells (the map 1 Hz while it grows), and :class:`ChangeTopics`.
+    Subscribes: ``dock_status``, and what :class:`OwnMap` hears.
+    Services: those of :class:`MapServices`.
+    Parameters: ``~map`` (given, none, own, or the name of a saved map), ``mapping_config``, and
+    those of :class:`MapShelf`.
+    """
+
+    def __init__(self, config: RobotConfig, place: LocalizationTopics, rooms: RoomTopics) -> None:
+        """Connect nothing yet."""
+        self._config, self._place = config, place
+        self._background = Background()
+        self._memory = MapMemory(self._background)
+        self._maker = MapMaker(config, read_mapping_config(), place, self._background, self._memory)
+        rooms.is_growing = lambda: self._maker.is_growing
+        self._shelf, self._changes = MapShelf(rooms), ChangeTopics(place)
+        self._own = OwnMap(place, rooms, self._shelf, self._changes, self._memory, self._background)
+        self._services = MapServices(self._own, self._maker, self._shelf, self._changes, place)
+        self._trouble = ""
+        self._is_docked = False
+        self._search: FloorSearch | None = None
+
+    def start(self) -> None:
+        """Read the parameters and connect; raises ConfigError."""
+        self._wish = rospy.get_param("~map", GIVEN)
+        if not isinstance(self._wish, str) or not self._wish:
+            raise ConfigError(
+                f"parameter ~map: expected given, none, own or a name, got {self._wish!r}"
+            )
+        self._shelf.start()
+        self._changes.start()
+        self._memory.start(self._shelf.folder)
+        if self._is_own:
+            self._background.start()
+        self._own.start(is_own=self._is_own)
+        if not (self._is_own and self._memory.is_there):
+            # Else whoever explores would take the map for whole before it is taken up.
+            self._own.say(rospy.get_time(), is_growing=False)
+        rospy.Subscriber("dock_status", DockStatus, self._on_dock, queue_size=1)
+        self._services.start(is_own=self._is_own)
+
+    @property
+    def _is_own(self) -> bool:
+        return self._wish != GIVEN
+
+    def tick(self, now: float, estimate: Estimate) -> None:
+        """Begin, grow, recognise, or look for changes; tell what is new."""
+        if not self._is_own:
+            return
+        own, maker = self._own, self._maker
+        with own.lock:
+            is_new_station = maker.note_station(self._is_docked)
+            if own.occupancy is None and not maker.is_growing:
+                self._begin(now)
+            elif maker.is_growing:
+                if is_new_station:
+                    own.tell_station(maker.station)
+                self._grow(now)
+            else:
+                self._changes.look(now, estimate, is_docked=self._is_docked)
+            own.say(now, is_growing=maker.is_growing)
+
+    # ---------------------------------------------------------------- beginning
+
+    def _begin(self, now: float) -> None:
+        """Take up what was begun, load what is wished, know this floor again, or begin anew."""
+        if self._search is None and self._take_up():
+            return
+        if self._wish == NONE:
+            self._maker.begin()
+        elif self._wish == OWN:
+            self._recognise(now)
+        else:
+            try:
+                stored = self._shelf.load(self._wish)
+                # Whoever comes back in the same run comes back to the same place.
+                at = self._place.place if self._place.was_here_before else None
+                self._own.use(self._wish, stored, at)
+            except (MapStoreError, OSError) as error:
+                rospy.logerr("map %s is not loaded, a new one is made: %s", self._wish, error)
+                self._trouble = f"{error}. "
+                self._maker.begin()
+
+    def _take_up(self) -> bool:
+        """Go on with what this node had when it was killed in this run; tell whether it had any."""
+        if not self._place.was_here_before:
+            return False
+        if self._maker.take_up():
+            self._own.tell_station(self._maker.station)
+            return True
+        whole = self._memory.recall_whole()
+        if whole is not None:
+            rospy.loginfo("this node ended; it goes on with the map that it made")
+            self._own.use("", whole, self._place.place)
+        return whole is not None
+
+    def _recognise(self, now: float) -> None:
+        """Go on with the map of this floor, as soon as it is clear which one it is."""
+        search = self._search = self._search or FloorSearch(
+            now, self._config, self._place, self._shelf.load_all()
+        )
+        place = search.tick()
+        if place is not None:
+            rospy.loginfo("this floor is %s", place.floor)
+            self._own.use(place.floor, search.floors[place.floor], place.pose)
+        elif search.has_failed(now):
+            rospy.loginfo("the robot was never on this floor")
+            self._maker.begin()
+        else:
+            return
+        self._search = None
+
+    # ---------------------------------------------------------------- growing
+
+    def _grow(self, now: float) -> None:
+        own, maker = self._own, self._maker
+        own.message = self._trouble + (NO_STATION if maker.station is None else _EXPLORE)
+        whole = maker.take_whole()
+        if whole is not None:
+            own.message = self._trouble = ""
+            # The station first: by where it was and is, others carry over what they noted.
+            own.tell_station(maker.station)
+            own.tell_whole(whole)
+            own.remember()
+            return
+        grown = maker.grown(now)
+        if grown is not None:
+            own.tell_growing(now, grown)
+        maker.keep(now)
+
+    def _on_dock(self, message: DockStatus) -> None:
+        self._is_docked = message.is_docked

@@ -1,0 +1,1 @@
+"""The mission as a node."""

@@ -1,0 +1,105 @@
+"""The mission's hold on the drive, the fan, and on others who would drive the robot."""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+import rospy
+from actionlib_msgs.msg import GoalID
+from geometry_msgs.msg import Twist as TwistMessage
+from std_msgs.msg import Bool, Float32
+
+from roomba.configuration.robot import RobotConfig
+from roomba.geometry import Twist
+from roomba_ros.convert.common import twist_message, twist_of
+
+_STOP_REPEATS: Final = 5
+"""Ticks for which a stop is repeated before the drive is left to others."""
+_ENDING: Final = 2.5
+"""s; so long a walk that was cancelled, or looking around, may still drive."""
+
+
+class MissionDrive:
+    """Drives while the mission wants to; notices when somebody else does.
+
+    Publishes: ``cmd_vel_mission`` (Twist, 20 Hz while it drives), ``look_around`` (Bool, while the
+    place has to be found), ``vacuum_motor``, ``main_brush_motor`` (Float32, duty 0..1),
+    ``walk_to_point/cancel``, ``move_base/cancel`` (GoalID: all walks end when it begins to drive).
+    Subscribes: ``cmd_vel`` (Twist: what others want, which counts above the mission's).
+    """
+
+    def __init__(self, config: RobotConfig) -> None:
+        """Connect nothing yet."""
+        self._config = config
+        self._stops_left = 0
+        self._looks = False
+        self._others_may_until = -math.inf
+        self._others_drove = -math.inf
+        self._now = -math.inf
+        self._fan: float | None = None
+
+    def start(self) -> None:
+        """Connect."""
+        self._command = rospy.Publisher(
+            "cmd_vel_mission", TwistMessage, queue_size=1, tcp_nodelay=True
+        )
+        self._look_around = rospy.Publisher("look_around", Bool, queue_size=1)
+        self._vacuum = rospy.Publisher("vacuum_motor", Float32, queue_size=1, latch=True)
+        self._brush = rospy.Publisher("main_brush_motor", Float32, queue_size=1, latch=True)
+        self._cancels = [
+            rospy.Publisher(f"{action}/cancel", GoalID, queue_size=1)
+            for action in ("walk_to_point", "move_base")
+        ]
+        rospy.Subscriber("cmd_vel", TwistMessage, self._on_other_command, queue_size=1)
+
+    def take(self) -> None:
+        """Let all walks end: the mission is about to drive."""
+        self._others_may_until = self._now + _ENDING
+        self._others_drove = -math.inf
+        for publisher in self._cancels:
+            publisher.publish(GoalID())
+
+    def follow_clock(self, now: float) -> None:
+        """Tell what time it is, s of the robot's clock."""
+        if now < self._now:
+            # The clock was set back.
+            self._others_may_until = self._others_drove = -math.inf
+        self._now = now
+
+    @property
+    def is_taken(self) -> bool:
+        """Whether somebody else drives the robot, whose walk was not ended by this mission."""
+        return self._now - self._others_drove < self._config.body.command_timeout
+
+    def drive(self, twist: Twist | None, *, looks_around: bool) -> None:
+        """Ask for a twist; None: leave the drive to others, after a stop."""
+        if looks_around:
+            self._others_may_until = self._now + _ENDING
+        if looks_around or self._looks:
+            self._look_around.publish(looks_around)
+        self._looks = looks_around
+        if twist is not None:
+            self._stops_left = _STOP_REPEATS
+            self._command.publish(twist_message(twist))
+        elif self._stops_left > 0:
+            self._stops_left -= 1
+            self._command.publish(TwistMessage())
+
+    def suck(self, duty: float | None) -> None:
+        """Set the fan's power; None: as it was before the mission."""
+        if duty == self._fan:
+            return
+        self._fan = duty
+        self._vacuum.publish(self._config.fan.duty if duty is None else duty)
+        self._brush.publish(self._config.brush.duty)
+
+    def stop(self) -> None:
+        """Stop what it drives."""
+        if self._stops_left > 0:
+            self._command.publish(TwistMessage())
+
+    def _on_other_command(self, message: TwistMessage) -> None:
+        if twist_of(message) == Twist() or self._now < self._others_may_until:
+            return
+        self._others_drove = self._now

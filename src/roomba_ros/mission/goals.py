@@ -1,0 +1,241 @@
+"""The goals of the mission's three actions: how each begins, what of it is told, how it ends."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from dataclasses import dataclass
+from typing import Any
+
+from roomba_robot.msg import (
+    CleanAction,
+    DockAction,
+    DockFeedback,
+    DockResult,
+    ExploreAction,
+    ExploreFeedback,
+    UndockAction,
+    UndockFeedback,
+    UndockResult,
+    VacuumState,
+)
+from roomba_robot.msg import CleanResult as CleanResultMessage
+from roomba_robot.msg import ExploreResult as ExploreResultMessage
+
+from roomba.grid import OccupancyMap
+from roomba.mission.cleaning.request import CleanOutcome, CleanResult
+from roomba.mission.exploring.exploration import ExploreResult
+from roomba.mission.inputs.senses import Senses
+from roomba.mission.mission import CommandRefusedError, Mission
+from roomba.mission.phases.machine import Errand, Event, Phase
+from roomba_ros.convert.mission import (
+    explored_message,
+    feedback_message,
+    request_of,
+    result_message,
+)
+from roomba_ros.runtime.action_goal import ActionGoal
+
+_MAP_IS_WHOLE = (
+    "there is nothing to explore: expected a map that is being made, got a whole one; "
+    "to make one anew start the robot with map:=none"
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Ended:
+    """The result of a clean or an exploration that has just ended, if one has."""
+
+    clean: CleanResult | None = None
+    exploration: ExploreResult | None = None
+
+
+class MissionGoal(ActionGoal):
+    """One thing that the mission is to do."""
+
+    @abstractmethod
+    def begin(self, mission: Mission, senses: Senses) -> None:
+        """Let the mission do it; raises RoombaError with the reason why not."""
+
+    @abstractmethod
+    def follow(self, mission: Mission, senses: Senses, ended: Ended) -> bool:
+        """Tell its end if it has ended, and return that."""
+
+    @abstractmethod
+    def tell(self, state: VacuumState) -> None:
+        """Tell how far it is."""
+
+    @abstractmethod
+    def _result(self, message: str) -> Any:
+        """Return the action's result for what was not done, and why."""
+
+    def accept(self) -> None:
+        """Tell that it has begun."""
+        self._handle.set_accepted()
+
+    def reject(self, reason: str) -> None:
+        """Tell why it is not begun."""
+        self._handle.set_rejected(self._result(reason), reason)
+
+    def _tell_end(self, outcome: CleanOutcome, message: Any, text: str) -> None:
+        """Tell how it ended."""
+        if outcome is CleanOutcome.COMPLETED:
+            self._handle.set_succeeded(message, text)
+        elif outcome is CleanOutcome.STOPPED:
+            self._handle.set_canceled(message, text)
+        else:
+            self._handle.set_aborted(message, text)
+
+    def stopped(self, ended: Ended, reason: str) -> None:
+        """Tell that somebody ended it."""
+        self._handle.set_canceled(self._result(reason), reason)
+
+    def given_up(self, reason: str) -> None:
+        """Tell why it comes to no good end."""
+        self._handle.set_aborted(self._result(reason), reason)
+
+
+class CleaningGoal(MissionGoal):
+    """Clean floor."""
+
+    name, action = "clean", CleanAction
+
+    def begin(self, mission: Mission, senses: Senses) -> None:
+        """Let the mission clean."""
+        mission.clean(request_of(self._handle.get_goal()), senses)
+
+    def follow(self, mission: Mission, senses: Senses, ended: Ended) -> bool:
+        """Tell its end if there is a result."""
+        result = ended.clean
+        if result is None:
+            return False
+        message = result_message(result)
+        text = result.message or result.outcome.value
+        self._tell_end(result.outcome, message, text)
+        return True
+
+    def stopped(self, ended: Ended, reason: str) -> None:
+        """Tell that somebody ended it, and what it achieved."""
+        result = ended.clean
+        message = self._result(reason) if result is None else result_message(result)
+        self._handle.set_canceled(message, reason)
+
+    def tell(self, state: VacuumState) -> None:
+        """Tell how much is clean."""
+        self._handle.publish_feedback(feedback_message(state))
+
+    def _result(self, message: str) -> CleanResultMessage:
+        return CleanResultMessage(outcome=CleanResultMessage.STOPPED, message=message)
+
+
+class DockingGoal(MissionGoal):
+    """Go to the station."""
+
+    name, action = "dock", DockAction
+
+    def begin(self, mission: Mission, senses: Senses) -> None:
+        """Let the mission go there."""
+        mission.command(Event.DOCK, senses)
+
+    def follow(self, mission: Mission, senses: Senses, ended: Ended) -> bool:
+        """Tell its end if the robot is there, or cannot get there."""
+        state = mission.state
+        if state.phase is Phase.DOCKED:
+            self._handle.set_succeeded(DockResult(True, ""), "docked")
+        elif state.phase in (Phase.ERROR, Phase.EMERGENCY):
+            self.given_up(mission.message)
+        elif state.errand is not Errand.DOCK:
+            self.stopped(ended, "it was stopped")
+        else:
+            return False
+        return True
+
+    def tell(self, state: VacuumState) -> None:
+        """Tell whether it drives there or is about to touch it."""
+        self._handle.publish_feedback(DockFeedback(state.phase))
+
+    def _result(self, message: str) -> DockResult:
+        return DockResult(False, message)
+
+
+class UndockingGoal(MissionGoal):
+    """Back out of the station."""
+
+    name, action = "undock", UndockAction
+
+    def begin(self, mission: Mission, senses: Senses) -> None:
+        """Let the mission back out."""
+        mission.command(Event.UNDOCK, senses)
+
+    def follow(self, mission: Mission, senses: Senses, ended: Ended) -> bool:
+        """Tell its end if the robot is out, or cannot get out."""
+        state = mission.state
+        if state.phase in (Phase.ERROR, Phase.EMERGENCY):
+            self.given_up(mission.message)
+        elif state.phase is Phase.IDLE:
+            self._handle.set_succeeded(UndockResult(True, ""), "out of the station")
+        elif state.errand is not Errand.UNDOCK:
+            self.stopped(ended, "it was stopped")
+        else:
+            return False
+        return True
+
+    def tell(self, state: VacuumState) -> None:
+        """Tell what it does."""
+        self._handle.publish_feedback(UndockFeedback(state.phase))
+
+    def _result(self, message: str) -> UndockResult:
+        return UndockResult(False, message)
+
+
+class ExploringGoal(MissionGoal):
+    """Look at what the map does not show yet."""
+
+    name, action = "explore", ExploreAction
+
+    def __init__(self, handle: Any) -> None:
+        """Take the goal's handle."""
+        super().__init__(handle)
+        self._known = 0.0
+        self._looked_at: OccupancyMap | None = None
+
+    def begin(self, mission: Mission, senses: Senses) -> None:
+        """Let the mission explore."""
+        if not mission.site.is_growing:
+            raise CommandRefusedError(_MAP_IS_WHOLE)
+        mission.explore(senses)
+        self._look_at(mission)
+
+    def follow(self, mission: Mission, senses: Senses, ended: Ended) -> bool:
+        """Tell its end if there is a result."""
+        self._look_at(mission)
+        explored = ended.exploration
+        if explored is None:
+            return False
+        message = explored_message(explored)
+        text = explored.message or explored.outcome.value
+        self._tell_end(explored.outcome, message, text)
+        return True
+
+    def stopped(self, ended: Ended, reason: str) -> None:
+        """Tell that somebody ended it, and what it achieved."""
+        explored = ended.exploration
+        message = self._result(reason) if explored is None else explored_message(explored)
+        self._handle.set_canceled(message, reason)
+
+    def tell(self, state: VacuumState) -> None:
+        """Tell how much of the home is known."""
+        self._handle.publish_feedback(ExploreFeedback(state.state, self._known, state.battery))
+
+    def _look_at(self, mission: Mission) -> None:
+        occupancy = mission.site.occupancy
+        if mission.exploration is not None and occupancy is not self._looked_at:
+            self._looked_at, self._known = occupancy, occupancy.free_area
+
+    def _result(self, message: str) -> ExploreResultMessage:
+        return ExploreResultMessage(
+            outcome=ExploreResultMessage.STOPPED, message=message, known=self._known
+        )
+
+
+GOALS: tuple[type[MissionGoal], ...] = (CleaningGoal, DockingGoal, UndockingGoal, ExploringGoal)
+"""All kinds of them."""

@@ -1,0 +1,334 @@
+"""The home as the mission plans in it, on ROS: map, station, rooms, and zones that people edit."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+import rospy
+from geometry_msgs.msg import PoseStamped
+from nav_msgs.msg import OccupancyGrid
+from roomba_robot.msg import Mapping, RoomArray, ZoneArray
+from roomba_robot.srv import (
+    RemoveZone,
+    RemoveZoneRequest,
+    RemoveZoneResponse,
+    SetZone,
+    SetZoneRequest,
+    SetZoneResponse,
+)
+from visualization_msgs.msg import MarkerArray
+
+from roomba.configuration.docking import DockingConfig
+from roomba.configuration.mission import MissionConfig
+from roomba.configuration.robot import RobotConfig
+from roomba.errors import RoombaError, RoomsError
+from roomba.geometry import Pose
+from roomba.grid import OccupancyMap
+from roomba.mission.inputs.planning_context import Site
+from roomba.perception.matching.surface_field import SurfaceField
+from roomba.perception.rooms.rooms import Rooms
+from roomba.perception.rooms.zones import Zones, ZonesError
+from roomba.planning.coverage.floor.floor import FINE
+from roomba.storage.map_bound import map_digest
+from roomba.storage.zones import load_zones, save_zones
+from roomba_ros.convert.common import map_of
+from roomba_ros.convert.mission import names_of, rooms_of, zone_of, zones_markers, zones_message
+from roomba_ros.runtime.background import Background
+from roomba_ros.walking.walk_goals import pose_in_map
+
+GROWING: Final = "growing"
+"""The digest of maps that are being made."""
+MOST_FINE_CELLS: Final = 40_000_000
+"""Of a map that is cleaned: 4,000 m2, its walls and surroundings included."""
+_MAPPING_DEADLINE: Final = 3.0
+"""s of wall time that a map without a load time waits to be told whole or growing."""
+_ROOMS_DEADLINE: Final = 3.0
+"""s of wall time that a site waits for the map's rooms; later ones make a new site."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class KnownHome:
+    """A site, the field of surfaces of its map, and what tells that map from all others.
+
+    All stages of a map that is being made have the same ``digest``.
+    """
+
+    site: Site
+    field: SurfaceField
+    digest: str
+
+
+class MissionSite:
+    """Makes sites in the background: a new one for each map, edit of rooms, and edit of zones.
+
+    Publishes: ``zones`` (ZoneArray, latched), ``zones/markers`` (MarkerArray, latched, for RViz).
+    Subscribes: ``map``, ``mapping`` (whether it is being made), ``rooms``, ``station_pose``
+    (PoseStamped: where the docked robot stands).
+    Services: ``set_zone`` (SetZone), ``remove_zone`` (RemoveZone). Edits are saved at once.
+    """
+
+    def __init__(
+        self,
+        robot: RobotConfig,
+        mission: MissionConfig,
+        docking: DockingConfig,
+        background: Background,
+        folder: Path,
+    ) -> None:
+        """Connect nothing yet; zones are saved in ``folder``."""
+        self._robot, self._mission, self._docking = robot, mission, docking
+        self._background, self._folder = background, folder
+        self._lock = threading.Lock()
+        self._map: OccupancyMap | None = None
+        self._digest = ""
+        self._field: SurfaceField | None = None
+        self._station: Pose | None = None
+        self._rooms_message: RoomArray | None = None
+        self._zones: Zones | None = None
+        self._map_came = 0.0
+        self._made: KnownHome | None = None
+        self._wanted = self._tried = 0
+        self._is_edited = False
+        self._is_mapped: bool | None = None
+        self._held: tuple[float, OccupancyGrid] | None = None
+        self.trouble = ""
+        """Why there is no site of this map, in words; empty while one may still come."""
+
+    def start(self) -> None:
+        """Connect."""
+        self._zones_publisher = rospy.Publisher("zones", ZoneArray, queue_size=1, latch=True)
+        self._markers = rospy.Publisher("zones/markers", MarkerArray, queue_size=1, latch=True)
+        rospy.Subscriber("mapping", Mapping, self._on_mapping, queue_size=1)
+        rospy.Subscriber("map", OccupancyGrid, self._on_map, queue_size=1)
+        rospy.Subscriber("rooms", RoomArray, self._on_rooms, queue_size=1)
+        rospy.Subscriber("station_pose", PoseStamped, self._on_station, queue_size=1)
+        rospy.Service("set_zone", SetZone, self._on_set)
+        rospy.Service("remove_zone", RemoveZone, self._on_remove)
+
+    @property
+    def missing(self) -> tuple[str, ...]:
+        """The topics without which there is no site and that were not heard yet."""
+        heard = {"map": self._map, "station_pose": self._station}
+        return tuple(topic for topic, value in heard.items() if value is None)
+
+    @property
+    def is_changing(self) -> bool:
+        """Whether another site is being made than the one that there is, but for more map."""
+        with self._lock:
+            return self._wanted != self._tried and self._is_edited
+
+    def take(self) -> KnownHome | None:
+        """Return a site that was made since the last call."""
+        with self._lock:
+            if self._wanted != self._tried:
+                return None
+            made, self._made = self._made, None
+            return made
+
+    def tick(self) -> None:
+        """Let the first site be made as soon as all that it takes was heard."""
+        held = self._held
+        if held is not None and time.monotonic() > held[0] + _MAPPING_DEADLINE:
+            self._take_held()
+        with self._lock:
+            is_first = self._tried == self._wanted == 0 and not self.missing
+            waits = self._rooms_message is None
+            is_late = time.monotonic() > self._map_came + _ROOMS_DEADLINE
+            if is_first and (is_late or not waits):
+                self._make()
+
+    def _make(self, *, is_edited: bool = True) -> None:
+        """Let a site be made of what is known now; hold the lock."""
+        self._is_edited = is_edited or (self._is_edited and self._wanted != self._tried)
+        self._wanted += 1
+        self._background.do("no site for the mission", self._make_now)
+
+    def _make_now(self) -> None:
+        with self._lock:
+            wanted, occupancy, station = self._wanted, self._map, self._station
+            message, zones, field = self._rooms_message, self._zones, self._field
+            digest = self._digest
+        made, trouble = None, ""
+        began = time.monotonic()
+        try:
+            if occupancy is not None and station is not None:
+                if zones is None:
+                    raise ZonesError(f"its zones cannot be read: {self._path()}")
+                _require_small(occupancy)
+                field = field or SurfaceField.of(occupancy)
+                site = Site(
+                    occupancy,
+                    station,
+                    self._robot,
+                    self._mission,
+                    self._docking,
+                    _rooms(message, occupancy),
+                    zones,
+                    is_growing=digest == GROWING,
+                )
+                if not site.is_growing:
+                    # It takes a while, and the mission shall not wait for it.
+                    _ = site.coverage
+                made = KnownHome(site, field, digest)
+        except (RoombaError, ValueError, MemoryError) as error:
+            trouble = f"nothing can be cleaned in this map: {error}"
+            rospy.logwarn(trouble)
+        rospy.logdebug("a site was made in %.2f s", time.monotonic() - began)
+        with self._lock:
+            if wanted != self._wanted:
+                # A newer one waits already.
+                return
+            self._tried, self._made, self.trouble = wanted, made, trouble
+            self._field = field
+
+    def _on_mapping(self, message: Mapping) -> None:
+        self._is_mapped = message.is_growing
+        self._take_held()
+
+    def _on_map(self, message: OccupancyGrid) -> None:
+        if message.info.map_load_time.is_zero() and self._is_mapped is None:
+            # It may be one that is being made; who makes it says so, if there is somebody.
+            with self._lock:
+                self._held = (time.monotonic(), message)
+            return
+        self._hear_map(message, time.monotonic())
+
+    def _take_held(self) -> None:
+        """Take the map that waited to be known for a whole or a growing one."""
+        with self._lock:
+            held, self._held = self._held, None
+        if held is not None:
+            self._hear_map(held[1], held[0])
+
+    def _hear_map(self, message: OccupancyGrid, came: float) -> None:
+        try:
+            occupancy = map_of(message)
+        except ValueError as error:
+            rospy.logwarn("map refused: %s", error)
+            return
+        # A map that is being made was never loaded; other people's may not say when they were.
+        is_growing = bool(self._is_mapped) and message.info.map_load_time.is_zero()
+        digest = GROWING if is_growing else map_digest(occupancy)
+        with self._lock:
+            if digest == self._digest and not is_growing:
+                self._take_carried(occupancy)
+                return
+            before, self._digest = self._digest, digest
+            is_first = self._map is None
+            self._map, self._field = occupancy, None
+            self._map_came = came
+            if not (is_growing and before == GROWING):
+                self._zones = self._kept_or_carried(occupancy, before)
+                self._tell()
+            if not is_first:
+                # Rooms of this map are told after it.
+                self._rooms_message = None
+                self._make(is_edited=not is_growing)
+
+    def _on_rooms(self, message: RoomArray) -> None:
+        with self._lock:
+            before, self._rooms_message = self._rooms_message, message
+            is_new = before is None or before.rooms != message.rooms
+            if is_new and self._wanted > 0:
+                self._make()
+
+    def _on_station(self, message: PoseStamped) -> None:
+        try:
+            station = pose_in_map(message)
+            if not station.is_finite:
+                raise RoombaError(f"expected finite numbers, got {station}")
+        except RoombaError as error:
+            rospy.logwarn("station_pose refused: %s", error)
+            return
+        with self._lock:
+            is_new, self._station = station != self._station, station
+            if is_new and self._wanted > 0:
+                self._make()
+
+    def _kept_or_carried(self, occupancy: OccupancyMap, before: str) -> Zones | None:
+        """Return the zones of a map; those of a map that was made go on in the whole one."""
+        kept, zones = self._kept(occupancy), self._zones
+        if before != GROWING or zones is None or not zones.all or kept is None or kept.all:
+            return kept
+        try:
+            save_zones(zones, occupancy, self._path())
+        except OSError as error:
+            rospy.logerr("the zones cannot be saved: %s", error)
+        return zones
+
+    def _take_carried(self, occupancy: OccupancyMap) -> None:
+        """Go on with other zones that are kept by now: a map that is told again took some over."""
+        kept = self._kept(occupancy)
+        if kept == self._zones:
+            return
+        self._zones = kept
+        self._tell()
+        if self._wanted > 0:
+            self._make()
+
+    def _kept(self, occupancy: OccupancyMap) -> Zones | None:
+        """Return the zones of a map; None when they cannot be read: then nothing is cleaned."""
+        try:
+            return load_zones(self._path(), occupancy)
+        except ZonesError as error:
+            rospy.logerr("%s", error)
+            return None
+
+    def _path(self) -> Path:
+        return self._folder / f"{self._digest[:16]}.yaml"
+
+    def _tell(self) -> None:
+        now, zones = rospy.get_time(), self._zones or Zones()
+        self._zones_publisher.publish(zones_message(now, zones, "map"))
+        self._markers.publish(zones_markers(now, zones, "map"))
+
+    def _edit(self, change: Callable[[Zones], Zones]) -> tuple[bool, str]:
+        """Change the zones, tell and save them; return whether that was done, and what or why."""
+        with self._lock:
+            if self._map is None:
+                return False, "there is no map yet; is home_sim_node running?"
+            if self._zones is None:
+                return False, f"{self._path()} cannot be read: mend it, or remove it, and restart"
+            try:
+                zones = change(self._zones)
+                save_zones(zones, self._map, self._path())
+            except ZonesError as error:
+                return False, str(error)
+            except OSError as error:
+                return False, f"the zones cannot be saved: {error}; nothing was changed"
+            self._zones = zones
+            self._tell()
+            if self._wanted > 0:
+                self._make()
+            return True, f"the zones are: {names_of(zones.names)}"
+
+    def _on_set(self, request: SetZoneRequest) -> SetZoneResponse:
+        return SetZoneResponse(*self._edit(lambda zones: zones.with_zone(zone_of(request.zone))))
+
+    def _on_remove(self, request: RemoveZoneRequest) -> RemoveZoneResponse:
+        return RemoveZoneResponse(*self._edit(lambda zones: zones.without(request.name)))
+
+
+def _require_small(occupancy: OccupancyMap) -> None:
+    frame = occupancy.frame
+    cells = frame.rows * frame.columns * max(1, round(frame.resolution / FINE)) ** 2
+    if cells > MOST_FINE_CELLS:
+        raise RoombaError(
+            f"expected a map of {MOST_FINE_CELLS * FINE**2:g} m2 at most, got one of "
+            f"{cells * FINE**2:g} m2; cut it to what is to be cleaned"
+        )
+
+
+def _rooms(message: RoomArray | None, occupancy: OccupancyMap) -> Rooms | None:
+    if message is None or not message.rooms:
+        return None
+    try:
+        return rooms_of(message, occupancy)
+    except (RoomsError, ValueError) as error:
+        rospy.logwarn("the mission knows no rooms: %s", error)
+        return None

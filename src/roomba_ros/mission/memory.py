@@ -1,0 +1,103 @@
+"""What the mission remembers on disk: its errand, in case this node is killed, and dirt."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+from typing import Final
+
+import rospy
+
+from roomba.mission.cleaning.checkpoint import CheckpointError
+from roomba.mission.inputs.senses import Senses
+from roomba.mission.mission import Mission
+from roomba.mission.phases.machine import Phase
+from roomba.perception.swept.dirt_map import DirtMap
+from roomba.storage.checkpoint import (
+    CheckpointFileError,
+    load_checkpoint,
+    load_dirt,
+    remove_checkpoint,
+    save_checkpoint,
+    save_dirt,
+)
+from roomba_ros.runtime.background import Background
+
+_PERIOD: Final = 2.0
+"""s of wall time between two checkpoints of a phase."""
+_MOST_TAKEN_UP: Final = 5
+_GOES_WELL: Final = 20.0
+"""An errand with which this node ended so often, each time within so many s of wall time, is
+dropped: it may be the reason."""
+
+
+class MissionMemory:
+    """Of one robot in one map: files by the map's digest in the robot's own ``folder``."""
+
+    def __init__(self, folder: Path, digest: str, background: Background) -> None:
+        """Read and write nothing yet."""
+        self._checkpoint = folder / f"{digest[:16]}.json"
+        self._dirt = folder / f"{digest[:16]}.npz"
+        self._background = background
+        self._not_forgotten = f"the errand is not forgotten in {self._checkpoint.name}"
+        self._run = str(rospy.get_param("/run_id", ""))
+        self._saved = 0.0
+        self._phase: Phase | None = None
+        self._taken_up = 0
+        self._since = time.monotonic()
+        self._is_there = True
+
+    def recall_dirt(self, dirt: DirtMap) -> None:
+        """Let a dirt map know what was learned before."""
+        try:
+            learned = load_dirt(self._dirt, dirt.learned.shape)
+        except CheckpointFileError as error:
+            rospy.logwarn("where it is dirty is learned anew: %s", error)
+            return
+        if learned is not None:
+            dirt.learned[:] = learned
+
+    def recall_errand(self, mission: Mission, senses: Senses) -> bool:
+        """Let a mission go on where it was killed; return whether it does."""
+        try:
+            found = load_checkpoint(self._checkpoint, self._run)
+            if found is None:
+                return False
+            values, taken_up = found
+            if taken_up >= _MOST_TAKEN_UP:
+                raise CheckpointError(f"with it this node ended {taken_up} times in a row")
+            self._taken_up = taken_up + 1
+            save_checkpoint(values, self._run, self._checkpoint, self._taken_up)
+            mission.restore(values, senses)
+        except (CheckpointFileError, CheckpointError, OSError) as error:
+            rospy.logwarn("the errand of before is not taken up: %s", error)
+            return False
+        rospy.logwarn("this node ended on an errand; it is taken up: %s", mission.state.phase.value)
+        return True
+
+    def keep(self, mission: Mission, senses: Senses) -> None:
+        """Remember the errand, if it is time to; forget it when there is none."""
+        phase, wall = mission.state.phase, time.monotonic()
+        if phase is self._phase and wall - self._saved < _PERIOD:
+            return
+        self._phase, self._saved = phase, wall
+        taken_up = self._taken_up if wall - self._since < _GOES_WELL else 0
+        values = mission.checkpoint(senses)
+        if values is not None:
+            self._is_there = True
+            self._background.do(
+                f"the errand is not remembered in {self._checkpoint.name}",
+                lambda: save_checkpoint(values, self._run, self._checkpoint, taken_up),
+            )
+        elif self._is_there:
+            self._is_there = False
+            self._background.do(self._not_forgotten, lambda: remove_checkpoint(self._checkpoint))
+
+    def forget_errand(self) -> None:
+        """Forget the errand: the robot was given another map."""
+        self._background.do(self._not_forgotten, lambda: remove_checkpoint(self._checkpoint))
+
+    def keep_dirt(self, dirt: DirtMap) -> None:
+        """Remember where it was dirty."""
+        learned = dirt.learned.copy()
+        self._background.do("dirt is not remembered", lambda: save_dirt(learned, self._dirt))

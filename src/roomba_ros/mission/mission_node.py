@@ -1,0 +1,258 @@
+"""Cleaning, docking and undocking on ROS: the mission, fed with what the robot senses."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+
+import rospy
+from std_srvs.srv import Trigger
+
+from roomba.configuration.docking import DockingConfig
+from roomba.configuration.mission import MissionConfig, load_mission_config
+from roomba.files.shipped import CONFIGURATION
+from roomba.geometry import Twist
+from roomba.mission.cleaning.request import CleanOutcome
+from roomba.mission.driving.path_driver import PERIOD
+from roomba.mission.inputs.senses import Senses
+from roomba.mission.mission import Mission, MissionStep
+from roomba.mission.phases.machine import Event, Phase
+from roomba.perception.swept.dirt_map import DirtMap
+from roomba.perception.things.layer import ThingLayer
+from roomba_ros.convert.mission import names_of
+from roomba_ros.mission.drive import MissionDrive
+from roomba_ros.mission.goals import Ended
+from roomba_ros.mission.home import GROWING, KnownHome, MissionSite
+from roomba_ros.mission.memory import MissionMemory
+from roomba_ros.mission.orders import MissionOrders
+from roomba_ros.mission.senses import MissionSenses
+from roomba_ros.mission.topics import MissionTopics
+from roomba_ros.runtime.alone import refuse_second
+from roomba_ros.runtime.background import Background
+from roomba_ros.runtime.calls import call_service
+from roomba_ros.runtime.node import require_master, run_node
+from roomba_ros.runtime.parameters import folder_of, read_robot_config
+
+NAME = "mission_node"
+_FINISH_PERIOD = 5.0
+"""s of wall time; so often it asks for the whole map while it waits for that."""
+_OTHERS = "somebody else drives the robot (a walk, or cmd_vel); resume when that is done"
+
+
+class MissionNode:
+    """Ticks one mission for each map; what it is on, it takes up again after it was killed.
+
+    Publishes, subscribes and serves what :class:`MissionSenses`, :class:`MissionSite`,
+    :class:`MissionOrders`, :class:`MissionDrive` and :class:`MissionTopics` say.
+    Parameters: ``robot_config``, ``mission_config`` (paths of configuration files; by default the
+    shipped ones), ``~memory_folder`` (default: roomba_robot/mission in the ROS home folder, and in
+    it a folder for each robot's namespace), ``~zones_folder`` (default: roomba_robot/zones there).
+    """
+
+    period = PERIOD
+
+    def start(self) -> None:
+        """Read the configuration and connect."""
+        self._config, self._mission_config = read_robot_config(), read_mission_config()
+        self._docking_config = DockingConfig()
+        self._background = Background()
+        self._mission: Mission | None = None
+        self._home: KnownHome | None = None
+        self._newer: KnownHome | None = None
+        self._memory: MissionMemory | None = None
+        self._finished = -_FINISH_PERIOD
+        self._senses = MissionSenses(self._config)
+        self._site = MissionSite(
+            self._config,
+            self._mission_config,
+            self._docking_config,
+            self._background,
+            folder_of("~zones_folder", "zones"),
+        )
+        self._drive = MissionDrive(self._config)
+        self._orders = MissionOrders(self._drive.take)
+        self._topics = MissionTopics(self._mission_config, self._background)
+        for part in (
+            self._background,
+            self._topics,
+            self._drive,
+            self._senses,
+            self._site,
+            self._orders,
+        ):
+            part.start()
+
+    def tick(self, now: float) -> None:
+        """Sense, obey, answer, act, tell, remember."""
+        self._drive.follow_clock(now)
+        senses = self._senses.at(now)
+        self._follow_home(senses)
+        mission = self._mission
+        self._orders.serve(mission is not None)
+        if mission is None or senses is None:
+            self._wait(now)
+            return
+        self._orders.obey(mission, senses)
+        self._give_way(mission, senses)
+        # Before the answers, and before the step: that may take long to plan.
+        self._tell(now, mission, senses)
+        self._orders.answer()
+        step = self._step(mission, senses)
+        self._act(mission, step)
+        self._tell(now, mission, senses)
+        ended = self._orders.follow(mission, senses)
+        self._finish_map(ended, is_waited_for=step.wants_whole_map)
+        self._remember(mission, senses, has_learned=ended.clean is not None)
+
+    def stop(self) -> None:
+        """Stop the drive; what was ordered comes to no end."""
+        self._drive.stop()
+        self._orders.give_up("the mission node was told to end")
+        self._background.wait(1.0)
+
+    def _wait(self, now: float) -> None:
+        """Tell what is not there yet."""
+        missing = self._site.missing + self._senses.missing
+        reason = self._site.trouble or (
+            f"waits for {names_of(missing)}" if missing else "gets to know its map"
+        )
+        self._orders.refuse(f"the robot is not ready: it {reason}")
+        self._topics.wait(now, reason)
+
+    def _follow_home(self, senses: Senses | None) -> None:
+        """Take over another site, or begin another mission for another map."""
+        self._site.tick()
+        if senses is None:
+            return
+        home = self._newer = self._site.take() or self._newer
+        if home is None:
+            return
+        mission, before = self._mission, self._home
+        if mission is not None and before is not None:
+            if before.site.is_growing:
+                self._grow(mission, senses, before, home)
+                return
+            if home.digest == before.digest:
+                self._newer = None
+                mission.use_site(home.site)
+                return
+            self._orders.give_up("the robot was given another map")
+            if self._memory is not None:
+                self._memory.forget_errand()
+        self._home, self._newer = home, None
+        self._mission = self._begin(home, senses)
+
+    def _grow(self, mission: Mission, senses: Senses, before: KnownHome, home: KnownHome) -> None:
+        """Let the mission go on with more of the map, when that makes a difference to it."""
+        is_more = home.site.occupancy is not before.site.occupancy
+        if not is_more:
+            mission.use_site(home.site)
+        elif home.site.is_growing and not mission.wants_map(home.site.occupancy):
+            return
+        else:
+            self._things = ThingLayer(home.field)
+            mission.use_map(home.site, self._things, DirtMap(home.site.occupancy))
+            if home.digest != before.digest:
+                self._remember_by(home, mission, senses)
+        self._home, self._newer = home, None
+
+    def _remember_by(self, home: KnownHome, mission: Mission, senses: Senses) -> None:
+        """Remember by the whole map, now that there is one, what is under way."""
+        assert self._memory is not None
+        before, self._memory = self._memory, self._memory_by(home.digest)
+        self._memory.keep(mission, senses)
+        before.forget_errand()
+
+    def _begin(self, home: KnownHome, senses: Senses) -> Mission:
+        """Return a mission for a map, that goes on with what was under way there."""
+        self._things = ThingLayer(home.field)
+        dirt = DirtMap(home.site.occupancy)
+        mission = Mission(
+            home.site,
+            self._config,
+            self._mission_config,
+            self._docking_config,
+            self._things,
+            dirt,
+            senses,
+        )
+        self._memory = self._memory_by(home.digest)
+        if not home.site.is_growing:
+            self._memory.recall_dirt(dirt)
+        if self._memory.recall_errand(mission, senses) or self._recall_growing(mission, senses):
+            self._drive.take()
+        return mission
+
+    def _recall_growing(self, mission: Mission, senses: Senses) -> bool:
+        """Take up what was under way on this map while it was being made."""
+        if mission.site.is_growing:
+            return False
+        memory = self._memory_by(GROWING)
+        if not memory.recall_errand(mission, senses):
+            return False
+        assert self._memory is not None
+        self._memory.keep(mission, senses)
+        memory.forget_errand()
+        return True
+
+    def _memory_by(self, digest: str) -> MissionMemory:
+        robot = rospy.get_namespace().strip("/") or "robot"
+        folder = folder_of("~memory_folder", "mission") / robot
+        return MissionMemory(folder, digest, self._background)
+
+    def _give_way(self, mission: Mission, senses: Senses) -> None:
+        """Pause while somebody else drives."""
+        if self._drive.is_taken and mission.state.drives:
+            mission.command(Event.PAUSE, senses)
+            mission.message = _OTHERS
+            rospy.logwarn("the mission is paused: %s", _OTHERS)
+
+    def _step(self, mission: Mission, senses: Senses) -> MissionStep:
+        if self._site.is_changing and mission.state.drives:
+            # Zones are obeyed at once: until they are known it stands.
+            return MissionStep()
+        self._senses.show(self._things)
+        return mission.tick(senses)
+
+    def _act(self, mission: Mission, step: MissionStep) -> None:
+        is_driving = mission.state.drives or step.twist != Twist()
+        self._drive.drive(step.twist if is_driving else None, looks_around=step.looks_around)
+        cleaning = mission.cleaning
+        sucks = cleaning is not None and mission.state.phase is not Phase.ERROR
+        self._drive.suck(cleaning.request.fan.value if cleaning and sucks else None)
+
+    def _tell(self, now: float, mission: Mission, senses: Senses) -> None:
+        """Tell everybody the state if it is due, and whoever ordered what is done how far it is."""
+        state = self._topics.tell(now, mission, senses)
+        if state is not None:
+            self._orders.tell(state)
+
+    def _finish_map(self, ended: Ended, *, is_waited_for: bool) -> None:
+        """When all was seen the map is to be whole; whoever makes it is told so."""
+        explored = ended.exploration
+        is_explored = explored is not None and explored.outcome is CleanOutcome.COMPLETED
+        since = time.monotonic() - self._finished
+        if is_explored or (is_waited_for and since > _FINISH_PERIOD):
+            self._finished = time.monotonic()
+            whole = rospy.ServiceProxy("map/finish", Trigger)
+            self._background.do("the map is not finished", lambda: call_service(whole))
+
+    def _remember(self, mission: Mission, senses: Senses, *, has_learned: bool) -> None:
+        assert self._memory is not None
+        self._memory.keep(mission, senses)
+        if has_learned:
+            self._memory.keep_dirt(mission.dirt)
+
+
+def read_mission_config() -> MissionConfig:
+    """Return the configuration named by the parameter ``mission_config``, or the shipped one."""
+    key = rospy.search_param("mission_config")
+    path = rospy.get_param(key) if key else CONFIGURATION / "mission.yaml"
+    return load_mission_config(Path(path))
+
+
+def main() -> None:
+    """Run the node, unless another one serves this robot already."""
+    require_master()
+    refuse_second(NAME, "vacuum/state")
+    run_node(NAME, MissionNode)

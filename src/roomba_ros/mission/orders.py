@@ -1,0 +1,209 @@
+"""What people and programs order the mission to do: actions and services, obeyed by a tick."""
+
+from __future__ import annotations
+
+import queue
+import time
+from collections import deque
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import partial
+from typing import Final
+
+import actionlib
+import rospy
+from roomba_robot.msg import VacuumState
+from std_msgs.msg import Empty, String
+from std_srvs.srv import Trigger, TriggerRequest, TriggerResponse
+
+from roomba.errors import RoombaError
+from roomba.mission.inputs.senses import Senses
+from roomba.mission.mission import Mission
+from roomba.mission.phases.machine import Event, Phase
+from roomba_ros.mission.goals import GOALS, Ended, MissionGoal
+
+SENSES_DEADLINE: Final = 6.0
+"""s of wall time after which goals are taken, and rejected, though nothing is known yet."""
+_ANSWER_DEADLINE: Final = 5.0
+"""s of wall time that a service waits for a tick; a long plan may hold one up."""
+_OVERTAKEN: Final = "a newer goal took over"
+_DONE: Final = {Event.PAUSE: "paused", Event.RESUME: "going on", Event.STOP: "stopped"}
+
+
+@dataclass(frozen=True, slots=True)
+class _Order:
+    """A command by service; whoever gave it waits for the answer."""
+
+    event: Event
+    answer: queue.SimpleQueue[tuple[bool, str]] = field(default_factory=queue.SimpleQueue)
+
+
+@dataclass(frozen=True, slots=True)
+class _Cancel:
+    identity: tuple[str, str]
+
+
+class MissionOrders:
+    """Obeys one goal at a time; a newer one of any action takes over.
+
+    What came of an order is told by :meth:`answer` and :meth:`follow`, that are to be called when
+    the state is told: whoever has an answer finds the state that it is about.
+
+    Publishes: ``clean/{feedback,result,status}``, ``dock/…``, ``undock/…``, ``explore/…``,
+    ``beep`` (Empty: here the robot is).
+    Subscribes: ``clean/{goal,cancel}``, ``dock/…``, ``undock/…``, ``explore/…``,
+    ``emergency_stop`` (String).
+    Services: ``pause``, ``resume``, ``stop``, ``locate`` (Trigger).
+    """
+
+    def __init__(self, takes_drive: Callable[[], None]) -> None:
+        """Connect nothing yet; ``takes_drive`` is called when the mission is about to drive."""
+        self._takes_drive = takes_drive
+        self._asked: deque[MissionGoal | _Order | _Cancel] = deque()
+        self._goal: MissionGoal | None = None
+        self._answers: list[Callable[[], object]] = []
+        self._emergency: str | None = None
+        self._serves = False
+        self._serves_by = time.monotonic() + SENSES_DEADLINE
+
+    def start(self) -> None:
+        """Connect; goals are taken from the first :meth:`serve` on."""
+        self._servers = [self._server_of(kind) for kind in GOALS]
+        self._beep = rospy.Publisher("beep", Empty, queue_size=1)
+        rospy.Subscriber("emergency_stop", String, self._on_emergency_stop, queue_size=10)
+        for name, event in (
+            ("pause", Event.PAUSE),
+            ("resume", Event.RESUME),
+            ("stop", Event.STOP),
+        ):
+            rospy.Service(name, Trigger, lambda _, event=event: self._on_order(event))
+        rospy.Service("locate", Trigger, self._on_locate)
+
+    def serve(self, is_ready: bool) -> None:
+        """Take goals from now on, if the mission is ready or did not become so in time."""
+        if self._serves or not (is_ready or time.monotonic() > self._serves_by):
+            return
+        self._serves = True
+        for server in self._servers:
+            server.start()
+
+    def refuse(self, reason: str) -> None:
+        """Refuse what was ordered: there is no mission yet."""
+        while self._asked:
+            asked = self._asked.popleft()
+            if isinstance(asked, MissionGoal):
+                _reject(asked, reason)
+            elif isinstance(asked, _Order):
+                asked.answer.put((False, reason))
+
+    def obey(self, mission: Mission, senses: Senses) -> None:
+        """Let the mission do what was ordered since the last call."""
+        self._obey_emergency_stop(mission, senses)
+        while self._asked:
+            asked = self._asked.popleft()
+            if isinstance(asked, MissionGoal):
+                self._begin(asked, mission, senses)
+            elif isinstance(asked, _Order):
+                answer = self._command(asked.event, mission, senses)
+                self._answers.append(partial(asked.answer.put, answer))
+            elif self._goal is not None and self._goal.identity == asked.identity:
+                self._command(Event.STOP, mission, senses)
+
+    def answer(self) -> None:
+        """Tell what came of what was obeyed."""
+        answers, self._answers = self._answers, []
+        for tell in answers:
+            tell()
+
+    def follow(self, mission: Mission, senses: Senses) -> Ended:
+        """Tell the end of what ended; return the results of what did, ordered or not."""
+        ended = _take_ended(mission)
+        if self._goal is not None and self._goal.follow(mission, senses, ended):
+            self._goal = None
+        return ended
+
+    def tell(self, state: VacuumState) -> None:
+        """Tell whoever ordered what is done now how far it is."""
+        if self._goal is not None:
+            self._goal.tell(state)
+
+    def give_up(self, reason: str) -> None:
+        """End what was ordered; its order is not fulfilled."""
+        goal, self._goal = self._goal, None
+        if goal is not None:
+            goal.given_up(reason)
+
+    def _begin(self, goal: MissionGoal, mission: Mission, senses: Senses) -> None:
+        if goal.is_recalled:
+            goal.stopped(Ended(), "cancelled before it began")
+            return
+        try:
+            goal.begin(mission, senses)
+        except RoombaError as error:
+            _reject(goal, str(error))
+            return
+        old, self._goal = self._goal, goal
+        # Of what was under way; nobody waits for one that was taken up after an error.
+        ended = _take_ended(mission)
+        if old is not None:
+            self._answers.append(partial(old.stopped, ended, _OVERTAKEN))
+        goal.accept()
+        self._takes_drive()
+
+    def _command(self, event: Event, mission: Mission, senses: Senses) -> tuple[bool, str]:
+        try:
+            mission.command(event, senses)
+        except RoombaError as error:
+            return False, str(error)
+        if event is Event.STOP:
+            goal, self._goal = self._goal, None
+            ended = _take_ended(mission)
+            if goal is not None:
+                self._answers.append(partial(goal.stopped, ended, "it was told to stop"))
+        elif event is Event.RESUME:
+            self._takes_drive()
+        return True, _DONE.get(event, event.value)
+
+    def _obey_emergency_stop(self, mission: Mission, senses: Senses) -> None:
+        is_held = mission.state.phase is Phase.EMERGENCY
+        reason = self._emergency
+        if reason and not is_held:
+            mission.command(Event.EMERGENCY, senses, reason)
+        elif reason == "" and is_held:
+            mission.command(Event.RELEASE, senses)
+
+    def _server_of(self, kind: type[MissionGoal]) -> actionlib.ActionServer:
+        return actionlib.ActionServer(
+            kind.name,
+            kind.action,
+            lambda handle: self._asked.append(kind(handle)),
+            lambda handle: self._asked.append(_Cancel(kind(handle).identity)),
+            auto_start=False,
+        )
+
+    def _on_order(self, event: Event) -> TriggerResponse:
+        order = _Order(event)
+        self._asked.append(order)
+        try:
+            return TriggerResponse(*order.answer.get(timeout=_ANSWER_DEADLINE))
+        except queue.Empty:
+            return TriggerResponse(
+                False, f"no answer within {_ANSWER_DEADLINE:g} s; see vacuum/state, and try again"
+            )
+
+    def _on_locate(self, _: TriggerRequest) -> TriggerResponse:
+        rospy.loginfo("beep, beep: here is the robot")
+        self._beep.publish()
+        return TriggerResponse(True, "it beeped")
+
+    def _on_emergency_stop(self, message: String) -> None:
+        self._emergency = message.data
+
+
+def _take_ended(mission: Mission) -> Ended:
+    return Ended(mission.take_result(), mission.take_exploration())
+
+
+def _reject(goal: MissionGoal, reason: str) -> None:
+    rospy.logwarn("goal of %s rejected: %s", goal.name, reason)
+    goal.reject(reason)

@@ -1,0 +1,138 @@
+"""What is told of the mission: its state, what is clean and dirty, and what it drives."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable
+from typing import Final
+
+import numpy as np
+import rospy
+from nav_msgs.msg import OccupancyGrid, Path
+from numpy.typing import NDArray
+from roomba_robot.msg import VacuumState
+
+from roomba.configuration.mission import MissionConfig
+from roomba.mission.inputs.senses import Senses
+from roomba.mission.mission import Mission
+from roomba.mission.phases.machine import VACUUM_STATES
+from roomba.perception.swept.dirt_map import dirty_from
+from roomba_ros.convert.common import header, path_message
+from roomba_ros.convert.mission import coverage_message, dirt_message, shown
+from roomba_ros.runtime.background import Background
+
+STARTING: Final = "starting"
+"""The phase that is told until there is a mission."""
+_STATE_PERIOD: Final = 1.0
+"""s of the robot's clock between two states that did not change."""
+_MAP_PERIOD: Final = 1.0
+_MAP_WALL_PERIOD: Final = 0.5
+"""s of the robot's clock, and of wall time, between two maps of the same kind at least."""
+
+
+class MissionTopics:
+    """Publishes ``vacuum/state`` (VacuumState, latched, at each change and 1 Hz), ``plan`` (Path,
+    latched: what it drives now), ``coverage_map`` and ``dirt_map`` (OccupancyGrid, latched, 1 Hz
+    while it cleans and somebody listens, and at the end of a clean).
+    """
+
+    def __init__(self, config: MissionConfig, background: Background) -> None:
+        """Connect nothing yet."""
+        self._config, self._background = config, background
+        self._said: tuple[object, ...] = ()
+        self._told = self._mapped = -math.inf
+        self._mapped_wall = 0.0
+        self._points: NDArray[np.float64] | None = None
+        self._cleaned = False
+
+    def start(self) -> None:
+        """Connect."""
+        self._state = rospy.Publisher("vacuum/state", VacuumState, queue_size=5, latch=True)
+        self._plan = rospy.Publisher("plan", Path, queue_size=1, latch=True)
+        self._coverage = rospy.Publisher("coverage_map", OccupancyGrid, queue_size=1, latch=True)
+        self._dirt = rospy.Publisher("dirt_map", OccupancyGrid, queue_size=1, latch=True)
+
+    def wait(self, now: float, reason: str) -> None:
+        """Tell that there is no mission yet, and why."""
+        said = (STARTING, reason)
+        if self._is_due(now, said):
+            self._state.publish(
+                VacuumState(
+                    header=header(now, ""),
+                    state="idle",
+                    phase=STARTING,
+                    message=reason,
+                    battery=math.nan,
+                )
+            )
+
+    def tell(self, now: float, mission: Mission, senses: Senses) -> VacuumState | None:
+        """Publish what is due; return the state if it is told now."""
+        self._show_plan(now, mission)
+        self._show_maps(now, mission)
+        said = (mission.state, mission.message)
+        if not self._is_due(now, said):
+            return None
+        state = state_of(now, mission, senses)
+        self._state.publish(state)
+        return state
+
+    def _is_due(self, now: float, said: tuple[object, ...]) -> bool:
+        if said == self._said and 0.0 <= now - self._told < _STATE_PERIOD:
+            return False
+        self._said, self._told = said, now
+        return True
+
+    def _show_plan(self, now: float, mission: Mission) -> None:
+        points = None if mission.driver is None else mission.driver.tracker.course.points
+        if points is self._points:
+            return
+        self._points = points
+        if points is not None:
+            self._background.do(
+                "no plan is shown",
+                lambda: self._plan.publish(path_message(now, shown(points), "map")),
+            )
+
+    def _show_maps(self, now: float, mission: Mission) -> None:
+        cleans = mission.cleaning is not None and mission.state.drives
+        has_ended, self._cleaned = self._cleaned and not cleans, cleans
+        since, since_wall = now - self._mapped, time.monotonic() - self._mapped_wall
+        is_due = not 0.0 <= since < _MAP_PERIOD and since_wall >= _MAP_WALL_PERIOD
+        if not (has_ended or (cleans and is_due)):
+            return
+        self._mapped, self._mapped_wall = now, time.monotonic()
+        rows = mission.site.known.frame.rows
+        if mission.cleaning is not None and (has_ended or self._coverage.get_num_connections()):
+            coverage = mission.cleaning.coverage
+            cells, frame = coverage.cells.copy(), coverage.frame
+            self._show(self._coverage, lambda: coverage_message(now, cells, frame, rows, "map"))
+        if has_ended or self._dirt.get_num_connections():
+            dirt, times = mission.dirt, self._config.cleaning.dirty_times
+            density = dirt.known()
+            dirty = dirty_from(density, times)
+            self._show(self._dirt, lambda: dirt_message(now, density, dirt.frame, dirty, "map"))
+
+    def _show(self, publisher: rospy.Publisher, message: Callable[[], OccupancyGrid]) -> None:
+        self._background.do(f"no {publisher.name} is shown", lambda: publisher.publish(message()))
+
+
+def state_of(now: float, mission: Mission, senses: Senses) -> VacuumState:
+    """Return what the mission does now, in the words of smart homes."""
+    state = VacuumState(
+        header=header(now, ""),
+        state=VACUUM_STATES[mission.state.phase],
+        phase=mission.state.phase.value,
+        message=mission.message,
+        battery=senses.battery.level,
+    )
+    if senses.knowledge.is_usable:
+        state.room = mission.site.room_at(senses.pose.x, senses.pose.y)
+    if mission.cleaning is not None:
+        # Counted once: it is a look at every cell of the floor.
+        state.covered = mission.cleaning.clean_area
+        state.wanted = mission.cleaning.coverage.wanted_area
+        state.fraction = state.covered / state.wanted if state.wanted > 0.0 else 1.0
+        state.seconds_to_go = mission.seconds_to_go()
+    return state

@@ -1,0 +1,200 @@
+"""Where the robot is, and driving to where it should be."""
+
+from __future__ import annotations
+
+import math
+import threading
+
+import rospy
+from geometry_msgs.msg import Twist as TwistMessage
+from roomba_robot.msg import Bumper, Cliff, RobotPosition
+from std_msgs.msg import Bool, Float32
+
+from roomba.control.position_loop import PositionLoop
+from roomba.control.setpoint import Setpoint
+from roomba.errors import ConfigError
+from roomba.geometry import Pose, Twist
+from roomba.mission.exploring.look_around import Search
+from roomba.perception.localization.estimate import Estimate, Knowledge
+from roomba_ros.convert.common import cliff_of, twist_message
+from roomba_ros.localization.topics import LocalizationTopics
+from roomba_ros.maps.map_topics import MapTopics
+from roomba_ros.rooms.topics import RoomTopics
+from roomba_ros.runtime.node import run_node
+from roomba_ros.runtime.parameters import LiveSeedParameters, read_robot_config
+
+_LOOK_TIMEOUT = 0.5
+"""s; so long counts what was heard on ``look_around``."""
+_AHEAD = 10.0
+"""m; to a point so far in the direction of a heading it turns on the spot."""
+_STOP_REPEATS = 3
+"""Ticks for which a stop is repeated before the drive is left to others."""
+
+
+class PositionPubNode:
+    """Knows the robot's pose and drives it to the wished position, however far that is.
+
+    When it does not know the pose any more it forgets the wish. It looks around as long as somebody
+    still wants it to go somewhere, or asked it to find its place. What it knows of the map's rooms
+    is here as well: a process of its own would need 80 MB more (ADR 7).
+
+    Publishes: ``cmd_vel`` (Twist, 20 Hz while it drives), and what :class:`LocalizationTopics` and
+    :class:`RoomTopics` tell.
+    Subscribes: ``change_position`` (RobotPosition, the wish), ``change_heading`` (Float32, rad, map
+    frame, streamed: turn to it on the spot instead), ``look_around`` (Bool, streamed while
+    somebody else could go on if the place were known), ``bumper``, ``cliff`` (while it looks
+    around), and what :class:`LocalizationTopics` and :class:`RoomTopics` hear.
+    Services: those of :class:`LocalizationTopics` and :class:`RoomTopics`.
+    Parameters: ``initial_post_x``, ``initial_post_y``, ``initial_post_theta`` (where odometry
+    began), ``robot_max_speed``, ``min_cordinate``, ``max_cordinate``; ``~look_around`` (true: it
+    may drive a little to find its place).
+    """
+
+    period = 0.05
+
+    def start(self) -> None:
+        """Read parameters and connect."""
+        self._parameters = LiveSeedParameters()
+        self._config = read_robot_config()
+        self._loop = PositionLoop(self._config.control, self._config.body)
+        self._setpoint = Setpoint(self._config.control.stream_timeout)
+        self._search = Search(self._config.body)
+        self._may_look_around = _look_around_parameter()
+        self._lock = threading.Lock()
+        self._bumps = self._sees_cliff = False
+        self._stops_left = 0
+        self._look_asked = -math.inf
+        self._heading = (-math.inf, 0.0)
+        self._place = LocalizationTopics(self._config)
+        self._place.start()
+        self._rooms = RoomTopics()
+        self._rooms.start()
+        self._maps = MapTopics(self._config, self._place, self._rooms)
+        self._maps.start()
+        self._command = rospy.Publisher("cmd_vel", TwistMessage, queue_size=1, tcp_nodelay=True)
+        self._wishes = rospy.Subscriber(
+            "change_position", RobotPosition, self._on_wish, queue_size=1, tcp_nodelay=True
+        )
+        rospy.Subscriber(
+            "change_heading", Float32, self._on_heading, queue_size=1, tcp_nodelay=True
+        )
+        rospy.Subscriber("look_around", Bool, self._on_look_around, queue_size=1)
+        rospy.Subscriber("bumper", Bumper, self._on_bumper, queue_size=1)
+        rospy.Subscriber("cliff", Cliff, self._on_cliff, queue_size=1)
+
+    def tick(self, now: float) -> None:
+        """Tell where the robot is, and drive towards the wish."""
+        self._parameters.refresh()
+        estimate = self._place.tick(now)
+        if estimate is None:
+            return
+        self._maps.tick(now, estimate)
+        self._drop_vanished_wish(now)
+        if not estimate.knowledge.is_usable:
+            self._forget_wish()
+            twist = self._twist_to_look_around(now)
+        elif 0.0 <= now - self._heading[0] <= self._config.control.stream_timeout:
+            self._forget_wish()
+            twist = self._twist_to_heading(estimate.pose, self._heading[1])
+        else:
+            twist = self._twist_to_wish(now, estimate)
+        self._command_drive(twist)
+
+    def stop(self) -> None:
+        """Stop what it drives."""
+        if self._setpoint.target is not None or self._stops_left:
+            self._command.publish(TwistMessage())
+
+    def _drop_vanished_wish(self, now: float) -> None:
+        with self._lock:
+            has_vanished = self._setpoint.check(now, self._wishes.get_num_connections())
+        if has_vanished:
+            rospy.logwarn("the sender of change_position vanished while it drove; stopping")
+            self._stops_left = _STOP_REPEATS
+
+    def _forget_wish(self) -> None:
+        with self._lock:
+            self._setpoint.forget()
+
+    def _twist_to_wish(self, now: float, estimate: Estimate) -> Twist | None:
+        """Return what is wanted to come to the wish; None when nothing is."""
+        with self._lock:
+            target = self._setpoint.target
+        if target is None:
+            return None
+        max_speed = self._parameters.values.robot_max_speed
+        if estimate.knowledge is Knowledge.ROUGH:
+            max_speed = min(max_speed, self._config.walk.careful_speed)
+        twist = self._loop.tick(estimate.pose, target, max_speed)
+        if not self._loop.arrived:
+            return twist
+        if self._stops_left == 0:
+            # Others may steer now; nothing drives it back here.
+            with self._lock:
+                self._setpoint.fulfilled(now)
+        return None
+
+    def _twist_to_heading(self, pose: Pose, heading: float) -> Twist:
+        """Return what is wanted to turn on the spot."""
+        x, y = pose.x + _AHEAD * math.cos(heading), pose.y + _AHEAD * math.sin(heading)
+        return Twist(0.0, self._loop.tick(pose, (x, y), 0.0).angular)
+
+    def _twist_to_look_around(self, now: float) -> Twist | None:
+        with self._lock:
+            is_wanted = self._setpoint.is_wished(now) or self._place.is_asked_to_search
+        is_wanted |= 0.0 <= now - self._look_asked <= _LOOK_TIMEOUT
+        if self._place.localizer is None or not (self._may_look_around and is_wanted):
+            return None
+        touches = self._bumps or self._sees_cliff
+        return self._search.tick(now, self._place.localizer, touches)
+
+    def _command_drive(self, twist: Twist | None) -> None:
+        """Ask for a twist; after the last one ask to stop a few times, and leave the drive then."""
+        if twist is not None:
+            self._stops_left = _STOP_REPEATS
+            self._command.publish(twist_message(twist))
+        elif self._stops_left > 0:
+            self._stops_left -= 1
+            self._command.publish(TwistMessage())
+
+    def _on_wish(self, message: RobotPosition) -> None:
+        if not self._parameters.values.allows(message.pos_x, message.pos_y):
+            values = self._parameters.values
+            rospy.logwarn(
+                "change_position refused: expected finite coordinates from %g to %g, got (%g, %g)",
+                values.min_cordinate,
+                values.max_cordinate,
+                message.pos_x,
+                message.pos_y,
+            )
+            return
+        with self._lock:
+            target = (message.pos_x, message.pos_y)
+            self._setpoint.wish(rospy.get_time(), target, self._wishes.get_num_connections())
+
+    def _on_heading(self, message: Float32) -> None:
+        if not math.isfinite(message.data):
+            rospy.logwarn("change_heading refused: expected finite rad, got %g", message.data)
+            return
+        self._heading = (rospy.get_time(), message.data)
+
+    def _on_look_around(self, message: Bool) -> None:
+        self._look_asked = rospy.get_time() if message.data else -math.inf
+
+    def _on_bumper(self, message: Bumper) -> None:
+        self._bumps = message.is_left_pressed or message.is_right_pressed
+
+    def _on_cliff(self, message: Cliff) -> None:
+        self._sees_cliff = any(cliff_of(message))
+
+
+def _look_around_parameter() -> bool:
+    value = rospy.get_param("~look_around", True)
+    if not isinstance(value, bool):
+        raise ConfigError(f"parameter ~look_around: expected true or false, got {value!r}")
+    return value
+
+
+def main() -> None:
+    """Run the node."""
+    run_node("position_pub_node", PositionPubNode)

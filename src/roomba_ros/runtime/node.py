@@ -1,0 +1,130 @@
+"""The life of a node: register, wait for the clock, start, tick, stop; or say why not, exit 1."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+import threading
+import time
+from collections.abc import Callable
+from typing import NoReturn, Protocol
+
+import rosgraph
+import rospy
+
+from roomba.errors import RoombaError
+from roomba_ros.runtime.progress import Progress
+from roomba_ros.runtime.ticker import Ticker
+
+_asked_to_end = threading.Event()
+
+CLOCK_DEADLINE = 10.0
+"""s of wall time that a node waits for the first /clock message."""
+
+
+class Node(Protocol):
+    """What a node class offers to :func:`run_node`."""
+
+    period: float
+    """s of the ROS clock between two ticks."""
+
+    def start(self) -> None:
+        """Read parameters and connect; raises RoombaError when it cannot work."""
+
+    def tick(self, now: float) -> None:
+        """Do the work of one period; ``now`` in s of the ROS clock."""
+
+    def stop(self) -> None:
+        """Leave the robot safe; connections are still there."""
+
+
+def run_node(name: str, make: Callable[[], Node]) -> None:
+    """Be the ROS node ``name`` until it is told to end."""
+    require_master()
+    register(name)
+    try:
+        wait_for_clock()
+        node = make()
+        node.start()
+    except RoombaError as error:
+        give_up(str(error))
+    rospy.core.add_preshutdown_hook(lambda reason: _stop(node))
+    progress = Progress()
+    progress.start(name)
+
+    def tick(now: float) -> None:
+        node.tick(now)
+        progress.tell(now)
+
+    Ticker(node.period, told_to_end).run(tick)
+    leave(0)
+
+
+def _stop(node: Node) -> None:
+    try:
+        node.stop()
+    except rospy.ROSException as error:
+        # The connections were closed already, from another thread: nobody hears a last word.
+        rospy.logdebug("stopped without a last word: %s", error)
+
+
+def register(name: str) -> None:
+    """Become the ROS node ``name``; SIGINT and SIGTERM only ask it to end, see told_to_end.
+
+    rospy's own handler works through the shutdown inside the interrupted main thread, and hangs
+    for ever when that thread was just asking the master for something.
+    """
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda *_: _asked_to_end.set())
+    rospy.init_node(name, disable_signals=True)
+
+
+def told_to_end() -> bool:
+    """Whether a signal, the master or another node told this one to end."""
+    return _asked_to_end.is_set() or bool(rospy.is_shutdown())
+
+
+def require_master() -> None:
+    """End the process with one clear line when no ROS master answers."""
+    if not rosgraph.is_master_online():
+        give_up(
+            f"no ROS master answers at {rosgraph.get_master_uri()}; start the robot with "
+            "`./roomba run` (or a `roscore`), or set ROS_MASTER_URI to where it runs"
+        )
+
+
+def wait_for_clock() -> None:
+    """Wait until the ROS clock runs; raises RoombaError when no /clock comes in time."""
+    deadline = time.monotonic() + CLOCK_DEADLINE
+    while not told_to_end() and rospy.get_time() == 0.0:
+        if time.monotonic() > deadline:
+            raise RoombaError(
+                f"/use_sim_time is true, but nothing published /clock within {CLOCK_DEADLINE:g} s; "
+                "start home_sim_node, or `rosparam set /use_sim_time false`"
+            )
+        time.sleep(0.02)
+
+
+def leave(status: int) -> NoReturn:
+    """Unregister, and end the process at once with ``status``."""
+    rospy.signal_shutdown("done")
+    sys.stdout.flush()
+    sys.stderr.flush()
+    # Not sys.exit: tearing down the interpreter and its threads takes most of a second.
+    os._exit(status)
+
+
+def give_up(reason: str) -> NoReturn:
+    """End the process with one clear line and status 1."""
+    if rospy.core.is_initialized():
+        rospy.logfatal(reason)
+    else:
+        print(reason, file=sys.stderr)
+    sys.exit(1)
+
+
+def frame_id(name: str) -> str:
+    """Return the tf frame of this robot for ``name``; robots in namespaces have their own."""
+    namespace = rospy.get_namespace().strip("/")
+    return f"{namespace}/{name}" if namespace else name

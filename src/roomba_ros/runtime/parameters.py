@@ -1,0 +1,138 @@
+"""The seed's parameters on the ROS parameter server: read, validated, and watched while it runs."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+from typing import Any
+
+import rospkg
+import rospy
+
+from roomba.configuration.mapping import MappingConfig, load_mapping_config
+from roomba.configuration.robot import (
+    SEED_SPELLINGS,
+    RobotConfig,
+    SeedParameters,
+    load_robot_config,
+    parse_seed_parameters,
+)
+from roomba.errors import ConfigError
+from roomba.files.shipped import CONFIGURATION
+
+_LOOK_PERIOD = 0.5
+"""s of wall time between two looks for what may have been set newly."""
+
+
+def read_seed_parameters() -> SeedParameters:
+    """Return the parameters as set now; raises ConfigError for a wrong one."""
+    found = {}
+    for spellings in SEED_SPELLINGS.values():
+        for spelling in spellings:
+            key = rospy.search_param(spelling)
+            if key is not None:
+                found[spelling] = rospy.get_param(key)
+    return parse_seed_parameters(found)
+
+
+def read_robot_config() -> RobotConfig:
+    """Return the configuration named by the parameter ``robot_config``, or the shipped one."""
+    key = rospy.search_param("robot_config")
+    path = rospy.get_param(key) if key else CONFIGURATION / "robot.yaml"
+    return load_robot_config(Path(path))
+
+
+def read_mapping_config() -> MappingConfig:
+    """Return the configuration named by the parameter ``mapping_config``, or the shipped one."""
+    key = rospy.search_param("mapping_config")
+    path = rospy.get_param(key) if key else CONFIGURATION / "mapping.yaml"
+    return load_mapping_config(Path(path))
+
+
+def folder_of(parameter: str, name: str) -> Path:
+    """Return the folder that a parameter names; by default one of that name for this robot's files,
+    in roomba_robot in the ROS home folder.
+    """
+    folder = str(rospy.get_param(parameter, ""))
+    return Path(folder or Path(rospkg.get_ros_home()) / "roomba_robot" / name)
+
+
+def package_folder() -> Path:
+    """Return where this package's launch, config and homes folders are."""
+    return Path(rospkg.RosPack().get_path("roomba_robot"))
+
+
+class LiveSeedParameters:
+    """The parameters in force: a good change is obeyed, a bad one is refused with a warning.
+
+    The master tells this node of changes; reading what is set costs no call. One node of a robot
+    is the ``guardian``: it puts refused values back, and turns the report's other spellings into
+    the parameters' own names, which is what all nodes watch.
+    """
+
+    def __init__(self, *, guardian: bool = False) -> None:
+        """Read them all; raises ConfigError."""
+        self._guardian = guardian
+        self.values = read_seed_parameters()
+        self._keys = {
+            name: rospy.search_param(name) or rospy.resolve_name(name) for name in SEED_SPELLINGS
+        }
+        self._unset: dict[str, float] = {}
+        self._looked = time.monotonic()
+        self._seen = self._raw()
+
+    def refresh(self) -> SeedParameters:
+        """Take over what was changed since the last call; return what is in force."""
+        try:
+            if self._guardian:
+                self._adopt_other_spellings()
+            raw = self._raw()
+            if raw != self._seen:
+                self._take_over(raw)
+        except OSError as error:
+            rospy.logwarn_throttle(10.0, "the master does not answer, parameters stay: %s", error)
+        return self.values
+
+    def _take_over(self, raw: dict[str, Any]) -> None:
+        changed = {name: raw.get(name) for name in raw if raw.get(name) != self._seen.get(name)}
+        self._seen = raw
+        try:
+            self.values = parse_seed_parameters(raw)
+            rospy.loginfo("parameters changed: %s", changed)
+        except ConfigError as error:
+            rospy.logwarn("refused: %s; the old value stays in force", error)
+            if self._guardian:
+                for name in changed:
+                    rospy.set_param(self._keys[name], getattr(self.values, name))
+
+    def _raw(self) -> dict[str, Any]:
+        raw = {}
+        now = time.monotonic()
+        for name, key in self._keys.items():
+            if now < self._unset.get(name, 0.0):
+                continue
+            try:
+                value = rospy.get_param_cached(key)
+            except KeyError:
+                value = {}
+            # An empty dictionary is how the master tells that a parameter is not set; asking for
+            # such a one is a call of the master each time.
+            if value == {}:
+                self._unset[name] = now + _LOOK_PERIOD
+            else:
+                raw[name] = value
+        return raw
+
+    def _adopt_other_spellings(self) -> None:
+        now = time.monotonic()
+        if now - self._looked < _LOOK_PERIOD:
+            return
+        self._looked = now
+        names = set(rospy.get_param_names())
+        for name, (_, *others) in SEED_SPELLINGS.items():
+            for other in others:
+                key = f"{self._keys[name].rpartition('/')[0]}/{other}"
+                if key in names:
+                    rospy.set_param(self._keys[name], rospy.get_param(key))
+                    rospy.delete_param(key)
+                    rospy.loginfo("%s is taken for %s", key, self._keys[name])

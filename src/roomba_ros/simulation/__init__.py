@@ -1,0 +1,1 @@
+"""The simulated home and body as a node."""

@@ -1,0 +1,296 @@
+"""The simulated home on ROS: it owns the clock, the body and its sensors."""
+
+from __future__ import annotations
+
+import threading
+import time
+from pathlib import Path
+
+import rospy
+from geometry_msgs.msg import PoseStamped
+from geometry_msgs.msg import Twist as TwistMessage
+from nav_msgs.msg import OccupancyGrid, Odometry
+from rosgraph_msgs.msg import Clock
+from std_msgs.msg import Float32, Time
+from tf2_msgs.msg import TFMessage
+
+from roomba.configuration.robot import RobotConfig, SeedParameters
+from roomba.errors import ConfigError, RoombaError
+from roomba.files.shipped import HOMES
+from roomba.geometry import Pose, Twist
+from roomba.world.home.home import Home
+from roomba.world.layers.layer import load_home
+from roomba.world.simulator import Observation, Simulator
+from roomba_ros import kept_pose, progress
+from roomba_ros.convert.common import (
+    map_message,
+    mount_message,
+    odometry_message,
+    pose_message,
+    transform_message,
+    twist_of,
+)
+from roomba_ros.runtime.node import frame_id, give_up, leave, register, require_master, told_to_end
+from roomba_ros.runtime.pace import Pace
+from roomba_ros.runtime.parameters import LiveSeedParameters, read_robot_config
+from roomba_ros.runtime.ticker import Ticker
+from roomba_ros.simulation.camera_topics import CameraTopics
+from roomba_ros.simulation.sensor_topics import SensorTopics
+from roomba_ros.simulation.sim_services import SimServices
+
+TICK_NANOSECONDS = 50_000_000
+"""Robot time between two messages of the clock: a whole part of every period in the graph."""
+STEPS_PER_TICK = 2
+STEP = TICK_NANOSECONDS / STEPS_PER_TICK / 1e9
+"""s of robot time of one step of the world."""
+_FASTEST = 100.0
+_MOST_TICKS_LATE = 100
+"""A clock that went on by more than this at once was set."""
+_POSE = "pose"
+"""The part of the robot that knows its place, as the pace is told of it."""
+
+
+class HomeSimNode:
+    """Steps the world and publishes what the robot's drive and sensors say.
+
+    Publishes: ``/clock`` (20 Hz), ``map`` (latched), ``station_pose`` (PoseStamped, latched: where
+    the docked robot stands on that map, its nose to the station), ``odom`` (20 Hz, by the wheel
+    encoders), ``/tf`` (odom -> base_link), ``/tf_static`` (where the sensors are on the body), and
+    what :class:`SensorTopics` and :class:`CameraTopics` tell.
+    Subscribes: ``cmd_vel_out`` (Twist; older than the drive's time-out it stops), ``pose``
+    (PoseStamped) and the ``progress`` (Time) of :data:`progress.NODES`: a robot that is late, on a
+    busy machine, is waited for,
+    ``main_brush_motor``, ``vacuum_motor`` (Float32, duty 0..1, of brush and fan).
+    Services: those of :class:`CameraTopics` and :class:`SimServices`.
+    Parameters: ``~home`` (name or path), ``~homes_directory``, ``~speed`` (robot seconds per second
+    of wall time), ``~seed``, ``~clock`` (false for all but one of several robots, which go by that
+    one's clock and wait for nobody), ``~sensors``
+    (ideal or noisy; by default what ``robot_config`` says),
+    ``robot_max_speed``, ``initial_post_x``, ``initial_post_y``.
+    """
+
+    def start(self) -> None:
+        """Load the home, put the robot in it, connect; raises RoombaError."""
+        self._parameters = LiveSeedParameters()
+        self._config = _config_with_sensors(read_robot_config())
+        self._speed = _speed_parameter()
+        self._owns_clock = rospy.get_param("~clock", True)
+        if not isinstance(self._owns_clock, bool):
+            raise ConfigError(f"parameter ~clock: expected true or false, got {self._owns_clock!r}")
+        self._simulator = self._make_simulator()
+        self._lock = threading.Lock()
+        self._command = Twist()
+        self._command_age = float("inf")
+        self._clock = self._first_clock()
+        self._ticks = 0
+        self._told = 0.0
+        self._pace = Pace(TICK_NANOSECONDS / 1e9, self._speed, self._is_there)
+        self._odom_frame, self._base_frame = frame_id("odom"), frame_id("base_link")
+        self._connect()
+
+    def run(self) -> None:
+        """Step until shutdown."""
+        if self._owns_clock:
+            self._keep_clock()
+        else:
+            Ticker(TICK_NANOSECONDS / 1e9, told_to_end).run(self._follow_clock)
+
+    def _keep_clock(self) -> None:
+        """Step in real time, or as many times faster as asked for."""
+        was_late = False
+        while not told_to_end():
+            self._pace.wait(self._told, told_to_end)
+            if self._pace.is_late and not was_late:
+                was_late = True
+                rospy.logwarn("this machine is too slow for speed %g; going on slower", self._speed)
+            self._tick()
+
+    def _follow_clock(self, now: float) -> None:
+        """Step as far as the clock of another simulation went."""
+        late = round((now * 1e9 - self._clock) / TICK_NANOSECONDS)
+        if not 0 <= late <= _MOST_TICKS_LATE:
+            self._clock, late = round(now * 1e9) - TICK_NANOSECONDS, 1
+        for _ in range(late):
+            self._tick()
+
+    def _tick(self) -> None:
+        max_speed = self._parameters.refresh().robot_max_speed
+        with self._lock:
+            self._simulator.max_speed = max_speed
+            for _ in range(STEPS_PER_TICK):
+                self._simulator.advance(self._fresh_command(), STEP, 1)
+            observation = self._simulator.observe()
+            self._clock += TICK_NANOSECONDS
+            now = self._told = self._now()
+            self._camera.set_time(now)
+        self._ticks += 1
+        self._publish(now, observation)
+
+    def _fresh_command(self) -> Twist:
+        self._command_age += STEP
+        if self._command_age > self._config.body.command_timeout:
+            self._command = Twist()
+        return self._command
+
+    def _publish(self, now: float, observation: Observation) -> None:
+        if self._owns_clock:
+            self._clock_publisher.publish(rospy.Time(nsecs=self._clock))
+        odometry = observation.odometry
+        self._odometry.publish(
+            odometry_message(
+                now, odometry, observation.odometry_twist, self._odom_frame, self._base_frame
+            )
+        )
+        self._transforms.publish(
+            [transform_message(now, odometry, self._odom_frame, self._base_frame)]
+        )
+        self._sensors.tell(now, self._ticks, observation)
+
+    def _now(self) -> float:
+        """Return the time for stamps, s: that of the clock, whoever owns it."""
+        return self._clock / 1e9
+
+    def _first_clock(self) -> int:
+        if not self._owns_clock:
+            return int(rospy.get_rostime().to_nsec())
+        return time.time_ns() // TICK_NANOSECONDS * TICK_NANOSECONDS
+
+    def _make_simulator(self) -> Simulator:
+        directory = Path(rospy.get_param("~homes_directory", str(HOMES)))
+        home = load_home(str(rospy.get_param("~home", "flat")), directory, self._config.body)
+        seed = rospy.get_param("~seed", 0)
+        if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
+            raise ConfigError(
+                f"parameter ~seed: expected a whole number of 0 or more, got {seed!r}"
+            )
+        parameters = self._parameters.values
+        start = _start_pose(home, parameters)
+        simulator = Simulator(
+            home, self._config, seed=seed, max_speed=parameters.robot_max_speed, start=start
+        )
+        for name, value in (("x", start.x), ("y", start.y), ("theta", start.theta)):
+            rospy.set_param(f"initial_post_{name}", value)
+        if rospy.has_param(kept_pose.PARAMETER):
+            # Of a robot that stood elsewhere: its odometry began elsewhere, too.
+            rospy.delete_param(kept_pose.PARAMETER)
+        rospy.loginfo("home %s: the robot starts at (%.2f, %.2f)", home.name, start.x, start.y)
+        return simulator
+
+    def _connect(self) -> None:
+        if self._owns_clock:
+            self._clock_publisher = rospy.Publisher("/clock", Clock, queue_size=1, tcp_nodelay=True)
+        self._odometry = rospy.Publisher("odom", Odometry, queue_size=1, tcp_nodelay=True)
+        self._transforms = rospy.Publisher("/tf", TFMessage, queue_size=10)
+        self._mounts = rospy.Publisher("/tf_static", TFMessage, queue_size=10, latch=True)
+        self._mounts.publish(self._mounted())
+        if _tells_map_parameter():
+            self._tell_map()
+        self._sensors = SensorTopics(
+            self._config, self._simulator, self._parameters.values.robot_name
+        )
+        self._camera = CameraTopics(self._simulator, self._config.camera, self._lock)
+        self._services = SimServices(self._simulator, self._lock)
+        rospy.Subscriber(
+            "cmd_vel_out", TwistMessage, self._on_command, queue_size=1, tcp_nodelay=True
+        )
+        self._parts = {
+            _POSE: rospy.Subscriber(
+                "pose", PoseStamped, self._on_pose, queue_size=1, tcp_nodelay=True
+            )
+        }
+        for name in progress.NODES:
+            self._parts[name] = rospy.Subscriber(
+                f"{name}/progress", Time, self._on_progress, name, queue_size=1, tcp_nodelay=True
+            )
+        for topic, motor in (("main_brush_motor", "brush"), ("vacuum_motor", "fan")):
+            rospy.Subscriber(topic, Float32, self._on_power, callback_args=motor, queue_size=1)
+
+    def _tell_map(self) -> None:
+        """Give the robot the map of its home, and the place of its station."""
+        home = self._simulator.home
+        self._map = rospy.Publisher("map", OccupancyGrid, queue_size=1, latch=True)
+        self._map.publish(map_message(self._now(), home.map, "map"))
+        self._station = rospy.Publisher("station_pose", PoseStamped, queue_size=1, latch=True)
+        self._station.publish(pose_message(self._now(), home.station, "map"))
+
+    def _mounted(self) -> list:
+        """Return where the sensors are on the body, which never changes."""
+        camera, lidar = self._config.camera, self._config.lidar
+        forward, up = camera.mount_forward, camera.mount_height
+        return [
+            mount_message(self._base_frame, frame_id("laser"), (0.0, 0.0, lidar.mount_height)),
+            mount_message(self._base_frame, frame_id("imu_link"), (0.0, 0.0, 0.0)),
+            mount_message(self._base_frame, frame_id("camera"), (forward, 0.0, up)),
+            mount_message(
+                frame_id("camera"), frame_id("camera_optical"), (0.0, 0.0, 0.0), is_optical=True
+            ),
+        ]
+
+    def _is_there(self, part: str) -> bool:
+        return bool(self._parts[part].get_num_connections() > 0)
+
+    def _on_pose(self, message: PoseStamped) -> None:
+        self._pace.heard(_POSE, message.header.stamp.to_sec())
+
+    def _on_progress(self, message: Time, name: str) -> None:
+        self._pace.heard(name, message.data.to_sec())
+
+    def _on_command(self, message: TwistMessage) -> None:
+        twist = twist_of(message)
+        if not twist.is_finite:
+            rospy.logwarn("cmd_vel_out refused: expected finite velocities, got %s", twist)
+            return
+        with self._lock:
+            self._command, self._command_age = twist, 0.0
+
+    def _on_power(self, message: Float32, motor: str) -> None:
+        try:
+            with self._lock:
+                self._simulator.set_power(**{motor: message.data})
+        except ValueError as error:
+            rospy.logwarn("power refused: %s", error)
+
+
+def _config_with_sensors(config: RobotConfig) -> RobotConfig:
+    sensors = rospy.get_param("~sensors", "") or config.sensors
+    if sensors not in ("ideal", "noisy"):
+        raise ConfigError(f"parameter ~sensors: expected ideal or noisy, got {sensors!r}")
+    return config.model_copy(update={"sensors": sensors})
+
+
+def _tells_map_parameter() -> bool:
+    """Return whether the robot is given the map; if not it makes its own."""
+    value = rospy.get_param("~map", "given")
+    if not isinstance(value, str) or not value:
+        raise ConfigError(f"parameter ~map: expected given, none, own or a name, got {value!r}")
+    return value == "given"
+
+
+def _speed_parameter() -> float:
+    speed = rospy.get_param("~speed", 1.0)
+    if isinstance(speed, bool) or not isinstance(speed, int | float) or not 0 < speed <= _FASTEST:
+        raise ConfigError(
+            f"parameter ~speed: expected a number above 0 and up to {_FASTEST:g}, got {speed!r}"
+        )
+    return float(speed)
+
+
+def _start_pose(home: Home, parameters: SeedParameters) -> Pose:
+    """Return where the robot starts; (0, 0), the parameters' default, means at the station."""
+    x, y = parameters.initial_post_x, parameters.initial_post_y
+    if (x, y) == (0.0, 0.0):
+        return home.station
+    return Pose(x, y, parameters.initial_post_theta)
+
+
+def main() -> None:
+    """Run the node."""
+    require_master()
+    register("home_sim_node")
+    node = HomeSimNode()
+    try:
+        node.start()
+    except RoombaError as error:
+        give_up(str(error))
+    node.run()
+    leave(0)

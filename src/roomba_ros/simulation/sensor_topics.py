@@ -1,0 +1,170 @@
+"""The topics of the robot's sensors: what is told, how often, and in which frame."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+import rospy
+from diagnostic_msgs.msg import DiagnosticArray
+from roomba_robot.msg import Bumper, Cliff, DockStatus, HazardDetectionVector, WheelDrop
+from sensor_msgs.msg import BatteryState, Imu, JointState, LaserScan
+from std_msgs.msg import Float32, UInt16
+
+from roomba.configuration.robot import RobotConfig
+from roomba.world.engine.state.arrays import code_of
+from roomba.world.health import health_of
+from roomba.world.simulator import Observation, Simulator
+from roomba_ros.convert.sensors import (
+    battery_message,
+    bumper_message,
+    cliff_message,
+    diagnostics_message,
+    dock_message,
+    hazards_message,
+    hazards_of,
+    imu_message,
+    joints_message,
+    scan_message,
+    wheel_drop_message,
+)
+from roomba_ros.runtime.node import frame_id
+
+
+@dataclass(slots=True)
+class _Topic:
+    """A topic: ``message(now, seen)`` every ``period`` ticks; at once when ``changes(seen)`` does.
+
+    A message that nobody hears is not made.
+    """
+
+    publisher: rospy.Publisher
+    period: int
+    message: Callable[[float, Observation], Any]
+    changes: Callable[[Observation], object] | None = None
+    told: object = field(default=None)
+
+    def tell(self, now: float, tick: int, seen: Observation) -> None:
+        """Publish if it is time to."""
+        state = self.changes(seen) if self.changes else None
+        if tick % self.period and state == self.told:
+            return
+        self.told = state
+        if self.publisher.get_num_connections() > 0:
+            self.publisher.publish(self.message(now, seen))
+
+
+class SensorTopics:
+    """Tells what the sensors sense.
+
+    Publishes: ``scan``, ``dirt_raw`` (Float32, g under the body), ``dirt_detect`` (UInt16, grains
+    per second), ``brush_current`` (Float32, A), all 10 Hz; ``imu`` and ``joint_states``, 20 Hz;
+    ``bin_level`` (Float32, 0..1), 1 Hz; and at each change, but also 5 times a second, ``bumper``,
+    ``cliff``, ``wheel_drop`` and ``ir_omni`` (UInt16, the station's beams as Create 2 codes them),
+    or once a second ``hazard_detection``, ``battery_state`` and ``dock_status``. ``/diagnostics``
+    (health of the parts) and ``noise_level`` (Float32, dB(A) at 1 m), 1 Hz.
+    """
+
+    def __init__(self, config: RobotConfig, simulator: Simulator, robot: str) -> None:
+        """Connect all of them; ``robot`` is its name."""
+        self._config, self._simulator = config, simulator
+        self._scans = 0
+        base, laser, gyro = frame_id("base_link"), frame_id("laser"), frame_id("imu_link")
+        body, capacity = config.body, config.brush.bin_capacity
+        self._scan = rospy.Publisher("scan", LaserScan, queue_size=1, tcp_nodelay=True)
+        self._laser = laser
+        self._topics = [
+            _topic(
+                "bumper",
+                Bumper,
+                4,
+                lambda now, seen: bumper_message(now, seen.bumper, base),
+                lambda seen: seen.bumper,
+            ),
+            _topic(
+                "cliff",
+                Cliff,
+                4,
+                lambda now, seen: cliff_message(now, seen.cliff, base),
+                lambda seen: seen.cliff,
+            ),
+            _topic(
+                "wheel_drop",
+                WheelDrop,
+                4,
+                lambda now, seen: wheel_drop_message(now, seen.wheels, base),
+                lambda seen: (seen.wheels.dropped_left, seen.wheels.dropped_right),
+            ),
+            _topic(
+                "hazard_detection",
+                HazardDetectionVector,
+                20,
+                lambda now, seen: hazards_message(now, hazards_of(seen), base),
+                hazards_of,
+            ),
+            _topic("imu", Imu, 1, lambda now, seen: imu_message(now, seen, config.gyro, gyro)),
+            _topic(
+                "joint_states",
+                JointState,
+                1,
+                lambda now, seen: joints_message(
+                    now, seen, 0.5 * body.wheel_diameter, body.wheel_separation
+                ),
+            ),
+            _topic(
+                "battery_state",
+                BatteryState,
+                20,
+                lambda now, seen: battery_message(now, seen.battery, config.battery),
+                lambda seen: seen.battery.is_docked,
+            ),
+            _topic(
+                "dock_status",
+                DockStatus,
+                20,
+                lambda now, seen: dock_message(now, seen, base),
+                lambda seen: (bool(seen.infrared), seen.battery.is_docked),
+            ),
+            _topic(
+                "ir_omni",
+                UInt16,
+                4,
+                lambda _, seen: UInt16(code_of(seen.infrared)),
+                lambda seen: seen.infrared,
+            ),
+            _topic("dirt_raw", Float32, 2, lambda _, seen: Float32(seen.dirt_under)),
+            _topic("dirt_detect", UInt16, 2, lambda _, seen: UInt16(round(seen.grains))),
+            _topic("brush_current", Float32, 2, lambda _, seen: Float32(seen.brush_current)),
+            _topic("bin_level", Float32, 20, lambda _, seen: Float32(seen.in_bin / capacity)),
+            _topic("noise_level", Float32, 20, lambda _, __: Float32(simulator.noise_level)),
+            _topic(
+                "/diagnostics",
+                DiagnosticArray,
+                20,
+                lambda now, seen: diagnostics_message(
+                    now, health_of(seen, simulator.ranges, capacity), robot
+                ),
+            ),
+        ]
+
+    def tell(self, now: float, tick: int, seen: Observation) -> None:
+        """Publish what is due at a tick; ``now`` is the time for stamps, s."""
+        for topic in self._topics:
+            topic.tell(now, tick, seen)
+        if seen.scans != self._scans:
+            self._scans = seen.scans
+            if self._scan.get_num_connections() > 0:
+                ranges = self._simulator.ranges
+                self._scan.publish(scan_message(now, ranges, self._config.lidar, self._laser))
+
+
+def _topic(
+    name: str,
+    kind: type,
+    period: int,
+    message: Callable[[float, Observation], Any],
+    changes: Callable[[Observation], object] | None = None,
+) -> _Topic:
+    publisher = rospy.Publisher(name, kind, queue_size=1, tcp_nodelay=True)
+    return _Topic(publisher, period, message, changes)

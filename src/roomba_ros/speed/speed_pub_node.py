@@ -1,0 +1,168 @@
+"""The speed loop on ROS: the last word on what the drive is told, and the robot's speed."""
+
+from __future__ import annotations
+
+import http.client
+import threading
+import xmlrpc.client
+from typing import Final
+
+import rospy
+from geometry_msgs.msg import Twist
+from nav_msgs.msg import Odometry
+from roomba_robot.msg import Bumper, Cliff, WheelDrop
+from roomba_robot.srv import EmergencyStop, EmergencyStopRequest, EmergencyStopResponse
+from std_msgs.msg import Float32, String
+
+from roomba.control.speed_loop import Hold, Source, SpeedLoop
+from roomba_ros.convert.common import cliff_of, twist_message, twist_of
+from roomba_ros.runtime.node import run_node
+from roomba_ros.runtime.parameters import LiveSeedParameters, read_robot_config
+
+EMERGENCY_PARAMETER: Final = "emergency_stop"
+"""Why the drive is held; kept by the master, so that a node that was killed holds it again."""
+_NO_REASON: Final = "no reason was given"
+
+
+class SpeedPubNode:
+    """Keeps every wanted twist within the limits and stops the drive when nobody drives.
+
+    Publishes: ``speed`` (Float32, m/s, 10 Hz), ``cmd_vel_out`` (Twist, to the drive, at once for
+    each command, and 10 Hz), ``emergency_stop`` (String, latched: why the drive is held, empty when
+    it is not).
+    Subscribes: ``change_speed`` (Float32, cruise speed wanted, m/s), ``cmd_vel`` (Twist), and
+    ``cmd_vel_mission`` (Twist), which counts while no fresh ``cmd_vel`` does; ``odom`` (Odometry),
+    ``bumper`` (Bumper), ``cliff`` (Cliff), ``wheel_drop`` (WheelDrop): a hazard is obeyed at once.
+    Services: ``emergency_stop`` (EmergencyStop): the drive is held until it is released.
+    Parameters: ``robot_max_speed``; a bad value is refused and set back. ``emergency_stop``: kept.
+    """
+
+    period = 0.1
+
+    def start(self) -> None:
+        """Read the limits and connect."""
+        self._parameters = LiveSeedParameters(guardian=True)
+        self._lock, self._keeping = threading.Lock(), threading.Lock()
+        self._reason = ""
+        body = read_robot_config().body
+        self._loop = SpeedLoop(
+            body.command_timeout,
+            self._parameters.values.robot_max_speed,
+            body.max_angular_speed,
+        )
+        self._speed: float | None = None
+        self._hold = Hold.NO_COMMAND
+        self._speed_publisher = rospy.Publisher("speed", Float32, queue_size=1)
+        self._drive = rospy.Publisher("cmd_vel_out", Twist, queue_size=1, tcp_nodelay=True)
+        self._emergency = rospy.Publisher("emergency_stop", String, queue_size=1, latch=True)
+        self._engage_again()
+        rospy.Service("emergency_stop", EmergencyStop, self._on_emergency_stop)
+        rospy.Subscriber("bumper", Bumper, self._on_bumper, queue_size=1)
+        rospy.Subscriber("cliff", Cliff, self._on_cliff, queue_size=1, tcp_nodelay=True)
+        rospy.Subscriber("wheel_drop", WheelDrop, self._on_wheel_drop, queue_size=1)
+        rospy.Subscriber("odom", Odometry, self._on_odometry, queue_size=1)
+        rospy.Subscriber("change_speed", Float32, self._on_change_speed, queue_size=1)
+        for source in Source:
+            rospy.Subscriber(
+                source.value, Twist, self._on_command, source, queue_size=1, tcp_nodelay=True
+            )
+
+    def tick(self, now: float) -> None:
+        """Obey changed limits, tell the drive and tell the speed."""
+        max_speed = self._parameters.refresh().robot_max_speed
+        with self._lock:
+            self._loop.set_max_speed(max_speed)
+        self._tell_drive(now)
+        if self._speed is not None:
+            self._speed_publisher.publish(self._speed)
+
+    def stop(self) -> None:
+        """Stop the drive."""
+        self._drive.publish(Twist())
+
+    def _tell_drive(self, now: float) -> None:
+        with self._lock:
+            twist, hold = self._loop.tick(now)
+            changed, self._hold = hold is not self._hold, hold
+        self._drive.publish(twist_message(twist))
+        if changed and hold not in (Hold.NONE, Hold.NO_COMMAND):
+            rospy.loginfo("the drive is held: %s", hold.value)
+
+    def _engage_again(self) -> None:
+        """Hold the drive if it was held when this node's predecessor ended."""
+        reason = rospy.get_param(EMERGENCY_PARAMETER, "")
+        if isinstance(reason, str) and reason:
+            rospy.logwarn("the emergency stop still holds the drive: %s", reason)
+            self._reason, self._loop.emergency = reason, True
+        self._emergency.publish(self._reason)
+
+    def _on_emergency_stop(self, request: EmergencyStopRequest) -> EmergencyStopResponse:
+        reason = (request.reason.strip() or _NO_REASON) if request.engage else ""
+        with self._lock:
+            was_held = self._loop.emergency
+            self._reason, self._loop.emergency = reason, request.engage
+            self._emergency.publish(reason)
+        self._tell_drive(rospy.get_time())
+        rospy.logwarn(f"emergency stop: {reason}" if reason else "emergency stop released")
+        return EmergencyStopResponse(True, _answer(reason, was_held) + self._keep())
+
+    def _keep(self) -> str:
+        """Let the master keep the newest state; return what is to be said when it does not."""
+        try:
+            with self._keeping:
+                rospy.set_param(EMERGENCY_PARAMETER, self._reason)
+        except (OSError, http.client.HTTPException, xmlrpc.client.Error) as error:
+            return f"; but the master does not keep that, should this node end: {error}"
+        return ""
+
+    def _on_command(self, message: Twist, source: Source) -> None:
+        now = rospy.get_time()
+        try:
+            with self._lock:
+                self._loop.command(now, twist_of(message), source)
+        except ValueError as error:
+            rospy.logwarn("%s refused: %s", source.value, error)
+            return
+        self._tell_drive(now)
+
+    def _on_change_speed(self, message: Float32) -> None:
+        try:
+            with self._lock:
+                self._loop.set_cruise_speed(message.data)
+        except ValueError as error:
+            rospy.logwarn("change_speed refused: %s", error)
+
+    def _on_bumper(self, message: Bumper) -> None:
+        pressed = message.is_left_pressed or message.is_right_pressed
+        with self._lock:
+            self._loop.set_bumper(pressed)
+        if pressed:
+            self._tell_drive(rospy.get_time())
+
+    def _on_cliff(self, message: Cliff) -> None:
+        seen = any(cliff_of(message))
+        with self._lock:
+            self._loop.set_cliff(seen)
+        if seen:
+            self._tell_drive(rospy.get_time())
+
+    def _on_wheel_drop(self, message: WheelDrop) -> None:
+        dropped = message.is_left_dropped or message.is_right_dropped
+        with self._lock:
+            self._loop.set_wheel_drop(dropped)
+        if dropped:
+            self._tell_drive(rospy.get_time())
+
+    def _on_odometry(self, message: Odometry) -> None:
+        self._speed = abs(twist_of(message.twist.twist).linear)
+
+
+def _answer(reason: str, was_held: bool) -> str:
+    if reason:
+        return f"the drive is held: {reason}"
+    return "the drive is free again" if was_held else "the drive was not held"
+
+
+def main() -> None:
+    """Run the node."""
+    run_node("speed_pub_node", SpeedPubNode)

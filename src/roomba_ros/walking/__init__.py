@@ -1,0 +1,1 @@
+"""The action server of walks."""

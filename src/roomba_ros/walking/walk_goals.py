@@ -1,0 +1,138 @@
+"""What may ask the robot to walk to a point, each in its own words, for one server to serve."""
+
+from __future__ import annotations
+
+import math
+from abc import abstractmethod
+from typing import Any
+
+from geometry_msgs.msg import PoseStamped
+from move_base_msgs.msg import MoveBaseAction, MoveBaseFeedback, MoveBaseResult
+from roomba_robot.msg import WalkToPointAction, WalkToPointFeedback, WalkToPointResult
+
+from roomba.errors import RoombaError
+from roomba.geometry import Pose
+from roomba.mission.walking.walk import feedback_period
+from roomba_ros.convert.common import pose_message, pose_of, theta_of
+from roomba_ros.runtime.action_goal import ActionGoal
+
+Point = tuple[float, float]
+
+
+class WalkGoal(ActionGoal):
+    """One place to walk to; ``time_spent`` in s."""
+
+    @property
+    @abstractmethod
+    def destination(self) -> Point:
+        """Where to walk, m, map frame; raises RoombaError for what is no place on the map."""
+
+    @property
+    @abstractmethod
+    def heading(self) -> float | None:
+        """Where to look to there, rad, map frame; None: as it comes."""
+
+    @abstractmethod
+    def feedback_period(self, duration: float) -> float:
+        """Return how often to tell how far it is, s, on a walk of ``duration`` s."""
+
+    @abstractmethod
+    def _result(self, time_spent: float) -> Any:
+        """Return the action's result."""
+
+    @abstractmethod
+    def _feedback(self, now: float, distance: float, pose: Pose) -> Any:
+        """Return the action's feedback."""
+
+    def accept(self, text: str) -> None:
+        """Tell that it is walked to now."""
+        self._handle.set_accepted(text)
+
+    def reject(self, reason: str) -> None:
+        """Tell why it is not walked to."""
+        self._handle.set_rejected(self._result(0.0), reason)
+
+    def arrived(self, time_spent: float, text: str) -> None:
+        """Tell that the robot is there."""
+        self._handle.set_succeeded(self._result(time_spent), text)
+
+    def given_up(self, time_spent: float, reason: str) -> None:
+        """Tell why the robot does not come there."""
+        self._handle.set_aborted(self._result(time_spent), reason)
+
+    def cancelled(self, time_spent: float, reason: str) -> None:
+        """Tell that nobody wants it any more, or something else more."""
+        self._handle.set_canceled(self._result(time_spent), reason)
+
+    def tell(self, now: float, distance: float, pose: Pose) -> None:
+        """Tell how far it is, m along the path, and where the robot is; ``now`` in s."""
+        self._handle.publish_feedback(self._feedback(now, distance, pose))
+
+
+class WalkToPointGoal(WalkGoal):
+    """The report's own action."""
+
+    name, action = "walk_to_point", WalkToPointAction
+
+    @property
+    def destination(self) -> Point:
+        """Where to walk, m, map frame."""
+        wanted = self._handle.get_goal().destin
+        return wanted.dest_x, wanted.dest_y
+
+    @property
+    def heading(self) -> float | None:
+        """As it comes."""
+        return None
+
+    def feedback_period(self, duration: float) -> float:
+        """Return how often to tell how far it is, s: the report's rule."""
+        return feedback_period(duration)
+
+    def _result(self, time_spent: float) -> WalkToPointResult:
+        return WalkToPointResult(time_spent)
+
+    def _feedback(self, now: float, distance: float, pose: Pose) -> WalkToPointFeedback:
+        return WalkToPointFeedback(distance)
+
+
+class MoveBaseGoal(WalkGoal):
+    """The action that navigation on ROS usually has."""
+
+    name, action = "move_base", MoveBaseAction
+
+    @property
+    def destination(self) -> Point:
+        """Where to walk, m, map frame; raises RoombaError for another frame."""
+        pose = pose_in_map(self._handle.get_goal().target_pose)
+        if not math.isfinite(pose.theta):
+            raise RoombaError("expected an orientation of finite numbers")
+        return pose.x, pose.y
+
+    @property
+    def heading(self) -> float | None:
+        """Where to look to there, rad; an orientation of zeros means none."""
+        wanted = self._handle.get_goal().target_pose.pose.orientation
+        if not any((wanted.x, wanted.y, wanted.z, wanted.w)):
+            return None
+        return theta_of(wanted)
+
+    def feedback_period(self, duration: float) -> float:
+        """Return how often to tell where the robot is, s."""
+        return 0.2
+
+    def _result(self, time_spent: float) -> MoveBaseResult:
+        return MoveBaseResult()
+
+    def _feedback(self, now: float, distance: float, pose: Pose) -> MoveBaseFeedback:
+        return MoveBaseFeedback(pose_message(now, pose, "map"))
+
+
+def pose_in_map(message: PoseStamped) -> Pose:
+    """Return a pose of the map frame, which no frame stands for, too; raises RoombaError."""
+    if message.header.frame_id not in ("", "map"):
+        raise RoombaError(
+            f"expected a pose in the frame 'map', got one in {message.header.frame_id!r}; "
+            "transform it first"
+        )
+    return pose_of(message)

@@ -1,0 +1,367 @@
+"""The action server that walks: goals in, a moving setpoint out."""
+
+from __future__ import annotations
+
+import math
+import threading
+import time
+import uuid
+from collections import deque
+from dataclasses import dataclass
+
+import actionlib
+import rospy
+from geometry_msgs.msg import PoseStamped
+from move_base_msgs.msg import MoveBaseActionGoal
+from move_base_msgs.msg import MoveBaseGoal as MoveBaseGoalMessage
+from nav_msgs.msg import OccupancyGrid, Odometry, Path
+from nav_msgs.srv import GetPlan, GetPlanRequest, GetPlanResponse
+from roomba_robot.msg import Bumper, Cliff, Localization, RobotPosition
+from std_msgs.msg import Float32
+
+from roomba.errors import RoombaError
+from roomba.geometry import Pose, wrap_angle
+from roomba.mission.driving.unknown_things import UnknownThings
+from roomba.mission.walking.walk import Sensed, Walk, WalkState, expected_duration
+from roomba.perception.localization.estimate import Knowledge
+from roomba.planning.path.planner import PathPlanner
+from roomba_ros.convert.common import cliff_of, header, map_of, path_message, pose_of, twist_of
+from roomba_ros.convert.localization import knowledge_of
+from roomba_ros.runtime.alone import refuse_second
+from roomba_ros.runtime.node import require_master, run_node
+from roomba_ros.runtime.parameters import LiveSeedParameters, read_robot_config
+from roomba_ros.walking.walk_goals import MoveBaseGoal, WalkGoal, WalkToPointGoal, pose_in_map
+
+NAME = "walk_to_point_action_server_node"
+SENSES_DEADLINE = 6.0
+"""s of wall time after which goals are taken, and rejected, though map and pose are not there."""
+_STANDSTILL = 0.02
+"""m/s; a robot that is slower stands."""
+_AIMED = 0.05
+"""rad; so well it looks to where it was asked to."""
+_NOT_TURNING = 0.2
+"""rad/s; slower than this it stays so."""
+_LONGEST_TURN = 6.0
+"""s; half a turn takes two of them."""
+_HEARD_BY = 0.3
+"""s; a wish to stay where it is has reached its hearer after this, on a busy machine too."""
+_LONGEST_BRAKING = 1.0
+"""s; after this a robot whose walk was cancelled stands, whatever the odometry says."""
+
+
+@dataclass
+class _Job:
+    """A goal being walked."""
+
+    goal: WalkGoal
+    walk: Walk
+    feedback_period: float
+    feedback_due: float
+    turned_by: float | None = None
+    """When it has turned at the goal at the latest; None before it is there."""
+    rest_by: float | None = None
+    """When a cancelled walk stands at the latest; None while it is wanted."""
+    free_at: float | None = None
+    """When a cancelled walk leaves the drive to others; None before it stands."""
+
+
+class WalkToPointActionServer:
+    """Walks to one goal at a time; a newer goal, of either action, takes over without a halt.
+
+    It takes goals as soon as it knows the map and where the robot is. ``move_base`` is the same
+    walk by the name that RViz's 2D Nav Goal and other programs know; there the robot also turns to
+    the heading that was asked for.
+
+    Publishes: ``change_position`` (RobotPosition) and ``change_speed`` (Float32, m/s) at 20 Hz
+    while it walks, ``change_heading`` (Float32, rad, 20 Hz while it turns at the end), ``plan``
+    (Path, latched), ``walk_to_point/{feedback,result,status}``,
+    ``move_base/{goal,feedback,result,status}``.
+    Subscribes: ``pose``, ``localization``, ``odom``, ``bumper``, ``cliff``, ``map``,
+    ``walk_to_point/{goal,cancel}``, ``move_base/{goal,cancel}``, ``move_base_simple/goal``
+    (PoseStamped: becomes a goal of ``move_base``).
+    Services: ``make_plan`` (GetPlan: the path to a point, without walking it).
+    Parameters: ``robot_max_speed``, ``min_cordinate``, ``max_cordinate``.
+    """
+
+    period = 0.05
+
+    def start(self) -> None:
+        """Read parameters and connect."""
+        self._parameters = LiveSeedParameters()
+        self._config = read_robot_config()
+        self._things = UnknownThings(self._config.walk, self._config.body)
+        # Plans are made by ticks and by make_plan, and the planner works on one at a time.
+        self._planning = threading.Lock()
+        self._planner: PathPlanner | None = None
+        self._pose: Pose | None = None
+        self._knowledge, self._trouble = Knowledge.KNOWN, ""
+        self._speed = self._turning = 0.0
+        self._bumper = (False, False)
+        self._cliff = (False, False)
+        self._goals: deque[WalkGoal] = deque()
+        self._cancels: deque[tuple[str, str]] = deque()
+        self._job: _Job | None = None
+        self._change_position = rospy.Publisher(
+            "change_position", RobotPosition, queue_size=1, tcp_nodelay=True
+        )
+        self._change_speed = rospy.Publisher(
+            "change_speed", Float32, queue_size=1, tcp_nodelay=True
+        )
+        self._change_heading = rospy.Publisher(
+            "change_heading", Float32, queue_size=1, tcp_nodelay=True
+        )
+        self._plan = rospy.Publisher("plan", Path, queue_size=1, latch=True)
+        rospy.Subscriber("map", OccupancyGrid, self._on_map, queue_size=1)
+        rospy.Subscriber("localization", Localization, self._on_localization, queue_size=1)
+        rospy.Subscriber("pose", PoseStamped, self._on_pose, queue_size=1, tcp_nodelay=True)
+        rospy.Subscriber("odom", Odometry, self._on_odometry, queue_size=1)
+        rospy.Subscriber("bumper", Bumper, self._on_bumper, queue_size=1, tcp_nodelay=True)
+        rospy.Subscriber("cliff", Cliff, self._on_cliff, queue_size=1, tcp_nodelay=True)
+        rospy.Service("make_plan", GetPlan, self._on_make_plan)
+        self._servers = [self._server_of(kind) for kind in (WalkToPointGoal, MoveBaseGoal)]
+        self._simple_goals = rospy.Publisher("move_base/goal", MoveBaseActionGoal, queue_size=5)
+        rospy.Subscriber("move_base_simple/goal", PoseStamped, self._on_simple_goal, queue_size=5)
+        self._serves = False
+        self._serves_by = time.monotonic() + SENSES_DEADLINE
+
+    def tick(self, now: float) -> None:
+        """Take new goals, obey cancels, and walk on."""
+        self._parameters.refresh()
+        sensed = self._sense(now)
+        self._serve_when_ready(sensed)
+        self._take_goals(sensed)
+        self._obey_cancels()
+        if self._job is not None and sensed is not None:
+            self._walk_on(self._job, sensed)
+
+    def stop(self) -> None:
+        """End the goal under way; the robot stops because its setpoint's sender is gone."""
+        job, self._job = self._job, None
+        if job is not None:
+            self._change_speed.publish(self._parameters.values.robot_max_speed)
+            time_spent = job.walk.time_spent(rospy.get_time())
+            job.goal.given_up(time_spent, "the action server was told to end")
+
+    def _sense(self, now: float) -> Sensed | None:
+        if self._pose is None or self._planner is None:
+            return None
+        return Sensed(
+            now,
+            self._pose,
+            self._speed,
+            *self._bumper,
+            *self._cliff,
+            self._knowledge,
+            self._trouble,
+        )
+
+    def _serve_when_ready(self, sensed: Sensed | None) -> None:
+        knows = sensed is not None and sensed.knowledge.is_usable
+        ready = knows or time.monotonic() > self._serves_by
+        if ready and not self._serves:
+            self._serves = True
+            # A server that ended in the middle of a walk may have left any cruise speed.
+            self._change_speed.publish(self._parameters.values.robot_max_speed)
+            for server in self._servers:
+                server.start()
+
+    def _take_goals(self, sensed: Sensed | None) -> None:
+        while self._goals:
+            goal = self._goals.popleft()
+            if goal.is_recalled:
+                goal.cancelled(0.0, "cancelled before it began")
+                continue
+            try:
+                walk = self._begin(goal.destination, sensed)
+            except (RoombaError, ValueError) as error:
+                rospy.logwarn("goal rejected: %s", error)
+                goal.reject(str(error))
+                continue
+            self._replace_job(goal, walk)
+
+    def _begin(self, goal: tuple[float, float], sensed: Sensed | None) -> Walk:
+        self._require_allowed(*goal)
+        if sensed is None or self._planner is None:
+            raise RoombaError(
+                "the robot does not know its map and position yet; is home_sim_node running?"
+            )
+        if not sensed.knowledge.is_usable:
+            raise RoombaError(f"the robot does not know where it is: {sensed.trouble}")
+        config = self._config
+        with self._planning:
+            return Walk(self._planner, config.walk, config.body, self._things, goal, sensed)
+
+    def _require_allowed(self, x: float, y: float) -> None:
+        limits = self._parameters.values
+        if not (math.isfinite(x) and math.isfinite(y)):
+            raise RoombaError(f"expected a destination of finite numbers, got ({x}, {y})")
+        if not limits.allows(x, y):
+            raise RoombaError(
+                f"({x:.2f}, {y:.2f}) is outside the limits: expected x and y from "
+                f"{limits.min_cordinate:g} to {limits.max_cordinate:g} m"
+            )
+
+    def _replace_job(self, goal: WalkGoal, walk: Walk) -> None:
+        now = rospy.get_time()
+        old, self._job = self._job, None
+        if old is not None:
+            old.goal.cancelled(old.walk.time_spent(now), "a newer goal took over")
+        duration = expected_duration(walk.path, self._parameters.values.robot_max_speed)
+        goal.accept(f"{walk.path.length:.2f} m to walk")
+        self._job = _Job(goal, walk, goal.feedback_period(duration), now)
+        self._show_plan(now, walk)
+
+    def _obey_cancels(self) -> None:
+        while self._cancels:
+            cancelled = self._cancels.popleft()
+            job = self._job
+            if job is not None and job.goal.identity == cancelled:
+                job.rest_by = rospy.get_time() + _LONGEST_BRAKING
+
+    def _walk_on(self, job: _Job, sensed: Sensed) -> None:
+        if job.rest_by is not None:
+            self._come_to_rest(job, sensed, job.rest_by)
+            return
+        if job.turned_by is not None:
+            self._turn(job, sensed, job.turned_by)
+            return
+        path = job.walk.path
+        max_speed = self._parameters.values.robot_max_speed
+        with self._planning:
+            step = job.walk.tick(sensed, max_speed)
+        if job.walk.path is not path:
+            rospy.loginfo("a new way: %.2f m to walk", job.walk.path.length)
+            self._show_plan(sensed.now, job.walk)
+        self._change_speed.publish(step.cruise_speed)
+        # While it is astray nobody drives there, but it says that somebody still wants to go.
+        self._change_position.publish(RobotPosition(*step.setpoint))
+        if step.state is WalkState.ASTRAY:
+            return
+        if step.state is WalkState.WALKING:
+            self._tell_feedback(job, sensed, step.distance_left)
+            return
+        if step.state is WalkState.ARRIVED and job.goal.heading is not None:
+            job.turned_by = sensed.now + _LONGEST_TURN
+            return
+        self._job = None
+        time_spent = job.walk.time_spent(sensed.now)
+        if step.state is WalkState.ARRIVED:
+            job.goal.arrived(time_spent, "arrived")
+        else:
+            rospy.logwarn("walk given up: %s", step.reason)
+            job.goal.given_up(time_spent, step.reason)
+
+    def _turn(self, job: _Job, sensed: Sensed, turned_by: float) -> None:
+        """Turn on the spot to the heading that the goal wants."""
+        wanted = job.goal.heading
+        assert wanted is not None
+        wrong = wrap_angle(wanted - sensed.pose.theta)
+        is_there = abs(wrong) < _AIMED and abs(self._turning) < _NOT_TURNING
+        if not is_there and sensed.now < turned_by:
+            self._change_heading.publish(wanted)
+            self._tell_feedback(job, sensed, 0.0)
+            return
+        self._job = None
+        time_spent = job.walk.time_spent(sensed.now)
+        if is_there:
+            job.goal.arrived(time_spent, "arrived")
+        else:
+            job.goal.given_up(time_spent, f"it is there, but {wrong:.2f} rad were not turned")
+
+    def _come_to_rest(self, job: _Job, sensed: Sensed, rest_by: float) -> None:
+        """Stop a cancelled walk: speed 0 at once, then the place where it stands is the wish.
+
+        Only when that was heard the speed is free: else it would set off to the old one.
+        """
+        if job.free_at is None:
+            self._change_speed.publish(0.0)
+            if abs(sensed.speed) <= _STANDSTILL or sensed.now >= rest_by:
+                job.free_at = sensed.now + _HEARD_BY
+            return
+        if sensed.knowledge.is_usable:
+            self._change_position.publish(RobotPosition(sensed.pose.x, sensed.pose.y))
+        # By a clock that was set back it is not waited for.
+        if job.free_at - _HEARD_BY <= sensed.now < job.free_at:
+            return
+        self._change_speed.publish(self._parameters.values.robot_max_speed)
+        self._job = None
+        job.goal.cancelled(job.walk.time_spent(sensed.now), "cancelled")
+
+    def _tell_feedback(self, job: _Job, sensed: Sensed, distance_left: float) -> None:
+        now = sensed.now
+        if now < job.feedback_due - job.feedback_period:
+            job.feedback_due = now
+        if now >= job.feedback_due:
+            job.feedback_due += job.feedback_period
+            job.goal.tell(now, distance_left, sensed.pose)
+
+    def _show_plan(self, now: float, walk: Walk) -> None:
+        self._plan.publish(path_message(now, walk.path.points, "map"))
+
+    def _server_of(self, kind: type[WalkGoal]) -> actionlib.ActionServer:
+        return actionlib.ActionServer(
+            kind.name,
+            kind.action,
+            lambda handle: self._goals.append(kind(handle)),
+            lambda handle: self._cancels.append(kind(handle).identity),
+            auto_start=False,
+        )
+
+    def _on_simple_goal(self, message: PoseStamped) -> None:
+        # By its own topic and not directly: so everybody sees what is walked to.
+        goal = MoveBaseActionGoal(goal=MoveBaseGoalMessage(message))
+        goal.header = header(rospy.get_time(), "")
+        goal.goal_id.stamp = goal.header.stamp
+        goal.goal_id.id = f"{rospy.get_name()}-simple-{uuid.uuid4().hex}"
+        self._simple_goals.publish(goal)
+
+    def _on_make_plan(self, request: GetPlanRequest) -> GetPlanResponse:
+        try:
+            wanted = pose_in_map(request.goal)
+            goal = (wanted.x, wanted.y)
+            self._require_allowed(*goal)
+            pose = self._pose
+            if pose is None or self._planner is None:
+                raise RoombaError("the robot does not know its map and position yet")
+            if request.start.header.frame_id:
+                pose = pose_in_map(request.start)
+            now = rospy.get_time()
+            with self._planning:
+                path = self._planner.plan((pose.x, pose.y), goal, self._things.at(now))
+        except (RoombaError, ValueError) as error:
+            raise rospy.ServiceException(str(error)) from error
+        return GetPlanResponse(path_message(now, path.points, "map"))
+
+    def _on_map(self, message: OccupancyGrid) -> None:
+        walk = self._config.walk
+        try:
+            occupancy = map_of(message)
+        except ValueError as error:
+            rospy.logwarn("map refused: %s", error)
+            return
+        self._planner = PathPlanner(
+            occupancy, self._config.body.radius, walk.clearance, walk.tight_clearance
+        )
+
+    def _on_pose(self, message: PoseStamped) -> None:
+        self._pose = pose_of(message)
+
+    def _on_localization(self, message: Localization) -> None:
+        self._knowledge, self._trouble = knowledge_of(message), message.message
+
+    def _on_odometry(self, message: Odometry) -> None:
+        twist = twist_of(message.twist.twist)
+        self._speed, self._turning = twist.linear, twist.angular
+
+    def _on_bumper(self, message: Bumper) -> None:
+        self._bumper = (message.is_left_pressed, message.is_right_pressed)
+
+    def _on_cliff(self, message: Cliff) -> None:
+        self._cliff = cliff_of(message)
+
+
+def main() -> None:
+    """Run the node, unless another one serves this robot already."""
+    require_master()
+    refuse_second(NAME, f"{WalkToPointGoal.name}/status")
+    run_node(NAME, WalkToPointActionServer)

@@ -1,0 +1,85 @@
+"""docs/sensors.md is complete: every topic, fault, number and picture."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from roomba.commands.pictures.__main__ import PICTURES
+from roomba.configuration.robot import load_robot_config
+from roomba.files.shipped import CONFIGURATION
+from roomba.world.engine.state.arrays import Fault
+
+ROOT = Path(__file__).parents[4]
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+PAGE = (ROOT / "docs" / "sensors.md").read_text(encoding="utf-8")
+SECTIONS = ("body", "brush", "fan", "battery", "lidar", "wheels", "gyro", "cliff", "station",
+            "dirt_sensor", "camera")  # fmt: skip
+
+
+def names_of_faults() -> set[str]:
+    text = (ROOT / "srv" / "InjectFault.srv").read_text(encoding="utf-8").split("float32 value")[0]
+    return set(re.findall(r"[a-z]+(?:_[a-z]+)*(?=[,;\n (])", text.split("string fault")[1])) - {
+        "or",
+        "unit",
+        "no",
+    }
+
+
+def numbers() -> list[tuple[str, str, object]]:
+    config = load_robot_config(CONFIGURATION / "robot.yaml")
+    return [
+        (section, name, value)
+        for section in SECTIONS
+        for name, value in getattr(config, section).model_dump().items()
+    ]
+
+
+def test_every_topic_of_the_simulator_is_there() -> None:
+    row = next(line for line in README.splitlines() if line.startswith("| `home_sim_node`"))
+    topics = set(re.findall(r"`(/[a-z_/]+)`", row)) - {"/cmd_vel_out", "/pose"}
+    topics -= {topic for topic in topics if topic.endswith("/progress")}
+    assert len(topics) > 25
+    assert topics - set(re.findall(r"`(/[a-z_/]+)`", PAGE)) == set()
+
+
+def test_every_fault_is_there() -> None:
+    wanted = {fault.name.lower() for fault in Fault} | names_of_faults()
+    assert {"slip", "put", "obstacle", "dirt_sensor_blocked"} <= wanted
+    assert {name for name in wanted if f"`{name}`" not in PAGE} == set()
+
+
+@pytest.mark.parametrize(("section", "name", "value"), numbers())
+def test_every_number_of_the_robot_is_there_as_it_is(
+    section: str, name: str, value: object
+) -> None:
+    lines = [line for line in PAGE.splitlines() if re.search(rf"[`.]{name}`", line)]
+    assert lines, f"{section}.{name} is not on the page"
+    for part in value if isinstance(value, tuple) else (value,):
+        assert isinstance(part, int | float)
+        shown = f"{part:f}".rstrip("0").rstrip(".")
+        assert any(shown in line for line in lines), f"{section}.{name} is {shown}; {lines}"
+
+
+def test_every_picture_of_the_documents_exists_and_is_made_by_the_command() -> None:
+    pages = [ROOT / "README.md", *(ROOT / "docs").glob("*.md")]
+    linked = {
+        (page.parent / link).resolve()
+        for page in pages
+        for link in re.findall(r"!\[[^\]]*\]\(([^)]+)\)", page.read_text(encoding="utf-8"))
+    }
+    assert {path for path in linked if not path.is_file()} == set()
+    made = {(ROOT / "docs" / "pictures" / f"{name}.png").resolve() for name in PICTURES}
+    assert linked - made == set()
+    # Two rooms are made for whoever wants them, and not shown.
+    assert {path.stem for path in made - linked} == {"bathroom", "bedroom"}
+
+
+def test_every_link_within_the_page_leads_somewhere() -> None:
+    headings = re.findall(r"^#+ (.+)$", PAGE, re.MULTILINE)
+    anchors = {
+        re.sub(r"[^a-z0-9 -]", "", heading.lower()).replace(" ", "-") for heading in headings
+    }
+    assert set(re.findall(r"\]\(#([^)]+)\)", PAGE)) - anchors == set()

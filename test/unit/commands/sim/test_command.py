@@ -1,0 +1,152 @@
+"""Exit status, messages and Ctrl-C of the command, with runs that nobody drives."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from roomba.commands.sim import command, many
+from roomba.commands.sim.figures import Figures, MissedFloor
+from roomba.commands.sim.many import Outcome
+from roomba.commands.sim.trial import Trial
+
+REPOSITORY = Path(__file__).parents[3]
+FINE = Figures(
+    outcome="COMPLETED",
+    message="",
+    docked=True,
+    duration_s=100.0,
+    wall_s=0.1,
+    planning_s=0.01,
+    plans=1,
+    distance_m=30.0,
+    turning_rad=40.0,
+    energy_wh=0.5,
+    dirt_g=3.0,
+    coverable_m2=5.0,
+    covered_m2=4.9,
+    tool_width_m=0.2,
+    hits=0,
+    missed=(MissedFloor(0.1, 1.0, 2.0, "", "a door is shut"),),
+)
+
+
+@pytest.fixture
+def outcomes(monkeypatch: pytest.MonkeyPatch) -> dict[int, Outcome]:
+    """What becomes of each seed; the others are fine."""
+    given: dict[int, Outcome] = {}
+
+    def run(trials: Sequence[Trial]) -> Iterator[tuple[Trial, Outcome]]:
+        for trial in trials:
+            yield trial, given.get(trial.seed, FINE)
+
+    monkeypatch.setattr(many, "run_many", run)
+    return given
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        ("--home nowhere", "expected the name of a home there"),
+        ("--home flat --room cellar", "got 'cellar'"),
+        ("--home empty --spot 90 90", "expected floor that can be reached"),
+        ("--home flat --bag a.bag", "--bag: expected a Python with ROS"),
+        ("--seed x", "expected a whole number"),
+    ],
+)
+def test_wrong_usage_is_status_2_and_one_line(
+    words: str, said: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert command.main(words.split()) == 2
+    printed = capsys.readouterr()
+    assert printed.out == ""
+    (line,) = printed.err.splitlines()
+    assert line.startswith("./roomba sim: ")
+    assert said in line
+
+
+def test_many_homes_are_told_as_percentiles(
+    outcomes: dict[int, Outcome], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "homes.json"
+    assert command.main(["--homes", "4", "--seed", "10", "--json", str(file)]) == 0
+    table = capsys.readouterr().out
+    assert "4 of 4 completed and docked" in table
+    assert "98.00" in table
+    values = json.loads(file.read_text())
+    assert [each["seed"] for each in values["runs"]] == [10, 11, 12, 13]
+    assert values["percentiles"]["fraction"]["p50"] == pytest.approx(0.98)
+    assert (values["homes"], values["completed"], values["failures"]) == (4, 4, [])
+
+
+def test_a_home_that_fails_is_status_1_and_told_by_its_seed(
+    outcomes: dict[int, Outcome], capsys: pytest.CaptureFixture[str]
+) -> None:
+    outcomes[1] = replace(FINE, outcome="LOST", docked=False, message="where is it")
+    outcomes[2] = "no floor"
+    assert command.main(["--homes", "3", "--sensors", "ideal", "--things", "2", "--json"]) == 1
+    printed = capsys.readouterr()
+    values = json.loads(printed.out)
+    assert values["failures"] == [{"seed": 2, "reason": "no floor"}]
+    assert "again: ./roomba sim --home random --sensors ideal --things 2 --seed 1" in printed.err
+    assert "1 of 3 completed and docked" in printed.err
+
+
+def test_help_names_every_option(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as ended:
+        command.main(["--help"])
+    assert ended.value.code == 0
+    text = capsys.readouterr().out
+    for option in ("--home", "--map", "--station", "--homes", "--room", "--no-go", "--battery"):
+        assert option in text
+
+
+def within(seconds: float, is_so: Callable[[], bool]) -> bool:
+    """Wait until something is so, at most so long."""
+    deadline = time.monotonic() + seconds
+    while not is_so():
+        if time.monotonic() > deadline:
+            return False
+        time.sleep(0.01)
+    return True
+
+
+def is_alive(process: str) -> bool:
+    """Whether a process runs; one that only waits for its parent to notice its end does not."""
+    try:
+        status = Path(f"/proc/{process}/status").read_text(encoding="utf-8")
+    except (FileNotFoundError, ProcessLookupError):
+        return False
+    return "State:\tZ" not in status
+
+
+def test_ctrl_c_ends_it_and_its_processes_at_once_without_a_traceback() -> None:
+    environment = {**os.environ, "PYTHONPATH": str(REPOSITORY / "src")}
+    words = [sys.executable, "-m", "roomba.commands.sim", "--homes", "1000"]
+    process = subprocess.Popen(
+        words,
+        env=environment,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    )
+    children = Path(f"/proc/{process.pid}/task/{process.pid}/children")
+    assert within(10.0, lambda: len(children.read_text().split()) >= 2)
+    started = children.read_text().split()
+    began = time.monotonic()
+    process.send_signal(signal.SIGINT)
+    output, error = process.communicate(timeout=20.0)
+    assert time.monotonic() - began < 5.0
+    assert process.returncode == 130
+    assert output + error == "./roomba sim: stopped on the way\n"
+    assert within(5.0, lambda: not any(map(is_alive, started)))

@@ -1,0 +1,201 @@
+"""Whole runs in a small room: what is counted, and that it can be repeated."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from roomba.commands.sim.command import main
+from roomba.commands.sim.json_file import TIMES, run_as_json
+from roomba.commands.sim.runs import Run, Scene, run_trial
+from roomba.commands.sim.trial import Trial, UsageError
+from roomba.files.occupancy_map import save_map
+from roomba.geometry import Pose
+from roomba.grid import FREE, OCCUPIED, GridFrame, OccupancyMap
+from roomba.mission.cleaning.request import CleanMode, CleanRequest
+from roomba.perception.swept.coverage_map import GRANTED
+
+KEYS = {
+    "outcome", "message", "duration_s", "wall_s", "planning_s", "distance_m", "turning_rad",
+    "energy_wh", "coverable_m2", "covered_m2", "fraction", "path_ratio", "hits", "docked", "dirt_g",
+    "missed", "trajectory", "map", "home", "seed", "sensors", "robot", "station", "version",
+}  # fmt: skip
+
+
+def save_room(path: Path) -> None:
+    """Write the map of a room of 2.4 x 1.6 m with a box in it."""
+    values = np.full((36, 52), OCCUPIED, np.int8)
+    values[2:-2, 2:-2] = FREE
+    values[20:24, 30:36] = OCCUPIED
+    save_map(OccupancyMap(GridFrame(0.05, 0.0, 0.0, 36, 52), values), path)
+
+
+@pytest.fixture(scope="module")
+def room(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("room") / "room.yaml"
+    save_room(path)
+    return path
+
+
+@pytest.fixture(scope="module")
+def run(room: Path) -> Run:
+    return run_trial(Trial(home=str(room), seed=5, station=Pose(0.3, 0.8, math.pi)))
+
+
+def swept_by_discs(trajectory: np.ndarray, run: Run) -> float:
+    """Count the floor that discs along the trajectory cover, m2, in the plainest way."""
+    frame = run.truth.frame
+    x = frame.origin_x + (np.arange(frame.columns) + 0.5) * frame.resolution
+    y = frame.origin_y + (np.arange(frame.rows) + 0.5) * frame.resolution
+    swept = np.zeros(frame.shape, np.bool_)
+    radius = run.figures.tool_width_m / 2.0 + GRANTED
+    for at_x, at_y in np.unique(np.round(trajectory[:, 1:3], 3), axis=0):
+        swept |= np.hypot(x[None, :] - at_x, y[:, None] - at_y) <= radius
+    return float(np.count_nonzero(swept & run.coverable)) * frame.resolution**2
+
+
+def test_a_small_room_is_cleaned(run: Run) -> None:
+    figures = run.figures
+    assert figures.is_completed
+    assert figures.fraction > 0.97
+    assert 2.0 < figures.coverable_m2 < 2.4 * 1.6
+    assert figures.distance_m > figures.coverable_m2 / figures.tool_width_m
+    assert figures.plans >= 1
+    assert 0.0 < figures.planning_s < figures.wall_s
+
+
+def test_others_can_count_the_same_from_the_trajectory(run: Run) -> None:
+    counted = swept_by_discs(run.trajectory, run)
+    assert counted == pytest.approx(run.figures.covered_m2, rel=0.01)
+    way = float(np.hypot(*np.diff(run.trajectory[:, 1:3], axis=0).T).sum())
+    assert way == pytest.approx(run.figures.distance_m, rel=0.02)
+
+
+def test_the_trajectory_has_ten_poses_a_second_the_first_and_the_last(run: Run) -> None:
+    times = run.trajectory[:, 0]
+    assert times[0] == 0.0
+    assert tuple(run.trajectory[0, 1:]) == pytest.approx((0.3, 0.8, math.pi))
+    assert times[-1] == pytest.approx(run.figures.duration_s, abs=0.11)
+    assert np.diff(times)[:-1] == pytest.approx(0.1, abs=1e-6)
+
+
+def test_the_json_has_all_that_is_promised_and_survives_a_file(run: Run) -> None:
+    values = run_as_json(run)
+    assert values.keys() >= KEYS
+    assert json.loads(json.dumps(values, allow_nan=False)) == values
+    assert values["robot"]["tool_width_m"] == 0.2
+    assert values["station"] == {"x": 0.3, "y": 0.8, "theta": round(math.pi, 6)}
+    assert values["outcome"] == "COMPLETED"
+    assert values["version"] == 1
+
+
+def without_times(values: dict[str, Any]) -> dict[str, Any]:
+    return {name: value for name, value in values.items() if name not in TIMES}
+
+
+def test_the_same_seed_gives_the_same_json_and_another_one_another(run: Run) -> None:
+    again = run_as_json(run_trial(run.trial))
+    assert without_times(again) == without_times(run_as_json(run))
+    other = run_as_json(run_trial(run.trial.with_seed(6)))
+    assert other["trajectory"] != again["trajectory"]
+
+
+def test_a_look_after_every_other_tick_changes_nothing_but_little(run: Run) -> None:
+    watched: list[float] = []
+    often = Scene(run.trial, longest_burst=1).run([lambda robot: watched.append(robot.seen.time)])
+    assert np.diff(watched).max() < 0.101
+    assert often.figures.outcome == run.figures.outcome
+    assert often.figures.distance_m == pytest.approx(run.figures.distance_m, rel=0.1)
+
+
+# ---------------------------------------------------------------- scenes
+
+
+def test_what_is_solid_in_truth_is_not_coverable(room: Path) -> None:
+    bare = Scene(Trial(home=str(room), station=Pose(0.3, 0.8, math.pi)))
+    things = Scene(Trial(home=str(room), station=Pose(0.3, 0.8, math.pi), things=1, seed=1))
+    kept = Scene(
+        Trial(home=str(room), station=Pose(0.3, 0.8, math.pi), no_go=((1.8, 0.0, 2.6, 2.0),))
+    )
+    assert len(things.things) == 1
+    (x, y, _) = things.things[0]
+    frame = things.robot.site.frame
+    assert not things.coverable[frame.cell_of(x, y)]
+    assert np.count_nonzero(things.coverable) < np.count_nonzero(bare.coverable)
+    row, column = frame.cell_of(2.0, 0.8)
+    assert bare.coverable[row, column]
+    assert not kept.coverable[row, column]
+
+
+def test_a_part_of_the_floor_is_wanted(room: Path) -> None:
+    spot = CleanRequest(CleanMode.ZONES, zones=((1.0, 0.1, 1.4, 1.7),))
+    scene = Scene(Trial(home=str(room), station=Pose(0.3, 0.8, math.pi), request=spot))
+    rows, columns = np.nonzero(scene.coverable)
+    frame = scene.robot.site.frame
+    assert frame.centre_of(0, int(columns.min()))[0] >= 1.0
+    assert frame.centre_of(0, int(columns.max()))[0] <= 1.4
+    assert rows.size > 1000
+
+
+def test_the_battery_begins_as_asked_for(room: Path) -> None:
+    scene = Scene(Trial(home=str(room), station=Pose(0.3, 0.8, math.pi), battery=0.4))
+    assert scene.robot.seen.battery.level == pytest.approx(0.4)
+
+
+def test_things_stand_where_the_seed_says_and_not_more_than_there_is_room(room: Path) -> None:
+    def things(seed: int, count: int) -> tuple[Any, ...]:
+        trial = Trial(home=str(room), seed=seed, things=count, station=Pose(0.3, 0.8, math.pi))
+        return tuple(Scene(trial).things)
+
+    assert things(1, 1) == things(1, 1) != things(2, 1)
+    with pytest.raises(UsageError, match="--things: expected a floor with room for 16, got room"):
+        things(1, 16)
+
+
+def test_sensors_and_configuration_are_obeyed(room: Path, tmp_path: Path) -> None:
+    config = tmp_path / "robot.yaml"
+    config.write_text("brush: {width: 0.18}\n", encoding="utf-8")
+    trial = Trial(home=str(room), station=Pose(0.3, 0.8, math.pi), sensors="ideal", config=config)
+    scene = Scene(trial)
+    assert scene.config.sensors == "ideal"
+    assert scene.robot.site.tool_width == 0.18
+
+
+# ---------------------------------------------------------------- the command itself
+
+
+def test_the_command_prints_a_table_and_writes_files(
+    room: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out, plot = tmp_path / "run.json", tmp_path / "run.png"
+    words = ["--map", str(room), "--station", "0.3", "0.8", "3.1416", "--json", str(out)]
+    assert main([*words, "--plot", str(plot)]) == 0
+    printed = capsys.readouterr()
+    assert "COMPLETED, docked" in printed.out
+    assert "\x1b" not in printed.out
+    assert json.loads(out.read_text())["docked"] is True
+    assert plot.read_bytes().startswith(b"\x89PNG")
+
+
+def test_json_on_standard_output_stands_alone_there(
+    room: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["--map", str(room), "--station", "0.3", "0.8", "3.1416", "--json"]) == 0
+    printed = capsys.readouterr()
+    assert json.loads(printed.out)["outcome"] == "COMPLETED"
+    assert "COMPLETED, docked" in printed.err
+    quiet = ["--map", str(room), "--station", "0.3", "0.8", "3.1416", "--quiet"]
+    assert main(quiet) == 0
+    assert capsys.readouterr() == ("", "")
+
+
+def test_a_station_in_a_wall_is_refused(room: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["--map", str(room), "--station", "0.1", "0.8", "0"]) == 2
+    error = capsys.readouterr().err
+    assert "expected" in error
+    assert len(error.splitlines()) == 1

@@ -1,0 +1,53 @@
+"""Pictures of floor plans in the kinds that drawing programs save."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from roomba.errors import HomeError
+from roomba.files.image import read_image
+
+GREYS = np.array([[0, 51, 255]], np.uint8)
+
+
+@pytest.mark.parametrize("mode", ["L", "P", "RGB", "RGBA", "LA"])
+def test_grey_is_the_same_in_every_mode(tmp_path: Path, mode: str) -> None:
+    Image.fromarray(GREYS).convert(mode).save(tmp_path / "plan.png")
+    image = read_image(tmp_path / "plan.png")
+    assert image.grey.tolist() == [[0.0, 51.0, 255.0]]
+    assert not image.transparent.any()
+
+
+def test_two_colours_are_black_and_white(tmp_path: Path) -> None:
+    Image.fromarray(GREYS > 0).save(tmp_path / "plan.png")
+    assert read_image(tmp_path / "plan.png").grey.tolist() == [[0.0, 255.0, 255.0]]
+
+
+def test_sixteen_bits_are_scaled(tmp_path: Path) -> None:
+    Image.fromarray(GREYS.astype(np.uint16) * 257).save(tmp_path / "plan.png")
+    assert read_image(tmp_path / "plan.png").grey == pytest.approx(GREYS)
+
+
+def test_a_clear_colour_of_a_palette_is_transparent(tmp_path: Path) -> None:
+    Image.fromarray(GREYS).convert("P").save(tmp_path / "plan.png", transparency=51)
+    assert read_image(tmp_path / "plan.png").transparent.tolist() == [[False, True, False]]
+
+
+def test_greys_of_more_than_sixteen_bits_are_refused(tmp_path: Path) -> None:
+    Image.fromarray(GREYS.astype(np.float32)).save(tmp_path / "plan.tiff")
+    with pytest.raises(HomeError, match=r"PGM or PNG.*16 bits"):
+        read_image(tmp_path / "plan.tiff")
+
+
+def test_broken_pixels_are_refused(tmp_path: Path) -> None:
+    path = tmp_path / "plan.png"
+    Image.fromarray(np.arange(256, dtype=np.uint8).reshape(16, 16)).save(path)
+    content = bytearray(path.read_bytes())
+    content[60:70] = bytes(10)
+    path.write_bytes(content)
+    with pytest.raises(HomeError, match="PGM or PNG"):
+        read_image(path)

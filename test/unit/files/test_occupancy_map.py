@@ -1,0 +1,186 @@
+"""Maps in map_server's format: what each field means, what is refused, and the round trip."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import cv2
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as hnp
+from numpy.typing import NDArray
+
+from roomba.errors import HomeError
+from roomba.files.occupancy_map import load_map, save_map
+from roomba.grid import GridFrame, OccupancyMap
+
+HEADER = "image: map.pgm\nresolution: 0.05\norigin: [-1.0, 2.0, 0.0]\n"
+USUAL = HEADER + "negate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n"
+
+
+def written(folder: Path, text: str, image: bytes = b"P5\n3 1\n255\n\x00\xcd\xfe") -> Path:
+    """Write a map of three pixels (occupied, unknown, free as map_saver writes them)."""
+    (folder / "map.pgm").write_bytes(image)
+    (folder / "map.yaml").write_text(text, encoding="utf-8")
+    return folder / "map.yaml"
+
+
+def png(folder: Path, pixels: NDArray[np.uint8]) -> None:
+    cv2.imwrite(str(folder / "map.png"), pixels)
+
+
+def test_usual_map_is_read(tmp_path: Path) -> None:
+    occupancy = load_map(written(tmp_path, USUAL))
+    assert occupancy.values.tolist() == [[100, -1, 0]]
+    assert occupancy.values.dtype == np.int8
+    assert occupancy.frame == GridFrame(0.05, -1.0, 2.0, 1, 3)
+
+
+def test_first_row_is_lowest_y(tmp_path: Path) -> None:
+    occupancy = load_map(written(tmp_path, USUAL, b"P5\n1 3\n255\n\x00\xfe\xcd"))
+    assert occupancy.values[:, 0].tolist() == [-1, 0, 100]
+
+
+def test_thresholds_have_defaults(tmp_path: Path) -> None:
+    assert load_map(written(tmp_path, HEADER)).values.tolist() == [[100, -1, 0]]
+
+
+def test_keys_of_other_programs_are_ignored(tmp_path: Path) -> None:
+    assert load_map(written(tmp_path, USUAL + "slam: {name: x}\n")).values[0, 2] == 0
+
+
+@pytest.mark.parametrize(
+    ("mode", "grey", "expected"),
+    [
+        ("trinary", (0, 128, 255), (100, -1, 0)),
+        ("scale", (0, 100, 255), (100, 1 + int(98 * (155 / 255 - 0.196) / (0.65 - 0.196)), 0)),
+        ("raw", (0, 42, 100), (0, 42, 100)),
+        ("raw", (101, 200, 255), (-1, -1, -1)),
+    ],
+)
+def test_modes(tmp_path: Path, mode: str, grey: tuple[int, ...], expected: tuple[int, ...]) -> None:
+    path = written(tmp_path, USUAL + f"mode: {mode}\n", b"P5\n3 1\n255\n" + bytes(grey))
+    assert tuple(load_map(path).values[0].tolist()) == expected
+
+
+def test_negate_turns_black_into_free(tmp_path: Path) -> None:
+    path = written(tmp_path, USUAL.replace("negate: 0", "negate: 1"))
+    assert load_map(path).values.tolist() == [[0, 100, 100]]
+
+
+@pytest.mark.parametrize(
+    "image",
+    [
+        b"P2\n# made by hand\n3 1\n255\n0 205 # unknown\n254\n",
+        b"P5 3 1 255 \x00\xcd\xfe",
+        b"P5\n3 1\n65535\n\x00\x00\xcd\xcd\xfe\xfe",
+        b"P2 3 1 1000 0 800 996",
+    ],
+)
+def test_kinds_of_pgm(tmp_path: Path, image: bytes) -> None:
+    assert load_map(written(tmp_path, USUAL, image)).values.tolist() == [[100, -1, 0]]
+
+
+def test_png_colours_are_averaged_and_clear_is_unknown(tmp_path: Path) -> None:
+    path = written(tmp_path, USUAL.replace("map.pgm", "map.png"))
+    png(tmp_path, np.array([[[255, 255, 0], [0, 0, 255], [250, 254, 255]]], np.uint8))
+    assert load_map(path).values.tolist() == [[-1, 100, 0]]
+    png(tmp_path, np.array([[[255, 255, 255, 0], [0, 0, 0, 0], [255, 255, 255, 255]]], np.uint8))
+    assert load_map(path).values.tolist() == [[-1, -1, 0]]
+    png(tmp_path, np.array([[0, 205, 254]], np.uint8))
+    assert load_map(path).values.tolist() == [[100, -1, 0]]
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "words"),
+    [
+        (HEADER.replace("0.0]", "0.5]"), 3, "yaw"),
+        (HEADER.replace("0.05", "-0.05"), 2, "resolution"),
+        (HEADER.replace("0.05", ".nan"), 2, "resolution"),
+        (HEADER.replace("0.05", "small"), 2, "small"),
+        (HEADER.replace("[-1.0, 2.0, 0.0]", "[-1.0, 2.0]"), 3, "origin"),
+        (HEADER.replace("image: map.pgm\n", ""), 1, "image"),
+        (HEADER.replace("map.pgm", "none.pgm"), 1, "none.pgm"),
+        (HEADER + "mode: trinry\n", 4, "trinry"),
+        (HEADER + "negate: 7\n", 4, "negate"),
+        (HEADER + "free_thresh: 0.7\n", 1, "free_thresh"),
+        (HEADER + "resolution: 0.1\n", 4, "again"),
+        (HEADER + "negate: [\n", 5, "YAML"),
+        ("- a\n- b\n", 1, "keys and values"),
+        ("", 1, "keys and values"),
+    ],
+)
+def test_broken_yaml_is_refused_with_its_line(
+    tmp_path: Path, text: str, line: int, words: str
+) -> None:
+    path = written(tmp_path, text)
+    with pytest.raises(HomeError) as refusal:
+        load_map(path)
+    message = str(refusal.value)
+    assert message.startswith(f"{path}:{line}: ")
+    assert words in message
+
+
+@pytest.mark.parametrize(
+    ("image", "words"),
+    [
+        (b"P5\n3 1\n255\n\x00\xcd", "cut short"),
+        (b"P5\n3\n", "PGM header"),
+        (b"P5\n0 1\n255\n", "0 x 1"),
+        (b"P2\n3 1\n255\n0 a 3", "numbers"),
+        (b"P2\n3 1\n255\n0 1 300", "grey values"),
+        (b"", "empty"),
+        (b"what is this?", "PGM or PNG"),
+        (b"\x89PNG\r\n\x1a\n\x00\x00", "cut short"),
+    ],
+)
+def test_broken_picture_is_refused(tmp_path: Path, image: bytes, words: str) -> None:
+    path = written(tmp_path, USUAL, image)
+    with pytest.raises(HomeError, match=words) as refusal:
+        load_map(path)
+    assert str(refusal.value).startswith(f"{path}:1: ")
+
+
+def test_yaml_runs_no_code(tmp_path: Path) -> None:
+    path = written(tmp_path, HEADER + "negate: !!python/object/apply:os.getcwd []\n")
+    with pytest.raises(HomeError, match=r":4: "):
+        load_map(path)
+
+
+def test_missing_file_is_named(tmp_path: Path) -> None:
+    with pytest.raises(HomeError, match=r"nowhere\.yaml"):
+        load_map(tmp_path / "nowhere.yaml")
+
+
+NUMBERS = st.floats(-1e6, 1e6, allow_nan=False)
+SHAPES = hnp.array_shapes(min_dims=2, max_dims=2, max_side=12)
+
+
+@given(
+    st.one_of(
+        hnp.arrays(np.int8, SHAPES, elements=st.integers(-1, 100)),
+        hnp.arrays(np.int8, SHAPES, elements=st.sampled_from([-1, 0, 100])),
+    ),
+    st.floats(1e-6, 1e3),
+    NUMBERS,
+    NUMBERS,
+)
+def test_what_is_saved_is_read_back(
+    values: NDArray[np.int8], resolution: float, x: float, y: float
+) -> None:
+    occupancy = OccupancyMap(GridFrame(resolution, x, y, *values.shape), values)
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / "saved.yaml"
+        save_map(occupancy, path)
+        loaded = load_map(path)
+    assert loaded.frame == occupancy.frame
+    assert np.array_equal(loaded.values, values)
+
+
+def test_values_that_are_no_map_are_not_saved(tmp_path: Path) -> None:
+    values = np.full((1, 1), 101, np.int8)
+    with pytest.raises(ValueError, match="101"):
+        save_map(OccupancyMap(GridFrame(1.0, 0.0, 0.0, 1, 1), values), tmp_path / "m.yaml")

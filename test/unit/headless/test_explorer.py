@@ -1,0 +1,223 @@
+"""Whole explorations of small homes: the map that comes of it, and whatever comes up meanwhile.
+
+How good a map is is counted by the home as it is, never by what the robot believes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from fixtures.mapped import wrong_cells
+from fixtures.missions import HOME, TWO_ROOMS
+from fixtures.rooms import room_home
+from fixtures.worlds import IDEAL, NOISY
+
+from roomba.configuration.robot import RobotConfig
+from roomba.geometry import Pose, Twist
+from roomba.grid import FREE
+from roomba.headless.explorer import ExploreRecord, HeadlessExplorer
+from roomba.headless.parts import SafeDrive, senses_of
+from roomba.mission.cleaning.request import CleanOutcome
+from roomba.mission.inputs.senses import Beams
+from roomba.mission.mission import CommandRefusedError
+from roomba.mission.phases.machine import Event, Phase
+from roomba.perception.localization.estimate import Estimate, Knowledge
+from roomba.world.engine.state.arrays import Fault
+from roomba.world.home.home import Home
+from roomba.world.simulator import Simulator
+
+HOMES = [pytest.param(HOME, id="one room"), pytest.param(TWO_ROOMS, id="two rooms")]
+WORST = 0.03
+"""m; farther from its true place it never is."""
+
+
+def free_area(home: Home) -> float:
+    return float((~home.solid).sum()) * home.frame.resolution**2
+
+
+def assert_explored(robot: HeadlessExplorer, record: ExploreRecord, home: Home) -> None:
+    assert (record.result.outcome, record.result.message) == (CleanOutcome.COMPLETED, "")
+    assert robot.mission.state.phase is Phase.DOCKED
+    assert robot.seen.battery.is_docked
+    assert wrong_cells(record.occupancy, home) == (0, 0)
+    # The walls are drawn where they are, so the floor is as large as it is.
+    known = (record.occupancy.values == FREE).sum() * record.occupancy.frame.resolution**2
+    assert known == pytest.approx(free_area(home), rel=0.03)
+    assert record.result.known == pytest.approx(known, rel=0.05)
+    away = np.hypot(*(record.poses[:, 1:3] - record.believed[:, 1:3]).T)
+    assert away.max() < WORST
+
+
+def until(robot: HeadlessExplorer, is_so: Callable[[], bool], seconds: float = 300.0) -> None:
+    ends = robot.seen.time + seconds
+    while not is_so():
+        assert robot.seen.time < ends, f"not within {seconds} s: {robot.mission.state}"
+        robot.tick()
+
+
+def in_phase(robot: HeadlessExplorer, phase: Phase) -> Callable[[], bool]:
+    return lambda: robot.mission.state.phase is phase
+
+
+@pytest.mark.parametrize("config", [IDEAL, NOISY], ids=["ideal", "noisy"])
+@pytest.mark.parametrize("home", HOMES)
+def test_it_maps_the_home_without_a_hit_and_docks(home: Home, config: RobotConfig) -> None:
+    robot = HeadlessExplorer(home, config, seed=1)
+    record = robot.explore()
+    assert_explored(robot, record, home)
+    assert record.hits == 0
+    assert record.wall > 0.0
+    assert robot.mission.site.is_growing
+    poses = record.poses
+    assert np.diff(poses[:, 0]) == pytest.approx(0.05)
+    way = float(np.hypot(*np.diff(poses[:, 1:3], axis=0).T).sum())
+    assert record.result.distance == pytest.approx(way, rel=0.03)
+    assert record.result.duration == pytest.approx(poses[-1, 0] - poses[0, 0], abs=1.0)
+    speed = np.hypot(*np.diff(poses[:, 1:3], axis=0).T) / 0.05
+    assert speed.max() <= 1.02 * robot.config.exploring.speed
+
+
+def test_it_goes_into_all_rooms() -> None:
+    """Three in a row: of the last one nothing is seen from the station."""
+    walls = [(x, low, x + 0.1, high) for x, low, high in ((1.6, 0.0, 0.9), (1.6, 1.7, 2.4))]
+    walls += [(x, low, x + 0.1, high) for x, low, high in ((3.3, 0.0, 1.6), (3.3, 2.35, 2.4))]
+    home = room_home(5.0, 2.4, walls, station=Pose(0.2, 1.2, np.pi))
+    robot = HeadlessExplorer(home, seed=2)
+    record = robot.explore()
+    assert_explored(robot, record, home)
+    assert record.poses[:, 1].max() > 2.6
+
+
+def test_the_same_seed_gives_the_same_trace_and_another_one_another() -> None:
+    records = [HeadlessExplorer(HOME, seed=seed).explore() for seed in (3, 3, 4)]
+    traces = [record.poses.tobytes() for record in records]
+    assert traces[0] == traces[1]
+    assert traces[0] != traces[2]
+    assert records[0].occupancy.values.tobytes() == records[1].occupancy.values.tobytes()
+    assert records[0].believed.tobytes() == records[1].believed.tobytes()
+
+
+def test_with_a_low_battery_it_goes_home_charges_and_goes_on() -> None:
+    robot = HeadlessExplorer(TWO_ROOMS, seed=1)
+    mission = robot.mission
+    mission.explore(robot.senses())
+    until(robot, in_phase(robot, Phase.EXPLORING))
+    until(robot, lambda: robot.mapper.pose.x > 1.2)
+    robot.simulator.set_charge(robot.config.energy.reserve + 0.0001)
+    until(robot, in_phase(robot, Phase.CHARGING))
+    assert robot.seen.battery.is_docked
+    assert mission.take_exploration() is None
+    robot.simulator.set_charge(robot.config.energy.full_enough)
+    until(robot, in_phase(robot, Phase.EXPLORING))
+    until(robot, in_phase(robot, Phase.DOCKED))
+    result = mission.take_exploration()
+    assert result is not None
+    assert result.outcome is CleanOutcome.COMPLETED
+    made = robot.mapper.finish()
+    assert wrong_cells(made, TWO_ROOMS) == (0, 0)
+    assert (made.values == FREE).sum() * 0.05**2 == pytest.approx(free_area(TWO_ROOMS), rel=0.03)
+
+
+def test_paused_and_resumed_it_maps_all() -> None:
+    robot = HeadlessExplorer(TWO_ROOMS, seed=2)
+    mission = robot.mission
+    mission.explore(robot.senses())
+    until(robot, in_phase(robot, Phase.EXPLORING))
+    mission.command(Event.PAUSE, robot.senses())
+    for _ in range(20):
+        robot.tick()
+    at = robot.simulator.pose
+    for _ in range(40):
+        robot.tick()
+    assert robot.simulator.pose.distance_to(at.x, at.y) < 0.002
+    mission.command(Event.RESUME, robot.senses())
+    until(robot, in_phase(robot, Phase.DOCKED))
+    made = robot.mapper.finish()
+    assert (made.values == FREE).sum() * 0.05**2 == pytest.approx(free_area(TWO_ROOMS), rel=0.03)
+
+
+def test_stopped_it_stands_and_what_it_mapped_stays() -> None:
+    robot = HeadlessExplorer(TWO_ROOMS, seed=2)
+    robot.mission.explore(robot.senses())
+    until(robot, in_phase(robot, Phase.EXPLORING))
+    robot.mission.command(Event.STOP, robot.senses())
+    result = robot.mission.take_exploration()
+    assert result is not None
+    assert result.outcome is CleanOutcome.STOPPED
+    for _ in range(20):
+        robot.tick()
+    assert robot.mission.state.phase is Phase.IDLE
+    assert wrong_cells(robot.mapper.occupancy(), TWO_ROOMS)[1] == 0
+    # It may be told to go on from there.
+    record = robot.explore()
+    assert_explored(robot, record, TWO_ROOMS)
+
+
+def test_things_that_stand_about_are_mapped_like_walls() -> None:
+    robot = HeadlessExplorer(HOME, seed=1)
+    robot.simulator.place_obstacle(1.4, 1.9, 0.12)
+    record = robot.explore()
+    assert record.result.outcome is CleanOutcome.COMPLETED
+    assert record.hits == 0
+    row, column = record.occupancy.frame.cell_of(1.4, 1.9)
+    assert (record.occupancy.values[row - 3 : row + 4, column - 3 : column + 4] > FREE).sum() >= 4
+
+
+def test_a_lidar_that_fails_for_a_while_does_not_spoil_the_map() -> None:
+    robot = HeadlessExplorer(TWO_ROOMS, seed=1)
+    robot.mission.explore(robot.senses())
+    until(robot, in_phase(robot, Phase.EXPLORING))
+    robot.simulator.inject(Fault.LIDAR_BLOCKED, 1.0)
+    for _ in range(30):
+        robot.tick()
+    assert robot.mapper.estimate.knowledge is Knowledge.ROUGH
+    robot.simulator.inject(Fault.LIDAR_BLOCKED, 0.0)
+    until(robot, in_phase(robot, Phase.DOCKED))
+    assert wrong_cells(robot.mapper.finish(), TWO_ROOMS) == (0, 0)
+
+
+def test_a_dead_robot_refuses_and_drives_nowhere() -> None:
+    robot = HeadlessExplorer(HOME)
+    robot.mission.command(Event.EMERGENCY, robot.senses(), "pressed")
+    with pytest.raises(CommandRefusedError, match="cannot explore now"):
+        robot.explore()
+
+
+def test_senses_are_what_sensors_tell_and_where_it_believes_to_be() -> None:
+    world = Simulator(HOME, NOISY, seed=1)
+    world.advance(Twist(), 0.025, 4)
+    believed = Estimate(Pose(9.0, 8.0, 7.0), np.eye(3), Knowledge.ROUGH, 0.5, "fog")
+    senses = senses_of(world.observe(), believed)
+    assert senses.pose == believed.pose
+    assert (senses.knowledge, senses.trouble) == (Knowledge.ROUGH, "fog")
+    assert senses.battery.is_docked
+    assert senses.battery.capacity == NOISY.battery.capacity
+    assert not senses.is_disturbed
+    world.inject(Fault.BUMPER_STUCK, 1.0)
+    world.inject(Fault.CLIFF_DIRTY, 1.0)
+    world.inject(Fault.INFRARED_BLOCKED, 1.0)
+    world.advance(Twist(), 0.025, 4)
+    senses = senses_of(world.observe(), believed)
+    assert (senses.bumper_left, senses.bumper_right) == (True, True)
+    assert (senses.cliff_left, senses.cliff_right) == (True, True)
+    assert senses.beams == Beams()
+    world.inject(Fault.LIFTED, 1.0)
+    world.advance(Twist(), 0.025, 4)
+    assert senses_of(world.observe(), believed).lifted
+
+
+@pytest.mark.parametrize("fault", [Fault.BUMPER_STUCK, Fault.CLIFF_DIRTY, Fault.LIFTED])
+def test_nothing_makes_it_drive_into_a_hazard(fault: Fault) -> None:
+    world = Simulator(HOME, NOISY, seed=1, start=Pose(1.2, 0.6, 0.0))
+    drive = SafeDrive(NOISY, 0.3)
+    assert drive.command(world.observe(), Twist(0.9, 0.0)).linear == pytest.approx(0.3)
+    world.inject(fault, 1.0)
+    world.advance(Twist(), 0.025, 4)
+    seen = world.observe()
+    assert drive.command(seen, Twist(0.3, 0.0)).linear <= 0.0
+    if fault is Fault.LIFTED:
+        assert drive.command(seen, Twist(-0.1, 0.5)) == Twist()
+    else:
+        assert drive.command(seen, Twist(-0.1, 0.0)).linear < 0.0

@@ -1,0 +1,105 @@
+"""Floor that is not clean: the patches, and the reasons that are told."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from fixtures.missions import DEN, HOME, TWO_ROOMS, WALL_X, two_rooms
+from numpy.typing import NDArray
+
+from roomba.configuration.docking import DockingConfig
+from roomba.configuration.mission import MissionConfig
+from roomba.configuration.robot import RobotConfig
+from roomba.mission.cleaning.missed import is_hidden, missed_floor, why_hardly_any
+from roomba.mission.cleaning.request import Missed, MissReason
+from roomba.mission.inputs.planning_context import Site
+from roomba.perception.swept.coverage_map import patches_of
+from roomba.planning.path.costmap import RoundObstacle
+
+SITE = Site(
+    TWO_ROOMS.map, TWO_ROOMS.station, RobotConfig(), MissionConfig(), DockingConfig(), two_rooms()
+)
+FENCE: list[RoundObstacle] = [(WALL_X + 0.05, float(y), 0.05) for y in np.arange(0.85, 1.6, 0.1)]
+"""Across the doorway."""
+IN_THE_HALL: RoundObstacle = (0.9, 2.0, 0.05)
+
+
+def den() -> NDArray[np.bool_]:
+    floor: NDArray[np.bool_] = SITE.coverable() & SITE.in_room(DEN)
+    # Without the doorway, where the fence stands.
+    floor[:, : SITE.frame.cell_of(WALL_X + 0.4, 0.0)[1]] = False
+    return floor
+
+
+def reason(
+    obstacles: list[RoundObstacle], edges: list[RoundObstacle], *, is_over: bool = True
+) -> MissReason:
+    (missed,) = missed_floor(den(), 0.01, SITE, obstacles, edges, is_over=is_over)
+    assert missed.room == DEN
+    assert missed.area == pytest.approx(np.count_nonzero(den()) * SITE.frame.resolution**2)
+    return missed.reason
+
+
+@pytest.mark.parametrize("is_over", [False, True])
+def test_a_room_behind_a_door_is_shut_and_behind_stairs_the_floor_ends(is_over: bool) -> None:
+    assert reason(FENCE, [], is_over=is_over) is MissReason.SHUT
+    assert reason(FENCE, FENCE, is_over=is_over) is MissReason.EDGE
+
+
+def test_an_edge_elsewhere_shuts_no_door() -> None:
+    assert reason([*FENCE, IN_THE_HALL], [IN_THE_HALL]) is MissReason.SHUT
+
+
+def test_what_can_be_reached_is_left_over_or_was_not_its_turn() -> None:
+    assert reason([], []) is MissReason.LEFT_OVER
+    assert reason([], [], is_over=False) is MissReason.STOPPED
+    assert reason([IN_THE_HALL], [IN_THE_HALL]) is MissReason.LEFT_OVER
+
+
+def test_next_to_a_thing_it_is_that_thing_and_next_to_an_edge_the_floor_ends() -> None:
+    x, y, _ = IN_THE_HALL
+    rows, columns = np.indices(SITE.frame.shape)
+    row, column = SITE.frame.cell_of(x, y)
+    near = np.hypot(rows - row, columns - column) * SITE.frame.resolution < 0.08
+    assert is_hidden(patches_of(near, SITE.frame, 0.0)[0], SITE, [IN_THE_HALL])
+    for edges, expected in (([], MissReason.THING), ([IN_THE_HALL], MissReason.EDGE)):
+        (missed,) = missed_floor(near, 0.01, SITE, [IN_THE_HALL], edges, is_over=True)
+        assert missed.reason is expected
+
+
+def test_only_patches_that_are_large_enough_are_told_the_largest_first() -> None:
+    left = np.zeros(SITE.frame.shape, np.bool_)
+    for x, size in ((0.6, 2), (1.0, 12), (1.4, 20)):
+        row, column = SITE.frame.cell_of(x, 1.0)
+        left[row : row + size, column : column + size] = True
+    areas = [each.area for each in missed_floor(left, 0.01, SITE, [], [], is_over=True)]
+    assert areas == pytest.approx([0.04, 0.0144])
+
+
+def test_all_clean_there_is_nothing_to_tell() -> None:
+    assert (
+        missed_floor(np.zeros(SITE.frame.shape, np.bool_), 0.01, SITE, [], [], is_over=True) == ()
+    )
+    assert why_hardly_any(4.0, 0.0, ()) == ""
+
+
+@pytest.mark.parametrize(
+    ("why", "message"),
+    [
+        (MissReason.SHUT, "nothing of it could be reached: a door is shut"),
+        (MissReason.THING, "nothing of it could be reached: something stands there"),
+        (MissReason.EDGE, "nothing of it could be reached: the floor ends there"),
+        (MissReason.LEFT_OVER, "nothing of it is clean: it was passed"),
+    ],
+)
+def test_nothing_done_it_says_so_and_why(why: MissReason, message: str) -> None:
+    missed = (Missed(4.0, 1.0, 1.0, "", why), Missed(0.1, 1.0, 1.0, "", MissReason.STOPPED))
+    assert why_hardly_any(4.1, 0.0, missed).startswith(message)
+    assert why_hardly_any(4.1, 0.04, missed).startswith(message.replace("nothing", "hardly any"))
+    assert why_hardly_any(4.1, 0.5, missed) == ""
+
+
+def test_of_a_home_without_rooms_patches_have_no_room() -> None:
+    site = Site(HOME.map, HOME.station, RobotConfig(), MissionConfig(), DockingConfig())
+    (missed,) = missed_floor(site.coverable(), 0.01, site, [], [], is_over=True)
+    assert missed.room == ""

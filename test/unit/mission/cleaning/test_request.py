@@ -1,0 +1,76 @@
+"""Requests that make no sense are refused; what a result says of itself."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from roomba.errors import RoombaError
+from roomba.mission.cleaning.request import (
+    MOST_PASSES,
+    CleanMode,
+    CleanOutcome,
+    CleanRefusedError,
+    CleanRequest,
+    CleanResult,
+    FanLevel,
+    Rectangle,
+)
+
+
+def test_without_more_words_all_is_cleaned_once() -> None:
+    request = CleanRequest()
+    assert (request.mode, request.passes, request.fan) == (
+        CleanMode.WHOLE,
+        1,
+        FanLevel.STANDARD,
+    )
+
+
+@pytest.mark.parametrize("passes", [0, -1, MOST_PASSES + 1])
+def test_too_few_or_many_passes_are_refused(passes: int) -> None:
+    with pytest.raises(CleanRefusedError, match=f"1 to {MOST_PASSES} passes, got {passes}"):
+        CleanRequest(passes=passes)
+
+
+def test_as_many_passes_as_allowed_are_taken() -> None:
+    assert CleanRequest(passes=MOST_PASSES).passes == MOST_PASSES
+
+
+def test_rooms_and_zones_must_be_told() -> None:
+    with pytest.raises(CleanRefusedError, match="rooms"):
+        CleanRequest(CleanMode.ROOMS)
+    with pytest.raises(CleanRefusedError, match="zones"):
+        CleanRequest(CleanMode.ZONES)
+
+
+@pytest.mark.parametrize(
+    "zone",
+    [
+        (1.0, 0.0, 0.5, 1.0),
+        (0.0, 1.0, 1.0, 0.5),
+        (0.0, 0.0, 0.0, 1.0),
+        (0.0, 0.5, 1.0, 0.5),
+        (math.nan, 0.0, 1.0, 1.0),
+        (0.0, 0.0, 1.0, math.nan),
+    ],
+)
+def test_zones_that_are_none_are_refused(zone: Rectangle) -> None:
+    with pytest.raises(CleanRefusedError, match="lowest x") as refused:
+        CleanRequest(CleanMode.ZONES, zones=((0.0, 0.0, 1.0, 1.0), zone))
+    assert isinstance(refused.value, RoombaError)
+
+
+def test_fans_are_duties() -> None:
+    duties = [level.value for level in FanLevel]
+    assert duties == sorted(duties)
+    assert 0.0 < duties[0] < duties[-1] <= 1.0
+
+
+def test_a_result_tells_its_share() -> None:
+    def result(wanted: float, covered: float) -> CleanResult:
+        return CleanResult(CleanOutcome.COMPLETED, "", wanted, covered, 0.0, 0.0, 0.0, 0.0)
+
+    assert result(8.0, 6.0).fraction == 0.75
+    assert result(0.0, 0.0).fraction == 1.0

@@ -1,0 +1,196 @@
+"""Which frontier comes next, which are given up, and when there is none left."""
+
+from __future__ import annotations
+
+import json
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from fixtures.missions import DOOR, TWO_ROOMS, WALL_X
+
+from roomba.configuration.docking import DockingConfig
+from roomba.configuration.mission import MissionConfig
+from roomba.configuration.robot import RobotConfig
+from roomba.geometry import Pose
+from roomba.grid import FREE, UNKNOWN, OccupancyMap
+from roomba.mission.exploring.exploration import Exploration
+from roomba.mission.inputs.planning_context import Site
+from roomba.planning.path.planner import NoPathError, NoPathReason, PathPlanner
+
+HERE = Pose(0.8, 1.0, 0.0)
+ROBOT = RobotConfig()
+DOORWAY = (WALL_X + 0.05, 0.5 * (DOOR[0] + DOOR[1]))
+
+
+def known_to(x: float, *patches: tuple[float, float]) -> OccupancyMap:
+    """The two rooms as far as a place; nothing is known beyond, nor of patches of 0.3 m."""
+    whole = TWO_ROOMS.map
+    values = whole.values.copy()
+    values[:, whole.frame.cell_of(x, 0.0)[1] :] = UNKNOWN
+    for patch in patches:
+        row, column = whole.frame.cell_of(*patch)
+        values[row - 3 : row + 3, column - 3 : column + 3] = UNKNOWN
+    return OccupancyMap(whole.frame, values)
+
+
+def site_of(occupancy: OccupancyMap) -> Site:
+    return Site(
+        occupancy, TWO_ROOMS.station, ROBOT, MissionConfig(), DockingConfig(), is_growing=True
+    )
+
+
+HALL = known_to(DOORWAY[0] + 0.06)
+HALL_SITE = site_of(HALL)
+ALL_SITE = site_of(TWO_ROOMS.map)
+
+
+def begun() -> Exploration:
+    """On its way to the doorway."""
+    exploration = Exploration()
+    assert exploration.next_path(HERE, HALL_SITE, []) is not None
+    return exploration
+
+
+def at_goal(exploration: Exploration, aside: float = 0.0) -> Pose:
+    assert exploration.goal is not None
+    x, y = exploration.goal.viewpoint
+    return Pose(x - aside, y, 0.0)
+
+
+def test_it_goes_to_where_it_sees_into_the_next_room() -> None:
+    exploration = Exploration()
+    path = exploration.next_path(HERE, HALL_SITE, [])
+    assert path is not None
+    assert exploration.goal is not None
+    assert math.dist(exploration.goal.middle, DOORWAY) < 0.2
+    assert path[0] == pytest.approx((HERE.x, HERE.y))
+    assert path[-1] == pytest.approx(exploration.goal.viewpoint)
+    assert HALL_SITE.paths.is_free(path)
+    assert exploration.unseen == []
+
+
+def test_where_all_is_known_there_is_no_next() -> None:
+    exploration = Exploration()
+    assert exploration.next_path(HERE, ALL_SITE, []) is None
+    assert exploration.goal is None
+    assert exploration.unseen == []
+
+
+def test_walled_in_there_is_no_next() -> None:
+    around = [(HERE.x + 0.2 * x, HERE.y + 0.2 * y, 0.1) for x in (-1, 0, 1) for y in (-1, 0, 1)]
+    assert Exploration().next_path(HERE, HALL_SITE, around) is None
+    beside = [(DOORWAY[0] - 0.1, y, 0.06) for y in np.arange(0.7, 1.8, 0.1).tolist()]
+    # Something stands in the doorway: what is to be seen from this side is looked at from there.
+    exploration = Exploration()
+    path = exploration.next_path(HERE, HALL_SITE, beside)
+    assert path is None or path[:, 0].max() < DOORWAY[0] - 0.1 - 0.2
+
+
+def test_when_the_map_shows_what_is_there_it_wants_another() -> None:
+    exploration = begun()
+    assert not exploration.wants_another(HALL)
+    assert exploration.wants_another(TWO_ROOMS.map)
+    # Some of it is left.
+    assert not exploration.wants_another(known_to(DOORWAY[0] + 0.15))
+    assert not Exploration().wants_another(TWO_ROOMS.map)
+
+
+def test_what_was_looked_at_and_is_still_unknown_is_given_up() -> None:
+    exploration = begun()
+    goal = exploration.goal
+    assert goal is not None
+    there = at_goal(exploration)
+    exploration.next_path(there, HALL_SITE, [])
+    assert exploration.unseen == [goal.middle]
+    # The doorway is wide: it is looked at from elsewhere too, but not for ever.
+    for _ in range(5):
+        if exploration.goal is None:
+            break
+        assert math.dist(exploration.goal.middle, goal.middle) >= 0.3
+        exploration.next_path(at_goal(exploration), HALL_SITE, [])
+    assert exploration.goal is None
+    assert len(exploration.unseen) == len(set(exploration.unseen)) <= 4
+
+
+def test_what_a_newer_map_shows_is_not_told_as_unseen() -> None:
+    exploration = begun()
+    assert exploration.goal is not None
+    edge = exploration.goal.middle
+    exploration.unseen = [edge, (HERE.x, HERE.y)]
+    assert exploration.still_unseen(HALL) == (edge,)
+    assert exploration.still_unseen(TWO_ROOMS.map) == ()
+
+
+def test_what_was_not_yet_reached_is_not() -> None:
+    exploration = begun()
+    assert exploration.next_path(at_goal(exploration, 0.3), HALL_SITE, []) is not None
+    assert exploration.unseen == []
+    # Nor is one of which nothing is left.
+    exploration = begun()
+    assert exploration.next_path(at_goal(exploration), ALL_SITE, []) is None
+    assert exploration.unseen == []
+
+
+@pytest.mark.parametrize("is_stuck", [False, True])
+def test_cut_off_it_gives_up_where_it_was_going(is_stuck: bool) -> None:
+    exploration = begun()
+    goal = exploration.goal
+    assert goal is not None
+    exploration.cut_off(is_stuck=is_stuck)
+    assert exploration.goal is None
+    assert exploration.unseen == [goal.middle]
+    assert exploration.times_stuck == int(is_stuck)
+    # On its way to nothing there is nothing to give up.
+    exploration.cut_off()
+    assert exploration.unseen == [goal.middle]
+    exploration.next_path(HERE, HALL_SITE, [])
+    assert exploration.goal is None or math.dist(exploration.goal.middle, goal.middle) >= 0.3
+
+
+def test_one_to_which_no_way_leads_is_given_up_for_the_next(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    site = site_of(known_to(DOORWAY[0] + 0.06, (1.0, 2.0)))
+    near = Exploration()
+    near.next_path(Pose(0.8, 1.4, 0.0), site, [])
+    assert near.goal is not None
+    shut, plan = near.goal, PathPlanner.plan
+
+    def refuse(planner: PathPlanner, start: Any, goal: Any, obstacles: Any = ()) -> Any:
+        if math.dist(goal, shut.viewpoint) < 0.01:
+            raise NoPathError(goal, NoPathReason.GOAL_UNREACHABLE, None)
+        return plan(planner, start, goal, obstacles)
+
+    monkeypatch.setattr(PathPlanner, "plan", refuse)
+    exploration = Exploration()
+    path = exploration.next_path(Pose(0.8, 1.4, 0.0), site, [])
+    assert path is not None
+    assert exploration.unseen == [shut.middle]
+    assert exploration.goal is not None
+    assert exploration.goal.middle != shut.middle
+    assert path[-1] == pytest.approx(exploration.goal.viewpoint)
+
+
+def test_how_much_is_known_is_told() -> None:
+    area = (TWO_ROOMS.map.values == FREE).sum() * 0.05**2
+    assert ALL_SITE.occupancy.free_area == pytest.approx(area)
+    assert HALL_SITE.occupancy.free_area == pytest.approx(2.0 * 2.4 + 0.1 * 0.8, abs=0.01)
+
+
+def test_it_comes_back_from_plain_values() -> None:
+    exploration = begun()
+    exploration.cut_off()
+    back = Exploration.of(json.loads(json.dumps(exploration.values())))
+    assert back.unseen == exploration.unseen
+    assert back.goal is None
+    paths = [each.next_path(HERE, HALL_SITE, []) for each in (back, exploration)]
+    assert back.goal == exploration.goal
+    assert (paths[0] is None) == (paths[1] is None)
+
+
+@pytest.mark.parametrize("junk", [[[1.0]], [["a", 2.0]], 5, [[1.0, 2.0, 3.0]], [None]])
+def test_junk_is_refused(junk: Any) -> None:
+    with pytest.raises((ValueError, TypeError)):
+        Exploration.of(junk)

@@ -1,0 +1,135 @@
+"""The home as a mission plans in it."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import shapely
+from fixtures.missions import DEN, HALL, HOME, STATION, TABLE, TWO_ROOMS, WALL_X, two_rooms
+
+from roomba.configuration.docking import DockingConfig
+from roomba.configuration.mission import MissionConfig
+from roomba.configuration.robot import RobotConfig
+from roomba.errors import RoomsError
+from roomba.mission.inputs.planning_context import Site
+from roomba.perception.rooms.zones import Zone, ZoneKind, Zones
+from roomba.planning.path.planner import NoPathError
+from roomba.world.home.home import Home
+
+ROBOT = RobotConfig()
+
+
+def site(home: Home = HOME, zones: Zones | None = None) -> Site:
+    rooms = two_rooms() if home is TWO_ROOMS else None
+    return Site(home.map, home.station, ROBOT, MissionConfig(), DockingConfig(), rooms, zones)
+
+
+def wall(x: float) -> Zones:
+    return Zones((Zone("wall", ZoneKind.WALL, ((x, 0.0), (x, 2.5))),))
+
+
+def test_the_staging_place_is_in_front_of_the_station() -> None:
+    staging = site().staging
+    assert staging.x == pytest.approx(STATION.x + DockingConfig().staging_distance)
+    assert staging.y == pytest.approx(STATION.y)
+
+
+def test_what_zones_keep_from_it_cannot_be_cleaned_nor_reached() -> None:
+    bare, walled = site(), site(zones=wall(1.5))
+    column = bare.frame.cell_of(1.5, 1.0)[1]
+    assert bare.coverable()[:, column:].any()
+    assert not walled.coverable()[:, column:].any()
+    assert (walled.coverable()[:, : column - 40] == bare.coverable()[:, : column - 40]).all()
+    with pytest.raises(NoPathError):
+        walled.paths.plan((1.0, 0.5), (2.5, 0.5))
+    assert (walled.occupancy.values == HOME.map.values).all()
+
+
+def test_a_plan_of_coverage_begins_here_and_is_counted() -> None:
+    home = site()
+    todo = home.coverable()
+    plan = home.plan_coverage((1.0, 0.5), todo, [], edges_only=False)
+    assert plan.points[0] == pytest.approx((1.0, 0.5))
+    assert plan.points[-1] == pytest.approx((home.staging.x, home.staging.y))
+    area = np.count_nonzero(todo) * home.frame.resolution**2
+    assert plan.length > 0.9 * area / home.tool_width
+    edges = home.plan_coverage((1.0, 0.5), todo, [], edges_only=True)
+    assert edges.length < 0.7 * plan.length
+    assert home.plans == 2
+    assert home.planning_time > 0.0
+
+
+def test_a_plan_that_fails_is_counted_too() -> None:
+    home = site()
+    around = [(1.0 + 0.2 * x, 0.5 + 0.2 * y, 0.1) for x in (-1, 0, 1) for y in (-1, 0, 1)]
+    with pytest.raises(NoPathError):
+        home.plan_coverage((1.0, 0.5), home.coverable(), around, edges_only=False)
+    assert home.plans == 1
+
+
+def test_it_squeezes_through_where_paths_keep_away() -> None:
+    home = site()
+    # A fence with a gap that is a little wider than the body and its clearance.
+    half = home.reach + 0.007
+    away = np.arange(half + 0.05, 1.4, 0.06)
+    things = [(1.2, 1.25 + side, 0.05) for side in (*away.tolist(), *(-away).tolist())]
+    with pytest.raises(NoPathError):
+        home.paths.plan((0.85, 1.25), (1.5, 1.25), things)
+    points = home.squeeze((0.85, 1.25), (1.5, 1.25), things)
+    assert points[0] == pytest.approx((0.85, 1.25))
+    assert points[-1] == pytest.approx((1.5, 1.25))
+    with pytest.raises(NoPathError):
+        home.squeeze((0.85, 1.25), (1.5, 1.25), [*things, (1.2, 1.25, 0.05)])
+
+
+def test_rooms_are_known_by_name_and_by_place() -> None:
+    home = site(TWO_ROOMS)
+    assert home.room_at(0.5, 0.5) == HALL
+    assert home.room_at(3.0, 0.5) == DEN
+    assert home.room_at(-5.0, 0.5) == ""
+    assert site().room_at(0.5, 0.5) == ""
+    den, hall = home.in_room(DEN), home.in_room(HALL)
+    assert den.shape == hall.shape == home.frame.shape
+    assert not (den & hall).any()
+    assert den[home.frame.cell_of(3.0, 0.5)]
+    assert hall[home.frame.cell_of(0.5, 0.5)]
+    assert np.count_nonzero(den) * home.frame.resolution**2 == pytest.approx(
+        (3.6 - WALL_X - 0.05) * 2.4, abs=0.1
+    )
+    with pytest.raises(RoomsError):
+        home.in_room("cellar")
+
+
+def test_a_mask_of_the_map_is_laid_over_the_fine_grid() -> None:
+    home = site()
+    coarse = np.zeros(HOME.map.frame.shape, np.bool_)
+    coarse[3, 7] = True
+    fine = home.fine(coarse)
+    factor = home.frame.rows // HOME.map.frame.rows
+    assert fine.shape == home.frame.shape
+    assert fine.sum() == factor**2
+    x, y = HOME.map.frame.centre_of(3, 7)
+    assert fine[home.frame.cell_of(x, y)]
+
+
+def test_in_a_map_that_grows_paths_keep_farther_away() -> None:
+    """What has only just been seen may stand a little elsewhere."""
+    exploring, driving = MissionConfig().exploring, MissionConfig().driving
+    assert exploring.clearance > driving.way_clearance
+    grows = Site(HOME.map, STATION, ROBOT, MissionConfig(), DockingConfig(), is_growing=True)
+    assert (grows.is_growing, site().is_growing) == (True, False)
+    table = shapely.box(*TABLE)
+    gaps = []
+    for home in (site(), grows):
+        points = home.paths.plan((1.2, 1.25), (2.65, 1.3)).points
+        gaps.append(shapely.LineString(points).distance(table) - ROBOT.body.radius)
+    assert gaps[0] == pytest.approx(driving.way_clearance, abs=0.03)
+    assert exploring.clearance - 0.01 < gaps[1] < exploring.clearance + 0.05
+    # So is the least that it accepts: this gap is too narrow for it.
+    ends = ((0.85, 1.25), (1.5, 1.25))
+    half = ROBOT.body.radius + 0.036
+    away = np.arange(half + 0.05, 1.4, 0.06)
+    fence = [(1.2, 1.25 + side, 0.05) for side in (*away.tolist(), *(-away).tolist())]
+    assert len(site().paths.plan(*ends, fence).points)
+    with pytest.raises(NoPathError):
+        grows.paths.plan(*ends, fence)

@@ -1,0 +1,103 @@
+"""Out of the station, into it, and charging on it: what ends each of them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+from fixtures.missions import HOME, STATION
+from roomba.mission.docking.at_station import AtStation
+
+from roomba.configuration.docking import DockingConfig
+from roomba.configuration.mission import MissionConfig
+from roomba.configuration.robot import RobotConfig
+from roomba.geometry import STANDSTILL, Pose, Twist
+from roomba.mission.cleaning.request import CleanOutcome
+from roomba.mission.docking import at_station
+from roomba.mission.docking.docking import Docking, DockState
+from roomba.mission.docking.step import DockStep
+from roomba.mission.docking.undocking import Undocking, UndockState, UndockStep
+from roomba.mission.inputs.senses import Battery, Senses
+from roomba.mission.phases.job import Job
+from roomba.mission.phases.machine import Event
+from roomba.mission.phases.step import Failure, PhaseStep
+from roomba.perception.swept.dirt_map import DirtMap
+
+DOCKED = Senses(0.0, STATION, battery=Battery(0.5, 26.0, is_docked=True))
+BEFORE = Senses(0.0, Pose(0.9, 1.25, 0.0))
+BACK = Twist(-0.1, 0.0)
+TOOL = 0.2
+
+
+def at_the_station() -> AtStation:
+    return AtStation(DockingConfig(), RobotConfig())
+
+
+def test_it_drives_out_backwards() -> None:
+    step = at_the_station().undock(DOCKED, STATION)
+    assert step.twist.linear < 0.0
+    assert (step.event, step.failure) == (None, None)
+
+
+@pytest.mark.parametrize(
+    ("state", "event", "failure"),
+    [
+        (UndockState.OUT, Event.OUT, None),
+        (UndockState.FAILED, None, Failure(CleanOutcome.STUCK, "a cable")),
+    ],
+)
+def test_how_undocking_ends(
+    monkeypatch: pytest.MonkeyPatch, state: UndockState, event: Event | None, failure: Failure
+) -> None:
+    ended = UndockStep(state, BACK, "a cable")
+    monkeypatch.setattr(Undocking, "tick", lambda undocking, senses: ended)
+    assert at_the_station().undock(DOCKED, STATION) == PhaseStep(BACK, event, failure)
+
+
+@pytest.mark.parametrize(
+    ("state", "event", "failure"),
+    [
+        (DockState.APPROACHING, None, None),
+        (DockState.DOCKED, Event.CONTACT, None),
+        (DockState.FAILED, None, Failure(CleanOutcome.NOT_DOCKED, "no power")),
+    ],
+)
+def test_how_docking_ends(
+    monkeypatch: pytest.MonkeyPatch, state: DockState, event: Event | None, failure: Failure
+) -> None:
+    ended = DockStep(state, BACK, "no power")
+    monkeypatch.setattr(Docking, "tick", lambda docking, senses: ended)
+    assert at_the_station().dock(BEFORE, STATION) == PhaseStep(BACK, event, failure)
+
+
+def test_it_goes_on_docking_until_that_is_forgotten(monkeypatch: pytest.MonkeyPatch) -> None:
+    begun = []
+
+    class Counted(Docking):
+        def __init__(self, *args: object) -> None:
+            super().__init__(*args)  # type: ignore[arg-type]
+            begun.append(self)
+
+    monkeypatch.setattr(at_station, "Docking", Counted)
+    station = at_the_station()
+    for number in range(5):
+        station.dock(replace(BEFORE, now=0.05 * number), STATION)
+    assert len(begun) == 1
+    station.forget()
+    station.dock(BEFORE, STATION)
+    assert len(begun) == 2
+
+
+def test_it_charges_until_there_is_enough_for_the_rest() -> None:
+    job = Job(DirtMap(HOME.map), MissionConfig().energy, DOCKED)
+    job.begin_exploration(DOCKED)
+    station = at_the_station()
+    full = replace(DOCKED, battery=Battery(1.0, 26.0, is_docked=True))
+    # Nobody knows what an exploration takes.
+    assert station.charge(DOCKED, job, TOOL) == PhaseStep(STANDSTILL)
+    assert station.charge(full, job, TOOL) == PhaseStep(event=Event.CHARGED)
+    job.forget()
+    # It was found out at the beginning what is needed.
+    assert station.charge(DOCKED, job, TOOL) == PhaseStep(STANDSTILL)
+    station.forget()
+    assert station.charge(DOCKED, job, TOOL) == PhaseStep(event=Event.CHARGED)

@@ -1,0 +1,135 @@
+"""The job under way: its books, and what is told at its end."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+from fixtures.missions import HOME
+
+from roomba.configuration.docking import DockingConfig
+from roomba.configuration.mission import MissionConfig
+from roomba.configuration.robot import RobotConfig
+from roomba.geometry import Pose
+from roomba.mission.cleaning.cleaning import Cleaning
+from roomba.mission.cleaning.request import CleanOutcome, CleanRequest
+from roomba.mission.driving.obstacles import Obstacles
+from roomba.mission.inputs.planning_context import Site
+from roomba.mission.inputs.senses import Senses
+from roomba.mission.phases.job import Job
+from roomba.perception.localization.estimate import Knowledge
+from roomba.perception.matching.surface_field import SurfaceField
+from roomba.perception.swept.coverage_bits import SWEPT
+from roomba.perception.swept.dirt_map import DirtMap
+from roomba.perception.things.layer import ThingLayer
+
+ROBOT, CONFIG = RobotConfig(), MissionConfig()
+SITE = Site(HOME.map, HOME.station, ROBOT, CONFIG, DockingConfig())
+AWAY = Senses(0.0, Pose(1.0, 0.6, 0.0))
+
+
+def obstacles() -> Obstacles:
+    things = ThingLayer(SurfaceField.of(HOME.map))
+    return Obstacles(things, ROBOT.walk, ROBOT.body, CONFIG.driving)
+
+
+def cleaning_job() -> Job:
+    job = Job(DirtMap(HOME.map), CONFIG.energy, AWAY)
+    clean = Cleaning(CleanRequest(), SITE, job.dirt, CONFIG.cleaning, AWAY.pose)
+    job.begin_clean(clean, AWAY)
+    return job
+
+
+def end(job: Job, outcome: CleanOutcome, message: str = "", *, can_go_on: bool = False) -> None:
+    senses = replace(AWAY, now=60.0)
+    job.end(outcome, message, SITE, obstacles(), senses, can_go_on=can_go_on)
+
+
+def test_with_nothing_cleaned_a_completed_clean_says_why() -> None:
+    job = cleaning_job()
+    end(job, CleanOutcome.COMPLETED)
+    result = job.take_result()
+    assert result is not None
+    assert (result.outcome, result.covered) == (CleanOutcome.COMPLETED, 0.0)
+    assert result.message.startswith("nothing of it")
+    assert job.cleaning is None
+
+
+def test_with_all_cleaned_there_is_nothing_to_say() -> None:
+    job = cleaning_job()
+    assert job.cleaning is not None
+    job.cleaning.coverage.cells[:] |= SWEPT
+    job.cleaning.coverage.count_again()
+    end(job, CleanOutcome.COMPLETED)
+    result = job.take_result()
+    assert result is not None
+    assert (result.message, result.missed, result.fraction) == ("", (), 1.0)
+    assert result.duration == 60.0
+
+
+@pytest.mark.parametrize("outcome", [CleanOutcome.STOPPED, CleanOutcome.STUCK])
+def test_what_ended_it_early_is_told_as_it_is(outcome: CleanOutcome) -> None:
+    job = cleaning_job()
+    end(job, outcome, "somebody sat on it")
+    result = job.take_result()
+    assert result is not None
+    assert result.message == "somebody sat on it"
+
+
+def test_a_result_is_told_once_and_after_going_on_there_is_another_one() -> None:
+    job = cleaning_job()
+    end(job, CleanOutcome.STUCK, "a cable", can_go_on=True)
+    assert job.cleaning is not None
+    assert job.take_result() is not None
+    end(job, CleanOutcome.STOPPED, "told to")
+    assert job.take_result() is None
+    job.take_up()
+    end(job, CleanOutcome.STOPPED, "told to")
+    assert job.take_result() is not None
+    assert job.cleaning is None
+
+
+def test_what_it_passes_is_swept_where_its_place_is_known_and_it_drives() -> None:
+    job = cleaning_job()
+    assert job.cleaning is not None
+    coverage = job.cleaning.coverage
+    there = replace(AWAY, now=0.05, pose=Pose(1.05, 0.6, 0.0))
+    job.account(there, AWAY, sweeps=False)
+    job.account(replace(there, knowledge=Knowledge.SEARCHING), AWAY, sweeps=True)
+    assert coverage.swept_cells == 0
+    job.account(there, AWAY, sweeps=True)
+    assert coverage.swept_cells > 100
+
+
+def test_time_that_a_clock_jumps_does_not_count() -> None:
+    job = cleaning_job()
+    job.account(replace(AWAY, now=1.0), AWAY, sweeps=True)
+    job.account(replace(AWAY, now=1e6), replace(AWAY, now=1.0), sweeps=True)
+    assert job.duration(1e6 + 1.0) == pytest.approx(2.0)
+
+
+def test_the_rest_takes_energy_by_its_floor_and_that_of_an_exploration_is_unknown() -> None:
+    job = cleaning_job()
+    needed = job.needed_energy(0.2)
+    assert needed > 0.0
+    assert job.needed_energy(0.1) == pytest.approx(2.0 * needed)
+    assert job.cleaning is not None
+    # Few patches may have a long way between them: the path that was broken off tells.
+    job.cleaning.interrupted(1000.0)
+    assert job.needed_energy(0.2) > 10.0 * needed
+    job.forget()
+    assert job.needed_energy(0.2) == 0.0
+    job.begin_exploration(AWAY)
+    assert job.needed_energy(0.2) == float("inf")
+
+
+def test_an_exploration_tells_what_is_known() -> None:
+    job = Job(DirtMap(HOME.map), CONFIG.energy, AWAY)
+    job.begin_exploration(AWAY)
+    end(job, CleanOutcome.COMPLETED)
+    result = job.take_exploration()
+    assert result is not None
+    assert (result.outcome, result.message) == (CleanOutcome.COMPLETED, "")
+    assert result.known > 5.0
+    assert job.take_result() is None
+    assert job.exploration is None

@@ -1,0 +1,220 @@
+"""The mission's state machine: every state with every event."""
+
+from __future__ import annotations
+
+import itertools
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from roomba.mission.phases.machine import (
+    VACUUM_STATES,
+    Errand,
+    Event,
+    MissionState,
+    Phase,
+    next_state,
+)
+
+DRIVING = (
+    Phase.UNDOCKING,
+    Phase.CLEANING,
+    Phase.EXPLORING,
+    Phase.RETURNING,
+    Phase.DOCKING,
+)
+GOES_ON = {Errand.CLEAN: Phase.CLEANING, Errand.EXPLORE: Phase.EXPLORING}
+"""Errands that a charge only interrupts, and what is done on them."""
+HELD = (Phase.PAUSED, Phase.ERROR)
+STATES = [
+    MissionState(phase, errand, resumes)
+    for phase, errand in itertools.product(Phase, Errand)
+    for resumes in ((None, *DRIVING) if phase in HELD else (None,))
+]
+SMART_HOME = {"cleaning", "docked", "paused", "idle", "returning", "error"}
+
+
+@pytest.mark.parametrize("event", Event)
+@pytest.mark.parametrize("state", STATES, ids=str)
+def test_every_state_takes_every_event(state: MissionState, event: Event) -> None:
+    after = next_state(state, event)
+    if event is Event.EMERGENCY:
+        assert after == MissionState(Phase.EMERGENCY)
+        return
+    if state.phase is Phase.EMERGENCY:
+        assert after == (MissionState() if event is Event.RELEASE else None)
+        return
+    if after is None:
+        return
+    # What is held up knows where it goes on; nothing else does.
+    if after.phase in HELD:
+        assert after.resumes is not None or state.resumes is None
+        assert after.resumes not in (Phase.PAUSED, Phase.ERROR, Phase.EMERGENCY)
+    else:
+        assert after.resumes is None
+    # Nobody drives for nothing, and no errand is lost but by commands and by its end.
+    if after.drives and state.errand is not Errand.NONE:
+        assert after.errand is not Errand.NONE
+    if not event.is_command and state.errand in GOES_ON and after.errand is not state.errand:
+        assert event is Event.FINISHED or state.phase in (Phase.IDLE, Phase.DOCKED)
+    # Nobody explores on a clean, nor cleans while it explores.
+    if after.phase in GOES_ON.values() and state.phase not in HELD:
+        assert after.phase is GOES_ON.get(after.errand, state.phase)
+
+
+@pytest.mark.parametrize("phase", DRIVING)
+@pytest.mark.parametrize("errand", Errand)
+def test_whoever_drives_can_be_stopped_paused_and_can_fail(phase: Phase, errand: Errand) -> None:
+    state = MissionState(phase, errand)
+    paused, failed = next_state(state, Event.PAUSE), next_state(state, Event.FAILED)
+    assert paused is not None
+    assert failed is not None
+    assert (paused.phase, failed.phase) == (Phase.PAUSED, Phase.ERROR)
+    for held in (paused, failed):
+        resumed = next_state(held, Event.RESUME)
+        assert resumed is not None
+        assert resumed.errand is errand
+        assert resumed.phase is (Phase.RETURNING if phase is Phase.DOCKING else phase)
+    assert next_state(state, Event.STOP) == MissionState(Phase.IDLE)
+
+
+def test_an_exploration_goes_the_way_of_a_clean() -> None:
+    """All that happens to the one happens to the other; what is done in between has two names."""
+    for phase, event in itertools.product(Phase, Event):
+        if phase in GOES_ON.values():
+            continue
+        for resumes in (None, Phase.UNDOCKING, Phase.RETURNING) if phase in HELD else (None,):
+            of_clean = next_state(MissionState(phase, Errand.CLEAN, resumes), event)
+            of_exploration = next_state(MissionState(phase, Errand.EXPLORE, resumes), event)
+            assert of_exploration == _as_exploration(of_clean, event)
+    for event in Event:
+        of_clean = next_state(MissionState(Phase.CLEANING, Errand.CLEAN), event)
+        of_exploration = next_state(MissionState(Phase.EXPLORING, Errand.EXPLORE), event)
+        assert of_exploration == _as_exploration(of_clean, event)
+
+
+def _as_exploration(state: MissionState | None, event: Event) -> MissionState | None:
+    if state is None or event in (Event.CLEAN, Event.EXPLORE):
+        return state
+    phases = {Phase.CLEANING: Phase.EXPLORING}
+    return MissionState(
+        phases.get(state.phase, state.phase),
+        Errand.EXPLORE if state.errand is Errand.CLEAN else state.errand,
+        phases.get(state.resumes, state.resumes) if state.resumes else None,
+    )
+
+
+@pytest.mark.parametrize(
+    ("state", "event", "expected"),
+    [
+        (MissionState(Phase.DOCKED), Event.CLEAN, MissionState(Phase.UNDOCKING, Errand.CLEAN)),
+        (
+            MissionState(Phase.UNDOCKING, Errand.CLEAN),
+            Event.OUT,
+            MissionState(Phase.CLEANING, Errand.CLEAN),
+        ),
+        (
+            MissionState(Phase.CLEANING, Errand.CLEAN),
+            Event.FINISHED,
+            MissionState(Phase.RETURNING, Errand.HOME),
+        ),
+        (
+            MissionState(Phase.RETURNING, Errand.HOME),
+            Event.ARRIVED,
+            MissionState(Phase.DOCKING, Errand.HOME),
+        ),
+        (MissionState(Phase.DOCKING, Errand.HOME), Event.CONTACT, MissionState(Phase.DOCKED)),
+        (
+            MissionState(Phase.CLEANING, Errand.CLEAN),
+            Event.LOW,
+            MissionState(Phase.RETURNING, Errand.CLEAN),
+        ),
+        (
+            MissionState(Phase.DOCKING, Errand.CLEAN),
+            Event.CONTACT,
+            MissionState(Phase.CHARGING, Errand.CLEAN),
+        ),
+        (
+            MissionState(Phase.CHARGING, Errand.CLEAN),
+            Event.CHARGED,
+            MissionState(Phase.UNDOCKING, Errand.CLEAN),
+        ),
+        (
+            MissionState(Phase.CHARGING, Errand.CLEAN),
+            Event.CONTACT_LOST,
+            MissionState(Phase.RETURNING, Errand.CLEAN),
+        ),
+        (MissionState(Phase.CHARGING, Errand.CLEAN), Event.STOP, MissionState(Phase.DOCKED)),
+        (MissionState(Phase.DOCKED), Event.DOCK, MissionState(Phase.DOCKED)),
+        (MissionState(Phase.DOCKED), Event.CONTACT_LOST, MissionState(Phase.IDLE)),
+        (MissionState(Phase.IDLE), Event.CONTACT, MissionState(Phase.DOCKED)),
+        (
+            MissionState(Phase.PAUSED, Errand.CLEAN, Phase.CLEANING),
+            Event.CONTACT,
+            MissionState(Phase.PAUSED, Errand.CLEAN, Phase.UNDOCKING),
+        ),
+        (
+            MissionState(Phase.UNDOCKING, Errand.UNDOCK),
+            Event.OUT,
+            MissionState(Phase.IDLE),
+        ),
+        (MissionState(Phase.DOCKED), Event.EXPLORE, MissionState(Phase.UNDOCKING, Errand.EXPLORE)),
+        (
+            MissionState(Phase.UNDOCKING, Errand.EXPLORE),
+            Event.OUT,
+            MissionState(Phase.EXPLORING, Errand.EXPLORE),
+        ),
+        (
+            MissionState(Phase.EXPLORING, Errand.EXPLORE),
+            Event.FINISHED,
+            MissionState(Phase.RETURNING, Errand.HOME),
+        ),
+        (
+            MissionState(Phase.EXPLORING, Errand.EXPLORE),
+            Event.LOW,
+            MissionState(Phase.RETURNING, Errand.EXPLORE),
+        ),
+        (
+            MissionState(Phase.DOCKING, Errand.EXPLORE),
+            Event.CONTACT,
+            MissionState(Phase.CHARGING, Errand.EXPLORE),
+        ),
+        (
+            MissionState(Phase.EXPLORING, Errand.EXPLORE),
+            Event.CLEAN,
+            MissionState(Phase.UNDOCKING, Errand.CLEAN),
+        ),
+        (MissionState(Phase.IDLE), Event.PAUSE, None),
+        (MissionState(Phase.IDLE), Event.RESUME, None),
+        (MissionState(Phase.CLEANING, Errand.CLEAN), Event.RESUME, None),
+        (MissionState(Phase.IDLE), Event.RELEASE, None),
+    ],
+)
+def test_what_comes_after_what(
+    state: MissionState, event: Event, expected: MissionState | None
+) -> None:
+    assert next_state(state, event) == expected
+
+
+def test_each_phase_has_a_word_that_smart_homes_know() -> None:
+    assert set(VACUUM_STATES) == set(Phase)
+    assert set(VACUUM_STATES.values()) == SMART_HOME
+
+
+@given(st.lists(st.sampled_from(list(Event)), max_size=40))
+def test_from_anywhere_stop_clean_and_explore_work_once_the_emergency_is_over(
+    events: list[Event],
+) -> None:
+    state = MissionState()
+    for event in events:
+        state = next_state(state, event) or state
+        assert not (state.phase in DRIVING and state.errand is Errand.NONE)
+    state = next_state(state, Event.RELEASE) or state
+    stopped = next_state(state, Event.STOP)
+    assert stopped is not None
+    assert not stopped.drives
+    cleaning = next_state(stopped, Event.CLEAN)
+    assert cleaning == MissionState(Phase.UNDOCKING, Errand.CLEAN)
+    exploring = next_state(stopped, Event.EXPLORE)
+    assert exploring == MissionState(Phase.UNDOCKING, Errand.EXPLORE)

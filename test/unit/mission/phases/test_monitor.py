@@ -1,0 +1,112 @@
+"""Noticing what comes up: contact, a lifted robot, an empty battery, a place that is not known."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+from fixtures.missions import HOME
+
+from roomba.configuration.docking import DockingConfig
+from roomba.configuration.mission import MissionConfig
+from roomba.configuration.robot import RobotConfig
+from roomba.geometry import Pose
+from roomba.mission.cleaning.request import CleanOutcome
+from roomba.mission.driving.drives import Drives
+from roomba.mission.driving.obstacles import Obstacles
+from roomba.mission.inputs.planning_context import Site
+from roomba.mission.inputs.senses import Battery, Senses
+from roomba.mission.phases.energy import EnergyBook
+from roomba.mission.phases.machine import Errand, MissionState, Phase
+from roomba.mission.phases.monitor import Watch
+from roomba.mission.phases.step import Failure
+from roomba.perception.localization.estimate import Knowledge
+from roomba.perception.matching.surface_field import SurfaceField
+from roomba.perception.things.layer import ThingLayer
+
+ROBOT, CONFIG = RobotConfig(), MissionConfig()
+SITE = Site(HOME.map, HOME.station, ROBOT, CONFIG, DockingConfig())
+HERE = Pose(1.0, 0.6, 0.0)
+AWAY = Senses(0.0, HERE)
+SEARCHING = replace(AWAY, knowledge=Knowledge.SEARCHING, trouble="too little in sight")
+CLEANING = MissionState(Phase.CLEANING, Errand.CLEAN)
+EMPTY = Battery(0.001, 26.0)
+
+
+class Rig:
+    def __init__(self, senses: Senses = AWAY) -> None:
+        things = ThingLayer(SurfaceField.of(HOME.map))
+        obstacles = Obstacles(things, ROBOT.walk, ROBOT.body, CONFIG.driving)
+        self.drives = Drives(SITE, ROBOT, CONFIG.driving, obstacles)
+        book = EnergyBook(CONFIG.energy, senses)
+        self.watch = Watch(ROBOT.walk, self.drives, book, senses)
+
+    def failure(self, senses: Senses, state: MissionState = CLEANING) -> Failure | None:
+        return self.watch.failure(state, senses, (HERE.x, HERE.y))
+
+    def bump(self) -> None:
+        """Find something, with the bumper."""
+        self.drives.obstacles.feel(replace(AWAY, bumper_left=True))
+
+    @property
+    def remembers(self) -> bool:
+        return bool(self.drives.obstacles.standing(0.0))
+
+
+def test_contact_that_comes_or_goes_is_noticed_once() -> None:
+    docked = replace(AWAY, battery=Battery(1.0, 26.0, is_docked=True))
+    watch = Rig().watch
+    seen = [watch.contact_changed(each) for each in (AWAY, docked, docked, AWAY, AWAY)]
+    assert seen == [False, True, False, True, False]
+    assert not Rig(docked).watch.contact_changed(docked)
+
+
+@pytest.mark.parametrize(
+    ("senses", "outcome"),
+    [
+        (replace(AWAY, lifted=True), CleanOutcome.FAULT),
+        (replace(AWAY, battery=EMPTY), CleanOutcome.BATTERY),
+        (replace(AWAY, knowledge=Knowledge.LOST), CleanOutcome.LOST),
+    ],
+)
+def test_what_ends_a_drive_is_nobodys_matter_while_it_stands(
+    senses: Senses, outcome: CleanOutcome
+) -> None:
+    failure = Rig().failure(senses)
+    assert failure is not None
+    assert failure.outcome is outcome
+    assert Rig().failure(senses, MissionState(Phase.PAUSED, Errand.CLEAN)) is None
+    assert Rig().failure(AWAY) is None
+
+
+def test_astray_it_is_given_time_and_then_the_reason_is_told() -> None:
+    rig, timeout = Rig(), ROBOT.walk.astray_timeout
+    assert rig.failure(SEARCHING) is None
+    assert rig.watch.is_astray
+    assert rig.failure(replace(SEARCHING, now=timeout - 0.1)) is None
+    failure = rig.failure(replace(SEARCHING, now=timeout + 0.1))
+    assert failure is not None
+    assert failure.outcome is CleanOutcome.LOST
+    assert "too little in sight" in failure.reason
+
+
+def test_standing_or_docking_it_does_not_matter_where_it_is() -> None:
+    rig = Rig()
+    rig.failure(SEARCHING)
+    rig.failure(SEARCHING, MissionState(Phase.PAUSED, Errand.CLEAN))
+    assert not rig.watch.is_astray
+    assert rig.failure(SEARCHING, MissionState(Phase.DOCKING, Errand.HOME)) is None
+    assert not rig.watch.is_astray
+
+
+@pytest.mark.parametrize(("x", "remembers"), [(1.2, True), (2.2, False)])
+def test_found_again_far_away_it_was_carried_and_forgets_what_is_here(
+    x: float, remembers: bool
+) -> None:
+    rig = Rig()
+    rig.bump()
+    rig.failure(SEARCHING)
+    assert rig.remembers
+    assert rig.failure(replace(AWAY, now=1.0, pose=Pose(x, 0.6, 0.0))) is None
+    assert not rig.watch.is_astray
+    assert rig.remembers is remembers

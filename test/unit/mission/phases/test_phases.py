@@ -1,0 +1,130 @@
+"""The phases in which it drives, tick by tick: what ends them, and waiting where no way leads."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from fixtures.missions import TWO_ROOMS, WALL_X
+from fixtures.obstacles import Standing
+
+from roomba.configuration.docking import DockingConfig
+from roomba.configuration.mission import MissionConfig
+from roomba.configuration.robot import RobotConfig
+from roomba.geometry import STANDSTILL, Pose
+from roomba.mission.cleaning.cleaning import Cleaning
+from roomba.mission.cleaning.request import CleanOutcome, CleanRequest
+from roomba.mission.driving.drives import Drives
+from roomba.mission.driving.retry_policy import Patience
+from roomba.mission.inputs.planning_context import Site
+from roomba.mission.inputs.senses import Battery, Senses
+from roomba.mission.phases.cleaning import CleanPhase
+from roomba.mission.phases.job import Job
+from roomba.mission.phases.machine import Event
+from roomba.mission.phases.phases import go_home
+from roomba.mission.phases.step import PhaseStep
+from roomba.perception.swept.coverage_bits import SWEPT
+from roomba.perception.swept.dirt_map import DirtMap
+from roomba.planning.path.costmap import RoundObstacle
+
+ROBOT, CONFIG = RobotConfig(), MissionConfig()
+SITE = Site(TWO_ROOMS.map, TWO_ROOMS.station, ROBOT, CONFIG, DockingConfig())
+IN_THE_DEN = Senses(0.0, Pose(3.0, 1.2, 0.0))
+FENCE: list[RoundObstacle] = [(WALL_X + 0.05, float(y), 0.05) for y in np.arange(0.85, 1.6, 0.1)]
+SPEED = 0.3
+MINUTE = 60.0
+
+
+class Rig:
+    def __init__(self) -> None:
+        self.obstacles = Standing(FENCE)
+        self.drives = Drives(SITE, ROBOT, CONFIG.driving, self.obstacles)
+        self.patience = Patience()
+
+    def go_home(self, senses: Senses = IN_THE_DEN) -> PhaseStep:
+        return go_home(self.drives, self.patience, senses, SPEED)
+
+    @property
+    def makes_room(self) -> bool:
+        """Whether it is on its way farther into the den, away from the door."""
+        driver = self.drives.driver
+        return driver is not None and driver.tracker.rest[-1, 0] > IN_THE_DEN.pose.x
+
+
+def test_at_home_or_before_it_there_is_nothing_to_drive() -> None:
+    docked = replace(IN_THE_DEN, battery=Battery(1.0, 26.0, is_docked=True))
+    assert Rig().go_home(docked) == PhaseStep(event=Event.CONTACT)
+    assert Rig().go_home(replace(IN_THE_DEN, pose=SITE.staging)) == PhaseStep(event=Event.ARRIVED)
+
+
+def test_with_a_way_home_it_drives() -> None:
+    rig = Rig()
+    rig.obstacles.things = []
+    step = rig.go_home()
+    assert step.twist != STANDSTILL
+    # What was told before is over.
+    assert step.message == ""
+    assert rig.go_home(replace(IN_THE_DEN, now=0.05)).message is None
+
+
+def test_shut_in_it_waits_twenty_minutes_for_a_way_and_then_says_that_there_is_none() -> None:
+    rig, now = Rig(), 0.0
+    told, step = set(), PhaseStep()
+    while step.failure is None and now < 60.0 * MINUTE:
+        step = rig.go_home(replace(IN_THE_DEN, now=now))
+        told.add(step.message)
+        now += 0.5
+    assert step.failure is not None
+    assert step.failure.outcome is CleanOutcome.NOT_DOCKED
+    assert "no way home" in step.failure.reason
+    assert any(message and "waits for a way to open" in message for message in told)
+    assert now == pytest.approx(20.0 * MINUTE, abs=0.5 * MINUTE)
+
+
+def test_a_door_that_is_opened_meanwhile_is_driven_through() -> None:
+    rig, now, waited = Rig(), 0.0, PhaseStep()
+    while not waited.message:
+        waited = rig.go_home(replace(IN_THE_DEN, now=now))
+        now += 0.05
+    rig.obstacles.things = []
+    # It has time, and makes room for whoever may stand there.
+    assert rig.makes_room
+    aside = rig.go_home(replace(IN_THE_DEN, now=now + 5.0))
+    assert (aside.twist == STANDSTILL, aside.message) == (False, None)
+    step = rig.go_home(replace(IN_THE_DEN, now=now + 11.0))
+    assert step.twist != STANDSTILL
+    assert step.message == ""
+    assert not rig.makes_room
+
+
+def test_it_waits_no_longer_than_there_is_no_way() -> None:
+    rig, now = Rig(), 0.0
+    while not rig.go_home(replace(IN_THE_DEN, now=now)).message:
+        now += 0.05
+    rig.drives.driver = None
+    assert rig.go_home(replace(IN_THE_DEN, now=now + 2.5)) == PhaseStep()
+    rig.obstacles.things = []
+    assert rig.go_home(replace(IN_THE_DEN, now=now + 3.0)) == PhaseStep()
+    assert rig.go_home(replace(IN_THE_DEN, now=now + 5.0)).twist != STANDSTILL
+
+
+def test_with_nothing_left_the_clean_is_finished_after_another_look() -> None:
+    rig = Rig()
+    job = Job(DirtMap(TWO_ROOMS.map), CONFIG.energy, IN_THE_DEN)
+    here = replace(IN_THE_DEN, pose=Pose(0.8, 1.2, 0.0))
+    job.begin_clean(Cleaning(CleanRequest(), SITE, job.dirt, CONFIG.cleaning, here.pose), here)
+    assert job.cleaning is not None
+    coverage = job.cleaning.coverage
+    hall = slice(0, SITE.frame.cell_of(WALL_X, 0.0)[1])
+    coverage.cells[:, hall] |= SWEPT
+    coverage.count_again()
+    # The den was found to be out of reach: perhaps its door is open by now.
+    job.cleaning.cut_off()
+    phase = CleanPhase(job, rig.drives, rig.patience, CONFIG.exploring)
+    steps = [phase.tick(here, SPEED)]
+    while steps[-1] == PhaseStep():
+        steps.append(phase.tick(here, SPEED))
+        assert len(steps) < 10
+    assert steps[-1].event is Event.FINISHED
+    assert len(steps) > 1

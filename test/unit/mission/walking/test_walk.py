@@ -1,0 +1,228 @@
+import math
+from dataclasses import replace
+
+import pytest
+from fixtures.rooms import Block, room_home
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from roomba.configuration.robot import RobotConfig
+from roomba.files.shipped import HOMES
+from roomba.geometry import Pose
+from roomba.headless.walker import HeadlessRobot
+from roomba.mission.driving.unknown_things import UnknownThings
+from roomba.mission.walking.walk import Sensed, Walk, WalkState, feedback_period
+from roomba.perception.localization.estimate import Knowledge
+from roomba.planning.path.planner import NoPathError, PathPlanner
+from roomba.world.layers.layer import load_home
+
+CONFIG = RobotConfig()
+FURNITURE: tuple[Block, ...] = (
+    (1.2, 0.0, 1.3, 2.6),
+    (2.4, 1.0, 3.2, 1.8),
+    (3.8, 2.2, 3.9, 4.0),
+)
+
+
+def furnished(hidden: tuple[Block, ...] = ()) -> HeadlessRobot:
+    return HeadlessRobot(room_home(blocks=FURNITURE, hidden=hidden))
+
+
+@settings(max_examples=25)
+@given(st.floats(0.2, 4.8), st.floats(0.2, 3.8))
+def test_it_arrives_wherever_there_is_a_way_and_touches_nothing(x: float, y: float) -> None:
+    robot = furnished()
+    try:
+        robot.planner.plan((0.5, 0.5), (x, y))
+    except NoPathError:
+        assume(False)
+    record = robot.walk(x, y)
+    assert record.state is WalkState.ARRIVED
+    assert math.dist(record.poses[-1, 1:3], (x, y)) < 0.05
+    assert record.bumps == 0
+
+
+def test_it_stays_near_its_path_and_takes_about_the_time_of_its_length() -> None:
+    record = furnished().walk(4.5, 3.5)
+    assert record.state is WalkState.ARRIVED
+    assert record.distance < 1.05 * math.dist((0, 0), (0, record.steps[0].distance_left))
+    assert record.duration < record.steps[0].distance_left / 0.5 + 8.0
+
+
+@pytest.mark.parametrize("distance", [0.0, 0.03, 0.1, 0.3, 0.9])
+def test_short_ways_arrive_too_and_never_above_the_top_speed(distance: float) -> None:
+    robot = furnished()
+    record = robot.walk(0.5, 0.5 + distance)
+    assert record.state is WalkState.ARRIVED
+    assert math.dist(record.poses[-1, 1:3], (0.5, 0.5 + distance)) < 0.05
+    times, points = record.poses[:, 0], record.poses[:, 1:3]
+    for t, p, t2, p2 in zip(times, points, times[1:], points[1:], strict=False):
+        # Slip that varies by chance lets a wheel go a little farther than it turned, too.
+        assert math.dist(p, p2) <= 1.02 * 0.5 * (t2 - t)
+
+
+@pytest.mark.parametrize("further", [0.04, 0.06, 0.09])
+def test_a_little_further_right_after_arriving_is_walked_too(further: float) -> None:
+    robot = furnished()
+    robot.walk(0.8, 1.0)
+    record = robot.walk(0.8, 1.0 + further)
+    assert record.state is WalkState.ARRIVED
+    assert record.duration < 10.0
+    assert math.dist(record.poses[-1, 1:3], (0.8, 1.0 + further)) < 0.04
+
+
+def test_a_thing_that_the_map_does_not_know_is_gone_around() -> None:
+    robot = furnished(hidden=((1.6, 2.9, 2.0, 3.3),))
+    record = robot.walk(2.8, 3.0)
+    assert record.state is WalkState.ARRIVED
+    assert record.bumps >= 1
+    assert math.dist(record.poses[-1, 1:3], (2.8, 3.0)) < 0.05
+
+
+def test_a_way_that_is_walled_up_ends_with_the_reason() -> None:
+    robot = furnished(hidden=((1.2, 2.6, 1.3, 4.0),))
+    record = robot.walk(4.5, 0.5)
+    assert record.state is WalkState.FAILED
+    assert "map does not show" in record.reason
+    assert record.duration < 180.0
+
+
+def test_a_goal_inside_an_unknown_thing_ends_with_the_reason() -> None:
+    record = furnished(hidden=((1.8, 2.8, 2.6, 3.6),)).walk(2.2, 3.2)
+    assert record.state is WalkState.FAILED
+    assert record.reason
+
+
+def test_a_destination_in_the_wall_is_refused_with_the_nearest_point() -> None:
+    with pytest.raises(NoPathError) as refusal:
+        furnished().walk(1.25, 1.0)
+    assert refusal.value.nearest is not None
+    assert "1.25, 1.00" in str(refusal.value)
+
+
+def family_robot() -> HeadlessRobot:
+    return HeadlessRobot(load_home("family", HOMES))
+
+
+@pytest.mark.parametrize("goal", [(7.1, -0.7), (7.1, -1.0)])
+def test_a_goal_down_the_stairs_ends_at_their_edge_with_the_reason(
+    goal: tuple[float, float],
+) -> None:
+    robot = family_robot()
+    record = robot.walk(*goal)
+    assert record.state is WalkState.FAILED
+    assert "the floor ends" in record.reason
+    numbers = robot.simulator.numbers
+    assert not numbers["drop_left"]
+    assert not numbers["drop_right"]
+    assert record.poses[:, 1].max() < 6.5
+
+
+def test_a_goal_beside_the_stairs_is_reached_without_a_wheel_over_the_edge() -> None:
+    robot = family_robot()
+    record = robot.walk(6.3, -0.9)
+    assert record.state is WalkState.ARRIVED
+    assert not robot.simulator.numbers["drop_left"]
+    assert record.poses[:, 1].max() < 6.5
+
+
+def stuck_walk() -> tuple[Walk, Sensed]:
+    home = room_home()
+    planner = PathPlanner(home.map, CONFIG.body.radius, 0.04, 0.01)
+    sensed = Sensed(100.0, Pose(1.0, 1.0, 0.0), 0.0)
+    things = UnknownThings(CONFIG.walk, CONFIG.body)
+    return Walk(planner, CONFIG.walk, CONFIG.body, things, (4.0, 3.0), sensed), sensed
+
+
+def test_a_robot_that_does_not_move_gives_up_with_the_reason() -> None:
+    walk, sensed = stuck_walk()
+    for tick in range(20 * 200):
+        step = walk.tick(Sensed(100.0 + 0.05 * tick, sensed.pose, 0.0), 0.5)
+        if step.state is not WalkState.WALKING:
+            break
+    assert step.state is WalkState.FAILED
+    assert "comes no nearer" in step.reason
+    expected = CONFIG.walk.progress_timeout * (CONFIG.walk.max_replans + 1)
+    assert walk.time_spent(100.0 + 0.05 * tick) == pytest.approx(expected, abs=2.0)
+
+
+def test_a_robot_that_was_carried_away_plans_anew() -> None:
+    walk, sensed = stuck_walk()
+    path = walk.path
+    walk.tick(sensed, 0.5)
+    walk.tick(Sensed(101.0, Pose(3.5, 0.6, 0.0), 0.0), 0.5)
+    assert walk.path is not path
+    assert walk.path.points[0].tolist() == [3.5, 0.6]
+
+
+def test_it_slows_for_corners() -> None:
+    record = furnished().walk(4.5, 0.5)
+    cruise = [step.cruise_speed for step in record.steps]
+    assert max(cruise) == pytest.approx(0.5)
+    assert min(cruise) < 0.4
+
+
+def test_a_walk_that_passed_its_goal_at_speed_has_not_arrived() -> None:
+    walk, _ = stuck_walk()
+    assert walk.tick(Sensed(101.0, Pose(4.0, 3.0), 0.5), 0.5).state is WalkState.WALKING
+    assert walk.tick(Sensed(101.1, Pose(4.0, 3.0), 0.0), 0.5).state is WalkState.ARRIVED
+
+
+@pytest.mark.parametrize("jump", [-3600.0, 3600.0])
+def test_a_clock_that_is_set_changes_neither_the_time_spent_nor_the_time_out(jump: float) -> None:
+    walk, sensed = stuck_walk()
+    now, ended = 100.0, WalkState.WALKING
+    for tick in range(20 * 200):
+        now += 0.05 + (jump if tick == 100 else 0.0)
+        ended = walk.tick(Sensed(now, sensed.pose, 0.0), 0.5).state
+        if ended is not WalkState.WALKING:
+            break
+    assert ended is WalkState.FAILED
+    expected = CONFIG.walk.progress_timeout * (CONFIG.walk.max_replans + 1)
+    assert walk.time_spent(now) == pytest.approx(expected, abs=2.0)
+
+
+def test_feedback_comes_as_often_as_the_report_says() -> None:
+    assert feedback_period(9.9) == 2.0
+    assert feedback_period(10.0) == 3.0
+    assert feedback_period(25.0) == 4.0
+
+
+def test_a_walk_waits_for_its_place_to_be_found_but_not_for_ever() -> None:
+    robot = furnished()
+    at = Pose(0.5, 0.5, 0.0)
+    sensed = Sensed(0.0, at, 0.0)
+    walk = Walk(robot.planner, CONFIG.walk, CONFIG.body, robot.things, (4.5, 3.5), sensed)
+    astray = replace(sensed, knowledge=Knowledge.SEARCHING, trouble="it was carried")
+    steps = [walk.tick(replace(astray, now=0.05 * tick), 0.5) for tick in range(1, 1400)]
+    assert steps[0].state is WalkState.ASTRAY
+    assert "it was carried" in steps[-1].reason
+    failed = next(tick for tick, step in enumerate(steps) if step.state is WalkState.FAILED)
+    assert 0.05 * failed == pytest.approx(CONFIG.walk.astray_timeout, abs=0.2)
+
+
+def test_a_walk_goes_on_from_where_the_robot_was_found() -> None:
+    robot = furnished()
+    sensed = Sensed(0.0, Pose(0.5, 0.5, 0.0), 0.0)
+    walk = Walk(robot.planner, CONFIG.walk, CONFIG.body, robot.things, (4.5, 3.5), sensed)
+    walk.tick(replace(sensed, now=0.05, knowledge=Knowledge.SEARCHING), 0.5)
+    found = replace(sensed, now=0.1, pose=Pose(4.5, 0.5, 0.0))
+    assert walk.tick(found, 0.5).state is WalkState.WALKING
+    assert tuple(walk.path.points[0]) == pytest.approx((4.5, 0.5), abs=0.06)
+
+
+def test_a_robot_that_knows_its_place_but_roughly_walks_slowly() -> None:
+    robot = furnished()
+    sensed = Sensed(0.0, Pose(0.5, 0.5, 0.0), 0.0, knowledge=Knowledge.ROUGH)
+    walk = Walk(robot.planner, CONFIG.walk, CONFIG.body, robot.things, (0.5, 3.5), sensed)
+    assert walk.tick(replace(sensed, now=0.05), 0.5).cruise_speed <= CONFIG.walk.careful_speed
+
+
+def test_a_lost_robot_gives_its_walk_up() -> None:
+    robot = furnished()
+    sensed = Sensed(0.0, Pose(0.5, 0.5, 0.0), 0.0)
+    walk = Walk(robot.planner, CONFIG.walk, CONFIG.body, robot.things, (0.5, 3.5), sensed)
+    lost = replace(sensed, now=0.05, knowledge=Knowledge.LOST, trouble="several places fit")
+    step = walk.tick(lost, 0.5)
+    assert step.state is WalkState.FAILED
+    assert "several places fit" in step.reason

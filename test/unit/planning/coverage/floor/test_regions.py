@@ -1,0 +1,40 @@
+"""Floor in parts: connected over sides, and parted at its narrow places."""
+
+from __future__ import annotations
+
+import numpy as np
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+
+from roomba.planning.coverage.floor.masks import transposed
+from roomba.planning.coverage.floor.regions import mask_of, regions
+from roomba.raster.regions import Mask, numbered_regions
+
+
+@given(arrays(np.bool_, st.tuples(st.integers(1, 40), st.integers(1, 40))))
+@settings(max_examples=60, derandomize=True, deadline=None)
+def test_small_floor_is_parted_where_it_does_not_hang_together(floor: Mask) -> None:
+    found = regions(floor)
+    labels = numbered_regions(floor)
+    assert found.sizes.tolist() == np.bincount(labels.ravel())[1:].tolist()
+    for region in range(len(found.sizes)):
+        top, bottom, left, right = found.bounds[region].tolist()
+        whole = np.zeros_like(floor)
+        whole[top : bottom + 1, left : right + 1] = mask_of(found, region)
+        assert np.array_equal(whole, labels == region + 1)
+
+
+def test_two_wide_places_with_a_narrow_one_between_are_two_regions() -> None:
+    floor = np.zeros((240, 520), np.bool_)
+    floor[10:230, 10:250] = floor[10:230, 270:510] = True
+    floor[110:140, 250:270] = True
+    found = regions(floor)
+    assert len(found.sizes) == 2
+    assert found.sizes.sum() == floor.sum()
+    assert abs(found.sizes[0] - found.sizes[1]) < 0.05 * floor.sum()
+
+
+def test_rows_become_columns() -> None:
+    mask = np.random.default_rng(1).random((37, 70)) < 0.5
+    assert np.array_equal(transposed(mask), mask.T)

@@ -1,0 +1,234 @@
+"""Coverage plans: driven clear of all that is solid, over all the floor that can be swept."""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+
+import numpy as np
+import pytest
+import shapely
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from roomba.grid import FREE, OCCUPIED, UNKNOWN, GridFrame, OccupancyMap
+from roomba.planning.coverage.planner import CoverageFloor, CoveragePlan, CoveragePlanner
+from roomba.planning.path.costmap import FitMap, Mask, Point, RoundObstacle
+from roomba.planning.path.planner import NoPathError, NoPathReason
+
+REACH, TOOL = 0.169, 0.2
+TOLERANCE = 0.0015
+
+
+def room(width: float, height: float, *things: tuple[float, float, float, float]) -> OccupancyMap:
+    """A room from (0, 0) on, with things given as x, y, width and height; all in m."""
+    values = np.full((round(height / 0.05) + 2, round(width / 0.05) + 2), OCCUPIED, np.int8)
+    values[1:-1, 1:-1] = FREE
+    for x, y, wide, high in things:
+        row, column = round(y / 0.05) + 1, round(x / 0.05) + 1
+        values[row : row + round(high / 0.05), column : column + round(wide / 0.05)] = OCCUPIED
+    return OccupancyMap(GridFrame(0.05, -0.05, -0.05, *values.shape), values)
+
+
+def swept(plan: CoveragePlan, frame: GridFrame, tool_width: float = TOOL) -> Mask:
+    """The cells with centres within half the tool's width of the way: slow and independent."""
+    line = shapely.LineString(np.repeat(plan.points, 2 if len(plan.points) == 1 else 1, axis=0))
+    x = frame.origin_x + (np.arange(frame.columns) + 0.5) * frame.resolution
+    y = frame.origin_y + (np.arange(frame.rows) + 0.5) * frame.resolution
+    disc = line.buffer(tool_width / 2 + 1e-3, quad_segs=32)
+    shapely.prepare(disc)
+    inside: Mask = shapely.contains_xy(disc, *np.meshgrid(x, y))
+    return inside
+
+
+def share_swept(
+    plan: CoveragePlan, need: Mask, frame: GridFrame, tool_width: float = TOOL
+) -> float:
+    return float((swept(plan, frame, tool_width) & need).sum() / need.sum())
+
+
+def least_room(
+    plan: CoveragePlan,
+    map: OccupancyMap,
+    obstacles: tuple[RoundObstacle, ...] = (),
+    reach: float = REACH,
+) -> float:
+    fit = FitMap.build(map, reach, 0.0, obstacles)
+    points = [(float(x), float(y)) for x, y in plan.points]
+    return min(fit.room_along(*leg) for leg in pairwise(points))
+
+
+FLAT = room(3.0, 2.4, (1.2, 0.9, 0.05, 0.05), (2.2, 0.0, 0.5, 0.8))
+START = (0.4, 0.3)
+
+
+@st.composite
+def cluttered_rooms(draw: st.DrawFn) -> OccupancyMap:
+    things = draw(
+        st.lists(
+            st.tuples(st.integers(0, 36), st.integers(0, 30), st.integers(1, 9), st.integers(1, 9)),
+            max_size=6,
+        )
+    )
+    return room(2.0, 1.7, *((x * 0.05, y * 0.05, w * 0.05, h * 0.05) for x, y, w, h in things))
+
+
+@given(cluttered_rooms(), st.floats(0.1, 1.9), st.floats(0.1, 1.6), st.booleans())
+@settings(max_examples=50, derandomize=True, deadline=None)
+def test_sweeps_all_that_can_be_reached_and_keeps_clear_of_walls(
+    map: OccupancyMap, x: float, y: float, comes_back: bool
+) -> None:
+    reach, tool = 0.11, 0.14
+    planner = CoveragePlanner(map, reach, tool)
+    assume(FitMap.build(map, reach, 0.0).fits_at(x, y))
+    end = (x, y) if comes_back else None
+    try:
+        plan = planner.plan((x, y), end)
+    except NoPathError:
+        assume(False)
+    need = planner.floor.coverable((x, y))
+    # Seams of a fifth of a cell count whole cells here, and the rooms are tiny.
+    assert share_swept(plan, need, planner.floor.frame, tool) >= 0.99
+    if len(plan.points) > 1:
+        assert least_room(plan, map, (), reach) >= reach - TOLERANCE
+    assert tuple(plan.points[0]) == (x, y)
+    if comes_back:
+        assert tuple(plan.points[-1]) == (x, y)
+
+
+def test_an_empty_room_is_swept_with_little_more_than_the_least_way() -> None:
+    map = room(5.0, 4.0)
+    planner = CoveragePlanner(map, REACH, TOOL)
+    plan = planner.plan((2.5, 0.3), (2.5, 0.3))
+    need = planner.floor.coverable((2.5, 0.3))
+    least = float(need.sum()) * planner.floor.frame.resolution**2 / TOOL
+    assert share_swept(plan, need, planner.floor.frame) >= 0.995
+    assert plan.length < 1.12 * least
+    assert plan.turning < 90.0
+
+
+def test_length_and_turning_are_those_of_the_way() -> None:
+    plan = CoveragePlan(np.array([(0.0, 0.0), (3.0, 0.0), (3.0, 4.0), (0.0, 0.0)]))
+    assert plan.length == pytest.approx(12.0)
+    assert plan.turning == pytest.approx(math.pi / 2 + math.pi - math.atan2(3.0, 4.0))
+
+
+def test_ends_where_it_is_asked_to() -> None:
+    plan = CoveragePlanner(FLAT, REACH, TOOL).plan(START, (2.7, 2.1))
+    assert tuple(plan.points[0]) == START
+    assert tuple(plan.points[-1]) == (2.7, 2.1)
+
+
+def test_the_same_input_gives_the_same_plan_whatever_was_planned_before() -> None:
+    planner = CoveragePlanner(FLAT, REACH, TOOL)
+    first = planner.plan(START, START)
+    planner.plan((2.5, 1.5), obstacles=[(1.0, 1.5, 0.1)])
+    assert np.array_equal(planner.plan(START, START).points, first.points)
+    other = CoveragePlanner(FLAT, REACH, TOOL).plan(START, START)
+    assert np.array_equal(other.points, first.points)
+
+
+def test_sweeps_patches_with_a_short_way() -> None:
+    planner = CoveragePlanner(FLAT, REACH, TOOL)
+    coverable = planner.floor.coverable(START)
+    todo = np.zeros_like(coverable)
+    for x, y in ((0.3, 2.0), (1.5, 1.5), (1.6, 0.1)):
+        row, column = planner.floor.frame.cell_of(x, y)
+        todo[row : row + 12, column : column + 8] = True
+    plan = planner.plan(START, START, todo=todo)
+    assert share_swept(plan, todo & coverable, planner.floor.frame) >= 0.97
+    assert plan.length < 9.0
+    assert least_room(plan, FLAT) >= REACH - TOLERANCE
+
+
+@pytest.mark.parametrize(
+    ("end", "expected"), [(None, [START]), (START, [START]), ((1.0, 2.0), [START, (1.0, 2.0)])]
+)
+def test_nothing_to_do_is_no_way_but_to_the_end(end: Point | None, expected: list[Point]) -> None:
+    planner = CoveragePlanner(FLAT, REACH, TOOL)
+    plan = planner.plan(START, end, todo=np.zeros(planner.floor.frame.shape, np.bool_))
+    assert [tuple(point) for point in plan.points] == expected
+
+
+def test_keeps_clear_of_obstacles_that_the_map_does_not_show() -> None:
+    planner = CoveragePlanner(FLAT, REACH, TOOL)
+    obstacles = ((0.9, 1.6, 0.12), (1.9, 1.7, 0.05))
+    plan = planner.plan(START, START, obstacles=obstacles)
+    assert least_room(plan, FLAT, obstacles) >= REACH - TOLERANCE
+    need = planner.floor.with_obstacles(obstacles).coverable(START)
+    assert share_swept(plan, need, planner.floor.frame) >= 0.995
+    assert least_room(planner.plan(START, START), FLAT, obstacles) < REACH - TOLERANCE
+
+
+def test_edges_only_stays_along_walls_and_furniture() -> None:
+    planner = CoveragePlanner(FLAT, REACH, TOOL)
+    plan = planner.plan(START, START, edges_only=True)
+    done = swept(plan, planner.floor.frame)
+    frame = planner.floor.frame
+    assert done[frame.cell_of(0.09, 1.2)]
+    assert done[frame.cell_of(1.5, 2.31)]
+    assert not done[frame.cell_of(1.8, 1.5)]
+    assert not plan.swaths
+    assert plan.length < 0.6 * planner.plan(START, START).length
+
+
+def test_rooms_without_a_way_to_them_do_not_count() -> None:
+    map = room(4.0, 2.0, (1.9, 0.0, 0.1, 2.0))
+    planner = CoveragePlanner(map, REACH, TOOL)
+    need = planner.floor.coverable((0.5, 0.5))
+    assert not need[planner.floor.frame.cell_of(3.0, 1.0)]
+    plan = planner.plan((0.5, 0.5))
+    assert plan.points[:, 0].max() < 1.9
+    assert share_swept(plan, need, planner.floor.frame) >= 0.995
+    with pytest.raises(NoPathError) as refusal:
+        planner.plan((0.5, 0.5), (3.0, 1.0))
+    assert refusal.value.reason is NoPathReason.GOAL_UNREACHABLE
+
+
+def test_a_start_in_the_station_counts_as_just_in_front_of_it() -> None:
+    planner = CoveragePlanner(FLAT, REACH, TOOL)
+    plan = planner.plan((0.05, 1.0), (0.05, 1.0))
+    assert tuple(plan.points[0]) == tuple(plan.points[-1]) == (0.05, 1.0)
+    need = planner.floor.coverable((0.05, 1.0))
+    assert share_swept(plan, need, planner.floor.frame) >= 0.995
+
+
+@pytest.mark.parametrize("start", [(9.0, 9.0), (2.45, -0.5), (-3.0, 1.0)])
+def test_a_robot_that_cannot_move_gets_no_plan(start: Point) -> None:
+    with pytest.raises(NoPathError) as refusal:
+        CoveragePlanner(FLAT, REACH, TOOL).plan(start)
+    assert refusal.value.reason is NoPathReason.START_BLOCKED
+
+
+def test_a_station_behind_a_thin_wall_is_not_in_this_room() -> None:
+    map = room(3.0, 2.0, (1.0, 0.0, 0.05, 2.0), (0.0, 0.3, 1.0, 0.05))
+    floor = CoverageFloor.build(map, REACH, TOOL)
+    assert not floor.middles((0.9, 0.15)).any()
+
+
+def test_unknown_floor_is_solid() -> None:
+    map = room(2.0, 2.0)
+    map.values[:, 20:] = UNKNOWN
+    need = CoverageFloor.build(map, REACH, TOOL).coverable((0.5, 1.0))
+    assert need.any()
+    assert not need[:, 95:].any()
+
+
+@pytest.mark.parametrize("length", [0.0, -0.1, math.nan, math.inf])
+def test_lengths_that_make_no_sense_are_refused(length: float) -> None:
+    with pytest.raises(ValueError, match="reach"):
+        CoveragePlanner(FLAT, length, TOOL)
+    with pytest.raises(ValueError, match="tool_width"):
+        CoveragePlanner(FLAT, REACH, length)
+
+
+def test_points_masks_and_obstacles_that_make_no_sense_are_refused() -> None:
+    planner = CoveragePlanner(FLAT, REACH, TOOL)
+    with pytest.raises(ValueError, match="finite"):
+        planner.plan((math.nan, 1.0))
+    with pytest.raises(ValueError, match="finite"):
+        planner.plan(START, (1.0, math.inf))
+    with pytest.raises(ValueError, match="todo"):
+        planner.plan(START, todo=np.ones((3, 3), np.bool_))
+    with pytest.raises(ValueError, match="obstacle"):
+        planner.plan(START, obstacles=[(1.0, 1.0, -0.1)])

@@ -1,0 +1,40 @@
+import cv2
+import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import array_shapes, arrays
+from numpy.typing import NDArray
+
+from roomba.raster.regions import dilated, numbered_regions
+
+masks = arrays(np.bool_, array_shapes(min_dims=2, max_dims=2, max_side=20))
+
+
+def disc(span: int, radius: float) -> NDArray[np.bool_]:
+    offsets = np.arange(-span, span + 1)
+    return np.hypot(offsets[:, None], offsets) <= radius
+
+
+@given(masks, st.integers(0, 5), st.floats(-1.0, 1.0))
+def test_growing_by_a_disc_agrees_with_opencv(
+    mask: NDArray[np.bool_], span: int, share: float
+) -> None:
+    # Smaller than its square as well: then the rim of that is empty.
+    reach = disc(span, max(span + share, 0.0))
+    theirs = cv2.dilate(
+        mask.astype(np.uint8),
+        reach.astype(np.uint8),
+        borderType=cv2.BORDER_CONSTANT,
+        borderValue=0,
+    )
+    assert np.array_equal(dilated(mask, reach), theirs.astype(bool))
+
+
+@given(masks)
+def test_regions_agree_with_opencv_up_to_their_numbers(mask: NDArray[np.bool_]) -> None:
+    ours = numbered_regions(mask)
+    count, theirs = cv2.connectedComponents(mask.astype(np.uint8), connectivity=4)
+    pairs = set(zip(ours.ravel().tolist(), theirs.ravel().tolist(), strict=True))
+    assert len(pairs) == len({a for a, _ in pairs}) == len({b for _, b in pairs})
+    assert ours.max(initial=0) == count - 1
+    assert np.array_equal(ours > 0, mask)

@@ -1,0 +1,81 @@
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from roomba.storage.checkpoint import (
+    CheckpointFileError,
+    load_checkpoint,
+    load_dirt,
+    remove_checkpoint,
+    save_checkpoint,
+    save_dirt,
+)
+
+VALUES = {"phase": "CLEANING", "book": [1.5, 0.25, 0.0], "cleaning": {"swept": "eJw="}, "by": None}
+
+
+def test_a_checkpoint_comes_back_in_its_own_run_only(tmp_path: Path) -> None:
+    path = tmp_path / "robot" / "map.json"
+    assert load_checkpoint(path, "run 1") is None
+    save_checkpoint(VALUES, "run 1", path)
+    assert load_checkpoint(path, "run 1") == (VALUES, 0)
+    assert load_checkpoint(path, "run 2") is None
+    save_checkpoint(VALUES, "run 1", path, taken_up=2)
+    assert load_checkpoint(path, "run 1") == (VALUES, 2)
+    remove_checkpoint(path)
+    remove_checkpoint(path)
+    assert load_checkpoint(path, "run 1") is None
+
+
+def test_who_is_killed_while_writing_finds_the_one_from_before(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "map.json"
+    save_checkpoint(VALUES, "run", path)
+
+    def killed(_: int) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(os, "fsync", killed)
+    with pytest.raises(KeyboardInterrupt):
+        save_checkpoint({"phase": "DOCKING"}, "run", path)
+    assert load_checkpoint(path, "run") == (VALUES, 0)
+
+
+@pytest.mark.parametrize(
+    "text", ["", "{", "[1]", '{"run": "run"}', '{"run": "r", "taken_up": 0, "mission": 3}']
+)
+def test_a_broken_checkpoint_is_named(tmp_path: Path, text: str) -> None:
+    path = tmp_path / "map.json"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(CheckpointFileError, match=r"map\.json: expected"):
+        load_checkpoint(path, "run")
+
+
+def test_what_is_no_plain_value_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "map.json"
+    with pytest.raises(ValueError, match="JSON compliant"):
+        save_checkpoint({"x": float("nan")}, "run", path)
+    assert not path.exists()
+
+
+def test_dirt_comes_back_bit_for_bit(tmp_path: Path) -> None:
+    path = tmp_path / "map.npz"
+    learned = np.array([[np.nan, 1.5, 0.1], [0.0, 3e-9, np.nan]], np.float32)
+    assert load_dirt(path, (2, 3)) is None
+    save_dirt(learned, path)
+    read = load_dirt(path, (2, 3))
+    assert read is not None
+    assert read.tobytes() == learned.tobytes()
+    with pytest.raises(CheckpointFileError, match=r"shape \(4, 4\), got \(2, 3\)"):
+        load_dirt(path, (4, 4))
+
+
+@pytest.mark.parametrize("content", [b"", b"PK", b"no zip at all"])
+def test_a_broken_dirt_map_is_named(tmp_path: Path, content: bytes) -> None:
+    path = tmp_path / "map.npz"
+    path.write_bytes(content)
+    with pytest.raises(CheckpointFileError, match=r"map\.npz: expected a dirt map"):
+        load_dirt(path, (2, 3))

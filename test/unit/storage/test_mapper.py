@@ -1,0 +1,236 @@
+"""A map that is being made, kept in a file: bit for bit, whole or from before, or refused."""
+
+from __future__ import annotations
+
+import io
+import os
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from roomba.geometry import Pose
+from roomba.perception.slam.mapper_state import KeptSubmap, LidarNumbers, MapperState
+from roomba.perception.slam.pose_graph import Link
+from roomba.perception.slam.submap import Keyframe
+from roomba.storage.mapper import (
+    KeptMap,
+    MapperFileError,
+    load_mapper,
+    remove_mapper,
+    save_mapper,
+)
+
+Arrays = dict[str, NDArray[Any]]
+
+LIDAR = LidarNumbers(360, 0.0, 0.0175, 0.15, 12.0, Pose(0.1, 0.0, 3.0))
+NUMBERS = st.floats(-1e6, 1e6)
+
+
+def keyframe(points: int, seed: int) -> Keyframe:
+    random = np.random.default_rng(seed)
+    return Keyframe(random.normal(size=(points, 4)).astype(np.float32), random.normal(size=3))
+
+
+STATION = Pose(1.0, 2.0, 0.5)
+
+
+def kept(station: Pose | None = STATION) -> KeptMap:
+    submaps = (
+        KeptSubmap(0.0, (keyframe(5, 0), keyframe(0, 1), keyframe(3, 2))),
+        KeptSubmap(3.1, ()),
+        KeptSubmap(3.1, (keyframe(4, 3),)),
+    )
+    links = (
+        Link(0, 1, np.array([3.0, 0.1, 0.2]), np.eye(3), False),
+        Link(0, 2, np.array([2.0, 0.0, -0.2]), np.diag([1.0, 2.0, 3.0])),
+    )
+    poses = np.arange(9.0).reshape(3, 3)
+    state = MapperState(submaps, poses, links, 4.25, (0.01, -0.02), LIDAR, 17, True)
+    return KeptMap(state, "run 1", station, station, 2)
+
+
+def are_same(one: KeptMap, other: KeptMap) -> bool:
+    """Whether they are, to the last bit."""
+    mine, its = one.state, other.state
+    frames, others = ([f for s in each.submaps for f in s.keyframes] for each in (mine, its))
+    return (
+        (one.run, one.station, one.station_from_start, one.taken_up)
+        == (other.run, other.station, other.station_from_start, other.taken_up)
+        and (mine.way, mine.phase, mine.lidar, mine.version, mine.is_lost)
+        == (its.way, its.phase, its.lidar, its.version, its.is_lost)
+        and mine.poses.tobytes() == its.poses.tobytes()
+        and [(s.way, len(s.keyframes)) for s in mine.submaps]
+        == [(s.way, len(s.keyframes)) for s in its.submaps]
+        and [(f.points.tobytes(), f.points.dtype, f.points.shape, f.pose.tobytes()) for f in frames]
+        == [(f.points.tobytes(), f.points.dtype, f.points.shape, f.pose.tobytes()) for f in others]
+        and [
+            (k.parent, k.child, k.may_be_wrong, k.relative.tobytes(), k.information.tobytes())
+            for k in mine.links
+        ]
+        == [
+            (k.parent, k.child, k.may_be_wrong, k.relative.tobytes(), k.information.tobytes())
+            for k in its.links
+        ]
+    )
+
+
+@pytest.mark.parametrize("station", [None, STATION])
+def test_it_comes_back_bit_for_bit(tmp_path: Path, station: Pose | None) -> None:
+    path = tmp_path / "maps" / ".being_made" / "robot.npz"
+    assert load_mapper(path) is None
+    save_mapper(kept(station), path)
+    read = load_mapper(path)
+    assert read is not None
+    assert are_same(read, kept(station))
+    remove_mapper(path)
+    remove_mapper(path)
+    assert load_mapper(path) is None
+
+
+@st.composite
+def kept_maps(draw: st.DrawFn) -> KeptMap:
+    """Any map: submaps of any length, some empty, and any links between them."""
+    sizes = draw(st.lists(st.lists(st.integers(0, 6), max_size=4), min_size=1, max_size=5))
+    if not any(sizes):
+        sizes[0] = [1]
+    submaps = tuple(
+        KeptSubmap(draw(NUMBERS), tuple(keyframe(count, draw(st.integers(0, 99))) for count in own))
+        for own in sizes
+    )
+    number = st.integers(0, len(sizes) - 1)
+    links = tuple(
+        Link(parent, child, np.array(relative), np.diag(relative), doubt)
+        for parent, child, relative, doubt in draw(
+            st.lists(
+                st.tuples(number, number, st.tuples(NUMBERS, NUMBERS, NUMBERS), st.booleans()),
+                max_size=6,
+            )
+        )
+    )
+    poses = np.array([draw(st.tuples(NUMBERS, NUMBERS, NUMBERS)) for _ in sizes])
+    state = MapperState(
+        submaps,
+        poses,
+        links,
+        draw(NUMBERS),
+        draw(st.tuples(NUMBERS, NUMBERS)),
+        LIDAR,
+        draw(st.integers(0, 2**40)),
+        draw(st.booleans()),
+    )
+    stations = st.none() | st.builds(Pose, NUMBERS, NUMBERS, NUMBERS)
+    run = draw(st.text(st.characters(blacklist_characters="\0", blacklist_categories=["Cs"])))
+    return KeptMap(state, run, draw(stations), draw(stations), draw(st.integers(0, 9)))
+
+
+@given(kept_maps())
+@settings(max_examples=60, deadline=None)
+def test_any_map_comes_back(tmp_path_factory: pytest.TempPathFactory, any_map: KeptMap) -> None:
+    path = tmp_path_factory.mktemp("kept") / "robot.npz"
+    save_mapper(any_map, path)
+    read = load_mapper(path)
+    assert read is not None
+    assert are_same(read, any_map)
+
+
+def test_who_is_killed_while_writing_finds_the_one_from_before(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "robot.npz"
+    save_mapper(kept(), path)
+
+    def killed(_: int) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(os, "fsync", killed)
+    with pytest.raises(KeyboardInterrupt):
+        save_mapper(kept(None), path)
+    read = load_mapper(path)
+    assert read is not None
+    assert are_same(read, kept())
+
+
+def written(path: Path) -> bytes:
+    save_mapper(kept(), path)
+    return path.read_bytes()
+
+
+@pytest.mark.parametrize(
+    "spoil",
+    [
+        lambda whole: b"",
+        lambda whole: b"PK",
+        lambda whole: b"no zip at all",
+        lambda whole: whole[: len(whole) // 2],
+        lambda whole: whole[:-30],
+        lambda whole: whole[:900] + bytes(40) + whole[940:],
+    ],
+)
+def test_a_broken_file_is_named(tmp_path: Path, spoil: Callable[[bytes], bytes]) -> None:
+    path = tmp_path / "robot.npz"
+    path.write_bytes(spoil(written(path)))
+    with pytest.raises(MapperFileError, match=r"robot\.npz: expected a map.*remove the file"):
+        load_mapper(path)
+
+
+def test_a_folder_in_its_place_is_named(tmp_path: Path) -> None:
+    with pytest.raises(MapperFileError, match="remove the file"):
+        load_mapper(tmp_path)
+
+
+def rewritten(path: Path, **changes: NDArray[Any] | None) -> None:
+    """Write the file again with other arrays, or without some."""
+    with np.load(path) as file:
+        arrays: Arrays = {name: file[name] for name in file.files}
+    arrays |= {name: value for name, value in changes.items() if value is not None}
+    packed = io.BytesIO()
+    np.savez(
+        packed, **{n: a for n, a in arrays.items() if not (n in changes and changes[n] is None)}
+    )
+    path.write_bytes(packed.getvalue())
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"format": np.array(2)}, "expected one of format 1, got format 2"),
+        ({"poses": None}, "poses"),
+        ({"poses": np.zeros((2, 3))}, r"poses: expected float64 of shape \(3, 3\)"),
+        ({"poses": np.zeros((3, 3), np.float32)}, "poses: expected float64"),
+        ({"poses": np.full((3, 3), np.nan)}, "poses: expected finite numbers"),
+        ({"points": np.zeros((11, 4), np.float32)}, "points: expected float32"),
+        ({"submap_keyframes": np.array([1, 1, 1])}, "expected 3 keyframes, got 4"),
+        ({"keyframe_points": np.array([20, -8, 0, 0])}, "expected 0 or more, got -8"),
+        ({"link_ends": np.array([[0, 1], [0, 3]])}, "expected links between 3 submaps"),
+        ({"lidar_beams": np.array(0)}, "expected a lidar with beams"),
+        ({"lidar_numbers": np.array([0.0, 0.1, 3.0, 1.0])}, "reaches from near to far"),
+        ({"lidar_mount": np.full(3, np.nan)}, "and a mount"),
+        ({"station": np.array([1.0, np.nan, 0.0])}, "station: expected finite numbers"),
+        ({"run": np.array(7)}, "run: expected words"),
+        ({"run": np.array([None])}, "pickle"),
+        (
+            {
+                "submap_ways": np.zeros(0),
+                "submap_keyframes": np.zeros(0, np.int64),
+                "keyframe_points": np.zeros(0, np.int64),
+            },
+            "one submap with one keyframe",
+        ),
+    ],
+)
+def test_what_does_not_fit_together_is_refused(
+    tmp_path: Path, changes: dict[str, NDArray[Any] | None], message: str
+) -> None:
+    path = tmp_path / "robot.npz"
+    save_mapper(kept(), path)
+    rewritten(path)
+    assert load_mapper(path) is not None
+    rewritten(path, **changes)
+    with pytest.raises(MapperFileError, match=message):
+        load_mapper(path)
