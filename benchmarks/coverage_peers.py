@@ -25,7 +25,7 @@ from roomba.configuration.docking import DockingConfig
 from roomba.configuration.mission import MissionConfig
 from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose
-from roomba.mission.inputs.planning_context import Site
+from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.planning.coverage.plan import CoveragePlan
 from roomba.planning.coverage.planner import CoveragePlanner
 from roomba.world.home.home import Home
@@ -61,12 +61,12 @@ class Driven:
     poses: Floats = field(repr=False)
 
 
-def site_of(home: Home) -> Site:
+def site_of(home: Home) -> PlanningContext:
     """Return the home as the robot plans in it."""
-    return Site(home.map, home.station, RobotConfig(), MissionConfig(), DockingConfig())
+    return PlanningContext(home.map, home.station, RobotConfig(), MissionConfig(), DockingConfig())
 
 
-def planned(home: Home, site: Site, floor: Reachable, rounds: int) -> Planned:
+def planned(home: Home, site: PlanningContext, floor: Reachable, rounds: int) -> Planned:
     """Plan the whole floor as a clean does at its start; of the CPU time the best round counts."""
     start = (site.staging.x, site.staging.y)
     width, todo = site.coverage.floor.tool_width, site.coverable()

@@ -18,7 +18,7 @@ from benchmarks.localization_robot import (
     stand_things,
 )
 from roomba.geometry import Twist
-from roomba.mission.exploring.look_around import Search
+from roomba.mission.exploring.look_around import SearchDrive
 from roomba.perception.localization.estimate import Knowledge
 from roomba.world.engine.state.arrays import Fault
 
@@ -108,7 +108,7 @@ def _carry(
 
 def _watch(robot: LocalizedRobot, manner: Manner, wander: Wander) -> Try:
     """Let it look around as it wants to, or go about, until it has known its pose for a while."""
-    search = Search(robot.config.body)
+    search = SearchDrive(robot.config.body)
     start = robot.simulator.time
     found = noticed = math.inf
     is_wrong = False

@@ -20,7 +20,7 @@ from roomba.mission.cleaning.request import (
     Missed,
     MissReason,
 )
-from roomba.mission.inputs.senses import Battery, Beams
+from roomba.mission.inputs.senses import Battery, StationBeams
 from roomba.perception.rooms.zones import Zone, ZoneKind, Zones, ZonesError
 from roomba.perception.swept.coverage_bits import SWEPT, WANTED
 from roomba_ros.convert.mission import (
@@ -102,16 +102,16 @@ def test_the_battery_is_told_in_watt_hours() -> None:
 @pytest.mark.parametrize(
     ("code", "beams"),
     [
-        (0, Beams()),
-        (161, Beams(halo=True)),
-        (164, Beams(green=True)),
-        (168, Beams(red=True)),
-        (173, Beams(halo=True, green=True, red=True)),
-        (13, Beams()),
-        (255, Beams()),
+        (0, StationBeams()),
+        (161, StationBeams(halo=True)),
+        (164, StationBeams(green=True)),
+        (168, StationBeams(red=True)),
+        (173, StationBeams(halo=True, green=True, red=True)),
+        (13, StationBeams()),
+        (255, StationBeams()),
     ],
 )
-def test_beams_are_coded_as_create_2_does(code: int, beams: Beams) -> None:
+def test_beams_are_coded_as_create_2_does(code: int, beams: StationBeams) -> None:
     assert beams_of(code) == beams
 
 

@@ -13,7 +13,7 @@ from roomba.configuration.mission import MissionConfig
 from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose
 from roomba.mission.cleaning.cleaning import Cleaning
-from roomba.mission.inputs.planning_context import Site
+from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.mission.inputs.senses import Battery, Senses
 from roomba.mission.mission import Mission
 from roomba.mission.phases.machine import Event
@@ -26,7 +26,7 @@ from roomba_ros.mission.orders import MissionOrders, _Cancel, _Order
 from roomba_ros.mission.topics import MissionTopics
 
 CONFIG, MISSION_CONFIG = RobotConfig(), MissionConfig()
-SITE = Site(HOME.map, HOME.station, CONFIG, MISSION_CONFIG, DockingConfig())
+SITE = PlanningContext(HOME.map, HOME.station, CONFIG, MISSION_CONFIG, DockingConfig())
 AWAY = Senses(0.0, Pose(1.0, 0.6, 0.0))
 TELLS = {
     "state.publish": "state",

@@ -70,7 +70,7 @@ class WalkReport:
     message: str
 
 
-class Walk(Protocol):
+class WalkHandle(Protocol):
     """A walk under way."""
 
     def next_feedback(self, timeout: float) -> float | None:
@@ -181,7 +181,7 @@ class CleanReport:
     missed: tuple[MissedFloor, ...] = ()
 
 
-class Clean(Protocol):
+class CleanHandle(Protocol):
     """A clean under way. It goes on when nobody follows it."""
 
     def next_feedback(self, timeout: float) -> CleanProgress | None:
@@ -202,7 +202,7 @@ class DockReport:
     message: str
 
 
-class Docking(Protocol):
+class DockingHandle(Protocol):
     """A way into or out of the station. It goes on when nobody follows it."""
 
     def next_feedback(self, timeout: float) -> str | None:
@@ -232,7 +232,7 @@ class ExploreReport:
     duration: float
 
 
-class Exploring(Protocol):
+class ExploringHandle(Protocol):
     """An exploration under way. It goes on when nobody follows it."""
 
     def next_feedback(self, timeout: float) -> float | None:
@@ -292,7 +292,7 @@ class RobotClient(Protocol):
         Raises RequestRefusedError with the reason, RobotUnavailableError when nobody answers.
         """
 
-    def walk_to(self, x: float, y: float) -> Walk:
+    def walk_to(self, x: float, y: float) -> WalkHandle:
         """Start walking; raises RobotUnavailableError when no action server answers."""
 
     def clean(
@@ -305,7 +305,7 @@ class RobotClient(Protocol):
         spot: tuple[float, float] | None = None,
         passes: int = 1,
         fan: FanLevel = FanLevel.STANDARD,
-    ) -> Clean:
+    ) -> CleanHandle:
         """Start cleaning; another clean, or a way to the station, ends.
 
         ``rooms`` are for ROOMS, ``in_order`` or else the shortest way; ``zones`` for ZONES, lowest
@@ -313,13 +313,13 @@ class RobotClient(Protocol):
         to 5. Raises RequestRefusedError for what cannot be asked at all, RobotUnavailableError.
         """
 
-    def dock(self) -> Docking:
+    def dock(self) -> DockingHandle:
         """Start for the charging station, by its beams; raises RobotUnavailableError."""
 
-    def undock(self) -> Docking:
+    def undock(self) -> DockingHandle:
         """Start backing out of the charging station; raises RobotUnavailableError."""
 
-    def explore(self) -> Exploring:
+    def explore(self) -> ExploringHandle:
         """Start looking at what the robot's own map does not show yet; then it goes home.
 
         Raises RobotUnavailableError.

@@ -30,7 +30,7 @@ MODULE_OF_STEP = {
 LEAST_FREE_SPACE = 3.0  # GB; a set-up from nothing takes 2 GB, its downloads for a time 0.6 GB
 
 
-class State(Enum):
+class StepState(Enum):
     """What became of one check."""
 
     FINE = "fine"
@@ -46,7 +46,7 @@ class Finding:
     """One row of the doctor's table."""
 
     subject: str
-    state: State
+    state: StepState
     detail: str = ""
     mend: str = ""
 
@@ -69,16 +69,16 @@ def findings_of_steps(lines: Iterable[str]) -> list[Finding]:
             )
         name, state, detail = fields
         if state == "current":
-            findings.append(Finding(name, State.FINE))
+            findings.append(Finding(name, StepState.FINE))
         elif name.endswith("for tests"):
             detail = detail or "not set up, or not up to date"
-            findings.append(Finding(name, State.NOTE, detail, "./roomba test"))
+            findings.append(Finding(name, StepState.NOTE, detail, "./roomba test"))
         elif name == "compiled loops":
             detail = "the first start will be slow"
-            findings.append(Finding(name, State.NOTE, detail, "./roomba exec true"))
+            findings.append(Finding(name, StepState.NOTE, detail, "./roomba exec true"))
         else:
             detail = detail or "not set up, or not up to date"
-            findings.append(Finding(name, State.MISSING, detail, "./roomba run"))
+            findings.append(Finding(name, StepState.MISSING, detail, "./roomba run"))
     return findings
 
 
@@ -96,16 +96,16 @@ def check_modules(
         subject = f"imports of the {step}"
         if failures:
             mend = f"remove {python.parents[1]}, then ./roomba run"
-            findings.append(Finding(subject, State.MISSING, "; ".join(failures), mend))
+            findings.append(Finding(subject, StepState.MISSING, "; ".join(failures), mend))
         else:
-            findings.append(Finding(subject, State.FINE, ", ".join(modules)))
+            findings.append(Finding(subject, StepState.FINE, ", ".join(modules)))
     with_messages = {**environment, "PYTHONPATH": str(folder_of_messages)}
     reason = why_not_importable(python, "roomba_robot.msg", with_messages)
     if reason:
         mend = "remove .workspace, then ./roomba run"
-        findings.append(Finding("messages of roomba_robot", State.MISSING, reason, mend))
+        findings.append(Finding("messages of roomba_robot", StepState.MISSING, reason, mend))
     else:
-        findings.append(Finding("messages of roomba_robot", State.FINE))
+        findings.append(Finding("messages of roomba_robot", StepState.FINE))
     return findings
 
 
@@ -132,10 +132,10 @@ def check_python_on_path(path: str | None) -> Finding:
     """Return whether ``path``, which ``python3`` means in the user's shell, is the one of ROS."""
     subject = "python3 on PATH"
     if path in (SYSTEM_PYTHON, "/bin/python3"):
-        return Finding(subject, State.FINE, path)
+        return Finding(subject, StepState.FINE, path)
     detail = f"{path or 'there is none'}; ROS belongs to {SYSTEM_PYTHON}"
     mend = f"nothing for ./roomba; for catkin_make: -DPYTHON_EXECUTABLE={SYSTEM_PYTHON}"
-    return Finding(subject, State.NOTE, detail, mend)
+    return Finding(subject, StepState.NOTE, detail, mend)
 
 
 def check_master(uri: str, is_open: Callable[[str, int], bool]) -> Finding:
@@ -148,10 +148,12 @@ def check_master(uri: str, is_open: Callable[[str, int], bool]) -> Finding:
         host = port = None
     if not host or not port or parts.scheme != "http":
         detail = f"ROS_MASTER_URI: expected http://HOST:PORT, got {uri!r}"
-        return Finding(subject, State.MISSING, detail, f"export ROS_MASTER_URI={DEFAULT_MASTER}")
+        return Finding(
+            subject, StepState.MISSING, detail, f"export ROS_MASTER_URI={DEFAULT_MASTER}"
+        )
     if is_open(host, port):
-        return Finding(subject, State.FINE, f"something answers at {uri}")
-    return Finding(subject, State.NOTE, f"none at {uri}", "./roomba run starts one")
+        return Finding(subject, StepState.FINE, f"something answers at {uri}")
+    return Finding(subject, StepState.NOTE, f"none at {uri}", "./roomba run starts one")
 
 
 def is_port_open(host: str, port: int) -> bool:
@@ -166,18 +168,18 @@ def is_port_open(host: str, port: int) -> bool:
 def check_display(environment: Mapping[str, str]) -> Finding:
     """Return whether windows can be shown."""
     if environment.get("DISPLAY"):
-        return Finding("display", State.FINE, environment["DISPLAY"])
+        return Finding("display", StepState.FINE, environment["DISPLAY"])
     detail = "there is none: the camera client saves its pictures and says where"
-    return Finding("display", State.NOTE, detail)
+    return Finding("display", StepState.NOTE, detail)
 
 
 def check_space(free: float) -> Finding:
     """Return whether the disk has room for a set-up (``free`` in GB)."""
     detail = f"{free:.1f} GB free"
     if free >= LEAST_FREE_SPACE:
-        return Finding("disk", State.FINE, detail)
+        return Finding("disk", StepState.FINE, detail)
     mend = f"make room: a set-up from nothing wants {LEAST_FREE_SPACE:g} GB"
-    return Finding("disk", State.NOTE, detail, mend)
+    return Finding("disk", StepState.NOTE, detail, mend)
 
 
 def as_table(findings: Iterable[Finding]) -> str:
@@ -202,7 +204,7 @@ def examine(
 ) -> list[Finding]:
     """Return all findings about the checkout in ``repository`` and the machine it is on."""
     findings = findings_of_steps(steps)
-    if all(finding.state is not State.MISSING for finding in findings):
+    if all(finding.state is not StepState.MISSING for finding in findings):
         python = repository / ".venv/bin/python3"
         messages = repository / ".workspace/devel/lib/python3/dist-packages"
         findings += check_modules(python, {**environment, "PYTHONNOUSERSITE": "1"}, messages)
@@ -227,7 +229,7 @@ def main() -> int:
     environment.pop("PYTHONPATH", None)  # set by ./roomba for this program alone
     findings = examine(arguments.repository, sys.stdin, environment)
     print(as_json(findings) if arguments.json else as_table(findings))
-    return 1 if any(finding.state is State.MISSING for finding in findings) else 0
+    return 1 if any(finding.state is StepState.MISSING for finding in findings) else 0
 
 
 if __name__ == "__main__":

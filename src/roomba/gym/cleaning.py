@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 
 from roomba.errors import HomeError
 from roomba.geometry import Pose
-from roomba.gym.floor import Coverage, Floor
-from roomba.gym.observation import Senses
+from roomba.gym.floor import Coverage, FloorDistances
+from roomba.gym.observation import Observer
 from roomba.gym.task import Task
 from roomba.world.fleet import Fleet
 from roomba.world.home.dirt import MICROGRAMS_PER_GRAM
@@ -51,7 +51,7 @@ class Outcome:
     floor), dirt_removed (g), energy (Wh), distance (m), collisions, time (s)."""
 
 
-class Cleaning:
+class CleaningTask:
     """Robots that clean, each in a world of its own, and what they get for it."""
 
     def __init__(self, task: Task, robots: int, threads: int | None = None) -> None:
@@ -59,8 +59,8 @@ class Cleaning:
         self.task = task
         home = task.loaded_home()
         self.fleet = Fleet([home] * robots, task.robot, max_speed=task.max_speed, threads=threads)
-        self.senses = Senses(self.fleet, task.max_speed)
-        self.floor = Floor.of(home, self.fleet.config)
+        self.senses = Observer(self.fleet, task.max_speed)
+        self.floor = FloorDistances.of(home, self.fleet.config)
         dirt = int(self.fleet.dirt(0).micrograms[self.floor.reachable].sum(dtype=np.int64))
         capacity = self.fleet.config.brush.bin_capacity * MICROGRAMS_PER_GRAM
         if dirt == 0:

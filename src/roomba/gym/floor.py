@@ -21,7 +21,7 @@ _STANDS_WITHIN = 0.5
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Floor:
+class FloorDistances:
     """What can be reached from the station; make it with :meth:`of`."""
 
     frame: GridFrame
@@ -36,7 +36,7 @@ class Floor:
     """How many cells away from the robot's own one there may be others within reach."""
 
     @staticmethod
-    def of(home: Home, config: RobotConfig) -> Floor:
+    def of(home: Home, config: RobotConfig) -> FloorDistances:
         """Return the floor of a home; raises HomeError where the robot can stand nowhere."""
         frame, blocked = home.frame, home.solid | home.drop
         # A wall's face is half a cell nearer than its cell's middle.
@@ -60,7 +60,7 @@ class Floor:
         cells = reach / dirt.frame.resolution
         standing = np.repeat(np.repeat(region, fineness, axis=0), fineness, axis=1)
         there = region[rows, columns]
-        return Floor(
+        return FloorDistances(
             frame=dirt.frame,
             places=np.stack([x[there], y[there]], axis=1),
             reachable=dilated(standing, _disc(cells)) & dirt.floor,
@@ -75,7 +75,7 @@ class Coverage:
     A cell is covered once its middle was within reach.
     """
 
-    def __init__(self, floor: Floor, robots: int) -> None:
+    def __init__(self, floor: FloorDistances, robots: int) -> None:
         """Begin with nothing covered."""
         self._frame = floor.frame
         self._squared_reach = (floor.reach / floor.frame.resolution) ** 2 + 1e-9

@@ -75,7 +75,7 @@ def observation_space(config: RobotConfig, max_speed: float) -> Box:
     return Box(low, high, dtype=np.float32)
 
 
-class Senses:
+class Observer:
     """Reads the observations of all robots of a fleet."""
 
     def __init__(self, fleet: Fleet, max_speed: float) -> None:

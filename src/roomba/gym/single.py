@@ -9,7 +9,7 @@ import numpy as np
 from gymnasium.spaces import Box
 from numpy.typing import NDArray
 
-from roomba.gym.cleaning import Cleaning, Outcome
+from roomba.gym.cleaning import CleaningTask, Outcome
 from roomba.gym.task import Task
 
 Observation = NDArray[np.float32]
@@ -52,7 +52,7 @@ class RoombaClean(gymnasium.Env[NDArray[Any], NDArray[Any]]):
         self.task = Task(**task)
         self.metadata = metadata_of(self.metadata, self.task, render_mode)  # type: ignore[misc]
         self.render_mode = render_mode
-        self._cleaning = Cleaning(self.task, robots=1, threads=1)
+        self._cleaning = CleaningTask(self.task, robots=1, threads=1)
         self.action_space = action_space()
         self.observation_space = self._cleaning.senses.space
 

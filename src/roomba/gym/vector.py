@@ -11,7 +11,7 @@ from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
-from roomba.gym.cleaning import Cleaning, Flags, Floats, Outcome
+from roomba.gym.cleaning import CleaningTask, Flags, Floats, Outcome
 from roomba.gym.single import RENDER_MODES, action_space, metadata_of
 from roomba.gym.task import Task
 
@@ -53,7 +53,7 @@ class RoombaCleanVector(VectorEnv[Observations, Actions, NDArray[Any]]):
         self.metadata = metadata_of(self.metadata, self.task, render_mode)  # type: ignore[misc]
         self.render_mode = render_mode
         self.num_envs = num_envs
-        self._cleaning = Cleaning(self.task, num_envs, threads)
+        self._cleaning = CleaningTask(self.task, num_envs, threads)
         self.single_action_space = action_space()
         self.single_observation_space = self._cleaning.senses.space
         self.action_space = batch_space(self.single_action_space, num_envs)

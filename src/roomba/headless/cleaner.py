@@ -20,8 +20,8 @@ from roomba.grid import OccupancyMap
 from roomba.headless.closed_loop import LONGEST_BURST, STEP, STEPS_PER_TICK, ClosedLoop
 from roomba.headless.parts import SafeDrive, require_end, senses_of
 from roomba.mission.cleaning.request import CleanRequest, CleanResult
-from roomba.mission.exploring.look_around import Search
-from roomba.mission.inputs.planning_context import Site
+from roomba.mission.exploring.look_around import SearchDrive
+from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.mission.inputs.senses import Senses
 from roomba.mission.mission import Mission
 from roomba.mission.phases.machine import Phase
@@ -94,9 +94,11 @@ class HeadlessMission:
         self._beams = self.lidar.arrays()
         self.things = ThingLayer(self.localizer.field)
         self.dirt = DirtMap(known)
-        self.site = Site(known, home.station, self.robot, self.config, docking, rooms, zones)
+        self.site = PlanningContext(
+            known, home.station, self.robot, self.config, docking, rooms, zones
+        )
         self._drive = SafeDrive(self.robot, self.simulator.max_speed)
-        self._search = Search(body)
+        self._search = SearchDrive(body)
         self._scans = 0
         self.seen = self.simulator.observe()
         self._localize()

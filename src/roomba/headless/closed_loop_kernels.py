@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from roomba.control.tracking_kernels import Course, track
 from roomba.perception.localization.belief_correct_kernels import correct, is_calm
 from roomba.perception.localization.belief_reckon_kernels import reckon
-from roomba.perception.matching.beams import Beams
+from roomba.perception.matching.beams import LidarBeams
 from roomba.perception.swept.coverage_kernels import sweep
 from roomba.perception.swept.dirt_map import note_dirt
 from roomba.perception.things.kernels import Things, note
@@ -72,7 +72,7 @@ class Belief(NamedTuple):
     numbers: Rows
     field: NDArray[np.float32]
     place: Floats
-    beams: Beams
+    beams: LidarBeams
     things: Things
 
 

@@ -24,7 +24,7 @@ from roomba.headless.exploring_loop import ExploringLoop
 from roomba.headless.exploring_loop_kernels import BELIEVED, PASSED, TIME, TRUE, Sight
 from roomba.headless.parts import SafeDrive, senses_of
 from roomba.mission.exploring.exploration import ExploreResult
-from roomba.mission.inputs.planning_context import Site
+from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.mission.inputs.senses import Senses
 from roomba.mission.mission import Mission, MissionStep
 from roomba.mission.phases.machine import Phase
@@ -225,13 +225,13 @@ class HeadlessExplorer:
         x, y = self.mission.last_place if goal is None else goal.middle
         return self.mapper.occupancy_around(x, y, _AROUND_GOAL)
 
-    def _look_beside(self, site: Site) -> ThingLayer:
+    def _look_beside(self, site: PlanningContext) -> ThingLayer:
         """Look from now on for what a site's map does not show."""
         field = SurfaceField.near(site.occupancy, _BESIDE_SURFACES)
         self._things = ThingLayer(field)
         self.sight = Sight(self._things.arrays, field.values, field.place)
         return self._things
 
-    def _site(self, occupancy: OccupancyMap, *, is_growing: bool = True) -> Site:
+    def _site(self, occupancy: OccupancyMap, *, is_growing: bool = True) -> PlanningContext:
         parts = self._station, self.robot, self.config, self._docking
-        return Site(occupancy, *parts, is_growing=is_growing)
+        return PlanningContext(occupancy, *parts, is_growing=is_growing)

@@ -8,7 +8,7 @@ from roomba.configuration.robot import RobotConfig
 from roomba.control.speed_loop import SpeedLoop
 from roomba.errors import RoombaError
 from roomba.geometry import Twist
-from roomba.mission.inputs.senses import Battery, Beams, Senses
+from roomba.mission.inputs.senses import Battery, Senses, StationBeams
 from roomba.perception.localization.estimate import Estimate
 from roomba.world.engine.state.arrays import Infrared
 from roomba.world.home.home import Home
@@ -44,7 +44,9 @@ def senses_of(seen: Observation, estimate: Estimate) -> Senses:
         seen.cliff.left or seen.cliff.front_left,
         seen.cliff.right or seen.cliff.front_right,
         seen.wheels.dropped,
-        Beams(Infrared.HALO in infrared, Infrared.GREEN in infrared, Infrared.RED in infrared),
+        StationBeams(
+            Infrared.HALO in infrared, Infrared.GREEN in infrared, Infrared.RED in infrared
+        ),
         Battery(seen.battery.level, seen.battery.capacity, seen.battery.is_docked),
         seen.grains,
         seen.in_bin,

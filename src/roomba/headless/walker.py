@@ -16,7 +16,7 @@ from roomba.control.speed_loop import SpeedLoop
 from roomba.errors import RoombaError
 from roomba.geometry import Pose, Twist
 from roomba.mission.driving.unknown_things import UnknownThings
-from roomba.mission.exploring.look_around import Search
+from roomba.mission.exploring.look_around import SearchDrive
 from roomba.mission.walking.walk import Sensed, Walk, WalkState, WalkStep
 from roomba.perception.localization.localizer import Localizer
 from roomba.perception.matching.scan_view import LidarModel
@@ -80,7 +80,7 @@ class HeadlessRobot:
         )
         self._lidar = LidarModel.all_around(lidar.beams, lidar.min_range, lidar.max_range)
         self._scans = 0
-        self._search = Search(body)
+        self._search = SearchDrive(body)
         self._max_speed = max_speed
         self._position_loop = PositionLoop(self.config.control, body)
         self._speed_loop = SpeedLoop(body.command_timeout, max_speed, body.max_angular_speed)

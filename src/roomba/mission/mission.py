@@ -23,16 +23,16 @@ from roomba.mission.cleaning.request import CleanOutcome, CleanRequest, CleanRes
 from roomba.mission.driving.drives import Drives
 from roomba.mission.driving.obstacles import Obstacles
 from roomba.mission.driving.path_driver import PathDriver
-from roomba.mission.driving.retry_policy import Patience
+from roomba.mission.driving.retry_policy import RetryPolicy
 from roomba.mission.exploring.exploration import Exploration, ExploreResult
-from roomba.mission.inputs.planning_context import Site
+from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.mission.inputs.senses import Senses
 from roomba.mission.phases import phases
 from roomba.mission.phases.at_station import AtStation
 from roomba.mission.phases.cleaning import CleanPhase
 from roomba.mission.phases.job import Job
 from roomba.mission.phases.machine import Errand, Event, MissionState, Phase, next_state
-from roomba.mission.phases.monitor import Watch
+from roomba.mission.phases.monitor import Monitor
 from roomba.mission.phases.step import PhaseStep
 from roomba.perception.localization.estimate import Knowledge
 from roomba.perception.swept.dirt_map import DirtMap
@@ -64,7 +64,7 @@ class Mission:
 
     def __init__(
         self,
-        site: Site,
+        site: PlanningContext,
         robot: RobotConfig,
         config: MissionConfig,
         docking: DockingConfig,
@@ -81,10 +81,10 @@ class Mission:
         self.book = self._job.book
         self._drives = Drives(site, robot, config.driving, self.obstacles)
         self.trail = self._drives.trail
-        self._patience = Patience()
+        self._patience = RetryPolicy()
         self._clean_phase = CleanPhase(self._job, self._drives, self._patience, config.exploring)
         self._at_station = AtStation(docking, robot)
-        self._watch = Watch(robot.walk, self._drives, self.book, senses)
+        self._watch = Monitor(robot.walk, self._drives, self.book, senses)
         self._last = senses
 
     # ---------------------------------------------------------------- commands
@@ -145,7 +145,7 @@ class Mission:
     def _cleaning_of(self, request: CleanRequest, senses: Senses) -> Cleaning:
         return Cleaning(request, self.site, self.dirt, self._config.cleaning, senses.pose)
 
-    def use_site(self, site: Site) -> None:
+    def use_site(self, site: PlanningContext) -> None:
         """Go on with other zones or rooms, from the next tick on."""
         self._drives.use_site(site)
         if not self._goes_on_looking():
@@ -159,7 +159,7 @@ class Mission:
         if self.cleaning is not None and not self.cleaning.explores:
             self._job.exploration = None
 
-    def use_map(self, site: Site, things: ThingLayer, dirt: DirtMap) -> None:
+    def use_map(self, site: PlanningContext, things: ThingLayer, dirt: DirtMap) -> None:
         """Go on with a map that has grown, or with the whole one, from the next tick on.
 
         ``things`` and ``dirt`` are new ones of that map.
@@ -215,7 +215,7 @@ class Mission:
     # ---------------------------------------------------------------- what others may look at
 
     @property
-    def site(self) -> Site:
+    def site(self) -> PlanningContext:
         """The home as it plans in it."""
         return self._drives.site
 

@@ -9,7 +9,7 @@ import math
 from collections.abc import Sequence
 
 from roomba.client.protocol import (
-    Clean,
+    CleanHandle,
     CleanMode,
     CleanReport,
     ErrandOutcome,
@@ -145,7 +145,7 @@ def _ask_rooms(menu: Menu, names: Sequence[str]) -> list[str]:
         menu.say(f"Expected rooms of this list, got {text!a}. Please try again.", style="red")
 
 
-def _follow_clean(menu: Menu, under_way: Clean) -> None:
+def _follow_clean(menu: Menu, under_way: CleanHandle) -> None:
     with clean_view(menu.console, menu.clock) as view:
         report = follow_errand(
             under_way, view.show, wants_to_leave=menu.interrupts.noted, clock=menu.clock

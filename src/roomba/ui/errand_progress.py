@@ -27,7 +27,7 @@ _News = TypeVar("_News", covariant=True)
 _Report = TypeVar("_Report", covariant=True)
 
 
-class Errand(Protocol[_News, _Report]):
+class ErrandHandle(Protocol[_News, _Report]):
     """A clean, or a way into or out of the station."""
 
     def next_feedback(self, timeout: float) -> _News | None:
@@ -38,7 +38,7 @@ class Errand(Protocol[_News, _Report]):
 
 
 def follow_errand(
-    errand: Errand[_News, _Report],
+    errand: ErrandHandle[_News, _Report],
     show: Callable[[_News], None],
     *,
     wants_to_leave: Callable[[], bool],

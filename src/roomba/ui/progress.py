@@ -14,7 +14,7 @@ from typing import Any, Protocol
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn
 
-from roomba.client.protocol import RobotClient, RobotState, Walk, WalkOutcome, WalkReport
+from roomba.client.protocol import RobotClient, RobotState, WalkHandle, WalkOutcome, WalkReport
 from roomba.errors import RoombaError
 
 POLL_TIME = 0.25
@@ -140,7 +140,7 @@ def walk_view(console: Console, total: float) -> Iterator[WalkView]:
 
 
 def follow_walk(
-    walk: Walk,
+    walk: WalkHandle,
     robot: RobotClient,
     view: WalkView,
     *,
@@ -226,7 +226,7 @@ def _newest_state(robot: RobotClient) -> RobotState | None:
         return None
 
 
-def _cancel(walk: Walk) -> None:
+def _cancel(walk: WalkHandle) -> None:
     # a robot that cannot be told is found out by the deadline
     with contextlib.suppress(RoombaError):
         walk.cancel()

@@ -33,9 +33,9 @@ from roomba.geometry import Pose
 from roomba.grid import FREE, OccupancyMap
 from roomba_ros.bags.localize_files import OUTPUT_TOPICS, RowBag, RowFile, RowTable
 from roomba_ros.bags.localize_mounts import Mounts
-from roomba_ros.bags.localize_recording import Kind, Recording, RecordingError
+from roomba_ros.bags.localize_recording import MessageKind, Recording, RecordingError
 from roomba_ros.bags.localize_replay import Replay
-from roomba_ros.bags.localize_report import Summary, Tally, lines_of
+from roomba_ros.bags.localize_report import LocalizationSummary, Tally, lines_of
 
 _PROGRAM: Final = "./roomba localize"
 _MOUNT_MESSAGES: Final = 1000
@@ -60,18 +60,18 @@ class _Parser(argparse.ArgumentParser):
 class _Topics:
     """The topics that are read, and what they tell of the robot's frames."""
 
-    kinds: dict[str, Kind]
+    kinds: dict[str, MessageKind]
     own_poses: str | None
     start: str | None
     base: str
     odometry_frame: str
 
     @property
-    def kinds_of_own_poses(self) -> tuple[Kind, ...]:
+    def kinds_of_own_poses(self) -> tuple[MessageKind, ...]:
         """What the robot's own poses come as: one topic may tell the start as well."""
         if self.own_poses is not None and self.own_poses == self.start:
-            return (Kind.TOLD,)
-        return (Kind.OWN_POSE,)
+            return (MessageKind.TOLD,)
+        return (MessageKind.OWN_POSE,)
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -182,7 +182,7 @@ def _start(numbers: list[float] | None, occupancy: OccupancyMap) -> Pose | None:
 
 def _localize(
     options: argparse.Namespace, recording: Recording, occupancy: OccupancyMap, start: Pose | None
-) -> Summary:
+) -> LocalizationSummary:
     """Go through the recording, and write down what was found."""
     topics = _topics(options, recording, start)
     mounts, has_map_transform = _mounts(recording, topics)
@@ -221,29 +221,29 @@ def _localize(
 
 def _topics(options: argparse.Namespace, recording: Recording, start: Pose | None) -> _Topics:
     """Return what is read of the recording; raises RecordingError if too little is there."""
-    scan = recording.require(options.scan_topic, Kind.SCAN, "--scan-topic")
-    odometry = recording.require(options.odom_topic, Kind.ODOMETRY, "--odom-topic")
+    scan = recording.require(options.scan_topic, MessageKind.SCAN, "--scan-topic")
+    odometry = recording.require(options.odom_topic, MessageKind.ODOMETRY, "--odom-topic")
     if options.imu_topic is not None:
-        gyro = recording.require(options.imu_topic, Kind.GYRO, "--imu-topic")
+        gyro = recording.require(options.imu_topic, MessageKind.GYRO, "--imu-topic")
     else:
-        gyro = recording.beside(odometry, "imu", Kind.GYRO)
+        gyro = recording.beside(odometry, "imu", MessageKind.GYRO)
     own_poses = (
-        recording.beside(odometry, "pose", Kind.OWN_POSE)
-        or recording.beside(odometry, "position", Kind.OWN_POSE)
-        or recording.beside(odometry, "amcl_pose", Kind.OWN_POSE)
+        recording.beside(odometry, "pose", MessageKind.OWN_POSE)
+        or recording.beside(odometry, "position", MessageKind.OWN_POSE)
+        or recording.beside(odometry, "amcl_pose", MessageKind.OWN_POSE)
     )
     told = None
     if start is None:
-        told = recording.beside(odometry, "initialpose", Kind.TOLD) or recording.beside(
-            odometry, "amcl_pose", Kind.TOLD
+        told = recording.beside(odometry, "initialpose", MessageKind.TOLD) or recording.beside(
+            odometry, "amcl_pose", MessageKind.TOLD
         )
-    kinds = {scan: Kind.SCAN, odometry: Kind.ODOMETRY}
-    lifted = recording.beside(odometry, "wheel_drop", Kind.LIFTED)
+    kinds = {scan: MessageKind.SCAN, odometry: MessageKind.ODOMETRY}
+    lifted = recording.beside(odometry, "wheel_drop", MessageKind.LIFTED)
     for topic, kind in (
-        (gyro, Kind.GYRO),
-        (lifted, Kind.LIFTED),
-        (own_poses, Kind.OWN_POSE),
-        (told, Kind.TOLD),
+        (gyro, MessageKind.GYRO),
+        (lifted, MessageKind.LIFTED),
+        (own_poses, MessageKind.OWN_POSE),
+        (told, MessageKind.TOLD),
     ):
         if topic is not None:
             kinds[topic] = kind
@@ -346,7 +346,7 @@ def _progress() -> Iterator[Callable[[float], None]]:
         yield draw
 
 
-def _tell(options: argparse.Namespace, summary: Summary) -> None:
+def _tell(options: argparse.Namespace, summary: LocalizationSummary) -> None:
     """Print the table; with figures on standard output it goes to standard error."""
     console = Console(stderr=options.json == "-")
     lines = lines_of(summary)

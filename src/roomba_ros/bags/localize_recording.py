@@ -47,7 +47,7 @@ class RecordingError(RoombaError):
     """A bag that cannot be used; says what was expected, what came, and what to do."""
 
 
-class Kind(IntEnum):
+class MessageKind(IntEnum):
     """What a message is about; of messages of the same time the first of these comes first."""
 
     GYRO = 0
@@ -61,13 +61,13 @@ class Kind(IntEnum):
     """Where the robot itself believed to be."""
 
 
-TYPES: Final[dict[Kind, tuple[str, ...]]] = {
-    Kind.GYRO: ("sensor_msgs/Imu",),
-    Kind.ODOMETRY: ("nav_msgs/Odometry",),
-    Kind.LIFTED: ("roomba_robot/WheelDrop",),
-    Kind.TOLD: ("geometry_msgs/PoseWithCovarianceStamped",),
-    Kind.SCAN: ("sensor_msgs/LaserScan",),
-    Kind.OWN_POSE: (
+TYPES: Final[dict[MessageKind, tuple[str, ...]]] = {
+    MessageKind.GYRO: ("sensor_msgs/Imu",),
+    MessageKind.ODOMETRY: ("nav_msgs/Odometry",),
+    MessageKind.LIFTED: ("roomba_robot/WheelDrop",),
+    MessageKind.TOLD: ("geometry_msgs/PoseWithCovarianceStamped",),
+    MessageKind.SCAN: ("sensor_msgs/LaserScan",),
+    MessageKind.OWN_POSE: (
         "geometry_msgs/PoseStamped",
         "roomba_robot/RobotPosition",
         "geometry_msgs/PoseWithCovarianceStamped",
@@ -83,7 +83,7 @@ class Heard:
     """
 
     stamp: float
-    kind: Kind
+    kind: MessageKind
     message: Any
     arrival: float
     share: float
@@ -137,7 +137,7 @@ class Recording:
         """Close the bag."""
         self._bag.close()
 
-    def require(self, topic: str, kind: Kind, option: str) -> str:
+    def require(self, topic: str, kind: MessageKind, option: str) -> str:
         """Return a topic's name if such messages are on it; raises RecordingError."""
         expected = TYPES[kind][0]
         name = topic if topic in self.types else f"/{topic.strip('/')}"
@@ -156,7 +156,7 @@ class Recording:
             f"The bag has {', '.join(listed)}"
         )
 
-    def beside(self, topic: str, name: str, kind: Kind) -> str | None:
+    def beside(self, topic: str, name: str, kind: MessageKind) -> str | None:
         """Return the topic ``name`` of the same robot as ``topic``, if such messages are on it."""
         namespace = topic.rpartition("/")[0]
         for candidate in (f"{namespace}/{name}", f"/{name}"):
@@ -173,17 +173,17 @@ class Recording:
         read = (self._read(index, at) for at in range(min(count, len(index.chunks))))
         return [found[1] for found in read if found is not None]
 
-    def messages(self, kinds: dict[str, Kind]) -> Iterator[Heard]:
+    def messages(self, kinds: dict[str, MessageKind]) -> Iterator[Heard]:
         """Yield the messages of topics, each with its kind, in the order of their stamps.
 
         One of the topics is of odometry. Where that clock is set back all begins anew; other
         messages that come more than a second late are left out, and counted in the notes.
         """
-        odometry = next(topic for topic, kind in kinds.items() if kind is Kind.ODOMETRY)
+        odometry = next(topic for topic, kind in kinds.items() if kind is MessageKind.ODOMETRY)
         topics = list(kinds)
         index = self._index(topics, odometry)
         clocks = self._clocks(index, topics, odometry)
-        waiting: list[tuple[float, Kind, int, Heard]] = []
+        waiting: list[tuple[float, MessageKind, int, Heard]] = []
         newest = -math.inf
         for at in range(len(index.chunks)):
             found = self._read(index, at)
@@ -194,7 +194,7 @@ class Recording:
             kind, (arrival, message) = kinds[topic], found
             stamp = clocks[topic].stamp(message, arrival)
             if stamp < newest - WINDOW:
-                if kind is not Kind.ODOMETRY:
+                if kind is not MessageKind.ODOMETRY:
                     self._late += 1
                     continue
                 while waiting:

@@ -16,7 +16,7 @@ from roomba.grid import OccupancyMap
 from roomba.perception.localization.estimate import Estimate
 from roomba.perception.localization.localizer import Localizer
 from roomba_ros.bags.localize_mounts import Mounts
-from roomba_ros.bags.localize_recording import Heard, Kind
+from roomba_ros.bags.localize_recording import Heard, MessageKind
 from roomba_ros.bags.recorded_drive import LATEST, RecordedDrive
 from roomba_ros.convert.common import pose_of_odometry
 from roomba_ros.convert.localization import ranges_of, told_pose_of
@@ -75,16 +75,16 @@ class Replay(RecordedDrive):
     def hear(self, heard: Heard) -> Row | None:
         """Take in a message; return what is known then, if it is time to tell."""
         message = heard.message
-        if heard.kind is Kind.ODOMETRY:
+        if heard.kind is MessageKind.ODOMETRY:
             self._hear_odometry(heard.stamp, message)
-        elif heard.kind is Kind.GYRO:
+        elif heard.kind is MessageKind.GYRO:
             self._hear_gyro(heard.stamp, message)
-        elif heard.kind is Kind.SCAN:
+        elif heard.kind is MessageKind.SCAN:
             self._hear_scan(heard.stamp, message)
-        elif heard.kind is Kind.LIFTED and self._localizer is not None:
+        elif heard.kind is MessageKind.LIFTED and self._localizer is not None:
             # One wheel hangs over an edge; a robot that is held has both in the air.
             self._localizer.lift(message.is_left_dropped and message.is_right_dropped)
-        elif heard.kind is Kind.TOLD:
+        elif heard.kind is MessageKind.TOLD:
             self._hear_told(message)
         return self._row(heard)
 
@@ -163,11 +163,11 @@ class Replay(RecordedDrive):
         localizer = self._localizer
         if localizer is None:
             return None
-        period = _ROW_PERIOD if heard.kind is Kind.ODOMETRY else _SILENCE
+        period = _ROW_PERIOD if heard.kind is MessageKind.ODOMETRY else _SILENCE
         passed = heard.stamp - self._told_row
         if 0.0 <= passed < period:
             return None
-        if passed < 0.0 and heard.kind is not Kind.ODOMETRY:
+        if passed < 0.0 and heard.kind is not MessageKind.ODOMETRY:
             return None
         if math.isfinite(passed):
             self._elapsed += max(0.0, passed)

@@ -67,7 +67,7 @@ class Difference:
 
 
 @dataclass(slots=True)
-class Summary:
+class LocalizationSummary:
     """The figures of a drive; times in s, deviations in m and rad, shares 0..1 of the time.
 
     ``found_after`` is when the place was first known well enough to drive by, None if never.
@@ -136,13 +136,15 @@ class Tally:
         if place is not None and all(map(math.isfinite, (place.x, place.y))):
             self._own.append((heard.stamp, place.x, place.y))
 
-    def summary(self, bag: str, map_: str, start: str, scans: int, processing: float) -> Summary:
+    def summary(
+        self, bag: str, map_: str, start: str, scans: int, processing: float
+    ) -> LocalizationSummary:
         """Return the figures; ``processing`` s is what it took."""
         seconds = self.last.elapsed if self.last is not None else 0.0
         counted = sum(self._seconds.values())
         known = [row.estimate for row in self.rows.rows if row.estimate.knowledge.is_usable]
         found = self.found
-        return Summary(
+        return LocalizationSummary(
             bag=bag,
             map=map_,
             start=start,
@@ -203,7 +205,7 @@ class Tally:
         return [Difference(self._topic, self._compared, median, high)]
 
 
-def lines_of(summary: Summary) -> list[tuple[str, str]]:
+def lines_of(summary: LocalizationSummary) -> list[tuple[str, str]]:
     """Return the figures as a short table for people: rows of a name and a text."""
     shares = ", ".join(f"{name} {100.0 * share:.1f} %" for name, share in summary.shares.items())
     lines = [
@@ -233,7 +235,7 @@ def lines_of(summary: Summary) -> list[tuple[str, str]]:
     return [*lines, *(("note", note) for note in summary.notes)]
 
 
-def _found(summary: Summary) -> str:
+def _found(summary: LocalizationSummary) -> str:
     if summary.found_after is None or summary.found_at is None:
         return "the place was never known: is this its map?"
     x, y, theta = summary.found_at

@@ -25,7 +25,7 @@ from roomba.configuration.robot import load_robot_config
 from roomba.files.shipped import CONFIGURATION
 from roomba.geometry import Pose
 from roomba_ros.bags.localize_mounts import Mounts
-from roomba_ros.bags.localize_recording import Heard, Kind, Recording, RecordingError
+from roomba_ros.bags.localize_recording import Heard, MessageKind, Recording, RecordingError
 from roomba_ros.bags.map_bag_report import BagMap, summary_of, table_of
 from roomba_ros.bags.map_replay import MapReplay
 from roomba_ros.convert.common import pose_of
@@ -91,7 +91,7 @@ def _options_of(arguments: list[str] | None) -> _Options:
 def _map(options: _Options, recording: Recording) -> BagMap:
     """Go through the recording, and make the map; raises RecordingError if too little is there."""
     kinds, truth = _topics(options, recording)
-    odometry = next(topic for topic, kind in kinds.items() if kind is Kind.ODOMETRY)
+    odometry = next(topic for topic, kind in kinds.items() if kind is MessageKind.ODOMETRY)
     first = recording.first([odometry], 1)
     base = (first[0].child_frame_id if first else "") or "base_link"
     frame = (first[0].header.frame_id.lstrip("/") if first else "") or "odom"
@@ -105,7 +105,7 @@ def _map(options: _Options, recording: Recording) -> BagMap:
     with progress("Mapping", options.output.quiet) as show:
         for heard in recording.messages(kinds):
             show(heard.share, f"{replay.elapsed:.0f} s, {replay.scans} scans")
-            if heard.kind is Kind.OWN_POSE:
+            if heard.kind is MessageKind.OWN_POSE:
                 _add_truth(true, heard)
             else:
                 replay.hear(heard)
@@ -130,20 +130,20 @@ def _map(options: _Options, recording: Recording) -> BagMap:
     )
 
 
-def _topics(options: _Options, recording: Recording) -> tuple[dict[str, Kind], str | None]:
+def _topics(options: _Options, recording: Recording) -> tuple[dict[str, MessageKind], str | None]:
     """Return what is read, and the topic of true poses if there is one."""
-    scan = recording.require(options.scan, Kind.SCAN, "--scan-topic")
-    odometry = recording.require(options.odometry, Kind.ODOMETRY, "--odom-topic")
+    scan = recording.require(options.scan, MessageKind.SCAN, "--scan-topic")
+    odometry = recording.require(options.odometry, MessageKind.ODOMETRY, "--odom-topic")
     if options.gyro is not None:
-        gyro: str | None = recording.require(options.gyro, Kind.GYRO, "--imu-topic")
+        gyro: str | None = recording.require(options.gyro, MessageKind.GYRO, "--imu-topic")
     else:
-        gyro = recording.beside(odometry, "imu", Kind.GYRO)
-    truth = recording.beside(odometry, "ground_truth/pose", Kind.OWN_POSE)
-    kinds = {scan: Kind.SCAN, odometry: Kind.ODOMETRY}
+        gyro = recording.beside(odometry, "imu", MessageKind.GYRO)
+    truth = recording.beside(odometry, "ground_truth/pose", MessageKind.OWN_POSE)
+    kinds = {scan: MessageKind.SCAN, odometry: MessageKind.ODOMETRY}
     if gyro is not None:
-        kinds[gyro] = Kind.GYRO
+        kinds[gyro] = MessageKind.GYRO
     if truth is not None:
-        kinds[truth] = Kind.OWN_POSE
+        kinds[truth] = MessageKind.OWN_POSE
     return kinds, truth
 
 

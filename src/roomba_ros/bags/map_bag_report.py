@@ -33,7 +33,7 @@ class BagMap:
 
 
 @dataclass(frozen=True, slots=True)
-class Summary:
+class MappingSummary:
     """The figures of a drive; s, m, m2. Errors are None where there is no truth.
 
     ``closure_m`` is how far from its beginning the drive ends, on the map and by odometry alone;
@@ -63,7 +63,7 @@ class Summary:
         return asdict(self)
 
 
-def summary_of(done: BagMap) -> Summary:
+def summary_of(done: BagMap) -> MappingSummary:
     """Return the figures of a map."""
     replay, occupancy, rows = done.replay, done.occupancy, done.replay.poses
     cells = np.argwhere(occupancy.values != UNKNOWN)
@@ -71,7 +71,7 @@ def summary_of(done: BagMap) -> Summary:
     ours, theirs = _errors(rows, done.true, 1), _errors(rows, done.true, 4)
     end, blind = replay.mapper.pose, replay.blind.pose
     apart = np.hypot(*(rows[:, 1:3] - rows[:, 4:6]).T)
-    return Summary(
+    return MappingSummary(
         bag=done.bag,
         seconds=replay.elapsed,
         scans=replay.scans,
@@ -92,7 +92,7 @@ def summary_of(done: BagMap) -> Summary:
     )
 
 
-def table_of(summary: Summary) -> Table:
+def table_of(summary: MappingSummary) -> Table:
     """Return the figures as a table."""
     table = Table.grid(padding=(0, 2))
     table.add_column(style="bold", no_wrap=True)
@@ -102,7 +102,7 @@ def table_of(summary: Summary) -> Table:
     return table
 
 
-def lines_of(summary: Summary) -> list[tuple[str, str]]:
+def lines_of(summary: MappingSummary) -> list[tuple[str, str]]:
     """Return the figures as rows of a name and a text."""
     lines = [
         ("drive", f"{summary.seconds:.1f} s, {summary.scans} scans, way {summary.way_m:.2f} m"),

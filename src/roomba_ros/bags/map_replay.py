@@ -15,7 +15,7 @@ from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose
 from roomba.perception.slam.mapper import Mapper
 from roomba_ros.bags.localize_mounts import Mounts
-from roomba_ros.bags.localize_recording import Heard, Kind
+from roomba_ros.bags.localize_recording import Heard, MessageKind
 from roomba_ros.bags.localize_report import Thinned
 from roomba_ros.bags.recorded_drive import LATEST, RecordedDrive
 from roomba_ros.convert.common import pose_of_odometry
@@ -47,11 +47,11 @@ class MapReplay(RecordedDrive):
 
     def hear(self, heard: Heard) -> None:
         """Take in a message."""
-        if heard.kind is Kind.ODOMETRY:
+        if heard.kind is MessageKind.ODOMETRY:
             self._hear_odometry(heard.stamp, heard.message)
-        elif heard.kind is Kind.GYRO:
+        elif heard.kind is MessageKind.GYRO:
             self._hear_gyro(heard.stamp, heard.message)
-        elif heard.kind is Kind.SCAN:
+        elif heard.kind is MessageKind.SCAN:
             self._hear_scan(heard.stamp, heard.message)
 
     def end(self) -> None:

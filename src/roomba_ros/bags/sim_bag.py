@@ -19,7 +19,7 @@ from rosgraph_msgs.msg import Clock
 from tf2_msgs.msg import TFMessage
 
 from roomba.commands.sim.command import main as simulate
-from roomba.commands.sim.runs import Scene
+from roomba.commands.sim.runs import TrialSetup
 from roomba.control.path_tracker import PathTracker
 from roomba.grid import FREE, OCCUPIED, UNKNOWN, OccupancyMap
 from roomba.headless.cleaner import HeadlessMission
@@ -49,10 +49,10 @@ def main(arguments: list[str] | None = None) -> int:
 class SimBag:
     """A bag of one run; a context that gives what is to be shown the robot as it goes on."""
 
-    def __init__(self, path: Path, scene: Scene) -> None:
+    def __init__(self, path: Path, setup: TrialSetup) -> None:
         """Begin the bag; raises OSError."""
         self._bag = rosbag.Bag(str(path), "w", compression=rosbag.Compression.LZ4)
-        self._scene = scene
+        self._scene = setup
         self._scans = -1
         self._tracker: PathTracker | None = None
         self._battery_at = self._coverage_at = -np.inf
@@ -121,17 +121,17 @@ class SimBag:
         self._bag.write(topic, message, genpy.Time.from_sec(max(now, _EARLIEST)))
 
 
-def coverage_on_map(scene: Scene) -> OccupancyMap:
+def coverage_on_map(setup: TrialSetup) -> OccupancyMap:
     """Return what was truly swept over the map's own cells: half of a cell and more counts."""
-    frame = scene.home.frame
-    factor = scene.robot.site.frame.rows // frame.rows
+    frame = setup.home.frame
+    factor = setup.robot.site.frame.rows // frame.rows
 
     def share(mask: np.ndarray) -> np.ndarray:
         blocks = mask.reshape(frame.rows, factor, frame.columns, factor)
         return blocks.mean(axis=(1, 3))
 
-    wanted = share(scene.coverable)
-    swept = share(scene.robot.truth.swept & scene.coverable)
+    wanted = share(setup.coverable)
+    swept = share(setup.robot.truth.swept & setup.coverable)
     values = np.full(frame.shape, UNKNOWN, np.int8)
     values[wanted > 0.0] = FREE
     values[(wanted > 0.0) & (swept >= 0.5 * wanted)] = OCCUPIED

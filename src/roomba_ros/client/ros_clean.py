@@ -26,10 +26,10 @@ from roomba_robot.msg import (
 from std_srvs.srv import Trigger
 
 from roomba.client.protocol import (
-    Clean,
+    CleanHandle,
     CleanMode,
-    Docking,
-    Exploring,
+    DockingHandle,
+    ExploringHandle,
     FanLevel,
     RequestRefusedError,
     RobotUnavailableError,
@@ -89,7 +89,7 @@ class RosVacuum:
         spot: tuple[float, float] | None = None,
         passes: int = 1,
         fan: FanLevel = FanLevel.STANDARD,
-    ) -> Clean:
+    ) -> CleanHandle:
         """Send the goal; raises RobotUnavailableError when no action server answers in time."""
         if not 1 <= passes <= 255:
             raise RequestRefusedError(f"expected 1 to 5 passes, got {passes}")
@@ -105,15 +105,15 @@ class RosVacuum:
         )
         return RosClean(self._cleans, goal)
 
-    def dock(self) -> Docking:
+    def dock(self) -> DockingHandle:
         """Send the goal; raises RobotUnavailableError when no action server answers in time."""
         return RosDocking(self._docks, DockGoal())
 
-    def undock(self) -> Docking:
+    def undock(self) -> DockingHandle:
         """Send the goal; raises RobotUnavailableError when no action server answers in time."""
         return RosDocking(self._undocks, UndockGoal())
 
-    def explore(self) -> Exploring:
+    def explore(self) -> ExploringHandle:
         """Send the goal; raises RobotUnavailableError when no action server answers in time."""
         return RosExploring(self._explores, ExploreGoal())
 

@@ -31,7 +31,7 @@ from roomba.client.protocol import (
     RequestRefusedError,
     RobotState,
     RobotUnavailableError,
-    Walk,
+    WalkHandle,
     WalkOutcome,
     WalkReport,
 )
@@ -116,7 +116,7 @@ class RosRobot(RosVacuum):
             raise RequestRefusedError(f"there is no way to ({x:.2f}, {y:.2f})")
         return float(np.hypot(*np.diff(points, axis=0).T).sum())
 
-    def walk_to(self, x: float, y: float) -> Walk:
+    def walk_to(self, x: float, y: float) -> WalkHandle:
         """Send the goal; raises RobotUnavailableError when no action server answers in time."""
         if not wait_for_server(self._actions.action_client, SERVER_DEADLINE):
             raise RobotUnavailableError(

@@ -37,7 +37,7 @@ from roomba.mission.cleaning.request import (
     MissReason,
 )
 from roomba.mission.exploring.exploration import ExploreResult
-from roomba.mission.inputs.senses import Battery, Beams
+from roomba.mission.inputs.senses import Battery, StationBeams
 from roomba.perception.rooms.rooms import Rooms
 from roomba.perception.rooms.zones import WALL_WIDTH, Zone, ZoneKind, Zones, ZonesError
 from roomba.perception.swept.coverage_bits import SWEPT, WANTED
@@ -146,11 +146,11 @@ def battery_of(message: BatteryState, voltage: float, is_docked: bool) -> Batter
     return Battery(level, energy, is_docked)
 
 
-def beams_of(code: int) -> Beams:
+def beams_of(code: int) -> StationBeams:
     """Return which beams a receiver's code stands for, as Create 2 codes them."""
     if code & ~(_RED | _GREEN | _HALO) != _BEAMS:
-        return Beams()
-    return Beams(bool(code & _HALO), bool(code & _GREEN), bool(code & _RED))
+        return StationBeams()
+    return StationBeams(bool(code & _HALO), bool(code & _GREEN), bool(code & _RED))
 
 
 def rooms_of(message: RoomArray, occupancy: OccupancyMap) -> Rooms:

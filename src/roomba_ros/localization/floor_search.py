@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Final
 
 from roomba.configuration.robot import RobotConfig
-from roomba.perception.floors.recognition import Floor, FloorRecognition, FloorVerdict, Place
+from roomba.perception.floors.recognition import FloorRecognition, FloorRecord, FloorVerdict, Place
 from roomba.storage.map_store import StoredMap
 from roomba_ros.localization.topics import LocalizationTopics
 
@@ -26,7 +26,7 @@ class FloorSearch:
         """Begin at ``now``, s of the ROS clock."""
         self.floors = floors
         self._place, self._since = place, now
-        known = {name: Floor(each.occupancy, each.station) for name, each in floors.items()}
+        known = {name: FloorRecord(each.occupancy, each.station) for name, each in floors.items()}
         self._recognition = FloorRecognition(known, config.localization, config.body.radius)
 
     def tick(self) -> Place | None:

@@ -10,7 +10,7 @@ import rospy
 from roomba.errors import RoombaError
 from roomba.grid import OccupancyMap
 from roomba.perception.floors.carry_over import carry_over
-from roomba.perception.floors.recognition import Floor
+from roomba.perception.floors.recognition import FloorRecord
 from roomba.perception.floors.same_floor import LEAST_FLOOR, LEAST_WALLS, match_floors
 from roomba.storage.map_bound import map_digest
 from roomba.storage.map_store import MapStore, MapStoreError, StoredMap
@@ -121,5 +121,5 @@ class MapShelf:
         return self._zones_folder / f"{map_digest(occupancy)[:16]}.yaml"
 
 
-def _floor_of(stored: StoredMap) -> Floor:
-    return Floor(stored.occupancy, stored.station)
+def _floor_of(stored: StoredMap) -> FloorRecord:
+    return FloorRecord(stored.occupancy, stored.station)

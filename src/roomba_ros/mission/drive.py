@@ -86,7 +86,7 @@ class MissionDrive:
             self._stops_left -= 1
             self._command.publish(TwistMessage())
 
-    def suck(self, duty: float | None) -> None:
+    def set_fan(self, duty: float | None) -> None:
         """Set the fan's power; None: as it was before the mission."""
         if duty == self._fan:
             return

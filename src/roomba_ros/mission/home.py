@@ -29,7 +29,7 @@ from roomba.configuration.robot import RobotConfig
 from roomba.errors import RoombaError, RoomsError
 from roomba.geometry import Pose
 from roomba.grid import OccupancyMap
-from roomba.mission.inputs.planning_context import Site
+from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.perception.matching.surface_field import SurfaceField
 from roomba.perception.rooms.rooms import Rooms
 from roomba.perception.rooms.zones import Zones, ZonesError
@@ -58,12 +58,12 @@ class KnownHome:
     All stages of a map that is being made have the same ``digest``.
     """
 
-    site: Site
+    site: PlanningContext
     field: SurfaceField
     digest: str
 
 
-class MissionSite:
+class HomeTopics:
     """Makes sites in the background: a new one for each map, edit of rooms, and edit of zones.
 
     Publishes: ``zones`` (ZoneArray, latched), ``zones/markers`` (MarkerArray, latched, for RViz).
@@ -161,7 +161,7 @@ class MissionSite:
                     raise ZonesError(f"its zones cannot be read: {self._path()}")
                 _require_small(occupancy)
                 field = field or SurfaceField.of(occupancy)
-                site = Site(
+                site = PlanningContext(
                     occupancy,
                     station,
                     self._robot,

@@ -22,7 +22,7 @@ from roomba.perception.things.layer import ThingLayer
 from roomba_ros.convert.mission import names_of
 from roomba_ros.mission.drive import MissionDrive
 from roomba_ros.mission.goals import Ended
-from roomba_ros.mission.home import GROWING, KnownHome, MissionSite
+from roomba_ros.mission.home import GROWING, HomeTopics, KnownHome
 from roomba_ros.mission.memory import MissionMemory
 from roomba_ros.mission.orders import MissionOrders
 from roomba_ros.mission.senses import MissionSenses
@@ -42,7 +42,7 @@ _OTHERS = "somebody else drives the robot (a walk, or cmd_vel); resume when that
 class MissionNode:
     """Ticks one mission for each map; what it is on, it takes up again after it was killed.
 
-    Publishes, subscribes and serves what :class:`MissionSenses`, :class:`MissionSite`,
+    Publishes, subscribes and serves what :class:`MissionSenses`, :class:`HomeTopics`,
     :class:`MissionOrders`, :class:`MissionDrive` and :class:`MissionTopics` say.
     Parameters: ``robot_config``, ``mission_config`` (paths of configuration files; by default the
     shipped ones), ``~memory_folder`` (default: roomba_robot/mission in the ROS home folder, and in
@@ -62,7 +62,7 @@ class MissionNode:
         self._memory: MissionMemory | None = None
         self._finished = -_FINISH_PERIOD
         self._senses = MissionSenses(self._config)
-        self._site = MissionSite(
+        self._site = HomeTopics(
             self._config,
             self._mission_config,
             self._docking_config,
@@ -219,7 +219,7 @@ class MissionNode:
         self._drive.drive(step.twist if is_driving else None, looks_around=step.looks_around)
         cleaning = mission.cleaning
         sucks = cleaning is not None and mission.state.phase is not Phase.ERROR
-        self._drive.suck(cleaning.request.fan.value if cleaning and sucks else None)
+        self._drive.set_fan(cleaning.request.fan.value if cleaning and sucks else None)
 
     def _tell(self, now: float, mission: Mission, senses: Senses) -> None:
         """Tell everybody the state if it is due, and whoever ordered what is done how far it is."""

@@ -14,7 +14,7 @@ from roomba.control.position_loop import PositionLoop
 from roomba.control.setpoint import Setpoint
 from roomba.errors import ConfigError
 from roomba.geometry import Pose, Twist
-from roomba.mission.exploring.look_around import Search
+from roomba.mission.exploring.look_around import SearchDrive
 from roomba.perception.localization.estimate import Estimate, Knowledge
 from roomba_ros.convert.common import cliff_of, twist_message
 from roomba_ros.localization.topics import LocalizationTopics
@@ -58,7 +58,7 @@ class PositionPubNode:
         self._config = read_robot_config()
         self._loop = PositionLoop(self._config.control, self._config.body)
         self._setpoint = Setpoint(self._config.control.stream_timeout)
-        self._search = Search(self._config.body)
+        self._search = SearchDrive(self._config.body)
         self._may_look_around = _look_around_parameter()
         self._lock = threading.Lock()
         self._bumps = self._sees_cliff = False

@@ -11,7 +11,7 @@ import pytest
 from roomba.commands.doctor import (
     BrokenReportError,
     Finding,
-    State,
+    StepState,
     as_json,
     as_table,
     check_display,
@@ -25,20 +25,20 @@ from roomba.commands.doctor import (
 
 def test_current_step_is_fine() -> None:
     assert findings_of_steps(["catkin workspace\tcurrent\t\n"]) == [
-        Finding("catkin workspace", State.FINE)
+        Finding("catkin workspace", StepState.FINE)
     ]
 
 
 @pytest.mark.parametrize(
     ("line", "state", "mend"),
     [
-        ("system packages\tmissing\tpython3-rospy", State.MISSING, "./roomba run"),
-        ("Python packages\tmissing\t", State.MISSING, "./roomba run"),
-        ("compiled loops\tmissing\t", State.NOTE, "./roomba exec true"),
-        ("Python packages for tests\tmissing\t", State.NOTE, "./roomba test"),
+        ("system packages\tmissing\tpython3-rospy", StepState.MISSING, "./roomba run"),
+        ("Python packages\tmissing\t", StepState.MISSING, "./roomba run"),
+        ("compiled loops\tmissing\t", StepState.NOTE, "./roomba exec true"),
+        ("Python packages for tests\tmissing\t", StepState.NOTE, "./roomba test"),
     ],
 )
-def test_missing_step_tells_how_to_mend_it(line: str, state: State, mend: str) -> None:
+def test_missing_step_tells_how_to_mend_it(line: str, state: StepState, mend: str) -> None:
     (finding,) = findings_of_steps([line])
     assert (finding.state, finding.mend) == (state, mend)
     assert finding.detail
@@ -58,13 +58,13 @@ def test_report_of_another_form_is_refused(line: str) -> None:
 @pytest.mark.parametrize(
     ("path", "state"),
     [
-        ("/usr/bin/python3", State.FINE),
-        ("/bin/python3", State.FINE),
-        ("/home/somebody/.pyenv/shims/python3", State.NOTE),
-        (None, State.NOTE),
+        ("/usr/bin/python3", StepState.FINE),
+        ("/bin/python3", StepState.FINE),
+        ("/home/somebody/.pyenv/shims/python3", StepState.NOTE),
+        (None, StepState.NOTE),
     ],
 )
-def test_foreign_python_is_noted(path: str | None, state: State) -> None:
+def test_foreign_python_is_noted(path: str | None, state: StepState) -> None:
     assert check_python_on_path(path).state is state
 
 
@@ -78,7 +78,7 @@ def test_master_is_asked_at_its_host_and_port(is_open: bool) -> None:
 
     finding = check_master("http://robot:11322/", answer)
     assert asked == [("robot", 11322)]
-    assert finding.state is (State.FINE if is_open else State.NOTE)
+    assert finding.state is (StepState.FINE if is_open else StepState.NOTE)
 
 
 @pytest.mark.parametrize(
@@ -86,18 +86,18 @@ def test_master_is_asked_at_its_host_and_port(is_open: bool) -> None:
 )
 def test_broken_master_uri_is_told(uri: str) -> None:
     finding = check_master(uri, lambda host, port: True)
-    assert finding.state is State.MISSING
+    assert finding.state is StepState.MISSING
     assert repr(uri) in finding.detail
 
 
 def test_little_space_is_noted() -> None:
-    assert check_space(100.0).state is State.FINE
-    assert check_space(0.5).state is State.NOTE
+    assert check_space(100.0).state is StepState.FINE
+    assert check_space(0.5).state is StepState.NOTE
 
 
 def test_no_display_is_noted() -> None:
-    assert check_display({"DISPLAY": ":0"}).state is State.FINE
-    assert check_display({}).state is State.NOTE
+    assert check_display({"DISPLAY": ":0"}).state is StepState.FINE
+    assert check_display({}).state is StepState.NOTE
 
 
 def test_reason_why_a_module_does_not_import() -> None:
@@ -112,8 +112,8 @@ def test_python_that_is_not_there_is_a_reason(tmp_path: Path) -> None:
 
 def test_table_has_the_state_first_and_the_remedy_below() -> None:
     findings = [
-        Finding("disk", State.FINE, "9.0 GB free"),
-        Finding("system packages", State.MISSING, "rosout", "./roomba run"),
+        Finding("disk", StepState.FINE, "9.0 GB free"),
+        Finding("system packages", StepState.MISSING, "rosout", "./roomba run"),
     ]
     assert as_table(findings).splitlines() == [
         "fine    disk: 9.0 GB free",
@@ -123,7 +123,7 @@ def test_table_has_the_state_first_and_the_remedy_below() -> None:
 
 
 def test_json_holds_the_same() -> None:
-    (row,) = json.loads(as_json([Finding("disk", State.NOTE, "0.5 GB free", "make room")]))
+    (row,) = json.loads(as_json([Finding("disk", StepState.NOTE, "0.5 GB free", "make room")]))
     assert row == {
         "subject": "disk",
         "state": "note",

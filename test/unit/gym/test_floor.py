@@ -5,7 +5,7 @@ from fixtures.rooms import room_home
 from roomba.configuration.robot import RobotConfig
 from roomba.errors import HomeError
 from roomba.geometry import Pose
-from roomba.gym.floor import Coverage, Floor
+from roomba.gym.floor import Coverage, FloorDistances
 from roomba.gym.task import HOMES
 from roomba.world.fleet import Fleet
 from roomba.world.layers.layer import load_home
@@ -14,7 +14,7 @@ CONFIG = RobotConfig()
 
 
 def test_the_brush_does_not_reach_the_walls() -> None:
-    floor = Floor.of(room_home(3.0, 2.0), CONFIG)
+    floor = FloorDistances.of(room_home(3.0, 2.0), CONFIG)
     # The body's middle stays 0.174 m away, of which the brush covers 0.1 m: no first row of cells.
     inner = (3.0 - 2 * 0.05) * (2.0 - 2 * 0.05)
     assert floor.reachable.sum() * 0.05**2 == pytest.approx(inner, rel=0.01)
@@ -25,18 +25,18 @@ def test_the_brush_does_not_reach_the_walls() -> None:
 
 def test_what_lies_behind_a_wall_is_not_reached() -> None:
     parted = room_home(blocks=[(2.0, 0.0, 2.1, 4.0)])
-    assert Floor.of(parted, CONFIG).places[:, 0].max() < 2.0
+    assert FloorDistances.of(parted, CONFIG).places[:, 0].max() < 2.0
     gap = room_home(blocks=[(2.0, 0.0, 2.1, 3.5)])
-    assert Floor.of(gap, CONFIG).places[:, 0].max() > 4.5
+    assert FloorDistances.of(gap, CONFIG).places[:, 0].max() > 4.5
 
 
 def test_a_station_without_floor_before_it_is_refused() -> None:
     with pytest.raises(HomeError, match=r"within 0\.5 m of the docked robot"):
-        Floor.of(room_home(blocks=[(0.0, 0.0, 2.0, 2.0)]), CONFIG)
+        FloorDistances.of(room_home(blocks=[(0.0, 0.0, 2.0, 2.0)]), CONFIG)
 
 
 def test_covering_every_place_covers_all() -> None:
-    floor = Floor.of(room_home(3.0, 2.0), CONFIG)
+    floor = FloorDistances.of(room_home(3.0, 2.0), CONFIG)
     coverage = Coverage(floor, robots=2)
     for x, y in floor.places.tolist():
         coverage.add(np.array([[x, y, 0.0], [1.0, 1.0, 0.0]]))
@@ -51,7 +51,7 @@ def test_covering_every_place_covers_all() -> None:
 @pytest.mark.parametrize("name", ["apartment", "flat", "studio", "family", "lshape"])
 def test_the_robot_fits_wherever_it_may_start(name: str) -> None:
     home = load_home(name, HOMES)
-    floor, fleet = Floor.of(home, CONFIG), Fleet([home], CONFIG)
+    floor, fleet = FloorDistances.of(home, CONFIG), Fleet([home], CONFIG)
     places = floor.places[:: max(1, len(floor.places) // 40)]
     fits = 0
     for x, y in places.tolist():

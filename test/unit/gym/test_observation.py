@@ -15,7 +15,7 @@ from roomba.gym.observation import (
     SIZE,
     STATION,
     VELOCITY,
-    Senses,
+    Observer,
 )
 from roomba.world.engine.state.arrays import Fault
 from roomba.world.fleet import Fleet
@@ -42,7 +42,7 @@ def test_the_lidars_sectors_look_ahead_left_back_and_right() -> None:
 
 def test_a_sector_tells_its_nearest_beam_and_numbers_for_what_has_none() -> None:
     fleet = Fleet([room_home()], RobotConfig())
-    senses = Senses(fleet, max_speed=0.5)
+    senses = Observer(fleet, max_speed=0.5)
     fleet.ranges[:] = 3.0
     fleet.ranges[0, [355, 84, 95]] = 1.0, 2.0, 0.5
     fleet.ranges[0, 175:185] = np.inf

@@ -44,7 +44,7 @@ from roomba.mission.cleaning.request import (
     FanLevel,
     MissReason,
 )
-from roomba.mission.inputs.planning_context import Site
+from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.mission.mission import CommandRefusedError, Mission
 from roomba.mission.phases.machine import Errand, Event, Phase
 from roomba.perception.localization.estimate import Knowledge
@@ -502,9 +502,9 @@ def test_released_on_its_station_it_is_docked() -> None:
     assert robot.is_home
 
 
-def zoned(robot: HeadlessMission, *zones: Zone) -> Site:
+def zoned(robot: HeadlessMission, *zones: Zone) -> PlanningContext:
     home = robot.simulator.home
-    return Site(
+    return PlanningContext(
         home.map,
         home.station,
         robot.robot,

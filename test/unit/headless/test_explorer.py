@@ -20,7 +20,7 @@ from roomba.grid import FREE
 from roomba.headless.explorer import ExploreRecord, HeadlessExplorer
 from roomba.headless.parts import SafeDrive, senses_of
 from roomba.mission.cleaning.request import CleanOutcome
-from roomba.mission.inputs.senses import Beams
+from roomba.mission.inputs.senses import StationBeams
 from roomba.mission.mission import CommandRefusedError
 from roomba.mission.phases.machine import Event, Phase
 from roomba.perception.localization.estimate import Estimate, Knowledge
@@ -202,7 +202,7 @@ def test_senses_are_what_sensors_tell_and_where_it_believes_to_be() -> None:
     senses = senses_of(world.observe(), believed)
     assert (senses.bumper_left, senses.bumper_right) == (True, True)
     assert (senses.cliff_left, senses.cliff_right) == (True, True)
-    assert senses.beams == Beams()
+    assert senses.beams == StationBeams()
     world.inject(Fault.LIFTED, 1.0)
     world.advance(Twist(), 0.025, 4)
     assert senses_of(world.observe(), believed).lifted

@@ -13,7 +13,7 @@ from roomba.configuration.mission import MissionConfig
 from roomba.configuration.robot import RobotConfig
 from roomba.headless.newcomer import HeadlessNewcomer, NewcomerRecord
 from roomba.mission.cleaning.request import CleanMode, CleanOutcome, CleanRefusedError, CleanRequest
-from roomba.mission.inputs.planning_context import Site
+from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.mission.phases.machine import Phase
 from roomba.perception.swept.coverage_map import CoverageMap
 from roomba.world.home.home import Home
@@ -21,7 +21,7 @@ from roomba.world.home.home import Home
 
 def share_cleaned(record: NewcomerRecord, home: Home) -> float:
     """Of the floor that can be cleaned, by the true map and the true poses."""
-    site = Site(home.map, home.station, RobotConfig(), MissionConfig(), DockingConfig())
+    site = PlanningContext(home.map, home.station, RobotConfig(), MissionConfig(), DockingConfig())
     truth = CoverageMap(site.frame, site.coverable(), site.tool_width)
     for x, y in record.poses[:, 1:3]:
         truth.sweep(float(x), float(y))

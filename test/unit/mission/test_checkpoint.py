@@ -16,13 +16,13 @@ from roomba.mission.checkpoint import checkpoint_of, remembered, state_after, ta
 from roomba.mission.cleaning.checkpoint import CheckpointError, Values
 from roomba.mission.cleaning.cleaning import Cleaning
 from roomba.mission.cleaning.request import CleanOutcome, CleanRequest
-from roomba.mission.inputs.planning_context import Site
+from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.mission.inputs.senses import Senses
 from roomba.mission.phases.job import Job
 from roomba.mission.phases.machine import Errand, MissionState, Phase
 from roomba.perception.swept.dirt_map import DirtMap
 
-SITE = Site(HOME.map, HOME.station, RobotConfig(), MissionConfig(), DockingConfig())
+SITE = PlanningContext(HOME.map, HOME.station, RobotConfig(), MissionConfig(), DockingConfig())
 SENSES = Senses(100.0, Pose(1.0, 0.6, 0.0))
 CLEANING = MissionState(Phase.CLEANING, Errand.CLEAN)
 

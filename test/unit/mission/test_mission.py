@@ -12,7 +12,7 @@ from roomba.configuration.mission import MissionConfig
 from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose, Twist
 from roomba.mission.cleaning.request import CleanOutcome, CleanRequest
-from roomba.mission.inputs.planning_context import Site
+from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.mission.inputs.senses import Battery, Senses
 from roomba.mission.mission import CommandRefusedError, Mission, MissionStep
 from roomba.mission.phases.machine import Errand, Event, Phase
@@ -22,7 +22,7 @@ from roomba.perception.swept.dirt_map import DirtMap
 from roomba.perception.things.layer import ThingLayer
 
 CONFIG = RobotConfig()
-SITE = Site(HOME.map, HOME.station, CONFIG, MissionConfig(), DockingConfig())
+SITE = PlanningContext(HOME.map, HOME.station, CONFIG, MissionConfig(), DockingConfig())
 FIELD = SurfaceField.of(HOME.map)
 HERE = Pose(1.0, 0.6, 0.0)
 AWAY = Senses(0.0, HERE)

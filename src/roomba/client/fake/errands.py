@@ -192,7 +192,7 @@ _KEPT = (ErrandOutcome.COMPLETED, ErrandOutcome.LOST)
 
 
 class FakeClean(FakeErrand):
-    """A :class:`roomba.client.protocol.Clean` of ``wanted`` m2 in ``rooms``."""
+    """A :class:`roomba.client.protocol.CleanHandle` of ``wanted`` m2 in ``rooms``."""
 
     def __init__(
         self,
@@ -244,7 +244,8 @@ class FakeClean(FakeErrand):
 
 
 class FakeExploring(FakeErrand):
-    """A :class:`roomba.client.protocol.Exploring`, which comes to know :data:`EXPLORING_RATE`."""
+    """A :class:`roomba.client.protocol.ExploringHandle`, which comes to know
+    :data:`EXPLORING_RATE`."""
 
     def next_feedback(self, timeout: float) -> float | None:
         """Let time pass until the next feedback or the end, at most ``timeout`` s."""
@@ -265,7 +266,7 @@ class FakeExploring(FakeErrand):
 
 
 class FakeDocking(FakeErrand):
-    """A :class:`roomba.client.protocol.Docking`."""
+    """A :class:`roomba.client.protocol.DockingHandle`."""
 
     def next_feedback(self, timeout: float) -> str | None:
         """Let time pass until the next feedback or the end, at most ``timeout`` s."""

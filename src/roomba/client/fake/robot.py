@@ -205,8 +205,8 @@ class FakeRobot(FakeVacuum):
 
 
 class FakeWalk:
-    """A :class:`roomba.client.protocol.Walk` whose state follows from its script and the clock
-    alone."""
+    """A :class:`roomba.client.protocol.WalkHandle` whose state follows from its script and the
+    clock alone."""
 
     def __init__(
         self,

@@ -11,7 +11,7 @@ from roomba.geometry import Pose, wrap_angle
 from roomba.grid import OccupancyMap
 from roomba.perception.localization.dead_reckoning import DeadReckoning
 from roomba.perception.matching.scan_view import LidarModel
-from roomba.perception.slam.occupancy_counts import Sheet
+from roomba.perception.slam.occupancy_counts import OccupancyCounts
 from roomba.perception.slam.surface_kernels import POINT, surface_points
 
 
@@ -31,7 +31,7 @@ class BlindMap:
         """Begin at ``start``, map frame."""
         self._config, self._start = config, start
         self._reckoning = DeadReckoning(localization, gyro)
-        self._sheet = Sheet(config.resolution)
+        self._sheet = OccupancyCounts(config.resolution)
         self._drawn: Pose | None = None
         self._lidar: LidarModel | None = None
 

@@ -8,14 +8,14 @@ import time
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Final
 
-from roomba.commands.map.options import PROGRAM, Options, Output, options_of
+from roomba.commands.map.options import PROGRAM, MapOptions, Output, options_of
 from roomba.commands.progress import Show, progress
 from roomba.commands.sim.trial import UsageError
 from roomba.commands.telling import tell_tables, write_json
 from roomba.errors import RoombaError
 
 if TYPE_CHECKING:
-    from roomba.commands.map.runs import MapRun, MapScene, Watch, WatchedExplorer
+    from roomba.commands.map.runs import MapRun, MapScene, RunObserver, WatchedExplorer
 
 COMPLETED, ENDED_OTHERWISE, USAGE, INTERRUPTED = 0, 1, 2, 130
 _SHOWN: Final = 0.25
@@ -61,7 +61,7 @@ def _complain(text: str, status: int) -> int:
     return status
 
 
-def _explore(options: Options) -> int:
+def _explore(options: MapOptions) -> int:
     # Here, because it takes a second that nobody should wait for who mistyped an option.
     from roomba.commands.map.runs import MapScene
     from roomba.commands.map.warm import warm_up
@@ -74,7 +74,7 @@ def _explore(options: Options) -> int:
     return COMPLETED if run.is_completed else ENDED_OTHERWISE
 
 
-def _shown_by(show: Show, scene: MapScene) -> Watch:
+def _shown_by(show: Show, scene: MapScene) -> RunObserver:
     import numpy as np
 
     from roomba.commands.sim.report import clock

@@ -17,7 +17,7 @@ COLUMN_STEPS: Final = (1, 0, -1, 0)
 """To the cells beside one: along x, along y, and back; so the ways a side can face are numbered."""
 
 
-class Ground(NamedTuple):
+class TrueSurfaces(NamedTuple):
     """A true map as kernels know it: ``solid``, and what of the rest is ``seen``, bool
     [rows, columns]; ``place`` is the lower left corner x, y and the cell size, m.
     """
@@ -28,7 +28,7 @@ class Ground(NamedTuple):
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def nearest_sides(ground: Ground, points: Floats, reach: float, away: Floats) -> None:
+def nearest_sides(ground: TrueSurfaces, points: Floats, reach: float, away: Floats) -> None:
     """Fill ``away`` [n], m, with how far ``points`` [n, 2] are from the nearest true side.
 
     Infinite where there is none within ``reach``. A side lies between a solid and a seen cell.
@@ -55,7 +55,7 @@ def nearest_sides(ground: Ground, points: Floats, reach: float, away: Floats) ->
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def offsets(
-    ground: Ground, points: Floats, facings: NDArray[np.int64], reach: float, off: Floats
+    ground: TrueSurfaces, points: Floats, facings: NDArray[np.int64], reach: float, off: Floats
 ) -> None:
     """Fill ``off`` [n], m, with how far ``points`` lie before the true side that faces alike.
 
@@ -86,7 +86,7 @@ def offsets(
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def count_surfaces(
-    ground: Ground, points: Floats, facings: NDArray[np.int64], behind: float, beside: float,
+    ground: TrueSurfaces, points: Floats, facings: NDArray[np.int64], behind: float, beside: float,
     counts: NDArray[np.int64],
 ) -> None:  # fmt: skip
     """Fill ``counts`` [n] with how many sides that face alike lie straight behind ``points``.
@@ -120,7 +120,7 @@ def count_surfaces(
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def is_side(ground: Ground, row: int, column: int, facing: int) -> bool:
+def is_side(ground: TrueSurfaces, row: int, column: int, facing: int) -> bool:
     """Whether a cell is solid, and the one beside it on that side seen."""
     rows, columns = ground.solid.shape
     beside_row, beside_column = row + ROW_STEPS[facing], column + COLUMN_STEPS[facing]

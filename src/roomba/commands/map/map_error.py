@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from roomba.commands.map.error_kernels import (
     COLUMN_STEPS,
     ROW_STEPS,
-    Ground,
+    TrueSurfaces,
     count_surfaces,
     nearest_sides,
     offsets,
@@ -83,7 +83,7 @@ def map_error(occupancy: OccupancyMap, frame: GridFrame, solid: Mask, seen: Mask
     Both bool over ``frame``, which need not be the map's own. Free floor that is not ``seen`` does
     not count, be it on the map or not. Raises ValueError for a map without any side.
     """
-    ground = Ground(solid, seen, np.array([frame.origin_x, frame.origin_y, frame.resolution]))
+    ground = TrueSurfaces(solid, seen, np.array([frame.origin_x, frame.origin_y, frame.resolution]))
     sides = sides_of(occupancy)
     if not len(sides.middles):
         raise ValueError("expected a map with occupied cells beside free ones, got none")
@@ -124,7 +124,7 @@ def sides_of(occupancy: OccupancyMap) -> Sides:
 
 def wrong_sides(occupancy: OccupancyMap, frame: GridFrame, solid: Mask, seen: Mask) -> Floats:
     """Return the middles of sides that are not within NEAR of a true one, float64 [n, 2], m."""
-    ground = Ground(solid, seen, np.array([frame.origin_x, frame.origin_y, frame.resolution]))
+    ground = TrueSurfaces(solid, seen, np.array([frame.origin_x, frame.origin_y, frame.resolution]))
     sides = sides_of(occupancy)
     away = np.empty(len(sides.middles))
     nearest_sides(ground, sides.middles, _REACH, away)
@@ -134,7 +134,7 @@ def wrong_sides(occupancy: OccupancyMap, frame: GridFrame, solid: Mask, seen: Ma
 # ---------------------------------------------------------------- walls that are mapped twice
 
 
-def _doubled(occupancy: OccupancyMap, sides: Sides, ground: Ground) -> tuple[Mask, Mask]:
+def _doubled(occupancy: OccupancyMap, sides: Sides, ground: TrueSurfaces) -> tuple[Mask, Mask]:
     """Return the cells of walls that are mapped twice, and of shorter stretches that are."""
     twice = _has_second(occupancy, sides)
     middles, facings = sides.middles[twice], sides.facings[twice]
@@ -244,7 +244,7 @@ def _cells(middles: Floats, occupancy: OccupancyMap, axis: int) -> NDArray[np.in
 # ---------------------------------------------------------------- shift and rotation
 
 
-def _fit(sides: Sides, ground: Ground) -> tuple[tuple[float, float], float]:
+def _fit(sides: Sides, ground: TrueSurfaces) -> tuple[tuple[float, float], float]:
     """Return shift, m, and rotation, rad, that move the true map onto this one, least squares.
 
     A side tells how far it lies before the true one that faces alike.

@@ -28,7 +28,7 @@ class Output:
 
 
 @dataclass(frozen=True, slots=True)
-class Options:
+class MapOptions:
     """A home that is explored."""
 
     trial: Trial
@@ -69,7 +69,7 @@ class Parser(argparse.ArgumentParser):
         told.add_argument("--quiet", action="store_true", help="no progress and no table")
 
 
-def options_of(arguments: list[str] | None) -> Options:
+def options_of(arguments: list[str] | None) -> MapOptions:
     """Return what a command line asks for; raises UsageError, and SystemExit for ``--help``."""
     given = _parser().parse_args(arguments)
     if given.home is not None and given.map is not None:
@@ -84,7 +84,7 @@ def options_of(arguments: list[str] | None) -> Options:
     if given.config is not None and not given.config.is_file():
         raise UsageError(f"--config: expected a file like config/robot.yaml, got {given.config}")
     read = [("--map", given.map), ("--config", given.config)]
-    return Options(trial, output_of(given, read))
+    return MapOptions(trial, output_of(given, read))
 
 
 def output_of(given: argparse.Namespace, read: Sequence[tuple[str, Path | None]]) -> Output:

@@ -71,7 +71,7 @@ class MapRun:
         return self.record.result.duration / max(self.record.wall, 1e-9)
 
 
-Watch = Callable[["WatchedExplorer"], None]
+RunObserver = Callable[["WatchedExplorer"], None]
 """Is shown the robot whenever it looked around: every few ticks, or at each."""
 
 _AS_OFTEN: Final = 0.9
@@ -81,7 +81,7 @@ _AS_OFTEN: Final = 0.9
 class WatchedExplorer(HeadlessExplorer):
     """A robot that makes its map while another map is made by its odometry alone."""
 
-    watches: tuple[Watch, ...] = ()
+    observers: tuple[RunObserver, ...] = ()
 
     def begin_blind(self, mapping: MappingConfig) -> None:
         """Draw by dead reckoning from now on; it stands on its station."""
@@ -97,7 +97,7 @@ class WatchedExplorer(HeadlessExplorer):
         """Let time pass, and look at what it brought."""
         super().advance()
         self._hear(self.passed[-1])
-        for watch in self.watches:
+        for watch in self.observers:
             watch(self)
 
     def _hear(self, rows: Floats) -> None:
@@ -130,10 +130,10 @@ class MapScene:
         )
         self.robot.begin_blind(mapping)
 
-    def run(self, watches: Iterable[Watch] = ()) -> MapRun:
+    def run(self, observers: Iterable[RunObserver] = ()) -> MapRun:
         """Explore; raises CommandRefusedError."""
         robot = self.robot
-        robot.watches = tuple(watches)
+        robot.observers = tuple(observers)
         record = robot.explore()
         true, off = robot.seen.pose, record.believed[:, 1:3] - record.poses[:, 1:3]
         last = robot.mapper.pose.distance_to(true.x, true.y)

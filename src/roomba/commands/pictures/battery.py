@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from roomba.commands.pictures.drives import Floats, Recording, wander
+from roomba.commands.pictures.drives import DriveRecording, Floats, wander
 from roomba.configuration.robot import BatteryConfig, RobotConfig, pickup_share
 from roomba.geometry import Pose, Twist
 from roomba.plots.style import BLUE, GREEN, INK, ORANGE, drawn, empty_figure, stacked
@@ -27,7 +27,7 @@ _HOUR = 3600.0
 def picture_of_battery(home: Home, most_hours: float = 6.0) -> Figure:
     """Draw charge, voltage, power and temperature: cleaning to 10 %, then on the station."""
     config = RobotConfig()
-    recording = Recording(Simulator(home, config))
+    recording = DriveRecording(Simulator(home, config))
     world = recording.simulator
     world.put(home.station.compose(Pose(-0.3, 0.0, 2.0)))
     empty = _LOW * config.battery.capacity

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Wedge
 
-from roomba.commands.pictures.drives import Recording
+from roomba.commands.pictures.drives import DriveRecording
 from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose, Twist
 from roomba.plots.style import (
@@ -103,7 +103,7 @@ def _draw_bump(panels: list[Axes], home: Home) -> None:
     world = Simulator(home, RobotConfig(sensors="noisy"), start=middle)
     post = middle.compose(Pose(0.5, 0.08, 0.0))
     world.place_obstacle(post.x, post.y, _POST)
-    recording = Recording(
+    recording = DriveRecording(
         world, {"gap": lambda now: now.pose.distance_to(post.x, post.y) - radius - _POST}
     )
     recording.drive(Twist(0.2, 0.0), 2.4)

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
 from numpy.typing import NDArray
 
-from roomba.commands.pictures.drives import Recording
+from roomba.commands.pictures.drives import DriveRecording
 from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose, Twist
 from roomba.plots.style import BLUE, INK, drawn, empty_figure, stacked
@@ -36,7 +36,9 @@ def picture_of_dirt(home: Home, way: float = _WAY) -> Figure:
     for spill in _SPILLS:
         world.spill(*spill)
     before = _strip(world.dirt, way)
-    recording = Recording(world, {"dirt_under": lambda simulator: simulator.observe().dirt_under})
+    recording = DriveRecording(
+        world, {"dirt_under": lambda simulator: simulator.observe().dirt_under}
+    )
     recording.drive(Twist(_SPEED, 0.0), way / _SPEED)
     figure = empty_figure(1000, 900)
     panels = stacked(figure, 6, [0.9, 0.9, 1.0, 1.0, 1.0, 1.0])

@@ -24,7 +24,7 @@ Floats = NDArray[np.float64]
 
 
 @dataclass(slots=True)
-class Recording:
+class DriveRecording:
     """A simulator, and all numbers of its robot (see ``Simulator.numbers``) as time passes.
 
     ``extra`` are more of them, by name: functions of the simulator.
@@ -55,7 +55,7 @@ class Recording:
 
 
 def follow(
-    recording: Recording, points: Sequence[tuple[float, float]], speed: float, seconds: float
+    recording: DriveRecording, points: Sequence[tuple[float, float]], speed: float, seconds: float
 ) -> None:
     """Drive straight from point to point, m, map frame, again and again, by the true pose."""
     loop = PositionLoop(ControlConfig(), BodyConfig())
@@ -68,7 +68,7 @@ def follow(
             recording.step(loop.tick(world.pose, point, speed))
 
 
-def wander(recording: Recording, seconds: float, dt: float, steps: int, seed: int = 0) -> None:
+def wander(recording: DriveRecording, seconds: float, dt: float, steps: int, seed: int = 0) -> None:
     """Drive straight on, and turn by chance after each bump."""
     random = np.random.default_rng(seed)
     turning, twist = 0.0, Twist(0.3, 0.0)

@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from roomba.commands.pictures.drives import STEP, Recording
+from roomba.commands.pictures.drives import STEP, DriveRecording
 from roomba.configuration.robot import RobotConfig
 from roomba.control.speed_loop import SpeedLoop
 from roomba.geometry import Pose, Twist
@@ -45,7 +45,7 @@ _SIGNALS = {
 @drawn
 def picture_of_edge(home: Home, seconds: float = 8.0) -> Figure:
     """Draw the signals while it drives over the edge, and what the speed loop does instead."""
-    blind = Recording(Simulator(home, start=_START))
+    blind = DriveRecording(Simulator(home, start=_START))
     blind.drive(Twist(_SPEED, 0.0), seconds)
     careful = _with_speed_loop(home, seconds)
     figure = empty_figure(1100, 620)
@@ -71,8 +71,8 @@ def picture_of_edge(home: Home, seconds: float = 8.0) -> Figure:
     return figure
 
 
-def _with_speed_loop(home: Home, seconds: float) -> Recording:
-    recording = Recording(Simulator(home, start=_START))
+def _with_speed_loop(home: Home, seconds: float) -> DriveRecording:
+    recording = DriveRecording(Simulator(home, start=_START))
     world = recording.simulator
     body = world.config.body
     loop = SpeedLoop(body.command_timeout, world.max_speed, body.max_angular_speed)
@@ -85,7 +85,7 @@ def _with_speed_loop(home: Home, seconds: float) -> Recording:
     return recording
 
 
-def _draw_plan(axes: Axes, home: Home, recording: Recording) -> None:
+def _draw_plan(axes: Axes, home: Home, recording: DriveRecording) -> None:
     show_plan(axes, home, _AREA)
     draw_robot(axes, _START)
     cliff = RobotConfig().cliff

@@ -15,7 +15,7 @@ from rich.table import Table
 from rich.text import Text
 
 from roomba.commands.progress import Show, progress
-from roomba.commands.sim.options import PROGRAM, Options, options_of
+from roomba.commands.sim.options import PROGRAM, SimOptions, options_of
 from roomba.commands.sim.trial import RANDOM, Trial, UsageError
 from roomba.commands.telling import tell_tables, write_json
 from roomba.errors import RoombaError
@@ -23,10 +23,10 @@ from roomba.errors import RoombaError
 if TYPE_CHECKING:
     from roomba.commands.sim.figures import Figures
     from roomba.commands.sim.many import Outcome
-    from roomba.commands.sim.runs import Run, Scene, Watch
+    from roomba.commands.sim.runs import Run, RunObserver, TrialSetup
     from roomba.headless.cleaner import HeadlessMission
 
-BagOpener = Callable[[Path, "Scene"], AbstractContextManager["Watch"]]
+BagOpener = Callable[[Path, "TrialSetup"], AbstractContextManager["RunObserver"]]
 """Opens a bag; what it gives is shown the robot again and again."""
 
 BAG_BURST: Final = 1
@@ -63,27 +63,27 @@ def _complain(text: str, status: int) -> int:
 # ---------------------------------------------------------------- one run
 
 
-def _run_one(options: Options, open_bag: BagOpener | None) -> int:
+def _run_one(options: SimOptions, open_bag: BagOpener | None) -> int:
     # Here, because it takes a second that nobody should wait for who mistyped an option.
-    from roomba.commands.sim.runs import Scene
+    from roomba.commands.sim.runs import TrialSetup
     from roomba.commands.sim.warm import warm_up
     from roomba.headless.closed_loop import LONGEST_BURST
 
     burst = LONGEST_BURST if options.bag is None else BAG_BURST
-    scene = Scene(options.trial, burst)
+    setup = TrialSetup(options.trial, burst)
     with contextlib.ExitStack() as stack:
-        watches: list[Watch] = []
+        observers: list[RunObserver] = []
         show = stack.enter_context(progress("Cleaning", options.quiet))
         warm_up()
-        watches.append(_shown_by(show))
+        observers.append(_shown_by(show))
         if options.bag is not None and open_bag is not None:
-            watches.append(stack.enter_context(open_bag(options.bag, scene)))
-        run = scene.run(watches)
+            observers.append(stack.enter_context(open_bag(options.bag, setup)))
+        run = setup.run(observers)
     _tell_run(options, run)
     return COMPLETED if run.figures.is_completed else ENDED_OTHERWISE
 
 
-def _shown_by(show: Show) -> Watch:
+def _shown_by(show: Show) -> RunObserver:
     from roomba.commands.sim.report import clock
 
     began = time.monotonic()
@@ -101,7 +101,7 @@ def _shown_by(show: Show) -> Watch:
     return watch
 
 
-def _tell_run(options: Options, run: Run) -> None:
+def _tell_run(options: SimOptions, run: Run) -> None:
     from roomba.commands.sim.json_file import run_as_json
     from roomba.commands.sim.report import table_of
 
@@ -117,7 +117,7 @@ def _tell_run(options: Options, run: Run) -> None:
 # ---------------------------------------------------------------- many runs
 
 
-def _run_homes(options: Options, homes: int) -> int:
+def _run_homes(options: SimOptions, homes: int) -> int:
     from roomba.commands.sim.many import run_many
 
     first = options.trial.seed
@@ -146,7 +146,7 @@ def _sort_in(
 
 
 def _tell_homes(
-    options: Options, figures: dict[int, Figures], failures: dict[int, str], wall: float
+    options: SimOptions, figures: dict[int, Figures], failures: dict[int, str], wall: float
 ) -> None:
     from roomba.commands.sim.json_file import runs_as_json
     from roomba.commands.sim.percentiles import percentiles_of

@@ -7,7 +7,7 @@ from typing import Any
 
 
 @dataclass(frozen=True, slots=True)
-class MissedFloor:
+class MissedShare:
     """Floor that was wanted and is not clean, as the robot tells it: m2, m, and why."""
 
     area_m2: float
@@ -36,7 +36,7 @@ class Figures:
     covered_m2: float
     tool_width_m: float
     hits: int
-    missed: tuple[MissedFloor, ...]
+    missed: tuple[MissedShare, ...]
 
     @property
     def is_completed(self) -> bool:

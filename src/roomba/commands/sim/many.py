@@ -53,18 +53,18 @@ def run_many(
     """
     left = deque(trials)
     count = min(processes or len(os.sched_getaffinity(0)), len(trials))
-    with _Crew(work, method) as crew:
+    with _WorkerPool(work, method) as crew:
         for _ in range(count):
-            crew.hire(left.popleft())
+            crew.submit(left.popleft())
         while crew.at_work:
             ended = crew.ended()
             for trial, outcome in ended:
                 if left:
-                    crew.hire(left.popleft())
+                    crew.submit(left.popleft())
                 yield trial, outcome
 
 
-class _Crew:
+class _WorkerPool:
     """Processes at work; each has one trial at a time. A context: at its end all are gone."""
 
     def __init__(self, work: Work, method: str) -> None:
@@ -73,7 +73,7 @@ class _Crew:
         self.at_work: dict[Connection, tuple[BaseProcess, Trial]] = {}
         self._idle: list[tuple[Connection, BaseProcess]] = []
 
-    def __enter__(self) -> _Crew:
+    def __enter__(self) -> _WorkerPool:
         return self
 
     def __exit__(self, *error: object) -> None:
@@ -85,7 +85,7 @@ class _Crew:
             pipe.close()
             process.join(timeout=1.0)
 
-    def hire(self, trial: Trial) -> None:
+    def submit(self, trial: Trial) -> None:
         """Give a trial to somebody who has nothing to do, or to somebody new."""
         pipe, process = self._idle.pop() if self._idle else self._started()
         self.at_work[pipe] = process, trial

@@ -26,7 +26,7 @@ _MOST_SEED: Final = 2**63 - 1
 
 
 @dataclass(frozen=True, slots=True)
-class Options:
+class SimOptions:
     """``homes`` runs (None: the trial alone), and what is told of them; ``json`` "-" is output."""
 
     trial: Trial
@@ -37,7 +37,7 @@ class Options:
     quiet: bool
 
 
-def options_of(arguments: list[str] | None) -> Options:
+def options_of(arguments: list[str] | None) -> SimOptions:
     """Return what a command line asks for; raises UsageError, and SystemExit for ``--help``."""
     given = _parser().parse_args(arguments)
     _check_homes(given)
@@ -54,7 +54,7 @@ def options_of(arguments: list[str] | None) -> Options:
         station=None if given.station is None else Pose(*given.station),
         config=given.config,
     )
-    return Options(trial, given.homes, given.json, given.plot, given.bag, given.quiet)
+    return SimOptions(trial, given.homes, given.json, given.plot, given.bag, given.quiet)
 
 
 class _Parser(argparse.ArgumentParser):

@@ -7,7 +7,7 @@ from typing import Final
 from rich.table import Table
 from rich.text import Text
 
-from roomba.commands.sim.figures import Figures, MissedFloor
+from roomba.commands.sim.figures import Figures, MissedShare
 from roomba.commands.sim.percentiles import PERCENTS, ROWS
 
 _SHOWN: Final = 8
@@ -112,7 +112,7 @@ def _coverage(figures: Figures) -> str:
     )
 
 
-def _missed(each: MissedFloor) -> str:
+def _missed(each: MissedShare) -> str:
     room = f" in {each.room}" if each.room else ""
     return f"{each.area_m2:.3f} m² at ({each.x:.2f}, {each.y:.2f}){room}: {each.reason}"
 

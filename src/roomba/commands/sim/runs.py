@@ -10,7 +10,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.commands.sim.figures import Figures, MissedFloor
+from roomba.commands.sim.figures import Figures, MissedShare
 from roomba.commands.sim.homes import home_of, rooms_of
 from roomba.commands.sim.things import Disc, seeded_things
 from roomba.commands.sim.trial import Trial
@@ -31,7 +31,7 @@ from roomba.world.home.raster import largest_component, where_body_fits
 
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
-Watch = Callable[[HeadlessMission], None]
+RunObserver = Callable[[HeadlessMission], None]
 """Is shown the robot whenever some of its time has passed."""
 
 TRAJECTORY_STEP: Final = 0.1
@@ -59,16 +59,16 @@ class Run:
 class WatchedMission(HeadlessMission):
     """A robot that is looked at while it cleans."""
 
-    watches: tuple[Watch, ...] = ()
+    observers: tuple[RunObserver, ...] = ()
 
     def advance(self) -> None:
         """Let some ticks pass, and look."""
         super().advance()
-        for watch in self.watches:
+        for watch in self.observers:
             watch(self)
 
 
-class Scene:
+class TrialSetup:
     """Everything that is there before a run begins; ``run()`` is the run, once."""
 
     def __init__(self, trial: Trial, longest_burst: int = LONGEST_BURST) -> None:
@@ -97,10 +97,10 @@ class Scene:
             self.home, self.robot.site, trial.request, self.things, self.config, mission, docking
         )
 
-    def run(self, watches: Iterable[Watch] = ()) -> Run:
+    def run(self, observers: Iterable[RunObserver] = ()) -> Run:
         """Clean; raises CleanRefusedError and CommandRefusedError."""
         robot = self.robot
-        robot.watches = tuple(watches)
+        robot.observers = tuple(observers)
         seen = robot.seen
         first = np.array([[seen.time, seen.pose.x, seen.pose.y, seen.pose.theta]])
         began = time.perf_counter()
@@ -126,7 +126,7 @@ class Scene:
             tool_width_m=robot.site.tool_width,
             hits=record.hits,
             missed=tuple(
-                MissedFloor(each.area, each.x, each.y, each.room, each.reason.value)
+                MissedShare(each.area, each.x, each.y, each.room, each.reason.value)
                 for each in result.missed
             ),
         )
@@ -143,9 +143,9 @@ class Scene:
         )
 
 
-def run_trial(trial: Trial, watches: Iterable[Watch] = ()) -> Run:
+def run_trial(trial: Trial, observers: Iterable[RunObserver] = ()) -> Run:
     """Return the run of a trial; raises RoombaError for what cannot be."""
-    return Scene(trial).run(watches)
+    return TrialSetup(trial).run(observers)
 
 
 def trajectory_of(record: CleanRecord, first: Floats) -> Floats:

@@ -13,7 +13,7 @@ from roomba.configuration.robot import RobotConfig
 from roomba.grid import FREE, OCCUPIED, OccupancyMap
 from roomba.mission.cleaning.request import CleanMode, CleanRequest
 from roomba.mission.cleaning.stages import stages_of
-from roomba.mission.inputs.planning_context import Site
+from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.perception.swept.dirt_map import DirtMap
 from roomba.planning.path.costmap import RoundObstacle
 from roomba.world.home.home import Home
@@ -33,7 +33,7 @@ def true_map(home: Home) -> OccupancyMap:
 
 def coverable_floor(
     home: Home,
-    site: Site,
+    site: PlanningContext,
     request: CleanRequest,
     things: Sequence[RoundObstacle],
     robot: RobotConfig,
@@ -44,7 +44,9 @@ def coverable_floor(
 
     ``site`` is the home as the robot knows it; what counts as an edge is what its map shows as one.
     """
-    truth = Site(true_map(home), home.station, robot, mission, docking, site.rooms, site.zones)
+    truth = PlanningContext(
+        true_map(home), home.station, robot, mission, docking, site.rooms, site.zones
+    )
     staging = (truth.staging.x, truth.staging.y)
     reachable: Mask = truth.coverage.floor.with_obstacles(list(things)).coverable(staging)
     if not reachable.any():

@@ -17,7 +17,7 @@ from roomba.configuration.mission import CleaningConfig
 from roomba.geometry import Pose
 from roomba.grid import GridFrame
 from roomba.mission.cleaning.checkpoint import Values
-from roomba.mission.cleaning.ledger import FloorBook
+from roomba.mission.cleaning.ledger import CoverageLedger
 from roomba.mission.cleaning.missed import is_hidden, missed_floor
 from roomba.mission.cleaning.request import (
     CleanMode,
@@ -27,7 +27,7 @@ from roomba.mission.cleaning.request import (
 )
 from roomba.mission.cleaning.stages import Stage
 from roomba.mission.driving.gaps import closed_gaps
-from roomba.mission.inputs.planning_context import Site
+from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.perception.swept.coverage_map import CoverageMap, patches_of
 from roomba.perception.swept.dirt_map import DirtMap
 from roomba.planning.path.costmap import Point, RoundObstacle
@@ -59,11 +59,16 @@ class Cleaning:
     """Plans piece by piece; ``coverage`` is what was swept of the present pass."""
 
     def __init__(
-        self, request: CleanRequest, site: Site, dirt: DirtMap, config: CleaningConfig, here: Pose
+        self,
+        request: CleanRequest,
+        site: PlanningContext,
+        dirt: DirtMap,
+        config: CleaningConfig,
+        here: Pose,
     ) -> None:
         """Find out what is wanted; raises CleanRefusedError when that is nothing."""
         self._site, self._config, self._dirt = site, config, dirt
-        self._book = FloorBook(request, site, dirt, here)
+        self._book = CoverageLedger(request, site, dirt, here)
         if not (self.coverage.wanted_cells or self.explores):
             raise CleanRefusedError(
                 "expected floor that can be reached, got none: it is outside of the map, in "
@@ -190,7 +195,7 @@ class Cleaning:
         self._rounds, self._last_missed, self._is_anew = 1, np.inf, True
         self._book.try_again()
 
-    def use_site(self, site: Site, dirt: DirtMap) -> None:
+    def use_site(self, site: PlanningContext, dirt: DirtMap) -> None:
         """Go on with other zones or rooms, or with more of the map; what is swept stays so.
 
         ``dirt`` is that of the site's map.

@@ -18,7 +18,7 @@ from roomba.mission.cleaning.checkpoint import (
 )
 from roomba.mission.cleaning.request import CleanRequest
 from roomba.mission.cleaning.stages import Stage, stages_of
-from roomba.mission.inputs.planning_context import Site
+from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.perception.swept.coverage_bits import SWEPT, TRIED, WANTED
 from roomba.perception.swept.coverage_map import CoverageMap
 from roomba.perception.swept.dirt_map import DirtMap
@@ -29,13 +29,15 @@ Mask = NDArray[np.bool_]
 _ALL: Final = 0xFF
 
 
-class FloorBook:
+class CoverageLedger:
     """``coverage`` is what was swept of the present pass, ``stages`` are the parts in their order.
 
     On a map that is being made there is one stage, all that is known so far.
     """
 
-    def __init__(self, request: CleanRequest, site: Site, dirt: DirtMap, here: Pose) -> None:
+    def __init__(
+        self, request: CleanRequest, site: PlanningContext, dirt: DirtMap, here: Pose
+    ) -> None:
         """Find out what is wanted; raises CleanRefusedError for rooms that are not there."""
         self.request, self._site, self._dirt = request, site, dirt
         self._began_at = here
@@ -100,7 +102,7 @@ class FloorBook:
 
     # ---------------------------------------------------------------- other sites
 
-    def use_site(self, site: Site, dirt: DirtMap) -> None:
+    def use_site(self, site: PlanningContext, dirt: DirtMap) -> None:
         """Go on with other zones or rooms, or with more of the map; what is swept stays so."""
         self._dirt = dirt
         if self._site.is_growing:
@@ -109,7 +111,7 @@ class FloorBook:
             self._use_edits(site)
         self._site = site
 
-    def _use_edits(self, site: Site) -> None:
+    def _use_edits(self, site: PlanningContext) -> None:
         coverable, wanted = site.coverable(), self._floor_of(self._asked(site), site)
         freed = wanted & ~self.coverage.wanted
         self.stages = [Stage(s.name, s.floor & coverable, s.again) for s in self.stages]
@@ -117,7 +119,7 @@ class FloorBook:
             self.stages.append(Stage("what was a zone before", freed))
         self._want((self.coverage.wanted & coverable & wanted) | freed)
 
-    def _use_more_map(self, site: Site) -> None:
+    def _use_more_map(self, site: PlanningContext) -> None:
         """Bring what is swept to the new map, and want all that this one shows."""
         moved = site.station.compose(self._site.station.inverse())
         self._carry(self._site.frame, site.frame, moved)
@@ -194,7 +196,7 @@ class FloorBook:
 
     # ---------------------------------------------------------------- parts
 
-    def _asked(self, site: Site) -> list[Stage]:
+    def _asked(self, site: PlanningContext) -> list[Stage]:
         coverable = site.coverable()
         stages = stages_of(self.request, site, self._dirt, coverable, self._began_at)
         return stages[:1] if site.is_growing else stages
@@ -203,7 +205,7 @@ class FloorBook:
         return self._floor_of(self.stages, self._site)
 
     @staticmethod
-    def _floor_of(stages: list[Stage], site: Site) -> Mask:
+    def _floor_of(stages: list[Stage], site: PlanningContext) -> Mask:
         floor = np.zeros(site.frame.shape, np.bool_)
         for stage in stages:
             floor |= stage.floor

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from roomba.grid import GridFrame
 from roomba.mission.cleaning.request import Missed, MissReason
 from roomba.mission.driving.gaps import closed_gaps
-from roomba.mission.inputs.planning_context import Site
+from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.perception.swept.coverage_map import Patch, patches_of
 from roomba.planning.path.costmap import RoundObstacle
 
@@ -32,7 +32,7 @@ _IN_THE_WAY: Final = {
 def missed_floor(
     left: Mask,
     least: float,
-    site: Site,
+    site: PlanningContext,
     obstacles: Sequence[RoundObstacle],
     edges: Sequence[RoundObstacle],
     *,
@@ -60,7 +60,7 @@ def missed_floor(
     )
 
 
-def is_hidden(patch: Patch, site: Site, things: Sequence[RoundObstacle]) -> bool:
+def is_hidden(patch: Patch, site: PlanningContext, things: Sequence[RoundObstacle]) -> bool:
     """Whether a patch is what things stand on and hide, and not a room behind them."""
     rows, columns = np.nonzero(patch.cells)
     frame: GridFrame = site.frame
@@ -84,7 +84,7 @@ def why_hardly_any(wanted: float, covered: float, missed: Sequence[Missed]) -> s
     return f"{share} is clean: {reason.value}"
 
 
-def _reachable(site: Site, obstacles: Sequence[RoundObstacle]) -> Mask:
+def _reachable(site: PlanningContext, obstacles: Sequence[RoundObstacle]) -> Mask:
     """Return what can be cleaned from the station among what the map does not show."""
     things = [*obstacles, *closed_gaps(obstacles, site.reach)]
     return site.floor.with_obstacles(things).coverable((site.staging.x, site.staging.y))

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from roomba.geometry import Pose
 from roomba.mission.cleaning.request import SPOT_SIZE, CleanMode, CleanRefusedError, CleanRequest
-from roomba.mission.inputs.planning_context import Site
+from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.perception.swept.dirt_map import DirtMap
 from roomba.planning.path.planner import NoPathError
 from roomba.raster.distance import distance_to_nearest
@@ -27,7 +27,7 @@ class Stage:
 
 
 def stages_of(
-    request: CleanRequest, site: Site, dirt: DirtMap, coverable: Mask, here: Pose
+    request: CleanRequest, site: PlanningContext, dirt: DirtMap, coverable: Mask, here: Pose
 ) -> list[Stage]:
     """Return the parts of a clean in their order, all passes; raises CleanRefusedError."""
     once = _parts(request, site, dirt, coverable, here)
@@ -39,7 +39,7 @@ def stages_of(
 
 
 def _parts(
-    request: CleanRequest, site: Site, dirt: DirtMap, coverable: Mask, here: Pose
+    request: CleanRequest, site: PlanningContext, dirt: DirtMap, coverable: Mask, here: Pose
 ) -> list[Stage]:
     if request.mode in (CleanMode.WHOLE, CleanMode.EDGES):
         floor = coverable
@@ -65,7 +65,7 @@ def _parts(
     return [stage for stage in stages if stage.floor.any()]
 
 
-def _room_names(request: CleanRequest, site: Site, dirt: DirtMap) -> list[str]:
+def _room_names(request: CleanRequest, site: PlanningContext, dirt: DirtMap) -> list[str]:
     """Return the rooms in the order in which they are cleaned."""
     assert site.rooms is not None
     known = site.rooms.names
@@ -86,7 +86,7 @@ def _room_names(request: CleanRequest, site: Site, dirt: DirtMap) -> list[str]:
     return names if request.in_order else _nearest_first(names, site)
 
 
-def _nearest_first(names: list[str], site: Site) -> list[str]:
+def _nearest_first(names: list[str], site: PlanningContext) -> list[str]:
     """Return rooms so that each is the nearest one to that before it, from the station on."""
     assert site.rooms is not None
     anchors = {name: site.rooms.anchor(site.rooms.label_of(name)) for name in names}
@@ -99,14 +99,16 @@ def _nearest_first(names: list[str], site: Site) -> list[str]:
     return ordered
 
 
-def _way(site: Site, start: tuple[float, float], end: tuple[float, float]) -> float:
+def _way(site: PlanningContext, start: tuple[float, float], end: tuple[float, float]) -> float:
     try:
         return site.paths.plan(start, end).length
     except NoPathError:
         return float("inf")
 
 
-def _inside(site: Site, rectangles: tuple[tuple[float, float, float, float], ...]) -> Mask:
+def _inside(
+    site: PlanningContext, rectangles: tuple[tuple[float, float, float, float], ...]
+) -> Mask:
     """Return the cells whose middles lie in one of the rectangles."""
     frame = site.frame
     x = frame.origin_x + (np.arange(frame.columns) + 0.5) * frame.resolution

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from enum import Enum
 
 from roomba.geometry import Pose, Twist
-from roomba.mission.docking.track import Beams
+from roomba.mission.docking.track import StationBeams
 
 
 class DockState(Enum):
@@ -83,9 +83,9 @@ class DockSenses:
     is_known: bool = True
 
     @property
-    def beams(self) -> Beams:
+    def beams(self) -> StationBeams:
         """The beams alone."""
-        return Beams(self.halo, self.green, self.red)
+        return StationBeams(self.halo, self.green, self.red)
 
     @property
     def bumper(self) -> bool:

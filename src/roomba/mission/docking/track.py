@@ -24,7 +24,7 @@ _LATE_BEAMS: Final = 0.3
 
 
 @dataclass(frozen=True, slots=True)
-class Beams:
+class StationBeams:
     """What the receiver sees of the station, which looks at the robot that comes.
 
     ``red`` is the beam to the station's left as it looks out, so to the right of a robot that
@@ -56,7 +56,7 @@ class StationTrack:
         self._slope = math.tan(math.radians(0.5 * beams.overlap))
         self._wide = math.tan(math.radians(beams.beam_angle))
         self._believed: Pose | None = None
-        self._last = Beams()
+        self._last = StationBeams()
         self._waits = 0.0
         self._way_aside = 0.0
         self.pose = Pose()
@@ -99,11 +99,11 @@ class StationTrack:
 
     def forget_beams(self) -> None:
         """Go by the believed pose alone, if there is one; beams put it right from now on."""
-        self._last = Beams()
+        self._last = StationBeams()
         self._way_aside = 0.0
         self.pose = self._believed or self.pose
 
-    def see(self, beams: Beams) -> None:
+    def see(self, beams: StationBeams) -> None:
         """Go to the nearest place at which these beams are seen."""
         before, self._last = self._last, beams
         ahead = self._front - self.pose.x
@@ -120,7 +120,7 @@ class StationTrack:
         edge = math.sqrt(max(self._halo**2 - self.pose.y**2, 0.0))
         return min(ahead, edge) if halo else max(ahead, edge)
 
-    def _aside(self, ahead: float, before: Beams, beams: Beams) -> float:
+    def _aside(self, ahead: float, before: StationBeams, beams: StationBeams) -> float:
         """Return y, so far before the station's front: by the beams, or by one that just ended."""
         y, inner, outer = self.pose.y, self._slope * ahead, self._wide * ahead
         if beams.green and beams.red:

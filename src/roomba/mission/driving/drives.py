@@ -14,7 +14,7 @@ from roomba.mission.driving.obstacles import Obstacles
 from roomba.mission.driving.path_driver import PathDriver
 from roomba.mission.driving.rejoin import Rejoin
 from roomba.mission.driving.trail import Trail
-from roomba.mission.inputs.planning_context import Site
+from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.mission.inputs.senses import Senses
 from roomba.planning.path.planner import NoPathError
 
@@ -28,7 +28,7 @@ class Drives:
     """
 
     def __init__(
-        self, site: Site, robot: RobotConfig, config: DrivingConfig, obstacles: Obstacles
+        self, site: PlanningContext, robot: RobotConfig, config: DrivingConfig, obstacles: Obstacles
     ) -> None:
         """Begin without a path."""
         self._robot, self._config = robot, config
@@ -37,7 +37,7 @@ class Drives:
         self.is_round = False
         self.use_site(site)
 
-    def use_site(self, site: Site) -> None:
+    def use_site(self, site: PlanningContext) -> None:
         """Plan there from now on; the present path is driven on."""
         self.site = site
         self._rejoin = Rejoin(site, self._robot.body.radius, self._config)

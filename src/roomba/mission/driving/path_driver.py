@@ -20,7 +20,7 @@ from roomba.configuration.robot import BodyConfig, TrackingConfig
 from roomba.control.path_tracker import PathTracker
 from roomba.geometry import STANDSTILL, Twist
 from roomba.mission.driving.obstacles import Obstacles
-from roomba.mission.driving.recovery import Wriggle
+from roomba.mission.driving.recovery import Recovery
 from roomba.mission.driving.rejoin import Rejoin
 from roomba.mission.driving.trail import Trail
 from roomba.mission.inputs.senses import Senses
@@ -117,7 +117,7 @@ class PathDriver:
         self._was_touching = any(senses.touches)
         self._last_tick = senses.now
         self._backs_from: tuple[float, float, float] | None = None
-        self._wriggle: Wriggle | None = None
+        self._wriggle: Recovery | None = None
         self._recoveries = 0
         self._checked = _NEVER
         self.clear_to = 0.0
@@ -290,9 +290,9 @@ class PathDriver:
             )
             return
         self._state = DriveState.RECOVERING
-        self._wriggle = Wriggle(self._recoveries, self._config, senses)
+        self._wriggle = Recovery(self._recoveries, self._config, senses)
 
-    def _get_free(self, senses: Senses, wriggle: Wriggle) -> DriveStep:
+    def _get_free(self, senses: Senses, wriggle: Recovery) -> DriveStep:
         twist = wriggle.tick(senses)
         if twist is not None:
             return DriveStep(self._state, twist)

@@ -24,7 +24,7 @@ _TURNED: Final = 0.3
 """m, rad; after this it is free."""
 
 
-class Wriggle:
+class Recovery:
     """One attempt, the ``number``-th (from 1) of them; it ends by itself."""
 
     def __init__(self, number: int, config: DrivingConfig, senses: Senses) -> None:

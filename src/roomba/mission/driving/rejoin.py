@@ -15,7 +15,7 @@ from roomba.control.path_tracker import PathTracker
 from roomba.mission.driving.nudge import nudged
 from roomba.mission.driving.obstacles import Obstacles
 from roomba.mission.driving.trail import Trail
-from roomba.mission.inputs.planning_context import Site
+from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.mission.inputs.senses import Senses
 from roomba.planning.path.costmap import Point, RoundObstacle
 from roomba.planning.path.planner import NoPathError, NoPathReason
@@ -38,7 +38,7 @@ _MOST_TRIES: Final = 8
 class Rejoin:
     """Plans from where the robot is to what is left of a path; ``trouble`` says why it cannot."""
 
-    def __init__(self, site: Site, body_radius: float, config: DrivingConfig) -> None:
+    def __init__(self, site: PlanningContext, body_radius: float, config: DrivingConfig) -> None:
         """Take the site's planners, which must allow what paths keep from walls."""
         self._site, self._planner = site, site.paths
         self._body_radius, self._away = body_radius, config.thing_clearance

@@ -18,7 +18,7 @@ _MOST_WAITS: Final = 41
 """Twenty minutes; then there is no way home."""
 
 
-class Patience:
+class RetryPolicy:
     """Counts how often there was no way, and tells when to wait and when to give up.
 
     ``gets_out``: it has waited, and looks for a way out first.

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from roomba.geometry import Pose
 from roomba.grid import OccupancyMap
 from roomba.mission.cleaning.request import CleanOutcome
-from roomba.mission.inputs.planning_context import Site
+from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.planning.frontiers.frontiers import Frontier, frontiers, is_frontier
 from roomba.planning.path.costmap import Point, RoundObstacle
 from roomba.planning.path.planner import NoPathError
@@ -71,7 +71,7 @@ class Exploration:
     def next_path(
         self,
         here: Pose,
-        site: Site,
+        site: PlanningContext,
         obstacles: list[RoundObstacle],
         farthest: float = math.inf,
     ) -> NDArray[np.float64] | None:
@@ -118,7 +118,7 @@ class Exploration:
             self.unseen.append(self.goal.middle)
         self.goal = None
 
-    def _leave_behind(self, here: Pose, site: Site) -> None:
+    def _leave_behind(self, here: Pose, site: PlanningContext) -> None:
         """Give the last frontier up if it was looked at from its viewpoint, and is still one."""
         goal, self.goal = self.goal, None
         if goal is None or math.dist(goal.viewpoint, (here.x, here.y)) > _ARRIVED:

@@ -111,7 +111,7 @@ class LookAround:
         return np.minimum(room, np.maximum(reach.min(axis=1, initial=np.inf), 0.0))
 
 
-class Search:
+class SearchDrive:
     """Lets the robot look around whenever its localizer needs to see more."""
 
     def __init__(self, body: BodyConfig) -> None:

@@ -26,7 +26,7 @@ from roomba.planning.path.planner import NoPathError, NoPathReason, PathPlanner
 Mask = NDArray[np.bool_]
 
 
-class Site:
+class PlanningContext:
     """What does not change while nobody edits zones or rooms; an edit makes a new one."""
 
     def __init__(

@@ -24,7 +24,7 @@ class Battery:
 
 
 @dataclass(frozen=True, slots=True)
-class Beams:
+class StationBeams:
     """What of the station's infrared light is seen."""
 
     halo: bool = False
@@ -38,7 +38,7 @@ class Beams:
 
 
 _FULL = Battery()
-_NO_BEAMS = Beams()
+_NO_BEAMS = StationBeams()
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +61,7 @@ class Senses:
     cliff_left: bool = False
     cliff_right: bool = False
     lifted: bool = False
-    beams: Beams = _NO_BEAMS
+    beams: StationBeams = _NO_BEAMS
     battery: Battery = _FULL
     grains: float = 0.0
     in_bin: float = 0.0

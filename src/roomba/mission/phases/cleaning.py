@@ -11,8 +11,8 @@ from roomba.mission.cleaning.cleaning import Cleaning
 from roomba.mission.cleaning.request import CleanOutcome
 from roomba.mission.driving.drives import Drives
 from roomba.mission.driving.path_driver import DriveState
-from roomba.mission.driving.retry_policy import Patience
-from roomba.mission.inputs.planning_context import Site
+from roomba.mission.driving.retry_policy import RetryPolicy
+from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.mission.inputs.senses import Senses
 from roomba.mission.phases import phases
 from roomba.mission.phases.job import Job
@@ -33,11 +33,11 @@ class CleanPhase:
     """Drives over the floor that is left of the job's clean."""
 
     def __init__(
-        self, job: Job, drives: Drives, patience: Patience, config: ExploringConfig
+        self, job: Job, drives: Drives, patience: RetryPolicy, config: ExploringConfig
     ) -> None:
         """Begin with no path."""
         self._job, self._drives, self._patience, self._config = job, drives, patience, config
-        self._seen_all_of: Site | None = None
+        self._seen_all_of: PlanningContext | None = None
         self._seen_all_at = 0.0
 
     def tick(self, senses: Senses, limit: float) -> PhaseStep:

@@ -18,7 +18,7 @@ _CARRIED: Final = 0.3
 """m; between two ticks: nobody drives as far."""
 
 
-class EnergyBook:
+class EnergyLedger:
     """Ticked with what is sensed; ``distance`` m, ``energy`` Wh and ``dirt`` g since the begin."""
 
     def __init__(self, config: EnergyConfig, senses: Senses) -> None:

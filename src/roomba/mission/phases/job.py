@@ -11,9 +11,9 @@ from roomba.mission.cleaning.missed import why_hardly_any
 from roomba.mission.cleaning.request import CleanOutcome, CleanResult
 from roomba.mission.driving.obstacles import Obstacles
 from roomba.mission.exploring.exploration import Exploration, ExploreResult
-from roomba.mission.inputs.planning_context import Site
+from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.mission.inputs.senses import Senses
-from roomba.mission.phases.energy import EnergyBook
+from roomba.mission.phases.energy import EnergyLedger
 from roomba.perception.swept.dirt_map import DirtMap
 
 _LONGEST_TICK: Final = 2.0
@@ -36,7 +36,7 @@ class Job:
         self.cleaning: Cleaning | None = None
         self.exploration: Exploration | None = None
         self.outcome: CleanOutcome | None = None
-        self.book = EnergyBook(config, senses)
+        self.book = EnergyLedger(config, senses)
         self._started = senses.now
         self._is_told = False
         self._cleaned: CleanResult | None = None
@@ -103,7 +103,7 @@ class Job:
         self,
         outcome: CleanOutcome,
         message: str,
-        site: Site,
+        site: PlanningContext,
         obstacles: Obstacles,
         senses: Senses,
         *,

@@ -8,7 +8,7 @@ from roomba.configuration.robot import WalkConfig
 from roomba.mission.cleaning.request import CleanOutcome
 from roomba.mission.driving.drives import Drives
 from roomba.mission.inputs.senses import Senses
-from roomba.mission.phases.energy import EnergyBook
+from roomba.mission.phases.energy import EnergyLedger
 from roomba.mission.phases.machine import MissionState, Phase
 from roomba.mission.phases.step import Failure
 from roomba.perception.localization.estimate import Knowledge
@@ -17,11 +17,11 @@ _CARRIED: Final = 1.0
 """m; farther from where it last knew its place it did not drive itself while it looked around."""
 
 
-class Watch:
+class Monitor:
     """Looks at every tick; ``was_docked`` is whether the station's contact was there before."""
 
     def __init__(
-        self, config: WalkConfig, drives: Drives, book: EnergyBook, senses: Senses
+        self, config: WalkConfig, drives: Drives, book: EnergyLedger, senses: Senses
     ) -> None:
         """Begin where the robot stands, knowing its place."""
         self._config, self._drives, self._book = config, drives, book

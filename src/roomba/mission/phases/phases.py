@@ -8,7 +8,7 @@ from typing import Final
 from roomba.mission.cleaning.request import CleanOutcome
 from roomba.mission.driving.drives import Drives
 from roomba.mission.driving.path_driver import DriveState
-from roomba.mission.driving.retry_policy import Patience
+from roomba.mission.driving.retry_policy import RetryPolicy
 from roomba.mission.exploring.exploration import Exploration
 from roomba.mission.inputs.senses import Senses
 from roomba.mission.phases.job import Job
@@ -64,7 +64,7 @@ def look_on(
     return PhaseStep(step.twist)
 
 
-def go_home(drives: Drives, patience: Patience, senses: Senses, limit: float) -> PhaseStep:
+def go_home(drives: Drives, patience: RetryPolicy, senses: Senses, limit: float) -> PhaseStep:
     """Drive to the place before the station; where no way leads there it waits for one."""
     staging = drives.site.staging
     if senses.battery.is_docked:
@@ -86,7 +86,7 @@ def go_home(drives: Drives, patience: Patience, senses: Senses, limit: float) ->
     return step if step.message else replace(step, message="")
 
 
-def _go_home_on(drives: Drives, patience: Patience, senses: Senses, limit: float) -> PhaseStep:
+def _go_home_on(drives: Drives, patience: RetryPolicy, senses: Senses, limit: float) -> PhaseStep:
     assert drives.driver is not None
     step = drives.driver.tick(senses, limit)
     if step.state is DriveState.STUCK:
@@ -98,7 +98,7 @@ def _go_home_on(drives: Drives, patience: Patience, senses: Senses, limit: float
     return PhaseStep(step.twist)
 
 
-def try_home_again(reason: str, drives: Drives, patience: Patience, senses: Senses) -> PhaseStep:
+def try_home_again(reason: str, drives: Drives, patience: RetryPolicy, senses: Senses) -> PhaseStep:
     """Once more without what was remembered; a door may open; then it says there is no way."""
     patience.found_no_way_home()
     if patience.is_over:
@@ -109,7 +109,7 @@ def try_home_again(reason: str, drives: Drives, patience: Patience, senses: Sens
     return PhaseStep()
 
 
-def wait(reason: str, drives: Drives, patience: Patience, senses: Senses) -> PhaseStep:
+def wait(reason: str, drives: Drives, patience: RetryPolicy, senses: Senses) -> PhaseStep:
     """Wait for a while, and then look anew: a door that is shut is opened again.
 
     Who stands before the robot may be waiting for it to go: it makes room.
@@ -120,7 +120,9 @@ def wait(reason: str, drives: Drives, patience: Patience, senses: Senses) -> Pha
     return PhaseStep(message=f"{reason}; it waits for a way to open")
 
 
-def wait_on(drives: Drives, patience: Patience, senses: Senses, limit: float) -> PhaseStep | None:
+def wait_on(
+    drives: Drives, patience: RetryPolicy, senses: Senses, limit: float
+) -> PhaseStep | None:
     """While it waits: stand, or drive on to where others can pass; None when it does not wait.
 
     As soon as there is a way it waits no longer.

@@ -19,8 +19,8 @@ from numpy.typing import NDArray
 from roomba.geometry import Pose, wrap_angle
 from roomba.grid import FREE, OCCUPIED, UNKNOWN, OccupancyMap
 from roomba.perception.floors.map_changes_kernels import NO_BOUNDS, count_scan, score_look
-from roomba.perception.matching.beams import Beams
-from roomba.perception.slam.drawing_kernels import Sheet
+from roomba.perception.matching.beams import LidarBeams
+from roomba.perception.slam.drawing_kernels import CountArrays
 from roomba.perception.slam.surface_kernels import POINT
 from roomba.raster.distance import distance_to_nearest
 from roomba.raster.regions import dilated, numbered_regions
@@ -97,7 +97,7 @@ class MapChanges:
         frame = occupancy.frame
         place = np.array([frame.origin_x, frame.origin_y, frame.resolution])
         hits, passes = np.zeros(frame.shape, np.uint16), np.zeros(frame.shape, np.uint16)
-        self._sheet = Sheet(hits, passes, place, NO_BOUNDS.copy())
+        self._sheet = CountArrays(hits, passes, place, NO_BOUNDS.copy())
         self._scores = np.zeros(frame.shape, np.int8)
         self._refused = {kind: np.zeros(frame.shape, np.bool_) for kind in ChangeKind}
         self._is_mapped_near = distance_to_nearest(occupancy.solid) <= _BLUR / frame.resolution
@@ -109,7 +109,7 @@ class MapChanges:
         self.looks = 0
         """How many were finished; changes can be others only when there is one more."""
 
-    def see(self, now: float, ranges: NDArray[np.float32], lidar: Beams, pose: Pose) -> None:
+    def see(self, now: float, ranges: NDArray[np.float32], lidar: LidarBeams, pose: Pose) -> None:
         """Take a scan, float32 [beams], m, taken at ``now``, s, at a pose of the map that is known.
 
         Some 2 to 5 a second are enough.

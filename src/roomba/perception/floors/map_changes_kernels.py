@@ -9,7 +9,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from roomba.perception.slam.drawing_kernels import Sheet, draw
+from roomba.perception.slam.drawing_kernels import CountArrays, draw
 from roomba.perception.slam.surface_kernels import NORMAL_X, NORMAL_Y, X, Y
 
 Floats = NDArray[np.float64]
@@ -27,7 +27,7 @@ _OPEN_SHARE: Final = 0.1
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def count_scan(
-    sheet: Sheet,
+    sheet: CountArrays,
     ranges: NDArray[np.float32],
     directions: Floats,
     mount: Floats,
@@ -58,7 +58,7 @@ def count_scan(
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def score_look(sheet: Sheet, scores: NDArray[np.int8]) -> None:
+def score_look(sheet: CountArrays, scores: NDArray[np.int8]) -> None:
     """Add the counts of a look to the scores, int8 [rows, columns], and begin a new one.
 
     A cell where enough beams ended gets 1 more, one that nearly all passed 1 less.

@@ -46,7 +46,7 @@ class FloorVerdict(Enum):
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Floor:
+class FloorRecord:
     """A floor that is known: its map, and where the docked robot stands in it."""
 
     occupancy: OccupancyMap
@@ -74,7 +74,7 @@ class FloorRecognition:
     """
 
     def __init__(
-        self, floors: Mapping[str, Floor], config: LocalizationConfig, body_radius: float
+        self, floors: Mapping[str, FloorRecord], config: LocalizationConfig, body_radius: float
     ) -> None:
         """``floors`` by name; ``body_radius``, m, tells where the robot can stand."""
         self._floors = dict(floors)

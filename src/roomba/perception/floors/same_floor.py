@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from roomba.geometry import Pose
 from roomba.grid import FREE, OCCUPIED, GridFrame, OccupancyMap
-from roomba.perception.floors.recognition import Floor
+from roomba.perception.floors.recognition import FloorRecord
 from roomba.perception.matching.match_kernels import match
 from roomba.perception.matching.surface_field import SurfaceField
 from roomba.raster.distance import distance_to_nearest
@@ -55,7 +55,7 @@ class FloorMatch:
         return self.walls >= LEAST_WALLS and self.floor >= LEAST_FLOOR
 
 
-def match_floors(new: Floor, old: Floor) -> FloorMatch:
+def match_floors(new: FloorRecord, old: FloorRecord) -> FloorMatch:
     """Return how well two maps fit, laid on each other as well as can be near their stations."""
     station = new.station
     starts = [Pose(station.x, station.y, station.theta + turn) for turn in _TURNS]
@@ -77,7 +77,7 @@ def _aligned(field: SurfaceField, ends: Floats, start: Pose) -> Pose:
     return Pose(*pose.tolist())
 
 
-def _compared(new: Floor, old: Floor, old_in_new: Pose) -> FloorMatch:
+def _compared(new: FloorRecord, old: FloorRecord, old_in_new: Pose) -> FloorMatch:
     agree, compared = _agreeing(_moved(_walls(old.occupancy), old_in_new), new.occupancy)
     also, more = _agreeing(_moved(_walls(new.occupancy), old_in_new.inverse()), old.occupancy)
     floor = _moved(_middles(old.occupancy.frame, old.occupancy.values == FREE), old_in_new)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from roomba.perception.localization.belief import AGREE, EVIDENCE, SHORT, THROUGH, Row, Rows
 from roomba.perception.localization.belief_reckon_kernels import wrapped
-from roomba.perception.matching.beams import Beams
+from roomba.perception.matching.beams import LidarBeams
 from roomba.perception.matching.field_kernels import Field, Place
 from roomba.perception.matching.fit_kernels import AGREEING, LOOKED_AT, judge
 from roomba.perception.matching.fit_kernels import EVIDENCE as ALL_EVIDENCE
@@ -46,7 +46,7 @@ def correct(
     numbers: Rows,
     field: Field,
     place: Place,
-    lidar: Beams,
+    lidar: LidarBeams,
     ranges: NDArray[np.float32],
     stamp: float,
 ) -> int:

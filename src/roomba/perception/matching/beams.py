@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 
 
-class Beams(NamedTuple):
+class LidarBeams(NamedTuple):
     """A lidar as kernels know it, and room for the ends of its beams.
 
     ``directions`` is float64 [beams, 2], cosine and sine in its own frame; ``mount`` [3] its x, y,

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.geometry import Pose
-from roomba.perception.matching.beams import Beams
+from roomba.perception.matching.beams import LidarBeams
 from roomba.perception.matching.fit_kernels import (
     AGREEING,
     EVIDENCE,
@@ -26,8 +26,8 @@ from roomba.perception.matching.surface_field import SurfaceField
 class Fit:
     """How well a scan fits a pose: shares of its beams, and the evidence to compare poses by.
 
-    Beams that end where the map has a surface ``agree``; ``short`` ones met something that the map
-    does not know; those that go ``through`` something that it does are the worst.
+    LidarBeams that end where the map has a surface ``agree``; ``short`` ones met something that
+    the map does not know; those that go ``through`` something that it does are the worst.
     """
 
     agree: float
@@ -62,10 +62,10 @@ class LidarModel:
         """Return a lidar in the middle of the robot, beam 0 ahead, then counter-clockwise."""
         return LidarModel(np.arange(beams) * (2.0 * np.pi / beams), nearest, farthest)
 
-    def arrays(self) -> Beams:
+    def arrays(self) -> LidarBeams:
         """Return it as kernels know it, with room of its own for the ends of beams."""
         ends, lanes = np.empty((self.beams, 4)), np.empty((JUDGE_LANES, self.beams))
-        return Beams(
+        return LidarBeams(
             self._directions,
             self.mount,
             self._first_angle,

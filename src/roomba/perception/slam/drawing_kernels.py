@@ -33,7 +33,7 @@ _MOST: Final = 60000
 """Counts are halved there: a cell never overflows."""
 
 
-class Sheet(NamedTuple):
+class CountArrays(NamedTuple):
     """The grid as kernels know it: counts, uint16 [rows, columns]; ``place`` is the lower left
     corner x, y and the cell size, m; ``bounds`` int64 [4] the first and last row and column with
     counts; ``offsets``, float32 [rows, columns, 2], sums of where the cell's beams met a surface, x
@@ -49,7 +49,7 @@ class Sheet(NamedTuple):
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def draw(
-    sheet: Sheet,
+    sheet: CountArrays,
     points: NDArray[np.float32],
     lidar: Floats,
     pose: Floats,
@@ -199,7 +199,7 @@ def _count(counts: Counts, at: int, times: int) -> None:
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _bound(sheet: Sheet, row: int, column: int) -> None:
+def _bound(sheet: CountArrays, row: int, column: int) -> None:
     rows, columns = sheet.hits.shape
     sheet.bounds[0] = max(min(sheet.bounds[0], row), 0)
     sheet.bounds[1] = min(max(sheet.bounds[1], row), rows - 1)
@@ -208,7 +208,7 @@ def _bound(sheet: Sheet, row: int, column: int) -> None:
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def occupancy(sheet: Sheet, share: float, least: int, values: NDArray[np.int8]) -> None:
+def occupancy(sheet: CountArrays, share: float, least: int, values: NDArray[np.int8]) -> None:
     """Fill ``values``, all within the bounds, from the counts.
 
     Occupied where ``least`` beams or more, and ``share`` of all, ended, unless that is the edge of
@@ -235,7 +235,7 @@ def _is_met(ended: int, through: int, share: float, least: int) -> bool:
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _is_edge(sheet: Sheet, row: int, column: int, least: int) -> bool:
+def _is_edge(sheet: CountArrays, row: int, column: int, least: int) -> bool:
     """Whether beams met a cell but at its border to one that is more surely occupied."""
     rows, columns = sheet.offsets.shape[:2]
     hits = int(sheet.hits[row, column])

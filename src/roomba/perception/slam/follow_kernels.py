@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from roomba.perception.localization.belief import Row, Rows
 from roomba.perception.localization.belief_reckon_kernels import compose, wrapped
-from roomba.perception.matching.beams import Beams
+from roomba.perception.matching.beams import LidarBeams
 from roomba.perception.slam.surface_kernels import surface_points
 from roomba.perception.slam.surfel_kernels import ASKED, CLOSE, COUNTS, MATCHED, Surfels, align
 
@@ -64,7 +64,7 @@ class Following(NamedTuple):
     belief: Rows
     numbers: Rows
     surfels: Surfels
-    beams: Beams
+    beams: LidarBeams
     points: Floats
     submap: Floats
     keyframe: Floats

@@ -23,7 +23,7 @@ from roomba.perception.localization.estimate import Estimate, Knowledge
 from roomba.perception.matching.scan_view import LidarModel
 from roomba.perception.slam.follow_kernels import LEAST_POINTS, Following, beyond, is_apart
 from roomba.perception.slam.mapper_state import KeptSubmap, LidarNumbers, MapperState
-from roomba.perception.slam.occupancy_counts import Sheet
+from roomba.perception.slam.occupancy_counts import OccupancyCounts
 from roomba.perception.slam.pose_graph import relative_to
 from roomba.perception.slam.scan_follower import ScanFollower
 from roomba.perception.slam.submap import Keyframe
@@ -69,7 +69,7 @@ class Mapper:
         self.at_scan = start
         self._lidar: LidarModel | None = None
         self._phase = (0.0, 0.0)
-        self._sheet = Sheet(config.resolution)
+        self._sheet = OccupancyCounts(config.resolution)
         self._drawn = self._graph.poses.copy()
         self._is_lifted = self._is_lost = False
         self._beside: list[int] = []
@@ -301,7 +301,7 @@ class Mapper:
 
     def _redraw(self) -> None:
         """Draw all keyframes on a new sheet, where they are thought to be now."""
-        self._sheet = Sheet(self._config.resolution, self._phase)
+        self._sheet = OccupancyCounts(self._config.resolution, self._phase)
         for frame, pose in self._graph.keyframes():
             self._draw(frame, pose)
         self._drawn = self._graph.poses.copy()

@@ -23,7 +23,7 @@ _MARGIN: Final = 1
 """Cells of the unknown around what is known."""
 
 
-class Sheet:
+class OccupancyCounts:
     """Counts of beams in cells of ``resolution``, m.
 
     The corners of cells lie at whole multiples of it, plus ``phase``, x and y in m.
@@ -96,7 +96,7 @@ class Sheet:
         size = self._resolution
         corner = self._phase[0] + self._column * size, self._phase[1] + self._row * size
         place = np.array([*corner, size])
-        self._arrays = drawing_kernels.Sheet(hits, passes, place, bounds, offsets)
+        self._arrays = drawing_kernels.CountArrays(hits, passes, place, bounds, offsets)
 
     def _cover(self, pose: Floats, reach: float) -> None:
         """Make room for all that can be seen from a pose."""

@@ -14,7 +14,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from roomba.perception.matching.beams import Beams
+from roomba.perception.matching.beams import LidarBeams
 from roomba.perception.matching.field_kernels import OFF_MAP, Field, Place, look
 
 Floats = NDArray[np.float64]
@@ -66,7 +66,7 @@ def note(
     things: Things,
     field: Field,
     place: Place,
-    lidar: Beams,
+    lidar: LidarBeams,
     ranges: NDArray[np.float32],
     count: int,
     pose: Floats,

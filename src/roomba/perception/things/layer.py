@@ -11,7 +11,7 @@ from pydantic import Field
 
 from roomba.configuration.robot import Frozen, NotNegative, Positive
 from roomba.geometry import Pose
-from roomba.perception.matching.beams import Beams
+from roomba.perception.matching.beams import LidarBeams
 from roomba.perception.matching.field_kernels import look
 from roomba.perception.matching.match_kernels import beam_ends
 from roomba.perception.matching.surface_field import SurfaceField
@@ -95,7 +95,9 @@ class ThingLayer:
         """A number that is another one when a thing came or went."""
         return int(self.arrays.layer["version"][0])
 
-    def see(self, ranges: NDArray[np.float32], lidar: Beams, pose: Pose, scans: int = 1) -> None:
+    def see(
+        self, ranges: NDArray[np.float32], lidar: LidarBeams, pose: Pose, scans: int = 1
+    ) -> None:
         """Take a scan, float32 [beams], m, taken at a pose of the map that is known.
 
         It stands for so many ``scans`` of the lidar, its own included.

@@ -16,7 +16,7 @@ _INSIDE = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
-class Floor:
+class FreeSpace:
     """The cells that fit, surveyed; uint8 arrays with a closed border of one cell around."""
 
     fits: NDArray[np.uint8]
@@ -24,7 +24,7 @@ class Floor:
     flags: NDArray[np.uint8]
 
     @classmethod
-    def of(cls, fits: NDArray[np.bool_]) -> Floor:
+    def of(cls, fits: NDArray[np.bool_]) -> FreeSpace:
         """Survey bool [rows, columns]."""
         padded = np.pad(fits.astype(np.uint8), 1)
         floor = cls(padded, np.zeros_like(padded), np.zeros_like(padded))
@@ -70,7 +70,7 @@ class AnyAngleSearch:
 
     def shortest_path(
         self,
-        floor: Floor,
+        floor: FreeSpace,
         start: tuple[float, float],
         start_joints: Joints,
         goal: tuple[float, float],
@@ -118,7 +118,7 @@ class AnyAngleSearch:
         return np.array(bends[::-1], np.float64).reshape(-1, 2)
 
     def _roots(
-        self, floor: Floor, joints: Joints, inside: bool
+        self, floor: FreeSpace, joints: Joints, inside: bool
     ) -> tuple[NDArray[np.int32], NDArray[np.float64]]:
         padded = joints.cells + 1
         useful = floor.fits[padded[:, 0], padded[:, 1]].astype(np.bool_)
@@ -128,7 +128,7 @@ class AnyAngleSearch:
         return roots.astype(np.int32), joints.legs[useful]
 
 
-def _inside_open_square(floor: Floor, point: tuple[float, float]) -> tuple[float, float] | None:
+def _inside_open_square(floor: FreeSpace, point: tuple[float, float]) -> tuple[float, float] | None:
     """Return the point in padded cells, strictly inside an open square, or None."""
     x, y = point[0] + 1.0, point[1] + 1.0
     rows, columns = floor.fits.shape

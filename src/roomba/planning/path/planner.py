@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from roomba.errors import RoombaError
 from roomba.grid import GridFrame, OccupancyMap
-from roomba.planning.path.any_angle import AnyAngleSearch, Floor, Joints
+from roomba.planning.path.any_angle import AnyAngleSearch, FreeSpace, Joints
 from roomba.planning.path.costmap import FitMap, Mask, Point, RoundObstacle
 from roomba.planning.path.grid_path import GridSearch
 from roomba.planning.path.joining import join_goal, join_start
@@ -77,9 +77,9 @@ class _Room:
     tight: FitMap
 
     @cached_property
-    def floor(self) -> Floor:
+    def floor(self) -> FreeSpace:
         """The comfortable floor."""
-        return Floor.of(self.comfortable.fits)
+        return FreeSpace.of(self.comfortable.fits)
 
 
 class PathPlanner:
@@ -177,7 +177,7 @@ class PathPlanner:
             self._among_obstacles = _Room(comfortable, tight)
         return self._among_obstacles
 
-    def _floor(self, room: _Room, start: Joints, goal: Joints) -> Floor | None:
+    def _floor(self, room: _Room, start: Joints, goal: Joints) -> FreeSpace | None:
         """Return the floor to search: the comfortable one, opened only where there is no other way.
 
         None when even with tight clearance no way leads from the start to the goal.
@@ -207,7 +207,7 @@ class PathPlanner:
                 stretch = cells[max(before, 0) : after + 1]
                 opened[stretch[:, 0], stretch[:, 1]] = True
         opened = dilated(opened, np.ones((_OPENING, _OPENING), np.bool_))
-        return Floor.of(room.comfortable.fits | (room.tight.fits & opened))
+        return FreeSpace.of(room.comfortable.fits | (room.tight.fits & opened))
 
     def _refusal(
         self, room: _Room, start: Joints, goal: Point, reason: NoPathReason

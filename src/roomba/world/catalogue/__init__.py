@@ -7,13 +7,13 @@ from types import MappingProxyType
 from roomba.world.catalogue.bathroom import BATHROOM
 from roomba.world.catalogue.cabinets import CABINETS
 from roomba.world.catalogue.kitchen import KITCHEN
-from roomba.world.catalogue.parts import Kind, Size
+from roomba.world.catalogue.parts import FurnitureKind, Size
 from roomba.world.catalogue.seats import SEATS
 from roomba.world.catalogue.things import FIXTURES, THINGS
 
-__all__ = ["FIXTURES", "KINDS", "Kind", "Size"]
+__all__ = ["FIXTURES", "KINDS", "FurnitureKind", "Size"]
 
-KINDS: MappingProxyType[str, Kind] = MappingProxyType(
+KINDS: MappingProxyType[str, FurnitureKind] = MappingProxyType(
     {**SEATS, **CABINETS, **KITCHEN, **BATHROOM, **THINGS}
 )
 """Every kind by its name."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from roomba.world.catalogue.parts import Kind, Size, block, post
+from roomba.world.catalogue.parts import FurnitureKind, Size, block, post
 from roomba.world.home.home import Box
 
 
@@ -96,10 +96,10 @@ def _towel_radiator(size: Size, finish: str) -> list[Box]:
 
 
 BATHROOM = {
-    "toilet": Kind(Size(0.38, 0.66, 0.78), "ceramic", _toilet),
-    "washbasin": Kind(Size(0.75, 0.48, 0.86), "ceramic", _washbasin),
-    "bathtub": Kind(Size(1.7, 0.75, 0.56), "ceramic", _bathtub),
-    "shower": Kind(Size(0.9, 0.9, 2.0), "ceramic", _shower),
-    "towel_radiator": Kind(Size(0.5, 0.08, 1.3), "white", _towel_radiator),
+    "toilet": FurnitureKind(Size(0.38, 0.66, 0.78), "ceramic", _toilet),
+    "washbasin": FurnitureKind(Size(0.75, 0.48, 0.86), "ceramic", _washbasin),
+    "bathtub": FurnitureKind(Size(1.7, 0.75, 0.56), "ceramic", _bathtub),
+    "shower": FurnitureKind(Size(0.9, 0.9, 2.0), "ceramic", _shower),
+    "towel_radiator": FurnitureKind(Size(0.5, 0.08, 1.3), "white", _towel_radiator),
 }
 """Bathroom fittings by kind."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from roomba.world.catalogue.parts import Kind, Size, block, columns, fronts, legs
+from roomba.world.catalogue.parts import FurnitureKind, Size, block, columns, fronts, legs
 from roomba.world.home.home import Box
 
 BOOK_COLOURS = ("red", "blue", "cream", "green", "orange", "grey", "yellow")
@@ -175,15 +175,15 @@ def _tv_bench(size: Size, wood: str) -> list[Box]:
 
 
 CABINETS = {
-    "coffee_table": Kind(Size(1.1, 0.6, 0.42), "wood", _coffee_table),
-    "dining_table": Kind(Size(1.5, 0.85, 0.75), "wood", _table),
-    "table": Kind(Size(0.75, 0.75, 0.75), "wood_light", _table),
-    "desk": Kind(Size(1.4, 0.7, 0.74), "wood_light", _desk),
-    "nightstand": Kind(Size(0.45, 0.40, 0.48), "wood", _nightstand),
-    "wardrobe": Kind(Size(2.0, 0.6, 2.1), "white", _wardrobe),
-    "sideboard": Kind(Size(1.6, 0.42, 0.78), "wood", _sideboard),
-    "shoe_cabinet": Kind(Size(0.9, 0.30, 0.95), "white", _shoe_cabinet),
-    "bookshelf": Kind(Size(0.9, 0.32, 1.9), "wood_dark", _bookshelf),
-    "tv_bench": Kind(Size(1.5, 0.40, 0.45), "wood_dark", _tv_bench),
+    "coffee_table": FurnitureKind(Size(1.1, 0.6, 0.42), "wood", _coffee_table),
+    "dining_table": FurnitureKind(Size(1.5, 0.85, 0.75), "wood", _table),
+    "table": FurnitureKind(Size(0.75, 0.75, 0.75), "wood_light", _table),
+    "desk": FurnitureKind(Size(1.4, 0.7, 0.74), "wood_light", _desk),
+    "nightstand": FurnitureKind(Size(0.45, 0.40, 0.48), "wood", _nightstand),
+    "wardrobe": FurnitureKind(Size(2.0, 0.6, 2.1), "white", _wardrobe),
+    "sideboard": FurnitureKind(Size(1.6, 0.42, 0.78), "wood", _sideboard),
+    "shoe_cabinet": FurnitureKind(Size(0.9, 0.30, 0.95), "white", _shoe_cabinet),
+    "bookshelf": FurnitureKind(Size(0.9, 0.32, 1.9), "wood_dark", _bookshelf),
+    "tv_bench": FurnitureKind(Size(1.5, 0.40, 0.45), "wood_dark", _tv_bench),
 }
 """Tables and cabinets by kind."""

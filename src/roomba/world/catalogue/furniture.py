@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from roomba.geometry import Pose, wrap_angle
-from roomba.world.catalogue import FIXTURES, KINDS, Kind, Size
+from roomba.world.catalogue import FIXTURES, KINDS, FurnitureKind, Size
 from roomba.world.home.home import Box, Furniture
 from roomba.world.home.materials import MATERIALS, Material
 
@@ -14,7 +14,7 @@ __all__ = [
     "KINDS",
     "MATERIALS",
     "STATION_KIND",
-    "Kind",
+    "FurnitureKind",
     "Material",
     "Size",
     "furniture_at",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from roomba.world.catalogue.parts import Kind, Size, block, fronts
+from roomba.world.catalogue.parts import FurnitureKind, Size, block, fronts
 from roomba.world.home.home import Box
 
 WORKTOP = 0.04
@@ -145,11 +145,11 @@ def _washing_machine(size: Size, finish: str) -> list[Box]:
 
 
 KITCHEN = {
-    "kitchen_counter": Kind(Size(0.9, 0.6, 0.91), "cream", _counter),
-    "sink_unit": Kind(Size(0.8, 0.6, 0.91), "cream", _sink_unit),
-    "stove": Kind(Size(0.6, 0.6, 0.91), "steel", _stove),
-    "fridge": Kind(Size(0.6, 0.65, 1.85), "steel", _fridge),
-    "wall_cupboard": Kind(Size(0.9, 0.34, 0.65), "cream", _wall_cupboard),
-    "washing_machine": Kind(Size(0.6, 0.6, 0.85), "white", _washing_machine),
+    "kitchen_counter": FurnitureKind(Size(0.9, 0.6, 0.91), "cream", _counter),
+    "sink_unit": FurnitureKind(Size(0.8, 0.6, 0.91), "cream", _sink_unit),
+    "stove": FurnitureKind(Size(0.6, 0.6, 0.91), "steel", _stove),
+    "fridge": FurnitureKind(Size(0.6, 0.65, 1.85), "steel", _fridge),
+    "wall_cupboard": FurnitureKind(Size(0.9, 0.34, 0.65), "cream", _wall_cupboard),
+    "washing_machine": FurnitureKind(Size(0.6, 0.6, 0.85), "white", _washing_machine),
 }
 """Kitchen units and appliances by kind."""

@@ -34,7 +34,7 @@ class Size:
 
 
 @dataclass(frozen=True, slots=True)
-class Kind:
+class FurnitureKind:
     """An entry of the catalogue: default size, main material, and how it is built of both."""
 
     size: Size

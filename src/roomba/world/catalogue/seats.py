@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from roomba.world.catalogue.parts import Kind, Size, block, columns, legs, post
+from roomba.world.catalogue.parts import FurnitureKind, Size, block, columns, legs, post
 from roomba.world.home.home import Box
 
 
@@ -130,11 +130,11 @@ def _bed(size: Size, wood: str) -> list[Box]:
 
 
 SEATS = {
-    "sofa": Kind(Size(2.1, 0.9, 0.82), "fabric_grey", _sofa),
-    "armchair": Kind(Size(0.78, 0.80, 0.84), "fabric_mustard", _armchair),
-    "chair": Kind(Size(0.44, 0.46, 0.88), "wood_light", _chair),
-    "stool": Kind(Size(0.36, 0.36, 0.46), "wood_light", _stool),
-    "office_chair": Kind(Size(0.60, 0.60, 1.02), "fabric_blue", _office_chair),
-    "bed": Kind(Size(1.6, 2.05, 0.95), "wood", _bed),
+    "sofa": FurnitureKind(Size(2.1, 0.9, 0.82), "fabric_grey", _sofa),
+    "armchair": FurnitureKind(Size(0.78, 0.80, 0.84), "fabric_mustard", _armchair),
+    "chair": FurnitureKind(Size(0.44, 0.46, 0.88), "wood_light", _chair),
+    "stool": FurnitureKind(Size(0.36, 0.36, 0.46), "wood_light", _stool),
+    "office_chair": FurnitureKind(Size(0.60, 0.60, 1.02), "fabric_blue", _office_chair),
+    "bed": FurnitureKind(Size(1.6, 2.05, 0.95), "wood", _bed),
 }
 """Seats and beds by kind."""

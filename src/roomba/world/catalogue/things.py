@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from roomba.world.catalogue.parts import Kind, Size, block, post
+from roomba.world.catalogue.parts import FurnitureKind, Size, block, post
 from roomba.world.home.home import Box
 
 PROUD = 0.004
@@ -187,17 +187,17 @@ def _picture(size: Size, frame: str) -> list[Box]:
 
 
 THINGS = {
-    "plant": Kind(Size(0.42, 0.42, 1.2), "pot", _plant),
-    "lamp": Kind(Size(0.36, 0.36, 1.6), "metal_dark", _lamp),
-    "box": Kind(Size(0.40, 0.30, 0.28), "cardboard", _box),
-    "toy": Kind(Size(0.14, 0.30, 0.16), "red", _toy),
-    "bag": Kind(Size(0.32, 0.18, 0.42), "fabric_red", _bag),
-    "waste_bin": Kind(Size(0.26, 0.26, 0.55), "steel", _waste_bin),
-    "shoes": Kind(Size(0.24, 0.28, 0.11), "blue", _shoes),
-    "coat_rack": Kind(Size(0.9, 0.16, 1.75), "wood", _coat_rack),
-    "window": Kind(Size(1.4, 0.2, 1.25), "white", _window),
-    "front_door": Kind(Size(1.0, 0.2, 2.08), "wood", _front_door),
-    "picture": Kind(Size(0.7, 0.03, 0.5), "wood_light", _picture),
+    "plant": FurnitureKind(Size(0.42, 0.42, 1.2), "pot", _plant),
+    "lamp": FurnitureKind(Size(0.36, 0.36, 1.6), "metal_dark", _lamp),
+    "box": FurnitureKind(Size(0.40, 0.30, 0.28), "cardboard", _box),
+    "toy": FurnitureKind(Size(0.14, 0.30, 0.16), "red", _toy),
+    "bag": FurnitureKind(Size(0.32, 0.18, 0.42), "fabric_red", _bag),
+    "waste_bin": FurnitureKind(Size(0.26, 0.26, 0.55), "steel", _waste_bin),
+    "shoes": FurnitureKind(Size(0.24, 0.28, 0.11), "blue", _shoes),
+    "coat_rack": FurnitureKind(Size(0.9, 0.16, 1.75), "wood", _coat_rack),
+    "window": FurnitureKind(Size(1.4, 0.2, 1.25), "white", _window),
+    "front_door": FurnitureKind(Size(1.0, 0.2, 2.08), "wood", _front_door),
+    "picture": FurnitureKind(Size(0.7, 0.03, 0.5), "wood_light", _picture),
 }
 """Things and fixtures of walls by kind."""
 

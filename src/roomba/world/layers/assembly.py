@@ -33,7 +33,7 @@ DOCKED_CLEARANCE = 0.005
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Floor:
+class FurnishedFloor:
     """The grids of a home: see :class:`roomba.world.home.home.Home`.
 
     ``moving`` are the cells that what moves covers, at the body's height, before it first moves.
@@ -56,7 +56,7 @@ class Floor:
         return self.solid | self.drop | self.moving
 
 
-def furnished_floor(occupancy: OccupancyMap, parts: Parts, body_height: float) -> Floor:
+def furnished_floor(occupancy: OccupancyMap, parts: Parts, body_height: float) -> FurnishedFloor:
     """Return the grids of a home without its station; ``body_height`` in m.
 
     Doors are open on the map, and what the map does not show is solid in the truth alone. What
@@ -73,7 +73,7 @@ def furnished_floor(occupancy: OccupancyMap, parts: Parts, body_height: float) -
     uncovered = moved & ~walls & (open_map.values == OCCUPIED)
     values = open_map.values.copy()
     values[mapped | moved] = OCCUPIED
-    return Floor(
+    return FurnishedFloor(
         OccupancyMap(frame, values),
         solid=(open_map.solid & ~uncovered) | mapped | hidden | shut,
         walls=walls,
@@ -93,7 +93,7 @@ def standing_cells(frame: GridFrame, pieces: Iterable[Furniture], height: float)
     return _covered_below(frame, (box for piece in standing for box in piece.boxes), height)
 
 
-def station_on(floor: Floor, docked: Pose, body_radius: float) -> Furniture:
+def station_on(floor: FurnishedFloor, docked: Pose, body_radius: float) -> Furniture:
     """Return the station before the docked robot's nose; it reaches to the wall if one is near."""
     front = body_radius + STATION_GAP
     depth = FREE_STATION_DEPTH
@@ -107,7 +107,9 @@ def station_on(floor: Floor, docked: Pose, body_radius: float) -> Furniture:
     return station_at(docked, body_radius, depth)
 
 
-def with_station(floor: Floor, station: Furniture, docked: Pose, body_radius: float) -> Floor:
+def with_station(
+    floor: FurnishedFloor, station: Furniture, docked: Pose, body_radius: float
+) -> FurnishedFloor:
     """Return the grids with the station in them, known and solid."""
     frame = floor.map.frame
     cells = covered_cells(frame, (footprint(box) for box in station.boxes[:1]))
@@ -117,7 +119,7 @@ def with_station(floor: Floor, station: Furniture, docked: Pose, body_radius: fl
     return replace(floor, map=OccupancyMap(frame, values), solid=floor.solid | cells)
 
 
-def room_for_body(floor: Floor, docked: Pose) -> float:
+def room_for_body(floor: FurnishedFloor, docked: Pose) -> float:
     """Return how large a disc fits at the docked pose: its radius, m; 0 inside something."""
     return distance_to_cells(floor.map.frame, floor.taken, docked.x, docked.y)
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from roomba.errors import HomeError
 from roomba.geometry import Pose
 from roomba.grid import OCCUPIED, OccupancyMap
-from roomba.world.home.furniture import STATION_GAP, STATION_WIDTH
+from roomba.world.catalogue.furniture import STATION_GAP, STATION_WIDTH
 from roomba.world.home.raster import Mask, largest_component, where_body_fits
 
 CLEARANCE = 0.03

@@ -21,7 +21,7 @@ from roomba.geometry import Pose
 from roomba.grid import OccupancyMap
 from roomba.world.home.home import DirtSource, Home
 from roomba.world.layers.assembly import (
-    Floor,
+    FurnishedFloor,
     furnished_floor,
     room_for_body,
     station_on,
@@ -97,14 +97,14 @@ def _assembled(
     )
 
 
-def _found_station(floor: Floor, file: YamlFile, body: BodyConfig) -> Pose:
+def _found_station(floor: FurnishedFloor, file: YamlFile, body: BodyConfig) -> Pose:
     try:
         return automatic_station(floor.map, floor.taken, body.radius)
     except HomeError as error:
         raise file.error((), str(error)) from error
 
 
-def _check_body_fits(floor: Floor, docked: Pose, file: YamlFile, body: BodyConfig) -> None:
+def _check_body_fits(floor: FurnishedFloor, docked: Pose, file: YamlFile, body: BodyConfig) -> None:
     room = room_for_body(floor, docked)
     if room < body.radius - 1e-9:
         raise file.error(
@@ -114,7 +114,7 @@ def _check_body_fits(floor: Floor, docked: Pose, file: YamlFile, body: BodyConfi
         )
 
 
-def _check_dirt_on_floor(floor: Floor, parts: Parts, file: YamlFile) -> None:
+def _check_dirt_on_floor(floor: FurnishedFloor, parts: Parts, file: YamlFile) -> None:
     for index, source in enumerate(parts.dirt_sources or ()):
         row, column = floor.map.frame.cell_of(source.x, source.y)
         inside = floor.map.frame.contains(source.x, source.y)
@@ -126,7 +126,7 @@ def _check_dirt_on_floor(floor: Floor, parts: Parts, file: YamlFile) -> None:
             )
 
 
-def _even_dirt(floor: Floor) -> DirtSource:
+def _even_dirt(floor: FurnishedFloor) -> DirtSource:
     """Return one source so wide that what it spreads is even: within 1 % over the whole map."""
     frame = floor.map.frame
     x_min, x_max, y_min, y_max = frame.extent

@@ -27,7 +27,7 @@ _SECOND_DOOR: Final = 0.25
 
 
 @dataclass(frozen=True, slots=True)
-class Opening:
+class WallOpening:
     """A door's opening in the wall between two rooms, by their numbers."""
 
     first: int
@@ -41,7 +41,7 @@ def random_rooms(random: np.random.Generator) -> list[Rectangle]:
     return _cut(Rectangle(0.0, 0.0, width, height), random)
 
 
-def random_openings(rooms: list[Rectangle], random: np.random.Generator) -> list[Opening]:
+def random_openings(rooms: list[Rectangle], random: np.random.Generator) -> list[WallOpening]:
     """Return doors that lead to every room, and some more."""
     shared = [
         (first, second, wall)
@@ -58,7 +58,7 @@ def random_openings(rooms: list[Rectangle], random: np.random.Generator) -> list
             continue
         old, new = group[second], group[first]
         group = [new if member == old else member for member in group]
-        openings.append(Opening(first, second, _door_in(wall, random)))
+        openings.append(WallOpening(first, second, _door_in(wall, random)))
     return openings
 
 

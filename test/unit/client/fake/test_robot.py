@@ -27,7 +27,7 @@ from roomba.client.protocol import (
     RequestRefusedError,
     RobotClient,
     RobotUnavailableError,
-    Walk,
+    WalkHandle,
     WalkOutcome,
 )
 from roomba.mission.cleaning import request as clean_request
@@ -35,7 +35,7 @@ from roomba.mission.cleaning import request as clean_request
 COORDINATE = st.floats(min_value=-100.0, max_value=100.0)
 
 
-def feedbacks(walk: Walk, timeout: float = 100.0) -> list[float]:
+def feedbacks(walk: WalkHandle, timeout: float = 100.0) -> list[float]:
     """Collect what a walk tells until it ends, or until nothing is told for ``timeout`` s."""
     told = []
     while (left := walk.next_feedback(timeout)) is not None:

@@ -67,7 +67,8 @@ def test_wrong_odometry_draws_walls_where_there_are_none() -> None:
 def test_a_robot_that_stands_draws_once(monkeypatch: pytest.MonkeyPatch) -> None:
     drawn: list[float] = []
     monkeypatch.setattr(
-        "roomba.commands.map.blind_map.Sheet.draw", lambda *given: drawn.append(given[3][0])
+        "roomba.commands.map.blind_map.OccupancyCounts.draw",
+        lambda *given: drawn.append(given[3][0]),
     )
     blind = BlindMap(MappingConfig(), CONFIG.localization, CONFIG.gyro, START)
     for tick in range(40):

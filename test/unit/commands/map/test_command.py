@@ -172,7 +172,7 @@ def test_what_ends_otherwise_has_a_status_of_its_own(
 ) -> None:
     result = replace(run.record.result, outcome=CleanOutcome.STOPPED)
     stopped = replace(run, record=replace(run.record, result=result))
-    monkeypatch.setattr(runs.MapScene, "run", lambda self, watches: stopped)
+    monkeypatch.setattr(runs.MapScene, "run", lambda self, observers: stopped)
     assert main(["--home", "closet"]) == 1
     assert "STOPPED" in capsys.readouterr().out
 

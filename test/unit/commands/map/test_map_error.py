@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from roomba.commands.map.error_kernels import Ground, offsets
+from roomba.commands.map.error_kernels import TrueSurfaces, offsets
 from roomba.commands.map.map_error import MapError, map_error, wrong_sides
 from roomba.commands.map.seen_floor import seen_floor
 from roomba.configuration.robot import RobotConfig
@@ -234,7 +234,7 @@ def test_a_robot_that_fits_nowhere_is_refused() -> None:
 def test_of_two_true_sides_the_nearer_one_tells_how_far_a_side_is_off() -> None:
     solid = np.zeros((20, 20), np.bool_)
     solid[10, 4] = solid[10, 8] = True
-    ground = Ground(solid, ~solid, np.array([0.0, 0.0, 0.05]))
+    ground = TrueSurfaces(solid, ~solid, np.array([0.0, 0.0, 0.05]))
     # They face along x at 0.25 and 0.45 m.
     points, off = np.array([[0.27, 0.52], [0.44, 0.52], [0.90, 0.52]]), np.empty(3)
     offsets(ground, points, np.zeros(3, np.int64), 0.3, off)

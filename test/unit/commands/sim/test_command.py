@@ -15,11 +15,11 @@ from pathlib import Path
 import pytest
 
 from roomba.commands.sim import command, many
-from roomba.commands.sim.figures import Figures, MissedFloor
+from roomba.commands.sim.figures import Figures, MissedShare
 from roomba.commands.sim.many import Outcome
 from roomba.commands.sim.trial import Trial
 
-REPOSITORY = Path(__file__).parents[3]
+REPOSITORY = Path(__file__).parents[4]
 FINE = Figures(
     outcome="COMPLETED",
     message="",
@@ -36,7 +36,7 @@ FINE = Figures(
     covered_m2=4.9,
     tool_width_m=0.2,
     hits=0,
-    missed=(MissedFloor(0.1, 1.0, 2.0, "", "a door is shut"),),
+    missed=(MissedShare(0.1, 1.0, 2.0, "", "a door is shut"),),
 )
 
 

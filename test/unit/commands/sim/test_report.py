@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 from rich.console import Console
 
-from roomba.commands.sim.figures import Figures, MissedFloor
+from roomba.commands.sim.figures import Figures, MissedShare
 from roomba.commands.sim.percentiles import percentiles_of
 from roomba.commands.sim.report import clock, failure_lines, lines_of, percentile_table, table_of
 
@@ -27,7 +27,7 @@ FIGURES = Figures(
     covered_m2=19.9,
     tool_width_m=0.2,
     hits=1,
-    missed=(MissedFloor(0.1, 1.0, -2.0, "kitchen", "a door is shut"),),
+    missed=(MissedShare(0.1, 1.0, -2.0, "kitchen", "a door is shut"),),
 )
 
 

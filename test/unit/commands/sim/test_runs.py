@@ -12,7 +12,7 @@ import pytest
 
 from roomba.commands.sim.command import main
 from roomba.commands.sim.json_file import TIMES, run_as_json
-from roomba.commands.sim.runs import Run, Scene, run_trial
+from roomba.commands.sim.runs import Run, TrialSetup, run_trial
 from roomba.commands.sim.trial import Trial, UsageError
 from roomba.files.occupancy_map import save_map
 from roomba.geometry import Pose
@@ -107,7 +107,9 @@ def test_the_same_seed_gives_the_same_json_and_another_one_another(run: Run) -> 
 
 def test_a_look_after_every_other_tick_changes_nothing_but_little(run: Run) -> None:
     watched: list[float] = []
-    often = Scene(run.trial, longest_burst=1).run([lambda robot: watched.append(robot.seen.time)])
+    often = TrialSetup(run.trial, longest_burst=1).run(
+        [lambda robot: watched.append(robot.seen.time)]
+    )
     assert np.diff(watched).max() < 0.101
     assert often.figures.outcome == run.figures.outcome
     assert often.figures.distance_m == pytest.approx(run.figures.distance_m, rel=0.1)
@@ -117,9 +119,9 @@ def test_a_look_after_every_other_tick_changes_nothing_but_little(run: Run) -> N
 
 
 def test_what_is_solid_in_truth_is_not_coverable(room: Path) -> None:
-    bare = Scene(Trial(home=str(room), station=Pose(0.3, 0.8, math.pi)))
-    things = Scene(Trial(home=str(room), station=Pose(0.3, 0.8, math.pi), things=1, seed=1))
-    kept = Scene(
+    bare = TrialSetup(Trial(home=str(room), station=Pose(0.3, 0.8, math.pi)))
+    things = TrialSetup(Trial(home=str(room), station=Pose(0.3, 0.8, math.pi), things=1, seed=1))
+    kept = TrialSetup(
         Trial(home=str(room), station=Pose(0.3, 0.8, math.pi), no_go=((1.8, 0.0, 2.6, 2.0),))
     )
     assert len(things.things) == 1
@@ -134,23 +136,23 @@ def test_what_is_solid_in_truth_is_not_coverable(room: Path) -> None:
 
 def test_a_part_of_the_floor_is_wanted(room: Path) -> None:
     spot = CleanRequest(CleanMode.ZONES, zones=((1.0, 0.1, 1.4, 1.7),))
-    scene = Scene(Trial(home=str(room), station=Pose(0.3, 0.8, math.pi), request=spot))
-    rows, columns = np.nonzero(scene.coverable)
-    frame = scene.robot.site.frame
+    setup = TrialSetup(Trial(home=str(room), station=Pose(0.3, 0.8, math.pi), request=spot))
+    rows, columns = np.nonzero(setup.coverable)
+    frame = setup.robot.site.frame
     assert frame.centre_of(0, int(columns.min()))[0] >= 1.0
     assert frame.centre_of(0, int(columns.max()))[0] <= 1.4
     assert rows.size > 1000
 
 
 def test_the_battery_begins_as_asked_for(room: Path) -> None:
-    scene = Scene(Trial(home=str(room), station=Pose(0.3, 0.8, math.pi), battery=0.4))
-    assert scene.robot.seen.battery.level == pytest.approx(0.4)
+    setup = TrialSetup(Trial(home=str(room), station=Pose(0.3, 0.8, math.pi), battery=0.4))
+    assert setup.robot.seen.battery.level == pytest.approx(0.4)
 
 
 def test_things_stand_where_the_seed_says_and_not_more_than_there_is_room(room: Path) -> None:
     def things(seed: int, count: int) -> tuple[Any, ...]:
         trial = Trial(home=str(room), seed=seed, things=count, station=Pose(0.3, 0.8, math.pi))
-        return tuple(Scene(trial).things)
+        return tuple(TrialSetup(trial).things)
 
     assert things(1, 1) == things(1, 1) != things(2, 1)
     with pytest.raises(UsageError, match="--things: expected a floor with room for 16, got room"):
@@ -161,9 +163,9 @@ def test_sensors_and_configuration_are_obeyed(room: Path, tmp_path: Path) -> Non
     config = tmp_path / "robot.yaml"
     config.write_text("brush: {width: 0.18}\n", encoding="utf-8")
     trial = Trial(home=str(room), station=Pose(0.3, 0.8, math.pi), sensors="ideal", config=config)
-    scene = Scene(trial)
-    assert scene.config.sensors == "ideal"
-    assert scene.robot.site.tool_width == 0.18
+    setup = TrialSetup(trial)
+    assert setup.config.sensors == "ideal"
+    assert setup.robot.site.tool_width == 0.18
 
 
 # ---------------------------------------------------------------- the command itself

@@ -21,7 +21,7 @@ from roomba.mission.cleaning.request import (
     CleanRequest,
     MissReason,
 )
-from roomba.mission.inputs.planning_context import Site
+from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.perception.rooms.zones import Zone, ZoneKind, Zones
 from roomba.perception.swept.coverage_bits import SWEPT
 from roomba.perception.swept.dirt_map import DirtMap
@@ -34,16 +34,16 @@ FENCE: list[RoundObstacle] = [(WALL_X + 0.05, float(y), 0.05) for y in np.arange
 """In the door of TWO_ROOMS."""
 
 
-def site(home: Home = HOME, zones: Zones | None = None) -> Site:
+def site(home: Home = HOME, zones: Zones | None = None) -> PlanningContext:
     rooms = two_rooms() if home is TWO_ROOMS else None
-    return Site(
+    return PlanningContext(
         home.map, home.station, RobotConfig(), MissionConfig(), DockingConfig(), rooms, zones
     )
 
 
 def cleaning(
     request: CleanRequest | None = None,
-    place: Site | None = None,
+    place: PlanningContext | None = None,
     dirt: DirtMap | None = None,
 ) -> Cleaning:
     place = place or site()

@@ -12,18 +12,18 @@ from fixtures.missions import WALL_X
 from roomba.geometry import Pose
 from roomba.grid import GridFrame, OccupancyMap
 from roomba.mission.cleaning.checkpoint import CheckpointError
-from roomba.mission.cleaning.ledger import FloorBook
+from roomba.mission.cleaning.ledger import CoverageLedger
 from roomba.mission.cleaning.request import CleanMode, CleanRefusedError, CleanRequest
-from roomba.mission.inputs.planning_context import Site
+from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.perception.swept.coverage_bits import SWEPT
 from roomba.perception.swept.dirt_map import DirtMap
 
 
-def begun(site: Site, request: CleanRequest | None = None) -> FloorBook:
-    return FloorBook(request or CleanRequest(), site, DirtMap(site.occupancy), HERE)
+def begun(site: PlanningContext, request: CleanRequest | None = None) -> CoverageLedger:
+    return CoverageLedger(request or CleanRequest(), site, DirtMap(site.occupancy), HERE)
 
 
-def use(book: FloorBook, site: Site) -> None:
+def use(book: CoverageLedger, site: PlanningContext) -> None:
     book.use_site(site, DirtMap(site.occupancy))
 
 
@@ -41,7 +41,7 @@ def cut(occupancy: OccupancyMap, cells: int) -> OccupancyMap:
     return OccupancyMap(less, occupancy.values[cells:, cells:].copy())
 
 
-def swept_places(book: FloorBook, frame: GridFrame) -> set[tuple[int, int]]:
+def swept_places(book: CoverageLedger, frame: GridFrame) -> set[tuple[int, int]]:
     """Swept places in whole centimetres."""
     return {
         (round(100.0 * x - 0.5), round(100.0 * y - 0.5))

@@ -12,11 +12,11 @@ from roomba.configuration.mission import MissionConfig
 from roomba.configuration.robot import RobotConfig
 from roomba.mission.cleaning.missed import is_hidden, missed_floor, why_hardly_any
 from roomba.mission.cleaning.request import Missed, MissReason
-from roomba.mission.inputs.planning_context import Site
+from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.perception.swept.coverage_map import patches_of
 from roomba.planning.path.costmap import RoundObstacle
 
-SITE = Site(
+SITE = PlanningContext(
     TWO_ROOMS.map, TWO_ROOMS.station, RobotConfig(), MissionConfig(), DockingConfig(), two_rooms()
 )
 FENCE: list[RoundObstacle] = [(WALL_X + 0.05, float(y), 0.05) for y in np.arange(0.85, 1.6, 0.1)]
@@ -100,6 +100,6 @@ def test_nothing_done_it_says_so_and_why(why: MissReason, message: str) -> None:
 
 
 def test_of_a_home_without_rooms_patches_have_no_room() -> None:
-    site = Site(HOME.map, HOME.station, RobotConfig(), MissionConfig(), DockingConfig())
+    site = PlanningContext(HOME.map, HOME.station, RobotConfig(), MissionConfig(), DockingConfig())
     (missed,) = missed_floor(site.coverable(), 0.01, site, [], [], is_over=True)
     assert missed.room == ""

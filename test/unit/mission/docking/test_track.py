@@ -10,13 +10,13 @@ from hypothesis import strategies as st
 
 from roomba.configuration.robot import BodyConfig, StationConfig
 from roomba.geometry import Pose, Twist
-from roomba.mission.docking.track import Beams, StationTrack
+from roomba.mission.docking.track import StationBeams, StationTrack
 
 BODY, STATION = BodyConfig(), StationConfig()
 GAP = 0.03
 FRONT = BODY.radius + GAP
 DOCKED = Pose(3.0, -2.0, 2.1)
-BOTH = Beams(green=True, red=True)
+BOTH = StationBeams(green=True, red=True)
 STILL = Twist()
 
 
@@ -27,11 +27,11 @@ def track(at: Pose) -> StationTrack:
     return made
 
 
-def beams_at(x: float, y: float) -> Beams:
+def beams_at(x: float, y: float) -> StationBeams:
     """What is received there: by the station's angles, as it looks at the robot that comes."""
     away, angle = math.hypot(FRONT - x, y), math.degrees(math.atan2(-y, FRONT - x))
     half = 0.5 * STATION.overlap
-    return Beams(
+    return StationBeams(
         halo=away <= STATION.halo,
         green=away <= STATION.beam and -STATION.beam_angle <= angle <= half,
         red=away <= STATION.beam and -half <= angle <= STATION.beam_angle,
@@ -69,16 +69,16 @@ def test_one_beam_tells_the_side_and_both_the_middle() -> None:
     half = math.tan(math.radians(0.5 * STATION.overlap)) * (FRONT + 0.6)
     wide = math.tan(math.radians(STATION.beam_angle)) * (FRONT + 0.6)
     for believed, beams, expected in (
-        (0.0, Beams(green=True), half),
-        (0.0, Beams(red=True), -half),
-        (0.9, Beams(green=True), wide),
-        (-0.9, Beams(red=True), -wide),
-        (0.1, Beams(green=True), 0.1),
-        (-0.1, Beams(red=True), -0.1),
+        (0.0, StationBeams(green=True), half),
+        (0.0, StationBeams(red=True), -half),
+        (0.9, StationBeams(green=True), wide),
+        (-0.9, StationBeams(red=True), -wide),
+        (0.1, StationBeams(green=True), 0.1),
+        (-0.1, StationBeams(red=True), -0.1),
         (0.1, BOTH, half),
         (-0.1, BOTH, -half),
         (0.01, BOTH, 0.01),
-        (0.1, Beams(), 0.1),
+        (0.1, StationBeams(), 0.1),
     ):
         here = track(Pose(-0.6, believed))
         here.see(beams)
@@ -88,11 +88,11 @@ def test_one_beam_tells_the_side_and_both_the_middle() -> None:
 def test_the_edge_of_the_halo_tells_the_way() -> None:
     edge = FRONT - STATION.halo
     for believed, beams, expected in (
-        (edge - 0.05, Beams(True, True, True), edge),
+        (edge - 0.05, StationBeams(True, True, True), edge),
         (edge + 0.05, BOTH, edge),
-        (edge + 0.05, Beams(True, True, True), edge + 0.05),
+        (edge + 0.05, StationBeams(True, True, True), edge + 0.05),
         (edge - 0.05, BOTH, edge - 0.05),
-        (edge - 0.05, Beams(halo=True), edge - 0.05),
+        (edge - 0.05, StationBeams(halo=True), edge - 0.05),
     ):
         here = track(Pose(believed, 0.0))
         here.see(beams)
@@ -104,33 +104,33 @@ def test_who_sees_one_beam_for_long_is_farther_aside() -> None:
     for _ in range(40):
         believed = Pose(believed.x + 0.01, believed.y + 0.001, 0.1)
         here.move(DOCKED.compose(believed), STILL, 0.05)
-        here.see(Beams(halo=believed.x > -0.4, red=True))
+        here.see(StationBeams(halo=believed.x > -0.4, red=True))
     assert here.pose.y < -0.03
     # In the middle it is no longer doubted.
-    here.see(Beams(True, True, True))
+    here.see(StationBeams(True, True, True))
     half = math.tan(math.radians(0.5 * STATION.overlap)) * (FRONT - here.pose.x)
     assert here.pose.y == pytest.approx(-half)
-    here.see(Beams(True, False, True))
+    here.see(StationBeams(True, False, True))
     assert here.pose.y == pytest.approx(-half)
 
 
 @pytest.mark.parametrize("side", [1.0, -1.0])
 def test_where_a_lone_beam_ends_is_its_outer_edge(side: float) -> None:
     here = track(Pose(-0.5, 0.1 * side))
-    here.see(Beams(green=side > 0.0, red=side < 0.0))
-    here.see(Beams())
+    here.see(StationBeams(green=side > 0.0, red=side < 0.0))
+    here.see(StationBeams())
     wide = math.tan(math.radians(STATION.beam_angle)) * (FRONT - here.pose.x)
     assert here.pose.y == pytest.approx(side * wide)
     kept = here.pose
-    here.see(Beams())
+    here.see(StationBeams())
     assert here.pose == kept
 
 
 def test_where_both_beams_end_nothing_is_learnt() -> None:
     here = track(Pose(-0.4, 0.0))
-    here.see(Beams(True, True, True))
+    here.see(StationBeams(True, True, True))
     before = here.pose
-    here.see(Beams())
+    here.see(StationBeams())
     assert here.pose == before
 
 
@@ -159,20 +159,20 @@ def test_without_a_pose_it_goes_as_was_wanted() -> None:
 
 def test_a_new_belief_takes_the_place_of_the_old_one_and_late_beams_do_not_count() -> None:
     here = track(Pose(-0.3, 0.0))
-    here.see(Beams(True, True, True))
+    here.see(StationBeams(True, True, True))
     elsewhere = DOCKED.compose(Pose(-1.5, 0.6, 2.0))
     here.move(elsewhere, STILL, 0.05)
-    here.see(Beams(True, True, True))
+    here.see(StationBeams(True, True, True))
     assert (here.pose.x, here.pose.y) == pytest.approx((-1.5, 0.6))
     for _ in range(8):
         here.move(elsewhere, STILL, 0.05)
-    here.see(Beams(False, True, True))
+    here.see(StationBeams(False, True, True))
     assert abs(here.pose.y) < 0.1
 
 
 def test_beams_that_lead_too_far_off_the_belief_are_forgotten() -> None:
     here = track(Pose(-1.5, 0.0, 0.0))
-    here.see(Beams(True, True, True))
+    here.see(StationBeams(True, True, True))
     assert here.pose.x > -0.5
     here.move(DOCKED.compose(Pose(-1.49, 0.0, 0.0)), STILL, 0.05)
     assert here.pose.x == pytest.approx(-1.49)

@@ -15,7 +15,7 @@ from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose
 from roomba.mission.driving.drives import Drives
 from roomba.mission.driving.obstacles import Obstacles
-from roomba.mission.inputs.planning_context import Site
+from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.mission.inputs.senses import Senses
 from roomba.perception.matching.surface_field import SurfaceField
 from roomba.perception.rooms.zones import Zone, ZoneKind, Zones
@@ -30,8 +30,10 @@ AWAY = Senses(0.0, HERE)
 IN_ZONE = replace(AWAY, pose=Pose(2.6, 0.5, 0.0))
 
 
-def site(*zones: Zone) -> Site:
-    return Site(HOME.map, HOME.station, ROBOT, CONFIG, DockingConfig(), zones=Zones(zones))
+def site(*zones: Zone) -> PlanningContext:
+    return PlanningContext(
+        HOME.map, HOME.station, ROBOT, CONFIG, DockingConfig(), zones=Zones(zones)
+    )
 
 
 class Ringed(Obstacles):

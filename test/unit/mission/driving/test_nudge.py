@@ -14,11 +14,11 @@ from roomba.control.path_tracker import PathTracker
 from roomba.geometry import Pose
 from roomba.mission.driving.nudge import nudged
 from roomba.mission.driving.path_driver import PERIOD
-from roomba.mission.inputs.planning_context import Site
+from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.planning.path.costmap import RoundObstacle
 
 CONFIG = RobotConfig()
-FLOOR = Site(HOME.map, HOME.station, CONFIG, MissionConfig(), DockingConfig()).floor
+FLOOR = PlanningContext(HOME.map, HOME.station, CONFIG, MissionConfig(), DockingConfig()).floor
 PATH = np.array([(0.6, 0.6), (2.6, 0.6), (2.6, 2.0)])
 KEEP = 0.165
 

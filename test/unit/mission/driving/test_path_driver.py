@@ -18,7 +18,7 @@ from roomba.mission.driving.obstacles import Obstacles
 from roomba.mission.driving.path_driver import PERIOD, DriveState, DriveStep, PathDriver
 from roomba.mission.driving.rejoin import Rejoin
 from roomba.mission.driving.trail import Trail
-from roomba.mission.inputs.planning_context import Site
+from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.mission.inputs.senses import Senses
 from roomba.perception.matching.surface_field import SurfaceField
 from roomba.perception.things.layer import ThingLayer
@@ -26,7 +26,7 @@ from roomba.perception.things.layer import ThingLayer
 CONFIG = RobotConfig()
 DRIVING = MissionConfig().driving
 BODY = CONFIG.body.radius
-SITE = Site(HOME.map, HOME.station, CONFIG, MissionConfig(), DockingConfig())
+SITE = PlanningContext(HOME.map, HOME.station, CONFIG, MissionConfig(), DockingConfig())
 LIMIT = 0.3
 STRAIGHT = np.array([(0.6, 0.5), (2.6, 0.5)])
 HERE = Pose(0.6, 0.5, 0.0)

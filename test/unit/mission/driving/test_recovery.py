@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from roomba.configuration.mission import DrivingConfig
 from roomba.geometry import Pose, Twist
-from roomba.mission.driving.recovery import Wriggle
+from roomba.mission.driving.recovery import Recovery
 from roomba.mission.inputs.senses import Senses
 
 CONFIG = DrivingConfig()
@@ -19,7 +19,7 @@ TICK = 0.05
 
 def twists(number: int, began: float = 0.0) -> list[Twist]:
     """Return all that an attempt wants."""
-    wriggle = Wriggle(number, CONFIG, Senses(began, Pose()))
+    wriggle = Recovery(number, CONFIG, Senses(began, Pose()))
     made = []
     for tick in range(1000):
         twist = wriggle.tick(Senses(began + tick * TICK, Pose()))
@@ -53,7 +53,7 @@ def test_one_after_the_other_they_try_something_else() -> None:
 
 
 def test_a_clock_that_is_set_back_ends_it() -> None:
-    wriggle = Wriggle(1, CONFIG, Senses(100.0, Pose()))
+    wriggle = Recovery(1, CONFIG, Senses(100.0, Pose()))
     assert wriggle.tick(Senses(100.5, Pose())) is not None
     assert wriggle.tick(Senses(50.0, Pose())) is None
 
@@ -71,5 +71,5 @@ def test_a_clock_that_is_set_back_ends_it() -> None:
     ],
 )
 def test_whether_it_moved_is_told(pose: Pose, expected: bool) -> None:
-    wriggle = Wriggle(1, CONFIG, Senses(0.0, Pose(1.0, 2.0, 3.1)))
+    wriggle = Recovery(1, CONFIG, Senses(0.0, Pose(1.0, 2.0, 3.1)))
     assert wriggle.moved(Senses(1.0, pose)) is expected

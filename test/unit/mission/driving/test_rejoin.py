@@ -18,7 +18,7 @@ from roomba.mission.driving.obstacles import Obstacles
 from roomba.mission.driving.path_driver import PERIOD
 from roomba.mission.driving.rejoin import Rejoin
 from roomba.mission.driving.trail import Trail
-from roomba.mission.inputs.planning_context import Site
+from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.mission.inputs.senses import Senses
 from roomba.perception.matching.surface_field import SurfaceField
 from roomba.perception.things.layer import ThingLayer
@@ -28,7 +28,7 @@ from roomba.planning.path.planner import NoPathError
 CONFIG = RobotConfig()
 BODY = CONFIG.body.radius
 DRIVING = MissionConfig().driving
-SITE = Site(HOME.map, HOME.station, CONFIG, MissionConfig(), DockingConfig())
+SITE = PlanningContext(HOME.map, HOME.station, CONFIG, MissionConfig(), DockingConfig())
 PATH = np.array([(0.6, 0.5), (2.6, 0.5), (2.6, 2.0)])
 
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from roomba.mission.driving.retry_policy import Patience
+from roomba.mission.driving.retry_policy import RetryPolicy
 
 WAIT = 30.0
 
 
 def test_it_waits_a_while_then_half_a_minute_and_then_gets_out_first() -> None:
-    patience = Patience()
+    patience = RetryPolicy()
     assert not patience.is_waiting(0.0)
     assert not patience.gets_out
     for wait in (10.0, 10.0, WAIT, WAIT):
@@ -25,13 +25,13 @@ def test_it_waits_a_while_then_half_a_minute_and_then_gets_out_first() -> None:
 
 
 def test_a_clock_that_is_set_back_does_not_make_it_wait_for_ever() -> None:
-    patience = Patience()
+    patience = RetryPolicy()
     patience.wait(1e6)
     assert not patience.is_waiting(10.0)
 
 
 def test_it_looks_five_times_at_once_and_waits_forty_one_times() -> None:
-    patience = Patience()
+    patience = RetryPolicy()
     told = []
     while not patience.is_over:
         patience.found_no_way_home()
@@ -43,7 +43,7 @@ def test_it_looks_five_times_at_once_and_waits_forty_one_times() -> None:
 
 
 def test_told_to_go_on_it_counts_anew() -> None:
-    patience = Patience()
+    patience = RetryPolicy()
     for _ in range(50):
         patience.found_no_way_home()
     assert patience.is_over
@@ -53,7 +53,7 @@ def test_told_to_go_on_it_counts_anew() -> None:
 
 
 def test_while_it_waits_it_looks_now_and_then_and_may_wait_no_longer() -> None:
-    patience = Patience()
+    patience = RetryPolicy()
     patience.wait(100.0)
     assert [patience.looks_again(100.0 + 0.5 * count) for count in range(9)].count(True) == 2
     patience.end()

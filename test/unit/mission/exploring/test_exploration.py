@@ -16,7 +16,7 @@ from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose
 from roomba.grid import FREE, UNKNOWN, OccupancyMap
 from roomba.mission.exploring.exploration import Exploration
-from roomba.mission.inputs.planning_context import Site
+from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.planning.path.planner import NoPathError, NoPathReason, PathPlanner
 
 HERE = Pose(0.8, 1.0, 0.0)
@@ -35,8 +35,8 @@ def known_to(x: float, *patches: tuple[float, float]) -> OccupancyMap:
     return OccupancyMap(whole.frame, values)
 
 
-def site_of(occupancy: OccupancyMap) -> Site:
-    return Site(
+def site_of(occupancy: OccupancyMap) -> PlanningContext:
+    return PlanningContext(
         occupancy, TWO_ROOMS.station, ROBOT, MissionConfig(), DockingConfig(), is_growing=True
     )
 

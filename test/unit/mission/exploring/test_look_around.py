@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from roomba.geometry import Pose, Twist
-from roomba.mission.exploring.look_around import SPEED, TURNING, LookAround, Search
+from roomba.mission.exploring.look_around import SPEED, TURNING, LookAround, SearchDrive
 from roomba.perception.localization.estimate import Knowledge
 from roomba.world.home.home import Home
 from roomba.world.simulator import Simulator
@@ -217,12 +217,12 @@ def test_boxed_in_it_stands() -> None:
 # ------------------------------------------------------------------------------ searching
 
 
-def searching(robot: Located, search: Search) -> Twist | None:
+def searching(robot: Located, search: SearchDrive) -> Twist | None:
     return search.tick(robot.world.time, robot.localizer, robot.world.observe().bumper.pressed)
 
 
 def test_a_search_drives_only_while_more_must_be_seen() -> None:
-    robot, search = Located(TWO_ROOMS, Pose(1.0, 1.0, 0.3)), Search(CONFIG.body)
+    robot, search = Located(TWO_ROOMS, Pose(1.0, 1.0, 0.3)), SearchDrive(CONFIG.body)
     assert searching(robot, search) is None
     robot.stay(0.5)
     assert searching(robot, search) is None
@@ -248,7 +248,7 @@ def test_a_search_drives_only_while_more_must_be_seen() -> None:
 
 
 def test_a_robot_in_the_air_does_not_look_around() -> None:
-    robot, search = Located(TWO_ROOMS, Pose(1.0, 1.0, 0.3)), Search(CONFIG.body)
+    robot, search = Located(TWO_ROOMS, Pose(1.0, 1.0, 0.3)), SearchDrive(CONFIG.body)
     robot.stay(0.3)
     robot.localizer.forget("it was told so")
     robot.localizer.lift(True)

@@ -11,7 +11,7 @@ from roomba.configuration.docking import DockingConfig
 from roomba.configuration.mission import MissionConfig
 from roomba.configuration.robot import RobotConfig
 from roomba.errors import RoomsError
-from roomba.mission.inputs.planning_context import Site
+from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.perception.rooms.zones import Zone, ZoneKind, Zones
 from roomba.planning.path.planner import NoPathError
 from roomba.world.home.home import Home
@@ -19,9 +19,11 @@ from roomba.world.home.home import Home
 ROBOT = RobotConfig()
 
 
-def site(home: Home = HOME, zones: Zones | None = None) -> Site:
+def site(home: Home = HOME, zones: Zones | None = None) -> PlanningContext:
     rooms = two_rooms() if home is TWO_ROOMS else None
-    return Site(home.map, home.station, ROBOT, MissionConfig(), DockingConfig(), rooms, zones)
+    return PlanningContext(
+        home.map, home.station, ROBOT, MissionConfig(), DockingConfig(), rooms, zones
+    )
 
 
 def wall(x: float) -> Zones:
@@ -116,7 +118,9 @@ def test_in_a_map_that_grows_paths_keep_farther_away() -> None:
     """What has only just been seen may stand a little elsewhere."""
     exploring, driving = MissionConfig().exploring, MissionConfig().driving
     assert exploring.clearance > driving.way_clearance
-    grows = Site(HOME.map, STATION, ROBOT, MissionConfig(), DockingConfig(), is_growing=True)
+    grows = PlanningContext(
+        HOME.map, STATION, ROBOT, MissionConfig(), DockingConfig(), is_growing=True
+    )
     assert (grows.is_growing, site().is_growing) == (True, False)
     table = shapely.box(*TABLE)
     gaps = []

@@ -6,7 +6,6 @@ from dataclasses import replace
 
 import pytest
 from fixtures.missions import HOME, STATION
-from roomba.mission.docking.at_station import AtStation
 
 from roomba.configuration.docking import DockingConfig
 from roomba.configuration.mission import MissionConfig
@@ -18,6 +17,7 @@ from roomba.mission.docking.docking import Docking, DockState
 from roomba.mission.docking.step import DockStep
 from roomba.mission.docking.undocking import Undocking, UndockState, UndockStep
 from roomba.mission.inputs.senses import Battery, Senses
+from roomba.mission.phases.at_station import AtStation
 from roomba.mission.phases.job import Job
 from roomba.mission.phases.machine import Event
 from roomba.mission.phases.step import Failure, PhaseStep

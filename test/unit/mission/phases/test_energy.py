@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from roomba.configuration.mission import EnergyConfig
 from roomba.geometry import Pose
 from roomba.mission.inputs.senses import Battery, Senses
-from roomba.mission.phases.energy import EnergyBook
+from roomba.mission.phases.energy import EnergyLedger
 
 CONFIG = EnergyConfig()
 CAPACITY = 26.0
@@ -27,9 +27,9 @@ def no_way_home(senses: Senses) -> float:
     raise AssertionError("nobody needs to know")
 
 
-def driven(metres: float, energy: float, level: float = 0.9) -> EnergyBook:
+def driven(metres: float, energy: float, level: float = 0.9) -> EnergyLedger:
     """A book after so much way, m, and energy, Wh, at such a level."""
-    book = EnergyBook(CONFIG, senses(level=level + energy / CAPACITY))
+    book = EnergyLedger(CONFIG, senses(level=level + energy / CAPACITY))
     count = math.ceil(metres / 0.1)
     for step in range(1, count + 1):
         left = energy * (1.0 - step / count)
@@ -38,7 +38,7 @@ def driven(metres: float, energy: float, level: float = 0.9) -> EnergyBook:
 
 
 def test_way_energy_and_dirt_are_counted() -> None:
-    book = EnergyBook(CONFIG, senses(in_bin=5.0))
+    book = EnergyLedger(CONFIG, senses(in_bin=5.0))
     book.note(senses(1.0, 0.2, 0.99, 5.5))
     book.note(senses(2.0, 0.2, 0.98, 5.5, y=0.1))
     assert book.distance == pytest.approx(0.3)
@@ -47,7 +47,7 @@ def test_way_energy_and_dirt_are_counted() -> None:
 
 
 def test_charging_and_an_emptied_bin_take_nothing_away() -> None:
-    book = EnergyBook(CONFIG, senses(in_bin=5.0, level=0.5))
+    book = EnergyLedger(CONFIG, senses(in_bin=5.0, level=0.5))
     book.note(senses(1.0, level=0.4, in_bin=6.0))
     book.note(senses(2.0, level=0.9, in_bin=0.0))
     book.note(senses(3.0, level=0.8, in_bin=0.5))
@@ -56,7 +56,7 @@ def test_charging_and_an_emptied_bin_take_nothing_away() -> None:
 
 
 def test_carried_it_did_not_drive() -> None:
-    book = EnergyBook(CONFIG, senses())
+    book = EnergyLedger(CONFIG, senses())
     book.note(senses(1.0, 3.0))
     assert book.distance == 0.0
     book.note(senses(1.1, 3.1))
@@ -64,7 +64,7 @@ def test_carried_it_did_not_drive() -> None:
 
 
 def test_a_way_that_is_told_counts_whatever_the_straight_one_is() -> None:
-    book = EnergyBook(CONFIG, senses())
+    book = EnergyLedger(CONFIG, senses())
     book.note(senses(3.0, 0.8), 0.9)
     book.note(senses(6.0, 0.8), 0.5)
     assert book.distance == pytest.approx(1.4)
@@ -87,7 +87,7 @@ def test_what_a_metre_takes_is_learned() -> None:
 
 @given(st.floats(0.02, 1.0), st.floats(0.0, 200.0))
 def test_it_goes_home_when_what_is_left_just_suffices(level: float, way: float) -> None:
-    book = EnergyBook(CONFIG, senses(level=level))
+    book = EnergyLedger(CONFIG, senses(level=level))
     spare = (level - CONFIG.reserve) * CAPACITY
     need = CONFIG.margin * CONFIG.per_metre * way
     must = book.must_go_home(senses(10.0, level=level), lambda senses: way)
@@ -96,12 +96,12 @@ def test_it_goes_home_when_what_is_left_just_suffices(level: float, way: float) 
 
 
 def test_with_much_left_the_way_home_is_not_planned() -> None:
-    book = EnergyBook(CONFIG, senses())
+    book = EnergyLedger(CONFIG, senses())
     assert not book.must_go_home(senses(10.0, level=0.8), no_way_home)
 
 
 def test_it_looks_every_few_seconds_whatever_the_clock_does() -> None:
-    book = EnergyBook(CONFIG, senses(level=0.1))
+    book = EnergyLedger(CONFIG, senses(level=0.1))
     low = 0.081
 
     def asks(now: float) -> bool:
@@ -122,13 +122,13 @@ def test_it_looks_every_few_seconds_whatever_the_clock_does() -> None:
 
 
 def test_empty_is_when_the_drive_would_stop() -> None:
-    book = EnergyBook(CONFIG, senses())
+    book = EnergyLedger(CONFIG, senses())
     assert book.is_empty(senses(level=0.004))
     assert not book.is_empty(senses(level=0.006))
 
 
 def test_it_is_charged_for_what_is_left_or_nearly_full() -> None:
-    book = EnergyBook(CONFIG, senses())
+    book = EnergyLedger(CONFIG, senses())
     assert book.is_charged(senses(level=CONFIG.full_enough), 1e9)
     assert not book.is_charged(senses(level=CONFIG.full_enough - 0.01), 1e9)
     needed = 5.0

@@ -14,7 +14,7 @@ from roomba.geometry import Pose
 from roomba.mission.cleaning.cleaning import Cleaning
 from roomba.mission.cleaning.request import CleanOutcome, CleanRequest
 from roomba.mission.driving.obstacles import Obstacles
-from roomba.mission.inputs.planning_context import Site
+from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.mission.inputs.senses import Senses
 from roomba.mission.phases.job import Job
 from roomba.perception.localization.estimate import Knowledge
@@ -24,7 +24,7 @@ from roomba.perception.swept.dirt_map import DirtMap
 from roomba.perception.things.layer import ThingLayer
 
 ROBOT, CONFIG = RobotConfig(), MissionConfig()
-SITE = Site(HOME.map, HOME.station, ROBOT, CONFIG, DockingConfig())
+SITE = PlanningContext(HOME.map, HOME.station, ROBOT, CONFIG, DockingConfig())
 AWAY = Senses(0.0, Pose(1.0, 0.6, 0.0))
 
 

@@ -14,18 +14,18 @@ from roomba.geometry import Pose
 from roomba.mission.cleaning.request import CleanOutcome
 from roomba.mission.driving.drives import Drives
 from roomba.mission.driving.obstacles import Obstacles
-from roomba.mission.inputs.planning_context import Site
+from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.mission.inputs.senses import Battery, Senses
-from roomba.mission.phases.energy import EnergyBook
+from roomba.mission.phases.energy import EnergyLedger
 from roomba.mission.phases.machine import Errand, MissionState, Phase
-from roomba.mission.phases.monitor import Watch
+from roomba.mission.phases.monitor import Monitor
 from roomba.mission.phases.step import Failure
 from roomba.perception.localization.estimate import Knowledge
 from roomba.perception.matching.surface_field import SurfaceField
 from roomba.perception.things.layer import ThingLayer
 
 ROBOT, CONFIG = RobotConfig(), MissionConfig()
-SITE = Site(HOME.map, HOME.station, ROBOT, CONFIG, DockingConfig())
+SITE = PlanningContext(HOME.map, HOME.station, ROBOT, CONFIG, DockingConfig())
 HERE = Pose(1.0, 0.6, 0.0)
 AWAY = Senses(0.0, HERE)
 SEARCHING = replace(AWAY, knowledge=Knowledge.SEARCHING, trouble="too little in sight")
@@ -38,8 +38,8 @@ class Rig:
         things = ThingLayer(SurfaceField.of(HOME.map))
         obstacles = Obstacles(things, ROBOT.walk, ROBOT.body, CONFIG.driving)
         self.drives = Drives(SITE, ROBOT, CONFIG.driving, obstacles)
-        book = EnergyBook(CONFIG.energy, senses)
-        self.watch = Watch(ROBOT.walk, self.drives, book, senses)
+        book = EnergyLedger(CONFIG.energy, senses)
+        self.watch = Monitor(ROBOT.walk, self.drives, book, senses)
 
     def failure(self, senses: Senses, state: MissionState = CLEANING) -> Failure | None:
         return self.watch.failure(state, senses, (HERE.x, HERE.y))

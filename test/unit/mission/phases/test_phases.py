@@ -16,8 +16,8 @@ from roomba.geometry import STANDSTILL, Pose
 from roomba.mission.cleaning.cleaning import Cleaning
 from roomba.mission.cleaning.request import CleanOutcome, CleanRequest
 from roomba.mission.driving.drives import Drives
-from roomba.mission.driving.retry_policy import Patience
-from roomba.mission.inputs.planning_context import Site
+from roomba.mission.driving.retry_policy import RetryPolicy
+from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.mission.inputs.senses import Battery, Senses
 from roomba.mission.phases.cleaning import CleanPhase
 from roomba.mission.phases.job import Job
@@ -29,7 +29,7 @@ from roomba.perception.swept.dirt_map import DirtMap
 from roomba.planning.path.costmap import RoundObstacle
 
 ROBOT, CONFIG = RobotConfig(), MissionConfig()
-SITE = Site(TWO_ROOMS.map, TWO_ROOMS.station, ROBOT, CONFIG, DockingConfig())
+SITE = PlanningContext(TWO_ROOMS.map, TWO_ROOMS.station, ROBOT, CONFIG, DockingConfig())
 IN_THE_DEN = Senses(0.0, Pose(3.0, 1.2, 0.0))
 FENCE: list[RoundObstacle] = [(WALL_X + 0.05, float(y), 0.05) for y in np.arange(0.85, 1.6, 0.1)]
 SPEED = 0.3
@@ -40,7 +40,7 @@ class Rig:
     def __init__(self) -> None:
         self.obstacles = Standing(FENCE)
         self.drives = Drives(SITE, ROBOT, CONFIG.driving, self.obstacles)
-        self.patience = Patience()
+        self.patience = RetryPolicy()
 
     def go_home(self, senses: Senses = IN_THE_DEN) -> PhaseStep:
         return go_home(self.drives, self.patience, senses, SPEED)

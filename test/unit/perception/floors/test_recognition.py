@@ -21,7 +21,7 @@ from fixtures.located import (
 
 from roomba.files.shipped import HOMES
 from roomba.geometry import Pose, Twist, wrap_angle
-from roomba.perception.floors.recognition import Floor, FloorRecognition, FloorVerdict, Place
+from roomba.perception.floors.recognition import FloorRecognition, FloorRecord, FloorVerdict, Place
 from roomba.world.home.home import Home
 from roomba.world.layers.layer import load_home
 from roomba.world.simulator import Simulator
@@ -38,12 +38,12 @@ def shipped(name: str) -> Home:
     return load_home(name, HOMES)
 
 
-def floor_of(home: Home) -> Floor:
-    return Floor(home.map, home.station)
+def floor_of(home: Home) -> FloorRecord:
+    return FloorRecord(home.map, home.station)
 
 
 @cache
-def stored(*names: str) -> Mapping[str, Floor]:
+def stored(*names: str) -> Mapping[str, FloorRecord]:
     return {name: floor_of(shipped(name)) for name in names}
 
 
@@ -59,7 +59,7 @@ def shown(recognition: FloorRecognition, ranges: Ranges, reckoned: Pose) -> Floo
 
 
 def recognised(
-    floors: Mapping[str, Floor], home: Home, pose: Pose, seed: int = 0
+    floors: Mapping[str, FloorRecord], home: Home, pose: Pose, seed: int = 0
 ) -> FloorRecognition:
     """Look around in a home, with noise, until it is decided or all is seen."""
     recognition = FloorRecognition(floors, CONFIG.localization, CONFIG.body.radius)
@@ -131,7 +131,7 @@ def test_a_copy_whose_station_is_elsewhere_is_not_ruled_out_by_that() -> None:
     """Where the robot stands is a guess; both fit as well."""
     home = shipped("studio")
     moved = free_poses(home, 1, np.random.default_rng(9))[0]
-    copies = {"one": floor_of(home), "other": Floor(home.map, moved)}
+    copies = {"one": floor_of(home), "other": FloorRecord(home.map, moved)}
     recognition = recognised(copies, home, home.station)
     assert recognition.verdict is FloorVerdict.UNSURE
     assert recognition.places[0].floor == "one"

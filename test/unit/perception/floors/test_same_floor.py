@@ -16,11 +16,12 @@ from roomba.files.shipped import HOMES
 from roomba.geometry import Pose, wrap_angle
 from roomba.grid import FREE, OCCUPIED, UNKNOWN, GridFrame, OccupancyMap
 from roomba.headless.explorer import HeadlessExplorer
-from roomba.perception.floors.recognition import Floor
+from roomba.perception.floors.recognition import FloorRecord
 from roomba.perception.floors.same_floor import match_floors
 from roomba.world.home.home import Home
 from roomba.world.layers.layer import load_home
 
+NAMES = ("apartment", "empty", "family", "flat", "lshape", "studio")
 TURNED = Pose(4.0, -3.0, math.pi / 2)
 """Where the frame of a map lies in that of the same map turned by a quarter."""
 
@@ -30,9 +31,9 @@ def shipped(name: str) -> Home:
     return load_home(name, HOMES)
 
 
-def floor_of(home: Home, off: Pose | None = None) -> Floor:
+def floor_of(home: Home, off: Pose | None = None) -> FloorRecord:
     """Return what the home's own map shows, the station a little off."""
-    return Floor(home.map, home.station.compose(off or Pose()))
+    return FloorRecord(home.map, home.station.compose(off or Pose()))
 
 
 def standing(home: Home) -> OccupancyMap:
@@ -42,15 +43,15 @@ def standing(home: Home) -> OccupancyMap:
 
 
 @cache
-def made(name: str, seed: int, *, shut: bool = False) -> Floor:
+def made(name: str, seed: int, *, shut: bool = False) -> FloorRecord:
     """Return the map that a robot makes of a home, in a run of its own."""
     home = with_doors_shut(shipped(name)) if shut else shipped(name)
     robot = HeadlessExplorer(home, seed=seed)
     record = robot.explore()
-    return Floor(record.occupancy, Pose(*robot.mapper.trajectory[0].tolist()))
+    return FloorRecord(record.occupancy, Pose(*robot.mapper.trajectory[0].tolist()))
 
 
-def turned(floor: Floor) -> Floor:
+def turned(floor: FloorRecord) -> FloorRecord:
     """Return the same map in a frame that is turned and moved."""
     frame = floor.occupancy.frame
     x, _, _, y = frame.extent
@@ -58,7 +59,7 @@ def turned(floor: Floor) -> Floor:
     around = GridFrame(frame.resolution, corner.x, corner.y, frame.columns, frame.rows)
     # A quarter to the left: columns become rows, rows columns from the other end.
     values = np.ascontiguousarray(floor.occupancy.values.T[:, ::-1])
-    return Floor(OccupancyMap(around, values), TURNED.compose(floor.station))
+    return FloorRecord(OccupancyMap(around, values), TURNED.compose(floor.station))
 
 
 def is_at(found: Pose, expected: Pose) -> bool:
@@ -66,7 +67,7 @@ def is_at(found: Pose, expected: Pose) -> bool:
     return near and abs(wrap_angle(found.theta - expected.theta)) < 0.01
 
 
-@pytest.mark.parametrize("name", HOMES)
+@pytest.mark.parametrize("name", NAMES)
 @pytest.mark.parametrize("off", [Pose(), Pose(0.05, -0.04, 0.06), Pose(-0.03, 0.05, -0.07)])
 def test_a_home_is_itself_though_the_robot_docked_askew(name: str, off: Pose) -> None:
     home = shipped(name)
@@ -91,12 +92,12 @@ def test_a_home_in_another_frame_is_laid_on_itself(name: str) -> None:
 def test_a_station_that_was_moved_makes_no_other_home_of_the_same_frame() -> None:
     home = shipped("flat")
     moved = Pose(home.station.x + 2.0, home.station.y, home.station.theta + 1.0)
-    match = match_floors(Floor(home.map, moved), floor_of(home))
+    match = match_floors(FloorRecord(home.map, moved), floor_of(home))
     assert match.is_same
     assert is_at(match.old_in_new, Pose())
 
 
-@pytest.mark.parametrize(("one", "other"), list(itertools.permutations(HOMES, 2)))
+@pytest.mark.parametrize(("one", "other"), list(itertools.permutations(NAMES, 2)))
 def test_two_homes_are_not_the_same(one: str, other: str) -> None:
     match = match_floors(floor_of(shipped(one)), floor_of(shipped(other)))
     assert not match.is_same
@@ -116,15 +117,15 @@ def test_a_home_with_its_doors_shut_is_itself_and_no_other() -> None:
     assert part.occupancy.free_area < 0.7 * whole.occupancy.free_area
     assert match_floors(part, whole).is_same
     assert match_floors(whole, part).is_same
-    for other in HOMES:
+    for other in NAMES:
         if other != "family":
             assert not match_floors(part, floor_of(shipped(other))).is_same
             assert not match_floors(floor_of(shipped(other)), part).is_same
 
 
 def test_moved_furniture_makes_no_other_home() -> None:
-    before = Floor(standing(FURNISHED), FURNISHED.station)
-    after = Floor(standing(MOVED), FURNISHED.station)
+    before = FloorRecord(standing(FURNISHED), FURNISHED.station)
+    after = FloorRecord(standing(MOVED), FURNISHED.station)
     match = match_floors(after, before)
     assert match.is_same
     assert match.walls < 0.95
@@ -138,7 +139,7 @@ def test_maps_that_have_next_to_nothing_in_common_are_not_the_same() -> None:
     west[:, middle:] = UNKNOWN
     east[:, : middle - 3] = UNKNOWN
     one, other = (OccupancyMap(home.map.frame, half) for half in (west, east))
-    match = match_floors(Floor(one, home.station), Floor(other, home.station))
+    match = match_floors(FloorRecord(one, home.station), FloorRecord(other, home.station))
     assert match.floor < 0.2
     assert not match.is_same
 
@@ -147,9 +148,11 @@ def test_a_map_without_anything_on_it_is_no_floor() -> None:
     home = shipped("studio")
     for value in (UNKNOWN, FREE, OCCUPIED):
         nothing = OccupancyMap(home.map.frame, np.full_like(home.map.values, value))
-        assert not match_floors(Floor(nothing, home.station), floor_of(home)).is_same
-        assert not match_floors(floor_of(home), Floor(nothing, home.station)).is_same
-        assert not match_floors(Floor(nothing, home.station), Floor(nothing, home.station)).is_same
+        assert not match_floors(FloorRecord(nothing, home.station), floor_of(home)).is_same
+        assert not match_floors(floor_of(home), FloorRecord(nothing, home.station)).is_same
+        assert not match_floors(
+            FloorRecord(nothing, home.station), FloorRecord(nothing, home.station)
+        ).is_same
 
 
 def test_coarser_cells_make_no_other_home() -> None:
@@ -161,6 +164,6 @@ def test_coarser_cells_make_no_other_home() -> None:
         ),
         np.repeat(np.repeat(values, 2, axis=0), 2, axis=1),
     )
-    match = match_floors(Floor(fine, home.station), floor_of(home))
+    match = match_floors(FloorRecord(fine, home.station), floor_of(home))
     assert match.is_same
     assert match.floor > 0.99

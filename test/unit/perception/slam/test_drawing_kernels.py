@@ -12,22 +12,22 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from roomba.grid import FREE, OCCUPIED, UNKNOWN
-from roomba.perception.slam.drawing_kernels import Sheet, draw, occupancy
+from roomba.perception.slam.drawing_kernels import CountArrays, draw, occupancy
 
 CELL = 0.05
 SIZE = 60
 CENTRE = np.zeros(2)
 
 
-def sheet() -> Sheet:
+def sheet() -> CountArrays:
     counts = np.zeros((2, SIZE, SIZE), np.uint16)
     corner = -0.5 * SIZE * CELL
     bounds = np.array([2**40, -1, 2**40, -1])
     offsets = np.zeros((SIZE, SIZE, 2), np.float32)
-    return Sheet(counts[0], counts[1], np.array([corner, corner, CELL]), bounds, offsets)
+    return CountArrays(counts[0], counts[1], np.array([corner, corner, CELL]), bounds, offsets)
 
 
-def drawn(*points: tuple[float, float, float, float], pose: Floats | None = None) -> Sheet:
+def drawn(*points: tuple[float, float, float, float], pose: Floats | None = None) -> CountArrays:
     made = sheet()
     here = np.array([0.01, 0.01, 0.0]) if pose is None else pose
     draw(made, np.array(points, np.float32).reshape(-1, 4), CENTRE, here)
@@ -38,7 +38,9 @@ def cell(x: float, y: float) -> tuple[int, int]:
     return math.floor(y / CELL) + SIZE // 2, math.floor(x / CELL) + SIZE // 2
 
 
-def values_of(made: Sheet, share: float = 0.3, least: int = 1) -> tuple[NDArray[np.int8], int, int]:
+def values_of(
+    made: CountArrays, share: float = 0.3, least: int = 1
+) -> tuple[NDArray[np.int8], int, int]:
     """All that is known, and its first row and column."""
     first_row, last_row, first_column, last_column = made.bounds.tolist()
     values = np.empty((last_row - first_row + 1, last_column - first_column + 1), np.int8)
@@ -221,7 +223,7 @@ def test_offsets_are_halved_with_the_counts() -> None:
 def test_who_asks_for_no_map_needs_no_offsets() -> None:
     counts, corner = np.zeros((2, SIZE, SIZE), np.uint16), -0.5 * SIZE * CELL
     place, bounds = np.array([corner, corner, CELL]), np.array([2**40, -1, 2**40, -1])
-    made = Sheet(counts[0], counts[1], place, bounds)
+    made = CountArrays(counts[0], counts[1], place, bounds)
     draw(made, np.array([[0.5, 0.0, 0.0, 0.0]], np.float32), CENTRE, np.zeros(3))
     assert made.hits.sum() == 1
     assert values_of(made)[0].size

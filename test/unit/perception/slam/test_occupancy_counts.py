@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 from fixtures.located import Eye
@@ -12,7 +14,7 @@ from hypothesis import strategies as st
 
 from roomba.geometry import Pose
 from roomba.grid import FREE, OCCUPIED, UNKNOWN, OccupancyMap
-from roomba.perception.slam.occupancy_counts import Sheet
+from roomba.perception.slam.occupancy_counts import OccupancyCounts
 
 CENTRE = np.zeros(2)
 AHEAD = np.array([[0.5, 0.0, -1.0, 0.0]], np.float32)
@@ -26,17 +28,24 @@ def value_at(made: OccupancyMap, x: float, y: float) -> int:
     return int(made.values[row, column])
 
 
+def is_on_border(place: float, phase: float) -> bool:
+    off = math.remainder(place - phase, 0.05)
+    return abs(off) < 1e-6
+
+
 @given(places, st.floats(0.0, 0.049), st.floats(0.0, 0.049))
 @settings(max_examples=40)
 def test_it_grows_to_all_sides_and_keeps_all(
     at: list[tuple[float, float]], phase_x: float, phase_y: float
 ) -> None:
-    sheet = Sheet(0.05, (phase_x, phase_y))
+    sheet = OccupancyCounts(0.05, (phase_x, phase_y))
     for x, y in at:
         sheet.draw(AHEAD, CENTRE, np.array([x, y, 0.0]), 1.0)
     made = sheet.occupancy(0.3, 1)
     # Later ones may have gone through the ends of earlier ones.
     for index, (x, y) in enumerate(at):
+        if is_on_border(x + 0.52, phase_x) or is_on_border(y, phase_y):
+            continue  # rounding decides to which cell the end belongs
         if all(abs(y - other) > 0.1 for _, other in at[index + 1 :]):
             assert value_at(made, x + 0.52, y) == OCCUPIED
             assert value_at(made, x + 0.2, y) == FREE
@@ -59,7 +68,7 @@ def test_the_order_in_which_it_grows_makes_no_difference() -> None:
     poses = [Pose(0.0, 0.0), Pose(9.0, 0.0), Pose(-9.0, 3.0), Pose(0.0, 11.0), Pose(1.0, -12.0)]
     maps = []
     for order in (poses, poses[::-1], poses[2:] + poses[:2]):
-        sheet = Sheet(0.05)
+        sheet = OccupancyCounts(0.05)
         for pose in order:
             sheet.draw(AHEAD, CENTRE, row(pose), 3.0)
         maps.append(sheet.occupancy(0.3, 1))
@@ -70,7 +79,7 @@ def test_the_order_in_which_it_grows_makes_no_difference() -> None:
 
 
 def test_a_room_is_drawn_as_it_is() -> None:
-    sheet, eye = Sheet(0.05), Eye(FURNISHED)
+    sheet, eye = OccupancyCounts(0.05), Eye(FURNISHED)
     for pose in (START, Pose(1.0, 2.6, 0.4), Pose(4.4, 3.2, 2.0), Pose(4.2, 0.6, -1.0)):
         sheet.draw(points_of(eye.scan(pose)).astype(np.float32), CENTRE, row(pose), 12.0)
     made = sheet.occupancy(0.3, 2)
@@ -84,7 +93,7 @@ def test_the_legs_of_chairs_are_as_thin_as_they_are() -> None:
     """Noise and grazed corners put beams beside them; with two cells each a gap would be shut."""
     corners = [(0.8 + 0.4 * right, 0.8 + 0.4 * up) for right in range(6) for up in range(4)]
     home = room_home(4.0, 3.0, tuple((x, y, x + 0.05, y + 0.05) for x, y in corners))
-    sheet, eye, random = Sheet(0.05), Eye(home), np.random.default_rng(3)
+    sheet, eye, random = OccupancyCounts(0.05), Eye(home), np.random.default_rng(3)
     for _ in range(60):
         x, y, theta = random.uniform((0.3, 0.3, -3.0), (3.7, 0.7, 3.0)).tolist()
         pose = Pose(x, y, theta)
@@ -101,7 +110,7 @@ def test_the_legs_of_chairs_are_as_thin_as_they_are() -> None:
 
 def test_a_beam_that_grazes_a_corner_stays_in_its_cell() -> None:
     """It met a thin thing of unknown facing 8 mm before the corner; 2 cm on is the next cell."""
-    sheet = Sheet(0.05)
+    sheet = OccupancyCounts(0.05)
     along = np.array([-0.8, 0.6])
     for way in (1.0, 1.5):
         x, y = np.array([0.512, 0.001]) - way * along
@@ -114,11 +123,11 @@ def test_a_beam_that_grazes_a_corner_stays_in_its_cell() -> None:
 
 def test_an_empty_sheet_is_no_map() -> None:
     with pytest.raises(ValueError, match="at least one scan"):
-        Sheet(0.05).occupancy(0.3, 2)
+        OccupancyCounts(0.05).occupancy(0.3, 2)
 
 
 def test_a_scan_without_points_shows_where_the_lidar_was() -> None:
-    sheet = Sheet(0.05)
+    sheet = OccupancyCounts(0.05)
     sheet.draw(np.zeros((0, 4), np.float32), CENTRE, np.array([1.0, 2.0, 0.0]), 3.0)
     made = sheet.occupancy(0.3, 2)
     assert made.values.shape == (3, 3)
@@ -129,7 +138,7 @@ def test_a_scan_without_points_shows_where_the_lidar_was() -> None:
 @given(st.floats(-1.0, 6.0), st.floats(-1.0, 5.0), st.floats(0.05, 3.0))
 @settings(max_examples=40)
 def test_a_part_of_it_is_cut_out_of_the_whole(x: float, y: float, reach: float) -> None:
-    sheet = Sheet(0.05, (0.01, 0.02))
+    sheet = OccupancyCounts(0.05, (0.01, 0.02))
     points = points_of(Eye(FURNISHED).scan(START)).astype(np.float32)
     sheet.draw(points, CENTRE, row(START), 3.0)
     whole, part = sheet.occupancy(0.3, 1), sheet.around(x, y, reach, 0.3, 1)
@@ -144,7 +153,7 @@ def test_a_part_of_it_is_cut_out_of_the_whole(x: float, y: float, reach: float) 
 
 def test_a_scan_that_is_erased_leaves_the_others() -> None:
     first, second = np.array([0.0, 0.0, 0.0]), np.array([0.3, 2.0, 1.0])
-    sheets = Sheet(0.05), Sheet(0.05)
+    sheets = OccupancyCounts(0.05), OccupancyCounts(0.05)
     for sheet in sheets:
         sheet.draw(AHEAD, CENTRE, first, 3.0)
     sheets[0].draw(AHEAD, CENTRE, second, 3.0)

@@ -7,10 +7,10 @@ import math
 import numpy as np
 import pytest
 import shapely
-from roomba.world.home.furniture import KINDS, MATERIALS, Size, furniture_at, station_at
 
 from roomba.geometry import Pose
 from roomba.grid import GridFrame
+from roomba.world.catalogue.furniture import KINDS, MATERIALS, Size, furniture_at, station_at
 from roomba.world.home.home import Box
 from roomba.world.home.materials import TEXTURES
 from roomba.world.home.raster import covered_cells, footprint, where_body_fits

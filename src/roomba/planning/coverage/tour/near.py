@@ -37,7 +37,7 @@ class Places(NamedTuple):
     of_block: Ints
 
 
-class Search(NamedTuple):
+class NearestSearch(NamedTuple):
     """Work arrays of a search over a net, int32 over its blocks, and the queue's bucket heads."""
 
     costs: Ints
@@ -46,10 +46,10 @@ class Search(NamedTuple):
 
 
 @njit(cache=True, nogil=True)
-def search_over(net: Net) -> Search:
+def search_over(net: Net) -> NearestSearch:
     """Return work arrays for searches over a net."""
     size = net.links.size // 8
-    return Search(
+    return NearestSearch(
         np.full(size, _NEVER, np.int32),
         np.zeros((_BUCKETS, 256), np.int32),
         np.zeros(size, np.int32),
@@ -80,7 +80,7 @@ def places_over(net: Net, places: Line) -> Places:
 @njit(cache=True, nogil=True)
 def nearest_wanted(
     net: Net,
-    search: Search,
+    search: NearestSearch,
     places: Places,
     wanted: NDArray[np.bool_],
     origin: int,
@@ -166,7 +166,7 @@ def nearest_wanted(
 
 @njit(cache=True, nogil=True)
 def neighbours(
-    net: Net, search: Search, places: Places, most: int, limit: float
+    net: Net, search: NearestSearch, places: Places, most: int, limit: float
 ) -> tuple[Ints, NDArray[np.float64]]:
     """Return the nearest places of each, the nearest first, and the lengths of the ways to them.
 

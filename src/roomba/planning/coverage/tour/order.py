@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from roomba.planning.coverage.tour.costs import Costs, costs_of, note_pair
 from roomba.planning.coverage.tour.near import (
+    NearestSearch,
     Places,
-    Search,
     nearest_wanted,
     neighbours,
     places_over,
@@ -67,7 +67,7 @@ def _headings(lines: list[Line]) -> NDArray[np.float64]:
     return headings
 
 
-def _first_tour(net: Net, search: Search, places: Places, costs: Costs) -> NDArray[np.int32]:
+def _first_tour(net: Net, search: NearestSearch, places: Places, costs: Costs) -> NDArray[np.int32]:
     """Return a tour that makes the cheapest connections, and goes on to the nearest free end.
 
     What the latter cost is noted in ``costs``.

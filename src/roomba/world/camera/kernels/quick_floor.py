@@ -26,7 +26,7 @@ from roomba.world.camera.lanes.lanes import (
 from roomba.world.camera.scene.arrays import (
     GREYS,
     SHADES,
-    Floor,
+    FloorSurfaces,
     SceneArrays,
     Surfaces,
     ViewTables,
@@ -43,7 +43,7 @@ LEAST_LEVEL = 4.0
 
 
 @njit(**INLINE)
-def surfaces_at(floor: Floor, x: Any, y: Any) -> Any:
+def surfaces_at(floor: FloorSurfaces, x: Any, y: Any) -> Any:
     """Return the surfaces of the floor at places, m; the nearest ones outside the map."""
     rows, columns = floor.surfaces.shape
     row = within(cut((y - floor.origin_y) / floor.cell), 0, rows - 1)
@@ -53,7 +53,11 @@ def surfaces_at(floor: Floor, x: Any, y: Any) -> Any:
 
 @njit(**INLINE)
 def end_surfaces(
-    floor: Floor, x: float, y: float, t: float, directions: tuple[float, float, float, float]
+    floor: FloorSurfaces,
+    x: float,
+    y: float,
+    t: float,
+    directions: tuple[float, float, float, float],
 ) -> tuple[int, int]:
     """Return the surfaces of the floor at a depth, in two directions."""
     left_x, left_y, right_x, right_y = directions
@@ -64,7 +68,7 @@ def end_surfaces(
 
 
 @njit(**INLINE)
-def surface_at(floor: Floor, x: float, y: float) -> int:
+def surface_at(floor: FloorSurfaces, x: float, y: float) -> int:
     """Return the surface of the floor at a place, m; the nearest one outside the map."""
     row = min(max(int((y - floor.origin_y) / floor.cell), 0), floor.surfaces.shape[0] - 1)
     column = min(max(int((x - floor.origin_x) / floor.cell), 0), floor.surfaces.shape[1] - 1)
@@ -98,7 +102,7 @@ def mixed(colour: Any, other: Any, share: Any) -> Any:
 
 @njit(**INLINE)
 def with_crumbs(
-    floor: Floor, colour: Any, shade: Any, x: Any, y: Any, level: Any, share: int
+    floor: FloorSurfaces, colour: Any, shade: Any, x: Any, y: Any, level: Any, share: int
 ) -> Any:
     """Return colours with the crumbs that lie at places, m, where the dirt has these levels."""
     line = floored(y * CRUMB_TEXELS) & CRUMB_MASK

@@ -66,7 +66,7 @@ class Walls(NamedTuple):
     ceiling: int
 
 
-class Floor(NamedTuple):
+class FloorSurfaces(NamedTuple):
     """The floor's surfaces, and the pattern of crumbs on it."""
 
     origin_x: float
@@ -108,7 +108,7 @@ class SceneArrays(NamedTuple):
     surfaces: Surfaces
     lighting: Lighting
     walls: Walls
-    floor: Floor
+    floor: FloorSurfaces
     boxes: Boxes
 
 

@@ -16,7 +16,7 @@ from roomba.world.camera.scene.arrays import (
     GREYS,
     SHADES,
     Boxes,
-    Floor,
+    FloorSurfaces,
     Lighting,
     SceneArrays,
     Surfaces,
@@ -156,7 +156,7 @@ class Scene:
                     skirting=skirting,
                     ceiling=ceiling,
                 ),
-                Floor(
+                FloorSurfaces(
                     frame.origin_x,
                     frame.origin_y,
                     floor_cell,
