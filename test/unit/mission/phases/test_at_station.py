@@ -12,11 +12,11 @@ from roomba.configuration.mission import MissionConfig
 from roomba.configuration.robot import RobotConfig
 from roomba.geometry import STANDSTILL, Pose, Twist
 from roomba.mission.cleaning.request import CleanOutcome
-from roomba.mission.docking import at_station
 from roomba.mission.docking.docking import Docking, DockState
 from roomba.mission.docking.step import DockStep
 from roomba.mission.docking.undocking import Undocking, UndockState, UndockStep
 from roomba.mission.inputs.senses import Battery, Senses
+from roomba.mission.phases import at_station
 from roomba.mission.phases.at_station import AtStation
 from roomba.mission.phases.job import Job
 from roomba.mission.phases.machine import Event
