@@ -21,7 +21,6 @@ from roomba.geometry import Pose, Twist
 from roomba.world.home.home import Home
 from roomba.world.layers.layer import load_home
 from roomba.world.simulator import Observation, Simulator
-from roomba_ros import kept_pose, progress
 from roomba_ros.convert.common import (
     map_message,
     mount_message,
@@ -30,6 +29,8 @@ from roomba_ros.convert.common import (
     transform_message,
     twist_of,
 )
+from roomba_ros.localization import kept_pose
+from roomba_ros.runtime import progress
 from roomba_ros.runtime.node import frame_id, give_up, leave, register, require_master, told_to_end
 from roomba_ros.runtime.pace import Pace
 from roomba_ros.runtime.parameters import LiveSeedParameters, read_robot_config
