@@ -17,14 +17,13 @@ import numpy as np
 import shapely
 
 from roomba.configuration.robot import BodyConfig
+from roomba.files.home_layer import LAYER_NAME, MAP_NAME, read_layer
 from roomba.files.occupancy_map import save_map
 from roomba.files.shipped import HOMES
 from roomba.grid import FREE, OCCUPIED, UNKNOWN, GridFrame, OccupancyMap
 from roomba.world.home.home import Rectangle
 from roomba.world.home.raster import covered_cells, outline
 from roomba.world.layers.assembly import standing_cells
-from roomba.world.layers.file import read_layer
-from roomba.world.layers.layer import LAYER_NAME, MAP_NAME
 from roomba.world.layers.parts import parts_of
 
 DRAWN = {"flat": 0.05, "studio": 0.05, "family": 0.05, "hall": 0.2}

@@ -16,6 +16,7 @@ import yaml
 
 from roomba.errors import HomeError, RoombaError, RoomsError
 from roomba.files.atomic import write_whole
+from roomba.files.home_layer import LAYER_NAME, MAP_NAME, read_layer
 from roomba.files.occupancy_map import load_map, save_map
 from roomba.geometry import Pose
 from roomba.grid import OccupancyMap
@@ -23,8 +24,6 @@ from roomba.perception.rooms.rooms import Rooms
 from roomba.perception.rooms.zones import Zones, ZonesError
 from roomba.storage.rooms import load_rooms, save_rooms
 from roomba.storage.zones import load_zones, save_zones
-from roomba.world.layers.file import read_layer
-from roomba.world.layers.layer import LAYER_NAME, MAP_NAME
 
 ROOMS_NAME: Final = "rooms.yaml"
 ZONES_NAME: Final = "zones.yaml"

@@ -8,16 +8,13 @@ way round, and is present as the earlier row says; after the last row it stays a
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.files.home_layer import DAY
 from roomba.geometry import Pose, wrap_angle
 from roomba.world.home.home import MovingThing, Script
-
-DAY: Final = 86400.0
-"""s; how long a track is: what would end later does not begin."""
 
 TIME, X, Y, THETA, PRESENT = range(5)
 """Columns of a track."""

@@ -15,6 +15,7 @@ import numpy as np
 
 from roomba.configuration.robot import BodyConfig
 from roomba.errors import HomeError
+from roomba.files.home_layer import LAYER_NAME, MAP_NAME, Layer, read_layer
 from roomba.files.occupancy_map import load_map
 from roomba.files.strict_yaml import YamlFile, suggestion
 from roomba.geometry import Pose
@@ -28,11 +29,7 @@ from roomba.world.layers.assembly import (
     with_station,
 )
 from roomba.world.layers.automatic_station import automatic_station
-from roomba.world.layers.file import Layer, read_layer
 from roomba.world.layers.parts import Parts, parts_of
-
-MAP_NAME = "map.yaml"
-LAYER_NAME = "home.yaml"
 
 EVEN_DIRT = 0.5
 """g/m²; on the floor of a home whose layer names no sources: some days of dust."""

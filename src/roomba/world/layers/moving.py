@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Final, TypeVar
 
+from roomba.files.home_layer import DAY, Layer, MovingEntry
 from roomba.files.strict_yaml import Location, suggestion
 from roomba.geometry import Pose, wrap_angle
 from roomba.world.catalogue import FIXTURES
@@ -20,9 +21,7 @@ from roomba.world.home.home import (
     MovingThing,
     Script,
 )
-from roomba.world.home.moving import DAY
 from roomba.world.layers.check import Checker
-from roomba.world.layers.file import Layer, MovingEntry
 
 _Part = TypeVar("_Part")
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import shapely
 from shapely.validation import explain_validity
 
+from roomba.files.home_layer import FurnitureEntry, Layer
 from roomba.files.strict_yaml import Location, YamlFile, suggestion
 from roomba.geometry import Pose
 from roomba.grid import GridFrame
@@ -24,7 +25,6 @@ from roomba.world.home.home import (
 )
 from roomba.world.home.materials import CARPETS, FLOORS
 from roomba.world.layers.check import Checker
-from roomba.world.layers.file import FurnitureEntry, Layer
 from roomba.world.layers.moving import moving_things
 
 

@@ -9,9 +9,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from roomba.files.home_layer import DAY
 from roomba.geometry import Pose, wrap_angle
 from roomba.world.home.home import Box, Move, MovingKind, MovingThing, Script
-from roomba.world.home.moving import DAY, PRESENT, TIME, Track, pose_at, tracks_of
+from roomba.world.home.moving import PRESENT, TIME, Track, pose_at, tracks_of
 
 HERE = Pose(1.0, 2.0, 0.5)
 ROUNDING = 1e-6

@@ -22,7 +22,13 @@ from pydantic import (
 )
 
 from roomba.files.strict_yaml import YamlFile, read_yaml
-from roomba.world.home.moving import DAY
+
+MAP_NAME: Final = "map.yaml"
+LAYER_NAME: Final = "home.yaml"
+"""The files of a home's folder: a map_server map, and the layer beside it."""
+
+DAY: Final = 86_400.0
+"""s; how long a script of what moves may be: what would end later does not begin."""
 
 DIRECTIONS = {"east": 0.0, "north": math.pi / 2.0, "west": math.pi, "south": -math.pi / 2.0}
 
