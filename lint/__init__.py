@@ -1,0 +1,1 @@
+"""Checks of the sources that the tools do not ship with."""
