@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass
-from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,9 +16,6 @@ from roomba.headless.explorer import HeadlessExplorer
 from roomba.mission.mission import MissionStep
 from roomba.perception.matching.scan_view import LidarModel
 from roomba.perception.slam.mapper import Mapper
-
-_MAP_PERIOD: Final = 1.0
-"""s between two looks at the whole map, as on ROS."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,7 +85,7 @@ def share_of_core(drive: Recorded) -> float:
         mapper.move(each.stamp, each.odometry, each.turning)
         if each.ranges is not None:
             mapper.see(each.stamp, each.ranges, drive.lidar)
-        if mapper.version and each.stamp - shown >= _MAP_PERIOD:
+        if mapper.version and each.stamp - shown >= config.timing.map_period:
             shown = each.stamp
             mapper.occupancy()
     spent = time.process_time() - began

@@ -240,6 +240,34 @@ class TrackingConfig(Frozen):
     arrival_tolerance: Positive = 0.003
 
 
+class TimingConfig(Frozen):
+    """How often the robot does what, headless and on ROS alike: s of its clock.
+
+    ``scan_period``
+        From one scan that the robot looks at to the next; those between are left out.
+    ``map_period``
+        From one look at a map that grows to the next.
+    """
+
+    tick: Positive = 0.05
+    world_step: Positive = 0.025
+    scan_period: Positive = 0.2
+    map_period: Positive = 1.0
+
+    @model_validator(mode="after")
+    def _steps_fill_a_tick(self) -> TimingConfig:
+        if not math.isclose(self.world_step * self.steps_per_tick, self.tick):
+            raise ValueError(
+                f"expected a tick of whole world steps ({self.world_step} s), got {self.tick} s"
+            )
+        return self
+
+    @property
+    def steps_per_tick(self) -> int:
+        """World steps in a tick of the robot."""
+        return max(1, round(self.tick / self.world_step))
+
+
 class RobotConfig(Frozen):
     """All of ``config/robot.yaml``; every part has the shipped file's values by default.
 
@@ -263,6 +291,7 @@ class RobotConfig(Frozen):
     control: ControlConfig = ControlConfig()
     walk: WalkConfig = WalkConfig()
     tracking: TrackingConfig = TrackingConfig()
+    timing: TimingConfig = TimingConfig()
 
     @model_validator(mode="after")
     def _walks_arrive(self) -> RobotConfig:

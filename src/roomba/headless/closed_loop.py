@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from roomba.configuration.robot import TimingConfig
 from roomba.headless.closed_loop_kernels import LOOP, Belief, Floor, Track, World, run
-from roomba.mission.driving.path_driver import PERIOD, PathDriver
+from roomba.mission.driving.path_driver import PathDriver
 from roomba.perception.localization.belief import numbers_of
 
 if TYPE_CHECKING:
@@ -17,8 +18,9 @@ if TYPE_CHECKING:
     from roomba.perception.things.kernels import Things
     from roomba.world.simulator import Observation
 
-STEPS_PER_TICK: Final = 2
-STEP: Final = PERIOD / STEPS_PER_TICK
+_TIMING: Final = TimingConfig()
+STEPS_PER_TICK: Final = _TIMING.steps_per_tick
+STEP: Final = _TIMING.world_step
 """s; the world's steps between two ticks of the robot."""
 EVERY: Final = 2
 """Each such scan corrects the pose and is looked through for things: each 0.2 s."""

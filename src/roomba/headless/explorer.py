@@ -37,8 +37,6 @@ from roomba.perception.things.layer import ThingLayer
 from roomba.world.home.home import Home
 from roomba.world.simulator import Simulator
 
-MAP_PERIOD: Final = 0.3
-"""s; so often a map that grew is looked at, whether it makes a difference to the mission."""
 _AROUND_GOAL: Final = 0.4
 """m; farther from the frontier that it is on its way to nothing tells whether it still is one."""
 _BESIDE_SURFACES: Final = 0.3
@@ -139,7 +137,7 @@ class HeadlessExplorer:
     def advance(self) -> None:
         """Let time pass: many ticks at once while nothing comes up, else one that looks around."""
         if self._loop.may_run():
-            self._loop.run(self._shown + MAP_PERIOD if self._has_news else np.inf)
+            self._loop.run(self._shown + self.robot.timing.map_period if self._has_news else np.inf)
             self._show_map()
         else:
             self.tick()
@@ -208,7 +206,7 @@ class HeadlessExplorer:
         if mission.driver is None:
             if version == self._used or mission.state.phase not in _PLANNING:
                 return
-        elif self._has_news and self.seen.time - self._shown >= MAP_PERIOD:
+        elif self._has_news and self.seen.time - self._shown >= self.robot.timing.map_period:
             self._shown, self._looked = self.seen.time, version
             if not mission.wants_map(self._around_goal()):
                 return

@@ -24,7 +24,7 @@ from roomba_ros.runtime.node import frame_id
 _POSITION_TICKS: Final = 2
 _CLOUD_TICKS: Final = 10
 _STATE_TICKS: Final = 20
-"""Ticks of 0.05 s between two positions, two clouds, and two states that did not change."""
+"""Ticks between two positions, two clouds, and two states that did not change."""
 
 
 class PlaceTopics:

@@ -20,8 +20,6 @@ from roomba_ros.localization.topics import LocalizationTopics
 from roomba_ros.maps.map_memory import MapMemory
 from roomba_ros.runtime.background import Background
 
-MAP_PERIOD: Final = 1.0
-"""s of the ROS clock between two maps that are told while it grows."""
 _FINISHED_DEVIATION: Final = (0.03, 0.02)
 """m, rad; how unsure the place on the whole map is before a scan confirms it."""
 
@@ -117,7 +115,7 @@ class MapMaker:
         if mapper is None or self._finishes or not mapper.version:
             return None
         told, version = self._told
-        if mapper.version == version or 0.0 <= now - told < MAP_PERIOD:
+        if mapper.version == version or 0.0 <= now - told < self._config.timing.map_period:
             return None
         self._told = (now, mapper.version)
         return mapper.occupancy()

@@ -13,7 +13,6 @@ from roomba.configuration.mission import MissionConfig, load_mission_config
 from roomba.files.shipped import CONFIGURATION
 from roomba.geometry import Twist
 from roomba.mission.cleaning.request import CleanOutcome
-from roomba.mission.driving.path_driver import PERIOD
 from roomba.mission.inputs.senses import Senses
 from roomba.mission.mission import Mission, MissionStep
 from roomba.mission.phases.machine import Event, Phase
@@ -49,11 +48,12 @@ class MissionNode:
     it a folder for each robot's namespace), ``~zones_folder`` (default: roomba_robot/zones there).
     """
 
-    period = PERIOD
+    period: float
 
     def start(self) -> None:
         """Read the configuration and connect."""
         self._config, self._mission_config = read_robot_config(), read_mission_config()
+        self.period = self._config.timing.tick
         self._docking_config = DockingConfig()
         self._background = Background()
         self._mission: Mission | None = None

@@ -18,7 +18,6 @@ from tf2_msgs.msg import TFMessage
 
 from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose, Twist
-from roomba.mission.driving.path_driver import PERIOD
 from roomba.mission.inputs.senses import Battery, Senses
 from roomba.perception.localization.estimate import Knowledge
 from roomba.perception.matching.scan_view import LidarModel
@@ -108,7 +107,7 @@ class MissionSenses:
             newest, odometry, twist = self._odometry[-1]
             correction, battery, is_docked = self._correction, self._battery, self._is_docked
         assert battery is not None
-        ahead = min(max(now - newest, 0.0), OLDEST_POSE) + 0.5 * PERIOD
+        ahead = min(max(now - newest, 0.0), OLDEST_POSE) + 0.5 * self._config.timing.tick
         knowledge, trouble = self._knowledge, self._trouble
         is_silent = time.monotonic() > self._heard + _SILENCE
         if is_silent and not now - OLDEST_POSE <= stamp:
@@ -161,7 +160,8 @@ class MissionSenses:
     def _odometry_at(self, stamp: float) -> Pose:
         """Return where odometry was at a time, or at the nearest to it that is remembered, s."""
         at, pose, twist = min(self._odometry, key=lambda entry: abs(entry[0] - stamp))
-        return moved(pose, twist, min(max(stamp - at, -PERIOD), PERIOD))
+        tick = self._config.timing.tick
+        return moved(pose, twist, min(max(stamp - at, -tick), tick))
 
     def _lidar_of(self, scan: LaserScan) -> object:
         """Return the lidar of a scan, made anew only when something of it changed."""

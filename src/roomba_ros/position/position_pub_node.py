@@ -50,12 +50,13 @@ class PositionPubNode:
     may drive a little to find its place).
     """
 
-    period = 0.05
+    period: float
 
     def start(self) -> None:
         """Read parameters and connect."""
         self._parameters = LiveSeedParameters()
         self._config = read_robot_config()
+        self.period = self._config.timing.tick
         self._loop = PositionLoop(self._config.control, self._config.body)
         self._setpoint = Setpoint(self._config.control.stream_timeout)
         self._search = SearchDrive(self._config.body)

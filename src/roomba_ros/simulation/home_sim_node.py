@@ -39,11 +39,6 @@ from roomba_ros.simulation.camera_topics import CameraTopics
 from roomba_ros.simulation.sensor_topics import SensorTopics
 from roomba_ros.simulation.sim_services import SimServices
 
-TICK_NANOSECONDS = 50_000_000
-"""Robot time between two messages of the clock: a whole part of every period in the graph."""
-STEPS_PER_TICK = 2
-STEP = TICK_NANOSECONDS / STEPS_PER_TICK / 1e9
-"""s of robot time of one step of the world."""
 _FASTEST = 100.0
 _MOST_TICKS_LATE = 100
 """A clock that went on by more than this at once was set."""
@@ -74,6 +69,8 @@ class HomeSimNode:
         """Load the home, put the robot in it, connect; raises RoombaError."""
         self._parameters = LiveSeedParameters()
         self._config = _config_with_sensors(read_robot_config())
+        self._timing = self._config.timing
+        self._nanoseconds = round(self._timing.tick * 1e9)
         self._speed = _speed_parameter()
         self._owns_clock = rospy.get_param("~clock", True)
         if not isinstance(self._owns_clock, bool):
@@ -85,7 +82,7 @@ class HomeSimNode:
         self._clock = self._first_clock()
         self._ticks = 0
         self._told = 0.0
-        self._pace = Pace(TICK_NANOSECONDS / 1e9, self._speed, self._is_there)
+        self._pace = Pace(self._timing.tick, self._speed, self._is_there)
         self._odom_frame, self._base_frame = frame_id("odom"), frame_id("base_link")
         self._connect()
 
@@ -94,7 +91,7 @@ class HomeSimNode:
         if self._owns_clock:
             self._keep_clock()
         else:
-            Ticker(TICK_NANOSECONDS / 1e9, told_to_end).run(self._follow_clock)
+            Ticker(self._timing.tick, told_to_end).run(self._follow_clock)
 
     def _keep_clock(self) -> None:
         """Step in real time, or as many times faster as asked for."""
@@ -108,9 +105,9 @@ class HomeSimNode:
 
     def _follow_clock(self, now: float) -> None:
         """Step as far as the clock of another simulation went."""
-        late = round((now * 1e9 - self._clock) / TICK_NANOSECONDS)
+        late = round((now * 1e9 - self._clock) / self._nanoseconds)
         if not 0 <= late <= _MOST_TICKS_LATE:
-            self._clock, late = round(now * 1e9) - TICK_NANOSECONDS, 1
+            self._clock, late = round(now * 1e9) - self._nanoseconds, 1
         for _ in range(late):
             self._tick()
 
@@ -118,17 +115,17 @@ class HomeSimNode:
         max_speed = self._parameters.refresh().robot_max_speed
         with self._lock:
             self._simulator.max_speed = max_speed
-            for _ in range(STEPS_PER_TICK):
-                self._simulator.advance(self._fresh_command(), STEP, 1)
+            for _ in range(self._timing.steps_per_tick):
+                self._simulator.advance(self._fresh_command(), self._timing.world_step, 1)
             observation = self._simulator.observe()
-            self._clock += TICK_NANOSECONDS
+            self._clock += self._nanoseconds
             now = self._told = self._now()
             self._camera.set_time(now)
         self._ticks += 1
         self._publish(now, observation)
 
     def _fresh_command(self) -> Twist:
-        self._command_age += STEP
+        self._command_age += self._timing.world_step
         if self._command_age > self._config.body.command_timeout:
             self._command = Twist()
         return self._command
@@ -154,7 +151,7 @@ class HomeSimNode:
     def _first_clock(self) -> int:
         if not self._owns_clock:
             return int(rospy.get_rostime().to_nsec())
-        return time.time_ns() // TICK_NANOSECONDS * TICK_NANOSECONDS
+        return time.time_ns() // self._nanoseconds * self._nanoseconds
 
     def _make_simulator(self) -> Simulator:
         directory = Path(rospy.get_param("~homes_directory", str(HOMES)))

@@ -83,12 +83,13 @@ class WalkToPointActionServer:
     Parameters: ``robot_max_speed``, ``min_cordinate``, ``max_cordinate``.
     """
 
-    period = 0.05
+    period: float
 
     def start(self) -> None:
         """Read parameters and connect."""
         self._parameters = LiveSeedParameters()
         self._config = read_robot_config()
+        self.period = self._config.timing.tick
         self._things = UnknownThings(self._config.walk, self._config.body)
         # Plans are made by ticks and by make_plan, and the planner works on one at a time.
         self._planning = threading.Lock()

@@ -40,6 +40,7 @@ def test_every_value_of_the_shipped_file_has_a_reason_beside_it() -> None:
         ("control:\n  heading_gain: .nan\n", "control.heading_gain"),
         ("control:\n  restart_distance: 0.08\n", r"\(0.08\) of at most .*\(0.03\).*lower"),
         ("control:\n  restart_distance: 0.01\n", r"\(0.01\) of at least .*\(0.02\).*raise"),
+        ("timing:\n  tick: 0.06\n", r"whole world steps \(0.025 s\), got 0.06"),
     ],
 )
 def test_a_broken_file_is_refused_by_name(tmp_path: Path, text: str, said: str) -> None:

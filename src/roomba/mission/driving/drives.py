@@ -59,8 +59,7 @@ class Drives:
             self.obstacles,
             self.trail,
             self._config,
-            self._robot.tracking,
-            self._robot.body,
+            self._robot,
             senses,
             plans_anew or _never,
         )

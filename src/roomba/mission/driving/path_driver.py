@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.configuration.mission import DrivingConfig
-from roomba.configuration.robot import BodyConfig, TrackingConfig
+from roomba.configuration.robot import RobotConfig
 from roomba.control.path_tracker import PathTracker
 from roomba.geometry import STANDSTILL, Twist
 from roomba.mission.driving.obstacles import Obstacles
@@ -25,8 +25,6 @@ from roomba.mission.driving.rejoin import Rejoin
 from roomba.mission.driving.trail import Trail
 from roomba.mission.inputs.senses import Senses
 
-PERIOD: Final = 0.05
-"""s; between two ticks."""
 _PROGRESS: Final = 0.02
 """m; less than this along the path is no progress."""
 _LONGEST_TICK: Final = 2.0
@@ -99,8 +97,7 @@ class PathDriver:
         obstacles: Obstacles,
         trail: Trail,
         config: DrivingConfig,
-        tracking: TrackingConfig,
-        body: BodyConfig,
+        robot: RobotConfig,
         senses: Senses,
         plans_anew: Callable[[float, float], bool] = lambda now, left: False,
     ) -> None:
@@ -110,7 +107,7 @@ class PathDriver:
         something stands is better planned anew than driven around that.
         """
         self._rejoin, self._obstacles, self._trail = rejoin, obstacles, trail
-        self._config, self._tracking, self._body = config, tracking, body
+        self._config, self._robot = config, robot
         self._plans_anew = plans_anew
         self._state = DriveState.DRIVING
         self._reason = ""
@@ -172,7 +169,8 @@ class PathDriver:
         self._last_tick = senses.now
 
     def _track(self, points: NDArray[np.float64]) -> PathTracker:
-        return PathTracker(points, self._tracking, self._body, PERIOD)
+        robot = self._robot
+        return PathTracker(points, robot.tracking, robot.body, robot.timing.tick)
 
     def _follow_clock(self, now: float) -> None:
         """When the clock was set, move the times that are remembered with it."""

@@ -13,7 +13,6 @@ from roomba.configuration.robot import RobotConfig
 from roomba.control.path_tracker import PathTracker
 from roomba.geometry import Pose
 from roomba.mission.driving.nudge import nudged
-from roomba.mission.driving.path_driver import PERIOD
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.planning.path.costmap import RoundObstacle
 
@@ -24,7 +23,7 @@ KEEP = 0.165
 
 
 def nudge(*things: RoundObstacle, points: NDArray[np.float64] = PATH) -> NDArray[np.float64] | None:
-    tracker = PathTracker(points, CONFIG.tracking, CONFIG.body, PERIOD)
+    tracker = PathTracker(points, CONFIG.tracking, CONFIG.body, CONFIG.timing.tick)
     tracker.tick(Pose(0.9, float(points[0, 1]), 0.0), 0.3)
     return nudged(tracker, FLOOR, things, KEEP)
 

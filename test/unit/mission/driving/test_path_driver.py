@@ -15,7 +15,7 @@ from roomba.configuration.mission import MissionConfig
 from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose, Twist
 from roomba.mission.driving.obstacles import Obstacles
-from roomba.mission.driving.path_driver import PERIOD, DriveState, DriveStep, PathDriver
+from roomba.mission.driving.path_driver import DriveState, DriveStep, PathDriver
 from roomba.mission.driving.rejoin import Rejoin
 from roomba.mission.driving.trail import Trail
 from roomba.mission.inputs.planning_context import PlanningContext
@@ -57,8 +57,7 @@ class Rig:
             self.obstacles,
             Trail(),
             DRIVING,
-            CONFIG.tracking,
-            CONFIG.body,
+            CONFIG,
             self.senses(),
             plans_anew,
         )
@@ -75,16 +74,16 @@ class Rig:
     def tick(self) -> DriveStep:
         step = self.driver.tick(self.senses(), LIMIT)
         self.states.append(step.state)
-        self.time += PERIOD
+        self.time += CONFIG.timing.tick
         if not self.is_held:
             self._move(step.twist)
         self.poses.append(self.pose)
         return step
 
     def _move(self, twist: Twist) -> None:
-        theta = self.pose.theta + twist.angular * PERIOD
+        theta = self.pose.theta + twist.angular * CONFIG.timing.tick
         half = 0.5 * (self.pose.theta + theta)
-        way = twist.linear * PERIOD
+        way = twist.linear * CONFIG.timing.tick
         x, y = self.pose.x + way * math.cos(half), self.pose.y + way * math.sin(half)
         if all(math.hypot(x - a, y - b) >= BODY + radius for a, b, radius in self.discs):
             self.pose = Pose(x, y, theta)
@@ -94,7 +93,7 @@ class Rig:
     def run(
         self, seconds: float = 120.0, meanwhile: Callable[[int], None] = lambda tick: None
     ) -> DriveStep:
-        for tick in range(round(seconds / PERIOD)):
+        for tick in range(round(seconds / CONFIG.timing.tick)):
             meanwhile(tick)
             step = self.tick()
             if step.state.is_over:

@@ -15,7 +15,6 @@ from roomba.configuration.robot import RobotConfig
 from roomba.control.path_tracker import PathTracker
 from roomba.geometry import Pose
 from roomba.mission.driving.obstacles import Obstacles
-from roomba.mission.driving.path_driver import PERIOD
 from roomba.mission.driving.rejoin import Rejoin
 from roomba.mission.driving.trail import Trail
 from roomba.mission.inputs.planning_context import PlanningContext
@@ -49,7 +48,7 @@ class Standing(Obstacles):
 def way(
     pose: Pose, *things: RoundObstacle, trail: Trail | None = None
 ) -> tuple[NDArray[np.float64] | None, float, Rejoin]:
-    tracker = PathTracker(PATH, CONFIG.tracking, CONFIG.body, PERIOD)
+    tracker = PathTracker(PATH, CONFIG.tracking, CONFIG.body, CONFIG.timing.tick)
     tracker.tick(Pose(0.9, 0.5, 0.0), 0.3)
     rejoin = Rejoin(SITE, BODY, DRIVING)
     points, back = rejoin.way(Senses(0.0, pose), tracker, Standing(*things), trail or Trail())
@@ -105,7 +104,7 @@ def test_what_is_left_that_cannot_be_reached_is_told() -> None:
 
 def test_behind_a_fence_nothing_can_be_reached() -> None:
     fence = [(1.4, float(y), 0.05) for y in np.arange(0.0, 2.6, 0.1)]
-    tracker = PathTracker(PATH[1:], CONFIG.tracking, CONFIG.body, PERIOD)
+    tracker = PathTracker(PATH[1:], CONFIG.tracking, CONFIG.body, CONFIG.timing.tick)
     rejoin = Rejoin(SITE, BODY, DRIVING)
     senses = Senses(0.0, Pose(0.9, 0.5, 0.0))
     points, back = rejoin.way(senses, tracker, Standing(*fence), Trail())
