@@ -7,7 +7,8 @@ from pathlib import Path
 from grimp import ImportGraph
 from importlinter import Contract, ContractCheck, fields, output
 
-from lint.folder_table import folders_in, imports_in, problems, rows_of
+from lint.folder_table import problems, rows_of
+from roomba.commands.pictures.import_graph import folders_in, imports_in
 
 
 class FolderTableContract(Contract):

@@ -13,10 +13,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Final
 
-from grimp import ImportGraph
-
-PACKAGES: Final = ("roomba_ros", "roomba")
-"""The packages with a table, from the upper layers to the lower."""
+from roomba.commands.pictures.import_graph import PACKAGES, Import
 
 _CODE: Final = re.compile(r"`([^`]+)`")
 
@@ -31,16 +28,6 @@ class Row:
 
     folders: tuple[str, ...]
     may_import: tuple[str, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Import:
-    """One import: the module that has it, the module that it is of, and both their folders."""
-
-    importer: str
-    imported: str
-    from_folder: str
-    to_folder: str
 
 
 def rows_of(page: str) -> list[Row]:
@@ -67,35 +54,6 @@ def _rows_of_package(page: str, package: str) -> Iterator[Row]:
 def _modules(cell: str, package: str) -> tuple[str, ...]:
     names = (name.removesuffix(".py").replace("/", ".") for name in _CODE.findall(cell))
     return tuple(name if name.split(".")[0] in PACKAGES else f"{package}.{name}" for name in names)
-
-
-def folders_in(graph: ImportGraph) -> set[str]:
-    """Return the folders of the packages: packages in them, and modules beside those."""
-    return {_folder_of(graph, module) for module in graph.modules if _is_own(module)} - set(
-        PACKAGES
-    )
-
-
-def imports_in(graph: ImportGraph) -> list[Import]:
-    """Return every import that leads from one folder to another, sorted."""
-    found = [
-        Import(importer, imported, _folder_of(graph, importer), _folder_of(graph, imported))
-        for importer in sorted(graph.modules)
-        if _is_own(importer)
-        for imported in sorted(graph.find_modules_directly_imported_by(importer))
-        if _is_own(imported)
-    ]
-    return [each for each in found if each.from_folder != each.to_folder]
-
-
-def _is_own(module: str) -> bool:
-    return module.split(".")[0] in PACKAGES
-
-
-def _folder_of(graph: ImportGraph, module: str) -> str:
-    parent = module.rpartition(".")[0]
-    is_folder = not parent or parent in PACKAGES or bool(graph.find_children(module))
-    return module if is_folder else parent
 
 
 def problems(rows: list[Row], folders: Collection[str], imports: Iterable[Import]) -> list[str]:

@@ -5,7 +5,8 @@ from pathlib import Path
 import grimp
 import pytest
 
-from lint.folder_table import Import, Row, TableError, folders_in, imports_in, problems, rows_of
+from lint.folder_table import Row, TableError, problems, rows_of
+from roomba.commands.pictures.import_graph import Import, folders_in, imports_in
 
 DESIGN = Path(__file__).parents[3] / "docs" / "design.md"
 
@@ -98,14 +99,3 @@ def test_rows_that_are_no_layers_are_told(
 def test_the_page_of_the_design_is_the_tree() -> None:
     graph = grimp.build_graph("roomba", "roomba_ros", cache_dir=None)
     assert problems(rows_of(DESIGN.read_text()), folders_in(graph), imports_in(graph)) == []
-
-
-def test_a_folder_is_a_package_or_a_module_beside_packages() -> None:
-    graph = grimp.ImportGraph()
-    for module in ("roomba", "roomba.grid", "roomba.brain", "roomba.brain.maps", "roomba_ros"):
-        graph.add_module(module)
-    graph.add_import(importer="roomba.brain.maps", imported="roomba.grid")
-    assert folders_in(graph) == {"roomba.grid", "roomba.brain"}
-    assert imports_in(graph) == [
-        Import("roomba.brain.maps", "roomba.grid", "roomba.brain", "roomba.grid")
-    ]

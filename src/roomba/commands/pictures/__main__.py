@@ -20,6 +20,7 @@ from roomba.commands.pictures.cleaning import picture_of_cleaning
 from roomba.commands.pictures.dirt import picture_of_dirt
 from roomba.commands.pictures.edge import picture_of_edge
 from roomba.commands.pictures.faults import picture_of_faults
+from roomba.commands.pictures.layers import picture_of_layers
 from roomba.commands.pictures.lidar import picture_of_lidar
 from roomba.commands.pictures.localization import picture_of_localization, picture_of_relocation
 from roomba.commands.pictures.mapping import picture_of_map_errors, picture_of_mapping
@@ -59,6 +60,7 @@ PICTURES: dict[str, tuple[str, Callable[[Home], Picture]]] = {
     "cleaning": ("flat", picture_of_cleaning),
     "mapping": ("flat", picture_of_mapping),
     "map_errors": ("flat", picture_of_map_errors),
+    "layers": ("empty", picture_of_layers),
 }
 """Each picture by the name of its file: the home that it is of, and what makes it."""
 
