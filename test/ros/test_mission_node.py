@@ -177,6 +177,11 @@ def test_a_killed_node_goes_on_with_its_clean_and_keeps_its_zones(graph: RosGrap
     clean = client("clean", CleanAction)
     clean.send_goal(CleanGoal())
     world.does("cleaning")
+    wait_until(lambda: world.state.seconds_to_go > 0.0, 30.0)
+    usual = world.state.seconds_to_go
+    graph.set_param("/robot_max_speed", 0.1)
+    wait_until(lambda: world.state.seconds_to_go > 2.5 * usual, 30.0, "it reckons with 0.1 m/s")
+    graph.set_param("/robot_max_speed", 0.5)
     wait_until(lambda: not world.wants(0.0) or world.newest["/cmd_vel_mission"].angular.z, 30.0)
     wanted = world.state.wanted
     memory = graph.folder / "ros_home" / "roomba_robot" / "mission" / "robot"

@@ -7,7 +7,8 @@ from typing import Annotated
 
 from pydantic import Field
 
-from roomba.configuration.robot import Frozen, Positive, Ratio, load_config
+from roomba.configuration.robot import BodyConfig, Frozen, Positive, Ratio, load_config
+from roomba.errors import ConfigError
 
 
 class DrivingConfig(Frozen):
@@ -64,7 +65,27 @@ class MissionConfig(Frozen):
     exploring: ExploringConfig = ExploringConfig()
     energy: EnergyConfig = EnergyConfig()
 
+    def require_possible(self, body: BodyConfig) -> None:
+        """Raise ConfigError when a speed is more than a body can do."""
+        for name, speed in (
+            ("driving.speed", self.driving.speed),
+            ("exploring.speed", self.exploring.speed),
+        ):
+            if speed > body.max_speed:
+                raise ConfigError(
+                    f"{name}: expected at most {body.max_speed:g} m/s, the robot's body.max_speed, "
+                    f"got {speed:g}; lower it, or raise body.max_speed if the drive can do more"
+                )
 
-def load_mission_config(path: Path) -> MissionConfig:
-    """Read ``config/mission.yaml`` or a file like it; raises ConfigError with the reason."""
-    return load_config(MissionConfig, path)
+
+def load_mission_config(path: Path, body: BodyConfig) -> MissionConfig:
+    """Read ``config/mission.yaml`` or a file like it; raises ConfigError with the reason.
+
+    One of them is a speed that the ``body`` cannot do.
+    """
+    config = load_config(MissionConfig, path)
+    try:
+        config.require_possible(body)
+    except ConfigError as error:
+        raise ConfigError(f"{path}: {error}") from error
+    return config

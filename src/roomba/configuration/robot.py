@@ -36,6 +36,7 @@ class BodyConfig(Frozen):
     height: Positive = 0.092
     wheel_separation: Positive = 0.235
     wheel_diameter: Positive = 0.072
+    max_speed: Annotated[float, Field(gt=0.0, le=FASTEST_SPEED, allow_inf_nan=False)] = 0.5
     max_angular_speed: Positive = 4.25
     max_acceleration: Positive = 0.9
     max_deceleration: Positive = 2.0

@@ -71,9 +71,15 @@ class Mission:
         things: ThingLayer,
         dirt: DirtMap,
         senses: Senses,
+        max_speed: float | None = None,
     ) -> None:
-        """Begin standing, on the station or elsewhere."""
+        """Begin standing, on the station or elsewhere; raises ConfigError for impossible speeds.
+
+        ``max_speed`` is the robot's top speed, m/s, which may be set later; by default the body's.
+        """
+        config.require_possible(robot.body)
         self._robot, self._config = robot, config
+        self.max_speed = robot.body.max_speed if max_speed is None else max_speed
         self.obstacles = Obstacles(things, robot.walk, robot.body, config.driving)
         self.state = MissionState(Phase.DOCKED if senses.battery.is_docked else Phase.IDLE)
         self.message = ""
@@ -268,6 +274,7 @@ class Mission:
         is_exploring = self.state.phase is Phase.EXPLORING
         config = self._config
         speed = config.exploring.speed if is_exploring else config.driving.speed
+        speed = min(speed, self.max_speed)
         if senses.knowledge is Knowledge.ROUGH:
             return min(speed, self._robot.walk.careful_speed)
         return speed
@@ -279,7 +286,8 @@ class Mission:
         driving = 0.0 if self.driver is None else self.driver.left
         if self.state.phase is Phase.CLEANING:
             driving = max(driving, self.cleaning.left / self.site.tool_width)
-        return driving / (_SHARE_OF_SPEED * self._config.driving.speed)
+        speed = min(self._config.driving.speed, self.max_speed)
+        return driving / (_SHARE_OF_SPEED * speed)
 
     # ---------------------------------------------------------------- ticks
 

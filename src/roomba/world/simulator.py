@@ -118,14 +118,18 @@ class Simulator:
         config: RobotConfig | None = None,
         *,
         seed: int = 0,
-        max_speed: float = 0.5,
+        max_speed: float | None = None,
         start: Pose | None = None,
     ) -> None:
         """Put the robot at ``start``, map frame (the station, if none), and the home's dirt down.
 
+        ``max_speed``, m/s, is what its drive does at most: by default what its body can.
+
         Raises HomeError when the body does not fit at the start.
         """
         self.start = start or home.station
+        config = config or RobotConfig()
+        max_speed = config.body.max_speed if max_speed is None else max_speed
         starts = np.array([[self.start.x, self.start.y, self.start.theta]], np.float64)
         self._fleet = Fleet(
             [home], config, seeds=[seed], max_speed=max_speed, starts=starts, threads=1

@@ -10,6 +10,7 @@ from std_srvs.srv import Trigger
 
 from roomba.configuration.docking import DockingConfig
 from roomba.configuration.mission import MissionConfig, load_mission_config
+from roomba.configuration.robot import RobotConfig
 from roomba.files.shipped import CONFIGURATION
 from roomba.geometry import Twist
 from roomba.mission.cleaning.request import CleanOutcome
@@ -30,7 +31,7 @@ from roomba_ros.runtime.alone import refuse_second
 from roomba_ros.runtime.background import Background
 from roomba_ros.runtime.calls import call_service
 from roomba_ros.runtime.node import require_master, run_node
-from roomba_ros.runtime.parameters import folder_of, read_robot_config
+from roomba_ros.runtime.parameters import LiveSeedParameters, folder_of, read_robot_config
 
 NAME = "mission_node"
 _FINISH_PERIOD = 5.0
@@ -45,14 +46,17 @@ class MissionNode:
     :class:`MissionOrders`, :class:`MissionDrive` and :class:`MissionTopics` say.
     Parameters: ``robot_config``, ``mission_config`` (paths of configuration files; by default the
     shipped ones), ``~memory_folder`` (default: roomba_robot/mission in the ROS home folder, and in
-    it a folder for each robot's namespace), ``~zones_folder`` (default: roomba_robot/zones there).
+    it a folder for each robot's namespace), ``~zones_folder`` (default: roomba_robot/zones there),
+    ``robot_max_speed`` (m/s; it may change at any time).
     """
 
     period: float
 
     def start(self) -> None:
         """Read the configuration and connect."""
-        self._config, self._mission_config = read_robot_config(), read_mission_config()
+        self._config = read_robot_config()
+        self._mission_config = read_mission_config(self._config)
+        self._parameters = LiveSeedParameters()
         self.period = self._config.timing.tick
         self._docking_config = DockingConfig()
         self._background = Background()
@@ -88,6 +92,9 @@ class MissionNode:
         senses = self._senses.at(now)
         self._follow_home(senses)
         mission = self._mission
+        max_speed = self._parameters.refresh().robot_max_speed
+        if mission is not None:
+            mission.max_speed = max_speed
         self._orders.serve(mission is not None)
         if mission is None or senses is None:
             self._wait(now)
@@ -244,11 +251,14 @@ class MissionNode:
             self._memory.keep_dirt(mission.dirt)
 
 
-def read_mission_config() -> MissionConfig:
-    """Return the configuration named by the parameter ``mission_config``, or the shipped one."""
+def read_mission_config(robot: RobotConfig) -> MissionConfig:
+    """Return the configuration named by the parameter ``mission_config``, or the shipped one.
+
+    Raises ConfigError, also for speeds that the robot cannot do.
+    """
     key = rospy.search_param("mission_config")
     path = rospy.get_param(key) if key else CONFIGURATION / "mission.yaml"
-    return load_mission_config(Path(path))
+    return load_mission_config(Path(path), robot.body)
 
 
 def main() -> None:

@@ -8,8 +8,9 @@ import pytest
 from fixtures.missions import HOME, STATION
 
 from roomba.configuration.docking import DockingConfig
-from roomba.configuration.mission import MissionConfig
+from roomba.configuration.mission import DrivingConfig, MissionConfig
 from roomba.configuration.robot import RobotConfig
+from roomba.errors import ConfigError
 from roomba.geometry import Pose, Twist
 from roomba.mission.cleaning.request import CleanOutcome, CleanRequest
 from roomba.mission.inputs.planning_context import PlanningContext
@@ -102,6 +103,24 @@ def test_told_to_clean_it_drives() -> None:
     assert rig.mission.state.errand is Errand.CLEAN
     assert rig.tick().twist != Twist()
     assert rig.mission.sweeps
+
+
+def test_it_goes_and_reckons_no_faster_than_the_robot() -> None:
+    rig = cleaning()
+    speed, left = rig.mission.speed_limit(rig.senses), rig.mission.seconds_to_go()
+    rig.mission.max_speed = 0.5 * speed
+    assert rig.mission.speed_limit(rig.senses) == 0.5 * speed
+    assert rig.mission.seconds_to_go() == pytest.approx(2.0 * left)
+    rig.mission.max_speed = 0.02
+    rough = replace(rig.senses, knowledge=Knowledge.ROUGH)
+    assert rig.mission.speed_limit(rough) == 0.02
+
+
+def test_speeds_that_the_robot_cannot_do_are_refused() -> None:
+    fast = MissionConfig(driving=DrivingConfig(speed=0.8))
+    parts = ThingLayer(FIELD), DirtMap(HOME.map)
+    with pytest.raises(ConfigError, match=r"driving\.speed: expected at most 0\.5 m/s"):
+        Mission(SITE, CONFIG, fast, DockingConfig(), *parts, AWAY)
 
 
 def test_knowing_its_place_only_roughly_it_drives_slowly() -> None:

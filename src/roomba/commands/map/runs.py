@@ -126,7 +126,7 @@ class MapScene:
         )
         mapping = load_mapping_config(CONFIGURATION / "mapping.yaml")
         self.robot = WatchedExplorer(
-            self.home, self.config, mission_config(), mapping, seed=trial.seed
+            self.home, self.config, mission_config(self.config), mapping, seed=trial.seed
         )
         self.robot.begin_blind(mapping)
 

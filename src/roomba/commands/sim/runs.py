@@ -76,7 +76,7 @@ class TrialSetup:
         self.trial = trial
         self.config = robot_config_of(trial)
         self.home = home_of(trial, self.config.body)
-        mission, docking = mission_config(), DockingConfig()
+        mission, docking = mission_config(self.config), DockingConfig()
         self.robot = WatchedMission(
             self.home,
             self.config,
@@ -167,10 +167,9 @@ def robot_config_of(trial: Trial) -> RobotConfig:
     return config.model_copy(update={"sensors": trial.sensors})
 
 
-def mission_config() -> MissionConfig:
-    """Return the shipped configuration of the mission; raises ConfigError."""
-    path = CONFIGURATION / "mission.yaml"
-    return load_mission_config(path) if path.is_file() else MissionConfig()
+def mission_config(robot: RobotConfig) -> MissionConfig:
+    """Return the shipped configuration of the mission; raises ConfigError for slower robots."""
+    return load_mission_config(CONFIGURATION / "mission.yaml", robot.body)
 
 
 def _zones_of(trial: Trial) -> Zones:
