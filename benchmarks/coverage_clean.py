@@ -25,7 +25,7 @@ from benchmarks.coverage_floor import (
     turning,
 )
 from benchmarks.localization_robot import WRONG
-from roomba.configuration.robot import RobotConfig
+from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.files.shipped import HOMES
 from roomba.headless.cleaner import HeadlessMission
 from roomba.mission.cleaning.request import CleanOutcome, MissReason
@@ -156,7 +156,7 @@ def clean(task: Task, keeps_poses: bool = False) -> Clean:
         there = changed(there.home, task.change, task.seed)
     home, things = there.home, there.things
     setup = time.process_time()
-    robot = _Watched(home, RobotConfig(sensors=task.sensors), seed=task.seed)
+    robot = _Watched(home, SimulatedRobotConfig().with_sensors(task.sensors), seed=task.seed)
     setup = time.process_time() - setup
     for thing in things:
         robot.simulator.place_obstacle(*thing)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from benchmarks.coverage_clean import home_named
 from roomba.configuration.mapping import MappingConfig
-from roomba.configuration.robot import RobotConfig
+from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.geometry import Pose
 from roomba.headless.explorer import HeadlessExplorer
 from roomba.mission.mission import MissionStep
@@ -62,7 +62,7 @@ def speed(home: str, seed: int, folder: str = "") -> float:
 
     ``folder`` is of map_server maps, or "" for a shipped home.
     """
-    robot = HeadlessExplorer(home_named(home, folder), RobotConfig(sensors="noisy"), seed=seed)
+    robot = HeadlessExplorer(home_named(home, folder), SimulatedRobotConfig(), seed=seed)
     began = time.process_time()
     record = robot.explore()
     return record.result.duration / (time.process_time() - began)
@@ -70,7 +70,7 @@ def speed(home: str, seed: int, folder: str = "") -> float:
 
 def recorded(home: str, seed: int) -> Recorded:
     """Explore a home, and keep what was heard."""
-    robot = _Listener(home_named(home), RobotConfig(sensors="noisy"), seed=seed, longest_burst=0)
+    robot = _Listener(home_named(home), SimulatedRobotConfig(), seed=seed, longest_burst=0)
     robot.begin()
     robot.explore()
     return Recorded(robot.heard, robot.lidar, robot.simulator.start)
@@ -78,7 +78,7 @@ def recorded(home: str, seed: int) -> Recorded:
 
 def share_of_core(drive: Recorded) -> float:
     """Return the share of a core that mapping took while it drove, all drawing included, 0..1."""
-    config = RobotConfig(sensors="noisy")
+    config = SimulatedRobotConfig()
     mapper = Mapper(MappingConfig(), config.localization, config.gyro, drive.start)
     shown, began = drive.heard[0].stamp, time.process_time()
     for each in drive.heard:

@@ -13,7 +13,7 @@ from benchmarks.coverage_floor import drawn
 from roomba.commands.map.runs import Drawn, run_trial
 from roomba.commands.sim.trial import Trial
 from roomba.configuration.docking import DockingConfig
-from roomba.configuration.robot import RobotConfig
+from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.geometry import Pose
 from roomba.grid import OccupancyMap
 from roomba.headless.cleaner import HeadlessMission
@@ -79,7 +79,7 @@ def explore(task: Task) -> Explored:
 def clean(task: Task, known: OccupancyMap | None) -> Cleaned:
     """Clean a home by a map of it, its own true one by default, counted by true poses."""
     home = home_named(task.home, task.folder)
-    robot = HeadlessMission(home, RobotConfig(sensors="noisy"), seed=task.seed, known=known)
+    robot = HeadlessMission(home, SimulatedRobotConfig(), seed=task.seed, known=known)
     staging = robot.site.staging
     record = robot.clean()
     is_home = robot.seen.battery.is_docked
@@ -89,7 +89,7 @@ def clean(task: Task, known: OccupancyMap | None) -> Cleaned:
 def clean_unknown(task: Task) -> Cleaned:
     """Clean a home that the robot has never seen, counted alike."""
     home = home_named(task.home, task.folder)
-    robot = HeadlessNewcomer(home, RobotConfig(sensors="noisy"), seed=task.seed)
+    robot = HeadlessNewcomer(home, SimulatedRobotConfig(), seed=task.seed)
     staging = staging_pose(home.station, DockingConfig())
     record = robot.clean()
     is_home = robot.seen.battery.is_docked

@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 from benchmarks.floors import Floor, free_poses
 from benchmarks.peers.arena import SPEED, TURNING_SPEED
 from benchmarks.peers.protocol import Work
-from roomba.configuration.robot import LidarConfig, RobotConfig
+from roomba.configuration.robot import LidarConfig
+from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.geometry import Pose
 from roomba.grid import FREE, OCCUPIED, OccupancyMap
 from roomba.world.fleet import Fleet
@@ -70,9 +71,9 @@ class Drive:
         return Work(work, {"way": _way(fleet, work)})
 
 
-def config_of(scan_rate: float, sensors: Literal["ideal", "noisy"]) -> RobotConfig:
+def config_of(scan_rate: float, sensors: Literal["ideal", "noisy"]) -> SimulatedRobotConfig:
     """Return the shipped robot with its lidar at another rate, Hz, and such sensors."""
-    return RobotConfig(sensors=sensors, lidar=LidarConfig(rate=scan_rate))
+    return SimulatedRobotConfig(lidar=LidarConfig(rate=scan_rate)).with_sensors(sensors)
 
 
 def scanning(floor: Floor, poses: NDArray[np.float64]) -> Work:

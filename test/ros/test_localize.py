@@ -63,7 +63,7 @@ class RecordedRobot(HeadlessRobot):
         scans = self._scans
         super()._localize(seen)
         now = BEGAN + seen.time
-        self._note("/imu", imu_message(now, seen, self.config.gyro, "imu_link"), now)
+        self._note("/imu", imu_message(now, seen, self.config.simulation.gyro, "imu_link"), now)
         odometry = odometry_message(now, seen.odometry, seen.odometry_twist, "odom", "base_link")
         self._note("/odom", odometry, now)
         self._note("/wheel_drop", wheel_drop_message(now, seen.wheels, "base_link"), now)

@@ -10,6 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from roomba.configuration.robot import RobotConfig
+from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.geometry import Pose, Twist
 from roomba.grid import FREE, OCCUPIED, GridFrame, OccupancyMap
 from roomba.perception.floors.map_changes import MapChanges
@@ -26,7 +27,7 @@ from roomba.world.simulator import Simulator
 def main() -> None:
     """Do a little of everything in a small room."""
     home = _small_room()
-    config = RobotConfig()
+    config = SimulatedRobotConfig()
     simulator = Simulator(home, config)
     for _ in range(40):
         simulator.step(Twist(0.5, 0.1), 0.025)

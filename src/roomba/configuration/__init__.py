@@ -1,1 +1,1 @@
-"""Every number of the robot, validated and frozen, each with a file in ``config``."""
+"""Every number of the robot, validated and frozen, each with a file in ``data/configuration``."""

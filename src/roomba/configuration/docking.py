@@ -6,7 +6,7 @@ from typing import Annotated
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from roomba.configuration.robot import Positive, Ratio
+from roomba.configuration.frozen import Positive, Ratio
 
 
 class DockingConfig(BaseModel):

@@ -1,4 +1,4 @@
-"""Validated, frozen configuration of making maps: ``config/mapping.yaml``."""
+"""Validated, frozen configuration of making maps: ``configuration/mapping.yaml``."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Annotated
 
 from pydantic import Field
 
-from roomba.configuration.robot import Frozen, Positive, Ratio, load_config
+from roomba.configuration.frozen import Frozen, Positive, Ratio, load_config
 
 
 class MappingConfig(Frozen):
@@ -34,5 +34,5 @@ class MappingConfig(Frozen):
 
 
 def load_mapping_config(path: Path) -> MappingConfig:
-    """Read ``config/mapping.yaml`` or a file like it; raises ConfigError with the reason."""
+    """Read ``configuration/mapping.yaml`` or a file like it; raises ConfigError with the reason."""
     return load_config(MappingConfig, path)

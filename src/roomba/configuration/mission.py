@@ -1,4 +1,4 @@
-"""Validated, frozen configuration of the mission: ``config/mission.yaml``."""
+"""Validated, frozen configuration of the mission: ``configuration/mission.yaml``."""
 
 from __future__ import annotations
 
@@ -7,7 +7,8 @@ from typing import Annotated
 
 from pydantic import Field
 
-from roomba.configuration.robot import BodyConfig, Frozen, Positive, Ratio, load_config
+from roomba.configuration.frozen import Frozen, Positive, Ratio, load_config
+from roomba.configuration.robot import BodyConfig
 from roomba.errors import ConfigError
 
 
@@ -58,7 +59,7 @@ class EnergyConfig(Frozen):
 
 
 class MissionConfig(Frozen):
-    """All of ``config/mission.yaml``; every part has the shipped file's values by default."""
+    """All of ``configuration/mission.yaml``; the defaults are the shipped file's values."""
 
     driving: DrivingConfig = DrivingConfig()
     cleaning: CleaningConfig = CleaningConfig()
@@ -79,7 +80,7 @@ class MissionConfig(Frozen):
 
 
 def load_mission_config(path: Path, body: BodyConfig) -> MissionConfig:
-    """Read ``config/mission.yaml`` or a file like it; raises ConfigError with the reason.
+    """Read ``configuration/mission.yaml`` or a file like it; raises ConfigError with the reason.
 
     One of them is a speed that the ``body`` cannot do.
     """

@@ -1,32 +1,32 @@
-"""Validated, frozen configuration: ``config/robot.yaml`` and the seed's parameters."""
+"""Numbers of the robot as it knows itself: its body, its sensors, and how it drives.
+
+What is true of a simulated robot, and unknown to its brain, is in ``configuration/simulation.py``.
+"""
 
 from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import Annotated, Any, Literal, TypeVar
+from typing import Annotated, Final
 
-import yaml
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import Field, model_validator
 
-from roomba.errors import ConfigError
+from roomba.configuration.frozen import (
+    Degrees,
+    Frozen,
+    NotNegative,
+    Positive,
+    Ratio,
+    read_yaml,
+    validated,
+)
 
-Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
-Ratio = Annotated[float, Field(ge=0.0, le=1.0, allow_inf_nan=False)]
-
-Degrees = Annotated[float, Field(ge=-180.0, le=180.0)]
-NotNegative = Annotated[float, Field(ge=0.0, allow_inf_nan=False)]
-
-_Model = TypeVar("_Model", bound=BaseModel)
-
-FASTEST_SPEED = 3.0
-"""m/s; a `robot_max_speed` above this is a slip of the finger, not a robot for a home."""
-
-
-class Frozen(BaseModel):
-    """A part of a configuration: what it does not know it refuses."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True, strict=False)
+FASTEST_SPEED: Final = 3.0
+"""m/s; a speed above this is a slip of the finger, not a robot for a home."""
+SIMULATION: Final = "simulation"
+"""The part of a robot's file that is the simulator's; a brain does not read it."""
+UNKNOWN: Final = "unknown; what is true of the simulated robot alone stands under simulation:"
+"""What is said of a key that the robot's file does not have."""
 
 
 class BodyConfig(Frozen):
@@ -50,47 +50,24 @@ class BodyConfig(Frozen):
 
 
 class BrushConfig(Frozen):
-    """Brushes and bin: what is picked up of the dirt that is driven over.
-
-    One pass of the brush at full power picks up the share ``pickup``; with the fan see
-    :func:`pickup_share`. Power in W, current in A.
-    """
+    """Brushes and bin: the cleaned width, m, the duty at the start, 0..1, and the bin, g."""
 
     width: Positive = 0.20
-    depth: Positive = 0.05
-    pickup: Ratio = 0.60
-    carpet_pickup: Ratio = 0.45
     duty: Ratio = 1.0
-    power: NotNegative = 3.0
-    carpet_power: NotNegative = 6.0
-    current_noise: NotNegative = 0.02
-    noise_level: NotNegative = 58.0
     bin_capacity: Positive = 100.0
 
 
 class FanConfig(Frozen):
-    """The fan: suction, energy (W) and noise (dB(A) at 1 m) by its duty, 0..1."""
+    """The fan's duty at the start, 0..1."""
 
-    pickup: Ratio = 0.83
     duty: Ratio = 0.60
-    power: NotNegative = 25.0
-    noise_level: NotNegative = 68.0
 
 
 class BatteryConfig(Frozen):
-    """The battery, and what everything draws from it: Wh, W, V, ohm, h, degrees Celsius."""
+    """The battery as its label has it: Wh, V."""
 
     capacity: Positive = 26.0
     nominal_voltage: Positive = 14.4
-    resistance: NotNegative = 0.15
-    idle_power: NotNegative = 5.3
-    drive_power: NotNegative = 3.1
-    drive_speed: Positive = 0.306
-    stall_power: NotNegative = 15.0
-    charge_hours: Positive = 2.2
-    ambient: Annotated[float, Field(ge=-20.0, le=60.0)] = 22.0
-    heating: NotNegative = 0.4
-    heating_time: Positive = 900.0
 
 
 class LidarConfig(Frozen):
@@ -100,8 +77,6 @@ class LidarConfig(Frozen):
     min_range: Positive = 0.15
     max_range: Positive = 12.0
     rate: Positive = 10.0
-    noise: NotNegative = 0.005
-    misses: Ratio = 0.01
     mount_height: Positive = 0.085
 
     @model_validator(mode="after")
@@ -112,24 +87,19 @@ class LidarConfig(Frozen):
 
 
 class WheelsConfig(Frozen):
-    """Wheel encoders, and how wheels slip: shares of the way, and what varies, m/sqrt(m)."""
+    """The wheel encoders."""
 
     counts_per_turn: Positive = 508.8
-    scale_error: NotNegative = 0.001
-    slip: Ratio = 0.001
-    carpet_slip: Ratio = 0.02
-    slip_noise: NotNegative = 0.002
-    blocked_slip: Ratio = 0.3
 
 
 class GyroConfig(Frozen):
-    """The gyro about the vertical and the accelerometer ahead: rad/s, m/s2; walk rad/s/sqrt(s)."""
+    """The gyro as its data sheet has it, rad/s: standard deviations of a sample and of the bias.
+
+    What a simulated gyro does is :class:`roomba.configuration.simulation.SimulatedGyro`.
+    """
 
     noise: NotNegative = 0.0015
     bias: NotNegative = 0.0005
-    bias_walk: NotNegative = 0.00002
-    scale_error: NotNegative = 0.003
-    acceleration_noise: NotNegative = 0.03
 
 
 class CliffConfig(Frozen):
@@ -146,8 +116,6 @@ class StationConfig(Frozen):
     beam: Positive = 1.0
     beam_angle: Positive = 20.0
     overlap: Positive = 4.0
-    position_tolerance: Positive = 0.015
-    angle_tolerance: Positive = 8.0
 
 
 class DirtSensorConfig(Frozen):
@@ -270,13 +238,8 @@ class TimingConfig(Frozen):
 
 
 class RobotConfig(Frozen):
-    """All of ``config/robot.yaml``; every part has the shipped file's values by default.
+    """All of ``configuration/robot.yaml``; every part has the shipped file's values by default."""
 
-    ``sensors``: "noisy" ones have the errors given here, and wheels slip; "ideal" ones tell the
-    truth, and wheels slip by faults only.
-    """
-
-    sensors: Literal["ideal", "noisy"] = "noisy"
     body: BodyConfig = BodyConfig()
     brush: BrushConfig = BrushConfig()
     fan: FanConfig = FanConfig()
@@ -311,93 +274,12 @@ class RobotConfig(Frozen):
         return self
 
 
-def pickup_share(brush: float, fan: float) -> float:
-    """Return the share that one pass picks up, of those that brush and fan would alone: 0..1."""
-    return 1.0 - (1.0 - brush) * (1.0 - fan)
-
-
-class SeedParameters(Frozen):
-    """The original's parameters (see the README's table), validated; metres and m/s.
-
-    Other spellings of the report (``initial_pos_x``, ``max_coordinate`` …) are accepted by
-    :func:`parse_seed_parameters`.
-    """
-
-    robot_name: Annotated[str, Field(min_length=1, strict=True)] = "roomba_robot"
-    robot_max_speed: Annotated[float, Field(gt=0.0, le=FASTEST_SPEED, allow_inf_nan=False)] = 0.5
-    initial_post_x: Annotated[float, Field(allow_inf_nan=False)] = 0.0
-    initial_post_y: Annotated[float, Field(allow_inf_nan=False)] = 0.0
-    initial_post_theta: Annotated[float, Field(allow_inf_nan=False)] = 0.0
-    min_cordinate: Annotated[float, Field(allow_inf_nan=False)] = -100.0
-    max_cordinate: Annotated[float, Field(allow_inf_nan=False)] = 100.0
-
-    @model_validator(mode="after")
-    def _limits_in_order(self) -> SeedParameters:
-        if self.min_cordinate >= self.max_cordinate:
-            raise ValueError(
-                f"min_cordinate ({self.min_cordinate}) must be below max_cordinate "
-                f"({self.max_cordinate})"
-            )
-        return self
-
-    def allows(self, x: float, y: float) -> bool:
-        """Whether a point, m, is finite and within the limits of both coordinates."""
-        return all(
-            math.isfinite(value) and self.min_cordinate <= value <= self.max_cordinate
-            for value in (x, y)
-        )
-
-
-SEED_SPELLINGS: dict[str, tuple[str, ...]] = {
-    "robot_name": ("robot_name",),
-    "robot_max_speed": ("robot_max_speed",),
-    "initial_post_x": ("initial_post_x", "initial_pos_x"),
-    "initial_post_y": ("initial_post_y", "initial_pos_y"),
-    "initial_post_theta": ("initial_post_theta",),
-    "min_cordinate": ("min_cordinate", "min_coordinate"),
-    "max_cordinate": ("max_cordinate", "max_coordinate"),
-}
-"""Each parameter with the spellings that mean it, the first one its own."""
-
-
-def parse_seed_parameters(values: dict[str, Any]) -> SeedParameters:
-    """Return the validated parameters; what is missing has its default.
-
-    ``values`` maps names, in any spelling of :data:`SEED_SPELLINGS`, to raw values. Another
-    spelling counts before the parameter's own, which the launch file always sets.
-    Raises :class:`ConfigError` with one line that names the parameter, its value and what is meant.
-    """
-    known: dict[str, Any] = {}
-    for name, spellings in SEED_SPELLINGS.items():
-        for spelling in spellings:
-            if spelling in values:
-                known[name] = values[spelling]
-    for name, value in known.items():
-        if name != "robot_name" and (isinstance(value, bool) or not isinstance(value, int | float)):
-            raise ConfigError(f"parameter {name}: expected a number, got {value!r}")
-    return _validated(SeedParameters, known, "parameter ")
-
-
 def load_robot_config(path: Path) -> RobotConfig:
-    """Read ``config/robot.yaml`` or a file like it; raises :class:`ConfigError` with the reason."""
-    return load_config(RobotConfig, path)
+    """Read ``configuration/robot.yaml`` or a file like it, but for its part ``simulation``.
 
-
-def load_config(model: type[_Model], path: Path) -> _Model:
-    """Read a file of some configuration; raises :class:`ConfigError` with the reason."""
-    try:
-        raw = yaml.safe_load(path.read_text(encoding="utf-8"))
-    except (OSError, yaml.YAMLError) as error:
-        raise ConfigError(f"{path}: cannot be read as YAML: {error}") from error
-    return _validated(model, raw or {}, f"{path}: ")
-
-
-def _validated(model: type[_Model], raw: Any, where: str) -> _Model:
-    try:
-        return model.model_validate(raw)
-    except ValidationError as error:
-        first = error.errors()[0]
-        name = ".".join(str(part) for part in first["loc"])
-        reason = first["msg"].removeprefix("Value error, ")
-        got = f", got {first['input']!r}" if name else ""
-        raise ConfigError(f"{where}{name}: {reason}{got}".replace(": :", ":")) from error
+    Raises :class:`ConfigError` with the reason.
+    """
+    raw = read_yaml(path)
+    if isinstance(raw, dict):
+        raw.pop(SIMULATION, None)
+    return validated(RobotConfig, raw, f"{path}: ", UNKNOWN)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
-from roomba.configuration.robot import RobotConfig
+from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.files.shipped import HOMES
 from roomba.world.home.home import Home
 from roomba.world.layers.layer import load_home
@@ -29,7 +29,7 @@ class Task:
     """
 
     home: str | Path | Home = "apartment"
-    config: RobotConfig | None = None
+    config: SimulatedRobotConfig | None = None
     sensors: Literal["ideal", "noisy"] | None = None
     duration: float = 600.0
     dt: float = 0.05
@@ -56,12 +56,12 @@ class Task:
             raise ValueError(f'sensors: expected "ideal" or "noisy", got {self.sensors!r}')
 
     @property
-    def robot(self) -> RobotConfig:
+    def robot(self) -> SimulatedRobotConfig:
         """The robot that does it."""
-        config = self.config or RobotConfig()
+        config = self.config or SimulatedRobotConfig()
         if self.sensors is None:
             return config
-        return config.model_copy(update={"sensors": self.sensors})
+        return config.with_sensors(self.sensors)
 
     @property
     def action_time(self) -> float:

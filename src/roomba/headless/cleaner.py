@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from roomba.configuration.docking import DockingConfig
 from roomba.configuration.mission import MissionConfig
-from roomba.configuration.robot import RobotConfig
+from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.geometry import STANDSTILL, Pose, Twist
 from roomba.grid import OccupancyMap
 from roomba.headless.closed_loop import LONGEST_BURST, STEP, STEPS_PER_TICK, ClosedLoop
@@ -65,7 +65,7 @@ class HeadlessMission:
     def __init__(
         self,
         home: Home,
-        robot: RobotConfig | None = None,
+        robot: SimulatedRobotConfig | None = None,
         mission: MissionConfig | None = None,
         docking: DockingConfig | None = None,
         *,
@@ -81,7 +81,7 @@ class HeadlessMission:
         ``longest_burst`` is how many ticks pass at once at most, while nothing comes up. ``known``
         is the map that it goes by, in the home's frame; the home's own one by default.
         """
-        self.robot = robot or RobotConfig()
+        self.robot = robot or SimulatedRobotConfig()
         self.config = mission or MissionConfig()
         docking = docking or DockingConfig()
         known = known or home.map

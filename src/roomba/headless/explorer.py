@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from roomba.configuration.docking import DockingConfig
 from roomba.configuration.mapping import MappingConfig
 from roomba.configuration.mission import MissionConfig
-from roomba.configuration.robot import RobotConfig
+from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.errors import RoombaError
 from roomba.geometry import STANDSTILL
 from roomba.grid import OccupancyMap
@@ -68,7 +68,7 @@ class HeadlessExplorer:
     def __init__(
         self,
         home: Home,
-        robot: RobotConfig | None = None,
+        robot: SimulatedRobotConfig | None = None,
         mission: MissionConfig | None = None,
         mapping: MappingConfig | None = None,
         *,
@@ -80,7 +80,7 @@ class HeadlessExplorer:
         ``longest_burst`` is how many ticks pass at most without an ordinary one, while nothing
         comes up.
         """
-        self.robot, self.config = robot or RobotConfig(), mission or MissionConfig()
+        self.robot, self.config = robot or SimulatedRobotConfig(), mission or MissionConfig()
         self._docking = DockingConfig()
         self.simulator = Simulator(home, self.robot, seed=seed)
         self._station = self.simulator.start

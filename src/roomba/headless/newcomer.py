@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.configuration.mission import MissionConfig
-from roomba.configuration.robot import RobotConfig
+from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.grid import OccupancyMap
 from roomba.headless.explorer import HeadlessExplorer
 from roomba.headless.exploring_loop_kernels import TIME, TRUE
@@ -39,7 +39,7 @@ class HeadlessNewcomer(HeadlessExplorer):
     def __init__(
         self,
         home: Home,
-        robot: RobotConfig | None = None,
+        robot: SimulatedRobotConfig | None = None,
         mission: MissionConfig | None = None,
         *,
         seed: int = 0,

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.configuration.robot import RobotConfig
+from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.control.position_loop import PositionLoop
 from roomba.control.speed_loop import SpeedLoop
 from roomba.errors import RoombaError
@@ -58,14 +58,14 @@ class HeadlessRobot:
     def __init__(
         self,
         home: Home,
-        config: RobotConfig | None = None,
+        config: SimulatedRobotConfig | None = None,
         *,
         seed: int = 0,
         max_speed: float = 0.5,
         start: Pose | None = None,
     ) -> None:
         """Put the robot at ``start``, or at its station; raises HomeError where it does not fit."""
-        self.config = config or RobotConfig()
+        self.config = config or SimulatedRobotConfig()
         body, walk = self.config.body, self.config.walk
         self.simulator = Simulator(home, self.config, seed=seed, max_speed=max_speed, start=start)
         self.things = UnknownThings(walk, body)

@@ -16,7 +16,7 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.configuration.robot import RobotConfig
+from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.errors import HomeError
 from roomba.geometry import Pose
 from roomba.world.engine.contact_kernels import gap_at
@@ -46,7 +46,7 @@ class Fleet:
     def __init__(
         self,
         homes: Sequence[Home],
-        config: RobotConfig | None = None,
+        config: SimulatedRobotConfig | None = None,
         *,
         robots_per_home: int = 1,
         seeds: Sequence[int] | None = None,
@@ -63,7 +63,7 @@ class Fleet:
         """
         _check_counts(homes, robots_per_home, seeds, threads)
         _check_speed(max_speed)
-        self.config = config or RobotConfig()
+        self.config = config or SimulatedRobotConfig()
         self.homes = tuple(homes)
         self.threads = threads or os.cpu_count() or 1
         self.seeds = tuple(seeds) if seeds is not None else tuple(range(len(homes)))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from roomba.configuration.robot import BatteryConfig, BrushConfig, FanConfig
+from roomba.configuration.simulation import SimulatedBrush, SimulatedFan
 
 CELLS = 4
 """In series, as in a pack of 14.4 V."""
@@ -41,24 +41,31 @@ class BatteryState:
 
 
 def battery_state(
-    config: BatteryConfig, *, charge: float, power: float, temperature: float, is_docked: bool
+    capacity: float,
+    resistance: float,
+    *,
+    charge: float,
+    power: float,
+    temperature: float,
+    is_docked: bool,
 ) -> BatteryState:
     """Return the state at a charge, Wh, while ``power`` W are taken out (negative: brought in).
 
+    ``capacity`` is in Wh, the inner ``resistance`` in ohm, ``temperature`` in degrees Celsius.
     The current I solves power = (open voltage - I resistance) I.
     """
-    level = min(1.0, charge / config.capacity)
+    level = min(1.0, charge / capacity)
     open_voltage = open_circuit_voltage(level)
-    if config.resistance > 0.0:
-        most = open_voltage**2 / (4.0 * config.resistance)
-        root = math.sqrt(max(0.0, open_voltage**2 - 4.0 * config.resistance * min(power, most)))
-        drawn = (open_voltage - root) / (2.0 * config.resistance)
+    if resistance > 0.0:
+        most = open_voltage**2 / (4.0 * resistance)
+        root = math.sqrt(max(0.0, open_voltage**2 - 4.0 * resistance * min(power, most)))
+        drawn = (open_voltage - root) / (2.0 * resistance)
     else:
         drawn = power / open_voltage
     return BatteryState(
         level=level,
-        capacity=config.capacity,
-        voltage=open_voltage - drawn * config.resistance,
+        capacity=capacity,
+        voltage=open_voltage - drawn * resistance,
         current=-drawn,
         temperature=temperature,
         is_docked=is_docked,
@@ -75,7 +82,7 @@ def open_circuit_voltage(level: float) -> float:
     return CELLS * cell
 
 
-def noise_level(brush: BrushConfig, fan: FanConfig, duty: tuple[float, float]) -> float:
+def noise_level(brush: SimulatedBrush, fan: SimulatedFan, duty: tuple[float, float]) -> float:
     """Return how loud a robot that drives is, dB(A) at 1 m, at the duty of brush and fan, 0..1.
 
     Powers of sound add up; that of a fan goes with the fifth power of its speed (fan laws).

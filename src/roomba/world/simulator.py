@@ -13,7 +13,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.configuration.robot import RobotConfig
+from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.geometry import Pose, Twist
 from roomba.world.engine.brush_kernels import amount_under_disc
 from roomba.world.engine.lidar.projection import ScanBuffers
@@ -115,7 +115,7 @@ class Simulator:
     def __init__(
         self,
         home: Home,
-        config: RobotConfig | None = None,
+        config: SimulatedRobotConfig | None = None,
         *,
         seed: int = 0,
         max_speed: float | None = None,
@@ -128,7 +128,7 @@ class Simulator:
         Raises HomeError when the body does not fit at the start.
         """
         self.start = start or home.station
-        config = config or RobotConfig()
+        config = config or SimulatedRobotConfig()
         max_speed = config.body.max_speed if max_speed is None else max_speed
         starts = np.array([[self.start.x, self.start.y, self.start.theta]], np.float64)
         self._fleet = Fleet(
@@ -241,7 +241,8 @@ class Simulator:
             acceleration=now["acceleration"],
             infrared=Infrared(int(now["beams"])),
             battery=battery_state(
-                self.config.battery,
+                self.config.battery.capacity,
+                self.config.simulation.battery.resistance,
                 charge=now["charge"],
                 power=now["power"],
                 temperature=now["temperature"],
@@ -291,7 +292,8 @@ class Simulator:
         stands = now["linear"] == 0.0 and now["angular"] == 0.0
         if stands:
             return STANDING_NOISE
-        return noise_level(self.config.brush, self.config.fan, self.duty)
+        truth = self.config.simulation
+        return noise_level(truth.brush, truth.fan, self.duty)
 
     def spill(self, x: float, y: float, radius: float, grams: float) -> None:
         """Spill crumbs around a point of the map frame; raises ValueError as DirtField.spread."""

@@ -23,7 +23,8 @@ from sensor_msgs.msg import (
 )
 from sensor_msgs.msg import CameraInfo, CompressedImage, Image, Imu, JointState, LaserScan
 
-from roomba.configuration.robot import BatteryConfig, CameraConfig, GyroConfig, LidarConfig
+from roomba.configuration.robot import BatteryConfig, CameraConfig, LidarConfig
+from roomba.configuration.simulation import SimulatedGyro
 from roomba.world.health import PartHealth
 from roomba.world.power import BatteryState
 from roomba.world.simulator import Bumper, Cliff, Observation, Wheels
@@ -57,7 +58,7 @@ def scan_message(
     )
 
 
-def imu_message(now: float, seen: Observation, config: GyroConfig, frame_id: str) -> Imu:
+def imu_message(now: float, seen: Observation, config: SimulatedGyro, frame_id: str) -> Imu:
     """Return what gyro (about the vertical) and accelerometer (ahead) measure."""
     message = Imu(header=header(now, frame_id))
     message.orientation.w = 1.0

@@ -10,13 +10,9 @@ import rospkg
 import rospy
 
 from roomba.configuration.mapping import MappingConfig, load_mapping_config
-from roomba.configuration.robot import (
-    SEED_SPELLINGS,
-    RobotConfig,
-    SeedParameters,
-    load_robot_config,
-    parse_seed_parameters,
-)
+from roomba.configuration.robot import RobotConfig, load_robot_config
+from roomba.configuration.seed import SEED_SPELLINGS, SeedParameters, parse_seed_parameters
+from roomba.configuration.simulation import SimulatedRobotConfig, load_simulated_config
 from roomba.errors import ConfigError
 from roomba.files.shipped import CONFIGURATION
 
@@ -37,16 +33,26 @@ def read_seed_parameters() -> SeedParameters:
 
 def read_robot_config() -> RobotConfig:
     """Return the configuration named by the parameter ``robot_config``, or the shipped one."""
-    key = rospy.search_param("robot_config")
-    path = rospy.get_param(key) if key else CONFIGURATION / "robot.yaml"
-    return load_robot_config(Path(path))
+    return load_robot_config(_configuration_file("robot"))
+
+
+def read_simulated_config() -> SimulatedRobotConfig:
+    """Return the same file's configuration with what is true of the simulated robot.
+
+    Where the file has no part ``simulation``, that is the file of the parameter
+    ``simulation_config``, or the shipped one.
+    """
+    return load_simulated_config(_configuration_file("robot"), _configuration_file("simulation"))
 
 
 def read_mapping_config() -> MappingConfig:
     """Return the configuration named by the parameter ``mapping_config``, or the shipped one."""
-    key = rospy.search_param("mapping_config")
-    path = rospy.get_param(key) if key else CONFIGURATION / "mapping.yaml"
-    return load_mapping_config(Path(path))
+    return load_mapping_config(_configuration_file("mapping"))
+
+
+def _configuration_file(part: str) -> Path:
+    key = rospy.search_param(f"{part}_config")
+    return Path(rospy.get_param(key)) if key else CONFIGURATION / f"{part}.yaml"
 
 
 def folder_of(parameter: str, name: str) -> Path:

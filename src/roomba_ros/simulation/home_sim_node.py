@@ -14,7 +14,8 @@ from rosgraph_msgs.msg import Clock
 from std_msgs.msg import Float32, Time
 from tf2_msgs.msg import TFMessage
 
-from roomba.configuration.robot import RobotConfig, SeedParameters
+from roomba.configuration.seed import SeedParameters
+from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.errors import ConfigError, RoombaError
 from roomba.files.shipped import HOMES
 from roomba.geometry import Pose, Twist
@@ -33,7 +34,7 @@ from roomba_ros.localization import kept_pose
 from roomba_ros.runtime import progress
 from roomba_ros.runtime.node import frame_id, give_up, leave, register, require_master, told_to_end
 from roomba_ros.runtime.pace import Pace
-from roomba_ros.runtime.parameters import LiveSeedParameters, read_robot_config
+from roomba_ros.runtime.parameters import LiveSeedParameters, read_simulated_config
 from roomba_ros.runtime.ticker import Ticker
 from roomba_ros.simulation.camera_topics import CameraTopics
 from roomba_ros.simulation.sensor_topics import SensorTopics
@@ -68,7 +69,7 @@ class HomeSimNode:
     def start(self) -> None:
         """Load the home, put the robot in it, connect; raises RoombaError."""
         self._parameters = LiveSeedParameters()
-        self._config = _config_with_sensors(read_robot_config())
+        self._config = _config_with_sensors(read_simulated_config())
         self._timing = self._config.timing
         self._nanoseconds = round(self._timing.tick * 1e9)
         self._speed = _speed_parameter()
@@ -249,11 +250,11 @@ class HomeSimNode:
             rospy.logwarn("power refused: %s", error)
 
 
-def _config_with_sensors(config: RobotConfig) -> RobotConfig:
-    sensors = rospy.get_param("~sensors", "") or config.sensors
+def _config_with_sensors(config: SimulatedRobotConfig) -> SimulatedRobotConfig:
+    sensors = rospy.get_param("~sensors", "") or config.simulation.sensors
     if sensors not in ("ideal", "noisy"):
         raise ConfigError(f"parameter ~sensors: expected ideal or noisy, got {sensors!r}")
-    return config.model_copy(update={"sensors": sensors})
+    return config.with_sensors(sensors)
 
 
 def _tells_map_parameter() -> bool:

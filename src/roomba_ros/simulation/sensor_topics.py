@@ -12,7 +12,7 @@ from roomba_robot.msg import Bumper, Cliff, DockStatus, HazardDetectionVector, W
 from sensor_msgs.msg import BatteryState, Imu, JointState, LaserScan
 from std_msgs.msg import Float32, UInt16
 
-from roomba.configuration.robot import RobotConfig
+from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.world.engine.state.arrays import code_of
 from roomba.world.health import health_of
 from roomba.world.simulator import Observation, Simulator
@@ -66,12 +66,12 @@ class SensorTopics:
     (health of the parts) and ``noise_level`` (Float32, dB(A) at 1 m), 1 Hz.
     """
 
-    def __init__(self, config: RobotConfig, simulator: Simulator, robot: str) -> None:
+    def __init__(self, config: SimulatedRobotConfig, simulator: Simulator, robot: str) -> None:
         """Connect all of them; ``robot`` is its name."""
         self._config, self._simulator = config, simulator
         self._scans = 0
         base, laser, gyro = frame_id("base_link"), frame_id("laser"), frame_id("imu_link")
-        body, capacity = config.body, config.brush.bin_capacity
+        body, capacity, truth = config.body, config.brush.bin_capacity, config.simulation
         self._scan = rospy.Publisher("scan", LaserScan, queue_size=1, tcp_nodelay=True)
         self._laser = laser
         self._topics = [
@@ -103,7 +103,7 @@ class SensorTopics:
                 lambda now, seen: hazards_message(now, hazards_of(seen), base),
                 hazards_of,
             ),
-            _topic("imu", Imu, 1, lambda now, seen: imu_message(now, seen, config.gyro, gyro)),
+            _topic("imu", Imu, 1, lambda now, seen: imu_message(now, seen, truth.gyro, gyro)),
             _topic(
                 "joint_states",
                 JointState,

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from roomba.configuration.robot import RobotConfig
+from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.gym.task import HOMES
 from roomba.world.fleet import Fleet
 from roomba.world.layers.layer import load_home
 
-CONFIG = RobotConfig(sensors="noisy")
+CONFIG = SimulatedRobotConfig()
 
 
 @pytest.mark.parametrize("robots", [1, 2])

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from fixtures.rooms import room_home
 
-from roomba.configuration.robot import RobotConfig
+from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.errors import HomeError
 from roomba.geometry import Pose
 from roomba.gym.floor import Coverage, FloorDistances
@@ -10,7 +10,7 @@ from roomba.gym.task import HOMES
 from roomba.world.fleet import Fleet
 from roomba.world.layers.layer import load_home
 
-CONFIG = RobotConfig()
+CONFIG = SimulatedRobotConfig()
 
 
 def test_the_brush_does_not_reach_the_walls() -> None:

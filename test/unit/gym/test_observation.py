@@ -2,7 +2,8 @@ import numpy as np
 import pytest
 from fixtures.rooms import room_home
 
-from roomba.configuration.robot import LidarConfig, RobotConfig
+from roomba.configuration.robot import LidarConfig
+from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.gym import RoombaClean
 from roomba.gym.observation import (
     BATTERY,
@@ -41,7 +42,7 @@ def test_the_lidars_sectors_look_ahead_left_back_and_right() -> None:
 
 
 def test_a_sector_tells_its_nearest_beam_and_numbers_for_what_has_none() -> None:
-    fleet = Fleet([room_home()], RobotConfig())
+    fleet = Fleet([room_home()], SimulatedRobotConfig())
     senses = Observer(fleet, max_speed=0.5)
     fleet.ranges[:] = 3.0
     fleet.ranges[0, [355, 84, 95]] = 1.0, 2.0, 0.5
@@ -54,7 +55,7 @@ def test_a_sector_tells_its_nearest_beam_and_numbers_for_what_has_none() -> None
 
 
 def test_a_lidar_that_cannot_be_shared_out_is_refused() -> None:
-    config = RobotConfig(lidar=LidarConfig(beams=100))
+    config = SimulatedRobotConfig(lidar=LidarConfig(beams=100))
     with pytest.raises(ValueError, match="multiple of 36"):
         RoombaClean(home=room_home(), config=config)
 

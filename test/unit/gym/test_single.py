@@ -8,7 +8,8 @@ from fixtures.rooms import room_home
 from gymnasium.utils.env_checker import check_env
 
 import roomba.gym
-from roomba.configuration.robot import BatteryConfig, BrushConfig, RobotConfig
+from roomba.configuration.robot import BatteryConfig, BrushConfig
+from roomba.configuration.simulation import SimulatedBrush, SimulatedRobotConfig, SimulationConfig
 from roomba.errors import HomeError
 from roomba.gym import RoombaClean
 from roomba.gym.observation import BATTERY, SIZE
@@ -48,16 +49,16 @@ def test_the_same_seed_and_actions_give_the_same_observations(sensors: str) -> N
     ("arguments", "expected"),
     [
         ({}, "noisy"),
-        ({"config": RobotConfig(brush=BrushConfig(bin_capacity=1.0))}, "noisy"),
-        ({"config": RobotConfig(sensors="ideal")}, "ideal"),
-        ({"config": RobotConfig(sensors="ideal"), "sensors": "noisy"}, "noisy"),
+        ({"config": SimulatedRobotConfig(brush=BrushConfig(bin_capacity=1.0))}, "noisy"),
+        ({"config": SimulatedRobotConfig().with_sensors("ideal")}, "ideal"),
+        ({"config": SimulatedRobotConfig().with_sensors("ideal"), "sensors": "noisy"}, "noisy"),
         ({"sensors": "ideal"}, "ideal"),
     ],
 )
 def test_sensors_are_noisy_unless_the_robot_or_the_task_says_otherwise(
     arguments: dict[str, Any], expected: str
 ) -> None:
-    assert RoombaClean(home=dirty_room(), **arguments).task.robot.sensors == expected
+    assert RoombaClean(home=dirty_room(), **arguments).task.robot.simulation.sensors == expected
 
 
 def test_another_seed_starts_elsewhere() -> None:
@@ -139,7 +140,7 @@ def test_an_episode_is_truncated_after_its_duration() -> None:
 
 
 def test_it_is_terminated_when_the_battery_is_empty() -> None:
-    config = RobotConfig(battery=BatteryConfig(capacity=0.002))
+    config = SimulatedRobotConfig(battery=BatteryConfig(capacity=0.002))
     environment = RoombaClean(home=dirty_room(), config=config)
     observation, _ = environment.reset(seed=0, options=EAST_WARD)
     assert 0.0 < observation[BATTERY] < 1.0
@@ -157,7 +158,10 @@ def test_it_is_terminated_when_the_battery_is_empty() -> None:
     ids=["the dirt is gone", "the bin is full"],
 )
 def test_it_is_terminated_when_nothing_more_can_be_cleaned(home: Home, capacity: float) -> None:
-    config = RobotConfig(brush=BrushConfig(bin_capacity=capacity, pickup=1.0))
+    config = SimulatedRobotConfig(
+        brush=BrushConfig(bin_capacity=capacity),
+        simulation=SimulationConfig(brush=SimulatedBrush(pickup=1.0)),
+    )
     environment = RoombaClean(home=home, config=config)
     environment.reset(seed=0, options=EAST_WARD)
     for _ in range(30):

@@ -32,7 +32,7 @@ from fixtures.missions import (
 from fixtures.worlds import IDEAL, NOISY
 
 from roomba.configuration.docking import DockingConfig
-from roomba.configuration.robot import RobotConfig
+from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.geometry import Pose
 from roomba.headless.cleaner import CleanRecord, HeadlessMission
 from roomba.mission.cleaning.checkpoint import CheckpointError
@@ -91,7 +91,7 @@ def assert_stands(robot: HeadlessMission, seconds: float = 5.0) -> None:
 
 
 @pytest.mark.parametrize("config", [IDEAL, NOISY], ids=["ideal", "noisy"])
-def test_it_cleans_all_the_floor_without_a_hit_and_docks(config: RobotConfig) -> None:
+def test_it_cleans_all_the_floor_without_a_hit_and_docks(config: SimulatedRobotConfig) -> None:
     robot = HeadlessMission(HOME, config, seed=1)
     record = robot.clean()
     assert_all_clean(robot, record)

@@ -15,7 +15,7 @@ from fixtures.missions import FLOOR_TOO_LITTLE, HOME, floor_clean, in_phase, unt
 from fixtures.worlds import IDEAL, NOISY
 from numpy.typing import NDArray
 
-from roomba.configuration.robot import RobotConfig
+from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.errors import HomeError
 from roomba.geometry import Pose
 from roomba.headless import closed_loop
@@ -58,7 +58,7 @@ def first_path(robot: HeadlessMission) -> NDArray[np.float64]:
 def test_both_drive_the_same_way(
     each_scan: None,
     monkeypatch: pytest.MonkeyPatch,
-    config: RobotConfig,
+    config: SimulatedRobotConfig,
     burst: int,
     thing: bool,
 ) -> None:
@@ -90,7 +90,7 @@ def test_both_drive_the_same_way(
 @pytest.mark.parametrize(
     ("config", "thing"), [(IDEAL, False), (NOISY, True)], ids=["ideal", "noisy-thing"]
 )
-def test_both_clean_as_well(config: RobotConfig, thing: bool) -> None:
+def test_both_clean_as_well(config: SimulatedRobotConfig, thing: bool) -> None:
     robots = (TickByTick(HOME, config, seed=7), HeadlessMission(HOME, config, seed=7))
     records: list[CleanRecord] = []
     for robot in robots:

@@ -14,7 +14,7 @@ from fixtures.missions import HOME, TWO_ROOMS
 from fixtures.rooms import room_home
 from fixtures.worlds import IDEAL, NOISY
 
-from roomba.configuration.robot import RobotConfig
+from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.geometry import Pose, Twist
 from roomba.grid import FREE
 from roomba.headless.explorer import ExploreRecord, HeadlessExplorer
@@ -63,7 +63,7 @@ def in_phase(robot: HeadlessExplorer, phase: Phase) -> Callable[[], bool]:
 
 @pytest.mark.parametrize("config", [IDEAL, NOISY], ids=["ideal", "noisy"])
 @pytest.mark.parametrize("home", HOMES)
-def test_it_maps_the_home_without_a_hit_and_docks(home: Home, config: RobotConfig) -> None:
+def test_it_maps_the_home_without_a_hit_and_docks(home: Home, config: SimulatedRobotConfig) -> None:
     robot = HeadlessExplorer(home, config, seed=1)
     record = robot.explore()
     assert_explored(robot, record, home)

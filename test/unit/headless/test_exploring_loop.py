@@ -15,7 +15,7 @@ from fixtures.missions import TWO_ROOMS
 from fixtures.worlds import IDEAL, NOISY
 from numpy.typing import NDArray
 
-from roomba.configuration.robot import RobotConfig
+from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.geometry import Pose
 from roomba.headless.explorer import HeadlessExplorer
 from roomba.headless.exploring_loop import ExploringLoop
@@ -49,7 +49,7 @@ def under_way() -> tuple[HeadlessExplorer, ExploringLoop]:
 
 @pytest.mark.parametrize("burst", [60, 7])
 @pytest.mark.parametrize("config", [IDEAL, NOISY], ids=["ideal", "noisy"])
-def test_both_drive_the_same_way(config: RobotConfig, burst: int) -> None:
+def test_both_drive_the_same_way(config: SimulatedRobotConfig, burst: int) -> None:
     robots = [HeadlessExplorer(TWO_ROOMS, config, seed=5, longest_burst=n) for n in (0, burst)]
     ticked, compiled = (exploring(robot, FIRST_PATH) for robot in robots)
     assert np.hypot(*np.diff(ticked[[0, -1], 1:3], axis=0).T) > 0.3

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from fixtures.missions import DEN, HALL, TWO_ROOMS, shut_door, two_rooms
 
-from roomba.configuration.robot import RobotConfig
+from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.files.shipped import HOMES
 from roomba.headless.cleaner import HeadlessMission
 from roomba.mission.cleaning.request import (
@@ -44,7 +44,7 @@ def test_with_another_room_done_the_missed_floor_tells_enough() -> None:
 
 @pytest.mark.parametrize("seed", [1, 2])
 def test_down_the_stairs_the_floor_ends(seed: int) -> None:
-    config = RobotConfig()
+    config = SimulatedRobotConfig()
     home = load_home("family", HOMES, config.body)
     robot = HeadlessMission(home, config, seed=seed)
     result = robot.clean().result

@@ -9,18 +9,18 @@ import pytest
 from fixtures.rooms import room_home
 from fixtures.worlds import DT, IDEAL, drive
 
-from roomba.configuration.robot import RobotConfig
+from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.errors import HomeError
 from roomba.geometry import Pose, Twist
 from roomba.world.engine.state.arrays import ROBOT, Fault, Infrared
 from roomba.world.simulator import Simulator
 
-CONFIG = RobotConfig()
+CONFIG = SimulatedRobotConfig()
 TRACK = CONFIG.body.wheel_separation
 WHEEL = 0.5 * CONFIG.body.wheel_diameter
 
 
-def robot(config: RobotConfig = CONFIG) -> Simulator:
+def robot(config: SimulatedRobotConfig = CONFIG) -> Simulator:
     return Simulator(room_home(), config, start=Pose(1.0, 2.0, 0.0))
 
 
@@ -72,7 +72,7 @@ def test_a_wheel_that_is_held_stands_still_and_draws_more(fault: Fault, side: in
     assert (wheels.stalled_left, wheels.stalled_right)[::side] == (True, False)
     assert seen.pose.theta == pytest.approx(side * free * WHEEL / TRACK)
     more = world.numbers["power"] - sound.numbers["power"]
-    assert more == pytest.approx(CONFIG.battery.stall_power)
+    assert more == pytest.approx(CONFIG.simulation.battery.stall_power)
     standing = drive(world, 0.0, 0.0, 1.0)
     assert not standing.wheels.stalled_left
     assert not standing.wheels.stalled_right
@@ -86,7 +86,7 @@ def test_a_robot_that_is_lifted_stays_where_it_is_and_feels_no_floor() -> None:
     seen = drive(world, 0.3, 1.0, 2.0)
     assert seen.pose == before
     assert (seen.twist.linear, seen.twist.angular) == (0.0, 0.0)
-    assert seen.angular_velocity == pytest.approx(0.0, abs=8.0 * CONFIG.gyro.noise)
+    assert seen.angular_velocity == pytest.approx(0.0, abs=8.0 * CONFIG.simulation.gyro.noise)
     assert seen.wheels.dropped_left
     assert seen.wheels.dropped_right
     assert seen.cliff == type(seen.cliff)(True, True, True, True)

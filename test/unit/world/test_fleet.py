@@ -13,7 +13,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from roomba.configuration.robot import LidarConfig, RobotConfig
+from roomba.configuration.robot import LidarConfig
+from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.errors import HomeError
 from roomba.files.shipped import HOMES
 from roomba.geometry import Pose, Twist
@@ -23,7 +24,7 @@ from roomba.world.home.home import Home, Move
 from roomba.world.layers.layer import list_homes, load_home
 from roomba.world.simulator import Simulator
 
-RADIUS = RobotConfig().body.radius
+RADIUS = SimulatedRobotConfig().body.radius
 Twists = NDArray[np.float64]
 
 
@@ -308,7 +309,7 @@ def test_what_was_saved_is_a_copy() -> None:
         lambda: Fleet([room_home(4.0, 4.0)]),
         lambda: Fleet([room_home(), room_home()]),
         lambda: Fleet([room_home()], robots_per_home=2),
-        lambda: Fleet([room_home()], RobotConfig(lidar=LidarConfig(beams=90))),
+        lambda: Fleet([room_home()], SimulatedRobotConfig(lidar=LidarConfig(beams=90))),
     ],
 )
 def test_what_was_saved_of_another_fleet_is_refused_and_changes_nothing(other: object) -> None:

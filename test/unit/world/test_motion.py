@@ -9,12 +9,13 @@ from fixtures.worlds import DT, IDEAL, block_that_moves, drive
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from roomba.configuration.robot import BodyConfig, RobotConfig
+from roomba.configuration.robot import BodyConfig
+from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.geometry import Pose, Twist, wrap_angle
 from roomba.world.home.home import Move
 from roomba.world.simulator import Simulator
 
-NORMAL = RobotConfig()
+NORMAL = SimulatedRobotConfig()
 """Its wheels slip, so that it does not go quite as far and as straight as it is told."""
 BODY = NORMAL.body
 FREE = Pose(2.5, 2.0, 0.3)
@@ -22,7 +23,7 @@ FREE = Pose(2.5, 2.0, 0.3)
 
 def robot(
     start: Pose,
-    config: RobotConfig = NORMAL,
+    config: SimulatedRobotConfig = NORMAL,
     *,
     blocks: tuple[Block, ...] = (),
     max_speed: float = 0.5,
@@ -186,7 +187,7 @@ def test_it_stops_at_contact_whatever_the_speed(speed: float) -> None:
     assert world.numbers["hits"] == 1.0
 
 
-def press(start: Pose, linear: float = 0.3, config: RobotConfig = NORMAL) -> Simulator:
+def press(start: Pose, linear: float = 0.3, config: SimulatedRobotConfig = NORMAL) -> Simulator:
     world = robot(start, config)
     drive(world, linear, 0.0, 10.0)
     return world

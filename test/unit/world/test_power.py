@@ -10,7 +10,8 @@ from fixtures.worlds import drive
 from hypothesis import given
 from hypothesis import strategies as st
 
-from roomba.configuration.robot import BatteryConfig, BrushConfig, FanConfig
+from roomba.configuration.robot import BatteryConfig
+from roomba.configuration.simulation import SimulatedBrush, SimulatedFan
 from roomba.geometry import Pose
 from roomba.world.power import CELLS, BatteryState, battery_state, noise_level, open_circuit_voltage
 from roomba.world.simulator import Simulator
@@ -18,9 +19,14 @@ from roomba.world.simulator import Simulator
 CONFIG = BatteryConfig()
 
 
-def state(level: float, power: float, config: BatteryConfig = CONFIG) -> BatteryState:
+def state(level: float, power: float, resistance: float = 0.15) -> BatteryState:
     return battery_state(
-        config, charge=level * config.capacity, power=power, temperature=22.0, is_docked=False
+        CONFIG.capacity,
+        resistance,
+        charge=level * CONFIG.capacity,
+        power=power,
+        temperature=22.0,
+        is_docked=False,
     )
 
 
@@ -28,7 +34,7 @@ def state(level: float, power: float, config: BatteryConfig = CONFIG) -> Battery
 def test_power_is_voltage_times_current_and_the_resistance_takes_its_part(
     level: float, power: float, resistance: float
 ) -> None:
-    battery = state(level, power, BatteryConfig(resistance=resistance))
+    battery = state(level, power, resistance)
     assert battery.voltage * -battery.current == pytest.approx(power, abs=1e-9)
     rest = open_circuit_voltage(battery.level)
     assert battery.voltage == pytest.approx(rest + resistance * battery.current)
@@ -66,7 +72,7 @@ def test_a_level_is_never_above_one() -> None:
 
 
 def test_it_is_louder_the_more_brush_and_fan_do() -> None:
-    brush, fan = BrushConfig(), FanConfig()
+    brush, fan = SimulatedBrush(), SimulatedFan()
     duties = (0.0, 0.1, 0.5, 1.0)
     for low, high in itertools.pairwise(duties):
         for other in duties:
@@ -85,7 +91,7 @@ def test_the_robot_is_louder_while_it_works_than_while_it_stands() -> None:
     world.set_power(0.5, 1.0)
     standing = world.noise_level
     drive(world, 0.3, 0.0, 1.0)
-    assert world.noise_level == noise_level(BrushConfig(), FanConfig(), (0.5, 1.0))
+    assert world.noise_level == noise_level(SimulatedBrush(), SimulatedFan(), (0.5, 1.0))
     assert world.noise_level > standing + 10.0
     drive(world, 0.0, 0.0, 1.0)
     assert world.noise_level == standing

@@ -31,7 +31,7 @@ def run_as_json(run: MapRun) -> dict[str, Any]:
         "home": run.home.name,
         "map": run.trial.home,
         "seed": run.trial.seed,
-        "sensors": run.robot.sensors,
+        "sensors": run.robot.simulation.sensors,
         "outcome": result.outcome.name,
         "message": result.message,
         "duration_s": round(result.duration, 3),

@@ -82,7 +82,7 @@ def options_of(arguments: list[str] | None) -> MapOptions:
         config=given.config,
     )
     if given.config is not None and not given.config.is_file():
-        raise UsageError(f"--config: expected a file like config/robot.yaml, got {given.config}")
+        raise UsageError(f"--config: expected a file like robot.yaml, got {given.config}")
     read = [("--map", given.map), ("--config", given.config)]
     return MapOptions(trial, output_of(given, read))
 
@@ -139,7 +139,7 @@ def _parser() -> Parser:
     where.add_argument("--seed", type=_seed, default=0, metavar="N")
     how = parser.add_argument_group("circumstances")
     how.add_argument("--sensors", choices=("noisy", "ideal"), help="default: as configured")
-    how.add_argument("--config", type=Path, metavar="FILE", help="default: config/robot.yaml")
+    how.add_argument("--config", type=Path, metavar="FILE", help="default: the shipped robot.yaml")
     parser.add_output()
     return parser
 

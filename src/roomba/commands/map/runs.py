@@ -16,7 +16,7 @@ from roomba.commands.sim.homes import home_of
 from roomba.commands.sim.runs import mission_config, robot_config_of
 from roomba.commands.sim.trial import Trial
 from roomba.configuration.mapping import MappingConfig, load_mapping_config
-from roomba.configuration.robot import RobotConfig
+from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.files.shipped import CONFIGURATION
 from roomba.geometry import Pose
 from roomba.grid import OccupancyMap
@@ -53,7 +53,7 @@ class MapRun:
 
     trial: Trial
     home: Home
-    robot: RobotConfig
+    robot: SimulatedRobotConfig
     record: ExploreRecord
     made: Drawn
     by_odometry: Drawn

@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from roomba.commands.pictures.drives import DriveRecording, Floats, wander
-from roomba.configuration.robot import BatteryConfig, RobotConfig, pickup_share
+from roomba.configuration.simulation import SimulatedRobotConfig, pickup_share
 from roomba.geometry import Pose, Twist
 from roomba.plots.style import BLUE, GREEN, INK, ORANGE, drawn, empty_figure, stacked
 from roomba.world.home.home import Home
@@ -26,7 +26,7 @@ _HOUR = 3600.0
 @drawn
 def picture_of_battery(home: Home, most_hours: float = 6.0) -> Figure:
     """Draw charge, voltage, power and temperature: cleaning to 10 %, then on the station."""
-    config = RobotConfig()
+    config = SimulatedRobotConfig()
     recording = DriveRecording(Simulator(home, config))
     world = recording.simulator
     world.put(home.station.compose(Pose(-0.3, 0.0, 2.0)))
@@ -46,7 +46,7 @@ def picture_of_battery(home: Home, most_hours: float = 6.0) -> Figure:
     panels = stacked(figure, 4)
     for axes, values, label in (
         (panels[0], 100.0 * charge / config.battery.capacity, "charge, %"),
-        (panels[1], _voltages(config.battery, charge, power), "voltage, V"),
+        (panels[1], _voltages(config, charge, power), "voltage, V"),
         (panels[2], power, "power out, W"),
         (panels[3], temperature, "temperature, °C"),
     ):
@@ -67,9 +67,10 @@ def _by_minutes(values: Floats, docked: NDArray[np.bool_]) -> Floats:
     return np.concatenate([driven, values[docked]])
 
 
-def _voltages(config: BatteryConfig, charge: Floats, power: Floats) -> Floats:
+def _voltages(config: SimulatedRobotConfig, charge: Floats, power: Floats) -> Floats:
+    capacity, resistance = config.battery.capacity, config.simulation.battery.resistance
     states = (
-        battery_state(config, charge=c, power=p, temperature=0.0, is_docked=False)
+        battery_state(capacity, resistance, charge=c, power=p, temperature=0.0, is_docked=False)
         for c, p in zip(charge.tolist(), power.tolist(), strict=True)
     )
     return np.array([state.voltage for state in states])
@@ -78,8 +79,8 @@ def _voltages(config: BatteryConfig, charge: Floats, power: Floats) -> Floats:
 @drawn
 def picture_of_levels(home: Home, points: int = 101) -> Figure:
     """Draw what a pass picks up, what it takes and how loud it is, by the fan's duty."""
-    config = RobotConfig()
-    brush, fan = config.brush, config.fan
+    config = SimulatedRobotConfig()
+    brush, fan = config.simulation.brush, config.simulation.fan
     duty = np.linspace(0.0, 1.0, points)
     figure = empty_figure(1100, 380)
     share, power, noise = figure.subplots(1, 3)
@@ -99,7 +100,7 @@ def picture_of_levels(home: Home, points: int = 101) -> Figure:
     power.set(ylabel="power of brush and fan, W", ylim=(0.0, None))
     noise.set(ylabel="noise 1 m away, dB(A)")
     for axes in (share, power, noise):
-        axes.axvline(fan.duty, color=INK, linewidth=0.8, linestyle="--")
+        axes.axvline(config.fan.duty, color=INK, linewidth=0.8, linestyle="--")
         axes.set(xlabel="duty of the fan", xlim=(0.0, 1.0))
     figure.legend(*share.get_legend_handles_labels(), loc="outside lower center", ncols=3)
     figure.suptitle("Power levels; dashed: the fan's duty at the start")

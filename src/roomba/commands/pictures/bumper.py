@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Wedge
 
 from roomba.commands.pictures.drives import DriveRecording
-from roomba.configuration.robot import RobotConfig
+from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.geometry import Pose, Twist
 from roomba.plots.style import (
     BLUE,
@@ -98,9 +98,10 @@ def _contact(world: Simulator, middle: Pose, angle: float) -> tuple[float, Bumpe
 
 
 def _draw_bump(panels: list[Axes], home: Home) -> None:
-    radius = RobotConfig().body.radius
+    config = SimulatedRobotConfig()
+    radius = config.body.radius
     middle = _middle_of(home)
-    world = Simulator(home, RobotConfig(sensors="noisy"), start=middle)
+    world = Simulator(home, config, start=middle)
     post = middle.compose(Pose(0.5, 0.08, 0.0))
     world.place_obstacle(post.x, post.y, _POST)
     recording = DriveRecording(

@@ -9,7 +9,7 @@ from matplotlib.image import AxesImage
 from numpy.typing import NDArray
 
 from roomba.commands.pictures.drives import DriveRecording
-from roomba.configuration.robot import RobotConfig
+from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.geometry import Pose, Twist
 from roomba.plots.style import BLUE, INK, drawn, empty_figure, stacked
 from roomba.world.home.dirt import DirtField
@@ -32,7 +32,7 @@ _MOST_SHOWN = 10.0
 @drawn
 def picture_of_dirt(home: Home, way: float = _WAY) -> Figure:
     """Draw the floor before and after one pass, and what the sensors tell on the way."""
-    world = Simulator(home, RobotConfig(sensors="noisy"), start=_START)
+    world = Simulator(home, SimulatedRobotConfig(), start=_START)
     for spill in _SPILLS:
         world.spill(*spill)
     before = _strip(world.dirt, way)

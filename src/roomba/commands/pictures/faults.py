@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from roomba.commands.pictures.drives import STEP, DriveRecording
-from roomba.configuration.robot import RobotConfig
+from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.geometry import Pose, Twist
 from roomba.plots.style import BLUE, INK, ORANGE, drawn, empty_figure, side_by_side
 from roomba.world.engine.state.arrays import Fault
@@ -27,7 +27,7 @@ def picture_of_faults(home: Home) -> Figure:
     """Draw a drive straight on: the left wheel slips for a while, later the right one is held."""
     x_min, _, y_min, y_max = home.frame.extent
     start = Pose(x_min + 0.8, 0.5 * (y_min + y_max), 0.0)
-    recording = DriveRecording(Simulator(home, RobotConfig(sensors="noisy"), start=start))
+    recording = DriveRecording(Simulator(home, SimulatedRobotConfig(), start=start))
     for until, fault, value in (
         (_SLIP[0], Fault.SLIP_LEFT, _LOST),
         (_SLIP[1], Fault.SLIP_LEFT, 0.0),

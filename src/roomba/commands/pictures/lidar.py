@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from roomba.configuration.robot import LidarConfig, RobotConfig
+from roomba.configuration.simulation import SimulatedLidar, SimulatedRobotConfig
 from roomba.geometry import Pose, Twist
 from roomba.plots.style import (
     BLUE,
@@ -34,7 +34,7 @@ _BINS = np.arange(-20.0, 20.1, 1.0)
 @drawn
 def picture_of_lidar(home: Home, stand: Pose = _STAND, scans: int = 100) -> Figure:
     """Draw one scan over the plan, and the errors of all ranges of so many scans."""
-    config = RobotConfig(sensors="noisy")
+    config = SimulatedRobotConfig()
     world = Simulator(home, config, seed=1, start=stand)
     exact = Lidar.of(home, config.lidar).scan(np.array([[stand.x, stand.y, stand.theta]]))[0]
     measured = np.array([_next_scan(world) for _ in range(scans)])
@@ -42,7 +42,7 @@ def picture_of_lidar(home: Home, stand: Pose = _STAND, scans: int = 100) -> Figu
     plan, errors = figure.subplots(1, 2, width_ratios=[1.25, 1.0])
     show_plan(plan, home, area_of(home))
     _draw_scan(plan, stand, measured[0], exact)
-    _draw_errors(errors, measured, exact, config.lidar)
+    _draw_errors(errors, measured, exact, config.simulation.lidar)
     return figure
 
 
@@ -87,7 +87,7 @@ def _draw_scan(
 
 
 def _draw_errors(
-    axes: Axes, measured: NDArray[np.float32], exact: NDArray[np.float32], config: LidarConfig
+    axes: Axes, measured: NDArray[np.float32], exact: NDArray[np.float32], config: SimulatedLidar
 ) -> None:
     errors = 1000.0 * (measured - exact)[np.isfinite(measured) & np.isfinite(exact)]
     sigma = 1000.0 * config.noise

@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from roomba.commands.pictures.drives import STEP, DriveRecording
-from roomba.configuration.robot import RobotConfig
+from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.geometry import Pose, Twist
 from roomba.plots.style import BLUE, INK, ORANGE, drawn, empty_figure, stacked
 from roomba.world.home.home import Home
@@ -26,7 +26,7 @@ _DRIVE = (
 @drawn
 def picture_of_motion(home: Home, start: Pose = _START) -> Figure:
     """Draw speed, turning speed and acceleration: the drive's own, and what the sensors tell."""
-    recording = DriveRecording(Simulator(home, RobotConfig(sensors="noisy"), start=start))
+    recording = DriveRecording(Simulator(home, SimulatedRobotConfig(), start=start))
     for twist, seconds in _DRIVE:
         recording.drive(twist, seconds)
     time = recording.of("time")

@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from roomba.commands.pictures.drives import STEP, DriveRecording, Floats, follow
-from roomba.configuration.robot import RobotConfig
+from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.geometry import Pose
 from roomba.plots.style import (
     BLUE,
@@ -53,7 +53,7 @@ def picture_of_odometry(
     home: Home, way: tuple[tuple[float, float], ...] = _WAY, seconds: float = 600.0
 ) -> Figure:
     """Draw where the robot was and where its wheels say it was, and how both differ."""
-    recording = DriveRecording(Simulator(home, RobotConfig(sensors="noisy"), seed=7))
+    recording = DriveRecording(Simulator(home, SimulatedRobotConfig(), seed=7))
     start = recording.simulator.pose
     follow(recording, way, _SPEED, seconds)
     x, y = recording.of("x"), recording.of("y")

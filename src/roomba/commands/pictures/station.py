@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
-from roomba.configuration.robot import RobotConfig
+from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.plots.style import draw_robot, drawn, empty_figure, show_plan
 from roomba.world.engine.state.arrays import Infrared, code_of
 from roomba.world.fleet import Fleet
@@ -31,7 +31,7 @@ _MARGIN = 0.25
 @drawn
 def picture_of_station(home: Home, spacing: float = 0.01) -> Figure:
     """Draw which beams are received where the robot's middle can be, on a grid, m."""
-    config = RobotConfig()
+    config = SimulatedRobotConfig()
     reach = config.station.beam + config.body.radius + _MARGIN
     x_min, x_max, y_min, y_max = home.frame.extent
     area = (
@@ -81,7 +81,10 @@ def _label(kind: Infrared) -> str:
 
 
 def _beams(
-    home: Home, config: RobotConfig, columns: NDArray[np.float64], rows: NDArray[np.float64]
+    home: Home,
+    config: SimulatedRobotConfig,
+    columns: NDArray[np.float64],
+    rows: NDArray[np.float64],
 ) -> NDArray[np.int64]:
     """Return the beams at each point where the body fits, int64 [rows, columns]; else 0."""
     fleet = Fleet([home], config, threads=1)

@@ -20,7 +20,7 @@ import numpy as np
 from roomba.commands.sim.figures import Figures
 from roomba.commands.sim.runs import Run
 from roomba.commands.sim.trial import Trial
-from roomba.configuration.robot import RobotConfig
+from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.geometry import Pose
 from roomba.mission.cleaning.checkpoint import request_values
 
@@ -34,7 +34,7 @@ def run_as_json(run: Run) -> dict[str, Any]:
     return {
         **_about(run.trial, run.home.name),
         **run.figures.as_json(),
-        "sensors": run.robot.sensors,
+        "sensors": run.robot.simulation.sensors,
         "robot": {
             "body_diameter_m": run.robot.body.diameter,
             "reach_m": round(run.reach, 6),
@@ -50,7 +50,7 @@ def runs_as_json(
     figures: dict[int, Figures],
     failures: dict[int, str],
     percentiles: dict[str, dict[str, float]],
-    config: RobotConfig,
+    config: SimulatedRobotConfig,
     wall: float,
 ) -> dict[str, Any]:
     """Return many runs, by their seeds, without their trajectories."""
@@ -58,7 +58,7 @@ def runs_as_json(
         "version": VERSION,
         "homes": len(figures) + len(failures),
         "completed": sum(each.is_completed for each in figures.values()),
-        "sensors": config.sensors,
+        "sensors": config.simulation.sensors,
         "all_wall_s": round(wall, 3),
         "percentiles": percentiles,
         "runs": [{"seed": seed, **each.as_json()} for seed, each in sorted(figures.items())],

@@ -160,7 +160,7 @@ def _add_circumstances(parser: argparse.ArgumentParser) -> None:
     how.add_argument(
         "--battery", type=_share, default=1.0, metavar="SHARE", help="charge at the start, 0..1"
     )
-    how.add_argument("--config", type=Path, metavar="FILE", help="default: config/robot.yaml")
+    how.add_argument("--config", type=Path, metavar="FILE", help="default: the shipped robot.yaml")
 
 
 def _add_output(parser: argparse.ArgumentParser) -> None:
@@ -316,7 +316,7 @@ def _check_files(given: argparse.Namespace) -> None:
     if given.plot is not None and given.plot.suffix.lower() != ".png":
         raise UsageError(f"--plot: expected a name that ends with .png, got {given.plot}")
     if given.config is not None and not given.config.is_file():
-        raise UsageError(f"--config: expected a file like config/robot.yaml, got {given.config}")
+        raise UsageError(f"--config: expected a file like robot.yaml, got {given.config}")
     json_file = Path(given.json) if given.json not in (None, "-") else None
     used: dict[Path, str] = {}
     if given.map is not None:

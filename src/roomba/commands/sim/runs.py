@@ -17,7 +17,8 @@ from roomba.commands.sim.trial import Trial
 from roomba.commands.sim.truth import coverable_floor, true_map
 from roomba.configuration.docking import DockingConfig
 from roomba.configuration.mission import MissionConfig, load_mission_config
-from roomba.configuration.robot import RobotConfig, load_robot_config
+from roomba.configuration.robot import RobotConfig
+from roomba.configuration.simulation import SimulatedRobotConfig, load_simulated_config
 from roomba.files.shipped import CONFIGURATION
 from roomba.geometry import Pose
 from roomba.grid import FREE
@@ -49,7 +50,7 @@ class Run:
     figures: Figures
     trajectory: Floats
     home: Home
-    robot: RobotConfig
+    robot: SimulatedRobotConfig
     reach: float
     things: tuple[Disc, ...]
     coverable: Mask
@@ -159,12 +160,14 @@ def trajectory_of(record: CleanRecord, first: Floats) -> Floats:
     return trajectory
 
 
-def robot_config_of(trial: Trial) -> RobotConfig:
+def robot_config_of(trial: Trial) -> SimulatedRobotConfig:
     """Return the robot of a trial; raises ConfigError."""
-    config = load_robot_config(trial.config or CONFIGURATION / "robot.yaml")
+    config = load_simulated_config(
+        trial.config or CONFIGURATION / "robot.yaml", CONFIGURATION / "simulation.yaml"
+    )
     if trial.sensors is None:
         return config
-    return config.model_copy(update={"sensors": trial.sensors})
+    return config.with_sensors(trial.sensors)
 
 
 def mission_config(robot: RobotConfig) -> MissionConfig:

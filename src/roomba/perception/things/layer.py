@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
-from roomba.configuration.robot import Frozen, NotNegative, Positive
+from roomba.configuration.frozen import Frozen, NotNegative, Positive
 from roomba.geometry import Pose
 from roomba.perception.matching.beams import LidarBeams
 from roomba.perception.matching.field_kernels import look

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.configuration.robot import RobotConfig
+from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.errors import HomeError
 from roomba.world.engine.layout import Layout, room_around
 from roomba.world.engine.state.arrays import (
@@ -35,7 +35,7 @@ def first_state(
     layout: Layout,
     homes: Sequence[Home],
     home_of_world: Sequence[int],
-    config: RobotConfig,
+    config: SimulatedRobotConfig,
     seeds: Sequence[int],
     robots_per_home: int,
     max_speed: float,
@@ -92,12 +92,13 @@ def first_state(
 
 
 def first_robots(
-    config: RobotConfig, seeds: Sequence[int], robots_per_home: int, max_speed: float
+    config: SimulatedRobotConfig, seeds: Sequence[int], robots_per_home: int, max_speed: float
 ) -> Rows:
     """Return charged robots that stand at (0, 0), each with errors of its own."""
     robots = np.zeros(len(seeds) * robots_per_home, ROBOT)
+    truth = config.simulation
     robots["charge"] = config.battery.capacity
-    robots["temperature"] = config.battery.ambient
+    robots["temperature"] = truth.battery.ambient
     robots["max_speed"] = max_speed
     robots["brush_duty"], robots["fan_duty"] = config.brush.duty, config.fan.duty
     for name in ("wheel_left_size", "wheel_right_size", "gyro_scale"):
@@ -106,12 +107,12 @@ def first_robots(
         seed = seeds[number // robots_per_home]
         purpose = (_ROBOT, number % robots_per_home)
         robot["random"] = _seed_bits(seed, *purpose)
-        if config.sensors == "noisy":
+        if truth.sensors == "noisy":
             left, right, scale, bias = _generator(seed, *purpose).standard_normal(4).tolist()
-            robot["wheel_left_size"] += config.wheels.scale_error * left
-            robot["wheel_right_size"] += config.wheels.scale_error * right
-            robot["gyro_scale"] += config.gyro.scale_error * scale
-            robot["gyro_bias"] = config.gyro.bias * bias
+            robot["wheel_left_size"] += truth.wheels.scale_error * left
+            robot["wheel_right_size"] += truth.wheels.scale_error * right
+            robot["gyro_scale"] += truth.gyro.scale_error * scale
+            robot["gyro_bias"] = truth.gyro.bias * bias
     return robots
 
 

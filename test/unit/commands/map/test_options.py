@@ -49,7 +49,7 @@ def test_json_alone_is_standard_output() -> None:
         ("--plot nowhere/picture.png", "expected a file in a folder that is there"),
         ("--json nowhere/file", "expected a file in a folder that is there"),
         ("--out nowhere/at/all", "expected a folder, or a new one"),
-        ("--config nowhere.yaml", "expected a file like config/robot.yaml"),
+        ("--config nowhere.yaml", "expected a file like robot.yaml"),
         ("--json a.png --plot a.png", "is the file of --json already"),
         ("--map a.png --plot a.png", "is the file of --map already"),
         ("--sensors blind", "invalid choice"),

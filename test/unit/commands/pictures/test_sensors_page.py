@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from roomba.commands.pictures.__main__ import PICTURES
-from roomba.configuration.robot import load_robot_config
+from roomba.configuration.simulation import load_simulated_config
 from roomba.files.shipped import CONFIGURATION
 from roomba.world.engine.state.arrays import Fault
 
@@ -29,11 +29,13 @@ def names_of_faults() -> set[str]:
 
 
 def numbers() -> list[tuple[str, str, object]]:
-    config = load_robot_config(CONFIGURATION / "robot.yaml")
+    config = load_simulated_config(CONFIGURATION / "robot.yaml", CONFIGURATION / "simulation.yaml")
     return [
         (section, name, value)
+        for numbers in (config, config.simulation)
         for section in SECTIONS
-        for name, value in getattr(config, section).model_dump().items()
+        if hasattr(numbers, section)
+        for name, value in getattr(numbers, section).model_dump().items()
     ]
 
 

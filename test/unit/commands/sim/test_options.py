@@ -91,7 +91,7 @@ REFUSED = {
     "--plot a.jpg": "--plot: expected a name that ends with .png, got a.jpg",
     "--json no/such/file": "--json: expected a file in a folder that is there, got no/such/file",
     "--json a.png --plot a.png": "--plot: a.png is the file of --json already",
-    "--config no.yaml": "--config: expected a file like config/robot.yaml, got no.yaml",
+    "--config no.yaml": "--config: expected a file like robot.yaml, got no.yaml",
     "--speed 3": "unrecognized arguments: --speed 3",
     "--see 3": "unrecognized arguments: --see 3",
 }

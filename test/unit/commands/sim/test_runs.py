@@ -164,7 +164,7 @@ def test_sensors_and_configuration_are_obeyed(room: Path, tmp_path: Path) -> Non
     config.write_text("brush: {width: 0.18}\n", encoding="utf-8")
     trial = Trial(home=str(room), station=Pose(0.3, 0.8, math.pi), sensors="ideal", config=config)
     setup = TrialSetup(trial)
-    assert setup.config.sensors == "ideal"
+    assert setup.config.simulation.sensors == "ideal"
     assert setup.robot.site.tool_width == 0.18
 
 

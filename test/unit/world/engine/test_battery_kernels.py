@@ -11,12 +11,12 @@ from fixtures.worlds import IDEAL, NOISY, drive
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from roomba.configuration.robot import RobotConfig
+from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.geometry import Pose, Twist
 from roomba.world.engine.state.arrays import Fault
 from roomba.world.simulator import Simulator
 
-CONFIG = RobotConfig()
+CONFIG = SimulatedRobotConfig()
 CAPACITY = CONFIG.battery.capacity
 HOME = room_home()
 FREE = Pose(2.5, 1.0, 0.0)
@@ -48,7 +48,7 @@ def test_it_charges_from_empty_to_full_in_its_time_the_last_tenth_ever_slower() 
     world.put(HOME.station)
     first = hours_until(world, Twist(), 0.9 * CAPACITY, 1.0)
     rest = hours_until(world, Twist(), CAPACITY - 1e-9, 1.0)
-    assert first + rest == pytest.approx(CONFIG.battery.charge_hours, rel=0.01)
+    assert first + rest == pytest.approx(CONFIG.simulation.battery.charge_hours, rel=0.01)
     assert rest / first == pytest.approx(0.1 * math.log(5.0) / 0.8 / 0.9, rel=0.05)
     assert world.numbers["charge"] == CAPACITY
 
@@ -93,7 +93,7 @@ def power_of(linear: float, angular: float, duty: tuple[float, float] = (0.0, 0.
 
 
 def test_each_consumer_draws_its_power() -> None:
-    battery, idle = CONFIG.battery, CONFIG.battery.idle_power
+    battery, idle = CONFIG.simulation.battery, CONFIG.simulation.battery.idle_power
     assert power_of(0.0, 0.0) == pytest.approx(idle)
     driving = idle + battery.drive_power
     assert power_of(0.306, 0.0) == pytest.approx(driving)
@@ -102,7 +102,7 @@ def test_each_consumer_draws_its_power() -> None:
     wheel_speed = 0.5 * CONFIG.body.wheel_separation * 2.0
     turning = idle + battery.drive_power * wheel_speed / battery.drive_speed
     assert power_of(0.0, 2.0) == pytest.approx(turning)
-    brush, fan = CONFIG.brush.power, CONFIG.fan.power
+    brush, fan = CONFIG.simulation.brush.power, CONFIG.simulation.fan.power
     assert power_of(0.306, 0.0, (0.5, 0.0)) == pytest.approx(driving + 0.5 * brush)
     assert power_of(0.306, 0.0, (0.0, 0.5)) == pytest.approx(driving + 0.125 * fan)
     assert power_of(0.0, 2.0, (1.0, 1.0)) == pytest.approx(turning + brush + fan)
@@ -115,8 +115,8 @@ def test_carpet_makes_the_brush_draw_more() -> None:
     world = Simulator(home, start=FREE)
     world.set_power(1.0, 0.0)
     drive(world, 0.306, 0.306, 1.0)
-    battery = CONFIG.battery
-    expected = battery.idle_power + battery.drive_power + CONFIG.brush.carpet_power
+    battery = CONFIG.simulation.battery
+    expected = battery.idle_power + battery.drive_power + CONFIG.simulation.brush.carpet_power
     assert world.numbers["power"] == pytest.approx(expected)
 
 
@@ -140,11 +140,12 @@ def test_the_battery_warms_up_by_its_load_and_cools_down_again() -> None:
     circle = 0.306, 0.34, 60.0, 0.5
     temperatures = [drive(world, *circle).battery.temperature for _ in range(30)]
     assert (np.diff(temperatures) > 0.0).all()
-    driving = CONFIG.battery.idle_power + CONFIG.battery.drive_power
-    power = driving + CONFIG.brush.power + CONFIG.fan.power
-    most = CONFIG.battery.ambient + CONFIG.battery.heating * power
-    share = 1.0 - math.exp(-1800.0 / CONFIG.battery.heating_time)
-    expected = CONFIG.battery.ambient + share * (most - CONFIG.battery.ambient)
+    truth = CONFIG.simulation
+    driving = truth.battery.idle_power + truth.battery.drive_power
+    power = driving + truth.brush.power + truth.fan.power
+    most = truth.battery.ambient + truth.battery.heating * power
+    share = 1.0 - math.exp(-1800.0 / truth.battery.heating_time)
+    expected = truth.battery.ambient + share * (most - truth.battery.ambient)
     assert temperatures[-1] == pytest.approx(expected, abs=0.05)
     world.set_power(0.0, 0.0)
     assert drive(world, 0.0, 0.0, 600.0, 1.0).battery.temperature < temperatures[-1] - 2.0

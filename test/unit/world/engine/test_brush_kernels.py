@@ -9,7 +9,7 @@ from fixtures.worlds import DT, IDEAL, NOISY, drive
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from roomba.configuration.robot import RobotConfig, pickup_share
+from roomba.configuration.simulation import SimulatedRobotConfig, pickup_share
 from roomba.geometry import Pose, Twist
 from roomba.world.engine.brush_kernels import amount_under_disc, sweep
 from roomba.world.home.dirt import DirtField
@@ -17,7 +17,7 @@ from roomba.world.home.home import DirtSource
 from roomba.world.simulator import Simulator
 
 KEEP = 0.2
-CONFIG = RobotConfig()
+CONFIG = SimulatedRobotConfig()
 
 
 def clean_field() -> DirtField:
@@ -168,9 +168,9 @@ def share_taken(brush: float, fan: float, carpets: tuple[Block, ...] = ()) -> fl
 def test_brush_and_fan_levels_decide_what_a_pass_takes_and_carpet_holds_it(
     brush: float, fan: float
 ) -> None:
-    by_fan = CONFIG.fan.pickup * fan
-    on_floor = pickup_share(CONFIG.brush.pickup * brush, by_fan)
-    on_carpet = pickup_share(CONFIG.brush.carpet_pickup * brush, by_fan)
+    by_fan = CONFIG.simulation.fan.pickup * fan
+    on_floor = pickup_share(CONFIG.simulation.brush.pickup * brush, by_fan)
+    on_carpet = pickup_share(CONFIG.simulation.brush.carpet_pickup * brush, by_fan)
     assert share_taken(brush, fan) == pytest.approx(on_floor, abs=0.03)
     assert share_taken(brush, fan, ((0.0, 0.0, 10.0, 4.0),)) == pytest.approx(on_carpet, abs=0.03)
 
@@ -192,7 +192,7 @@ def test_the_bin_and_the_floor_are_all_that_was_brought_in_whatever_is_driven() 
 
 
 def test_a_full_bin_takes_no_more_to_the_last_microgram() -> None:
-    small = RobotConfig(brush=CONFIG.brush.model_copy(update={"bin_capacity": 0.5}))
+    small = SimulatedRobotConfig(brush=CONFIG.brush.model_copy(update={"bin_capacity": 0.5}))
     world = Simulator(room_home(), small, start=Pose(0.5, 2.0, 0.0))
     world.spill(2.5, 2.0, 0.5, 20.0)
     seen = drive(world, 0.5, 0.0, 8.0)
@@ -229,7 +229,7 @@ def test_noisy_grains_are_right_on_average() -> None:
 
 def test_the_brush_motors_current_tells_carpet_from_floor() -> None:
     home = room_home(carpets=((2.5, 0.0, 5.0, 4.0),))
-    battery, brush = CONFIG.battery, CONFIG.brush
+    battery, brush = CONFIG.battery, CONFIG.simulation.brush
     for x, power in ((1.0, brush.power), (3.5, brush.carpet_power)):
         world = Simulator(home, IDEAL, start=Pose(x, 2.0, 0.0))
         world.set_power(brush=0.5)

@@ -11,14 +11,14 @@ from fixtures.worlds import DT, IDEAL, NOISY, drive
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from roomba.configuration.robot import RobotConfig
+from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.geometry import Pose, Twist, wrap_angle
 from roomba.world.engine.drive_kernels import MOST_ACCELERATION, ramp
 from roomba.world.engine.state.arrays import Fault
 from roomba.world.home.home import Home
 from roomba.world.simulator import Simulator
 
-CONFIG = RobotConfig()
+CONFIG = SimulatedRobotConfig()
 TRACK = CONFIG.body.wheel_separation
 WHEEL = 0.5 * CONFIG.body.wheel_diameter
 HALL = room_home(width=20.0, height=8.0)
@@ -95,7 +95,9 @@ def test_wheels_of_a_body_that_is_held_stand_still_unless_they_slip() -> None:
     assert after.odometry.x > before.odometry.x + 0.005
 
 
-def loop(home: Home, seed: int, config: RobotConfig = NOISY) -> tuple[float, float, Simulator]:
+def loop(
+    home: Home, seed: int, config: SimulatedRobotConfig = NOISY
+) -> tuple[float, float, Simulator]:
     """Drive 30 m of circles; return how far odometry is off: m and rad."""
     start = Pose(10.0, 4.0, 0.0)
     world = Simulator(home, config, seed=seed, start=start)
@@ -146,7 +148,7 @@ def test_noisy_sensors_repeat_with_the_seed() -> None:
     assert first.numbers["wheel_left_size"] != other.numbers["wheel_left_size"]
 
 
-def ahead(home: Home, config: RobotConfig, seed: int, way: float) -> tuple[float, float]:
+def ahead(home: Home, config: SimulatedRobotConfig, seed: int, way: float) -> tuple[float, float]:
     """Drive straight on; return the true way and that of the wheels as they really turned."""
     world = Simulator(home, config, seed=seed, start=Pose(1.0, 4.0, 0.0))
     seen = drive(world, 0.5, 0.0, way / 0.5)
@@ -159,8 +161,8 @@ def test_wheels_slip_more_on_carpet() -> None:
     for home in (HALL, CARPETED):
         ways = [ahead(home, NOISY, seed, 12.0) for seed in range(6)]
         lost.append(float(np.mean([1.0 - true / turned for true, turned in ways])))
-    assert lost[0] == pytest.approx(CONFIG.wheels.slip, abs=0.002)
-    assert lost[1] == pytest.approx(CONFIG.wheels.carpet_slip, abs=0.002)
+    assert lost[0] == pytest.approx(CONFIG.simulation.wheels.slip, abs=0.002)
+    assert lost[1] == pytest.approx(CONFIG.simulation.wheels.carpet_slip, abs=0.002)
 
 
 @pytest.mark.parametrize("dt", [0.01, 0.1])
@@ -170,7 +172,7 @@ def test_slip_varies_by_the_way_and_not_by_the_step(dt: float) -> None:
     for seed in range(40):
         world = Simulator(HALL, NOISY, seed=seed, start=Pose(1.0, 4.0, 0.0))
         turns.append(drive(world, 0.5, 0.0, 8.0, dt).pose.theta)
-    expected = CONFIG.wheels.slip_noise * math.sqrt(2.0 * 4.0) / TRACK
+    expected = CONFIG.simulation.wheels.slip_noise * math.sqrt(2.0 * 4.0) / TRACK
     assert float(np.std(turns)) == pytest.approx(expected, rel=0.3)
 
 
@@ -196,14 +198,14 @@ def test_a_noisy_gyro_has_its_scale_bias_and_noise() -> None:
     bias = world.numbers["gyro_bias"]
     assert float(np.mean(errors)) == pytest.approx(bias, abs=2e-4)
     assert bias != 0.0
-    assert float(np.std(errors)) == pytest.approx(CONFIG.gyro.noise, rel=0.08)
+    assert float(np.std(errors)) == pytest.approx(CONFIG.simulation.gyro.noise, rel=0.08)
 
 
 def test_a_noisy_accelerometer_has_its_noise() -> None:
     world = Simulator(HALL, NOISY, seed=3, start=Pose(10.0, 4.0, 0.0))
     felt = [world.step(Twist(), DT).acceleration for _ in range(2000)]
     assert float(np.mean(felt)) == pytest.approx(0.0, abs=3e-3)
-    assert float(np.std(felt)) == pytest.approx(CONFIG.gyro.acceleration_noise, rel=0.08)
+    assert float(np.std(felt)) == pytest.approx(CONFIG.simulation.gyro.acceleration_noise, rel=0.08)
 
 
 @pytest.mark.parametrize("faults", [(Fault.STALL_LEFT,), (Fault.STALL_LEFT, Fault.STALL_RIGHT)])

@@ -10,11 +10,11 @@ from fixtures.worlds import drive
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from roomba.configuration.robot import RobotConfig
+from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.geometry import Pose, Twist
 from roomba.world.simulator import Cliff, Simulator
 
-CONFIG = RobotConfig()
+CONFIG = SimulatedRobotConfig()
 EDGE = 3.0
 HOME = room_home(stairs=((EDGE, 0.0, 5.0, 4.0),))
 HALF_TRACK = 0.5 * CONFIG.body.wheel_separation

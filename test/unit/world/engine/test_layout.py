@@ -9,7 +9,7 @@ from fixtures.worlds import block_that_moves
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from roomba.configuration.robot import RobotConfig
+from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.geometry import Pose
 from roomba.world.engine.layout import layout_of, room_around
 from roomba.world.engine.state.arrays import CARPET, DROP, FLOOR
@@ -40,7 +40,7 @@ def test_room_is_a_bound_and_a_close_one(seed: int, density: float) -> None:
 
 def test_the_ground_is_floor_carpet_or_a_drop() -> None:
     home = room_home(carpets=((1.0, 1.0, 2.0, 2.0),), stairs=((1.5, 1.5, 3.0, 3.0),))
-    ground = layout_of([home], RobotConfig()).cells["ground"].reshape(home.frame.shape)
+    ground = layout_of([home], SimulatedRobotConfig()).cells["ground"].reshape(home.frame.shape)
     for (x, y), expected in {
         (0.5, 0.5): FLOOR,
         (1.2, 1.2): CARPET,
@@ -53,7 +53,7 @@ def test_the_ground_is_floor_carpet_or_a_drop() -> None:
 
 def test_homes_lie_one_after_the_other() -> None:
     homes = [room_home(), room_home(2.0, 3.0), room_home(3.0, 2.0, stairs=((1.0, 1.0, 2.0, 2.0),))]
-    layout = layout_of(homes, RobotConfig())
+    layout = layout_of(homes, SimulatedRobotConfig())
     assert layout.homes["has_drops"].tolist() == [0.0, 0.0, 1.0]
     for row, home in zip(layout.homes, homes, strict=True):
         cells = layout.cells[row["cells_at"] : row["cells_at"] + home.solid.size]
@@ -63,10 +63,10 @@ def test_homes_lie_one_after_the_other() -> None:
 
 
 def test_only_boxes_that_stand_in_the_bodys_way_are_there() -> None:
-    body = RobotConfig().body
+    body = SimulatedRobotConfig().body
     low = block_that_moves(pose=Pose(1.0, 1.0, 0.0), heights=(body.height - 0.01, 0.5))
     high = block_that_moves(pose=Pose(2.0, 1.0, 0.0), heights=(body.height, 0.5))
-    layout = layout_of([room_home(moving=[low, high, low])], RobotConfig())
+    layout = layout_of([room_home(moving=[low, high, low])], SimulatedRobotConfig())
     assert layout.boxes_at == [[0, 1, 1, 2]]
     assert layout.boxes["half_length"] == pytest.approx([0.2, 0.2])
     assert layout.boxes["top"].tolist() == [0.5, 0.5]

@@ -10,13 +10,14 @@ from fixtures.worlds import drive
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from roomba.configuration.robot import RobotConfig, StationConfig
+from roomba.configuration.robot import StationConfig
+from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.geometry import Pose, Twist
 from roomba.world.catalogue.furniture import STATION_GAP
 from roomba.world.engine.state.arrays import Fault, Infrared
 from roomba.world.simulator import Observation, Simulator
 
-CONFIG = RobotConfig()
+CONFIG = SimulatedRobotConfig()
 HALO, GREEN, RED = Infrared.HALO, Infrared.GREEN, Infrared.RED
 NONE = Infrared(0)
 FRONT = CONFIG.body.radius + STATION_GAP
@@ -72,7 +73,7 @@ def test_red_lies_to_its_left_green_to_its_right_and_the_halo_all_around(
 
 
 def test_a_halo_may_reach_farther_than_the_beams() -> None:
-    config = RobotConfig(station=StationConfig(halo=2.0, beam=1.0))
+    config = SimulatedRobotConfig(station=StationConfig(halo=2.0, beam=1.0))
     world = Simulator(world_with_station().home, config, start=Pose(0.5, 0.5, 0.0))
     assert seen_at(world, 1.9, 5.0).infrared == HALO
     assert seen_at(world, 2.01, 5.0).infrared == NONE
@@ -106,8 +107,8 @@ def test_contacts_touch_near_the_docked_pose_only(dx: float, dy: float, degrees:
     station = world.home.station
     theta = station.theta + math.radians(degrees)
     world.put(Pose(station.x + dx, station.y + dy, theta))
-    is_near = math.hypot(dx, dy) <= CONFIG.station.position_tolerance
-    is_straight = abs(degrees) <= CONFIG.station.angle_tolerance
+    is_near = math.hypot(dx, dy) <= CONFIG.simulation.station.position_tolerance
+    is_straight = abs(degrees) <= CONFIG.simulation.station.angle_tolerance
     assert world.step(Twist(), 0.025).battery.is_docked == (is_near and is_straight)
 
 

@@ -10,7 +10,7 @@ from typing import Final
 
 import numpy as np
 
-from roomba.configuration.robot import RobotConfig
+from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.world.catalogue.furniture import STATION_GAP
 from roomba.world.engine.state.arrays import Rows
 from roomba.world.home.dirt import MICROGRAMS_PER_GRAM
@@ -23,10 +23,11 @@ TAPER_TO: Final = 0.2
 """Share of the power that is left when the battery is full."""
 
 
-def numbers_of(config: RobotConfig) -> Rows:
+def numbers_of(config: SimulatedRobotConfig) -> Rows:
     """Return a configuration's numbers, an array of one row."""
-    body, brush, battery, lidar = config.body, config.brush, config.battery, config.lidar
-    noise = 1.0 if config.sensors == "noisy" else 0.0
+    body, lidar, truth = config.body, config.lidar, config.simulation
+    brush, battery = truth.brush, truth.battery
+    noise = 1.0 if truth.sensors == "noisy" else 0.0
     fields: dict[str, float] = {
         "noisy": noise,
         "radius": body.radius,
@@ -37,32 +38,32 @@ def numbers_of(config: RobotConfig) -> Rows:
         "deceleration": body.max_deceleration,
         "angular_acceleration": body.max_angular_acceleration,
         "radians_per_count": noise * 2.0 * math.pi / config.wheels.counts_per_turn,
-        "slip": noise * config.wheels.slip,
-        "carpet_slip": noise * config.wheels.carpet_slip,
+        "slip": noise * truth.wheels.slip,
+        "carpet_slip": noise * truth.wheels.carpet_slip,
         # The sum of a process with this spread and length varies by slip_noise over each metre.
-        "slip_spread": noise * config.wheels.slip_noise / math.sqrt(2.0 * SLIP_LENGTH),
-        "blocked_slip": noise * config.wheels.blocked_slip,
-        "gyro_noise": noise * config.gyro.noise,
-        "gyro_walk": noise * config.gyro.bias_walk,
-        "acceleration_noise": noise * config.gyro.acceleration_noise,
-        "brush_width": brush.width,
+        "slip_spread": noise * truth.wheels.slip_noise / math.sqrt(2.0 * SLIP_LENGTH),
+        "blocked_slip": noise * truth.wheels.blocked_slip,
+        "gyro_noise": noise * truth.gyro.noise,
+        "gyro_walk": noise * truth.gyro.bias_walk,
+        "acceleration_noise": noise * truth.gyro.acceleration_noise,
+        "brush_width": config.brush.width,
         "brush_depth": brush.depth,
         "pickup": brush.pickup,
         "carpet_pickup": brush.carpet_pickup,
         "brush_power": brush.power,
         "carpet_power": brush.carpet_power,
         "current_noise": noise * brush.current_noise,
-        "voltage": battery.nominal_voltage,
-        "fan_pickup": config.fan.pickup,
-        "fan_power": config.fan.power,
-        "bin_capacity": brush.bin_capacity * MICROGRAMS_PER_GRAM,
+        "voltage": config.battery.nominal_voltage,
+        "fan_pickup": truth.fan.pickup,
+        "fan_power": truth.fan.power,
+        "bin_capacity": config.brush.bin_capacity * MICROGRAMS_PER_GRAM,
         "grain": config.dirt_sensor.grain,
         "most_grains": config.dirt_sensor.most,
-        "capacity": battery.capacity,
+        "capacity": config.battery.capacity,
         "idle_power": battery.idle_power,
         "drive_power": 0.5 * battery.drive_power / battery.drive_speed,
         "stall_power": battery.stall_power,
-        "charge_power": charge_power(battery.capacity, battery.charge_hours),
+        "charge_power": charge_power(config.battery.capacity, battery.charge_hours),
         "ambient": battery.ambient,
         "heating": battery.heating,
         "heating_time": battery.heating_time,
@@ -71,13 +72,13 @@ def numbers_of(config: RobotConfig) -> Rows:
         "beam": config.station.beam,
         "beam_angle": math.radians(config.station.beam_angle),
         "half_overlap": math.radians(0.5 * config.station.overlap),
-        "position_tolerance": config.station.position_tolerance,
-        "angle_tolerance": math.radians(config.station.angle_tolerance),
+        "position_tolerance": truth.station.position_tolerance,
+        "angle_tolerance": math.radians(truth.station.angle_tolerance),
         "min_range": lidar.min_range,
         "max_range": lidar.max_range,
         "scan_period": 1.0 / lidar.rate,
-        "range_noise": noise * lidar.noise,
-        "misses": noise * lidar.misses,
+        "range_noise": noise * truth.lidar.noise,
+        "misses": noise * truth.lidar.misses,
         "lidar_height": lidar.mount_height,
     }
     for name, angle in zip("abcd", config.cliff.angles, strict=True):

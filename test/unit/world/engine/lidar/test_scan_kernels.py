@@ -18,14 +18,15 @@ from fixtures.worlds import DT, IDEAL, NOISY, block_that_moves, drive
 from hypothesis import given, reject, settings
 from hypothesis import strategies as st
 
-from roomba.configuration.robot import LidarConfig, RobotConfig
+from roomba.configuration.robot import LidarConfig
+from roomba.configuration.simulation import SimulatedLidar, SimulatedRobotConfig, SimulationConfig
 from roomba.errors import HomeError
 from roomba.geometry import Pose, Twist
 from roomba.world.fleet import Fleet
 from roomba.world.simulator import Simulator
 
-CONFIG = RobotConfig()
-LIDAR = CONFIG.lidar
+CONFIG = SimulatedRobotConfig()
+LIDAR, TRUTH = CONFIG.lidar, CONFIG.simulation.lidar
 BLOCKS = ((1.0, 1.0, 1.3, 1.2),)
 BEAMS = LIDAR.beams
 
@@ -137,14 +138,14 @@ def test_noise_has_its_mean_its_deviation_and_its_misses_and_each_beam_its_own()
         scans.append(noisy.ranges)
     seen = np.array(scans)
     missed = ~np.isfinite(seen)
-    assert missed.mean() == pytest.approx(LIDAR.misses, rel=0.1)
+    assert missed.mean() == pytest.approx(TRUTH.misses, rel=0.1)
     assert (seen[missed] == np.inf).all()
     assert missed.any(axis=0).mean() > 0.9
     residual = np.where(missed, 0.0, seen - ideal.ranges)
     assert residual.mean() == pytest.approx(0.0, abs=5e-5)
-    assert residual[~missed].std() == pytest.approx(LIDAR.noise, rel=0.02)
-    assert np.abs(residual).max() < 4.0 * LIDAR.noise
-    assert (np.abs(residual.mean(axis=0)) < 5.0 * LIDAR.noise / 20.0).all()
+    assert residual[~missed].std() == pytest.approx(TRUTH.noise, rel=0.02)
+    assert np.abs(residual).max() < 4.0 * TRUTH.noise
+    assert (np.abs(residual.mean(axis=0)) < 5.0 * TRUTH.noise / 20.0).all()
     for one, other in (
         (residual[:, :-1], residual[:, 1:]),
         (residual[:-1], residual[1:]),
@@ -154,7 +155,10 @@ def test_noise_has_its_mean_its_deviation_and_its_misses_and_each_beam_its_own()
 
 
 def test_what_is_out_of_reach_stays_so_with_noise() -> None:
-    config = NOISY.model_copy(update={"lidar": LidarConfig(min_range=1.0, max_range=2.5, misses=0)})
+    config = SimulatedRobotConfig(
+        lidar=LidarConfig(min_range=1.0, max_range=2.5),
+        simulation=SimulationConfig(lidar=SimulatedLidar(misses=0.0)),
+    )
     world = Simulator(room_home(), config, start=Pose(0.9, 2.0, math.pi))
     world.step(Twist(), 0.1)
     assert world.ranges[0] == -np.inf
@@ -163,7 +167,8 @@ def test_what_is_out_of_reach_stays_so_with_noise() -> None:
 
 
 def test_all_may_be_missed() -> None:
-    config = NOISY.model_copy(update={"lidar": LidarConfig(misses=1.0)})
+    blind = SimulationConfig(lidar=SimulatedLidar(misses=1.0))
+    config = SimulatedRobotConfig(simulation=blind)
     world = Simulator(room_home(), config)
     world.step(Twist(), 0.1)
     assert (world.ranges == np.inf).all()

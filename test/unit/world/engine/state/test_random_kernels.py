@@ -66,10 +66,13 @@ def test_the_quantiles_are_even_and_nearly_of_variance_one() -> None:
 
 def test_robots_of_all_seeds_and_numbers_have_chance_and_errors_of_their_own() -> None:
     robots = first_robots(NOISY, range(50), 4, 0.5)
+    truth = NOISY.simulation
     for name in ("random", "wheel_left_size", "wheel_right_size", "gyro_scale", "gyro_bias"):
         assert len(set(robots[name].tolist())) == 200
     sizes = np.concatenate([robots["wheel_left_size"], robots["wheel_right_size"]])
     assert float(sizes.mean()) == pytest.approx(1.0, abs=6e-4)
-    assert float(sizes.std()) == pytest.approx(NOISY.wheels.scale_error, rel=0.15)
-    assert float(robots["gyro_scale"].std()) == pytest.approx(NOISY.gyro.scale_error, rel=0.2)
-    assert float(robots["gyro_bias"].std()) == pytest.approx(NOISY.gyro.bias, rel=0.2)
+    assert float(sizes.std()) == pytest.approx(truth.wheels.scale_error, rel=0.15)
+    assert float(robots["gyro_scale"].std()) == pytest.approx(
+        NOISY.simulation.gyro.scale_error, rel=0.2
+    )
+    assert float(robots["gyro_bias"].std()) == pytest.approx(truth.gyro.bias, rel=0.2)

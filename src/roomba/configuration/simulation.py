@@ -1,0 +1,142 @@
+"""Numbers of the simulated robot that its brain does not know: errors, dirt and energy.
+
+The simulator alone reads them. What is true and known as well, such as the body's size, is in
+``configuration/robot.py``.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from roomba.configuration.frozen import (
+    Frozen,
+    NotNegative,
+    Positive,
+    Ratio,
+    load_config,
+    read_yaml,
+    validated,
+)
+from roomba.configuration.robot import SIMULATION, UNKNOWN, RobotConfig
+
+Sensors = Literal["ideal", "noisy"]
+
+
+class SimulatedBrush(Frozen):
+    """What the brush picks up of the dirt that it is driven over, and what it draws.
+
+    One pass of the brush at full power picks up the share ``pickup``; with the fan see
+    :func:`pickup_share`. Depth in m, power in W, current in A, noise in dB(A) at 1 m.
+    """
+
+    depth: Positive = 0.05
+    pickup: Ratio = 0.60
+    carpet_pickup: Ratio = 0.45
+    power: NotNegative = 3.0
+    carpet_power: NotNegative = 6.0
+    current_noise: NotNegative = 0.02
+    noise_level: NotNegative = 58.0
+
+
+class SimulatedFan(Frozen):
+    """Suction, energy (W) and noise (dB(A) at 1 m) of the fan at full duty."""
+
+    pickup: Ratio = 0.83
+    power: NotNegative = 25.0
+    noise_level: NotNegative = 68.0
+
+
+class SimulatedBattery(Frozen):
+    """What everything draws from the battery: W, V, ohm, h, degrees Celsius, s."""
+
+    resistance: NotNegative = 0.15
+    idle_power: NotNegative = 5.3
+    drive_power: NotNegative = 3.1
+    drive_speed: Positive = 0.306
+    stall_power: NotNegative = 15.0
+    charge_hours: Positive = 2.2
+    ambient: Annotated[float, Field(ge=-20.0, le=60.0)] = 22.0
+    heating: NotNegative = 0.4
+    heating_time: Positive = 900.0
+
+
+class SimulatedLidar(Frozen):
+    """Errors of the lidar: m, and a share of the beams."""
+
+    noise: NotNegative = 0.005
+    misses: Ratio = 0.01
+
+
+class SimulatedWheels(Frozen):
+    """How wheels slip: shares of the way, and what varies, m/sqrt(m)."""
+
+    scale_error: NotNegative = 0.001
+    slip: Ratio = 0.001
+    carpet_slip: Ratio = 0.02
+    slip_noise: NotNegative = 0.002
+    blocked_slip: Ratio = 0.3
+
+
+class SimulatedGyro(Frozen):
+    """Errors of gyro and accelerometer: rad/s, m/s2; walk rad/s/sqrt(s)."""
+
+    noise: NotNegative = 0.0015
+    bias: NotNegative = 0.0005
+    bias_walk: NotNegative = 0.00002
+    scale_error: NotNegative = 0.003
+    acceleration_noise: NotNegative = 0.03
+
+
+class SimulatedStation(Frozen):
+    """Within what of the docked pose the contacts touch: m and degrees."""
+
+    position_tolerance: Positive = 0.015
+    angle_tolerance: Positive = 8.0
+
+
+class SimulationConfig(Frozen):
+    """All of ``configuration/simulation.yaml``; every part has the shipped file's values.
+
+    ``sensors``: "noisy" ones have the errors given here, and wheels slip; "ideal" ones tell the
+    truth, and wheels slip by faults only.
+    """
+
+    sensors: Sensors = "noisy"
+    brush: SimulatedBrush = SimulatedBrush()
+    fan: SimulatedFan = SimulatedFan()
+    battery: SimulatedBattery = SimulatedBattery()
+    lidar: SimulatedLidar = SimulatedLidar()
+    wheels: SimulatedWheels = SimulatedWheels()
+    gyro: SimulatedGyro = SimulatedGyro()
+    station: SimulatedStation = SimulatedStation()
+
+
+class SimulatedRobotConfig(RobotConfig):
+    """A robot as it knows itself, and under ``simulation`` what is true of it beside."""
+
+    simulation: SimulationConfig = SimulationConfig()
+
+    def with_sensors(self, sensors: Sensors) -> SimulatedRobotConfig:
+        """Return the same robot with sensors of that kind."""
+        simulation = self.simulation.model_copy(update={"sensors": sensors})
+        return self.model_copy(update={"simulation": simulation})
+
+
+def pickup_share(brush: float, fan: float) -> float:
+    """Return the share that one pass picks up, of those that brush and fan would alone: 0..1."""
+    return 1.0 - (1.0 - brush) * (1.0 - fan)
+
+
+def load_simulated_config(path: Path, simulation: Path) -> SimulatedRobotConfig:
+    """Read a file like ``configuration/robot.yaml`` with its part ``simulation``, all of it.
+
+    Where it has no such part, that is read from a file like ``configuration/simulation.yaml``.
+    Raises :class:`ConfigError` with the reason.
+    """
+    raw = read_yaml(path)
+    if isinstance(raw, dict) and SIMULATION not in raw:
+        raw[SIMULATION] = load_config(SimulationConfig, simulation)
+    return validated(SimulatedRobotConfig, raw, f"{path}: ", UNKNOWN)
