@@ -133,8 +133,8 @@ def filled_from(mask: Mask, row: int, column: int) -> Mask:
 def way_fits(fits: Mask, x: float, y: float, to_x: float, to_y: float) -> bool:
     """Whether the middle may go straight from one point to another.
 
-    The way must run between centres that fit; then it is at most the sagitta of a step of one cell,
-    ``1 / (8 * reach)`` cells, nearer to a corner than the centres are.
+    The way must run between centres that fit; then it is at most the sagitta of a diagonal step,
+    about ``1 / (4 * reach)`` cells, nearer to a corner than the centres are.
     """
     rows, columns = fits.shape
     steep = abs(to_y - y) > abs(to_x - x)

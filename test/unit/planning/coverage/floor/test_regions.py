@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
+from fixtures.straight_ways import connected_to
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from roomba.planning.coverage.floor.masks import transposed
 from roomba.planning.coverage.floor.regions import mask_of, regions
 from roomba.raster.regions import Mask, numbered_regions
 
@@ -35,6 +35,25 @@ def test_two_wide_places_with_a_narrow_one_between_are_two_regions() -> None:
     assert abs(found.sizes[0] - found.sizes[1]) < 0.05 * floor.sum()
 
 
-def test_rows_become_columns() -> None:
-    mask = np.random.default_rng(1).random((37, 70)) < 0.5
-    assert np.array_equal(transposed(mask), mask.T)
+@given(st.integers(0, 2**32 - 1), st.integers(60, 130), st.integers(60, 220))
+@settings(max_examples=15)
+def test_each_cell_is_of_one_region_and_each_region_is_connected(
+    seed: int, rows: int, columns: int
+) -> None:
+    """Floors with walls across, so wide between them that parts are told apart."""
+    random = np.random.default_rng(seed)
+    floor = np.ones((rows, columns), np.bool_)
+    for _ in range(int(random.integers(0, 4))):
+        column = int(random.integers(columns))
+        floor[: int(random.integers(rows)), column : column + int(random.integers(1, 20))] = False
+    found = regions(floor)
+    regions_of = np.zeros(floor.shape, np.int64)
+    for region, (top, bottom, left, right) in enumerate(found.bounds.tolist()):
+        mask = mask_of(found, region)
+        assert mask[[0, -1]].any(axis=1).all()
+        assert mask[:, [0, -1]].any(axis=0).all()
+        regions_of[top : bottom + 1, left : right + 1] += mask
+        assert mask.sum() == found.sizes[region]
+        row, column = np.argwhere(mask)[0].tolist()
+        assert len(connected_to(mask, (row, column))) == mask.sum()
+    assert np.array_equal(regions_of, floor.astype(np.int64))
