@@ -1,4 +1,4 @@
-"""The contract of the original robot (docs: the README's tables), held by the running graph."""
+"""The contract of the original robot (docs/ros_interface.md), held by the running graph."""
 
 import subprocess
 from pathlib import Path

@@ -13,7 +13,7 @@ from roomba.errors import ConfigError
 
 
 class SeedParameters(Frozen):
-    """The original's parameters (see the README's table), validated; metres and m/s.
+    """The original's parameters (docs/ros_interface.md), validated; metres and m/s.
 
     Other spellings of the report (``initial_pos_x``, ``max_coordinate`` …) are accepted by
     :func:`parse_seed_parameters`.

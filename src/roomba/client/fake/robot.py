@@ -34,7 +34,7 @@ CAMERA_ANGLES = (-30.0, -15.0, 0.0, 15.0, 30.0)
 SEED_LIMITS = Limits(low=-100.0, high=100.0, max_speed=0.5)
 
 VANISHED_NOTICE = 1.0
-"""s from the end of the action server to the client's report of it (FAULTS.md: at most 1 s)."""
+"""s from the end of the action server to the client's report of it (at most 1 s is promised)."""
 
 _INSTANT = 1e-9
 """s; two sums of the same waits may differ by rounding."""

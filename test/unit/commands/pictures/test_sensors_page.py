@@ -13,7 +13,7 @@ from roomba.files.shipped import CONFIGURATION
 from roomba.world.engine.state.arrays import Fault
 
 ROOT = Path(__file__).parents[4]
-README = (ROOT / "README.md").read_text(encoding="utf-8")
+INTERFACE = (ROOT / "docs" / "ros_interface.md").read_text(encoding="utf-8")
 PAGE = (ROOT / "docs" / "sensors.md").read_text(encoding="utf-8")
 SECTIONS = ("body", "brush", "fan", "battery", "lidar", "wheels", "gyro", "cliff", "station",
             "dirt_sensor", "camera")  # fmt: skip
@@ -40,7 +40,7 @@ def numbers() -> list[tuple[str, str, object]]:
 
 
 def test_every_topic_of_the_simulator_is_there() -> None:
-    row = next(line for line in README.splitlines() if line.startswith("| `home_sim_node`"))
+    row = next(line for line in INTERFACE.splitlines() if line.startswith("| `home_sim_node`"))
     topics = set(re.findall(r"`(/[a-z_/]+)`", row)) - {"/cmd_vel_out", "/pose"}
     topics -= {topic for topic in topics if topic.endswith("/progress")}
     assert len(topics) > 25
