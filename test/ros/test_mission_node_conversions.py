@@ -10,7 +10,7 @@ from roomba_robot.msg import Zone as ZoneMessage
 from sensor_msgs.msg import BatteryState
 
 from roomba.geometry import Pose, Twist
-from roomba.grid import GridFrame, OccupancyMap
+from roomba.grid import FREE, GridFrame, OccupancyMap
 from roomba.mission.cleaning.request import (
     CleanMode,
     CleanOutcome,
@@ -21,6 +21,7 @@ from roomba.mission.cleaning.request import (
     MissReason,
 )
 from roomba.mission.inputs.senses import Battery, StationBeams
+from roomba.perception.rooms.rooms import Rooms
 from roomba.perception.rooms.zones import Zone, ZoneKind, Zones, ZonesError
 from roomba.perception.swept.coverage_bits import SWEPT, WANTED
 from roomba_ros.convert.mission import (
@@ -28,9 +29,9 @@ from roomba_ros.convert.mission import (
     beams_of,
     coverage_message,
     dirt_message,
+    outlines_of,
     request_of,
     result_message,
-    rooms_of,
     shown,
     zone_of,
     zones_markers,
@@ -133,7 +134,8 @@ def test_zones_come_back_as_they_went() -> None:
 def test_rooms_are_those_that_were_told() -> None:
     floor = OccupancyMap(GridFrame(0.5, 0.0, 0.0, 4, 6), np.zeros((4, 6), np.int8))
     outline = Polygon([Point32(x, y, 0.0) for x, y in ((0, 0), (1.5, 0), (1.5, 2), (0, 2))])
-    rooms = rooms_of(RoomArray(rooms=[Room(name="Hall", outline=outline)]), floor)
+    outlines = outlines_of(RoomArray(rooms=[Room(name="Hall", outline=outline)]))
+    rooms = Rooms.from_outlines(floor.frame, floor.values == FREE, outlines)
     assert rooms.names == ("Hall",)
     assert rooms.labels[:, :3].all()
     assert not rooms.labels[:, 3:].any()

@@ -121,7 +121,7 @@ def test_a_state_is_told_before_the_result_of_a_goal_that_ended(emergency: bool)
     rig = Rig()
     rig.ask(DockingGoal, DockGoal())
     if emergency:
-        rig.orders._on_emergency_stop(MagicMock(data="a child"))
+        rig.orders._on_emergency_stop("a child")
         assert rig.tick() == ["emergency stop", "feedback", "aborted"]
     else:
         rig.senses = replace(rig.senses, battery=Battery(1.0, 26.0, is_docked=True))

@@ -1,23 +1,24 @@
 """Scans that wait for the odometry of their time."""
 
-import rospy
-from sensor_msgs.msg import LaserScan
+import numpy as np
 
+from roomba.perception.matching.scan_view import LidarModel
+from roomba_ros.convert.scan import Scan
 from roomba_ros.localization.waiting_scans import WaitingScans
+
+LIDAR = LidarModel.all_around(4, 0.1, 8.0)
 
 
 def scans(*stamps: float) -> WaitingScans:
     waiting = WaitingScans()
     for stamp in stamps:
-        scan = LaserScan()
-        scan.header.stamp = rospy.Time.from_sec(stamp)
-        waiting.put(scan)
+        waiting.put(Scan(stamp, np.ones(4, np.float32), LIDAR))
     return waiting
 
 
 def taken(waiting: WaitingScans, stamp: float) -> float | None:
     scan = waiting.take(stamp)
-    return None if scan is None else scan.header.stamp.to_sec()
+    return None if scan is None else scan.stamp
 
 
 def test_the_newest_is_taken_of_those_whose_time_has_come() -> None:

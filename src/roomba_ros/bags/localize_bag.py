@@ -32,10 +32,10 @@ from roomba.files.shipped import CONFIGURATION
 from roomba.geometry import Pose
 from roomba.grid import FREE, OccupancyMap
 from roomba_ros.bags.localize_files import OUTPUT_TOPICS, RowBag, RowFile, RowTable
-from roomba_ros.bags.localize_mounts import Mounts
 from roomba_ros.bags.localize_recording import MessageKind, Recording, RecordingError
 from roomba_ros.bags.localize_replay import Replay
 from roomba_ros.bags.localize_report import LocalizationSummary, Tally, lines_of
+from roomba_ros.convert.mounts import Mounts, usable_transforms
 
 _PROGRAM: Final = "./roomba localize"
 _MOUNT_MESSAGES: Final = 1000
@@ -257,7 +257,7 @@ def _mounts(recording: Recording, topics: _Topics) -> tuple[Mounts, bool]:
     """Return where the sensors are, and whether the map -> odometry transform was recorded."""
     mounts = Mounts()
     for message in recording.first(["/tf_static"], _MOUNT_MESSAGES):
-        mounts.add(message.transforms)
+        mounts.add(usable_transforms(message.transforms))
     moving = [
         transform
         for message in recording.first(["/tf"], _MOVING_MESSAGES)
@@ -265,12 +265,13 @@ def _mounts(recording: Recording, topics: _Topics) -> tuple[Mounts, bool]:
     ]
     # Some robots tell again and again on /tf what never changes.
     parents_that_move = ("map", topics.odometry_frame)
-    mounts.add(
+    fixed = (
         each
         for each in moving
         if each.header.frame_id.lstrip("/") not in parents_that_move
         and not mounts.knows(each.child_frame_id)
     )
+    mounts.add(usable_transforms(fixed))
     children = {each.child_frame_id.lstrip("/") for each in moving}
     return mounts, topics.odometry_frame in children
 

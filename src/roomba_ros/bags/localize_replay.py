@@ -15,11 +15,12 @@ from roomba.geometry import Pose
 from roomba.grid import OccupancyMap
 from roomba.perception.localization.estimate import Estimate
 from roomba.perception.localization.localizer import Localizer
-from roomba_ros.bags.localize_mounts import Mounts
 from roomba_ros.bags.localize_recording import Heard, MessageKind
 from roomba_ros.bags.recorded_drive import LATEST, RecordedDrive
 from roomba_ros.convert.common import pose_of_odometry
-from roomba_ros.convert.localization import ranges_of, told_pose_of
+from roomba_ros.convert.errors import MessageError
+from roomba_ros.convert.localization import told_pose_of
+from roomba_ros.convert.mounts import Mounts
 
 _ROW_PERIOD: Final = 0.045
 """s; as often as the live node tells its pose, with something left for clocks that tremble."""
@@ -89,8 +90,9 @@ class Replay(RecordedDrive):
         return self._row(heard)
 
     def _hear_odometry(self, stamp: float, message: Odometry) -> None:
-        pose = pose_of_odometry(message)
-        if not pose.is_finite:
+        try:
+            pose = pose_of_odometry(message)
+        except MessageError:
             self._leave_out("messages of odometry with numbers that are not finite")
             return
         if self._localizer is None:
@@ -124,7 +126,9 @@ class Replay(RecordedDrive):
             return
         if self._scan is not None:
             self._see(self._localizer)
-        self._scan = (stamp, message)
+        scan = self._scan_of(message)
+        if scan is not None:
+            self._scan = (stamp, scan)
         if stamp <= self._stamp:
             self._see(self._localizer)
 
@@ -135,11 +139,7 @@ class Replay(RecordedDrive):
         if stamp > self._stamp + LATEST:
             self._leave_out("scans of times without odometry")
             return
-        try:
-            localizer.see(stamp, ranges_of(scan), self._lidar_of(scan))
-        except ValueError as error:
-            self._leave_out(f"scans ({error})")
-            return
+        localizer.see(stamp, scan.ranges, scan.lidar)
         self.scans += 1
 
     def _hear_told(self, message: PoseWithCovarianceStamped) -> None:
@@ -147,12 +147,9 @@ class Replay(RecordedDrive):
         if self._is_told:
             return
         self._is_told = True
-        frame = message.header.frame_id.lstrip("/")
         try:
-            if frame not in ("", "map"):
-                raise ValueError(f"expected the frame 'map', got {frame!r}")
             self._begin, self._deviation = told_pose_of(message)
-        except ValueError as error:
+        except MessageError as error:
             self._remarks.append(f"the recorded start is of no use: {error}")
             return
         self.start, self.was_told = "as recorded", True

@@ -14,6 +14,7 @@ from roomba.perception.localization.estimate import Knowledge
 from roomba_ros.bags.localize_recording import Heard
 from roomba_ros.bags.localize_replay import Row
 from roomba_ros.convert.common import pose_of
+from roomba_ros.convert.errors import MessageError
 
 _MOST_ROWS: Final = 40_000
 """Rows that are kept of a drive, however long it is."""
@@ -256,7 +257,10 @@ def _own_pose(heard: Heard) -> Pose | None:
         return Pose(message.pos_x, message.pos_y)
     if message.header.frame_id.lstrip("/") not in ("", "map"):
         return None
-    return pose_of(message if hasattr(message.pose, "position") else message.pose)
+    try:
+        return pose_of(message if hasattr(message.pose, "position") else message.pose)
+    except MessageError:
+        return None
 
 
 def _numbers(pose: Pose) -> tuple[float, float, float]:

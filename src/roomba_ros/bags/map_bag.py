@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Final
 
 import rosbag
+from geometry_msgs.msg import PoseStamped
 
 from roomba.commands.map.command import COMPLETED, guarded
 from roomba.commands.map.files import write_files
@@ -24,11 +25,12 @@ from roomba.configuration.mapping import load_mapping_config
 from roomba.configuration.robot import load_robot_config
 from roomba.files.shipped import CONFIGURATION
 from roomba.geometry import Pose
-from roomba_ros.bags.localize_mounts import Mounts
 from roomba_ros.bags.localize_recording import Heard, MessageKind, Recording, RecordingError
 from roomba_ros.bags.map_bag_report import BagMap, summary_of, table_of
 from roomba_ros.bags.map_replay import MapReplay
 from roomba_ros.convert.common import pose_of
+from roomba_ros.convert.errors import MessageError
+from roomba_ros.convert.mounts import Mounts, usable_transforms
 
 _MOUNT_MESSAGES: Final = 1000
 _MOVING_MESSAGES: Final = 300
@@ -151,29 +153,36 @@ def _mounts(recording: Recording, odometry_frame: str) -> Mounts:
     """Return where the sensors are."""
     mounts = Mounts()
     for message in recording.first(["/tf_static"], _MOUNT_MESSAGES):
-        mounts.add(message.transforms)
+        mounts.add(usable_transforms(message.transforms))
     # Some robots tell again and again on /tf what never changes.
-    mounts.add(
+    fixed = (
         each
         for message in recording.first(["/tf"], _MOVING_MESSAGES)
         for each in message.transforms
         if each.header.frame_id.lstrip("/") not in ("map", odometry_frame)
         and not mounts.knows(each.child_frame_id)
     )
+    mounts.add(usable_transforms(fixed))
     return mounts
 
 
 def _first_truth(recording: Recording, topic: str | None) -> Pose | None:
     """Return where the drive truly began, so that the map lies as the true one does."""
     found = recording.first([topic], 1) if topic is not None else []
-    pose = pose_of(found[0]) if found else None
-    return pose if pose is not None and pose.is_finite else None
+    return _usable_pose(found[0]) if found else None
 
 
 def _add_truth(true: list[tuple[float, float, float]], heard: Heard) -> None:
-    pose = pose_of(heard.message)
-    if pose.is_finite:
+    pose = _usable_pose(heard.message)
+    if pose is not None:
         true.append((heard.stamp, pose.x, pose.y))
+
+
+def _usable_pose(message: PoseStamped) -> Pose | None:
+    try:
+        return pose_of(message)
+    except MessageError:
+        return None
 
 
 if __name__ == "__main__":

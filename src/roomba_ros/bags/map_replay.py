@@ -14,12 +14,12 @@ from roomba.configuration.mapping import MappingConfig
 from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose
 from roomba.perception.slam.mapper import Mapper
-from roomba_ros.bags.localize_mounts import Mounts
 from roomba_ros.bags.localize_recording import Heard, MessageKind
 from roomba_ros.bags.localize_report import Thinned
 from roomba_ros.bags.recorded_drive import LATEST, RecordedDrive
 from roomba_ros.convert.common import pose_of_odometry
-from roomba_ros.convert.localization import ranges_of
+from roomba_ros.convert.errors import MessageError
+from roomba_ros.convert.mounts import Mounts
 
 
 class MapReplay(RecordedDrive):
@@ -59,8 +59,9 @@ class MapReplay(RecordedDrive):
         self._see()
 
     def _hear_odometry(self, stamp: float, message: Any) -> None:
-        pose = pose_of_odometry(message)
-        if not pose.is_finite:
+        try:
+            pose = pose_of_odometry(message)
+        except MessageError:
             self._leave_out("messages of odometry with numbers that are not finite")
             return
         if math.isfinite(self._stamp):
@@ -81,7 +82,9 @@ class MapReplay(RecordedDrive):
         if not math.isfinite(self._stamp):
             return
         self._see()
-        self._scan = (stamp, message)
+        scan = self._scan_of(message)
+        if scan is not None:
+            self._scan = (stamp, scan)
         if stamp <= self._stamp:
             self._see()
 
@@ -92,13 +95,8 @@ class MapReplay(RecordedDrive):
         if stamp > self._stamp + LATEST:
             self._leave_out("scans of times without odometry")
             return
-        try:
-            ranges, lidar = ranges_of(scan), self._lidar_of(scan)
-        except ValueError as error:
-            self._leave_out(f"scans ({error})")
-            return
-        self.mapper.see(stamp, ranges, lidar)
-        self.blind.see(stamp, ranges, lidar)
+        self.mapper.see(stamp, scan.ranges, scan.lidar)
+        self.blind.see(stamp, scan.ranges, scan.lidar)
         self.scans += 1
         mapped, reckoned = self.mapper.pose, self.blind.pose
         self.rows.append(

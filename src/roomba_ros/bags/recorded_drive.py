@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-import math
+from collections import Counter
 from typing import Any, Final
 
 from sensor_msgs.msg import LaserScan
 
-from roomba.perception.matching.scan_view import LidarModel
-from roomba_ros.bags.localize_mounts import Mount, Mounts
+from roomba_ros.convert.errors import MessageError
 from roomba_ros.convert.localization import SAME_TIME
+from roomba_ros.convert.mounts import Mount, Mounts
+from roomba_ros.convert.readings import turning_of
+from roomba_ros.convert.scan import Scan, ScanDecoder
 
 LATEST: Final = 1.0
 """s; a scan that odometry is so far behind is of a time that it knows nothing of."""
@@ -24,16 +26,20 @@ class RecordedDrive:
         """Scans that were taken in."""
         self._mounts, self._base = mounts, base
         self._gyro: tuple[float, float] | None = None
-        self._scan: tuple[float, LaserScan] | None = None
-        self._lidar: tuple[tuple[object, ...], LidarModel] | None = None
+        self._scan: tuple[float, Scan] | None = None
+        self._decoder = ScanDecoder(lambda frame: self._mount(frame, "lidar"))
         self._frames: dict[str, Mount] = {}
-        self._left_out: dict[str, int] = {}
+        self._left_out: Counter[str] = Counter()
+        self._first_reasons: dict[str, str] = {}
         self._remarks: list[str] = []
 
     @property
     def notes(self) -> list[str]:
         """What is worth knowing of what was heard."""
-        left_out = [f"{count} {why}: left out" for why, count in self._left_out.items()]
+        left_out = [
+            f"{count} {what}: left out{self._first_reasons[what]}"
+            for what, count in self._left_out.items()
+        ]
         return [*self._remarks, *left_out]
 
     def _turning_at(self, stamp: float) -> float | None:
@@ -43,24 +49,21 @@ class RecordedDrive:
         return self._gyro[1]
 
     def _hear_gyro(self, stamp: float, message: Any) -> None:
-        turning = message.angular_velocity.z
-        if math.isfinite(turning):
-            is_upside_down = self._mount(message.header.frame_id, "gyro").is_upside_down
-            self._gyro = (stamp, -turning if is_upside_down else turning)
+        try:
+            turning = turning_of(message).turning
+        except MessageError as error:
+            self._leave_out("messages of the gyro", str(error))
+            return
+        is_upside_down = self._mount(message.header.frame_id, "gyro").is_upside_down
+        self._gyro = (stamp, -turning if is_upside_down else turning)
 
-    def _lidar_of(self, scan: LaserScan) -> LidarModel:
-        """Return the lidar of a scan, made anew only when something of it changed."""
-        key = (
-            scan.header.frame_id,
-            len(scan.ranges),
-            scan.angle_min,
-            scan.angle_increment,
-            scan.range_min,
-            scan.range_max,
-        )
-        if self._lidar is None or self._lidar[0] != key:
-            self._lidar = (key, self._mount(scan.header.frame_id, "lidar").lidar(scan))
-        return self._lidar[1]
+    def _scan_of(self, message: LaserScan) -> Scan | None:
+        """Return a scan; None, and a note, for one that cannot be used."""
+        try:
+            return self._decoder.decode(message)
+        except MessageError as error:
+            self._leave_out("scans that cannot be used", str(error))
+            return None
 
     def _mount(self, frame: str, sensor: str) -> Mount:
         """Return where a sensor is mounted: in the middle, and looking ahead, if nothing tells."""
@@ -74,5 +77,7 @@ class RecordedDrive:
             self._frames[frame] = mount or Mount()
         return self._frames[frame]
 
-    def _leave_out(self, why: str) -> None:
-        self._left_out[why] = self._left_out.get(why, 0) + 1
+    def _leave_out(self, what: str, reason: str = "") -> None:
+        """Count a message that is left out; of the reasons the first one is noted."""
+        self._left_out[what] += 1
+        self._first_reasons.setdefault(what, f" (the first: {reason})" if reason else "")

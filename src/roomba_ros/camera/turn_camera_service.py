@@ -19,6 +19,7 @@ from roomba.storage.pictures_folder import ANGLES, PictureFolder, nearest_angle
 from roomba_ros.convert.common import image_message, picture_of, pose_of
 from roomba_ros.runtime.calls import call_service
 from roomba_ros.runtime.node import frame_id, run_node
+from roomba_ros.runtime.subscriptions import subscribe
 
 _TRAVELLED = 0.1
 """m; a picture taken farther away than this is old."""
@@ -52,7 +53,7 @@ class TurnCameraService:
         self._pictured: dict[int, Pose | None] = {}
         self._taken = -math.inf
         self._round = list(ANGLES)
-        rospy.Subscriber("pose", PoseStamped, self._on_pose, queue_size=1)
+        subscribe("pose", PoseStamped, pose_of, self._on_pose)
         rospy.Service("turn_camera", TurnCamera, self._on_turn_camera)
 
     def tick(self, now: float) -> None:
@@ -124,8 +125,8 @@ class TurnCameraService:
             rospy.logwarn("%s; showing the last picture there is", error)
             return self._folder.read(angle)
 
-    def _on_pose(self, message: PoseStamped) -> None:
-        self._pose = pose_of(message)
+    def _on_pose(self, pose: Pose) -> None:
+        self._pose = pose
 
 
 def main() -> None:

@@ -13,6 +13,7 @@ from roomba.ui.exploring import TASKS
 from roomba.ui.menu import Menu
 from roomba_ros.client.ros_client import RosRobot
 from roomba_ros.runtime.node import leave, require_master, wait_for_clock
+from roomba_ros.runtime.subscriptions import tell_refusals
 
 
 def main() -> None:
@@ -23,6 +24,7 @@ def main() -> None:
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
     try:
         wait_for_clock()
+        tell_refusals()
         robot = RosRobot()
         robot.start()
     except KeyboardInterrupt:

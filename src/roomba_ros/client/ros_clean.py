@@ -36,7 +36,9 @@ from roomba.client.protocol import (
     VacuumSnapshot,
 )
 from roomba_ros.client.ros_errands import RosClean, RosDocking, RosExploring, Server
+from roomba_ros.convert.client import room_names_of, vacuum_of
 from roomba_ros.runtime.calls import call_service
+from roomba_ros.runtime.subscriptions import subscribe
 
 OLDEST_VACUUM_STATE: Final = 6.0
 """s of wall time; it is told every second, but a long plan may hold it up for some."""
@@ -76,8 +78,8 @@ class RosVacuum:
             name: rospy.ServiceProxy(name, Trigger)
             for name in ("pause", "resume", "stop", "locate")
         }
-        rospy.Subscriber("vacuum/state", VacuumState, self._on_vacuum_state, queue_size=1)
-        rospy.Subscriber("rooms", RoomArray, self._on_rooms, queue_size=1)
+        subscribe("vacuum/state", VacuumState, vacuum_of, self._on_vacuum_state)
+        subscribe("rooms", RoomArray, room_names_of, self._on_rooms)
 
     def clean(
         self,
@@ -168,23 +170,13 @@ class RosVacuum:
     def _vacuum_is_new(self) -> bool:
         return time.monotonic() - self._vacuum_heard < OLDEST_VACUUM_STATE
 
-    def _on_vacuum_state(self, message: VacuumState) -> None:
+    def _on_vacuum_state(self, snapshot: VacuumSnapshot) -> None:
         with self._told:
-            self._vacuum = VacuumSnapshot(
-                state=message.state,
-                phase=message.phase,
-                message=message.message,
-                room=message.room,
-                covered=message.covered,
-                wanted=message.wanted,
-                fraction=message.fraction,
-                seconds_to_go=message.seconds_to_go,
-                battery=message.battery,
-            )
+            self._vacuum = snapshot
             self._vacuum_heard = time.monotonic()
             self._told.notify_all()
 
-    def _on_rooms(self, message: RoomArray) -> None:
+    def _on_rooms(self, names: tuple[str, ...]) -> None:
         with self._told:
-            self._rooms = tuple(room.name for room in message.rooms)
+            self._rooms = names
             self._told.notify_all()

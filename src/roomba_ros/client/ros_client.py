@@ -38,10 +38,14 @@ from roomba.client.protocol import (
 from roomba.geometry import Pose
 from roomba_ros.client.ros_clean import RosVacuum
 from roomba_ros.client.ros_errands import SILENCE_DEADLINE, wait_for_server
+from roomba_ros.convert.client import doubt_of
 from roomba_ros.convert.common import path_of, picture_of, pose_message
+from roomba_ros.convert.readings import point_of
+from roomba_ros.convert.values import number_of, unchanged
 from roomba_ros.runtime.action_client import ActionClient
 from roomba_ros.runtime.calls import SERVER_DEADLINE, call_service
 from roomba_ros.runtime.parameters import LiveSeedParameters
+from roomba_ros.runtime.subscriptions import subscribe
 
 OLDEST_NEWS = 3.0
 """s of wall time; the robot tells its state at least 5 times a second, older news is none."""
@@ -80,11 +84,11 @@ class RosRobot(RosVacuum):
         super().start()
         self._actions = ActionClient("walk_to_point", WalkToPointAction)
         self._make_plan = rospy.ServiceProxy("make_plan", GetPlan)
-        rospy.Subscriber("dirt", Float32, self._on_dirt, queue_size=1)
-        rospy.Subscriber("speed", Float32, self._on_speed, queue_size=1)
-        rospy.Subscriber("position", RobotPosition, self._on_position, queue_size=1)
-        rospy.Subscriber("localization", Localization, self._on_localization, queue_size=1)
-        rospy.Subscriber("walk_to_point/status", GoalStatusArray, self._on_status, queue_size=1)
+        subscribe("dirt", Float32, number_of, self._on_dirt)
+        subscribe("speed", Float32, number_of, self._on_speed)
+        subscribe("position", RobotPosition, point_of, self._on_position)
+        subscribe("localization", Localization, doubt_of, self._on_localization)
+        subscribe("walk_to_point/status", GoalStatusArray, unchanged, self._on_status)
 
     def limits(self) -> Limits:
         """Return the limits in force."""
@@ -153,21 +157,20 @@ class RosRobot(RosVacuum):
             self._heard[topic] = time.monotonic()
             self._news.notify_all()
 
-    def _on_dirt(self, message: Float32) -> None:
-        self._hear("dirt", message.data)
+    def _on_dirt(self, dirt: float) -> None:
+        self._hear("dirt", dirt)
 
-    def _on_speed(self, message: Float32) -> None:
-        self._hear("speed", message.data)
+    def _on_speed(self, speed: float) -> None:
+        self._hear("speed", speed)
 
-    def _on_position(self, message: RobotPosition) -> None:
+    def _on_position(self, point: tuple[float, float]) -> None:
         with self._news:
-            before = self._values.get("position", (message.pos_x, message.pos_y))
-            self._travelled += math.dist(before, (message.pos_x, message.pos_y))
-        self._hear("position", message.pos_x, message.pos_y)
+            self._travelled += math.dist(self._values.get("position", point), point)
+        self._hear("position", *point)
 
-    def _on_localization(self, message: Localization) -> None:
+    def _on_localization(self, doubt: str) -> None:
         with self._news:
-            self._doubt = message.message
+            self._doubt = doubt
 
     def _on_status(self, message: GoalStatusArray) -> None:
         self._status_seen = time.monotonic()

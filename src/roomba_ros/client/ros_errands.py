@@ -23,7 +23,9 @@ from roomba.client.protocol import (
     MissedFloor,
     RobotUnavailableError,
 )
+from roomba_ros.convert.values import unchanged
 from roomba_ros.runtime.calls import SERVER_DEADLINE
+from roomba_ros.runtime.subscriptions import subscribe
 
 SILENCE_DEADLINE: Final = 2.5
 """s of wall time without the server's status (5 Hz) after which it is taken for dead."""
@@ -69,7 +71,7 @@ class Server:
         # Not the simple client: that knows its newest goal alone, and a refused one hides the rest.
         self._client = actionlib.ActionClient(name, action)
         self._status_seen = -math.inf
-        rospy.Subscriber(f"{name}/status", GoalStatusArray, self._on_status, queue_size=1)
+        subscribe(f"{name}/status", GoalStatusArray, unchanged, self._on_status)
 
     @property
     def silence(self) -> float:

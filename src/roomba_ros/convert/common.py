@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import genpy
 import numpy as np
@@ -11,12 +12,12 @@ from geometry_msgs.msg import PoseStamped, Quaternion, TransformStamped
 from geometry_msgs.msg import Twist as TwistMessage
 from nav_msgs.msg import OccupancyGrid, Odometry, Path
 from numpy.typing import NDArray
-from roomba_robot.msg import Cliff
 from sensor_msgs.msg import Image
 from std_msgs.msg import Header
 
 from roomba.geometry import Pose, Twist
 from roomba.grid import GridFrame, OccupancyMap
+from roomba_ros.convert.errors import MessageError, require_finite
 
 MOST_CELLS = 20_000_000
 """Of a map: 220 x 220 m at 5 cm. A larger one would take a robot's memory."""
@@ -39,12 +40,15 @@ def theta_of(rotation: Quaternion) -> float:
 
 
 def pose_of_message(pose: PoseMessage) -> Pose:
-    """Return the planar part of a pose."""
-    return Pose(pose.position.x, pose.position.y, theta_of(pose.orientation))
+    """Return the planar part of a pose; raises MessageError for numbers that are not finite."""
+    planar = Pose(pose.position.x, pose.position.y, theta_of(pose.orientation))
+    require_finite("a pose", planar.x, planar.y, planar.theta)
+    return planar
 
 
 def twist_of(message: TwistMessage) -> Twist:
-    """Return the planar part of a twist message."""
+    """Return the planar part of a twist; raises MessageError for numbers that are not finite."""
+    require_finite("velocities", message.linear.x, message.angular.z)
     return Twist(message.linear.x, message.angular.z)
 
 
@@ -57,16 +61,8 @@ def twist_message(twist: Twist) -> TwistMessage:
 
 
 def pose_of_odometry(message: Odometry) -> Pose:
-    """Return the planar pose of an odometry message, in its header's frame."""
+    """Return the planar pose of odometry, in its header's frame; raises MessageError."""
     return pose_of_message(message.pose.pose)
-
-
-def cliff_of(message: Cliff) -> tuple[bool, bool]:
-    """Return whether there is no floor on the left, on the right."""
-    return (
-        message.is_cliff_left or message.is_cliff_front_left,
-        message.is_cliff_right or message.is_cliff_front_right,
-    )
 
 
 def odometry_message(
@@ -80,8 +76,18 @@ def odometry_message(
 
 
 def pose_of(message: PoseStamped) -> Pose:
-    """Return the planar pose of a stamped pose, in its header's frame."""
+    """Return the planar pose of a stamped pose, in its header's frame; raises MessageError."""
     return pose_of_message(message.pose)
+
+
+def pose_in_map(message: PoseStamped) -> Pose:
+    """Return a pose of the map frame; an empty frame means that one, too. Raises MessageError."""
+    if message.header.frame_id not in ("", "map"):
+        raise MessageError(
+            f"expected a pose in the frame 'map', got one in {message.header.frame_id!r}; "
+            "transform it first"
+        )
+    return pose_of(message)
 
 
 def planar_pose_message(pose: Pose) -> PoseMessage:
@@ -138,9 +144,13 @@ def path_message(now: float, points: NDArray[np.float64], frame_id: str) -> Path
 
 
 def path_of(message: Path) -> NDArray[np.float64]:
-    """Return the points of a path, float64 [n, 2], in its header's frame."""
-    points = [(at.pose.position.x, at.pose.position.y) for at in message.poses]
-    return np.array(points, np.float64).reshape(-1, 2)
+    """Return the points of a path, float64 [n, 2], in its header's frame.
+
+    Raises MessageError for numbers that are not finite.
+    """
+    numbers = [at for each in message.poses for at in (each.pose.position.x, each.pose.position.y)]
+    require_finite("a path", *numbers)
+    return np.array(numbers, np.float64).reshape(-1, 2)
 
 
 def map_message(
@@ -164,22 +174,22 @@ def map_message(
 def map_of(message: OccupancyGrid) -> OccupancyMap:
     """Return the occupancy map of a message.
 
-    Raises ValueError for a map that is turned, misshapen, empty, or larger than MOST_CELLS.
+    Raises MessageError for a map that is turned, misshapen, empty, or larger than MOST_CELLS.
     """
     info = message.info
     place = (info.resolution, info.origin.position.x, info.origin.position.y)
     if not all(map(math.isfinite, place)) or info.resolution <= 0.0:
-        raise ValueError(f"expected a resolution above 0 and a finite origin, got {place}")
+        raise MessageError(f"expected a resolution above 0 and a finite origin, got {place}")
     if not 0 < info.width * info.height <= MOST_CELLS:
-        raise ValueError(
+        raise MessageError(
             f"expected a map of 1 to {MOST_CELLS} cells, got {info.width} x {info.height}; "
             "make its cells larger"
         )
     turn = theta_of(info.origin.orientation)
-    if abs(turn) > 1e-6:
-        raise ValueError(f"expected a map without rotation, got one turned by {turn:.4f} rad")
+    if not abs(turn) <= 1e-6:
+        raise MessageError(f"expected a map without rotation, got one turned by {turn:.4f} rad")
     if len(message.data) != info.width * info.height:
-        raise ValueError(
+        raise MessageError(
             f"expected {info.width} x {info.height} map values, got {len(message.data)}"
         )
     frame = GridFrame(
@@ -192,6 +202,18 @@ def map_of(message: OccupancyGrid) -> OccupancyMap:
     )
     values = np.array(message.data, np.int8).reshape(frame.shape)
     return OccupancyMap(frame, values)
+
+
+class ToldMap(NamedTuple):
+    """A map, and whether it ``was_loaded``: one that is being made never was."""
+
+    occupancy: OccupancyMap
+    was_loaded: bool
+
+
+def told_map_of(message: OccupancyGrid) -> ToldMap:
+    """Return the map of a message, and whether it was loaded; raises MessageError as map_of."""
+    return ToldMap(map_of(message), not message.info.map_load_time.is_zero())
 
 
 def image_message(now: float, picture: NDArray[np.uint8], frame_id: str) -> Image:
@@ -211,12 +233,12 @@ def image_message(now: float, picture: NDArray[np.uint8], frame_id: str) -> Imag
 def picture_of(message: Image) -> NDArray[np.uint8]:
     """Return the picture of an rgb8 or bgr8 image, uint8 [height, width, 3] RGB.
 
-    Raises ValueError for another encoding or a size that does not fit.
+    Raises MessageError for another encoding or a size that does not fit.
     """
     if message.encoding not in ("rgb8", "bgr8"):
-        raise ValueError(f"expected an rgb8 or bgr8 image, got {message.encoding!r}")
+        raise MessageError(f"expected an rgb8 or bgr8 image, got {message.encoding!r}")
     if len(message.data) != message.step * message.height or message.step < 3 * message.width:
-        raise ValueError(
+        raise MessageError(
             f"expected {message.height} rows of {message.step} bytes, got {len(message.data)} bytes"
         )
     rows = np.frombuffer(message.data, np.uint8).reshape(message.height, message.step)

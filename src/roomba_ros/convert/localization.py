@@ -6,16 +6,13 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 
-import numpy as np
-from geometry_msgs.msg import PoseArray, PoseWithCovarianceStamped, TransformStamped
-from numpy.typing import NDArray
+from geometry_msgs.msg import PoseArray, PoseWithCovarianceStamped
 from roomba_robot.msg import Localization
-from sensor_msgs.msg import LaserScan
 
 from roomba.geometry import Pose
 from roomba.perception.localization.estimate import Estimate, Knowledge
-from roomba.perception.matching.scan_view import LidarModel
-from roomba_ros.convert.common import header, planar_pose_message, pose_of_message, theta_of
+from roomba_ros.convert.common import header, planar_pose_message, pose_of_message
+from roomba_ros.convert.errors import MessageError, require_finite
 
 STATES = {
     Knowledge.KNOWN: Localization.KNOWN,
@@ -43,12 +40,21 @@ def localization_message(now: float, estimate: Estimate, frame_id: str) -> Local
     )
 
 
-def knowledge_of(message: Localization) -> Knowledge:
-    """Return how well the place is known; raises ValueError for a state that there is not."""
+def knowledge_of(message: Localization) -> tuple[Knowledge, str]:
+    """Return how well the place is known, and why not better.
+
+    Raises MessageError for a state that there is not, and for numbers that are not finite.
+    """
+    require_finite(
+        "deviations and an agreement",
+        message.position_deviation,
+        message.heading_deviation,
+        message.agreement,
+    )
     for knowledge, state in STATES.items():
         if state == message.state:
-            return knowledge
-    raise ValueError(f"expected a state from 0 to {len(STATES) - 1}, got {message.state}")
+            return knowledge, message.message
+    raise MessageError(f"expected a state from 0 to {len(STATES) - 1}, got {message.state}")
 
 
 def covariance_pose_message(
@@ -68,13 +74,15 @@ def covariance_pose_message(
 def told_pose_of(message: PoseWithCovarianceStamped) -> tuple[Pose, tuple[float, float]]:
     """Return a pose that somebody told, and how unsure it is, m and rad.
 
-    Raises ValueError for numbers that are not finite.
+    Raises MessageError for another frame than the map's, and for numbers that are not finite.
     """
+    frame = message.header.frame_id.lstrip("/")
+    if frame not in ("", "map"):
+        raise MessageError(f"expected the frame 'map', got {frame!r}")
     pose = pose_of_message(message.pose.pose)
     covariance = message.pose.covariance
+    require_finite("variances", covariance[0], covariance[7], covariance[35])
     variances = (max(covariance[0], covariance[7]), covariance[35])
-    if not all(map(math.isfinite, (pose.x, pose.y, pose.theta, *variances))):
-        raise ValueError(f"expected finite numbers, got {pose} with the variances {variances}")
     unsure = tuple(
         math.sqrt(variance) if variance > 0.0 else least
         for variance, least in zip(variances, _LEAST_DEVIATION, strict=True)
@@ -85,30 +93,3 @@ def told_pose_of(message: PoseWithCovarianceStamped) -> tuple[Pose, tuple[float,
 def poses_message(now: float, poses: Iterable[Pose], frame_id: str) -> PoseArray:
     """Return several poses of one frame."""
     return PoseArray(header(now, frame_id), [planar_pose_message(pose) for pose in poses])
-
-
-def ranges_of(message: LaserScan) -> NDArray[np.float32]:
-    """Return a scan's ranges, float32 [beams], m."""
-    return np.array(message.ranges, np.float32)
-
-
-def lidar_of(message: LaserScan, mount: Pose) -> LidarModel:
-    """Return the lidar that a scan is of; ``mount`` is its place in the robot's frame.
-
-    Raises ValueError for a scan without beams, with angles that are not finite, or all one angle.
-    """
-    beams, step = len(message.ranges), message.angle_increment
-    is_fan = math.isfinite(message.angle_min + beams * step) and (step != 0.0 or beams == 1)
-    if not (beams and is_fan):
-        raise ValueError(
-            f"expected a scan with beams at finite angles, each at another one, got {beams} from "
-            f"{message.angle_min} on by {step} rad"
-        )
-    angles = message.angle_min + np.arange(beams) * message.angle_increment
-    return LidarModel(angles, message.range_min, message.range_max, mount)
-
-
-def mount_of(message: TransformStamped) -> Pose:
-    """Return where a part is mounted, as seen from above."""
-    translation = message.transform.translation
-    return Pose(translation.x, translation.y, theta_of(message.transform.rotation))

@@ -1,14 +1,21 @@
-"""Changes of maps as ROS messages: a part of :mod:`roomba_ros.convert.common`."""
+"""What becomes of maps, as ROS messages: a part of :mod:`roomba_ros.convert.common`."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 
 from geometry_msgs.msg import Point
-from roomba_robot.msg import MapChange, MapUpdate
+from roomba_robot.msg import MapChange, Mapping, MapUpdate
 
 from roomba.perception.floors.map_changes import Change, ChangeKind
 from roomba_ros.convert.common import header
+from roomba_ros.convert.errors import require_finite
+
+
+def is_growing_of(message: Mapping) -> bool:
+    """Return whether the map is being made; raises MessageError for an area that is not finite."""
+    require_finite("an area", message.known)
+    return bool(message.is_growing)
 
 
 def update_message(now: float, changes: Iterable[Change], frame_id: str) -> MapUpdate:

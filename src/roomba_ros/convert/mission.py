@@ -14,6 +14,8 @@ from roomba_robot.msg import (
     CleanFeedback,
     CleanGoal,
     MissedArea,
+    Rectangle,
+    Room,
     RoomArray,
     VacuumState,
     ZoneArray,
@@ -25,7 +27,7 @@ from sensor_msgs.msg import BatteryState
 from std_msgs.msg import ColorRGBA
 from visualization_msgs.msg import Marker, MarkerArray
 
-from roomba.grid import FREE, GridFrame, OccupancyMap
+from roomba.grid import GridFrame, OccupancyMap
 from roomba.mission.cleaning.request import (
     CleanMode,
     CleanOutcome,
@@ -38,10 +40,10 @@ from roomba.mission.cleaning.request import (
 )
 from roomba.mission.exploring.exploration import ExploreResult
 from roomba.mission.inputs.senses import Battery, StationBeams
-from roomba.perception.rooms.rooms import Rooms
 from roomba.perception.rooms.zones import WALL_WIDTH, Zone, ZoneKind, Zones, ZonesError
 from roomba.perception.swept.coverage_bits import SWEPT, WANTED
 from roomba_ros.convert.common import header, map_message, quaternion_of
+from roomba_ros.convert.errors import MessageError, require_finite
 
 MODES = {getattr(CleanGoal, mode.name): mode for mode in CleanMode}
 FANS = {getattr(CleanGoal, level.name): level for level in FanLevel}
@@ -55,31 +57,51 @@ _HALO = 1
 """Bits of the code that Create 2's receiver has for the station's beams."""
 _BEAMS = 160
 """Codes from this one on, but for the bits above, are of the station."""
+_LEAST_CORNERS = 3
+"""Of an outline that encloses something."""
 _DRAWN = 0.003
 """m; a path that is shown is as near to that which is driven."""
 _OUTLINE = 0.03
 """m; width of lines around zones."""
 
 
+RoomOutlines = tuple[tuple[str, shapely.Polygon], ...]
+"""Names and outlines, m, of rooms."""
+
+
+class CleanGoalError(MessageError, CleanRefusedError):
+    """A goal of a clean that makes no sense."""
+
+
 def request_of(goal: CleanGoal) -> CleanRequest:
-    """Return what a goal asks for; raises CleanRefusedError for what makes no sense."""
+    """Return what a goal asks for; raises CleanGoalError for what makes no sense."""
     if goal.mode not in MODES:
-        raise CleanRefusedError(f"expected a mode from 0 to {len(MODES) - 1}, got {goal.mode}")
+        raise CleanGoalError(f"expected a mode from 0 to {len(MODES) - 1}, got {goal.mode}")
     if goal.fan not in FANS:
-        raise CleanRefusedError(f"expected a fan level from 0 to {len(FANS) - 1}, got {goal.fan}")
-    mode = MODES[goal.mode]
+        raise CleanGoalError(f"expected a fan level from 0 to {len(FANS) - 1}, got {goal.fan}")
+    mode, zones = MODES[goal.mode], tuple(map(_corners, goal.zones))
     spot = None if goal.spot_is_here else (goal.spot.x, goal.spot.y)
-    if mode is CleanMode.SPOT and spot is not None and not all(map(math.isfinite, spot)):
-        raise CleanRefusedError(f"expected a spot of finite numbers, m, got {spot}")
-    return CleanRequest(
-        mode,
-        tuple(goal.rooms),
-        tuple((zone.min_x, zone.min_y, zone.max_x, zone.max_y) for zone in goal.zones),
-        spot if mode is CleanMode.SPOT else None,
-        goal.passes or 1,
-        FANS[goal.fan],
-        goal.in_order,
-    )
+    if not all(map(math.isfinite, spot or ())):
+        raise CleanGoalError(f"expected a spot of finite numbers, m, got {spot}")
+    try:
+        request = CleanRequest(
+            mode,
+            tuple(goal.rooms),
+            zones,
+            spot if mode is CleanMode.SPOT else None,
+            goal.passes or 1,
+            FANS[goal.fan],
+            goal.in_order,
+        )
+    except CleanRefusedError as error:
+        raise CleanGoalError(str(error)) from error
+    if not np.isfinite(zones).all():
+        raise CleanGoalError(f"expected zones of finite numbers, m, got {zones}")
+    return request
+
+
+def _corners(zone: Rectangle) -> tuple[float, float, float, float]:
+    return zone.min_x, zone.min_y, zone.max_x, zone.max_y
 
 
 def result_message(result: CleanResult) -> CleanResultMessage:
@@ -132,14 +154,14 @@ def feedback_message(state: VacuumState) -> CleanFeedback:
     )
 
 
-def battery_of(message: BatteryState, voltage: float, is_docked: bool) -> Battery:
+def battery_of(message: BatteryState, voltage: float, is_docked: bool = False) -> Battery:
     """Return the battery; charges are in Ah at the nominal ``voltage``, V.
 
-    Raises ValueError for a level that is none.
+    A capacity that is not finite is not measured. Raises MessageError for a level that is none.
     """
     level = message.percentage
     if not 0.0 <= level <= 1.0:
-        raise ValueError(f"expected a percentage from 0 to 1, got {level}")
+        raise MessageError(f"expected a percentage from 0 to 1, got {level}")
     energy = message.capacity * voltage
     if not (math.isfinite(energy) and energy > 0.0):
         return Battery(level, is_docked=is_docked)
@@ -153,19 +175,23 @@ def beams_of(code: int) -> StationBeams:
     return StationBeams(bool(code & _HALO), bool(code & _GREEN), bool(code & _RED))
 
 
-def rooms_of(message: RoomArray, occupancy: OccupancyMap) -> Rooms:
-    """Return the rooms of a map; raises RoomsError for those of another one."""
-    outlines = [
-        (
-            room.name,
-            shapely.Polygon(
-                [(corner.x, corner.y) for corner in room.outline.points],
-                [[(corner.x, corner.y) for corner in hole.points] for hole in room.holes],
-            ),
-        )
-        for room in message.rooms
-    ]
-    return Rooms.from_outlines(occupancy.frame, occupancy.values == FREE, outlines)
+def outlines_of(message: RoomArray) -> RoomOutlines:
+    """Return the names and outlines of rooms, m; raises MessageError for a broken outline."""
+    return tuple((room.name, _outline_of(room)) for room in message.rooms)
+
+
+def _outline_of(room: Room) -> shapely.Polygon:
+    polygons = (room.outline, *room.holes)
+    rings = [[(point.x, point.y) for point in polygon.points] for polygon in polygons]
+    for ring in rings:
+        numbers = (number for point in ring for number in point)
+        require_finite(f"an outline of the room {room.name!r}", *numbers)
+        if len(ring) < _LEAST_CORNERS:
+            raise MessageError(
+                f"expected {_LEAST_CORNERS} corners or more of the room {room.name!r}, "
+                f"got {len(ring)}"
+            )
+    return shapely.Polygon(rings[0], rings[1:])
 
 
 def zone_of(message: ZoneMessage) -> Zone:
@@ -176,6 +202,14 @@ def zone_of(message: ZoneMessage) -> Zone:
         )
     points = tuple((point.x, point.y) for point in message.points)
     return Zone(message.name, KINDS[message.kind], points)
+
+
+def zones_of(message: ZoneArray) -> Zones:
+    """Return all zones; raises MessageError when one of them makes no sense."""
+    try:
+        return Zones(tuple(zone_of(zone) for zone in message.zones))
+    except ZonesError as error:
+        raise MessageError(str(error)) from error
 
 
 def zones_message(now: float, zones: Zones, frame_id: str) -> ZoneArray:

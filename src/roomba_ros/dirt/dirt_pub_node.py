@@ -5,7 +5,9 @@ from __future__ import annotations
 import rospy
 from std_msgs.msg import Float32
 
+from roomba_ros.convert.values import number_of
 from roomba_ros.runtime.node import run_node
+from roomba_ros.runtime.subscriptions import subscribe
 
 
 class DirtPubNode:
@@ -21,7 +23,7 @@ class DirtPubNode:
         """Connect."""
         self._dirt: float | None = None
         self._publisher = rospy.Publisher("dirt", Float32, queue_size=1)
-        rospy.Subscriber("dirt_raw", Float32, self._on_dirt, queue_size=1)
+        subscribe("dirt_raw", Float32, number_of, self._on_dirt)
 
     def tick(self, now: float) -> None:
         """Publish the newest measurement, once there is one."""
@@ -31,8 +33,8 @@ class DirtPubNode:
     def stop(self) -> None:
         """Nothing of this node moves the robot."""
 
-    def _on_dirt(self, message: Float32) -> None:
-        self._dirt = message.data
+    def _on_dirt(self, dirt: float) -> None:
+        self._dirt = dirt
 
 
 def main() -> None:

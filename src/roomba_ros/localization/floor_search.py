@@ -33,8 +33,7 @@ class FloorSearch:
         """Look a little further; return the floor, and the place on it, once it is clear."""
         seen, localizer = self._place.seen, self._place.localizer
         if seen is not None and localizer is not None:
-            _, ranges, lidar = seen
-            self._recognition.see(lidar.view(ranges), localizer.reckoned)
+            self._recognition.see(seen.lidar.view(seen.ranges), localizer.reckoned)
         self._recognition.advance()
         return self._recognition.place
 

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import math
 import threading
 from collections import deque
+from dataclasses import replace
 from typing import Final
 
-import numpy as np
 import rospy
 from geometry_msgs.msg import PoseWithCovarianceStamped
 from nav_msgs.msg import OccupancyGrid, Odometry
-from numpy.typing import NDArray
 from roomba_robot.msg import WheelDrop
 from sensor_msgs.msg import Imu, LaserScan
 from std_srvs.srv import Empty, EmptyRequest, EmptyResponse
@@ -22,13 +20,24 @@ from roomba.geometry import Pose
 from roomba.grid import OccupancyMap
 from roomba.perception.localization.estimate import Estimate, Knowledge
 from roomba.perception.localization.localizer import Localizer
-from roomba.perception.matching.scan_view import LidarModel
 from roomba.perception.slam.mapper import Mapper
-from roomba_ros.convert.common import map_of, pose_of_odometry
-from roomba_ros.convert.localization import SAME_TIME, lidar_of, mount_of, ranges_of, told_pose_of
+from roomba_ros.convert.common import map_of
+from roomba_ros.convert.localization import SAME_TIME, told_pose_of
+from roomba_ros.convert.mounts import Mounts, transforms_of
+from roomba_ros.convert.readings import (
+    GyroReading,
+    OdometryReading,
+    Sides,
+    odometry_of,
+    turning_of,
+    wheel_drop_of,
+)
+from roomba_ros.convert.scan import Scan, ScanDecoder
 from roomba_ros.localization.kept_pose import KeptPose
 from roomba_ros.localization.place_topics import PlaceTopics
 from roomba_ros.localization.waiting_scans import WaitingScans
+from roomba_ros.runtime.node import frame_id
+from roomba_ros.runtime.subscriptions import subscribe
 
 _KEPT: Final = 40
 """Messages of odometry, and of the gyro, that wait for the next tick: two seconds of them."""
@@ -51,14 +60,14 @@ class LocalizationTopics:
         self._lock = threading.Lock()
         self._tick_lock = threading.RLock()
         self._odometry: deque[tuple[float, Pose]] = deque(maxlen=_KEPT)
-        self._gyro: deque[tuple[float, float]] = deque(maxlen=_KEPT)
+        self._gyro: deque[GyroReading] = deque(maxlen=_KEPT)
         self._scans = WaitingScans()
         self._told: tuple[Pose, tuple[float, float]] | None = None
         self._new_map: OccupancyMap | None = None
         self._is_asked = False
         self._is_lifted = False
-        self._lidar: tuple[tuple[object, ...], LidarModel] | None = None
-        self._mounts: dict[str, Pose] = {}
+        self._mounts = Mounts()
+        self._decoder = ScanDecoder.on_robot(self._mounts, frame_id("base_link"))
         self._stamp = 0.0
         self._newest: tuple[float, Pose] | None = None
         self._kept = KeptPose()
@@ -67,8 +76,8 @@ class LocalizationTopics:
         """Who knows the place instead, while a map is being made."""
         self.is_mapping_held = False
         """Whether the mapper must not be shown anything just now: its map is being made whole."""
-        self.seen: tuple[float, NDArray[np.float32], LidarModel] | None = None
-        """The newest scan that was used, and its stamp, s."""
+        self.seen: Scan | None = None
+        """The newest scan that was used."""
         self.is_map_own = False
         """Whether this node makes the map itself: what comes by the topic is left out then."""
         self.is_asked_to_search = False
@@ -78,13 +87,15 @@ class LocalizationTopics:
         """Connect."""
         self._kept.start()
         self._place.start()
-        rospy.Subscriber("map", OccupancyGrid, self._on_map, queue_size=1)
-        rospy.Subscriber("/tf_static", TFMessage, self._on_mounts, queue_size=10)
-        rospy.Subscriber("odom", Odometry, self._on_odometry, queue_size=10, tcp_nodelay=True)
-        rospy.Subscriber("imu", Imu, self._on_imu, queue_size=10, tcp_nodelay=True)
-        rospy.Subscriber("scan", LaserScan, self._scans.put, queue_size=5, tcp_nodelay=True)
-        rospy.Subscriber("wheel_drop", WheelDrop, self._on_wheel_drop, queue_size=1)
-        rospy.Subscriber("initialpose", PoseWithCovarianceStamped, self._on_told, queue_size=1)
+        subscribe("map", OccupancyGrid, self._given_map_of, self._on_map)
+        subscribe("/tf_static", TFMessage, transforms_of, self._mounts.add, queue_size=10)
+        subscribe("odom", Odometry, odometry_of, self._on_odometry, queue_size=10, tcp_nodelay=True)
+        subscribe("imu", Imu, turning_of, self._gyro.append, queue_size=10, tcp_nodelay=True)
+        subscribe(
+            "scan", LaserScan, self._decoder.decode, self._scans.put, queue_size=5, tcp_nodelay=True
+        )
+        subscribe("wheel_drop", WheelDrop, wheel_drop_of, self._on_wheel_drop)
+        subscribe("initialpose", PoseWithCovarianceStamped, told_pose_of, self._on_told)
         rospy.Service("global_localization", Empty, self._on_forget)
 
     @property
@@ -202,8 +213,8 @@ class LocalizationTopics:
         samples = list(self._gyro)
         if not samples:
             return None
-        nearest = min(samples, key=lambda sample: abs(sample[0] - stamp))
-        return nearest[1] if abs(nearest[0] - stamp) < SAME_TIME else None
+        nearest = min(samples, key=lambda sample: abs(sample.stamp - stamp))
+        return nearest.turning if abs(nearest.stamp - stamp) < SAME_TIME else None
 
     def _hear_people(self, localizer: Localizer) -> None:
         with self._lock:
@@ -229,79 +240,28 @@ class LocalizationTopics:
                     self._stamp,
                 )
             return
-        stamp = scan.header.stamp.to_sec() or self._stamp
-        try:
-            lidar = self._lidar_of(scan)
-        except ValueError as error:
-            rospy.logwarn_throttle(10.0, "scan refused: %s", error)
-            return
-        ranges = ranges_of(scan)
-        self.seen = (stamp, ranges, lidar)
+        self.seen = scan = replace(scan, stamp=scan.stamp or self._stamp)
         if self.mapper is None:
-            localizer.see(stamp, ranges, lidar)
+            localizer.see(scan.stamp, scan.ranges, scan.lidar)
         elif not self.is_mapping_held:
-            self.mapper.see(stamp, ranges, lidar)
+            self.mapper.see(scan.stamp, scan.ranges, scan.lidar)
 
-    def _lidar_of(self, scan: LaserScan) -> LidarModel:
-        """Return the lidar of a scan, made anew only when something of it changed."""
-        mount = self._mounts.get(scan.header.frame_id, Pose())
-        key = (
-            len(scan.ranges),
-            scan.angle_min,
-            scan.angle_increment,
-            scan.range_min,
-            scan.range_max,
-            mount,
-        )
-        if self._lidar is None or self._lidar[0] != key:
-            self._lidar = (key, lidar_of(scan, mount))
-        return self._lidar[1]
+    def _on_odometry(self, told: OdometryReading) -> None:
+        self._odometry.append((told.stamp or rospy.get_time(), told.pose))
 
-    def _on_odometry(self, message: Odometry) -> None:
-        stamp = message.header.stamp.to_sec() or rospy.get_time()
-        pose = pose_of_odometry(message)
-        if not pose.is_finite:
-            rospy.logwarn_throttle(10.0, "odom refused: expected finite numbers, got %s", pose)
-            return
-        self._odometry.append((stamp, pose))
+    def _given_map_of(self, message: OccupancyGrid) -> OccupancyMap | None:
+        """Return the map of a message; None if this node made it itself."""
+        return None if self.is_map_own else map_of(message)
 
-    def _on_imu(self, message: Imu) -> None:
-        turning = message.angular_velocity.z
-        if not math.isfinite(turning):
-            rospy.logwarn_throttle(10.0, "imu refused: expected finite rad/s, got %s", turning)
-            return
-        self._gyro.append((message.header.stamp.to_sec(), turning))
-
-    def _on_map(self, message: OccupancyGrid) -> None:
-        if self.is_map_own:
-            return
-        try:
-            occupancy = map_of(message)
-        except ValueError as error:
-            rospy.logwarn("map refused: %s", error)
-            return
+    def _on_map(self, occupancy: OccupancyMap | None) -> None:
         with self._lock:
             self._new_map = occupancy
 
-    def _on_mounts(self, message: TFMessage) -> None:
-        for transform in message.transforms:
-            self._mounts[transform.child_frame_id] = mount_of(transform)
-
-    def _on_wheel_drop(self, message: WheelDrop) -> None:
+    def _on_wheel_drop(self, dropped: Sides) -> None:
         # One wheel hangs over an edge; a robot that is held has both in the air.
-        self._is_lifted = message.is_left_dropped and message.is_right_dropped
+        self._is_lifted = dropped.left and dropped.right
 
-    def _on_told(self, message: PoseWithCovarianceStamped) -> None:
-        if message.header.frame_id not in ("", "map"):
-            rospy.logwarn(
-                "initialpose refused: expected the frame 'map', got %r", message.header.frame_id
-            )
-            return
-        try:
-            told = told_pose_of(message)
-        except ValueError as error:
-            rospy.logwarn("initialpose refused: %s", error)
-            return
+    def _on_told(self, told: tuple[Pose, tuple[float, float]]) -> None:
         with self._lock:
             self._told = told
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 import threading
 from typing import Final
 
-from sensor_msgs.msg import LaserScan
+from roomba.clock import ClockJumps
+from roomba_ros.convert.scan import Scan
 
 _KEPT: Final = 5
 """Scans; on a busy machine odometry comes later than several of them."""
@@ -17,20 +18,20 @@ class WaitingScans:
     def __init__(self) -> None:
         """Begin with none."""
         self._lock = threading.Lock()
-        self._scans: list[LaserScan] = []
+        self._jumps = ClockJumps()
+        self._scans: list[Scan] = []
 
-    def put(self, scan: LaserScan) -> None:
+    def put(self, scan: Scan) -> None:
         """Let a scan wait."""
         with self._lock:
-            if self._scans and scan.header.stamp < self._scans[-1].header.stamp:
-                # The clock was set back.
+            if self._jumps.at(scan.stamp):
                 self._scans.clear()
             self._scans = [*self._scans[1 - _KEPT :], scan]
 
-    def take(self, stamp: float) -> LaserScan | None:
+    def take(self, stamp: float) -> Scan | None:
         """Return the newest that was taken by ``stamp``, s, if there is one; older ones go."""
         with self._lock:
-            ready = sum(scan.header.stamp.to_sec() <= stamp for scan in self._scans)
+            ready = sum(scan.stamp <= stamp for scan in self._scans)
             scan = self._scans[ready - 1] if ready else None
             del self._scans[:ready]
         return scan
@@ -39,4 +40,4 @@ class WaitingScans:
     def oldest(self) -> float | None:
         """When the oldest that waits was taken, s."""
         with self._lock:
-            return self._scans[0].header.stamp.to_sec() if self._scans else None
+            return self._scans[0].stamp if self._scans else None

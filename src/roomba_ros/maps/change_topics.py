@@ -46,10 +46,9 @@ class ChangeTopics:
         seen, changes = self._place.seen, self._changes
         if changes is None or seen is None or estimate.knowledge is not Knowledge.KNOWN:
             return
-        stamp, ranges, lidar = seen
-        if not 0.0 <= stamp - self._seen < _PERIOD:
-            self._seen = stamp
-            changes.see(stamp, ranges, lidar.arrays(), estimate.pose)
+        if not 0.0 <= seen.stamp - self._seen < _PERIOD:
+            self._seen = seen.stamp
+            changes.see(seen.stamp, seen.ranges, seen.lidar.arrays(), estimate.pose)
         if is_docked:
             self._offer(now, changes)
 

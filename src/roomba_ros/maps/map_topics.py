@@ -11,6 +11,7 @@ from roomba.configuration.robot import RobotConfig
 from roomba.errors import ConfigError
 from roomba.perception.localization.estimate import Estimate
 from roomba.storage.map_store import MapStoreError
+from roomba_ros.convert.readings import is_docked_of
 from roomba_ros.localization.floor_search import FloorSearch
 from roomba_ros.localization.topics import LocalizationTopics
 from roomba_ros.maps.change_topics import ChangeTopics
@@ -22,6 +23,7 @@ from roomba_ros.maps.own_map import GIVEN, NO_STATION, NONE, OWN, OwnMap
 from roomba_ros.rooms.topics import RoomTopics
 from roomba_ros.runtime.background import Background
 from roomba_ros.runtime.parameters import read_mapping_config
+from roomba_ros.runtime.subscriptions import subscribe
 
 _EXPLORE: Final = "the map is being made: explore, or walk about"
 
@@ -66,7 +68,7 @@ class MapTopics:
         if not (self._is_own and self._memory.is_there):
             # Else whoever explores would take the map for whole before it is taken up.
             self._own.say(rospy.get_time(), is_growing=False)
-        rospy.Subscriber("dock_status", DockStatus, self._on_dock, queue_size=1)
+        subscribe("dock_status", DockStatus, is_docked_of, self._on_dock)
         self._services.start(is_own=self._is_own)
 
     @property
@@ -158,5 +160,5 @@ class MapTopics:
             own.tell_growing(now, grown)
         maker.keep(now)
 
-    def _on_dock(self, message: DockStatus) -> None:
-        self._is_docked = message.is_docked
+    def _on_dock(self, is_docked: bool) -> None:
+        self._is_docked = is_docked

@@ -14,16 +14,17 @@ from roomba_robot.msg import Mapping, ZoneArray
 
 from roomba.geometry import Pose
 from roomba.grid import OccupancyMap
-from roomba.perception.rooms.zones import Zones, ZonesError
+from roomba.perception.rooms.zones import Zones
 from roomba.storage.map_store import MapStoreError, StoredMap
 from roomba_ros.convert.common import header, map_message, pose_message
-from roomba_ros.convert.mission import zone_of
+from roomba_ros.convert.mission import zones_of
 from roomba_ros.localization.topics import LocalizationTopics
 from roomba_ros.maps.change_topics import ChangeTopics
 from roomba_ros.maps.map_memory import MapMemory
 from roomba_ros.maps.map_shelf import MapShelf
 from roomba_ros.rooms.topics import RoomTopics
 from roomba_ros.runtime.background import Background
+from roomba_ros.runtime.subscriptions import subscribe
 
 GIVEN: Final = "given"
 NONE: Final = "none"
@@ -76,7 +77,7 @@ class OwnMap:
                 "station_pose", PoseStamped, queue_size=1, latch=True
             )
             self._place.is_map_own = True
-        rospy.Subscriber("zones", ZoneArray, self._on_zones, queue_size=1)
+        subscribe("zones", ZoneArray, zones_of, self._on_zones)
 
     def use(self, name: str, stored: StoredMap, at: Pose | None = None) -> None:
         """Go on with a stored map; the robot is ``at`` a pose of it, or must find out."""
@@ -178,11 +179,6 @@ class OwnMap:
 
     # ---------------------------------------------------------------- hearing
 
-    def _on_zones(self, message: ZoneArray) -> None:
-        try:
-            zones = Zones(tuple(zone_of(zone) for zone in message.zones))
-        except (ZonesError, TypeError) as error:
-            rospy.logwarn("zones are not saved with the map: %s", error)
-            return
+    def _on_zones(self, zones: Zones) -> None:
         with self.lock:
             self._zones = zones

@@ -10,9 +10,11 @@ from actionlib_msgs.msg import GoalID
 from geometry_msgs.msg import Twist as TwistMessage
 from std_msgs.msg import Bool, Float32
 
+from roomba.clock import ClockJumps
 from roomba.configuration.robot import RobotConfig
-from roomba.geometry import Twist
+from roomba.geometry import STANDSTILL, Twist
 from roomba_ros.convert.common import twist_message, twist_of
+from roomba_ros.runtime.subscriptions import subscribe
 
 _STOP_REPEATS: Final = 5
 """Ticks for which a stop is repeated before the drive is left to others."""
@@ -37,6 +39,7 @@ class MissionDrive:
         self._others_may_until = -math.inf
         self._others_drove = -math.inf
         self._now = -math.inf
+        self._jumps = ClockJumps()
         self._fan: float | None = None
 
     def start(self) -> None:
@@ -51,7 +54,7 @@ class MissionDrive:
             rospy.Publisher(f"{action}/cancel", GoalID, queue_size=1)
             for action in ("walk_to_point", "move_base")
         ]
-        rospy.Subscriber("cmd_vel", TwistMessage, self._on_other_command, queue_size=1)
+        subscribe("cmd_vel", TwistMessage, twist_of, self._on_other_command)
 
     def take(self) -> None:
         """Let all walks end: the mission is about to drive."""
@@ -62,8 +65,7 @@ class MissionDrive:
 
     def follow_clock(self, now: float) -> None:
         """Tell what time it is, s of the robot's clock."""
-        if now < self._now:
-            # The clock was set back.
+        if self._jumps.at(now):
             self._others_may_until = self._others_drove = -math.inf
         self._now = now
 
@@ -99,7 +101,6 @@ class MissionDrive:
         if self._stops_left > 0:
             self._command.publish(TwistMessage())
 
-    def _on_other_command(self, message: TwistMessage) -> None:
-        if twist_of(message) == Twist() or self._now < self._others_may_until:
-            return
-        self._others_drove = self._now
+    def _on_other_command(self, twist: Twist) -> None:
+        if twist != STANDSTILL and self._now >= self._others_may_until:
+            self._others_drove = self._now

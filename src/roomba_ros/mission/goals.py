@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 from roomba_robot.msg import (
@@ -22,7 +23,7 @@ from roomba_robot.msg import CleanResult as CleanResultMessage
 from roomba_robot.msg import ExploreResult as ExploreResultMessage
 
 from roomba.grid import OccupancyMap
-from roomba.mission.cleaning.request import CleanOutcome, CleanResult
+from roomba.mission.cleaning.request import CleanOutcome, CleanRequest, CleanResult
 from roomba.mission.exploring.exploration import ExploreResult
 from roomba.mission.inputs.senses import Senses
 from roomba.mission.mission import CommandRefusedError, Mission
@@ -51,6 +52,9 @@ class Ended:
 
 class MissionGoal(ActionGoal):
     """One thing that the mission is to do."""
+
+    def check(self) -> None:
+        """Of most goals it is enough that they came."""
 
     @abstractmethod
     def begin(self, mission: Mission, senses: Senses) -> None:
@@ -99,9 +103,17 @@ class CleaningGoal(MissionGoal):
 
     name, action = "clean", CleanAction
 
+    @cached_property
+    def _request(self) -> CleanRequest:
+        return request_of(self._handle.get_goal())
+
+    def check(self) -> None:
+        """Raise MessageError if the request makes no sense."""
+        assert self._request
+
     def begin(self, mission: Mission, senses: Senses) -> None:
         """Let the mission clean."""
-        mission.clean(request_of(self._handle.get_goal()), senses)
+        mission.clean(self._request, senses)
 
     def follow(self, mission: Mission, senses: Senses, ended: Ended) -> bool:
         """Tell its end if there is a result."""

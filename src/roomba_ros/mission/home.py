@@ -28,7 +28,7 @@ from roomba.configuration.mission import MissionConfig
 from roomba.configuration.robot import RobotConfig
 from roomba.errors import RoombaError, RoomsError
 from roomba.geometry import Pose
-from roomba.grid import OccupancyMap
+from roomba.grid import FREE, OccupancyMap
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.perception.matching.surface_field import SurfaceField
 from roomba.perception.rooms.rooms import Rooms
@@ -36,10 +36,18 @@ from roomba.perception.rooms.zones import Zones, ZonesError
 from roomba.planning.coverage.floor.floor import FINE
 from roomba.storage.map_bound import map_digest
 from roomba.storage.zones import load_zones, save_zones
-from roomba_ros.convert.common import map_of
-from roomba_ros.convert.mission import names_of, rooms_of, zone_of, zones_markers, zones_message
+from roomba_ros.convert.common import ToldMap, pose_in_map, told_map_of
+from roomba_ros.convert.mapping import is_growing_of
+from roomba_ros.convert.mission import (
+    RoomOutlines,
+    names_of,
+    outlines_of,
+    zone_of,
+    zones_markers,
+    zones_message,
+)
 from roomba_ros.runtime.background import Background
-from roomba_ros.walking.walk_goals import pose_in_map
+from roomba_ros.runtime.subscriptions import subscribe
 
 GROWING: Final = "growing"
 """The digest of maps that are being made."""
@@ -88,14 +96,14 @@ class HomeTopics:
         self._digest = ""
         self._field: SurfaceField | None = None
         self._station: Pose | None = None
-        self._rooms_message: RoomArray | None = None
+        self._outlines: RoomOutlines | None = None
         self._zones: Zones | None = None
         self._map_came = 0.0
         self._made: KnownHome | None = None
         self._wanted = self._tried = 0
         self._is_edited = False
         self._is_mapped: bool | None = None
-        self._held: tuple[float, OccupancyGrid] | None = None
+        self._held: tuple[float, ToldMap] | None = None
         self.trouble = ""
         """Why there is no site of this map, in words; empty while one may still come."""
 
@@ -103,10 +111,10 @@ class HomeTopics:
         """Connect."""
         self._zones_publisher = rospy.Publisher("zones", ZoneArray, queue_size=1, latch=True)
         self._markers = rospy.Publisher("zones/markers", MarkerArray, queue_size=1, latch=True)
-        rospy.Subscriber("mapping", Mapping, self._on_mapping, queue_size=1)
-        rospy.Subscriber("map", OccupancyGrid, self._on_map, queue_size=1)
-        rospy.Subscriber("rooms", RoomArray, self._on_rooms, queue_size=1)
-        rospy.Subscriber("station_pose", PoseStamped, self._on_station, queue_size=1)
+        subscribe("mapping", Mapping, is_growing_of, self._on_mapping)
+        subscribe("map", OccupancyGrid, told_map_of, self._on_map)
+        subscribe("rooms", RoomArray, outlines_of, self._on_rooms)
+        subscribe("station_pose", PoseStamped, pose_in_map, self._on_station)
         rospy.Service("set_zone", SetZone, self._on_set)
         rospy.Service("remove_zone", RemoveZone, self._on_remove)
 
@@ -137,7 +145,7 @@ class HomeTopics:
             self._take_held()
         with self._lock:
             is_first = self._tried == self._wanted == 0 and not self.missing
-            waits = self._rooms_message is None
+            waits = self._outlines is None
             is_late = time.monotonic() > self._map_came + _ROOMS_DEADLINE
             if is_first and (is_late or not waits):
                 self._make()
@@ -151,7 +159,7 @@ class HomeTopics:
     def _make_now(self) -> None:
         with self._lock:
             wanted, occupancy, station = self._wanted, self._map, self._station
-            message, zones, field = self._rooms_message, self._zones, self._field
+            outlines, zones, field = self._outlines, self._zones, self._field
             digest = self._digest
         made, trouble = None, ""
         began = time.monotonic()
@@ -167,7 +175,7 @@ class HomeTopics:
                     self._robot,
                     self._mission,
                     self._docking,
-                    _rooms(message, occupancy),
+                    _rooms(outlines, occupancy),
                     zones,
                     is_growing=digest == GROWING,
                 )
@@ -186,17 +194,17 @@ class HomeTopics:
             self._tried, self._made, self.trouble = wanted, made, trouble
             self._field = field
 
-    def _on_mapping(self, message: Mapping) -> None:
-        self._is_mapped = message.is_growing
+    def _on_mapping(self, is_growing: bool) -> None:
+        self._is_mapped = is_growing
         self._take_held()
 
-    def _on_map(self, message: OccupancyGrid) -> None:
-        if message.info.map_load_time.is_zero() and self._is_mapped is None:
+    def _on_map(self, told: ToldMap) -> None:
+        if not told.was_loaded and self._is_mapped is None:
             # It may be one that is being made; who makes it says so, if there is somebody.
             with self._lock:
-                self._held = (time.monotonic(), message)
+                self._held = (time.monotonic(), told)
             return
-        self._hear_map(message, time.monotonic())
+        self._hear_map(told, time.monotonic())
 
     def _take_held(self) -> None:
         """Take the map that waited to be known for a whole or a growing one."""
@@ -205,14 +213,10 @@ class HomeTopics:
         if held is not None:
             self._hear_map(held[1], held[0])
 
-    def _hear_map(self, message: OccupancyGrid, came: float) -> None:
-        try:
-            occupancy = map_of(message)
-        except ValueError as error:
-            rospy.logwarn("map refused: %s", error)
-            return
+    def _hear_map(self, told: ToldMap, came: float) -> None:
+        occupancy = told.occupancy
         # A map that is being made was never loaded; other people's may not say when they were.
-        is_growing = bool(self._is_mapped) and message.info.map_load_time.is_zero()
+        is_growing = bool(self._is_mapped) and not told.was_loaded
         digest = GROWING if is_growing else map_digest(occupancy)
         with self._lock:
             if digest == self._digest and not is_growing:
@@ -227,24 +231,16 @@ class HomeTopics:
                 self._tell()
             if not is_first:
                 # Rooms of this map are told after it.
-                self._rooms_message = None
+                self._outlines = None
                 self._make(is_edited=not is_growing)
 
-    def _on_rooms(self, message: RoomArray) -> None:
+    def _on_rooms(self, outlines: RoomOutlines) -> None:
         with self._lock:
-            before, self._rooms_message = self._rooms_message, message
-            is_new = before is None or before.rooms != message.rooms
-            if is_new and self._wanted > 0:
+            before, self._outlines = self._outlines, outlines
+            if before != outlines and self._wanted > 0:
                 self._make()
 
-    def _on_station(self, message: PoseStamped) -> None:
-        try:
-            station = pose_in_map(message)
-            if not station.is_finite:
-                raise RoombaError(f"expected finite numbers, got {station}")
-        except RoombaError as error:
-            rospy.logwarn("station_pose refused: %s", error)
-            return
+    def _on_station(self, station: Pose) -> None:
         with self._lock:
             is_new, self._station = station != self._station, station
             if is_new and self._wanted > 0:
@@ -324,11 +320,11 @@ def _require_small(occupancy: OccupancyMap) -> None:
         )
 
 
-def _rooms(message: RoomArray | None, occupancy: OccupancyMap) -> Rooms | None:
-    if message is None or not message.rooms:
+def _rooms(outlines: RoomOutlines | None, occupancy: OccupancyMap) -> Rooms | None:
+    if not outlines:
         return None
     try:
-        return rooms_of(message, occupancy)
+        return Rooms.from_outlines(occupancy.frame, occupancy.values == FREE, outlines)
     except (RoomsError, ValueError) as error:
         rospy.logwarn("the mission knows no rooms: %s", error)
         return None

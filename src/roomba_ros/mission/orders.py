@@ -10,7 +10,6 @@ from dataclasses import dataclass, field
 from functools import partial
 from typing import Final
 
-import actionlib
 import rospy
 from roomba_robot.msg import VacuumState
 from std_msgs.msg import Empty, String
@@ -20,7 +19,10 @@ from roomba.errors import RoombaError
 from roomba.mission.inputs.senses import Senses
 from roomba.mission.mission import Mission
 from roomba.mission.phases.machine import Event, Phase
+from roomba_ros.convert.values import data_of
 from roomba_ros.mission.goals import GOALS, Ended, MissionGoal
+from roomba_ros.runtime.action_goal import server_of
+from roomba_ros.runtime.subscriptions import subscribe
 
 SENSES_DEADLINE: Final = 6.0
 """s of wall time after which goals are taken, and rejected, though nothing is known yet."""
@@ -68,9 +70,14 @@ class MissionOrders:
 
     def start(self) -> None:
         """Connect; goals are taken from the first :meth:`serve` on."""
-        self._servers = [self._server_of(kind) for kind in GOALS]
+        self._servers = [
+            server_of(
+                kind, self._asked.append, lambda identity: self._asked.append(_Cancel(identity))
+            )
+            for kind in GOALS
+        ]
         self._beep = rospy.Publisher("beep", Empty, queue_size=1)
-        rospy.Subscriber("emergency_stop", String, self._on_emergency_stop, queue_size=10)
+        subscribe("emergency_stop", String, data_of, self._on_emergency_stop, queue_size=10)
         for name, event in (
             ("pause", Event.PAUSE),
             ("resume", Event.RESUME),
@@ -172,15 +179,6 @@ class MissionOrders:
         elif reason == "" and is_held:
             mission.command(Event.RELEASE, senses)
 
-    def _server_of(self, kind: type[MissionGoal]) -> actionlib.ActionServer:
-        return actionlib.ActionServer(
-            kind.name,
-            kind.action,
-            lambda handle: self._asked.append(kind(handle)),
-            lambda handle: self._asked.append(_Cancel(kind(handle).identity)),
-            auto_start=False,
-        )
-
     def _on_order(self, event: Event) -> TriggerResponse:
         order = _Order(event)
         self._asked.append(order)
@@ -196,8 +194,8 @@ class MissionOrders:
         self._beep.publish()
         return TriggerResponse(True, "it beeped")
 
-    def _on_emergency_stop(self, message: String) -> None:
-        self._emergency = message.data
+    def _on_emergency_stop(self, reason: str) -> None:
+        self._emergency = reason
 
 
 def _take_ended(mission: Mission) -> Ended:

@@ -6,7 +6,9 @@ import math
 import threading
 import time
 from collections import deque
-from typing import Final
+from collections.abc import Callable
+from functools import partial
+from typing import Any, Final
 
 import rospy
 from geometry_msgs.msg import PoseStamped
@@ -16,16 +18,33 @@ from sensor_msgs.msg import BatteryState, LaserScan
 from std_msgs.msg import Float32, UInt16
 from tf2_msgs.msg import TFMessage
 
+from roomba.clock import ClockJumps
 from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose, Twist
-from roomba.mission.inputs.senses import Battery, Senses
+from roomba.mission.inputs.senses import Battery, Senses, StationBeams
 from roomba.perception.localization.estimate import Knowledge
+from roomba.perception.matching.beams import LidarBeams
 from roomba.perception.matching.scan_view import LidarModel
 from roomba.perception.things.layer import ThingLayer
-from roomba_ros.convert.common import cliff_of, pose_of, pose_of_odometry, twist_of
-from roomba_ros.convert.localization import knowledge_of, lidar_of, mount_of, ranges_of
+from roomba_ros.convert.localization import knowledge_of
 from roomba_ros.convert.mission import battery_of, beams_of
+from roomba_ros.convert.mounts import Mounts, transforms_of
+from roomba_ros.convert.readings import (
+    OdometryReading,
+    Sides,
+    StampedPose,
+    bumper_of,
+    cliff_of,
+    is_docked_of,
+    odometry_of,
+    stamped_pose_of,
+    wheel_drop_of,
+)
+from roomba_ros.convert.scan import ScanDecoder
+from roomba_ros.convert.values import data_of, number_of
 from roomba_ros.localization.waiting_scans import WaitingScans
+from roomba_ros.runtime.node import frame_id
+from roomba_ros.runtime.subscriptions import subscribe
 
 OLDEST_POSE: Final = 0.5
 _SILENCE: Final = 0.4
@@ -48,40 +67,44 @@ class MissionSenses:
         """Connect nothing yet."""
         self._config = config
         self._lock = threading.Lock()
-        self._odometry: deque[tuple[float, Pose, Twist]] = deque(maxlen=_KEPT)
-        self._pose: tuple[float, Pose] | None = None
+        self._odometry: deque[OdometryReading] = deque(maxlen=_KEPT)
+        self._jumps = ClockJumps()
+        self._pose: StampedPose | None = None
         self._heard = 0.0
         self._correction = Pose()
-        self._corrected: tuple[float, Pose] | None = None
+        self._corrected: StampedPose | None = None
         self._knowledge, self._trouble = Knowledge.KNOWN, ""
-        self._bumper = self._cliff = (False, False)
+        self._bumper = self._cliff = Sides(False, False)
         self._is_lifted = False
         self._battery: Battery | None = None
         self._is_docked: bool | None = None
-        self._beams = beams_of(0)
+        self._beams = StationBeams()
         self._grains = self._in_bin = 0.0
         self._scans = WaitingScans()
-        self._mounts: dict[str, Pose] = {}
-        self._lidar: tuple[tuple[object, ...], object] | None = None
+        self._mounts = Mounts()
+        self._decoder = ScanDecoder.on_robot(self._mounts, frame_id("base_link"))
+        self._lidar: tuple[LidarModel, LidarBeams] | None = None
 
     def start(self) -> None:
         """Connect."""
-        for topic, kind, callback in (
-            ("pose", PoseStamped, self._on_pose),
-            ("localization", Localization, self._on_localization),
-            ("odom", Odometry, self._on_odometry),
-            ("bumper", Bumper, self._on_bumper),
-            ("cliff", Cliff, self._on_cliff),
-            ("wheel_drop", WheelDrop, self._on_wheel_drop),
-            ("battery_state", BatteryState, self._on_battery),
-            ("dock_status", DockStatus, self._on_dock),
-            ("ir_omni", UInt16, self._on_beams),
-            ("scan", LaserScan, self._scans.put),
-            ("dirt_detect", UInt16, self._on_dirt),
-            ("bin_level", Float32, self._on_bin),
-        ):
-            rospy.Subscriber(topic, kind, callback, queue_size=5, tcp_nodelay=True)
-        rospy.Subscriber("/tf_static", TFMessage, self._on_mounts, queue_size=10)
+        voltage = self._config.battery.nominal_voltage
+        topics: tuple[tuple[str, type, Callable[[Any], Any], Callable[[Any], object]], ...] = (
+            ("pose", PoseStamped, stamped_pose_of, self._on_pose),
+            ("localization", Localization, knowledge_of, self._on_localization),
+            ("odom", Odometry, odometry_of, self._on_odometry),
+            ("bumper", Bumper, bumper_of, self._on_bumper),
+            ("cliff", Cliff, cliff_of, self._on_cliff),
+            ("wheel_drop", WheelDrop, wheel_drop_of, self._on_wheel_drop),
+            ("battery_state", BatteryState, partial(battery_of, voltage=voltage), self._on_battery),
+            ("dock_status", DockStatus, is_docked_of, self._on_dock),
+            ("ir_omni", UInt16, data_of, self._on_beams),
+            ("scan", LaserScan, self._decoder.decode, self._scans.put),
+            ("dirt_detect", UInt16, data_of, self._on_dirt),
+            ("bin_level", Float32, number_of, self._on_bin),
+            ("/tf_static", TFMessage, transforms_of, self._mounts.add),
+        )
+        for topic, kind, convert, take in topics:
+            subscribe(topic, kind, convert, take, queue_size=5, tcp_nodelay=True)
 
     @property
     def missing(self) -> tuple[str, ...]:
@@ -135,13 +158,12 @@ class MissionSenses:
             scan = self._scans.take(self._odometry[-1][0])
             if scan is None:
                 return
-            pose = self._correction.compose(self._odometry_at(scan.header.stamp.to_sec()))
+            pose = self._correction.compose(self._odometry_at(scan.stamp))
         if self._knowledge is not Knowledge.KNOWN:
             return
-        try:
-            things.see(ranges_of(scan), self._lidar_of(scan), pose)  # type: ignore[arg-type]
-        except ValueError as error:
-            rospy.logwarn_throttle(10.0, "scan refused: %s", error)
+        if self._lidar is None or self._lidar[0] is not scan.lidar:
+            self._lidar = scan.lidar, scan.lidar.arrays()
+        things.see(scan.ranges, self._lidar[1], pose)
 
     def _correct(self) -> None:
         """Find out where the odometry's frame is in the map: by pose and odometry of one time.
@@ -163,73 +185,44 @@ class MissionSenses:
         tick = self._config.timing.tick
         return moved(pose, twist, min(max(stamp - at, -tick), tick))
 
-    def _lidar_of(self, scan: LaserScan) -> object:
-        """Return the lidar of a scan, made anew only when something of it changed."""
-        mount = self._mounts.get(scan.header.frame_id, Pose())
-        key = (len(scan.ranges), scan.angle_min, scan.angle_increment, scan.range_max, mount)
-        if self._lidar is None or self._lidar[0] != key:
-            model: LidarModel = lidar_of(scan, mount)
-            self._lidar = (key, model.arrays())
-        return self._lidar[1]
-
-    def _on_pose(self, message: PoseStamped) -> None:
-        pose = pose_of(message)
-        if not pose.is_finite:
-            rospy.logwarn_throttle(10.0, "pose refused: expected finite numbers, got %s", pose)
-            return
+    def _on_pose(self, told: StampedPose) -> None:
         self._heard = time.monotonic()
         with self._lock:
-            self._pose = (message.header.stamp.to_sec() or rospy.get_time(), pose)
+            self._pose = told._replace(stamp=told.stamp or rospy.get_time())
 
-    def _on_localization(self, message: Localization) -> None:
-        try:
-            self._knowledge, self._trouble = knowledge_of(message), message.message
-        except ValueError as error:
-            rospy.logwarn_throttle(10.0, "localization refused: %s", error)
+    def _on_localization(self, told: tuple[Knowledge, str]) -> None:
+        self._knowledge, self._trouble = told
 
-    def _on_odometry(self, message: Odometry) -> None:
-        stamp = message.header.stamp.to_sec() or rospy.get_time()
-        pose, twist = pose_of_odometry(message), twist_of(message.twist.twist)
-        if not (pose.is_finite and twist.is_finite):
-            rospy.logwarn_throttle(10.0, "odom refused: expected finite numbers, got %s", pose)
-            return
+    def _on_odometry(self, told: OdometryReading) -> None:
+        stamp = told.stamp or rospy.get_time()
         with self._lock:
-            if self._odometry and stamp < self._odometry[-1][0]:
-                # The clock was set back.
+            if self._jumps.at(stamp):
                 self._odometry.clear()
-            self._odometry.append((stamp, pose, twist))
+            self._odometry.append(told._replace(stamp=stamp))
 
-    def _on_bumper(self, message: Bumper) -> None:
-        self._bumper = (message.is_left_pressed, message.is_right_pressed)
+    def _on_bumper(self, pressed: Sides) -> None:
+        self._bumper = pressed
 
-    def _on_cliff(self, message: Cliff) -> None:
-        self._cliff = cliff_of(message)
+    def _on_cliff(self, seen: Sides) -> None:
+        self._cliff = seen
 
-    def _on_wheel_drop(self, message: WheelDrop) -> None:
-        self._is_lifted = message.is_left_dropped or message.is_right_dropped
+    def _on_wheel_drop(self, dropped: Sides) -> None:
+        self._is_lifted = dropped.any
 
-    def _on_battery(self, message: BatteryState) -> None:
-        try:
-            self._battery = battery_of(message, self._config.battery.nominal_voltage, False)
-        except ValueError as error:
-            rospy.logwarn_throttle(10.0, "battery_state refused: %s", error)
+    def _on_battery(self, battery: Battery) -> None:
+        self._battery = battery
 
-    def _on_dock(self, message: DockStatus) -> None:
-        self._is_docked = message.is_docked
+    def _on_dock(self, is_docked: bool) -> None:
+        self._is_docked = is_docked
 
-    def _on_beams(self, message: UInt16) -> None:
-        self._beams = beams_of(message.data)
+    def _on_beams(self, code: int) -> None:
+        self._beams = beams_of(code)
 
-    def _on_dirt(self, message: UInt16) -> None:
-        self._grains = float(message.data)
+    def _on_dirt(self, grains: int) -> None:
+        self._grains = float(grains)
 
-    def _on_bin(self, message: Float32) -> None:
-        if math.isfinite(message.data):
-            self._in_bin = message.data * self._config.brush.bin_capacity
-
-    def _on_mounts(self, message: TFMessage) -> None:
-        for transform in message.transforms:
-            self._mounts[transform.child_frame_id] = mount_of(transform)
+    def _on_bin(self, level: float) -> None:
+        self._in_bin = level * self._config.brush.bin_capacity
 
 
 def moved(pose: Pose, twist: Twist, time: float) -> Pose:

@@ -18,6 +18,7 @@ from roomba.mission.inputs.senses import Senses
 from roomba.mission.mission import Mission
 from roomba.mission.phases.machine import VACUUM_STATES
 from roomba.perception.swept.dirt_map import dirty_from
+from roomba_ros.convert.client import BATTERY_NOT_HEARD
 from roomba_ros.convert.common import header, path_message
 from roomba_ros.convert.mission import coverage_message, dirt_message, shown
 from roomba_ros.runtime.background import Background
@@ -63,7 +64,7 @@ class MissionTopics:
                     state="idle",
                     phase=STARTING,
                     message=reason,
-                    battery=math.nan,
+                    battery=BATTERY_NOT_HEARD,
                 )
             )
 

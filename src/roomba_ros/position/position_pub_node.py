@@ -16,12 +16,16 @@ from roomba.errors import ConfigError
 from roomba.geometry import Pose, Twist
 from roomba.mission.exploring.look_around import SearchDrive
 from roomba.perception.localization.estimate import Estimate, Knowledge
-from roomba_ros.convert.common import cliff_of, twist_message
+from roomba_ros.convert.common import twist_message
+from roomba_ros.convert.errors import MessageError
+from roomba_ros.convert.readings import Sides, bumper_of, cliff_of, point_of
+from roomba_ros.convert.values import data_of, number_of
 from roomba_ros.localization.topics import LocalizationTopics
 from roomba_ros.maps.map_topics import MapTopics
 from roomba_ros.rooms.topics import RoomTopics
 from roomba_ros.runtime.node import run_node
 from roomba_ros.runtime.parameters import LiveSeedParameters, read_robot_config
+from roomba_ros.runtime.subscriptions import subscribe
 
 _LOOK_TIMEOUT = 0.5
 """s; so long counts what was heard on ``look_around``."""
@@ -73,15 +77,13 @@ class PositionPubNode:
         self._maps = MapTopics(self._config, self._place, self._rooms)
         self._maps.start()
         self._command = rospy.Publisher("cmd_vel", TwistMessage, queue_size=1, tcp_nodelay=True)
-        self._wishes = rospy.Subscriber(
-            "change_position", RobotPosition, self._on_wish, queue_size=1, tcp_nodelay=True
+        self._wishes = subscribe(
+            "change_position", RobotPosition, point_of, self._on_wish, tcp_nodelay=True
         )
-        rospy.Subscriber(
-            "change_heading", Float32, self._on_heading, queue_size=1, tcp_nodelay=True
-        )
-        rospy.Subscriber("look_around", Bool, self._on_look_around, queue_size=1)
-        rospy.Subscriber("bumper", Bumper, self._on_bumper, queue_size=1)
-        rospy.Subscriber("cliff", Cliff, self._on_cliff, queue_size=1)
+        subscribe("change_heading", Float32, number_of, self._on_heading, tcp_nodelay=True)
+        subscribe("look_around", Bool, data_of, self._on_look_around)
+        subscribe("bumper", Bumper, bumper_of, self._on_bumper)
+        subscribe("cliff", Cliff, cliff_of, self._on_cliff)
 
     def tick(self, now: float) -> None:
         """Tell where the robot is, and drive towards the wish."""
@@ -158,35 +160,27 @@ class PositionPubNode:
             self._stops_left -= 1
             self._command.publish(TwistMessage())
 
-    def _on_wish(self, message: RobotPosition) -> None:
-        if not self._parameters.values.allows(message.pos_x, message.pos_y):
-            values = self._parameters.values
-            rospy.logwarn(
-                "change_position refused: expected finite coordinates from %g to %g, got (%g, %g)",
-                values.min_cordinate,
-                values.max_cordinate,
-                message.pos_x,
-                message.pos_y,
+    def _on_wish(self, target: tuple[float, float]) -> None:
+        values = self._parameters.values
+        if not values.allows(*target):
+            raise MessageError(
+                f"expected coordinates from {values.min_cordinate:g} to {values.max_cordinate:g}, "
+                f"got ({target[0]:g}, {target[1]:g})"
             )
-            return
         with self._lock:
-            target = (message.pos_x, message.pos_y)
             self._setpoint.wish(rospy.get_time(), target, self._wishes.get_num_connections())
 
-    def _on_heading(self, message: Float32) -> None:
-        if not math.isfinite(message.data):
-            rospy.logwarn("change_heading refused: expected finite rad, got %g", message.data)
-            return
-        self._heading = (rospy.get_time(), message.data)
+    def _on_heading(self, heading: float) -> None:
+        self._heading = (rospy.get_time(), heading)
 
-    def _on_look_around(self, message: Bool) -> None:
-        self._look_asked = rospy.get_time() if message.data else -math.inf
+    def _on_look_around(self, is_wanted: bool) -> None:
+        self._look_asked = rospy.get_time() if is_wanted else -math.inf
 
-    def _on_bumper(self, message: Bumper) -> None:
-        self._bumps = message.is_left_pressed or message.is_right_pressed
+    def _on_bumper(self, pressed: Sides) -> None:
+        self._bumps = pressed.any
 
-    def _on_cliff(self, message: Cliff) -> None:
-        self._sees_cliff = any(cliff_of(message))
+    def _on_cliff(self, seen: Sides) -> None:
+        self._sees_cliff = seen.any
 
 
 def _look_around_parameter() -> bool:

@@ -32,6 +32,7 @@ from roomba.storage.rooms import load_rooms, save_rooms
 from roomba_ros.convert.common import map_of
 from roomba_ros.convert.rooms import rooms_markers, rooms_message
 from roomba_ros.runtime.parameters import folder_of
+from roomba_ros.runtime.subscriptions import subscribe
 
 
 class RoomTopics:
@@ -64,19 +65,20 @@ class RoomTopics:
         rospy.Service("rooms/join", JoinRooms, self._on_join)
         rospy.Service("rooms/split", SplitRoom, self._on_split)
         rospy.Service("rooms/segment", Trigger, self._on_segment)
-        rospy.Subscriber("map", OccupancyGrid, self._on_map, queue_size=1)
+        subscribe("map", OccupancyGrid, self._whole_map_of, self._on_map)
 
-    def _on_map(self, message: OccupancyGrid) -> None:
+    def _whole_map_of(self, message: OccupancyGrid) -> OccupancyMap | None:
+        """Return the map of a message; None for one that is being made."""
         if self.is_growing() and message.info.map_load_time.is_zero():
-            # It is being made: its rooms are found when it is whole.
+            return None
+        return map_of(message)
+
+    def _on_map(self, occupancy: OccupancyMap | None) -> None:
+        if occupancy is None:
+            # Its rooms are found when it is whole.
             self._publisher.publish(RoomArray())
             return
         # Cut here and not by a tick: nothing waits for rooms, and the robot's place does not.
-        try:
-            occupancy = map_of(message)
-        except ValueError as error:
-            rospy.logwarn("no rooms of this map: %s", error)
-            return
         with self._lock:
             self._map, self._rooms = occupancy, self._kept(occupancy)
             if self._rooms is None:

@@ -15,6 +15,7 @@ import rospy
 
 from roomba.errors import RoombaError
 from roomba_ros.runtime.progress import Progress
+from roomba_ros.runtime.subscriptions import tell_refusals
 from roomba_ros.runtime.ticker import Ticker
 
 _asked_to_end = threading.Event()
@@ -45,6 +46,7 @@ def run_node(name: str, make: Callable[[], Node]) -> None:
     register(name)
     try:
         wait_for_clock()
+        tell_refusals()
         node = make()
         node.start()
     except RoombaError as error:

@@ -7,6 +7,8 @@ from collections.abc import Callable
 
 import rospy
 
+from roomba.clock import ClockJumps
+
 _LONGEST_WAIT = 0.1
 """s of wall time; how soon a shutdown or a clock set back is noticed."""
 _EARLY = 1e-6
@@ -27,14 +29,14 @@ class Ticker:
     def run(self, tick: Callable[[float], None]) -> None:
         """Call ``tick(now)`` until the end; ``now`` in s of the ROS clock."""
         clock_moved = rospy.rostime.get_rostime_cond()
-        last = rospy.get_time()
-        due = last + self._period
+        jumps = ClockJumps(last=rospy.get_time())
+        due = rospy.get_time() + self._period
         while not self._ended():
             now = rospy.get_time()
-            if now < last:
-                rospy.loginfo("the clock was set back by %.1f s; going on from there", last - now)
+            jump = jumps.at(now)
+            if jump:
+                rospy.loginfo("the clock was set back by %.1f s; going on from there", -jump)
                 due = now + self._period
-            last = now
             if now + _EARLY < due:
                 self._wait(clock_moved, now, due)
                 continue

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 import time
+from functools import partial
 from pathlib import Path
 
 import rospy
@@ -14,6 +15,7 @@ from rosgraph_msgs.msg import Clock
 from std_msgs.msg import Float32, Time
 from tf2_msgs.msg import TFMessage
 
+from roomba.clock import ClockJumps
 from roomba.configuration.seed import SeedParameters
 from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.errors import ConfigError, RoombaError
@@ -30,19 +32,22 @@ from roomba_ros.convert.common import (
     transform_message,
     twist_of,
 )
+from roomba_ros.convert.readings import StampedPose, stamped_pose_of
+from roomba_ros.convert.values import duty_of, time_of
 from roomba_ros.localization import kept_pose
 from roomba_ros.runtime import progress
 from roomba_ros.runtime.node import frame_id, give_up, leave, register, require_master, told_to_end
 from roomba_ros.runtime.pace import Pace
 from roomba_ros.runtime.parameters import LiveSeedParameters, read_simulated_config
+from roomba_ros.runtime.subscriptions import subscribe, tell_refusals
 from roomba_ros.runtime.ticker import Ticker
 from roomba_ros.simulation.camera_topics import CameraTopics
 from roomba_ros.simulation.sensor_topics import SensorTopics
 from roomba_ros.simulation.sim_services import SimServices
 
 _FASTEST = 100.0
-_MOST_TICKS_LATE = 100
-"""A clock that went on by more than this at once was set."""
+_LONGEST_STEP = 5.0
+"""s; a clock that went on by more than this at once was set."""
 _POSE = "pose"
 """The part of the robot that knows its place, as the pace is told of it."""
 
@@ -81,6 +86,7 @@ class HomeSimNode:
         self._command = Twist()
         self._command_age = float("inf")
         self._clock = self._first_clock()
+        self._jumps = ClockJumps(last=self._now(), longest=_LONGEST_STEP)
         self._ticks = 0
         self._told = 0.0
         self._pace = Pace(self._timing.tick, self._speed, self._is_there)
@@ -106,10 +112,9 @@ class HomeSimNode:
 
     def _follow_clock(self, now: float) -> None:
         """Step as far as the clock of another simulation went."""
-        late = round((now * 1e9 - self._clock) / self._nanoseconds)
-        if not 0 <= late <= _MOST_TICKS_LATE:
-            self._clock, late = round(now * 1e9) - self._nanoseconds, 1
-        for _ in range(late):
+        if self._jumps.at(now):
+            self._clock = round(now * 1e9) - self._nanoseconds
+        for _ in range(round((now * 1e9 - self._clock) / self._nanoseconds)):
             self._tick()
 
     def _tick(self) -> None:
@@ -189,20 +194,20 @@ class HomeSimNode:
         )
         self._camera = CameraTopics(self._simulator, self._config.camera, self._lock)
         self._services = SimServices(self._simulator, self._lock)
-        rospy.Subscriber(
-            "cmd_vel_out", TwistMessage, self._on_command, queue_size=1, tcp_nodelay=True
-        )
+        subscribe("cmd_vel_out", TwistMessage, twist_of, self._on_command, tcp_nodelay=True)
         self._parts = {
-            _POSE: rospy.Subscriber(
-                "pose", PoseStamped, self._on_pose, queue_size=1, tcp_nodelay=True
-            )
+            _POSE: subscribe("pose", PoseStamped, stamped_pose_of, self._on_pose, tcp_nodelay=True)
         }
         for name in progress.NODES:
-            self._parts[name] = rospy.Subscriber(
-                f"{name}/progress", Time, self._on_progress, name, queue_size=1, tcp_nodelay=True
+            self._parts[name] = subscribe(
+                f"{name}/progress",
+                Time,
+                time_of,
+                partial(self._pace.heard, name),
+                tcp_nodelay=True,
             )
         for topic, motor in (("main_brush_motor", "brush"), ("vacuum_motor", "fan")):
-            rospy.Subscriber(topic, Float32, self._on_power, callback_args=motor, queue_size=1)
+            subscribe(topic, Float32, duty_of, partial(self._on_power, motor))
 
     def _tell_map(self) -> None:
         """Give the robot the map of its home, and the place of its station."""
@@ -228,26 +233,16 @@ class HomeSimNode:
     def _is_there(self, part: str) -> bool:
         return bool(self._parts[part].get_num_connections() > 0)
 
-    def _on_pose(self, message: PoseStamped) -> None:
-        self._pace.heard(_POSE, message.header.stamp.to_sec())
+    def _on_pose(self, told: StampedPose) -> None:
+        self._pace.heard(_POSE, told.stamp)
 
-    def _on_progress(self, message: Time, name: str) -> None:
-        self._pace.heard(name, message.data.to_sec())
-
-    def _on_command(self, message: TwistMessage) -> None:
-        twist = twist_of(message)
-        if not twist.is_finite:
-            rospy.logwarn("cmd_vel_out refused: expected finite velocities, got %s", twist)
-            return
+    def _on_command(self, twist: Twist) -> None:
         with self._lock:
             self._command, self._command_age = twist, 0.0
 
-    def _on_power(self, message: Float32, motor: str) -> None:
-        try:
-            with self._lock:
-                self._simulator.set_power(**{motor: message.data})
-        except ValueError as error:
-            rospy.logwarn("power refused: %s", error)
+    def _on_power(self, motor: str, duty: float) -> None:
+        with self._lock:
+            self._simulator.set_power(**{motor: duty})
 
 
 def _config_with_sensors(config: SimulatedRobotConfig) -> SimulatedRobotConfig:
@@ -287,6 +282,7 @@ def main() -> None:
     require_master()
     register("home_sim_node")
     node = HomeSimNode()
+    tell_refusals()
     try:
         node.start()
     except RoombaError as error:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import http.client
 import threading
 import xmlrpc.client
+from functools import partial
 from typing import Final
 
 import rospy
@@ -14,10 +15,21 @@ from roomba_robot.msg import Bumper, Cliff, WheelDrop
 from roomba_robot.srv import EmergencyStop, EmergencyStopRequest, EmergencyStopResponse
 from std_msgs.msg import Float32, String
 
+from roomba import geometry
 from roomba.control.speed_loop import Hold, Source, SpeedLoop
-from roomba_ros.convert.common import cliff_of, twist_message, twist_of
+from roomba_ros.convert.common import twist_message, twist_of
+from roomba_ros.convert.readings import (
+    OdometryReading,
+    Sides,
+    bumper_of,
+    cliff_of,
+    odometry_of,
+    wheel_drop_of,
+)
+from roomba_ros.convert.values import speed_of
 from roomba_ros.runtime.node import run_node
 from roomba_ros.runtime.parameters import LiveSeedParameters, read_robot_config
+from roomba_ros.runtime.subscriptions import subscribe
 
 EMERGENCY_PARAMETER: Final = "emergency_stop"
 """Why the drive is held; kept by the master, so that a node that was killed holds it again."""
@@ -57,15 +69,14 @@ class SpeedPubNode:
         self._emergency = rospy.Publisher("emergency_stop", String, queue_size=1, latch=True)
         self._engage_again()
         rospy.Service("emergency_stop", EmergencyStop, self._on_emergency_stop)
-        rospy.Subscriber("bumper", Bumper, self._on_bumper, queue_size=1)
-        rospy.Subscriber("cliff", Cliff, self._on_cliff, queue_size=1, tcp_nodelay=True)
-        rospy.Subscriber("wheel_drop", WheelDrop, self._on_wheel_drop, queue_size=1)
-        rospy.Subscriber("odom", Odometry, self._on_odometry, queue_size=1)
-        rospy.Subscriber("change_speed", Float32, self._on_change_speed, queue_size=1)
+        subscribe("bumper", Bumper, bumper_of, self._on_bumper)
+        subscribe("cliff", Cliff, cliff_of, self._on_cliff, tcp_nodelay=True)
+        subscribe("wheel_drop", WheelDrop, wheel_drop_of, self._on_wheel_drop)
+        subscribe("odom", Odometry, odometry_of, self._on_odometry)
+        subscribe("change_speed", Float32, speed_of, self._on_change_speed)
         for source in Source:
-            rospy.Subscriber(
-                source.value, Twist, self._on_command, source, queue_size=1, tcp_nodelay=True
-            )
+            take = partial(self._on_command, source)
+            subscribe(source.value, Twist, twist_of, take, tcp_nodelay=True)
 
     def tick(self, now: float) -> None:
         """Obey changed limits, tell the drive and tell the speed."""
@@ -115,46 +126,36 @@ class SpeedPubNode:
             return f"; but the master does not keep that, should this node end: {error}"
         return ""
 
-    def _on_command(self, message: Twist, source: Source) -> None:
+    def _on_command(self, source: Source, twist: geometry.Twist) -> None:
         now = rospy.get_time()
-        try:
-            with self._lock:
-                self._loop.command(now, twist_of(message), source)
-        except ValueError as error:
-            rospy.logwarn("%s refused: %s", source.value, error)
-            return
+        with self._lock:
+            self._loop.command(now, twist, source)
         self._tell_drive(now)
 
-    def _on_change_speed(self, message: Float32) -> None:
-        try:
-            with self._lock:
-                self._loop.set_cruise_speed(message.data)
-        except ValueError as error:
-            rospy.logwarn("change_speed refused: %s", error)
-
-    def _on_bumper(self, message: Bumper) -> None:
-        pressed = message.is_left_pressed or message.is_right_pressed
+    def _on_change_speed(self, speed: float) -> None:
         with self._lock:
-            self._loop.set_bumper(pressed)
-        if pressed:
+            self._loop.set_cruise_speed(speed)
+
+    def _on_bumper(self, pressed: Sides) -> None:
+        with self._lock:
+            self._loop.set_bumper(pressed.any)
+        if pressed.any:
             self._tell_drive(rospy.get_time())
 
-    def _on_cliff(self, message: Cliff) -> None:
-        seen = any(cliff_of(message))
+    def _on_cliff(self, seen: Sides) -> None:
         with self._lock:
-            self._loop.set_cliff(seen)
-        if seen:
+            self._loop.set_cliff(seen.any)
+        if seen.any:
             self._tell_drive(rospy.get_time())
 
-    def _on_wheel_drop(self, message: WheelDrop) -> None:
-        dropped = message.is_left_dropped or message.is_right_dropped
+    def _on_wheel_drop(self, dropped: Sides) -> None:
         with self._lock:
-            self._loop.set_wheel_drop(dropped)
-        if dropped:
+            self._loop.set_wheel_drop(dropped.any)
+        if dropped.any:
             self._tell_drive(rospy.get_time())
 
-    def _on_odometry(self, message: Odometry) -> None:
-        self._speed = abs(twist_of(message.twist.twist).linear)
+    def _on_odometry(self, told: OdometryReading) -> None:
+        self._speed = abs(told.twist.linear)
 
 
 def _answer(reason: str, was_held: bool) -> str:

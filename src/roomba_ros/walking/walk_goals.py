@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from abc import abstractmethod
 from typing import Any
 
@@ -10,10 +9,10 @@ from geometry_msgs.msg import PoseStamped
 from move_base_msgs.msg import MoveBaseAction, MoveBaseFeedback, MoveBaseResult
 from roomba_robot.msg import WalkToPointAction, WalkToPointFeedback, WalkToPointResult
 
-from roomba.errors import RoombaError
 from roomba.geometry import Pose
 from roomba.mission.walking.walk import feedback_period
-from roomba_ros.convert.common import pose_message, pose_of, theta_of
+from roomba_ros.convert.common import pose_in_map, pose_message, theta_of
+from roomba_ros.convert.errors import require_finite
 from roomba_ros.runtime.action_goal import ActionGoal
 
 Point = tuple[float, float]
@@ -25,7 +24,7 @@ class WalkGoal(ActionGoal):
     @property
     @abstractmethod
     def destination(self) -> Point:
-        """Where to walk, m, map frame; raises RoombaError for what is no place on the map."""
+        """Where to walk, m, map frame; raises MessageError for what is no place on the map."""
 
     @property
     @abstractmethod
@@ -43,6 +42,10 @@ class WalkGoal(ActionGoal):
     @abstractmethod
     def _feedback(self, now: float, distance: float, pose: Pose) -> Any:
         """Return the action's feedback."""
+
+    def check(self) -> None:
+        """Raise MessageError if there is no such place, or no such heading."""
+        assert self.destination
 
     def accept(self, text: str) -> None:
         """Tell that it is walked to now."""
@@ -76,8 +79,9 @@ class WalkToPointGoal(WalkGoal):
 
     @property
     def destination(self) -> Point:
-        """Where to walk, m, map frame."""
+        """Where to walk, m, map frame; raises MessageError."""
         wanted = self._handle.get_goal().destin
+        require_finite("a destination", wanted.dest_x, wanted.dest_y)
         return wanted.dest_x, wanted.dest_y
 
     @property
@@ -103,10 +107,8 @@ class MoveBaseGoal(WalkGoal):
 
     @property
     def destination(self) -> Point:
-        """Where to walk, m, map frame; raises RoombaError for another frame."""
+        """Where to walk, m, map frame; raises MessageError for another frame, too."""
         pose = pose_in_map(self._handle.get_goal().target_pose)
-        if not math.isfinite(pose.theta):
-            raise RoombaError("expected an orientation of finite numbers")
         return pose.x, pose.y
 
     @property
@@ -128,11 +130,7 @@ class MoveBaseGoal(WalkGoal):
         return MoveBaseFeedback(pose_message(now, pose, "map"))
 
 
-def pose_in_map(message: PoseStamped) -> Pose:
-    """Return a pose of the map frame, which no frame stands for, too; raises RoombaError."""
-    if message.header.frame_id not in ("", "map"):
-        raise RoombaError(
-            f"expected a pose in the frame 'map', got one in {message.header.frame_id!r}; "
-            "transform it first"
-        )
-    return pose_of(message)
+def checked_goal(message: PoseStamped) -> PoseStamped:
+    """Return a pose to walk to as it came; raises MessageError if no robot can stand there."""
+    pose_in_map(message)
+    return message

@@ -9,7 +9,6 @@ import uuid
 from collections import deque
 from dataclasses import dataclass
 
-import actionlib
 import rospy
 from geometry_msgs.msg import PoseStamped
 from move_base_msgs.msg import MoveBaseActionGoal
@@ -21,16 +20,20 @@ from std_msgs.msg import Float32
 
 from roomba.errors import RoombaError
 from roomba.geometry import Pose, wrap_angle
+from roomba.grid import OccupancyMap
 from roomba.mission.driving.unknown_things import UnknownThings
 from roomba.mission.walking.walk import Sensed, Walk, WalkState, expected_duration
 from roomba.perception.localization.estimate import Knowledge
 from roomba.planning.path.planner import PathPlanner
-from roomba_ros.convert.common import cliff_of, header, map_of, path_message, pose_of, twist_of
+from roomba_ros.convert.common import header, map_of, path_message, pose_in_map, pose_of
 from roomba_ros.convert.localization import knowledge_of
+from roomba_ros.convert.readings import OdometryReading, Sides, bumper_of, cliff_of, odometry_of
+from roomba_ros.runtime.action_goal import server_of
 from roomba_ros.runtime.alone import refuse_second
 from roomba_ros.runtime.node import require_master, run_node
 from roomba_ros.runtime.parameters import LiveSeedParameters, read_robot_config
-from roomba_ros.walking.walk_goals import MoveBaseGoal, WalkGoal, WalkToPointGoal, pose_in_map
+from roomba_ros.runtime.subscriptions import subscribe
+from roomba_ros.walking.walk_goals import MoveBaseGoal, WalkGoal, WalkToPointGoal, checked_goal
 
 NAME = "walk_to_point_action_server_node"
 SENSES_DEADLINE = 6.0
@@ -97,8 +100,8 @@ class WalkToPointActionServer:
         self._pose: Pose | None = None
         self._knowledge, self._trouble = Knowledge.KNOWN, ""
         self._speed = self._turning = 0.0
-        self._bumper = (False, False)
-        self._cliff = (False, False)
+        self._bumper = Sides(False, False)
+        self._cliff = Sides(False, False)
         self._goals: deque[WalkGoal] = deque()
         self._cancels: deque[tuple[str, str]] = deque()
         self._job: _Job | None = None
@@ -112,16 +115,21 @@ class WalkToPointActionServer:
             "change_heading", Float32, queue_size=1, tcp_nodelay=True
         )
         self._plan = rospy.Publisher("plan", Path, queue_size=1, latch=True)
-        rospy.Subscriber("map", OccupancyGrid, self._on_map, queue_size=1)
-        rospy.Subscriber("localization", Localization, self._on_localization, queue_size=1)
-        rospy.Subscriber("pose", PoseStamped, self._on_pose, queue_size=1, tcp_nodelay=True)
-        rospy.Subscriber("odom", Odometry, self._on_odometry, queue_size=1)
-        rospy.Subscriber("bumper", Bumper, self._on_bumper, queue_size=1, tcp_nodelay=True)
-        rospy.Subscriber("cliff", Cliff, self._on_cliff, queue_size=1, tcp_nodelay=True)
+        subscribe("map", OccupancyGrid, map_of, self._on_map)
+        subscribe("localization", Localization, knowledge_of, self._on_localization)
+        subscribe("pose", PoseStamped, pose_of, self._on_pose, tcp_nodelay=True)
+        subscribe("odom", Odometry, odometry_of, self._on_odometry)
+        subscribe("bumper", Bumper, bumper_of, self._on_bumper, tcp_nodelay=True)
+        subscribe("cliff", Cliff, cliff_of, self._on_cliff, tcp_nodelay=True)
         rospy.Service("make_plan", GetPlan, self._on_make_plan)
-        self._servers = [self._server_of(kind) for kind in (WalkToPointGoal, MoveBaseGoal)]
+        self._servers = [
+            server_of(kind, self._goals.append, self._cancels.append)
+            for kind in (WalkToPointGoal, MoveBaseGoal)
+        ]
         self._simple_goals = rospy.Publisher("move_base/goal", MoveBaseActionGoal, queue_size=5)
-        rospy.Subscriber("move_base_simple/goal", PoseStamped, self._on_simple_goal, queue_size=5)
+        subscribe(
+            "move_base_simple/goal", PoseStamped, checked_goal, self._on_simple_goal, queue_size=5
+        )
         self._serves = False
         self._serves_by = time.monotonic() + SENSES_DEADLINE
 
@@ -299,15 +307,6 @@ class WalkToPointActionServer:
     def _show_plan(self, now: float, walk: Walk) -> None:
         self._plan.publish(path_message(now, walk.path.points, "map"))
 
-    def _server_of(self, kind: type[WalkGoal]) -> actionlib.ActionServer:
-        return actionlib.ActionServer(
-            kind.name,
-            kind.action,
-            lambda handle: self._goals.append(kind(handle)),
-            lambda handle: self._cancels.append(kind(handle).identity),
-            auto_start=False,
-        )
-
     def _on_simple_goal(self, message: PoseStamped) -> None:
         # By its own topic and not directly: so everybody sees what is walked to.
         goal = MoveBaseActionGoal(goal=MoveBaseGoalMessage(message))
@@ -333,32 +332,26 @@ class WalkToPointActionServer:
             raise rospy.ServiceException(str(error)) from error
         return GetPlanResponse(path_message(now, path.points, "map"))
 
-    def _on_map(self, message: OccupancyGrid) -> None:
+    def _on_map(self, occupancy: OccupancyMap) -> None:
         walk = self._config.walk
-        try:
-            occupancy = map_of(message)
-        except ValueError as error:
-            rospy.logwarn("map refused: %s", error)
-            return
         self._planner = PathPlanner(
             occupancy, self._config.body.radius, walk.clearance, walk.tight_clearance
         )
 
-    def _on_pose(self, message: PoseStamped) -> None:
-        self._pose = pose_of(message)
+    def _on_pose(self, pose: Pose) -> None:
+        self._pose = pose
 
-    def _on_localization(self, message: Localization) -> None:
-        self._knowledge, self._trouble = knowledge_of(message), message.message
+    def _on_localization(self, told: tuple[Knowledge, str]) -> None:
+        self._knowledge, self._trouble = told
 
-    def _on_odometry(self, message: Odometry) -> None:
-        twist = twist_of(message.twist.twist)
-        self._speed, self._turning = twist.linear, twist.angular
+    def _on_odometry(self, told: OdometryReading) -> None:
+        self._speed, self._turning = told.twist.linear, told.twist.angular
 
-    def _on_bumper(self, message: Bumper) -> None:
-        self._bumper = (message.is_left_pressed, message.is_right_pressed)
+    def _on_bumper(self, pressed: Sides) -> None:
+        self._bumper = pressed
 
-    def _on_cliff(self, message: Cliff) -> None:
-        self._cliff = cliff_of(message)
+    def _on_cliff(self, seen: Sides) -> None:
+        self._cliff = seen
 
 
 def main() -> None:

@@ -15,6 +15,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.clock import ClockJumps
 from roomba.configuration.mission import DrivingConfig
 from roomba.configuration.robot import RobotConfig
 from roomba.control.path_tracker import PathTracker
@@ -112,7 +113,7 @@ class PathDriver:
         self._state = DriveState.DRIVING
         self._reason = ""
         self._was_touching = any(senses.touches)
-        self._last_tick = senses.now
+        self._jumps = ClockJumps(last=senses.now, longest=_LONGEST_TICK)
         self._backs_from: tuple[float, float, float] | None = None
         self._wriggle: Recovery | None = None
         self._recoveries = 0
@@ -166,7 +167,7 @@ class PathDriver:
 
     def caught_up(self, senses: Senses) -> None:
         """Go on after ticks that were the tracker's alone."""
-        self._last_tick = senses.now
+        self._jumps.last = senses.now
 
     def _track(self, points: NDArray[np.float64]) -> PathTracker:
         robot = self._robot
@@ -174,13 +175,11 @@ class PathDriver:
 
     def _follow_clock(self, now: float) -> None:
         """When the clock was set, move the times that are remembered with it."""
-        jump = now - self._last_tick
-        if not 0.0 <= jump <= _LONGEST_TICK:
-            self._progressed += jump
-            if self._backs_from is not None:
-                since, x, y = self._backs_from
-                self._backs_from = since + jump, x, y
-        self._last_tick = now
+        jump = self._jumps.at(now)
+        self._progressed += jump
+        if self._backs_from is not None:
+            since, x, y = self._backs_from
+            self._backs_from = since + jump, x, y
 
     def _notice_touch(self, senses: Senses) -> None:
         touches = any(senses.touches)

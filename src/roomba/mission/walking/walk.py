@@ -9,6 +9,7 @@ import math
 from dataclasses import dataclass
 from enum import Enum
 
+from roomba.clock import ClockJumps
 from roomba.configuration.robot import BodyConfig, WalkConfig
 from roomba.geometry import Pose
 from roomba.mission.driving.path_follower import PathFollower
@@ -98,7 +99,7 @@ class Walk:
         self._things = things
         self._follower = PathFollower(self.path, config)
         self._started = sensed.now
-        self._last_tick = sensed.now
+        self._jumps = ClockJumps(last=sensed.now, longest=_LONGEST_TICK)
         self._replans = 0
         self._was_touching = any(sensed.touches)
         self._least_left = math.inf
@@ -145,12 +146,10 @@ class Walk:
 
     def _follow_clock(self, now: float) -> None:
         """When the clock was set, move the times that are remembered with it."""
-        jump = now - self._last_tick
-        if not 0.0 <= jump <= _LONGEST_TICK:
-            self._started += jump
-            self._progressed += jump
-            self._astray_since += jump
-        self._last_tick = now
+        jump = self._jumps.at(now)
+        self._started += jump
+        self._progressed += jump
+        self._astray_since += jump
 
     def _has_arrived(self, sensed: Sensed) -> bool:
         near = sensed.pose.distance_to(*self.goal) <= self._config.arrival_tolerance

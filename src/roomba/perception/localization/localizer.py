@@ -13,6 +13,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.clock import ClockJumps
 from roomba.configuration.robot import GyroConfig, LocalizationConfig
 from roomba.geometry import Pose
 from roomba.grid import OccupancyMap
@@ -82,7 +83,8 @@ class Localizer:
         self._doubt = Doubt(config, body_radius)
         self._reckoning = DeadReckoning(config, gyro, self.belief)
         self._is_lifted = self._is_blind = False
-        self._now = self._newest_stamp = self._newest_time = -math.inf
+        self._now = -math.inf
+        self._stamps, self._times = (ClockJumps(tolerance=SET_BACK) for _ in range(2))
         self._searching_since = self._tried = self._told_since = -math.inf
         self._has_clock = False
         self._told: Expectation | None = None
@@ -99,8 +101,7 @@ class Localizer:
         """
         if not (odometry.is_finite and math.isfinite(turning or 0.0)):
             raise ValueError(f"expected finite numbers, got {odometry} and {turning} rad/s")
-        self._follow_clock(stamp, self._newest_stamp)
-        self._newest_stamp = stamp
+        self._follow_clock(stamp, self._stamps)
         self._reckoning.move(stamp, odometry, turning)
 
     def lift(self, is_lifted: bool) -> None:
@@ -148,8 +149,8 @@ class Localizer:
         self._is_blind = len(self.view) == 0
         if not self._is_blind:
             self._row["seen"] = max(seen, self._row["seen"])
-        self._newest_stamp = float(self._row["stamp"])
-        self._newest_time = max(self._newest_time, now)
+        self._stamps.last = float(self._row["stamp"])
+        self._times.last = max(self._times.last or now, now)
         self._now = max(self._now, now)
         self._reckoning.begin_history()
         turned = (now - seen) * abs(float(self._row["turning"]))
@@ -159,8 +160,7 @@ class Localizer:
     def pass_time(self, now: float) -> None:
         """Tell the time when nothing else does: silence tells something, too."""
         if self._has_clock:
-            self._follow_clock(now, self._newest_time)
-            self._newest_time = now
+            self._follow_clock(now, self._times)
 
     def use_map(self, occupancy: OccupancyMap) -> None:
         """Go on with another map of the same frame; a pose that it does not fit is searched for."""
@@ -251,16 +251,18 @@ class Localizer:
         reckoned = self._reckoning.pose
         return [each.frame.compose(reckoned) for each in self._relocation.hypotheses]
 
-    def _follow_clock(self, time: float, newest: float) -> None:
-        """Take the time that a clock shows, which showed ``newest`` before.
+    def _follow_clock(self, time: float, clock: ClockJumps) -> None:
+        """Take the time that a clock shows.
 
         Stamps and the time itself are two clocks: stamps are always a little late.
         """
-        if not self._has_clock or time < newest - SET_BACK:
+        was_set = clock.at(time) != 0.0
+        if not self._has_clock or was_set:
             # The first time, or a clock that was set back: what began before begins now.
             self._searching_since = self._tried = self._told_since = self._now = time
             self._row["seen"] = time if self._has_clock else -math.inf
-            self._newest_stamp = self._newest_time = -math.inf
+            self._stamps.last = self._times.last = None
+            clock.last = time
         self._has_clock = True
         self._now = max(self._now, time)
 

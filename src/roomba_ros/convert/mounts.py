@@ -1,23 +1,32 @@
-"""Where sensors are mounted on a robot, by the transforms that it recorded."""
+"""Where sensors are mounted on a robot, by the transforms that are told of its frames."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 from geometry_msgs.msg import TransformStamped
 from numpy.typing import NDArray
-from sensor_msgs.msg import LaserScan
+from tf2_msgs.msg import TFMessage
 
 from roomba.geometry import Pose
-from roomba.perception.matching.scan_view import LidarModel
-from roomba_ros.convert.localization import lidar_of
+from roomba_ros.convert.errors import MessageError, require_finite
 
 _DEEPEST: Final = 50
 """Frames between a sensor and the root of its tree; more are a circle."""
+_SHORTEST_ROTATION: Final = 1e-6
+"""Length of a quaternion; a shorter one is no rotation."""
+
+
+class FrameTransform(NamedTuple):
+    """Where the frame ``child`` is in ``parent``: ``matrix`` is float64 [4, 4], m."""
+
+    parent: str
+    child: str
+    matrix: NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,18 +36,6 @@ class Mount:
     pose: Pose = field(default_factory=Pose)
     is_upside_down: bool = False
 
-    def lidar(self, scan: LaserScan) -> LidarModel:
-        """Return the lidar that a scan is of, mounted so; raises ValueError for a broken scan."""
-        if self.is_upside_down:
-            scan = LaserScan(
-                angle_min=-scan.angle_min,
-                angle_increment=-scan.angle_increment,
-                range_min=scan.range_min,
-                range_max=scan.range_max,
-                ranges=scan.ranges,
-            )
-        return lidar_of(scan, self.pose)
-
 
 class Mounts:
     """A tree of frames that do not move against each other."""
@@ -47,13 +44,10 @@ class Mounts:
         """Know nothing yet."""
         self._parents: dict[str, tuple[str, NDArray[np.float64]]] = {}
 
-    def add(self, transforms: Iterable[TransformStamped]) -> None:
+    def add(self, transforms: Iterable[FrameTransform]) -> None:
         """Learn where frames are in others."""
         for transform in transforms:
-            place = _matrix_of(transform)
-            if place is not None:
-                parent = _name(transform.header.frame_id)
-                self._parents[_name(transform.child_frame_id)] = (parent, place)
+            self._parents[transform.child] = (transform.parent, transform.matrix)
 
     def knows(self, frame: str) -> bool:
         """Whether it is known where a frame is."""
@@ -67,7 +61,8 @@ class Mounts:
             return None
         matrix = np.linalg.inv(base_place) @ place
         heading = math.atan2(matrix[1, 0], matrix[0, 0])
-        return Mount(Pose(float(matrix[0, 3]), float(matrix[1, 3]), heading), matrix[2, 2] < 0.0)
+        upside_down = bool(matrix[2, 2] < 0.0)
+        return Mount(Pose(float(matrix[0, 3]), float(matrix[1, 3]), heading), upside_down)
 
     def _from_root(self, frame: str) -> tuple[str, NDArray[np.float64]]:
         """Return the root of a frame's tree, and where the frame is in it, float64 [4, 4]."""
@@ -80,17 +75,34 @@ class Mounts:
         return frame, place
 
 
-def _name(frame: str) -> str:
-    return frame.lstrip("/")
+def transforms_of(message: TFMessage) -> list[FrameTransform]:
+    """Return the transforms of a message; raises MessageError if there is none, or a broken one."""
+    if not message.transforms:
+        raise MessageError("expected transforms, got none")
+    return [transform_of(transform) for transform in message.transforms]
 
 
-def _matrix_of(message: TransformStamped) -> NDArray[np.float64] | None:
-    """Return a transform, float64 [4, 4]; None for one that is none."""
+def usable_transforms(messages: Iterable[TransformStamped]) -> Iterator[FrameTransform]:
+    """Yield the transforms that are not broken."""
+    for message in messages:
+        try:
+            yield transform_of(message)
+        except MessageError:
+            continue
+
+
+def transform_of(message: TransformStamped) -> FrameTransform:
+    """Return a transform.
+
+    Raises MessageError for numbers that are not finite, or a rotation of zeros.
+    """
     shift, turn = message.transform.translation, message.transform.rotation
     numbers = np.array([turn.x, turn.y, turn.z, turn.w, shift.x, shift.y, shift.z])
+    child = _name(message.child_frame_id)
+    require_finite(f"a transform of {child!r}", *numbers.tolist())
     length = float(np.linalg.norm(numbers[:4]))
-    if not np.isfinite(numbers).all() or length < 1e-6:
-        return None
+    if length < _SHORTEST_ROTATION:
+        raise MessageError(f"expected a rotation of {child!r}, got a quaternion of zeros")
     x, y, z, w = (numbers[:4] / length).tolist()
     matrix = np.eye(4)
     matrix[:3, :3] = (
@@ -99,4 +111,8 @@ def _matrix_of(message: TransformStamped) -> NDArray[np.float64] | None:
         (2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)),
     )
     matrix[:3, 3] = numbers[4:]
-    return matrix
+    return FrameTransform(_name(message.header.frame_id), child, matrix)
+
+
+def _name(frame: str) -> str:
+    return frame.lstrip("/")

@@ -1,0 +1,29 @@
+"""Jumps of a clock: one is set when a simulation begins anew, or a bag is played again."""
+
+from __future__ import annotations
+
+import math
+
+
+class ClockJumps:
+    """Tells by how much a clock was set, by the times that it shows one after the other.
+
+    A clock that goes back by more than ``tolerance`` s, or on by more than ``longest`` s between
+    two looks, was set. Times are in s of that clock.
+    """
+
+    def __init__(
+        self, *, last: float | None = None, longest: float = math.inf, tolerance: float = 0.0
+    ) -> None:
+        """``last`` is the time that it showed last; None: the first look tells no jump."""
+        self.last = last
+        """What the clock showed at the last look, s; None before the first."""
+        self._longest, self._tolerance = longest, tolerance
+
+    def at(self, now: float) -> float:
+        """Return by how much the clock was set since the last look, s; 0 when it just went on."""
+        last, self.last = self.last, now
+        if last is None:
+            return 0.0
+        step = now - last
+        return 0.0 if -self._tolerance <= step <= self._longest else step

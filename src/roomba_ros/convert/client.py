@@ -1,0 +1,49 @@
+"""What the robot tells its clients, as values; numbers that are not finite raise MessageError."""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+from roomba_robot.msg import Localization, RoomArray, VacuumState
+
+from roomba.client.protocol import VacuumSnapshot
+from roomba_ros.convert.errors import require_finite
+from roomba_ros.convert.localization import knowledge_of
+
+BATTERY_NOT_HEARD: Final = -1.0
+"""The charge that a state tells until the battery was heard; a snapshot has NaN for it."""
+
+
+def vacuum_of(message: VacuumState) -> VacuumSnapshot:
+    """Return what the robot does, and how far it is."""
+    require_finite(
+        "areas, shares and times",
+        message.covered,
+        message.wanted,
+        message.fraction,
+        message.seconds_to_go,
+        message.battery,
+    )
+    return VacuumSnapshot(
+        state=message.state,
+        phase=message.phase,
+        message=message.message,
+        room=message.room,
+        covered=message.covered,
+        wanted=message.wanted,
+        fraction=message.fraction,
+        seconds_to_go=message.seconds_to_go,
+        battery=math.nan if message.battery == BATTERY_NOT_HEARD else message.battery,
+    )
+
+
+def doubt_of(message: Localization) -> str:
+    """Return why the robot does not know its place better; empty if it knows it."""
+    _, reason = knowledge_of(message)
+    return reason
+
+
+def room_names_of(message: RoomArray) -> tuple[str, ...]:
+    """Return the names of a map's rooms."""
+    return tuple(room.name for room in message.rooms)

@@ -1,0 +1,29 @@
+"""What nodes say of themselves, as diagnostics (REP 107)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import genpy
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+
+
+def refused_message(
+    now: float, node: str, counts: Mapping[str, int], newest: str, *, is_recent: bool
+) -> DiagnosticArray:
+    """Return how many messages a node refused, ``counts`` by topic, and why the ``newest`` one.
+
+    The status is a warning while that ``is_recent``; ``now`` in s.
+    """
+    total = sum(counts.values())
+    said = f"{total} messages were refused; the last: {newest}" if total else "nothing was refused"
+    status = DiagnosticStatus(
+        level=DiagnosticStatus.WARN if is_recent else DiagnosticStatus.OK,
+        name=f"{node}: messages",
+        message=said,
+        hardware_id=node,
+        values=[KeyValue(topic, str(count)) for topic, count in sorted(counts.items())],
+    )
+    message = DiagnosticArray(status=[status])
+    message.header.stamp = genpy.Time.from_sec(now)
+    return message

@@ -1,0 +1,95 @@
+"""What sensors say, as values; each function raises MessageError for what is none."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from geometry_msgs.msg import PoseStamped
+from nav_msgs.msg import Odometry
+from roomba_robot.msg import Bumper, Cliff, DockStatus, RobotPosition, WheelDrop
+from sensor_msgs.msg import Imu
+
+from roomba.geometry import Pose, Twist
+from roomba_ros.convert.common import pose_of, pose_of_odometry, twist_of
+from roomba_ros.convert.errors import require_finite
+
+
+class OdometryReading(NamedTuple):
+    """What the wheels say: ``pose`` in the odometry's frame at ``stamp``, s; 0 if not told."""
+
+    stamp: float
+    pose: Pose
+    twist: Twist
+
+
+class StampedPose(NamedTuple):
+    """Where the robot was at ``stamp``, s; 0 if not told."""
+
+    stamp: float
+    pose: Pose
+
+
+class GyroReading(NamedTuple):
+    """How fast the robot turned at ``stamp``, s, rad/s counter-clockwise."""
+
+    stamp: float
+    turning: float
+
+
+class Sides(NamedTuple):
+    """Whether something holds on the left, and on the right."""
+
+    left: bool
+    right: bool
+
+    @property
+    def any(self) -> bool:
+        """Whether it holds on a side."""
+        return self.left or self.right
+
+
+def odometry_of(message: Odometry) -> OdometryReading:
+    """Return pose and twist by the wheels."""
+    stamp = message.header.stamp.to_sec()
+    return OdometryReading(stamp, pose_of_odometry(message), twist_of(message.twist.twist))
+
+
+def stamped_pose_of(message: PoseStamped) -> StampedPose:
+    """Return a pose and its time."""
+    return StampedPose(message.header.stamp.to_sec(), pose_of(message))
+
+
+def turning_of(message: Imu) -> GyroReading:
+    """Return what the gyro measures about the vertical."""
+    turning = message.angular_velocity.z
+    require_finite("a turning speed", turning)
+    return GyroReading(message.header.stamp.to_sec(), turning)
+
+
+def bumper_of(message: Bumper) -> Sides:
+    """Return which halves of the bumper are pressed."""
+    return Sides(message.is_left_pressed, message.is_right_pressed)
+
+
+def cliff_of(message: Cliff) -> Sides:
+    """Return on which side there is no floor."""
+    return Sides(
+        message.is_cliff_left or message.is_cliff_front_left,
+        message.is_cliff_right or message.is_cliff_front_right,
+    )
+
+
+def wheel_drop_of(message: WheelDrop) -> Sides:
+    """Return which wheels hang in the air."""
+    return Sides(message.is_left_dropped, message.is_right_dropped)
+
+
+def is_docked_of(message: DockStatus) -> bool:
+    """Return whether the contacts of the station touch."""
+    return bool(message.is_docked)
+
+
+def point_of(message: RobotPosition) -> tuple[float, float]:
+    """Return a point, m."""
+    require_finite("coordinates", message.pos_x, message.pos_y)
+    return message.pos_x, message.pos_y
