@@ -123,7 +123,7 @@ def test_a_clean_from_its_goal_to_its_report(graph: RosGraph) -> None:
         CleanResult(CleanResult.LOST, "no place", 6.0, 8.0, 12.0, 40.0, 300.0, 2.5, [area]), "x"
     )
     report = wait_until(clean.report, 30.0)
-    assert (report.outcome, report.message) == (ErrandOutcome.ASTRAY, "no place")
+    assert (report.outcome, report.message) == (ErrandOutcome.LOST, "no place")
     assert (report.covered, report.wanted, report.dirt) == (6.0, 8.0, 12.0)
     assert (report.distance, report.duration, report.energy) == (40.0, 300.0, 2.5)
     assert report.missed == (MissedFloor(0.5, 1.0, 2.0, "Hall", "a chair"),)
@@ -182,7 +182,7 @@ def test_a_mission_that_began_anew_or_is_silent_has_lost_the_clean(graph: RosGra
     with mission.cleans.lock:
         mission.cleans.status_list.clear()
     report = wait_until(first.report, 30.0)
-    assert report.outcome is ErrandOutcome.LOST
+    assert report.outcome is ErrandOutcome.DISCONNECTED
     assert "goes on by itself" in report.message
     assert (report.covered, report.wanted) == (1.0, 8.0)
     assert math.isnan(report.energy)
@@ -191,7 +191,7 @@ def test_a_mission_that_began_anew_or_is_silent_has_lost_the_clean(graph: RosGra
     wait_until(lambda: len(mission.cleans.goals) == 2, 30.0)
     mission.cleans.is_silent = True
     report = wait_until(second.report, 30.0)
-    assert report.outcome is ErrandOutcome.LOST
+    assert report.outcome is ErrandOutcome.DISCONNECTED
     assert "silent for 2.5 s" in report.message
     assert second.next_feedback(10.0) is None
 

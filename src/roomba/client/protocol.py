@@ -56,8 +56,8 @@ class WalkOutcome(Enum):
     """Never begun: the destination cannot be walked to."""
     FAILED = "failed"
     """Given up on the way."""
-    LOST = "lost"
-    """The action server vanished while it walked."""
+    DISCONNECTED = "disconnected"
+    """The connection to the action server was lost during the walk."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,22 +117,22 @@ class ErrandOutcome(Enum):
     COMPLETED = "completed"
     """Done; after a clean the robot is back on its station."""
     STOPPED = "stopped"
-    """Somebody ended it."""
+    """The operator, or a program, ended it."""
     REFUSED = "refused"
     """Never begun: the robot cannot do it; the message says why."""
     BATTERY = "battery"
     """There was not enough energy to go on, and none to be had."""
     STUCK = "stuck"
     """It could not get free."""
-    ASTRAY = "astray"
+    LOST = "lost"
     """It does not know where it is."""
     NOT_DOCKED = "not docked"
     """The floor is done, but it could not get onto its station."""
     FAULT = "fault"
     """Something else is wrong; the message says what."""
-    LOST = "lost"
-    """Who does it fell silent. A clean is taken up again by the robot itself once that is back:
-    :meth:`RobotClient.vacuum` tells on, this errand does not."""
+    DISCONNECTED = "disconnected"
+    """The connection to the action server was lost. The robot itself resumes a clean once its
+    mission node is back: :meth:`RobotClient.vacuum` reports it, this errand does not."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -167,7 +167,7 @@ class MissedFloor:
 class CleanReport:
     """The end of a clean: areas in m2, dirt in g, m, s of the robot's clock, Wh.
 
-    What is not known, as after LOST, is not a number; ``missed`` has the largest area first.
+    What is not known, as after DISCONNECTED, is NaN; ``missed`` has the largest area first.
     """
 
     outcome: ErrandOutcome
@@ -222,7 +222,7 @@ class DockingHandle(Protocol):
 class ExploreReport:
     """The end of an exploration: ``known`` m2 of floor, m, s of the robot's clock.
 
-    What is not known, as after LOST, is not a number.
+    What is not known, as after DISCONNECTED, is not a number.
     """
 
     outcome: ErrandOutcome

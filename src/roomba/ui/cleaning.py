@@ -39,10 +39,10 @@ _ENDS = {
     ErrandOutcome.REFUSED: "The robot refuses",
     ErrandOutcome.BATTERY: "The battery did not last",
     ErrandOutcome.STUCK: "The robot is stuck",
-    ErrandOutcome.ASTRAY: "The robot does not know where it is",
+    ErrandOutcome.LOST: "The robot does not know where it is",
     ErrandOutcome.NOT_DOCKED: "The floor is done, but the robot is not on its station",
     ErrandOutcome.FAULT: "The robot gave up",
-    ErrandOutcome.LOST: "The clean was lost from sight",
+    ErrandOutcome.DISCONNECTED: "The connection to the clean was lost",
 }
 """What is said of a clean's end."""
 
@@ -50,7 +50,7 @@ _DOCK_ENDS = {
     ErrandOutcome.COMPLETED: "The robot is on its charging station",
     ErrandOutcome.STOPPED: "The way to the station was stopped",
     ErrandOutcome.REFUSED: "The robot refuses",
-    ErrandOutcome.LOST: "The robot was lost from sight",
+    ErrandOutcome.DISCONNECTED: "The connection to the robot was lost",
 }
 """What is said of the end of a way to the station; else it gave up."""
 
@@ -156,7 +156,7 @@ def _follow_clean(menu: Menu, under_way: CleanHandle) -> None:
     say_end(menu, _ENDS[report.outcome], report.outcome, report.message)
     if report.outcome is not ErrandOutcome.REFUSED:
         _tell_numbers(menu, report)
-    if report.outcome is ErrandOutcome.LOST:
+    if report.outcome is ErrandOutcome.DISCONNECTED:
         menu.say(f"Press {menu.key_of(tell_state)} to see whether the robot goes on with it.")
 
 

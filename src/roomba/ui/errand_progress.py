@@ -14,8 +14,9 @@ from typing import Protocol, TypeVar
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn
 
+from roomba.client.clock import Clock
 from roomba.client.protocol import CleanProgress, RobotUnavailableError
-from roomba.ui.progress import POLL_TIME, Clock, quantity, say
+from roomba.ui.progress import POLL_TIME, quantity, say
 
 ERRAND_SILENCE_LIMIT = 15.0
 """s without any news until an errand is given up here; they are due every second."""

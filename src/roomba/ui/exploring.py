@@ -20,10 +20,10 @@ _ENDS = {
     ErrandOutcome.REFUSED: "The robot refuses",
     ErrandOutcome.BATTERY: "The battery did not last",
     ErrandOutcome.STUCK: "The robot is stuck",
-    ErrandOutcome.ASTRAY: "The robot does not know where it is",
+    ErrandOutcome.LOST: "The robot does not know where it is",
     ErrandOutcome.NOT_DOCKED: "All was seen, but the robot is not on its station",
     ErrandOutcome.FAULT: "The robot gave up",
-    ErrandOutcome.LOST: "The exploration was lost from sight",
+    ErrandOutcome.DISCONNECTED: "The connection to the exploration was lost",
 }
 """What is said of an exploration's end."""
 

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 
 from rich.console import Console
 
+from roomba.client.clock import Clock
 from roomba.client.protocol import (
     RobotClient,
     RobotUnavailableError,
@@ -21,7 +22,7 @@ from roomba.client.protocol import (
     WalkReport,
 )
 from roomba.errors import RoombaError
-from roomba.ui.progress import Clock, follow_walk, quantity, say, walk_view
+from roomba.ui.progress import follow_walk, quantity, say, walk_view
 from roomba.ui.prompt import (
     STATUS_DONE,
     STATUS_INTERRUPTED,
@@ -191,7 +192,7 @@ class Menu:
             self.say(f"The robot refuses: {reason}", style="red")
         elif report.outcome is WalkOutcome.FAILED:
             self.say(f"The robot gave up after {travelled} and {took}: {reason}", style="red")
-        elif report.outcome is WalkOutcome.LOST:
+        elif report.outcome is WalkOutcome.DISCONNECTED:
             self.say(f"The robot was lost after {travelled} and {took}: {reason}", style="red")
         else:
             arrived = report.outcome is WalkOutcome.ARRIVED

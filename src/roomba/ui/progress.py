@@ -14,6 +14,7 @@ from typing import Any, Protocol
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn
 
+from roomba.client.clock import Clock
 from roomba.client.protocol import RobotClient, RobotState, WalkHandle, WalkOutcome, WalkReport
 from roomba.errors import RoombaError
 
@@ -31,16 +32,6 @@ CANCEL_DEADLINE = 5.0
 
 LEAST_MOVEMENT = 0.01
 """m; a smaller change of position may be noise and is no sign of life."""
-
-
-class Clock(Protocol):
-    """What waiting needs; the module ``time`` is one. Wall time, in seconds."""
-
-    def monotonic(self) -> float:
-        """Return seconds since some fixed moment."""
-
-    def sleep(self, seconds: float, /) -> None:
-        """Let seconds pass."""
 
 
 def quantity(value: float, unit: str, decimals: int = 2) -> str:
@@ -154,7 +145,7 @@ def follow_walk(
     that neither tells nor moves for :data:`SILENCE_LIMIT`, or does not confirm a cancellation
     within :data:`CANCEL_DEADLINE`, has lost the walk.
     """
-    watch = _Watch(total, clock)
+    signs_of_life = _SignsOfLife(total, clock)
     cancelled = math.inf
     while (report := walk.report()) is None:
         now = clock.monotonic()
@@ -162,14 +153,16 @@ def follow_walk(
             _cancel(walk)
             cancelled = now
         if now - cancelled >= CANCEL_DEADLINE:
-            return watch.lost(f"it did not confirm within {CANCEL_DEADLINE:g} s that it stops")
-        if watch.silence >= SILENCE_LIMIT:
+            return signs_of_life.disconnected(
+                f"it did not confirm within {CANCEL_DEADLINE:g} s that it stops"
+            )
+        if signs_of_life.silence >= SILENCE_LIMIT:
             _cancel(walk)  # should it hear again, it must not walk on unseen
-            return watch.lost(f"it has not answered for {SILENCE_LIMIT:g} s")
+            return signs_of_life.disconnected(f"it has not answered for {SILENCE_LIMIT:g} s")
         left = walk.next_feedback(POLL_TIME)
         state = _newest_state(robot)
         speed = math.nan if state is None else state.speed
-        watch.note(left, state)
+        signs_of_life.note(left, state)
         if left is not None:
             view.feedback(left, speed)
             continue
@@ -182,7 +175,7 @@ def follow_walk(
     return report
 
 
-class _Watch:
+class _SignsOfLife:
     """When the robot was last seen alive, and how far it was then."""
 
     def __init__(self, total: float, clock: Clock) -> None:
@@ -209,10 +202,10 @@ class _Watch:
         if moved or left is not None:
             self._seen = self._clock.monotonic()
 
-    def lost(self, message: str) -> WalkReport:
+    def disconnected(self, message: str) -> WalkReport:
         """Return the end of a walk that the robot itself does not report."""
         return WalkReport(
-            outcome=WalkOutcome.LOST,
+            outcome=WalkOutcome.DISCONNECTED,
             distance=max(0.0, self._total - self._left),
             duration=self._clock.monotonic() - self._began,
             message=message,

@@ -25,6 +25,7 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
 from rich.text import Text
 
+from roomba.commands.sim.trial import UsageError
 from roomba.configuration.robot import load_robot_config
 from roomba.errors import RoombaError
 from roomba.files.occupancy_map import load_map
@@ -46,11 +47,7 @@ _TOLD: Final = 1.0
 """s between two pictures of the progress bar, and two lines where there is none."""
 
 
-class UsageError(RoombaError):
-    """A command line that cannot be obeyed."""
-
-
-class _Parser(argparse.ArgumentParser):
+class _LocalizeParser(argparse.ArgumentParser):
     def error(self, message: str) -> NoReturn:
         """Say in one line what is wrong."""
         self.exit(2, f"{_PROGRAM}: {message}; see {_PROGRAM} --help\n")
@@ -97,7 +94,7 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = _Parser(
+    parser = _LocalizeParser(
         prog=_PROGRAM,
         description="Localize a recorded drive on a map: any bag with a lidar and odometry.",
         epilog="The start is what --start says, else the first pose that was recorded on "

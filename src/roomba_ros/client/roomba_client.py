@@ -110,8 +110,8 @@ class RoombaClient:
         return _wait(self.robot.undock())
 
 
-class _Errand(Protocol[_News, _Report]):
-    """A walk, a clean or a way to the station."""
+class _Awaited(Protocol[_News, _Report]):
+    """What a program waits for: a walk, a clean or a way to the station."""
 
     def next_feedback(self, timeout: float) -> _News | None: ...
 
@@ -119,7 +119,7 @@ class _Errand(Protocol[_News, _Report]):
 
 
 def _wait(
-    errand: _Errand[_News, _Report], on_news: Callable[[_News], object] | None = None
+    errand: _Awaited[_News, _Report], on_news: Callable[[_News], object] | None = None
 ) -> _Report:
     """Return the end of an errand, which comes: a server that falls silent ends it."""
     while (report := errand.report()) is None:

@@ -56,7 +56,7 @@ _OUTCOMES = {
     GoalStatus.RECALLED: WalkOutcome.CANCELLED,
     GoalStatus.REJECTED: WalkOutcome.REFUSED,
     GoalStatus.ABORTED: WalkOutcome.FAILED,
-    GoalStatus.LOST: WalkOutcome.LOST,
+    GoalStatus.LOST: WalkOutcome.DISCONNECTED,
 }
 
 
@@ -214,7 +214,7 @@ class _RosWalk:
             # Should it wake up, it must not walk on with nobody watching.
             self._actions.cancel_goal()
             self._end(
-                WalkOutcome.LOST,
+                WalkOutcome.DISCONNECTED,
                 rospy.get_time() - self._started,
                 f"the action server has been silent for {SILENCE_DEADLINE:g} s",
             )

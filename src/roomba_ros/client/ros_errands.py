@@ -35,18 +35,18 @@ _ENDINGS: Final = {
     GoalStatus.RECALLED: ErrandOutcome.STOPPED,
     GoalStatus.REJECTED: ErrandOutcome.REFUSED,
     GoalStatus.ABORTED: ErrandOutcome.FAULT,
-    GoalStatus.LOST: ErrandOutcome.LOST,
+    GoalStatus.LOST: ErrandOutcome.DISCONNECTED,
 }
 OUTCOMES: Final = {
     CleanResult.COMPLETED: ErrandOutcome.COMPLETED,
     CleanResult.STOPPED: ErrandOutcome.STOPPED,
     CleanResult.BATTERY: ErrandOutcome.BATTERY,
     CleanResult.STUCK: ErrandOutcome.STUCK,
-    CleanResult.LOST: ErrandOutcome.ASTRAY,
+    CleanResult.LOST: ErrandOutcome.LOST,
     CleanResult.NOT_DOCKED: ErrandOutcome.NOT_DOCKED,
     CleanResult.FAULT: ErrandOutcome.FAULT,
 }
-"""What the codes of a clean's result mean to a client, whose LOST is another one."""
+"""What the codes of a clean's result mean to a client."""
 _GOES_ON = "a clean goes on by itself once that is back, and vacuum/state tells how far it is"
 
 _Told = TypeVar("_Told")
@@ -148,7 +148,7 @@ class _Errand(ABC, Generic[_Told, _Report]):
             why = f"the action server took no notice of it for {SERVER_DEADLINE:g} s"
         else:
             return
-        self._report = self._ended(ErrandOutcome.LOST, None, f"{why}; {_GOES_ON}")
+        self._report = self._ended(ErrandOutcome.DISCONNECTED, None, f"{why}; {_GOES_ON}")
 
     def _on_feedback(self, _: Any, feedback: Any) -> None:
         with self._news:
@@ -161,7 +161,7 @@ class _Errand(ABC, Generic[_Told, _Report]):
                 return
             outcome = _ENDINGS[handle.get_terminal_state()]
             text = handle.get_goal_status_text()
-            if outcome is ErrandOutcome.LOST:
+            if outcome is ErrandOutcome.DISCONNECTED:
                 text = f"the action server began anew and knows nothing of it; {_GOES_ON}"
             self._report = self._ended(outcome, handle.get_result(), text)
             self._news.notify_all()

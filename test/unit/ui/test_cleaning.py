@@ -170,13 +170,13 @@ def test_end_of_input_and_ctrl_c_leave_from_the_questions(lines: tuple[str, ...]
         (ErrandOutcome.STOPPED, "The clean was stopped: because"),
         (ErrandOutcome.BATTERY, "The battery did not last: because"),
         (ErrandOutcome.STUCK, "The robot is stuck: because"),
-        (ErrandOutcome.ASTRAY, "The robot does not know where it is: because"),
+        (ErrandOutcome.LOST, "The robot does not know where it is: because"),
         (
             ErrandOutcome.NOT_DOCKED,
             "The floor is done, but the robot is not on its station: because",
         ),
         (ErrandOutcome.FAULT, "The robot gave up: because"),
-        (ErrandOutcome.LOST, "The clean was lost from sight: because"),
+        (ErrandOutcome.DISCONNECTED, "The connection to the clean was lost: because"),
     ],
 )
 def test_a_clean_gone_wrong_says_why_and_how_far_it_came(outcome: ErrandOutcome, told: str) -> None:
@@ -184,10 +184,10 @@ def test_a_clean_gone_wrong_says_why_and_how_far_it_came(outcome: ErrandOutcome,
     status, lines, answers = use(FakeRobot(errands=[script]), "5", "")
     end = lines.index(told)
     assert lines[end + 1].startswith("Cleaned: ")
-    assert ("Energy used: 0.04 Wh" in lines) is (outcome is not ErrandOutcome.LOST)
+    assert ("Energy used: 0.04 Wh" in lines) is (outcome is not ErrandOutcome.DISCONNECTED)
     assert not any("nan" in line or "unknown" in line for line in lines)
     tip = "Press 9 to see whether the robot goes on with it."
-    assert (tip in lines) is (outcome is ErrandOutcome.LOST)
+    assert (tip in lines) is (outcome is ErrandOutcome.DISCONNECTED)
     assert (status, answers.prompts[-1]) == (0, "Select: ")
 
 
@@ -266,7 +266,7 @@ def test_docking_tells_what_it_does_and_its_result() -> None:
         (ErrandOutcome.FAULT, "The robot did not get onto its station: no beam"),
         (ErrandOutcome.REFUSED, "The robot refuses: no beam"),
         (ErrandOutcome.STOPPED, "The way to the station was stopped: no beam"),
-        (ErrandOutcome.LOST, "The robot was lost from sight: no beam"),
+        (ErrandOutcome.DISCONNECTED, "The connection to the robot was lost: no beam"),
     ],
 )
 def test_docking_gone_wrong_says_why(outcome: ErrandOutcome, told: str) -> None:

@@ -79,7 +79,7 @@ def test_what_went_wrong_is_told(outcome: ErrandOutcome, text: str) -> None:
 
 
 def test_who_does_it_may_fall_silent() -> None:
-    script = ErrandScript(ErrandOutcome.LOST, after=3.0, message="no word of it")
+    script = ErrandScript(ErrandOutcome.DISCONNECTED, after=3.0, message="no word of it")
     lines = use(FakeRobot(errands=[script]), ["10"])
-    assert any(line.startswith("The exploration was lost from sight") for line in lines)
+    assert any(line.startswith("The connection to the exploration was lost") for line in lines)
     assert not any(line.startswith("Distance") for line in lines)

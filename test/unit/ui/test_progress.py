@@ -130,7 +130,7 @@ def test_stopping_is_noticed_within_one_look() -> None:
 def test_a_robot_that_does_not_confirm_a_cancellation_is_lost() -> None:
     robot = FakeRobot(scripts=[WalkScript(obeys=False)])
     report = follow(robot, plain_console(), stop_after=2.0)
-    assert report.outcome is WalkOutcome.LOST
+    assert report.outcome is WalkOutcome.DISCONNECTED
     assert "did not confirm within 5 s" in report.message
     assert report.duration == pytest.approx(2.0 + CANCEL_DEADLINE, abs=2 * POLL_TIME)
     assert robot.walks[0].cancels == 1
@@ -139,14 +139,17 @@ def test_a_robot_that_does_not_confirm_a_cancellation_is_lost() -> None:
 def test_a_vanished_server_is_lost_as_the_client_says() -> None:
     robot = FakeRobot(scripts=[WalkScript(Turn.VANISHES, 4.0, "the action server is gone")])
     report = follow(robot, plain_console())
-    assert (report.outcome, report.message) == (WalkOutcome.LOST, "the action server is gone")
+    assert (report.outcome, report.message) == (
+        WalkOutcome.DISCONNECTED,
+        "the action server is gone",
+    )
     assert robot.clock.monotonic() < 6.0
 
 
 def test_a_frozen_robot_is_lost_within_seconds_and_told_to_stop() -> None:
     robot = FakeRobot(scripts=[WalkScript(Turn.FREEZES, after=4.0)])
     report = follow(robot, plain_console())
-    assert report.outcome is WalkOutcome.LOST
+    assert report.outcome is WalkOutcome.DISCONNECTED
     assert "has not answered for 6 s" in report.message
     assert robot.clock.monotonic() <= 4.0 + SILENCE_LIMIT + 1.0
     assert report.distance == pytest.approx(1.5)  # as the last feedback, at 3 s, had it
@@ -181,7 +184,7 @@ def test_a_client_that_returns_at_once_is_not_asked_in_circles() -> None:
         wants_to_stop=lambda: False,
         clock=clock,
     )
-    assert report.outcome is WalkOutcome.LOST
+    assert report.outcome is WalkOutcome.DISCONNECTED
     assert walk.asked <= SILENCE_LIMIT / POLL_TIME + 2
 
 

@@ -17,7 +17,7 @@ from roomba.client.protocol import (
 )
 
 if TYPE_CHECKING:
-    from roomba.client.fake.robot import Clock
+    from roomba.client.clock import Clock
 
 CLEANING_RATE = 0.5
 """m2/s."""
@@ -39,7 +39,7 @@ _INSTANT = 1e-9
 class ErrandScript:
     """One errand: its ``outcome`` comes ``after`` s of work, if the work is not done by then.
 
-    A refusal comes at once. LOST is the client's: the robot goes on. One that ``freezes`` then
+    A refusal comes at once. After DISCONNECTED the robot goes on. One that ``freezes`` then
     tells and reports no more.
     """
 
@@ -153,7 +153,7 @@ class FakeErrand:
 
     def _is_struck_in(self, seconds: float) -> bool:
         """Whether the script has made its server silent by then."""
-        silences = self._script.freezes or self._outcome is ErrandOutcome.LOST
+        silences = self._script.freezes or self._outcome is ErrandOutcome.DISCONNECTED
         worked = self.worked + (0.0 if self._is_standing else seconds)
         return silences and worked >= self._script.after - _INSTANT
 
@@ -171,7 +171,7 @@ class FakeErrand:
         total = self._cleans + self._drives
         if self._outcome is ErrandOutcome.REFUSED:
             return 0.0
-        if self._script.freezes or self._outcome is ErrandOutcome.LOST:
+        if self._script.freezes or self._outcome is ErrandOutcome.DISCONNECTED:
             return total
         return min(total, self._script.after)
 
@@ -180,14 +180,14 @@ class FakeErrand:
         """s until the client can report the end; inf while it is not in sight."""
         if self._script.freezes or self._is_paused:
             return math.inf
-        if self._outcome is ErrandOutcome.LOST:
+        if self._outcome is ErrandOutcome.DISCONNECTED:
             # What it has worked stands still at the end of its work: the clock does not.
             running = self._worked_before + self._clock.monotonic() - self._since
             return max(0.0, self._script.after + LOST_NOTICE - running)
         return max(0.0, self._work - self.worked)
 
 
-_KEPT = (ErrandOutcome.COMPLETED, ErrandOutcome.LOST)
+_KEPT = (ErrandOutcome.COMPLETED, ErrandOutcome.DISCONNECTED)
 """Outcomes after which the robot itself is where it should be."""
 
 
@@ -229,7 +229,7 @@ class FakeClean(FakeErrand):
         outcome = self.ending
         if outcome is None:
             return None
-        is_known = outcome is not ErrandOutcome.LOST
+        is_known = outcome is not ErrandOutcome.DISCONNECTED
         return CleanReport(
             outcome=outcome,
             message=self.reason,
@@ -256,7 +256,7 @@ class FakeExploring(FakeErrand):
         outcome = self.ending
         if outcome is None:
             return None
-        is_known = outcome is not ErrandOutcome.LOST
+        is_known = outcome is not ErrandOutcome.DISCONNECTED
         way = 0.25 * self.worked if is_known else math.nan
         return ExploreReport(outcome, self.reason, self._known, way, self.elapsed)
 

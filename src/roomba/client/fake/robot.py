@@ -1,7 +1,7 @@
 """A robot without ROS for tests and demos: it keeps a script, and the same calls give the same run.
 
 It drives straight lines at its top speed. What may go wrong on a walk is written in a
-:class:`WalkScript`. Its time is a :class:`SteppedClock`, which passes only while somebody waits, or
+:class:`WalkScript`. Its time is a :class:`SteppedClock`, which passes only while a caller waits, or
 the module ``time`` for a run in real time.
 """
 
@@ -12,11 +12,11 @@ import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum
-from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.client.clock import Clock
 from roomba.client.fake.errands import ErrandScript
 from roomba.client.fake.vacuum import FakeVacuum
 from roomba.client.protocol import (
@@ -40,18 +40,8 @@ _INSTANT = 1e-9
 """s; two sums of the same waits may differ by rounding."""
 
 
-class Clock(Protocol):
-    """Time as the fake needs it; the module ``time`` is one."""
-
-    def monotonic(self) -> float:
-        """Return seconds since some fixed moment."""
-
-    def sleep(self, seconds: float, /) -> None:
-        """Let seconds pass."""
-
-
 class SteppedClock:
-    """Time that passes only while somebody waits; ``events`` are (s, what happens then)."""
+    """Time that passes only while a caller waits; ``events`` are (s, what happens then)."""
 
     def __init__(self, events: Iterable[tuple[float, Callable[[], None]]] = ()) -> None:
         self._now = 0.0
@@ -320,7 +310,7 @@ class FakeWalk:
         return {
             Turn.REFUSED: WalkOutcome.REFUSED,
             Turn.FAILS: WalkOutcome.FAILED,
-        }.get(self._script.turn, WalkOutcome.LOST)
+        }.get(self._script.turn, WalkOutcome.DISCONNECTED)
 
     @property
     def _travelled(self) -> float:

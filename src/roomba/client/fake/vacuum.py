@@ -24,7 +24,7 @@ from roomba.client.protocol import (
 )
 
 if TYPE_CHECKING:
-    from roomba.client.fake.robot import Clock
+    from roomba.client.clock import Clock
 
 ROOM_AREA = 4.0
 SPOT_AREA = 2.25

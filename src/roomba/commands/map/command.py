@@ -83,7 +83,7 @@ def _shown_by(show: Show, scene: MapScene) -> RunObserver:
     all_of_it = float(np.count_nonzero(scene.seen)) * scene.home.frame.resolution**2
     looked = time.monotonic()
 
-    def watch(robot: WatchedExplorer) -> None:
+    def observe(robot: WatchedExplorer) -> None:
         nonlocal looked
         if time.monotonic() - looked < _SHOWN:
             return
@@ -93,7 +93,7 @@ def _shown_by(show: Show, scene: MapScene) -> RunObserver:
         phase = robot.mission.state.phase.value
         show(min(area / all_of_it, 1.0), f"{area:.0f} m², {clock(robot.seen.time)}, {phase}")
 
-    return watch
+    return observe
 
 
 def _tell_run(output: Output, run: MapRun) -> None:

@@ -97,8 +97,8 @@ class WatchedExplorer(HeadlessExplorer):
         """Let time pass, and look at what it brought."""
         super().advance()
         self._hear(self.passed[-1])
-        for watch in self.observers:
-            watch(self)
+        for observe in self.observers:
+            observe(self)
 
     def _hear(self, rows: Floats) -> None:
         """Let the other map go on by ticks that passed, float64 [n, PASSED]."""

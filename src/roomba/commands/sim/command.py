@@ -88,7 +88,7 @@ def _shown_by(show: Show) -> RunObserver:
 
     began = time.monotonic()
 
-    def watch(robot: HeadlessMission) -> None:
+    def observe(robot: HeadlessMission) -> None:
         nonlocal began
         # The words cost more than some ticks of the robot: seldom is enough.
         if time.monotonic() - began < 0.1:
@@ -98,7 +98,7 @@ def _shown_by(show: Show) -> RunObserver:
         share = passed / max(passed + left, 1e-9)
         show(share, f"{clock(passed)} of robot time, {robot.mission.state.phase.value}")
 
-    return watch
+    return observe
 
 
 def _tell_run(options: SimOptions, run: Run) -> None:

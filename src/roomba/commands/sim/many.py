@@ -47,20 +47,20 @@ def run_many(
 ) -> Iterator[tuple[Trial, Outcome]]:
     """Yield each trial with what came of it, in the order in which they end.
 
-    Processes that die are replaced, what hangs for LONGEST_RUN is ended. Whoever stops to ask for
-    more ends them all. ``method`` is how processes start: spawned ones share nothing with this one,
+    Processes that die are replaced; one that hangs for LONGEST_RUN is killed. Closing the iterator
+    ends them all. ``method`` is how processes start: spawned ones share nothing with this one,
     whose compiled code may have threads that a fork would lose.
     """
     left = deque(trials)
     count = min(processes or len(os.sched_getaffinity(0)), len(trials))
-    with _WorkerPool(work, method) as crew:
+    with _WorkerPool(work, method) as pool:
         for _ in range(count):
-            crew.submit(left.popleft())
-        while crew.at_work:
-            ended = crew.ended()
+            pool.submit(left.popleft())
+        while pool.at_work:
+            ended = pool.ended()
             for trial, outcome in ended:
                 if left:
-                    crew.submit(left.popleft())
+                    pool.submit(left.popleft())
                 yield trial, outcome
 
 
@@ -77,16 +77,16 @@ class _WorkerPool:
         return self
 
     def __exit__(self, *error: object) -> None:
-        hired = list(self._idle)
-        hired += [(pipe, process) for pipe, (process, _) in self.at_work.items()]
-        for process in [process for _, process in hired]:
+        workers = list(self._idle)
+        workers += [(pipe, process) for pipe, (process, _) in self.at_work.items()]
+        for process in [process for _, process in workers]:
             process.kill()
-        for pipe, process in hired:
+        for pipe, process in workers:
             pipe.close()
             process.join(timeout=1.0)
 
     def submit(self, trial: Trial) -> None:
-        """Give a trial to somebody who has nothing to do, or to somebody new."""
+        """Give a trial to an idle process, or to a new one."""
         pipe, process = self._idle.pop() if self._idle else self._started()
         self.at_work[pipe] = process, trial
         # a process that is gone is found when its answer is read

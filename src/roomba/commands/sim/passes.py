@@ -12,8 +12,8 @@ from roomba.grid import GridFrame
 
 _PIECE: Final = 10
 """Poses that are drawn at a time."""
-_AGAIN: Final = 3.0
-"""s; who comes back sooner has not been away."""
+_LEAST_AWAY: Final = 3.0
+"""s; a robot that comes back sooner has not been away."""
 _SHIFT: Final = 4
 """OpenCV's fixed point: 4 bits behind the point of a pixel."""
 
@@ -44,7 +44,7 @@ def passes_over(
         cv2.polylines(mask, [fixed], False, (255,), thickness, cv2.LINE_8, _SHIFT)
         passed = mask > 0
         time = float(trajectory[piece][-1, 0])
-        is_new = passed & (time - last[window] > _AGAIN) & (counts[window] < 255)
+        is_new = passed & (time - last[window] > _LEAST_AWAY) & (counts[window] < 255)
         counts[window][is_new] += 1
         last[window][passed] = time
     return counts

@@ -65,8 +65,8 @@ class WatchedMission(HeadlessMission):
     def advance(self) -> None:
         """Let some ticks pass, and look."""
         super().advance()
-        for watch in self.observers:
-            watch(self)
+        for observe in self.observers:
+            observe(self)
 
 
 class TrialSetup:

@@ -39,7 +39,7 @@ Mask = NDArray[np.bool_]
 
 _LITTLE_GAIN: Final = 0.05
 """Share of what was missed; a round that gains less of it than this was for nothing."""
-_WORTH_A_LOOK: Final = 0.5
+_LEAST_AREA_TO_RETRY: Final = 0.5
 """m2; so much floor out of reach is looked for again, as behind a door: less is below a chair."""
 _WORTH_A_ROUND: Final = 0.02
 """m2; one patch as large as this is worth another round, though enough is clean."""
@@ -51,7 +51,7 @@ _PLANNED_ANEW: Final = 20.0
 """s; at least, between two plans that are made because something stood on the path."""
 _MOST_ANEW: Final = 40
 """Such plans in one clean."""
-_LONG: Final = 8.0
+_LEAST_WAY_TO_REPLAN: Final = 8.0
 """m; less of a path is driven to its end before it is planned anew."""
 
 
@@ -155,7 +155,7 @@ class Cleaning:
         self._looked_again, self._unreachable = True, False
         staging = (self._site.staging.x, self._site.staging.y)
         left = self.coverage.wanted & ~self.clean & self._reachable(staging, lasting)
-        large = _patches(left, self.coverage.frame, _WORTH_A_LOOK)
+        large = _patches(left, self.coverage.frame, _LEAST_AREA_TO_RETRY)
         if not large.any():
             return False
         self._book.add(Stage("what was out of reach", large))
@@ -184,7 +184,7 @@ class Cleaning:
         what is next to it.
         """
         since = now - self._planned_anew_at
-        if left < _LONG or self._anew >= _MOST_ANEW or 0.0 <= since < _PLANNED_ANEW:
+        if left < _LEAST_WAY_TO_REPLAN or self._anew >= _MOST_ANEW or 0.0 <= since < _PLANNED_ANEW:
             return False
         self._anew, self._planned_anew_at = self._anew + 1, now
         self._begin_anew()
@@ -282,7 +282,7 @@ class Cleaning:
         except NoPathError:
             self._unreachable = True
             todo &= self._reachable((here.x, here.y), obstacles)
-            if patches_of(todo, self.coverage.frame, _WORTH_A_LOOK):
+            if patches_of(todo, self.coverage.frame, _LEAST_AREA_TO_RETRY):
                 # The way home is shut, perhaps by a door: meanwhile it cleans where it is.
                 plan = self._site.coverage.plan(
                     (here.x, here.y), None, todo, obstacles, edges_only=edges_only
@@ -316,7 +316,7 @@ class Cleaning:
 
     def _note_out_of_reach(self, floor: Mask, obstacles: list[RoundObstacle]) -> None:
         """Floor that somebody may open later is looked for again before the end."""
-        patches = patches_of(floor, self.coverage.frame, _WORTH_A_LOOK)
+        patches = patches_of(floor, self.coverage.frame, _LEAST_AREA_TO_RETRY)
         if not all(is_hidden(patch, self._site, obstacles) for patch in patches):
             self._unreachable = True
 

@@ -33,7 +33,7 @@ _LONGEST_TICK: Final = 2.0
 _HORIZON: Final = 2.0
 """m; so far ahead its path is looked at for what stands in the way."""
 _NEVER: Final = -1
-_LEAVING: Final = 0.25
+_LEAVING_WAY: Final = 0.25
 """m; on so much of a new way it may still be near to what it goes around."""
 _MOST_FUTILE: Final = 3
 """New ways from one place; then it tries to get free in other ways."""
@@ -264,7 +264,7 @@ class PathDriver:
             self._reason = f"no way leads on from {senses.where}: {self._rejoin.trouble}"
             return
         self._begin(points, senses)
-        self._leaves_until = back + _LEAVING
+        self._leaves_until = back + _LEAVING_WAY
 
     def _mark_progress(self, senses: Senses, along: float, leg: int) -> None:
         self._progressed, self._progress_along, self._progress_leg = senses.now, along, leg
@@ -289,13 +289,13 @@ class PathDriver:
         self._state = DriveState.RECOVERING
         self._wriggle = Recovery(self._recoveries, self._config, senses)
 
-    def _get_free(self, senses: Senses, wriggle: Recovery) -> DriveStep:
-        twist = wriggle.tick(senses)
+    def _get_free(self, senses: Senses, recovery: Recovery) -> DriveStep:
+        twist = recovery.tick(senses)
         if twist is not None:
             return DriveStep(self._state, twist)
         self._wriggle = None
         self._state = DriveState.DRIVING
-        if wriggle.moved(senses):
+        if recovery.moved(senses):
             self._obstacles.forget_felt_at(senses)
         self._go_around(senses)
         return DriveStep(self._state, STANDSTILL, self._reason)

@@ -1,4 +1,4 @@
-"""Getting free: back, turn, wriggle, the other way around."""
+"""Getting free: back off, turn, shuffle, and the other way around."""
 
 from __future__ import annotations
 

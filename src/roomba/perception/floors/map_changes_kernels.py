@@ -27,7 +27,7 @@ _OPEN_SHARE: Final = 0.1
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def count_scan(
-    sheet: CountArrays,
+    cells: CountArrays,
     ranges: NDArray[np.float32],
     directions: Floats,
     mount: Floats,
@@ -54,23 +54,23 @@ def count_scan(
         # Which way surfaces face would place them better by half a cell, for as much time again.
         points[count, NORMAL_X], points[count, NORMAL_Y] = 0.0, 0.0
         count += 1
-    draw(sheet, points[:count], mount[:2], pose)
+    draw(cells, points[:count], mount[:2], pose)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def score_look(sheet: CountArrays, scores: NDArray[np.int8]) -> None:
+def score_look(cells: CountArrays, scores: NDArray[np.int8]) -> None:
     """Add the counts of a look to the scores, int8 [rows, columns], and begin a new one.
 
     A cell where enough beams ended gets 1 more, one that nearly all passed 1 less.
     """
-    for row in range(sheet.bounds[0], sheet.bounds[1] + 1):
-        for column in range(sheet.bounds[2], sheet.bounds[3] + 1):
-            ended, through = int(sheet.hits[row, column]), int(sheet.passes[row, column])
-            sheet.hits[row, column] = sheet.passes[row, column] = 0
+    for row in range(cells.bounds[0], cells.bounds[1] + 1):
+        for column in range(cells.bounds[2], cells.bounds[3] + 1):
+            ended, through = int(cells.hits[row, column]), int(cells.passes[row, column])
+            cells.hits[row, column] = cells.passes[row, column] = 0
             if ended + through < _LEAST:
                 continue
             if ended >= _LEAST and ended >= _SOLID_SHARE * (ended + through):
                 scores[row, column] = min(scores[row, column] + 1, MOST)
             elif ended < _OPEN_SHARE * (ended + through):
                 scores[row, column] = max(scores[row, column] - 1, -MOST)
-    sheet.bounds[:] = NO_BOUNDS
+    cells.bounds[:] = NO_BOUNDS

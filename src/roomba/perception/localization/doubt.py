@@ -17,7 +17,7 @@ from roomba.perception.localization.relocation import Expectation, Relocation, V
 from roomba.perception.matching.scan_view import ScanView
 from roomba.perception.matching.surface_field import SurfaceField
 
-_AGAIN: Final = 1.0
+_COMPARED_EVERY: Final = 1.0
 """s; after a comparison that found no other place, before the next one."""
 
 
@@ -63,7 +63,7 @@ class Doubt:
     ) -> bool:
         """Compare the place with all others, a piece at each scan; tell if it must be another."""
         if self._comparison is None:
-            if 0.0 <= now - self._compared < _AGAIN:
+            if 0.0 <= now - self._compared < _COMPARED_EVERY:
                 return False
             self._comparison = Relocation(
                 field, self._config, self._body_radius, view, reckoned, here

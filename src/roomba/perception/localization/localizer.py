@@ -35,7 +35,7 @@ _FOUND_SPREAD: Final = np.diag([0.05**2, 0.05**2, 0.03**2])
 """m2, rad2; of a place that was found, before scans narrow it down."""
 _PATIENCE: Final = 0.5
 """s; so long it waits for a scan that tells places apart before it moves to get one."""
-_AGAIN: Final = 1.0
+_SEARCHED_EVERY: Final = 1.0
 """s; after which a search that found nothing is tried anew."""
 _GOOD_AGREE: Final = 0.95
 _GOOD_THROUGH: Final = 0.03
@@ -369,7 +369,7 @@ class Localizer:
         self._verdict = relocation.verdict
         if relocation.verdict is Verdict.FOUND:
             self._found(relocation.hypotheses[0])
-        elif relocation.verdict is Verdict.NOWHERE and self._now - self._tried > _AGAIN:
+        elif relocation.verdict is Verdict.NOWHERE and self._now - self._tried > _SEARCHED_EVERY:
             self._relocation = None
 
     def _found(self, place: Hypothesis) -> None:

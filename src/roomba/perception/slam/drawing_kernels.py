@@ -49,7 +49,7 @@ class CountArrays(NamedTuple):
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def draw(
-    sheet: CountArrays,
+    cells: CountArrays,
     points: NDArray[np.float32],
     lidar: Floats,
     pose: Floats,
@@ -62,18 +62,18 @@ def draw(
     a beam is counted, cells, where the way that it faces is not known. -1 ``times`` undoes it; the
     bounds stay.
     """
-    per_metre = 1.0 / sheet.place[2]
-    rows, columns = sheet.hits.shape
+    per_metre = 1.0 / cells.place[2]
+    rows, columns = cells.hits.shape
     shape = rows, columns
-    hits, passes = sheet.hits.ravel(), sheet.passes.ravel()
+    hits, passes = cells.hits.ravel(), cells.passes.ravel()
     cosine, sine = math.cos(pose[2]), math.sin(pose[2])
     from_x = pose[0] + cosine * lidar[0] - sine * lidar[1]
     from_y = pose[1] + sine * lidar[0] + cosine * lidar[1]
-    from_u, from_v = (from_x - sheet.place[0]) * per_metre, (from_y - sheet.place[1]) * per_metre
+    from_u, from_v = (from_x - cells.place[0]) * per_metre, (from_y - cells.place[1]) * per_metre
     for index in range(points.shape[0]):
         x = pose[0] + cosine * points[index, X] - sine * points[index, Y]
         y = pose[1] + sine * points[index, X] + cosine * points[index, Y]
-        u, v = (x - sheet.place[0]) * per_metre, (y - sheet.place[1]) * per_metre
+        u, v = (x - cells.place[0]) * per_metre, (y - cells.place[1]) * per_metre
         length = math.hypot(u - from_u, v - from_v)
         if length == 0.0:
             continue
@@ -87,9 +87,9 @@ def draw(
             into, before = _INTO, _BEFORE / max(into_u * along_u + into_v * along_v, 0.1)
         _pass(passes, shape, from_u, from_v, along_u, along_v, length - before, times)
         row, column = math.floor(v + into * into_v), math.floor(u + into * into_u)
-        _hit(sheet.offsets, hits, shape, row, column, u, v, times)
-        _bound(sheet, row, column)
-    _bound(sheet, math.floor(from_v), math.floor(from_u))
+        _hit(cells.offsets, hits, shape, row, column, u, v, times)
+        _bound(cells, row, column)
+    _bound(cells, math.floor(from_v), math.floor(from_u))
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -199,29 +199,29 @@ def _count(counts: Counts, at: int, times: int) -> None:
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _bound(sheet: CountArrays, row: int, column: int) -> None:
-    rows, columns = sheet.hits.shape
-    sheet.bounds[0] = max(min(sheet.bounds[0], row), 0)
-    sheet.bounds[1] = min(max(sheet.bounds[1], row), rows - 1)
-    sheet.bounds[2] = max(min(sheet.bounds[2], column), 0)
-    sheet.bounds[3] = min(max(sheet.bounds[3], column), columns - 1)
+def _bound(cells: CountArrays, row: int, column: int) -> None:
+    rows, columns = cells.hits.shape
+    cells.bounds[0] = max(min(cells.bounds[0], row), 0)
+    cells.bounds[1] = min(max(cells.bounds[1], row), rows - 1)
+    cells.bounds[2] = max(min(cells.bounds[2], column), 0)
+    cells.bounds[3] = min(max(cells.bounds[3], column), columns - 1)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def occupancy(sheet: CountArrays, share: float, least: int, values: NDArray[np.int8]) -> None:
+def occupancy(cells: CountArrays, share: float, least: int, values: NDArray[np.int8]) -> None:
     """Fill ``values``, all within the bounds, from the counts.
 
     Occupied where ``least`` beams or more, and ``share`` of all, ended, unless that is the edge of
     what stands in the cell beside it; free where beams went through; else unknown.
     """
     rows, columns = values.shape
-    first_row, first_column = sheet.bounds[0], sheet.bounds[2]
+    first_row, first_column = cells.bounds[0], cells.bounds[2]
     for row in range(rows):
         for column in range(columns):
-            ended = int(sheet.hits[first_row + row, first_column + column])
-            through = int(sheet.passes[first_row + row, first_column + column])
+            ended = int(cells.hits[first_row + row, first_column + column])
+            through = int(cells.passes[first_row + row, first_column + column])
             is_met = _is_met(ended, through, share, least)
-            if is_met and not _is_edge(sheet, first_row + row, first_column + column, least):
+            if is_met and not _is_edge(cells, first_row + row, first_column + column, least):
                 values[row, column] = OCCUPIED
             elif through > 0:
                 values[row, column] = FREE
@@ -235,21 +235,21 @@ def _is_met(ended: int, through: int, share: float, least: int) -> bool:
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _is_edge(sheet: CountArrays, row: int, column: int, least: int) -> bool:
+def _is_edge(cells: CountArrays, row: int, column: int, least: int) -> bool:
     """Whether beams met a cell but at its border to one that is more surely occupied."""
-    rows, columns = sheet.offsets.shape[:2]
-    hits = int(sheet.hits[row, column])
-    surer = _SURER * hits / (hits + int(sheet.passes[row, column]))
+    rows, columns = cells.offsets.shape[:2]
+    hits = int(cells.hits[row, column])
+    surer = _SURER * hits / (hits + int(cells.passes[row, column]))
     for step in range(4):
         step_row, step_column = _ROW_STEPS[step], _COLUMN_STEPS[step]
         beside_row, beside_column = row + step_row, column + step_column
         if not (0 <= beside_row < rows and 0 <= beside_column < columns):
             continue
-        offset_x, offset_y = sheet.offsets[row, column]
+        offset_x, offset_y = cells.offsets[row, column]
         if step_column * offset_x + step_row * offset_y < (0.5 - _EDGE) * hits:
             continue
-        ended = int(sheet.hits[beside_row, beside_column])
-        through = int(sheet.passes[beside_row, beside_column])
+        ended = int(cells.hits[beside_row, beside_column])
+        through = int(cells.passes[beside_row, beside_column])
         if _is_met(ended, through, surer, least):
             return True
     return False

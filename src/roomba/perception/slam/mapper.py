@@ -2,8 +2,8 @@
 
 Dead reckoning says how the robot moved, each scan is matched to the surfels of the last metres,
 scans are kept as keyframes of submaps, submaps are linked to others that show the same walls, and
-all are drawn on a sheet where the links say that they lie. Plain values in and out; times in s of
-the robot's clock.
+all are drawn into occupancy counts where the links say that they lie. Plain values in and out;
+times in s of the robot's clock.
 """
 
 from __future__ import annotations
@@ -300,7 +300,7 @@ class Mapper:
         self.version += bool(numbers)
 
     def _redraw(self) -> None:
-        """Draw all keyframes on a new sheet, where they are thought to be now."""
+        """Draw all keyframes into new occupancy counts, where they are thought to be now."""
         self._sheet = OccupancyCounts(self._config.resolution, self._phase)
         for frame, pose in self._graph.keyframes():
             self._draw(frame, pose)

@@ -1,4 +1,4 @@
-"""The sheet that scans are drawn on: an occupancy grid that grows with what is seen."""
+"""Occupancy counts: how many beams ended in each cell and went through it, on a growing grid."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ class OccupancyCounts:
         """
         first_row, last_row, first_column, last_column = self._arrays.bounds.tolist()
         if last_row < first_row:
-            raise ValueError("expected a sheet with at least one scan on it, got an empty one")
+            raise ValueError("expected counts of at least one scan, got an empty one")
         values = np.empty((last_row - first_row + 1, last_column - first_column + 1), np.int8)
         occupancy(self._arrays, share, least, values)
         size = self._resolution
@@ -70,7 +70,7 @@ class OccupancyCounts:
         return OccupancyMap(frame, np.pad(values, _MARGIN, constant_values=UNKNOWN))
 
     def around(self, x: float, y: float, reach: float, share: float, least: int) -> OccupancyMap:
-        """Return what lies up to ``reach`` m off a place, as far as the sheet goes."""
+        """Return what lies up to ``reach`` m off a place, as far as the grid goes."""
         size = self._resolution
         row = math.floor((y - reach - self._phase[1]) / size) - self._row
         column = math.floor((x - reach - self._phase[0]) / size) - self._column

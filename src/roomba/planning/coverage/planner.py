@@ -34,7 +34,7 @@ Line = NDArray[np.float64]
 
 _PIECE = 12.0
 """Widths of the tool; edges can be left for swaths about this often."""
-_ASIDE = 0.2
+_OFF_MIDDLES = 0.2
 """cells; the tool is a whole number of cells wide, so that seams would lie on their middles, where
 it takes the least error of the drive to leave a whole row unswept."""
 _TURNING = 6.0
@@ -117,7 +117,7 @@ class CoveragePlanner:
 def _off_middles(line: Line) -> Line:
     """Return a swath moved aside a little, so that no seam of two lies on middles of cells."""
     along = np.abs(line[-1] - line[0])
-    aside = np.array([0.0, _ASIDE]) if along[0] >= along[1] else np.array([_ASIDE, 0.0])
+    aside = np.array([0.0, _OFF_MIDDLES]) if along[0] >= along[1] else np.array([_OFF_MIDDLES, 0.0])
     moved: Line = line + aside
     return moved
 

@@ -95,7 +95,7 @@ def test_the_same_script_gives_the_same_run() -> None:
     [
         (Turn.REFUSED, WalkOutcome.REFUSED, 0.0, 0.0),
         (Turn.FAILS, WalkOutcome.FAILED, 1.5, 3.0),
-        (Turn.VANISHES, WalkOutcome.LOST, 1.5, 4.0),
+        (Turn.VANISHES, WalkOutcome.DISCONNECTED, 1.5, 4.0),
     ],
 )
 def test_walks_that_end_badly(
@@ -248,7 +248,9 @@ def test_the_words_for_a_clean_are_those_of_the_mission() -> None:
     assert {mode.name for mode in CleanMode} == of_mission
     assert {fan.name for fan in FanLevel} == {fan.name for fan in clean_request.FanLevel}
     outcomes = {outcome.name for outcome in ErrandOutcome}
-    assert outcomes - {"REFUSED", "ASTRAY"} == {each.name for each in clean_request.CleanOutcome}
+    assert outcomes - {"REFUSED", "DISCONNECTED"} == {
+        each.name for each in clean_request.CleanOutcome
+    }
 
 
 def test_a_clean_tells_every_second_and_ends_on_the_station() -> None:
@@ -321,10 +323,10 @@ def test_a_newer_errand_takes_over_and_a_refused_one_does_not() -> None:
 
 
 def test_a_clean_that_is_lost_goes_on_without_its_client() -> None:
-    robot = FakeRobot(errands=[ErrandScript(ErrandOutcome.LOST, after=3.0)])
+    robot = FakeRobot(errands=[ErrandScript(ErrandOutcome.DISCONNECTED, after=3.0)])
     clean = robot.clean()
     report = ended(clean)
-    assert report.outcome is ErrandOutcome.LOST
+    assert report.outcome is ErrandOutcome.DISCONNECTED
     assert robot.clock.monotonic() == pytest.approx(3.0 + LOST_NOTICE)
     assert math.isnan(report.distance)
     robot.clock.sleep(1.0)

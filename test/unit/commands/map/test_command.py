@@ -63,10 +63,10 @@ def test_the_same_trial_gives_the_same_run_and_another_seed_another_one(run: Map
 def test_whoever_watches_sees_it_every_now_and_then() -> None:
     seen: list[float] = []
 
-    def watch(robot: WatchedExplorer) -> None:
+    def observe(robot: WatchedExplorer) -> None:
         seen.append(robot.seen.time)
 
-    run = MapScene(CLOSET).run([watch])
+    run = MapScene(CLOSET).run([observe])
     times = run.record.poses[:, 0]
     assert np.isin(seen, times).all()
     assert seen[-1] == times[-1]

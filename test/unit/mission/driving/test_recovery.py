@@ -19,10 +19,10 @@ TICK = 0.05
 
 def twists(number: int, began: float = 0.0) -> list[Twist]:
     """Return all that an attempt wants."""
-    wriggle = Recovery(number, CONFIG, Senses(began, Pose()))
+    recovery = Recovery(number, CONFIG, Senses(began, Pose()))
     made = []
     for tick in range(1000):
-        twist = wriggle.tick(Senses(began + tick * TICK, Pose()))
+        twist = recovery.tick(Senses(began + tick * TICK, Pose()))
         if twist is None:
             return made
         made.append(twist)
@@ -53,9 +53,9 @@ def test_one_after_the_other_they_try_something_else() -> None:
 
 
 def test_a_clock_that_is_set_back_ends_it() -> None:
-    wriggle = Recovery(1, CONFIG, Senses(100.0, Pose()))
-    assert wriggle.tick(Senses(100.5, Pose())) is not None
-    assert wriggle.tick(Senses(50.0, Pose())) is None
+    recovery = Recovery(1, CONFIG, Senses(100.0, Pose()))
+    assert recovery.tick(Senses(100.5, Pose())) is not None
+    assert recovery.tick(Senses(50.0, Pose())) is None
 
 
 @pytest.mark.parametrize(
@@ -71,5 +71,5 @@ def test_a_clock_that_is_set_back_ends_it() -> None:
     ],
 )
 def test_whether_it_moved_is_told(pose: Pose, expected: bool) -> None:
-    wriggle = Recovery(1, CONFIG, Senses(0.0, Pose(1.0, 2.0, 3.1)))
-    assert wriggle.moved(Senses(1.0, pose)) is expected
+    recovery = Recovery(1, CONFIG, Senses(0.0, Pose(1.0, 2.0, 3.1)))
+    assert recovery.moved(Senses(1.0, pose)) is expected

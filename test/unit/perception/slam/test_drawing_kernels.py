@@ -19,7 +19,7 @@ SIZE = 60
 CENTRE = np.zeros(2)
 
 
-def sheet() -> CountArrays:
+def no_counts() -> CountArrays:
     counts = np.zeros((2, SIZE, SIZE), np.uint16)
     corner = -0.5 * SIZE * CELL
     bounds = np.array([2**40, -1, 2**40, -1])
@@ -28,7 +28,7 @@ def sheet() -> CountArrays:
 
 
 def drawn(*points: tuple[float, float, float, float], pose: Floats | None = None) -> CountArrays:
-    made = sheet()
+    made = no_counts()
     here = np.array([0.01, 0.01, 0.0]) if pose is None else pose
     draw(made, np.array(points, np.float32).reshape(-1, 4), CENTRE, here)
     return made
@@ -69,7 +69,7 @@ def test_free_before_occupied_at_nothing_behind(way: float, angle: float, faces:
 
 def test_a_wall_is_drawn_where_it_is() -> None:
     """Its surface at the border of two cells: all of it is in the second, none in the first."""
-    made = sheet()
+    made = no_counts()
     random = np.random.default_rng(4)
     for _ in range(20):
         y = np.linspace(-0.8, 0.8, 100)
@@ -86,7 +86,7 @@ def test_a_wall_is_drawn_where_it_is() -> None:
 
 @given(st.floats(-math.pi, math.pi), st.floats(-0.3, 0.3), st.floats(-0.3, 0.3))
 def test_it_is_drawn_as_seen_from_the_pose(theta: float, x: float, y: float) -> None:
-    made = sheet()
+    made = no_counts()
     here, lidar = np.array([x, y, theta]), np.array([0.1, 0.05])
     draw(made, np.array([[0.6, 0.2, 0.0, 0.0]], np.float32), lidar, here)
     cosine, sine = math.cos(theta), math.sin(theta)
@@ -139,7 +139,7 @@ def test_erased_it_is_as_if_it_had_never_been_drawn(x: float, y: float, theta: f
     draw(made, points, CENTRE, here, times=-1)
     assert (made.hits == hits).all()
     assert (made.passes == passes).all()
-    empty = sheet()
+    empty = no_counts()
     draw(empty, points, CENTRE, here, times=-1)
     assert not empty.hits.any()
     assert not empty.passes.any()
@@ -150,7 +150,7 @@ def test_what_a_cell_is_depends_on_its_counts(
     ended: int, through: int, share: float, least: int
 ) -> None:
     assume(abs(ended - share * (ended + through)) > 1e-6)
-    made = sheet()
+    made = no_counts()
     made.hits[3, 4], made.passes[3, 4] = ended, through
     made.bounds[:] = 3, 3, 4, 4
     value = values_of(made, share, least)[0][0, 0]
@@ -182,7 +182,7 @@ def test_the_edge_of_a_thing_is_not_a_second_one(
     up: int, right: int, towards: float, ended: int, through: int, expected: int
 ) -> None:
     """10 of 25 beams ended in a cell, met so near to the next one, of which more is known."""
-    made = sheet()
+    made = no_counts()
     made.hits[9, 9], made.passes[9, 9] = 10, 15
     made.offsets[9, 9] = 10 * towards * right, 10 * towards * up
     made.hits[9 + up, 9 + right], made.passes[9 + up, 9 + right] = ended, through
@@ -191,7 +191,7 @@ def test_the_edge_of_a_thing_is_not_a_second_one(
 
 
 def test_a_cell_at_the_rim_of_the_sheet_has_nothing_beside_it() -> None:
-    made = sheet()
+    made = no_counts()
     # What comes in memory before and after the rim.
     made.hits[-1, 5] = made.hits[6, 0] = 20
     for row, column, offset in ((0, 5, (0.0, -1.0)), (5, SIZE - 1, (1.0, 0.0))):

@@ -1,4 +1,4 @@
-"""The sheet: it grows wherever something is seen, and loses nothing."""
+"""Occupancy counts: the grid grows wherever something is seen, and loses nothing."""
 
 from __future__ import annotations
 
@@ -38,10 +38,10 @@ def is_on_border(place: float, phase: float) -> bool:
 def test_it_grows_to_all_sides_and_keeps_all(
     at: list[tuple[float, float]], phase_x: float, phase_y: float
 ) -> None:
-    sheet = OccupancyCounts(0.05, (phase_x, phase_y))
+    counts = OccupancyCounts(0.05, (phase_x, phase_y))
     for x, y in at:
-        sheet.draw(AHEAD, CENTRE, np.array([x, y, 0.0]), 1.0)
-    made = sheet.occupancy(0.3, 1)
+        counts.draw(AHEAD, CENTRE, np.array([x, y, 0.0]), 1.0)
+    made = counts.occupancy(0.3, 1)
     # Later ones may have gone through the ends of earlier ones.
     for index, (x, y) in enumerate(at):
         if is_on_border(x + 0.52, phase_x) or is_on_border(y, phase_y):
@@ -68,10 +68,10 @@ def test_the_order_in_which_it_grows_makes_no_difference() -> None:
     poses = [Pose(0.0, 0.0), Pose(9.0, 0.0), Pose(-9.0, 3.0), Pose(0.0, 11.0), Pose(1.0, -12.0)]
     maps = []
     for order in (poses, poses[::-1], poses[2:] + poses[:2]):
-        sheet = OccupancyCounts(0.05)
+        counts = OccupancyCounts(0.05)
         for pose in order:
-            sheet.draw(AHEAD, CENTRE, row(pose), 3.0)
-        maps.append(sheet.occupancy(0.3, 1))
+            counts.draw(AHEAD, CENTRE, row(pose), 3.0)
+        maps.append(counts.occupancy(0.3, 1))
     for made in maps[1:]:
         assert made.frame == maps[0].frame
         assert (made.values == maps[0].values).all()
@@ -79,10 +79,10 @@ def test_the_order_in_which_it_grows_makes_no_difference() -> None:
 
 
 def test_a_room_is_drawn_as_it_is() -> None:
-    sheet, eye = OccupancyCounts(0.05), Eye(FURNISHED)
+    counts, eye = OccupancyCounts(0.05), Eye(FURNISHED)
     for pose in (START, Pose(1.0, 2.6, 0.4), Pose(4.4, 3.2, 2.0), Pose(4.2, 0.6, -1.0)):
-        sheet.draw(points_of(eye.scan(pose)).astype(np.float32), CENTRE, row(pose), 12.0)
-    made = sheet.occupancy(0.3, 2)
+        counts.draw(points_of(eye.scan(pose)).astype(np.float32), CENTRE, row(pose), 12.0)
+    made = counts.occupancy(0.3, 2)
     assert wrong_cells(made, FURNISHED) == (0, 0)
     # 5 x 4 m without cupboard and shelf, but a few cells in corners.
     area = (made.values == FREE).sum() * 0.05**2
@@ -93,14 +93,14 @@ def test_the_legs_of_chairs_are_as_thin_as_they_are() -> None:
     """Noise and grazed corners put beams beside them; with two cells each a gap would be shut."""
     corners = [(0.8 + 0.4 * right, 0.8 + 0.4 * up) for right in range(6) for up in range(4)]
     home = room_home(4.0, 3.0, tuple((x, y, x + 0.05, y + 0.05) for x, y in corners))
-    sheet, eye, random = OccupancyCounts(0.05), Eye(home), np.random.default_rng(3)
+    counts, eye, random = OccupancyCounts(0.05), Eye(home), np.random.default_rng(3)
     for _ in range(60):
         x, y, theta = random.uniform((0.3, 0.3, -3.0), (3.7, 0.7, 3.0)).tolist()
         pose = Pose(x, y, theta)
         taken_for = row(pose) + random.normal(0.0, (0.003, 0.003, 0.002))
         scan = points_of(eye.scan(pose, random)).astype(np.float32)
-        sheet.draw(scan, CENTRE, taken_for, 12.0)
-    made = sheet.occupancy(0.3, 2)
+        counts.draw(scan, CENTRE, taken_for, 12.0)
+    made = counts.occupancy(0.3, 2)
     for x, y in corners:
         row_of, column_of = made.frame.cell_of(x + 0.025, y + 0.025)
         around = made.values[row_of - 2 : row_of + 3, column_of - 2 : column_of + 3]
@@ -110,13 +110,13 @@ def test_the_legs_of_chairs_are_as_thin_as_they_are() -> None:
 
 def test_a_beam_that_grazes_a_corner_stays_in_its_cell() -> None:
     """It met a thin thing of unknown facing 8 mm before the corner; 2 cm on is the next cell."""
-    sheet = OccupancyCounts(0.05)
+    counts = OccupancyCounts(0.05)
     along = np.array([-0.8, 0.6])
     for way in (1.0, 1.5):
         x, y = np.array([0.512, 0.001]) - way * along
         scan = np.array([[*(way * along), 0.0, 0.0]], np.float32)
-        sheet.draw(scan, CENTRE, np.array([x, y, 0.0]), 3.0)
-    made = sheet.occupancy(0.3, 2)
+        counts.draw(scan, CENTRE, np.array([x, y, 0.0]), 3.0)
+    made = counts.occupancy(0.3, 2)
     assert value_at(made, 0.525, 0.025) == OCCUPIED
     assert (made.values == OCCUPIED).sum() == 1
 
@@ -127,9 +127,9 @@ def test_an_empty_sheet_is_no_map() -> None:
 
 
 def test_a_scan_without_points_shows_where_the_lidar_was() -> None:
-    sheet = OccupancyCounts(0.05)
-    sheet.draw(np.zeros((0, 4), np.float32), CENTRE, np.array([1.0, 2.0, 0.0]), 3.0)
-    made = sheet.occupancy(0.3, 2)
+    counts = OccupancyCounts(0.05)
+    counts.draw(np.zeros((0, 4), np.float32), CENTRE, np.array([1.0, 2.0, 0.0]), 3.0)
+    made = counts.occupancy(0.3, 2)
     assert made.values.shape == (3, 3)
     assert (made.values == UNKNOWN).all()
     assert made.frame.contains(1.0, 2.0)
@@ -138,10 +138,10 @@ def test_a_scan_without_points_shows_where_the_lidar_was() -> None:
 @given(st.floats(-1.0, 6.0), st.floats(-1.0, 5.0), st.floats(0.05, 3.0))
 @settings(max_examples=40)
 def test_a_part_of_it_is_cut_out_of_the_whole(x: float, y: float, reach: float) -> None:
-    sheet = OccupancyCounts(0.05, (0.01, 0.02))
+    counts = OccupancyCounts(0.05, (0.01, 0.02))
     points = points_of(Eye(FURNISHED).scan(START)).astype(np.float32)
-    sheet.draw(points, CENTRE, row(START), 3.0)
-    whole, part = sheet.occupancy(0.3, 1), sheet.around(x, y, reach, 0.3, 1)
+    counts.draw(points, CENTRE, row(START), 3.0)
+    whole, part = counts.occupancy(0.3, 1), counts.around(x, y, reach, 0.3, 1)
     away = [(x + dx, y + dy) for dx in (-0.99 * reach, 0.3, 0.0) for dy in (0.0, 0.99 * reach)]
     for at in away:
         if whole.frame.contains(*at) and abs(at[0] - x) < reach and abs(at[1] - y) < reach:
@@ -153,12 +153,12 @@ def test_a_part_of_it_is_cut_out_of_the_whole(x: float, y: float, reach: float) 
 
 def test_a_scan_that_is_erased_leaves_the_others() -> None:
     first, second = np.array([0.0, 0.0, 0.0]), np.array([0.3, 2.0, 1.0])
-    sheets = OccupancyCounts(0.05), OccupancyCounts(0.05)
-    for sheet in sheets:
-        sheet.draw(AHEAD, CENTRE, first, 3.0)
-    sheets[0].draw(AHEAD, CENTRE, second, 3.0)
-    assert value_at(sheets[0].occupancy(0.3, 1), 0.4, 2.2) == FREE
-    sheets[0].erase(AHEAD, CENTRE, second)
-    made, expected = (sheet.occupancy(0.3, 1) for sheet in sheets)
+    both_counts = OccupancyCounts(0.05), OccupancyCounts(0.05)
+    for counts in both_counts:
+        counts.draw(AHEAD, CENTRE, first, 3.0)
+    both_counts[0].draw(AHEAD, CENTRE, second, 3.0)
+    assert value_at(both_counts[0].occupancy(0.3, 1), 0.4, 2.2) == FREE
+    both_counts[0].erase(AHEAD, CENTRE, second)
+    made, expected = (counts.occupancy(0.3, 1) for counts in both_counts)
     assert (made.values != UNKNOWN).sum() == (expected.values != UNKNOWN).sum() > 5
     assert value_at(made, 0.52, 0.0) == OCCUPIED
