@@ -12,9 +12,12 @@ TWO_PI = 2.0 * math.pi
 
 
 def wrap_angle(angle: float) -> float:
-    """Return the same direction in (-pi, pi]; ``angle`` in radians."""
-    wrapped = math.remainder(angle, TWO_PI)
-    return math.pi if wrapped == -math.pi else wrapped
+    """Return the same direction in (-pi, pi], rad; NaN of what is not finite."""
+    if abs(angle) > TWO_PI:
+        angle = math.copysign(abs(angle) % TWO_PI, angle)
+    if angle > math.pi:
+        return angle - TWO_PI
+    return angle if angle > -math.pi else angle + TWO_PI
 
 
 @dataclass(frozen=True, slots=True)

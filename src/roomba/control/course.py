@@ -8,6 +8,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.angles import wrap_angles
 from roomba.configuration.robot import TrackingConfig
 from roomba.control.tracking_kernels import Course
 
@@ -35,7 +36,7 @@ def course_of(points: Floats, config: TrackingConfig) -> Course:
     lengths = np.hypot(ways[:, 0], ways[:, 1])
     headings = np.arctan2(ways[:, 1], ways[:, 0])
     stations = np.concatenate(([0.0], np.cumsum(lengths)))
-    corners = (np.diff(headings) + math.pi) % math.tau - math.pi
+    corners = wrap_angles(np.diff(headings))
     through, halves = np.zeros(len(points)), np.zeros(len(points))
     if len(corners):
         is_soft = np.abs(corners) <= config.sharp_corner

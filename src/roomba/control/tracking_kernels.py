@@ -13,6 +13,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from roomba.angles import wrapped
+
 Floats = NDArray[np.float64]
 
 TRACK: Final = np.dtype(
@@ -60,12 +62,6 @@ _LATE: Final = 2.0
 """Ticks; so late it reckons with at corners: one of its own, one of messages."""
 _SLOWEST: Final = 0.015
 """m/s and rad/s; slower than this drives do not turn reliably."""
-
-
-@njit(cache=True, nogil=True, error_model="numpy", inline="always")
-def wrapped(angle: float) -> float:
-    """Return the same direction in [-pi, pi]."""
-    return angle - 2.0 * math.pi * math.floor(angle / (2.0 * math.pi) + 0.5)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

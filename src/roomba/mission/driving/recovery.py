@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import math
 from typing import Final
 
 from roomba.configuration.mission import DrivingConfig
-from roomba.geometry import Twist
+from roomba.geometry import Twist, wrap_angle
 from roomba.mission.inputs.senses import Senses
 
 _TURNING: Final = 1.5
@@ -46,6 +45,6 @@ class Recovery:
 
     def moved(self, senses: Senses) -> bool:
         """Whether the robot is somewhere else now, or looks another way."""
-        turned = math.remainder(senses.pose.theta - self._from.theta, math.tau)
+        turned = wrap_angle(senses.pose.theta - self._from.theta)
         way = senses.pose.distance_to(self._from.x, self._from.y)
         return way > _MOVED or abs(turned) > _TURNED

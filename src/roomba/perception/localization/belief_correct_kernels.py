@@ -9,8 +9,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from roomba.angles import wrapped
 from roomba.perception.localization.belief import AGREE, EVIDENCE, SHORT, THROUGH, Row, Rows
-from roomba.perception.localization.belief_reckon_kernels import wrapped
 from roomba.perception.matching.beams import LidarBeams
 from roomba.perception.matching.field_kernels import Field, Place
 from roomba.perception.matching.fit_kernels import AGREEING, LOOKED_AT, judge

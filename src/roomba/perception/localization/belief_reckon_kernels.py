@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from typing import Final
 
-import numpy as np
 from numba import njit
 
+from roomba.angles import wrapped
 from roomba.configuration.robot import FASTEST_SPEED
 from roomba.perception.localization.belief import Row, Rows
 
@@ -169,14 +169,3 @@ def carry(
     covariance[0, 2] = covariance[2, 0] = after_xt
     covariance[1, 2] = covariance[2, 1] = after_yt
     covariance[2, 2] = tt + of_turn
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def wrapped(angle: float) -> float:
-    """Return the same direction in (-pi, pi], rad, as :func:`roomba.geometry.wrap_angle`."""
-    if -math.pi < angle <= math.pi:
-        return angle
-    angle = np.fmod(angle, 2.0 * math.pi)
-    if angle > math.pi:
-        return angle - 2.0 * math.pi
-    return angle if angle > -math.pi else angle + 2.0 * math.pi

@@ -9,8 +9,9 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from roomba.angles import wrapped
 from roomba.perception.localization.belief import Row, Rows
-from roomba.perception.localization.belief_reckon_kernels import compose, wrapped
+from roomba.perception.localization.belief_reckon_kernels import compose
 from roomba.perception.matching.beams import LidarBeams
 from roomba.perception.slam.surface_kernels import surface_points
 from roomba.perception.slam.surfel_kernels import ASKED, CLOSE, COUNTS, MATCHED, Surfels, align

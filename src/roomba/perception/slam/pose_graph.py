@@ -13,6 +13,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.angles import wrap_angles
+
 Floats = NDArray[np.float64]
 
 _ROUNDS: Final = 12
@@ -45,7 +47,7 @@ def relative_to(parents: Floats, children: Floats) -> Floats:
         (
             cosine * away[:, 0] + sine * away[:, 1],
             cosine * away[:, 1] - sine * away[:, 0],
-            _wrapped(away[:, 2]),
+            wrap_angles(away[:, 2]),
         )
     )
 
@@ -57,7 +59,7 @@ def composed(parents: Floats, relative: Floats) -> Floats:
         (
             parents[:, 0] + cosine * relative[:, 0] - sine * relative[:, 1],
             parents[:, 1] + sine * relative[:, 0] + cosine * relative[:, 1],
-            _wrapped(parents[:, 2] + relative[:, 2]),
+            wrap_angles(parents[:, 2] + relative[:, 2]),
         )
     )
 
@@ -80,7 +82,7 @@ def optimised(poses: Floats, links: list[Link]) -> Floats:
     for _ in range(_ROUNDS):
         step = _step(result, parents, children, measured, information, doubted)
         result[1:] += step
-        result[:, 2] = _wrapped(result[:, 2])
+        result[:, 2] = wrap_angles(result[:, 2])
         if not len(step) or np.abs(step).max() < _SETTLED:
             break
     return result
@@ -97,7 +99,7 @@ def _step(
     """Return the correction of all poses but the first, float64 [n - 1, 3]."""
     predicted = relative_to(poses[parents], poses[children])
     error = predicted - measured
-    error[:, 2] = _wrapped(error[:, 2])
+    error[:, 2] = wrap_angles(error[:, 2])
     square = np.einsum("ni,nij,nj->n", error, information, error)
     weight = np.where(doubted, (_DOUBTED / (_DOUBTED + square)) ** 2, 1.0)
     weighted = information * weight[:, None, None]
@@ -130,8 +132,3 @@ def _slopes(parents: Floats, predicted: Floats) -> tuple[Floats, Floats]:
     of_parent[:] = -of_child
     of_parent[:, 0, 2], of_parent[:, 1, 2] = predicted[:, 1], -predicted[:, 0]
     return of_parent, of_child
-
-
-def _wrapped(angles: Floats) -> Floats:
-    wrapped: Floats = np.remainder(angles + np.pi, 2.0 * np.pi) - np.pi
-    return wrapped

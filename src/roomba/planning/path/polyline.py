@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.geometry import TWO_PI
+from roomba.angles import wrap_angles
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,10 +41,10 @@ class Path:
 
     @cached_property
     def corner_angles(self) -> NDArray[np.float64]:
-        """Turn of the path at each point, rad in [-pi, pi), left positive, 0 at both ends; [n]."""
+        """Turn of the path at each point, rad in (-pi, pi], left positive, 0 at both ends; [n]."""
         headings = np.arctan2(self._legs[:, 1], self._legs[:, 0])
         angles = np.zeros(len(self.points))
-        angles[1:-1] = (np.diff(headings) + np.pi) % TWO_PI - np.pi
+        angles[1:-1] = wrap_angles(np.diff(headings))
         return angles
 
     def point_at(self, s: float) -> tuple[float, float]:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from typing import Final
 
+from roomba.angles import wrapped
 from roomba.world.engine.state.arrays import Row, Rows, Solid
 from roomba.world.engine.state.compilation import part
 
@@ -26,12 +27,6 @@ BOTH_BUMPERS_ANGLE: Final = 0.3
 """rad; contact nearer to straight ahead than this presses both halves of the bumper."""
 LEFT: Final = 1
 RIGHT: Final = 2
-
-
-@part
-def wrapped(angle: float) -> float:
-    """Return the same direction in [-pi, pi)."""
-    return angle - 2.0 * math.pi * math.floor(angle / (2.0 * math.pi) + 0.5)
 
 
 @part

@@ -8,7 +8,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.world.engine.contact_kernels import arc, free_share, wrapped
+from roomba.angles import wrapped
+from roomba.world.engine.contact_kernels import arc, free_share
 from roomba.world.engine.state.arrays import CARPET, Row, Solid
 from roomba.world.engine.state.compilation import part
 from roomba.world.engine.state.numbers import SLIP_LENGTH

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 
-from roomba.world.engine.contact_kernels import wrapped
+from roomba.angles import wrapped
 from roomba.world.engine.state.arrays import Infrared, Row, Rows
 from roomba.world.engine.state.compilation import part
 

@@ -8,7 +8,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.world.engine.contact_kernels import way_to_box, wrapped
+from roomba.angles import wrapped
+from roomba.world.engine.contact_kernels import way_to_box
 from roomba.world.engine.state.arrays import Row, Solid
 from roomba.world.engine.state.compilation import part
 

@@ -39,7 +39,6 @@ from roomba.perception.localization.belief_reckon_kernels import (
     WAS_SET_BACK,
     WENT_ON,
     reckon,
-    wrapped,
 )
 from roomba.perception.localization.estimate import Knowledge, worst_deviation
 from roomba.perception.localization.localizer import Localizer
@@ -162,13 +161,6 @@ def test_reckoning_is_that_of_plain_python(told: list[tuple[float, Pose, float]]
 def same(row: Floats, pose: Pose) -> bool:
     x, y, theta = row.tolist()
     return max(abs(x - pose.x), abs(y - pose.y), abs(wrap_angle(theta - pose.theta))) < 1e-9
-
-
-@given(st.one_of(st.floats(-20.0, 20.0), st.floats(-1e300, 1e300)))
-def test_an_angle_is_wrapped_as_everywhere(angle: float) -> None:
-    assert -math.pi < wrapped(angle) <= math.pi
-    assert math.cos(wrapped(angle)) == pytest.approx(math.cos(wrap_angle(angle)), abs=1e-12)
-    assert math.sin(wrapped(angle)) == pytest.approx(math.sin(wrap_angle(angle)), abs=1e-12)
 
 
 @given(st.floats(-2.0, 2.0), st.floats(-2.0, 2.0), st.floats(-2.0, 2.0))

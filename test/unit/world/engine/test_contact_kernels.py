@@ -17,19 +17,11 @@ from roomba.world.engine.contact_kernels import (
     near_cells,
     room_at,
     way_to_box,
-    wrapped,
 )
 from roomba.world.engine.layout import room_around
 from roomba.world.engine.state.arrays import BOX, CELL, HOME
 
 angles = st.floats(-20.0, 20.0)
-
-
-@given(angles)
-def test_a_wrapped_angle_is_the_same_direction(angle: float) -> None:
-    after = wrapped(angle)
-    assert -math.pi <= after < math.pi
-    assert math.cos(after - angle) == pytest.approx(1.0)
 
 
 @given(angles, st.floats(-2.0, 2.0), st.floats(-3.0, 3.0), st.floats(0.0, 1.0))

@@ -12,6 +12,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from roomba.angles import wrapped
 from roomba.planning.compilation import part
 from roomba.raster.regions import Mask
 
@@ -99,9 +100,8 @@ def turns_between(costs: Costs, one: int, other: int) -> float:
 
 @part
 def _between(one: float, other: float) -> float:
-    """Return the angle between two headings of -pi to pi, rad; without a slow remainder."""
-    angle = abs(one - other)
-    return math.tau - angle if angle > math.pi else angle
+    """Return the angle between two headings, rad in [0, pi]."""
+    return abs(wrapped(one - other))
 
 
 @part

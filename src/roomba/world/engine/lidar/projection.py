@@ -15,6 +15,7 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.angles import wrapped
 from roomba.world.engine.lidar.edges import FACINGS, GROUPS
 from roomba.world.engine.lidar.span_kernels import (
     COSINE,
@@ -110,7 +111,7 @@ def begin_scan(rays: Floats, fan: Floats, theta: float, max_range: float) -> np.
     least = np.float32(1.0 / max_range)
     for beam in range(fan.shape[1]):
         fan[NEAREST, beam] = least
-    return np.float32(theta - 2.0 * math.pi * math.floor(theta / (2.0 * math.pi) + 0.5))
+    return np.float32(wrapped(theta))
 
 
 @scan_part
