@@ -129,7 +129,7 @@ def test_a_picture_missing_or_corrupt_is_named(graph: RosGraph, tmp_path: Path) 
 def test_the_last_good_picture_survives_a_crash(graph: RosGraph, tmp_path: Path) -> None:
     Probe(graph)
     cv2.imwrite(str(tmp_path / "30.png"), picture(77))
-    (tmp_path / "30.unfinished").write_bytes(b"half a pic")
+    (tmp_path / ".30.png.unfinished-0").write_bytes(b"half a pic")
     service = start(graph, tmp_path)
     assert set(service(30.0).image.data) == {77}
 

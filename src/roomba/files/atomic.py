@@ -1,8 +1,11 @@
-"""Files of which whoever reads them finds all, or the one from before, or is told."""
+"""Atomic file write: readers see the old file or the new one, never a part."""
 
 from __future__ import annotations
 
+import contextlib
 import os
+import secrets
+import time
 import zipfile
 import zlib
 from pathlib import Path
@@ -21,21 +24,61 @@ UNREADABLE: Final = (
 )
 """What reading arrays raises that the disk refuses, or that are broken or something else."""
 
+_MODE: Final = 0o600
+"""Read and written by the owner alone: maps and pictures show a home from inside."""
+_LEFT_BEHIND: Final = 3600.0
+"""s; an unfinished file that is older belongs to a writer that was killed."""
+
 
 def write_whole(path: Path, content: bytes) -> None:
-    """Write a file and the folders that it is in; one that is there is replaced at once, or kept.
+    """Write a file atomically, and make the folders that it is in.
 
-    One writer at a time. Raises OSError when the disk refuses.
+    The content goes to a new file of a random name in the same folder, which then takes the place
+    of ``path``; a symbolic link there is replaced, not followed. Returns once file and folder are
+    on the disk. Of several writers the last one wins. Raises OSError when the disk refuses; the
+    file from before stays then, and nothing else.
     """
     path.parent.mkdir(parents=True, exist_ok=True)
-    # In the same folder: a file can be put in another's place only within one file system.
-    unfinished = path.with_name(f"{path.name}.tmp")
+    folder = os.open(path.parent, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
     try:
-        with unfinished.open("wb") as file:
-            file.write(content)
-            file.flush()
-            os.fsync(file.fileno())
-        unfinished.replace(path)
-    except BaseException:
-        unfinished.unlink(missing_ok=True)
-        raise
+        _remove_left_behind(folder, path.name)
+        # In the same folder: a file can take another's place only within one file system.
+        unfinished = f"{_prefix(path.name)}{secrets.token_hex(8)}"
+        try:
+            _write_new(folder, unfinished, content)
+            os.replace(unfinished, path.name, src_dir_fd=folder, dst_dir_fd=folder)
+        except BaseException:
+            _remove(folder, unfinished)
+            raise
+        os.fsync(folder)
+    finally:
+        os.close(folder)
+
+
+def _prefix(name: str) -> str:
+    """Return how the names of a file's unfinished versions begin."""
+    return f".{name}.unfinished-"
+
+
+def _write_new(folder: int, name: str, content: bytes) -> None:
+    """Write a file that is not there yet, to the disk; links and files there are refused."""
+    flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW | os.O_CLOEXEC
+    with open(os.open(name, flags, _MODE, dir_fd=folder), "wb") as file:
+        file.write(content)
+        file.flush()
+        os.fsync(file.fileno())
+
+
+def _remove_left_behind(folder: int, name: str) -> None:
+    """Remove what writers of this file left behind that were killed."""
+    oldest = time.time() - _LEFT_BEHIND
+    for entry in os.listdir(folder):
+        if entry.startswith(_prefix(name)):
+            with contextlib.suppress(FileNotFoundError):
+                if os.stat(entry, dir_fd=folder, follow_symlinks=False).st_mtime < oldest:
+                    os.unlink(entry, dir_fd=folder)
+
+
+def _remove(folder: int, name: str) -> None:
+    with contextlib.suppress(FileNotFoundError):
+        os.unlink(name, dir_fd=folder)

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from roomba.errors import HomeError
+from roomba.files.atomic import write_whole
 from roomba.files.image import Image, read_image
 from roomba.files.strict_yaml import YamlFile, read_yaml
 from roomba.grid import FREE, OCCUPIED, UNKNOWN, GridFrame, OccupancyMap
@@ -88,7 +89,7 @@ def save_map(occupancy: OccupancyMap, path: Path) -> None:
     pixels = _map_saver_pixels(values) if trinary else _raw_pixels(values)
     image = path.with_suffix(".pgm")
     rows, columns = pixels.shape
-    image.write_bytes(f"P5\n{columns} {rows}\n255\n".encode() + pixels[::-1].tobytes())
+    write_whole(image, f"P5\n{columns} {rows}\n255\n".encode() + pixels[::-1].tobytes())
     frame = occupancy.frame
     lines = [
         f"image: {image.name}",
@@ -99,7 +100,7 @@ def save_map(occupancy: OccupancyMap, path: Path) -> None:
         "free_thresh: 0.196",
         f"mode: {'trinary' if trinary else 'raw'}",
     ]
-    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    write_whole(path, ("\n".join(lines) + "\n").encode())
 
 
 def _image_of(file: YamlFile, description: MapDescription) -> Image:

@@ -1,7 +1,8 @@
 """Several maps of the robot's own, one for each floor, by name, in a folder.
 
 A map is replaced at once or not at all: it is written whole beside the old one, then takes its
-place. Whoever is killed in between finds the old map or the new one, never half of one.
+place. A writer that is killed in between leaves the old map or the new one, never half of one.
+Symbolic links in the folder are no maps, and are not followed.
 """
 
 from __future__ import annotations
@@ -40,7 +41,8 @@ class MapStore:
         """Return the names of all maps, sorted; those of broken ones, too."""
         if not self.folder.is_dir():
             return ()
-        found = {_name_of(entry) for entry in self.folder.iterdir() if entry.is_dir()}
+        entries = (entry for entry in self.folder.iterdir() if not entry.is_symlink())
+        found = {_name_of(entry) for entry in entries if entry.is_dir()}
         return tuple(sorted(name for name in found if name))
 
     def save(self, name: str, stored: StoredMap) -> None:
@@ -55,10 +57,11 @@ class MapStore:
         unfinished.mkdir()
         try:
             write_map(stored, unfinished)
-            _sync_all(unfinished)
         except BaseException:
             shutil.rmtree(unfinished, ignore_errors=True)
             raise
+        if place.is_symlink():
+            place.unlink()
         if place.exists():
             # From here to the next line the old one is found by its other name.
             place.rename(self._beside(name, _OLD))
@@ -98,7 +101,7 @@ class MapStore:
         """Return where a map is whole, though a writer was killed before it put it in place."""
         _check_name(name)
         for path in (self.folder / name, self._beside(name, _OLD)):
-            if path.is_dir():
+            if path.is_dir() and not path.is_symlink():
                 return path
         near = difflib.get_close_matches(name, self.names(), 1)
         known = ", ".join(repr(each) for each in self.names()) or "no maps"
@@ -108,11 +111,15 @@ class MapStore:
     def _tidy_up(self, name: str) -> None:
         """End what a writer that was killed began."""
         place, old = self.folder / name, self._beside(name, _OLD)
-        if old.is_dir() and not place.exists():
+        if old.is_dir() and not old.is_symlink() and not place.exists():
             old.rename(place)
         for end in (_NEW, _OLD, _GONE):
-            if self._beside(name, end).is_dir():
-                shutil.rmtree(self._beside(name, end))
+            beside = self._beside(name, end)
+            if beside.is_symlink():
+                # Links are not followed: what they lead to is no map of this store.
+                beside.unlink()
+            elif beside.is_dir():
+                shutil.rmtree(beside)
 
     def _beside(self, name: str, end: str) -> Path:
         """Return a hidden folder in the same place: only there a rename is done at once."""
@@ -140,13 +147,6 @@ def _name_of(entry: Path) -> str:
         return entry.name
     name, _, end = entry.name[1:].rpartition(".")
     return name if end == _OLD else ""
-
-
-def _sync_all(folder: Path) -> None:
-    """Wait until a folder and its files are on the disk."""
-    for path in folder.iterdir():
-        _wait_for_disk(path)
-    _wait_for_disk(folder)
 
 
 def _wait_for_disk(path: Path) -> None:

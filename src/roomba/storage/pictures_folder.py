@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+import io
 import math
-import os
 from pathlib import Path
 from typing import Final
 
@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from PIL import Image, UnidentifiedImageError
 
 from roomba.errors import PictureError
+from roomba.files.atomic import write_whole
 
 ANGLES: Final = (-30, -15, 0, 15, 30)
 """Degrees; positive is to the left."""
@@ -48,15 +49,11 @@ class PictureFolder:
     def write(self, angle: int, picture: NDArray[np.uint8]) -> None:
         """Replace the picture of an angle; the old one stays until the new one is whole."""
         path = self.path(angle)
-        unfinished = path.with_suffix(".unfinished")
+        packed = io.BytesIO()
+        image = Image.fromarray(np.ascontiguousarray(picture), "RGB")
+        image.save(packed, "PNG", compress_level=_FAST_COMPRESSION)
         try:
-            self.folder.mkdir(parents=True, exist_ok=True)
-            with unfinished.open("wb") as file:
-                image = Image.fromarray(np.ascontiguousarray(picture), "RGB")
-                image.save(file, "PNG", compress_level=_FAST_COMPRESSION)
-                file.flush()
-                os.fsync(file.fileno())
-            unfinished.replace(path)
+            write_whole(path, packed.getvalue())
         except OSError as error:
             raise PictureError(f"{path}: cannot be written: {error.strerror}") from error
 

@@ -10,7 +10,6 @@ from __future__ import annotations
 import contextlib
 import importlib
 import os
-import secrets
 import select
 import subprocess
 import sys
@@ -25,6 +24,7 @@ from rich.console import Console
 
 from roomba.client.protocol import CameraClient, RobotUnavailableError
 from roomba.errors import PictureError, RoombaError
+from roomba.files.atomic import write_whole
 from roomba.ui.progress import say
 from roomba.ui.prompt import (
     STATUS_DONE,
@@ -120,7 +120,9 @@ class PictureViewer:
         if self._window is not None:
             try:
                 with tempfile.TemporaryDirectory(prefix="roomba_camera_") as directory:
-                    self._window.show(save_atomically(image, Path(directory) / "shown.png"))
+                    shown = Path(directory) / "shown.png"
+                    write_whole(shown, image)
+                    self._window.show(shown)
             except (OSError, PictureError) as error:
                 self._complain(f"No window: {error}. Pictures are saved instead.")
                 self._close_window()
@@ -165,27 +167,17 @@ def save_picture(image: bytes, degrees: float, directories: tuple[Path, ...]) ->
     """
     reasons = []
     for directory in directories:
+        # adding 0.0 turns -0.0 into 0.0
+        path = directory / f"roomba_camera_{degrees + 0.0:g}.png"
         try:
-            # adding 0.0 turns -0.0 into 0.0
-            return save_atomically(image, directory / f"roomba_camera_{degrees + 0.0:g}.png")
+            # Raises OSError for a directory that is missing: a new one would be a surprise.
+            directory.stat()
+            write_whole(path, image)
         except OSError as error:
             reasons.append(f"{directory}: {error.strerror or error}")
+        else:
+            return path
     raise PictureError(f"the picture cannot be saved anywhere ({'; '.join(reasons)})")
-
-
-def save_atomically(content: bytes, path: Path) -> Path:
-    """Write a file so that it is there whole or not at all; returns ``path``, raises OSError."""
-    part = path.with_name(f".{path.name}.{secrets.token_hex(4)}.part")
-    try:
-        with part.open("xb") as file:
-            file.write(content)
-            file.flush()
-            os.fsync(file.fileno())
-        part.replace(path)
-    except BaseException:
-        part.unlink(missing_ok=True)
-        raise
-    return path
 
 
 def open_window(environment: Mapping[str, str] = os.environ) -> Window | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 from pathlib import Path
 from typing import Any
@@ -134,11 +135,29 @@ def test_a_broken_map_hides_no_other_and_can_be_replaced_or_removed(store: MapSt
     assert store.names() == ("b", "c")
 
 
+@pytest.mark.parametrize("planted", ["home", ".home.new", ".home.old", ".home.gone"])
+def test_links_in_the_folder_are_not_followed(
+    store: MapStore, tmp_path: Path, planted: str
+) -> None:
+    elsewhere = MapStore(tmp_path / "elsewhere")
+    elsewhere.save("home", floor(1.0))
+    store.folder.mkdir(parents=True)
+    (store.folder / planted).symlink_to(elsewhere.folder / "home")
+    assert store.names() == ()
+    with pytest.raises(MapStoreError, match="expected one of no maps"):
+        store.load("home")
+    store.save("home", floor(1.5))
+    assert entries(store) == ["home"]
+    assert not (store.folder / "home").is_symlink()
+    assert store.load("home").is_same(floor(1.5))
+    assert elsewhere.load("home").is_same(floor(1.0))
+
+
 class Killed(BaseException):
     """What happens to a process, and cannot be handled by it."""
 
 
-STEPS = ("mkdir", "write_map", "_sync_all", "rename 1", "rename 2", "rmtree")
+STEPS = ("mkdir", "write_map", "fsync 3", "rename 1", "rename 2", "rmtree")
 
 
 @pytest.mark.parametrize("killed_at", STEPS)
@@ -208,7 +227,7 @@ def test_a_map_that_cannot_be_written_leaves_the_old_one(
 def kill(monkeypatch: pytest.MonkeyPatch, at: str) -> None:
     """Die instead of doing a step; nothing of what a living process would do after that is done."""
     step, _, number = at.partition(" ")
-    owner: Any = {"mkdir": Path, "rename": Path, "rmtree": shutil}.get(step, map_store)
+    owner: Any = {"mkdir": Path, "rename": Path, "rmtree": shutil, "fsync": os}.get(step, map_store)
     real = getattr(owner, step)
     rmtree = shutil.rmtree
     calls = 0
