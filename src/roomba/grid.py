@@ -15,6 +15,9 @@ UNKNOWN = -1
 FREE = 0
 OCCUPIED = 100
 
+_Floats = NDArray[np.float64]
+_Indices = NDArray[np.int64] | NDArray[np.float64]
+
 
 @dataclass(frozen=True, slots=True)
 class GridFrame:
@@ -54,6 +57,20 @@ class GridFrame:
             self.origin_x + (column + 0.5) * self.resolution,
             self.origin_y + (row + 0.5) * self.resolution,
         )
+
+    def centres(
+        self, rows: _Indices | None = None, columns: _Indices | None = None
+    ) -> tuple[_Floats, _Floats]:
+        """Return x and y, m, of the centres of cells.
+
+        x has the shape of ``columns``, y that of ``rows``; by default they are all of the grid, and
+        parts of a cell count as such.
+        """
+        rows = np.arange(self.rows) if rows is None else rows
+        columns = np.arange(self.columns) if columns is None else columns
+        x: _Floats = self.origin_x + (columns + 0.5) * self.resolution
+        y: _Floats = self.origin_y + (rows + 0.5) * self.resolution
+        return x, y
 
     def contains(self, x: float, y: float) -> bool:
         """Whether a point lies on the grid."""

@@ -35,3 +35,22 @@ def test_what_is_not_known_to_be_free_is_solid() -> None:
 def test_values_that_do_not_fit_the_frame_are_refused() -> None:
     with pytest.raises(ValueError, match=r"\(40, 60\), got \(3, 3\)"):
         OccupancyMap(FRAME, np.zeros((3, 3), np.int8))
+
+
+def test_centres_are_those_of_the_cells_one_by_one() -> None:
+    x, y = FRAME.centres()
+    assert (x.shape, y.shape) == ((60,), (40,))
+    each = [FRAME.centre_of(row, column) for row, column in ((0, 0), (7, 31), (39, 59))]
+    assert each == [(x[0], y[0]), (x[31], y[7]), (x[59], y[39])]
+
+
+def test_centres_of_chosen_cells_keep_the_shape_of_the_choice() -> None:
+    rows, columns = np.array([[3, 4]]), np.array([5, 6, 7])
+    x, y = FRAME.centres(rows, columns)
+    assert y.tolist() == [[FRAME.centre_of(row, 0)[1] for row in (3, 4)]]
+    assert x.tolist() == [FRAME.centre_of(0, column)[0] for column in (5, 6, 7)]
+
+
+def test_between_two_centres_lies_their_middle() -> None:
+    x, y = FRAME.centres(np.array([0.5]), np.array([2.5]))
+    assert (x[0], y[0]) == pytest.approx((-1.0 + 0.05 * 3.0, 2.0 + 0.05))

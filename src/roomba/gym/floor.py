@@ -43,8 +43,7 @@ class FloorDistances:
         away = distance_to_nearest(np.pad(blocked, 1, constant_values=True))[1:-1, 1:-1] - 0.5
         regions = numbered_regions(away * frame.resolution >= config.body.radius)
         rows, columns = np.nonzero(regions)
-        x = frame.origin_x + (columns + 0.5) * frame.resolution
-        y = frame.origin_y + (rows + 0.5) * frame.resolution
+        x, y = frame.centres(rows, columns)
         from_station = np.hypot(x - home.station.x, y - home.station.y)
         if not len(rows) or from_station.min() > max(_STANDS_WITHIN, 2.0 * frame.resolution):
             raise HomeError(

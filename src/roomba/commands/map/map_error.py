@@ -197,15 +197,17 @@ def _floors(
     """Return the floor, m2, that is free on both maps, on this one alone, on the true one alone."""
     parts = max(1, round(frame.resolution / _CELL))
     size = frame.resolution / parts
-    columns = np.arange(frame.columns * parts)
-    own_columns = _cells(frame.origin_x + (columns + 0.5) * size, occupancy, 0)
+    fine = GridFrame(
+        size, frame.origin_x, frame.origin_y, frame.rows * parts, frame.columns * parts
+    )
+    x, y = fine.centres()
+    own_columns = _cells(x, occupancy, 0)
     band = max(1, _BAND // (frame.columns * parts * parts))
     own = np.pad(occupancy.values == FREE, 1)
     both = extra = missed = 0
     for first in range(0, frame.rows, band):
         last = min(first + band, frame.rows)
-        rows = np.arange(first * parts, last * parts)
-        own_rows = _cells(frame.origin_y + (rows + 0.5) * size, occupancy, 1)
+        own_rows = _cells(y[first * parts : last * parts], occupancy, 1)
         free = own[np.ix_(own_rows, own_columns)]
         here, wall = _enlarged(seen[first:last], parts), _enlarged(solid[first:last], parts)
         both += int(np.count_nonzero(free & here))

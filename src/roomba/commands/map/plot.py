@@ -125,8 +125,7 @@ def _draw(axes: Axes, run: MapRun, made: Drawn) -> None:
 def _free_at(occupancy: OccupancyMap, run: MapRun) -> NDArray[np.bool_]:
     """Return where a map is free at the middles of the home's cells, bool over its grid."""
     true, own = run.home.frame, occupancy.frame
-    x = true.origin_x + (np.arange(true.columns) + 0.5) * true.resolution
-    y = true.origin_y + (np.arange(true.rows) + 0.5) * true.resolution
+    x, y = true.centres()
     columns = np.floor((x - own.origin_x) / own.resolution).astype(int) + 1
     rows = np.floor((y - own.origin_y) / own.resolution).astype(int) + 1
     free = np.pad(occupancy.values == FREE, 1)

@@ -51,8 +51,7 @@ def _reached(solid: Mask, frame: GridFrame, station: tuple[float, float], radius
         raise RoombaError("expected a floor on which the robot fits, got none; check the map")
     regions = numbered_regions(fits)
     rows, columns = np.nonzero(fits)
-    x = frame.origin_x + (columns + 0.5) * frame.resolution - station[0]
-    y = frame.origin_y + (rows + 0.5) * frame.resolution - station[1]
-    nearest = int(np.argmin(np.hypot(x, y)))
+    x, y = frame.centres(rows, columns)
+    nearest = int(np.argmin(np.hypot(x - station[0], y - station[1])))
     reached: Mask = regions == regions[rows[nearest], columns[nearest]]
     return reached

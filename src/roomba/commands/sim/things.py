@@ -33,8 +33,7 @@ def seeded_things(home: Home, staging: Pose, floor: Mask, count: int, seed: int)
         radius = float(random.uniform(_LEAST, _MOST))
         places = floor & where_body_fits(home.frame, home.solid | home.drop, radius)
         rows, columns = np.nonzero(places)
-        x = home.frame.origin_x + (columns + 0.5) * home.frame.resolution
-        y = home.frame.origin_y + (rows + 0.5) * home.frame.resolution
+        x, y = home.frame.centres(rows, columns)
         allowed = np.ones(len(x), np.bool_)
         for at in (home.station, staging):
             allowed &= np.hypot(x - at.x, y - at.y) > _FROM_STATION

@@ -64,8 +64,7 @@ def is_hidden(patch: Patch, site: PlanningContext, things: Sequence[RoundObstacl
     """Whether a patch is what things stand on and hide, and not a room behind them."""
     rows, columns = np.nonzero(patch.cells)
     frame: GridFrame = site.frame
-    x = frame.origin_x + (columns + 0.5) * frame.resolution
-    y = frame.origin_y + (rows + 0.5) * frame.resolution
+    x, y = frame.centres(rows, columns)
     near = site.reach + 2.0 * site.tool_width
     is_near = np.zeros(len(x), np.bool_)
     for thing_x, thing_y, radius in things:

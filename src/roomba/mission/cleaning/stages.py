@@ -111,8 +111,7 @@ def _inside(
 ) -> Mask:
     """Return the cells whose middles lie in one of the rectangles."""
     frame = site.frame
-    x = frame.origin_x + (np.arange(frame.columns) + 0.5) * frame.resolution
-    y = frame.origin_y + (np.arange(frame.rows) + 0.5) * frame.resolution
+    x, y = frame.centres()
     inside = np.zeros(frame.shape, np.bool_)
     for left, bottom, right, top in rectangles:
         inside |= np.outer((y >= bottom) & (y <= top), (x >= left) & (x <= right))

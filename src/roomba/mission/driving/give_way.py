@@ -60,8 +60,7 @@ def _way_from(
     ways = np.empty(frame.shape)
     ways_from(fits, *frame.cell_of(*start), ways)
     rows, columns = np.nonzero(ways * frame.resolution < _FARTHEST)
-    x = frame.origin_x + (columns + 0.5) * frame.resolution
-    y = frame.origin_y + (rows + 0.5) * frame.resolution
+    x, y = frame.centres(rows, columns)
     off = np.min([np.hypot(x - at_x, y - at_y) for at_x, at_y in beside], axis=0)
     room = np.minimum(off, _ROOM)
     best = int(np.argmax(room - _PER_WAY * frame.resolution * ways[rows, columns]))

@@ -105,8 +105,7 @@ class PlanningContext:
         columns = slice(max(column, 0), max(last_column + 1, 0))
         zone = (self.known.values != self.occupancy.values)[rows, columns]
         found = np.argwhere(zone)
-        x = frame.origin_x + (found[:, 1] + columns.start + 0.5) * frame.resolution
-        y = frame.origin_y + (found[:, 0] + rows.start + 0.5) * frame.resolution
+        x, y = frame.centres(found[:, 0] + rows.start, found[:, 1] + columns.start)
         return bool((np.hypot(x - here[0], y - here[1]) < reach).any())
 
     def way_out_of_zone(
@@ -121,9 +120,7 @@ class PlanningContext:
         places = np.argwhere(allowed & planner.reachable(here, obstacles))
         if not len(places):
             raise NoPathError(here, NoPathReason.GOAL_UNREACHABLE, None)
-        frame = self.known.frame
-        x = frame.origin_x + (places[:, 1] + 0.5) * frame.resolution
-        y = frame.origin_y + (places[:, 0] + 0.5) * frame.resolution
+        x, y = self.known.frame.centres(places[:, 0], places[:, 1])
         nearest = int(np.argmin(np.hypot(x - here[0], y - here[1])))
         return planner.plan(here, (float(x[nearest]), float(y[nearest])), obstacles).points
 

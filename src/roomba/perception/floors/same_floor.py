@@ -103,13 +103,7 @@ def _walls(occupancy: OccupancyMap) -> Floats:
 
 
 def _middles(frame: GridFrame, cells: NDArray[np.bool_]) -> Floats:
-    rows, columns = np.nonzero(cells)
-    return np.column_stack(
-        (
-            frame.origin_x + (columns + 0.5) * frame.resolution,
-            frame.origin_y + (rows + 0.5) * frame.resolution,
-        )
-    )
+    return np.column_stack(frame.centres(*np.nonzero(cells)))
 
 
 def _moved(points: Floats, pose: Pose) -> Floats:

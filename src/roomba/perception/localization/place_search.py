@@ -77,5 +77,4 @@ def _spots(field: SurfaceField, room: float) -> NDArray[np.float64]:
     blocks = -(-frame.rows // stride) * -(-frame.columns // stride)
     cells = np.empty((blocks, 2), np.int64)
     cells = cells[: cells_with_room(field.values, room, stride, cells)]
-    origin = np.array([frame.origin_x, frame.origin_y])
-    return np.ascontiguousarray(origin + (cells[:, ::-1] + 0.5) * frame.resolution)
+    return np.column_stack(frame.centres(cells[:, 0], cells[:, 1]))

@@ -41,8 +41,7 @@ def cells_inside(outline: shapely.Geometry, frame: GridFrame) -> Mask:
     columns = np.arange(first_column, min(frame.columns, last_column + 1))
     if rows.size == 0 or columns.size == 0:
         return mask
-    x = frame.origin_x + (columns + 0.5) * frame.resolution
-    y = frame.origin_y + (rows + 0.5) * frame.resolution
+    x, y = frame.centres(rows, columns)
     mask[np.ix_(rows, columns)] = shapely.contains_xy(outline, x[None, :], y[:, None])
     return mask
 

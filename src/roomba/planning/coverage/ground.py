@@ -64,11 +64,9 @@ class Ground:
 
     def metres(self, places: Line) -> Line:
         """Return places, float64 [n, 2], in m in the map frame."""
-        frame = self.floor.frame
-        first = np.array((self.window[1].start, self.window[0].start), np.float64)
-        corner = np.array((frame.origin_x, frame.origin_y))
-        metres: Line = corner + (places + first + 0.5) * frame.resolution
-        return metres
+        rows = places[:, 1] + self.window[0].start
+        columns = places[:, 0] + self.window[1].start
+        return np.column_stack(self.floor.frame.centres(rows, columns))
 
     def places(self, points: Line) -> Line:
         """Return points, float64 [n, 2], m in the map frame, as places."""

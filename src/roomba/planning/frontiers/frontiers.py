@@ -134,6 +134,4 @@ def _from_middle(cells: NDArray[np.int64], ends: NDArray[np.int64]) -> NDArray[n
 
 def _middles_of(cells: NDArray[np.int64], frame: GridFrame) -> NDArray[np.float64]:
     """Return the x and y of the cells' middles, m, float64 [n, 2]."""
-    origin = np.array([frame.origin_x, frame.origin_y])
-    middles: NDArray[np.float64] = origin + (cells[:, ::-1] + 0.5) * frame.resolution
-    return middles
+    return np.column_stack(frame.centres(cells[:, 0], cells[:, 1]))

@@ -157,9 +157,8 @@ def clear_of(
         last_row, last_column = frame.cell_of(x + away, y + away)
         rows = slice(max(row, 0), max(last_row + 1, 0))
         columns = slice(max(column, 0), max(last_column + 1, 0))
-        dy = frame.origin_y + (np.arange(frame.rows)[rows] + 0.5) * frame.resolution - y
-        dx = frame.origin_x + (np.arange(frame.columns)[columns] + 0.5) * frame.resolution - x
-        clear[rows, columns] &= np.hypot(dy[:, None], dx) >= away
+        across, up = frame.centres(np.arange(frame.rows)[rows], np.arange(frame.columns)[columns])
+        clear[rows, columns] &= np.hypot(up[:, None] - y, across - x) >= away
     clear.flags.writeable = False
     return clear
 

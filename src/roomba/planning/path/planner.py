@@ -230,9 +230,7 @@ class PathPlanner:
         )
 
     def _to_metres(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
-        origin = np.array([self.frame.origin_x, self.frame.origin_y])
-        metres: NDArray[np.float64] = origin + (points + 0.5) * self.frame.resolution
-        return metres
+        return np.column_stack(self.frame.centres(points[:, 1], points[:, 0]))
 
 
 def _regions(fit: FitMap, joints: Joints) -> NDArray[np.int32]:

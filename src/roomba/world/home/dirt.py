@@ -110,9 +110,8 @@ class DirtField:
         floor = self.floor[window]
         rows = np.arange(window[0].start, window[0].start + floor.shape[0])
         columns = np.arange(window[1].start, window[1].start + floor.shape[1])
-        dy = self.frame.origin_y + (rows + 0.5) * self.frame.resolution - y
-        dx = self.frame.origin_x + (columns + 0.5) * self.frame.resolution - x
-        squared = dy[:, None] ** 2 + dx[None, :] ** 2
+        centres_x, centres_y = self.frame.centres(rows, columns)
+        squared = (centres_y[:, None] - y) ** 2 + (centres_x[None, :] - x) ** 2
         weights: NDArray[np.float64] = np.exp(-0.5 * squared / radius**2) * floor
         if weights.sum() <= 0.0:
             raise ValueError(

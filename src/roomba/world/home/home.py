@@ -237,8 +237,7 @@ class Home:
 
 def cells_in(frame: GridFrame, areas: Iterable[Rectangle]) -> NDArray[np.bool_]:
     """Return the cells whose centres lie in any of the rectangles, bool [rows, columns]."""
-    x = frame.origin_x + (np.arange(frame.columns) + 0.5) * frame.resolution
-    y = frame.origin_y + (np.arange(frame.rows) + 0.5) * frame.resolution
+    x, y = frame.centres()
     mask = np.zeros(frame.shape, np.bool_)
     for area in areas:
         rows = (area.y_min <= y) & (y <= area.y_max)

@@ -88,16 +88,15 @@ def distance_to_cells(frame: GridFrame, mask: Mask, x: float, y: float) -> float
     if rows.size == 0:
         return border
     half = frame.resolution / 2.0
-    across = np.abs(frame.origin_x + (columns + 0.5) * frame.resolution - x) - half
-    up = np.abs(frame.origin_y + (rows + 0.5) * frame.resolution - y) - half
+    centres_x, centres_y = frame.centres(rows, columns)
+    across, up = np.abs(centres_x - x) - half, np.abs(centres_y - y) - half
     distances = np.hypot(np.maximum(across, 0.0), np.maximum(up, 0.0))
     return min(border, float(distances.min()))
 
 
 def cells_within(frame: GridFrame, radius: float, x: float, y: float) -> Mask:
     """Return the cells whose squares come nearer than ``radius`` m to a point."""
-    rows = frame.origin_y + (np.arange(frame.rows) + 0.5) * frame.resolution
-    columns = frame.origin_x + (np.arange(frame.columns) + 0.5) * frame.resolution
+    columns, rows = frame.centres()
     half = frame.resolution / 2.0
     up = np.maximum(np.abs(rows - y) - half, 0.0)[:, None]
     across = np.maximum(np.abs(columns - x) - half, 0.0)[None, :]

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from roomba.errors import HomeError
 from roomba.geometry import Pose
@@ -99,8 +98,7 @@ def _nearest_to_zero(occupancy: OccupancyMap, choices: list[Mask]) -> Pose | Non
         rows, columns = np.nonzero(mask)
         if rows.size == 0:
             continue
-        x: NDArray[np.float64] = frame.origin_x + (columns + 0.5) * frame.resolution
-        y: NDArray[np.float64] = frame.origin_y + (rows + 0.5) * frame.resolution
+        x, y = frame.centres(rows, columns)
         distances = np.hypot(x, y)
         index = int(np.argmin(distances))
         theta = (0.0, math.pi / 2.0, math.pi, -math.pi / 2.0)[direction]

@@ -116,10 +116,8 @@ class CoverageFloor:
             first_row : max(row + span + 1, 0), first_column : max(column + span + 1, 0)
         ]
         cells = np.argwhere(window) + np.array((first_row, first_column))
-        away = np.hypot(
-            frame.origin_x + (cells[:, 1] + 0.5) * frame.resolution - point[0],
-            frame.origin_y + (cells[:, 0] + 0.5) * frame.resolution - point[1],
-        )
+        x, y = frame.centres(cells[:, 0], cells[:, 1])
+        away = np.hypot(x - point[0], y - point[1])
         for index in np.argsort(away, kind="stable"):
             if away[index] > _DOCKED:
                 break

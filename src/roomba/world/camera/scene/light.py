@@ -109,9 +109,8 @@ def _light_frame(frame: GridFrame) -> GridFrame:
 
 
 def _centres(frame: GridFrame) -> tuple[Floats, Floats]:
-    x = frame.origin_x + (np.arange(frame.columns, dtype=np.float32) + 0.5) * frame.resolution
-    y = frame.origin_y + (np.arange(frame.rows, dtype=np.float32) + 0.5) * frame.resolution
-    return x[None, :], y[:, None]
+    x, y = frame.centres()
+    return x[None, :].astype(np.float32), y[:, None].astype(np.float32)
 
 
 def _room_at(frame: GridFrame, room: NDArray[np.uint8], pane: Pane) -> int:
