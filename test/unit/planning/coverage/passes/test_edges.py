@@ -11,6 +11,7 @@ import shapely
 from fixtures.straight_ways import (
     Mask,
     connected_to,
+    crosses_between_centres_that_fit,
     length_of,
     runs_between_centres_that_fit,
     swept_cells,
@@ -73,7 +74,7 @@ def test_edges_lie_on_the_rings_and_sweep_all_that_is_worth_the_way(
     for piece in pieces:
         assert len(piece) >= 2
         assert shapely.distance(whole, shapely.points(piece)).max() < 1e-6
-        assert runs_between_centres_that_fit(middles, piece, 1e-5)
+        assert crosses_between_centres_that_fit(middles, piece, 1e-5)
         assert 0.0 < length_of(piece) <= 1.5 * piece_length + 2 * STRETCH
     left = need & ~swept_cells(need.shape, pieces, RADIUS)
     driven = shapely.union_all([shapely.LineString(piece) for piece in pieces])

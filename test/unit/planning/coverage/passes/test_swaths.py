@@ -73,22 +73,22 @@ def least_cost(left: Mask, middles: Mask, radius: int) -> float:
     """Of all sets of rows near enough to each other that reach the first and the last of them."""
     needed = np.flatnonzero(left.any(axis=1)).tolist()
     rows = range(len(left))
+    costs = [cost_of_row(left, middles, row, radius) for row in rows]
     best = np.inf
     for count in range(1, 6):
         for chosen in combinations(rows, count):
             is_dense = all(two - one <= 2 * radius for one, two in pairwise(chosen))
             if is_dense and chosen[0] <= needed[0] + radius and chosen[-1] >= needed[-1] - radius:
-                costs = [cost_of_row(left, middles, row, radius) for row in chosen]
-                best = min(best, sum(costs))
+                best = min(best, sum(costs[row] for row in chosen))
     return float(best)
 
 
 @given(
-    st.integers(5, 12),
-    st.integers(5, 12),
-    st.lists(st.tuples(*[st.integers(0, 11)] * 2, *[st.integers(1, 4)] * 2), max_size=2),
+    st.integers(5, 15),
+    st.integers(5, 15),
+    st.lists(st.tuples(*[st.integers(0, 14)] * 2, *[st.integers(1, 9)] * 2), max_size=4),
 )
-@settings(max_examples=25)
+@settings(max_examples=40)
 def test_no_set_of_rows_or_columns_sweeps_a_region_with_less_way(
     height: int, width: int, boxes: list[tuple[int, int, int, int]]
 ) -> None:
@@ -123,3 +123,19 @@ def test_over_a_narrow_gap_of_swept_floor_a_swath_goes_on_and_around_a_wide_one_
         assert len({float(line[0, 1]) for line in lines}) >= 2
         on_last = [line for line in lines if line[0, 1] == max(line[0, 1] for line in lines)]
         assert len(on_last) == expected
+
+
+def test_rows_are_chosen_for_what_they_cost_and_not_only_as_far_apart_as_can_be() -> None:
+    """Four wide rows: each needs one long swath, and evenly spaced ones would pass one twice."""
+    left = np.zeros((40, 300), np.bool_)
+    left[:, :9] = True
+    left[[6, 15, 24, 33]] = True
+    lines = swaths(left, np.ones_like(left), 2.0)
+    assert sum(length_of(line) > 100.0 for line in lines) == 4
+
+
+@pytest.mark.parametrize(("columns", "expected"), [(19, 0), (20, 1)])
+def test_a_patch_is_swept_from_twenty_cells_on(columns: int, expected: int) -> None:
+    left = np.zeros((9, 40), np.bool_)
+    left[4, 5 : 5 + columns] = True
+    assert len(swaths(left, np.ones_like(left), 3.0)) == expected

@@ -1,0 +1,94 @@
+"""A polished way, against its cost and what it sweeps reckoned anew."""
+
+from __future__ import annotations
+
+import numpy as np
+from fixtures.straight_ways import (
+    Line,
+    Mask,
+    connected_to,
+    crosses_between_centres_that_fit,
+    length_of,
+    swept_cells,
+    turning_of,
+)
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from roomba.planning.coverage.tour.connection import connected
+from roomba.planning.coverage.tour.net import net_over
+from roomba.planning.coverage.tour.polish import polished
+
+RADIUS, TURNING, FLOOR = 4.0, 6.0, 1.0
+SPARE = 0.002
+"""Share of the needed floor that may be left, as in the stage."""
+
+
+def left(line: Line, need: Mask) -> int:
+    """How many of the needed cells the line does not sweep."""
+    return int((need & ~swept_cells(need.shape, [line], RADIUS)).sum())
+
+
+def cost(line: Line, need: Mask) -> float:
+    return length_of(line) + TURNING * turning_of(line) + FLOOR * left(line, need)
+
+
+@st.composite
+def ways(draw: st.DrawFn) -> tuple[Mask, Line, Mask]:
+    """A floor among boxes, a way over it from place to place, and which floor counts."""
+    fits = np.ones((draw(st.integers(20, 70)), draw(st.integers(20, 70))), np.bool_)
+    for _ in range(draw(st.integers(0, 4))):
+        row, column = draw(st.integers(0, 65)), draw(st.integers(0, 65))
+        fits[row : row + draw(st.integers(1, 20)), column : column + draw(st.integers(1, 20))] = 0
+    cells = np.argwhere(fits).tolist()
+    assume(cells)
+    row, column = cells[len(cells) // 2]
+    part = np.zeros_like(fits)
+    for cell in connected_to(fits, (row, column)):
+        part[cell] = True
+    random = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
+    places = np.argwhere(part)[:, ::-1].astype(float)
+    stops = [places[random.integers(len(places))][None] for _ in range(draw(st.integers(2, 12)))]
+    line = connected(net_over(part), stops[1:], stops[0][0], None)
+    need = part & (random.random(part.shape) < draw(st.sampled_from([0.0, 0.5, 1.0])))
+    return part, line, need
+
+
+@given(ways())
+@settings(max_examples=50)
+def test_a_polished_way_costs_no_more_is_no_longer_and_leaves_hardly_more_floor(
+    drawn: tuple[Mask, Line, Mask],
+) -> None:
+    fits, line, need = drawn
+    found = polished(line.copy(), need, fits, RADIUS, TURNING, FLOOR)
+    assert np.array_equal(found[[0, -1]], line[[0, -1]])
+    assert length_of(found) <= length_of(line) + 1e-6
+    assert cost(found, need) <= cost(line, need) + 1e-6
+    assert left(found, need) <= left(line, need) + int(SPARE * need.sum())
+    # Legs of the line itself may be off its cells by what they were straightened.
+    assert crosses_between_centres_that_fit(fits, found, 0.05)
+
+
+def test_where_no_floor_counts_a_bend_in_the_open_vanishes() -> None:
+    fits = np.ones((60, 60), np.bool_)
+    line = np.array([[5.0, 5.0], [25.0, 40.0], [50.0, 5.0]])
+    found = polished(line, np.zeros_like(fits), fits, RADIUS, TURNING, FLOOR)
+    assert length_of(found) <= 45.2
+    assert turning_of(found) <= 0.2
+
+
+def test_a_bend_that_sweeps_floor_of_its_own_stays() -> None:
+    fits = np.ones((60, 60), np.bool_)
+    line = np.array([[5.0, 5.0], [25.0, 40.0], [50.0, 5.0]])
+    need = np.zeros_like(fits)
+    need[30:44, 20:31] = True
+    need &= swept_cells(need.shape, [line], RADIUS)
+    found = polished(line, need, fits, RADIUS, 0.0, 1000.0)
+    assert left(found, need) == 0
+    assert found[:, 1].max() > 35.0
+
+
+def test_a_way_without_bends_is_left_as_it_is() -> None:
+    fits = np.ones((9, 9), np.bool_)
+    for line in (np.array([[1.0, 2.0]]), np.array([[1.0, 2.0], [7.0, 3.0]])):
+        assert np.array_equal(polished(line, fits, fits, RADIUS, TURNING, FLOOR), line)
