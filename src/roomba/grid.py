@@ -51,8 +51,8 @@ class GridFrame:
             math.floor((x - self.origin_x) / self.resolution),
         )
 
-    def centre_of(self, row: int, column: int) -> tuple[float, float]:
-        """Return the (x, y) of a cell's centre, m."""
+    def centre_of(self, row: float, column: float) -> tuple[float, float]:
+        """Return the (x, y) of a cell's centre, m; parts of a cell count as such."""
         return (
             self.origin_x + (column + 0.5) * self.resolution,
             self.origin_y + (row + 0.5) * self.resolution,

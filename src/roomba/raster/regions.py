@@ -78,6 +78,14 @@ def root_of(parents: Labels, label: int) -> int:
 
 
 @njit(cache=True, nogil=True)
+def join(parents: Labels, one: int, other: int) -> int:
+    """Make the regions of two labels one; return the first of its labels (union-find)."""
+    low, high = root_of(parents, one), root_of(parents, other)
+    parents[max(low, high)] = min(low, high)
+    return min(low, high)
+
+
+@njit(cache=True, nogil=True)
 def _number(mask: Mask, labels: Labels) -> None:
     """Two passes with union-find; the numbers are in the order of the regions' first cells."""
     rows, columns = mask.shape
@@ -96,9 +104,7 @@ def _number(mask: Mask, labels: Labels) -> None:
             elif above == 0 or before == 0:
                 labels[row, column] = max(above, before)
             else:
-                low, high = root_of(parents, above), root_of(parents, before)
-                parents[max(low, high)] = min(low, high)
-                labels[row, column] = min(low, high)
+                labels[row, column] = join(parents, above, before)
     numbers = np.zeros(count + 1, np.int32)
     regions = 0
     for label in range(1, count + 1):

@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import array_shapes, arrays
 from numpy.typing import NDArray
 
-from roomba.raster.regions import dilated, numbered_regions
+from roomba.raster.regions import dilated, join, numbered_regions, root_of
 
 masks = arrays(np.bool_, array_shapes(min_dims=2, max_dims=2, max_side=20))
 
@@ -38,3 +38,17 @@ def test_regions_agree_with_opencv_up_to_their_numbers(mask: NDArray[np.bool_]) 
     assert len(pairs) == len({a for a, _ in pairs}) == len({b for _, b in pairs})
     assert ours.max(initial=0) == count - 1
     assert np.array_equal(ours > 0, mask)
+
+
+@given(st.lists(st.tuples(st.integers(0, 19), st.integers(0, 19)), max_size=30))
+def test_labels_that_were_joined_have_the_least_of_them_as_root(
+    pairs: list[tuple[int, int]],
+) -> None:
+    parents = np.arange(20, dtype=np.int32)
+    groups = [{label} for label in range(20)]
+    for one, other in pairs:
+        together = groups[one] | groups[other]
+        for label in together:
+            groups[label] = together
+        assert join(parents, one, other) == min(together)
+    assert [root_of(parents, label) for label in range(20)] == [min(group) for group in groups]

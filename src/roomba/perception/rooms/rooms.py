@@ -147,7 +147,9 @@ class Rooms:
             first, second = cells[0, :2].tolist()
             row, column = cells[:, 2:4].mean(axis=0).tolist()
             length = float(np.hypot(*np.ptp(cells[:, 2:4], axis=0))) + 1.0
-            found.append(RoomDoorway(first, second, *self._point(row, column), length * size))
+            found.append(
+                RoomDoorway(first, second, *self.frame.centre_of(row, column), length * size)
+            )
         return tuple(sorted(found, key=lambda door: (door.first, door.second, door.x, door.y)))
 
     def renamed(self, name: str, new_name: str) -> Rooms:
@@ -205,13 +207,6 @@ class Rooms:
             )
         cells: NDArray[np.bool_] = self.labels == label
         return cells
-
-    def _point(self, row: float, column: float) -> Point:
-        size = self.frame.resolution
-        return (
-            self.frame.origin_x + (column + 0.5) * size,
-            self.frame.origin_y + (row + 0.5) * size,
-        )
 
 
 def segment(occupancy: OccupancyMap, config: RoomsConfig | None = None) -> Rooms:

@@ -9,7 +9,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from roomba.raster.distance import distance_to_nearest
-from roomba.raster.regions import Labels, Mask, numbered_regions, root_of
+from roomba.raster.regions import Labels, Mask, join, numbered_regions, root_of
 
 _BLOCK = 5
 """Cells to a side of the blocks that are told apart."""
@@ -137,8 +137,7 @@ def _joined(runs: NDArray[np.int32]) -> Regions:
         other = above
         while runs[other, 0] == row - 1 and runs[other, 1] <= last:
             if runs[other, 3] == runs[at, 3]:
-                low, high = root_of(parents, other), root_of(parents, at)
-                parents[max(low, high)] = min(low, high)
+                join(parents, other, at)
             other += 1
     regions = 0
     for at in range(count):
