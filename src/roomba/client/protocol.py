@@ -104,7 +104,7 @@ class CleanMode(Enum):
 
 
 class FanLevel(Enum):
-    """How strongly it sucks."""
+    """The power of the fan."""
 
     QUIET = "quiet"
     STANDARD = "standard"
@@ -182,7 +182,7 @@ class CleanReport:
 
 
 class CleanHandle(Protocol):
-    """A clean under way. It goes on when nobody follows it."""
+    """A clean under way. It continues when the client goes away."""
 
     def next_feedback(self, timeout: float) -> CleanProgress | None:
         """Wait up to ``timeout`` s of wall time for news, else None; None at once at its end."""
@@ -203,7 +203,7 @@ class DockReport:
 
 
 class DockingHandle(Protocol):
-    """A way into or out of the station. It goes on when nobody follows it."""
+    """A way into or out of the station. It continues when the client goes away."""
 
     def next_feedback(self, timeout: float) -> str | None:
         """Wait up to ``timeout`` s of wall time for what it does: returning, docking, undocking.
@@ -233,7 +233,7 @@ class ExploreReport:
 
 
 class ExploringHandle(Protocol):
-    """An exploration under way. It goes on when nobody follows it."""
+    """An exploration under way. It continues when the client goes away."""
 
     def next_feedback(self, timeout: float) -> float | None:
         """Wait up to ``timeout`` s of wall time for how much floor is known, m2.
@@ -289,7 +289,7 @@ class RobotClient(Protocol):
     def path_length(self, x: float, y: float) -> float:
         """Return the length of the way to a point, m.
 
-        Raises RequestRefusedError with the reason, RobotUnavailableError when nobody answers.
+        Raises RequestRefusedError with the reason, RobotUnavailableError without an answer.
         """
 
     def walk_to(self, x: float, y: float) -> WalkHandle:

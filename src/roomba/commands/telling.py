@@ -13,7 +13,7 @@ from rich.table import Table
 STANDARD_OUTPUT: Final = "-"
 """In place of a file's name."""
 _WIDTH: Final = 120
-"""Columns of a table that nobody sees on a terminal."""
+"""Columns of a table that does not go to a terminal."""
 
 
 def tell_tables(tables: Iterable[Table], figures: str | None, *, quiet: bool) -> None:

@@ -52,7 +52,7 @@ def _find_place(home: Home, config: RobotConfig, simulator: Simulator) -> None:
         home.map, config.localization, config.gyro, config.body.radius, simulator.pose
     )
     model = LidarModel.all_around(lidar.beams, lidar.min_range, lidar.max_range)
-    localizer.forget("nobody told")
+    localizer.forget("warming up")
     for step in range(40):
         localizer.move(0.1 * step, Pose(), 0.0)
         localizer.see(0.1 * step, simulator.ranges, model)

@@ -52,7 +52,7 @@ class DockingConfig(BaseModel):
     back_turn: Ratio = 0.2
     """rad; it turns as it backs off, and so crosses the edge of the beams on the next try."""
     blocked_wait: Positive = 2.0
-    """Before the next attempt, for who stands in the way to leave."""
+    """Before the next attempt, so that what stands in the way can leave."""
 
     max_attempts: Annotated[int, Field(ge=1)] = 4
     beam_wait: Positive = 0.5

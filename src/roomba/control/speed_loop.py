@@ -1,6 +1,6 @@
 """The speed loop: the last word on what the drive is told.
 
-It chooses among those who want to drive, keeps to the speed limit, stops for stale commands, backs
+It chooses one source of commands, keeps to the speed limit, stops for stale commands, backs
 away from what the bumper meets and from cliffs, and stands when a wheel hangs in the air. Above all
 that is the emergency stop.
 """
@@ -24,17 +24,17 @@ class Hold(Enum):
     BUMPER = "the bumper is pressed"
     """It backs off a little, so that it can turn to another side; then it only does not push."""
     CLIFF = "there is no floor ahead"
-    """It backs away until there is, whatever was asked for, but not for ever."""
+    """It backs away until there is, whatever the command, for BACKING_TIME at most."""
     WHEEL_DROP = "a wheel hangs in the air"
     EMERGENCY = "emergency stop"
-    """It stands, whatever was asked for and whatever is in the way, until it is released."""
+    """It stands, whatever the command, until it is released."""
 
 
 class Source(Enum):
-    """Who asks for a twist; the first of them whose command is not too old is obeyed."""
+    """Sources of commands by priority: the first one with a fresh command is obeyed."""
 
     DIRECT = "cmd_vel"
-    """A walk, or somebody who steers."""
+    """A walk, or manual steering."""
     MISSION = "cmd_vel_mission"
     """Cleaning and docking."""
 
@@ -42,7 +42,7 @@ class Source(Enum):
 BACKING_SPEED = 0.1
 """m/s; how fast it backs away from a cliff."""
 BACKING_TIME = 2.5
-"""s; then it stands: nobody looks behind, and a sensor may be dirty."""
+"""s; then it stands: no sensor looks behind, and a cliff sensor may be dirty."""
 BACKING_OFF_TIME = 0.6
 """s; so long at most it backs off from what the bumper meets."""
 

@@ -136,7 +136,7 @@ class DirtSourceEntry(_Entry):
 
 
 class PlaceEntry(_Entry):
-    """Where somebody moves a piece of furniture: slid there in ``takes`` s from ``at`` on."""
+    """Where a piece of furniture is moved to: it slides there in ``takes`` s from ``at`` on."""
 
     at: Time
     x: Number

@@ -162,7 +162,7 @@ class HeadlessMission:
         self.rows.append(np.array([[self.seen.time, pose.x, pose.y, pose.theta]]))
 
     def _stand(self) -> None:
-        """Let time pass in which the robot stands at its station and nobody asks for anything."""
+        """Let time pass in which the robot stands at its station without an errand."""
         for _ in range(min(_MOST_LOOKS, self._longest_burst // _TICKS_PER_LOOK)):
             self.simulator.advance(STANDSTILL, STEP, STEPS_PER_TICK * _TICKS_PER_LOOK)
             self._look()

@@ -1,7 +1,6 @@
 """What a robot remembers of its work on disk: the errand that it is on, and where it was dirty.
 
-Each file is replaced at once or not at all, so that whoever is killed in between finds the one from
-before.
+Each file is replaced atomically: a node that was killed finds the old checkpoint or the new one.
 """
 
 from __future__ import annotations
@@ -38,8 +37,8 @@ def save_checkpoint(values: Values, run: str, path: Path, taken_up: int = 0) -> 
 def load_checkpoint(path: Path, run: str) -> tuple[Values, int] | None:
     """Return what was saved in this run of the robot, and how often it was taken up; None: nothing.
 
-    What another run left behind is not taken up: after a launch nobody expects the robot to begin
-    to drive by itself. Raises CheckpointFileError for a file that cannot be read.
+    A checkpoint of another run is ignored: after a launch the robot must not begin to drive by
+    itself. Raises CheckpointFileError for a file that cannot be read.
     """
     try:
         read = json.loads(path.read_text(encoding="utf-8"))

@@ -39,7 +39,7 @@ class MapStoreError(RoombaError):
 class StoredMap:
     """A floor as the robot knows it, all in the map's frame.
 
-    ``station`` is where the docked robot stands; ``rooms`` is None while nobody divided the floor.
+    ``station`` is where the docked robot stands; ``rooms`` is None while the floor is not divided.
     """
 
     occupancy: OccupancyMap

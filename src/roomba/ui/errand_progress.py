@@ -1,6 +1,6 @@
 """Following a clean or a way to the station to its end, or until its user has seen enough.
 
-Unlike a walk it goes on when nobody looks: it is left, not cancelled.
+Unlike a walk it continues without the menu: Ctrl-C leaves it, and does not cancel it.
 """
 
 from __future__ import annotations

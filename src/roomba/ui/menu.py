@@ -196,7 +196,7 @@ class Menu:
             self.say(f"The robot was lost after {travelled} and {took}: {reason}", style="red")
         else:
             arrived = report.outcome is WalkOutcome.ARRIVED
-            # somebody else's goal may have ended it: then the message says so
+            # another program's goal may have ended it: then the message says so
             why = f": {reason}" if report.message else "."
             self.say("The robot has arrived." if arrived else f"The walk was cancelled{why}")
             self.say(f"Position reached: {self._position()}")

@@ -30,7 +30,7 @@ Read = Callable[[str], str]
 
 
 class EndOfInputError(Exception):
-    """Nobody is there any more to answer a question."""
+    """The input has ended: no answer can come."""
 
 
 class Keyboard:
@@ -51,7 +51,7 @@ class Keyboard:
             descriptor = sys.stdin.fileno()
             line = self._line(descriptor)
             if not os.isatty(descriptor):
-                print(flush=True)  # nobody's Enter key ends the prompt's line in a pipe
+                print(flush=True)  # in a pipe no Enter key ends the prompt's line
         except (AttributeError, OSError, ValueError) as error:
             raise EOFError from error
         return line.decode("utf-8", errors="replace")

@@ -1,4 +1,4 @@
-"""How well the robot's parts work, by what its own sensors tell: for people who look after it."""
+"""Health of the robot's parts by its own sensors, with what the owner can do about it."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Level(IntEnum):
 
     OK = 0
     WARN = 1
-    """It works, but somebody should see to it."""
+    """It works, but needs attention."""
     ERROR = 2
     """It does not work."""
 

@@ -159,7 +159,7 @@ class FakeErrand:
 
     @property
     def _outcome(self) -> ErrandOutcome:
-        """What it comes to if nobody stops it."""
+        """The outcome unless it is stopped."""
         total = self._cleans + self._drives
         if self._script.outcome is ErrandOutcome.REFUSED or self._script.after < total:
             return self._script.outcome

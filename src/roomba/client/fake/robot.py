@@ -73,7 +73,7 @@ class Turn(Enum):
     VANISHES = "vanishes"
     """The action server ends on the way, and the client notices."""
     FREEZES = "freezes"
-    """The whole robot stops answering on the way, and nobody reports it."""
+    """The whole robot stops answering on the way, and no report comes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -245,7 +245,7 @@ class FakeWalk:
         )
 
     def cancel(self) -> None:
-        """Stop on the spot, unless the script says that nobody listens."""
+        """Stop on the spot, unless the script says that the robot does not listen."""
         self.cancels += 1
         if self._script.obeys and not self._muted(self._elapsed):
             self.preempt()
@@ -317,7 +317,7 @@ class FakeWalk:
         return min(self._length, self._cruise_speed * min(self._elapsed, self._halt))
 
     def _muted(self, elapsed: float) -> bool:
-        """Whether nobody is there any more to tell or to listen, ``elapsed`` s into the walk."""
+        """Whether the server neither reports nor listens any more, ``elapsed`` s into the walk."""
         gone = self._script.turn in (Turn.VANISHES, Turn.FREEZES)
         return gone and elapsed >= self._turning_point - _INSTANT
 

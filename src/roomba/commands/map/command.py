@@ -39,7 +39,7 @@ def guarded(work: Callable[[], int], refused: int = ENDED_OTHERWISE) -> int:
     except RoombaError as error:
         return _complain(str(error), refused)
     except BrokenPipeError:
-        # Whoever read the output has had enough; Python must not try to write the rest.
+        # The reader of the pipe has closed it; Python must not try to write the rest.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return ENDED_OTHERWISE
     except OSError as error:
@@ -62,7 +62,7 @@ def _complain(text: str, status: int) -> int:
 
 
 def _explore(options: MapOptions) -> int:
-    # Here, because it takes a second that nobody should wait for who mistyped an option.
+    # Imported here: it takes a second, and a mistyped option should be reported at once.
     from roomba.commands.map.runs import MapScene
     from roomba.commands.map.warm import warm_up
 

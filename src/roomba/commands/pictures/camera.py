@@ -16,7 +16,7 @@ _STAND = Pose(0.6, 0.9, 0.15)
 _DT = 0.1
 """s"""
 _LONGEST = 1200.0
-"""s; somebody has come by then."""
+"""s; a person has come by then."""
 _FAR = 6.0
 """m; farther things have one colour in the picture of depths."""
 

@@ -46,7 +46,7 @@ def main(arguments: list[str] | None = None, open_bag: BagOpener | None = None) 
     except RoombaError as error:
         return _complain(str(error), USAGE)
     except BrokenPipeError:
-        # Whoever read the output has had enough; Python must not try to write the rest.
+        # The reader of the pipe has closed it; Python must not try to write the rest.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return ENDED_OTHERWISE
     except OSError as error:
@@ -64,7 +64,7 @@ def _complain(text: str, status: int) -> int:
 
 
 def _run_one(options: SimOptions, open_bag: BagOpener | None) -> int:
-    # Here, because it takes a second that nobody should wait for who mistyped an option.
+    # Imported here: it takes a second, and a mistyped option should be reported at once.
     from roomba.commands.sim.runs import TrialSetup
     from roomba.commands.sim.warm import warm_up
     from roomba.headless.closed_loop import LONGEST_BURST

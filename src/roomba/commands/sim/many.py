@@ -35,7 +35,7 @@ def figures_of(trial: Trial) -> Outcome:
         return run_trial(trial).figures
     except RoombaError as error:
         return str(error)
-    except Exception as error:  # whatever it is, the others are to go on
+    except Exception as error:  # the other trials go on
         return f"a fault of the program: {error!r}"
 
 

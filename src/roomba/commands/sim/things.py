@@ -16,7 +16,7 @@ _STREAM: Final = 20_021
 _LEAST, _MOST = 0.04, 0.14
 """m; radius of a thing: from a drinking glass to a pile of books."""
 _FROM_STATION: Final = 1.2
-"""m; nobody puts a thing before the station."""
+"""m; no thing stands nearer to the station."""
 
 Disc = tuple[float, float, float]
 """x, y and radius, m, map frame."""

@@ -1,4 +1,4 @@
-"""What somebody asks to be cleaned, and what became of it."""
+"""The request of a clean, and its result."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class CleanMode(Enum):
 
 
 class FanLevel(Enum):
-    """How strongly it sucks; the value is the fan's duty, 0..1."""
+    """The power of the fan; the value is its duty, 0..1."""
 
     QUIET = 0.3
     STANDARD = 0.6
@@ -79,7 +79,7 @@ class CleanOutcome(Enum):
     COMPLETED = "completed"
     """All that could be reached is clean, and the robot is back on its station."""
     STOPPED = "stopped"
-    """Somebody ended it."""
+    """It was ended by a command."""
     BATTERY = "battery"
     """There was not enough energy to go on, and none to be had."""
     STUCK = "stuck"

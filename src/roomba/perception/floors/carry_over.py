@@ -16,7 +16,7 @@ from roomba.perception.rooms.zones import Zones
 from roomba.raster.carried import carried
 
 _LEAST_SHARE: Final = 0.5
-"""Of the smaller of two rooms: who shares less with another one is not the same room."""
+"""Share of the smaller of two rooms' floor; with less in common they are different rooms."""
 
 Overlaps = NDArray[np.float64]
 """[new rooms, old rooms]: how much of the floor they share, m2; 0 where too little."""
@@ -24,7 +24,7 @@ Overlaps = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class CarriedOver:
-    """What a map that was made anew takes over; ``lost`` are names whose rooms are no more."""
+    """What a new map takes over from the old one; ``lost`` are names of rooms that are gone."""
 
     rooms: Rooms
     zones: Zones

@@ -1,8 +1,8 @@
 """A home that changed: what stands there now, and did not, or no longer does.
 
 While the robot goes about its work, and knows its place, its scans are counted on the cells of the
-map. A *look* is what it saw from several places in some time; several looks decide, so that who
-walks or stands about is no change, nor are things too small to be furniture.
+map. A *look* is what it saw from several places in some time; several looks decide, so that
+people who walk or stand about are no change; neither are things too small to be furniture.
 """
 
 from __future__ import annotations

@@ -59,7 +59,7 @@ def match_floors(new: FloorRecord, old: FloorRecord) -> FloorMatch:
     """Return how well two maps fit, laid on each other as well as can be near their stations."""
     station = new.station
     starts = [Pose(station.x, station.y, station.theta + turn) for turn in _TURNS]
-    # Whoever began both maps at the same place has them in one frame.
+    # Maps that were begun at the same place have one frame.
     starts.append(old.station)
     field, walls = SurfaceField.of(new.occupancy), _walls(old.occupancy)
     ends = np.zeros((len(walls), 4))

@@ -58,7 +58,7 @@ def reckon(
         ahead, aside = cosine * off_x + sine * off_y, cosine * off_y - sine * off_x
         turn = wrapped(odometry_theta - belief.odometry[2])
     if 0.0 < since < math.hypot(ahead, aside) / FASTEST_SPEED - _JOLT:
-        # No robot goes as fast: whoever counts the wheels began anew.
+        # No robot goes as fast: the counter of the wheels was reset.
         ahead = aside = turn = 0.0
     elapsed = since if 0.0 < since <= _LONGEST_STEP and not is_first else 0.0
     belief.odometry[0], belief.odometry[1] = odometry_x, odometry_y
@@ -77,7 +77,7 @@ def _go(
     turning: float,
     elapsed: float,
 ) -> None:
-    """Move by a step of the wheels, m and rad, that took so long, s; 0: nobody knows."""
+    """Move by a step of the wheels, m and rad, that took so long, s; 0: unknown."""
     way = math.hypot(ahead, aside)
     _learn_bias(belief, numbers, way, wheels, turning)
     turn, variance = _turn(belief, numbers, way, wheels, turning, elapsed)
@@ -99,7 +99,7 @@ def _learn_bias(belief: Row, numbers: Row, way: float, turn: float, turning: flo
         belief.still_since, belief.samples = math.inf, 0
         return
     belief.still_since = min(belief.still_since, belief.stamp)
-    # What turns faster than any bias is a robot that somebody turns.
+    # Faster than any bias: the robot is being turned by hand.
     is_settling = belief.stamp - belief.still_since < _SETTLING
     if is_settling or abs(turning) > 5.0 * numbers.worst_bias:
         return

@@ -60,7 +60,7 @@ class DeadReckoning:
         self._remember(stamp)
 
     def begin_history(self) -> None:
-        """Know the past no more, as after steps that somebody else made in the belief."""
+        """Forget the past, as after steps that a compiled burst made in the belief."""
         self._past.clear()
         self._remember(float(self._belief["stamp"]))
 

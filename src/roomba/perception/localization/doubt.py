@@ -1,7 +1,7 @@
 """Doubting the pose: the scan does not fit the map there. Did the home change, or is it elsewhere?
 
-What the robot sees now is compared with what it saw a moment ago: if that is the same, nobody
-carried it. It may have been wrong before, though; so the place is compared with all others.
+What the robot sees now is compared with what it saw a moment ago: if that is the same, it was not
+carried. The place may have been wrong before, so it is compared with all others.
 """
 
 from __future__ import annotations

@@ -18,7 +18,7 @@ _HERE_DRIFT: Final = 0.01
 _HERE_EVIDENCE: Final = 14.0
 """More than what is needed to believe a place: where it was it is, unless another is likelier."""
 _STILL_EVIDENCE: Final = 60.0
-"""The same of a robot that sees what it saw before: nobody carried it."""
+"""The same of a robot that sees what it saw before: it was not carried."""
 
 
 def where_told(
@@ -31,7 +31,7 @@ def where_told(
 
 
 def where_known(pose: Pose, config: LocalizationConfig, *, is_still: bool) -> Expectation:
-    """Return where to expect a robot that was there; ``is_still``: nobody carried it."""
+    """Return where to expect a robot that was there; ``is_still``: it was not carried."""
     evidence = _STILL_EVIDENCE if is_still else _HERE_EVIDENCE
     return Expectation(pose, _HERE_RADIUS, _HERE_TURN, config.needed_evidence + evidence)
 

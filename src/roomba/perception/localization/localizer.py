@@ -1,7 +1,7 @@
 """Knowing where the robot is on a known map: the stages put together.
 
 Dead reckoning says how it moved, a tracker corrects that by each scan, and when scans do not fit
-any more, or somebody carried it, a relocation looks for it in the whole map. Plain values in and
+any more, or it was carried, a relocation looks for it in the whole map. Plain values in and
 out; times in s of the robot's clock.
 """
 
@@ -30,7 +30,7 @@ from roomba.perception.matching.scan_view import Fit, LidarModel, ScanView
 from roomba.perception.matching.surface_field import SurfaceField
 
 _ANYWHERE: Final = np.diag([100.0**2, 100.0**2, math.pi**2])
-"""m2, rad2; of a pose that is not known: whoever reads nothing else must not believe it."""
+"""m2, rad2; of an unknown pose: so large that a reader of the covariance alone does not use it."""
 _FOUND_SPREAD: Final = np.diag([0.05**2, 0.05**2, 0.03**2])
 """m2, rad2; of a place that was found, before scans narrow it down."""
 _PATIENCE: Final = 0.5
@@ -42,7 +42,7 @@ _GOOD_THROUGH: Final = 0.03
 """Shares of beams with which a pose that was told needs no comparison with all others."""
 _FAIR_AGREE: Final = 0.7
 _FAIR_THROUGH: Final = 0.12
-"""The same of a pose of which there is more than somebody's word. On its station a robot has 0.98
+"""The same of a pose with more evidence than a report. On its station a robot has 0.98
 and 0.02 or better on the map of its home, and at most 0.57 on those of 15 other homes.
 """
 _HARDLY_TURNED: Final = 0.02
@@ -105,7 +105,7 @@ class Localizer:
         self._reckoning.move(stamp, odometry, turning)
 
     def lift(self, is_lifted: bool) -> None:
-        """Tell whether the wheels hang in the air: somebody holds the robot."""
+        """Tell whether the wheels hang in the air: the robot is being carried."""
         if self._is_lifted and not is_lifted:
             told = self._told
             self.forget("it was lifted and set down again")
@@ -173,7 +173,7 @@ class Localizer:
         self._doubt.drop()
         estimate = self.estimate
         if self._forgotten:
-            # Whoever is searched for is searched for in the new map, no longer than before.
+            # A search goes on in the new map, with the time that is left of it.
             self._relocation = None
             self._tracker = self._tracker_at(estimate.pose, _ANYWHERE.copy())
         else:
@@ -198,7 +198,7 @@ class Localizer:
             self._needed = _FAIR_AGREE, _FAIR_THROUGH
 
     def told(self, pose: Pose, deviation: tuple[float, float]) -> None:
-        """Take somebody's word for where the robot is, m and rad unsure; scans will confirm it."""
+        """Expect the robot at a reported pose, with deviations in m and rad; scans confirm it."""
         spread = np.diag([deviation[0] ** 2, deviation[0] ** 2, deviation[1] ** 2])
         self._tracker = self._tracker_at(pose, spread)
         self._relocation, self._forgotten = None, ""

@@ -1,7 +1,7 @@
 """Whether the robot sees now what it saw a moment ago, from where it says that it has gone since.
 
-Then nobody carried it, however badly the map fits: furniture was moved where it is. Of one that was
-carried, what it sees now contradicts what it saw.
+Then it was not carried, however badly the map fits: furniture was moved around it. For a robot that
+was carried, what it sees now contradicts what it saw.
 """
 
 from __future__ import annotations

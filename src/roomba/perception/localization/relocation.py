@@ -90,7 +90,7 @@ class Hypothesis:
 
     @property
     def is_convincing(self) -> bool:
-        """Whether so much of the scan fits that a robot which nobody lifted was carried there.
+        """Whether so much of the scan fits that the robot was carried there without being lifted.
 
         Else furniture was moved where it is, and there another place may look a little likelier.
         """

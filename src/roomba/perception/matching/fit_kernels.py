@@ -122,7 +122,7 @@ def _trace(field: Field, place: Place, x: float, y: float, lanes: Floats, rays: 
             # It made a step too many, perhaps a little into what it met.
             if has_met and lanes[_WAY, ray] - _LEAST_STEP + min(there, 0.0) < most:
                 lanes[_IS_THROUGH, int(lanes[_NUMBER, ray])] = 1.0
-            # Who goes on moves up; who does not is overwritten by the next.
+            # A ray that goes on moves up; one that ended is overwritten by the next.
             lanes[_ALONG, left], lanes[_ACROSS, left] = lanes[_ALONG, ray], lanes[_ACROSS, ray]
             lanes[_MOST, left], lanes[_WAY, left] = lanes[_MOST, ray], lanes[_WAY, ray]
             lanes[_NUMBER, left] = lanes[_NUMBER, ray]

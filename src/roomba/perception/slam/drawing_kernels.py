@@ -37,7 +37,7 @@ class CountArrays(NamedTuple):
     """The grid as kernels know it: counts, uint16 [rows, columns]; ``place`` is the lower left
     corner x, y and the cell size, m; ``bounds`` int64 [4] the first and last row and column with
     counts; ``offsets``, float32 [rows, columns, 2], sums of where the cell's beams met a surface, x
-    and y from its middle, cells: none if nobody asks for :func:`occupancy`.
+    and y from its middle, cells: none unless :func:`occupancy` is called.
     """
 
     hits: Counts
@@ -147,7 +147,7 @@ def _walk(
 ) -> None:
     """Count the cells of a way of which all are on the grid: ``at``, and each after a step.
 
-    Which way a step goes nobody can guess, so nothing branches on it: that takes half the time.
+    The direction of a step is unpredictable, so nothing branches on it: that halves the time.
     """
     while True:
         _count(counts, at, times)

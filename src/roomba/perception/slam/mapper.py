@@ -166,7 +166,7 @@ class Mapper:
         self._is_lifted = is_lifted
 
     def told(self, pose: Pose) -> None:
-        """Go on from where somebody says that the robot is, map frame, to within a few cm."""
+        """Go on from a reported pose of the robot, map frame, right to within a few cm."""
         self._is_lost = False
         if not self.version:
             return

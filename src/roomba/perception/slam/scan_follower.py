@@ -16,7 +16,7 @@ from roomba.perception.slam.surfels import SurfelGrid
 Floats = NDArray[np.float64]
 
 _TAKEN_UP_SPREAD: Final = np.diag([0.1**2, 0.1**2, 0.05**2])
-"""m2, rad2; of a pose by the wheels alone, for the time that nobody followed the robot."""
+"""m2, rad2; of a pose by the wheels alone, after the mapping process was away."""
 
 
 class ScanFollower:
@@ -72,7 +72,7 @@ class ScanFollower:
         self._row["here"] = 0.0
 
     def jump(self) -> None:
-        """Go on at the origin of another submap, where somebody put the robot down."""
+        """Go on at the origin of another submap, where the robot was put down."""
         self._go_on_from(np.zeros(3))
 
     def take_up(self, here: Floats, way: float) -> None:

@@ -71,7 +71,7 @@ class SubmapGraph:
         self._add(self.placed(relative), way)
 
     def begin_at(self, pose: Floats, way: float) -> None:
-        """Begin a submap at a pose of the map, [3], that somebody told."""
+        """Begin a submap at a reported pose, map frame, [3]."""
         parent = int(np.argmin(np.hypot(*(self.poses[:, :2] - pose[:2]).T)))
         relative = relative_to(self.poses[parent : parent + 1], pose[None])[0]
         self.links.append(Link(parent, len(self.submaps), relative, _OF_PEOPLE, False))

@@ -45,8 +45,8 @@ class FurnitureKind:
 def block(x: Range, y: Range, z: Range, material: str) -> Box:
     """Return the upright cuboid between the given limits, low to high, m, in the piece's frame.
 
-    Sizes that leave nothing between the limits give a box without extent, which who asked for them
-    must refuse.
+    Sizes that leave nothing between the limits give a box without extent, which the caller must
+    refuse.
     """
     return Box(
         (x[0] + x[1]) / 2.0,

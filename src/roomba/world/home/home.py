@@ -1,7 +1,7 @@
 """A home as it really is: its map, and everything that stands, lies and falls in it.
 
 Metres and radians in the map frame; dirt in grams. :mod:`roomba.world.layers.layer` reads homes
-from files. Whatever moves by itself has a script, which :mod:`roomba.world.home.moving` plays.
+from files. What moves by itself has a script, which :mod:`roomba.world.home.moving` plays.
 """
 
 from __future__ import annotations
@@ -129,14 +129,14 @@ LEAF_HEIGHT: Final = 2.03
 
 
 class MovingKind(Enum):
-    """What moves by itself or by somebody's hand."""
+    """What moves by itself or is moved by a person."""
 
     DOOR = "door"
     """A door's leaf: stands in its opening, or is out of the way."""
     FURNITURE = "furniture"
-    """A piece that somebody moves to another place."""
+    """A piece that is moved to another place."""
     PERSON = "person"
-    """Somebody who walks through."""
+    """A person who walks through."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -203,7 +203,7 @@ class Home:
     that stand up to the ceiling. ``station`` is the pose of the docked robot, its nose to the
     station. What is ``moving`` is not solid and in no other list: not among ``furniture``, and a
     door whose leaf moves is open in ``doors``. ``stairs`` lead down: floor on the map, a drop to
-    who drives there.
+    a robot.
     """
 
     name: str

@@ -139,7 +139,7 @@ def _person(location: Location, name: str, entry: MovingEntry, check: Checker) -
 
 
 def _walk(path: Sequence[tuple[float, float]], start: float, speed: float) -> list[Move]:
-    """Return how somebody appears, walks from point to point, turns at each, and is gone."""
+    """Return how a person appears, walks from point to point, turns at each, and leaves."""
     (x, y), (next_x, next_y) = path[:2]
     pose = Pose(x, y, math.atan2(next_y - y, next_x - x))
     moves = [Move(start, 0.0, pose)]

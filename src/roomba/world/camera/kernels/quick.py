@@ -48,7 +48,7 @@ def finish_upright(
 
 @njit(**INLINE)
 def first_floor_row(hits: NDArray[np.float64], view: ViewTables, begin: int, end: int) -> int:
-    """Return the first row of floor that is in sight in columns begin..end-1, whatever stands."""
+    """Return the first row of floor that can be in sight in columns begin..end-1."""
     farthest = 0.0
     for c in range(begin, min(end, view.columns)):
         farthest = max(farthest, hits[c, 0])

@@ -8,7 +8,7 @@ KERNEL: Final[dict[str, Any]] = {
     "cache": True,
     "nogil": True,
     "error_model": "numpy",
-    # No runtime for references: numba refuses whatever would allocate, and counts no references
+    # No runtime for references: numba refuses code that allocates, and counts no references
     # to arrays that are passed on, which took a third of the time.
     "_nrt": False,
     # Not all of it: infinities are depths of what is not there.

@@ -176,7 +176,7 @@ class Scene:
 
 
 def _walls(home: Home) -> NDArray[np.bool_]:
-    """Return what stands up to the ceiling; nobody has seen past unknown cells, so they do too."""
+    """Return what stands up to the ceiling; unknown cells count as walls."""
     walls: NDArray[np.bool_] = home.walls | (home.map.values == UNKNOWN)
     for door in home.doors:
         walls[_cells(home, door.opening)] = False

@@ -221,7 +221,7 @@ class Fault(Enum):
     """The left wheel is held."""
     STALL_RIGHT = "held_right"
     LIFTED = "lifted"
-    """Somebody holds the robot in the air."""
+    """The robot is held in the air."""
     STATION_DEAD = "station_dead"
     """Its station has no power."""
     LIDAR_BLOCKED = "lidar_blocked"

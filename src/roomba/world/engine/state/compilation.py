@@ -12,7 +12,7 @@ _Function = TypeVar("_Function", bound=Callable[..., Any])
 
 _OPTIONS: Final[dict[str, Any]] = {
     "error_model": "numpy",
-    # No runtime for references: numba refuses whatever would allocate, and counts no references.
+    # No runtime for references: numba refuses code that allocates, and counts no references.
     "_nrt": False,
 }
 _FAST: Final = {"nsz", "arcp", "contract", "afn", "reassoc"}
