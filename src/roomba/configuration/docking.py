@@ -1,21 +1,20 @@
-"""Docking's numbers: how near, how fast, how often, and how long at most."""
+"""Numbers of docking, how near, how fast, how long: ``configuration/docking.yaml``."""
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Annotated
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
-from roomba.configuration.frozen import Positive, Ratio
+from roomba.configuration.frozen import Frozen, Positive, Ratio, load_config
 
 
-class DockingConfig(BaseModel):
+class DockingConfig(Frozen):
     """Driving into the charging station and out of it: m, m/s, rad/s, s.
 
     Distances to the station count from the robot's middle to where it is when it is docked.
     """
-
-    model_config = ConfigDict(extra="forbid", frozen=True)
 
     staging_distance: Positive = 0.65
     """In front of the station, where path planning hands over: within its beams."""
@@ -68,3 +67,8 @@ class DockingConfig(BaseModel):
     undocked_distance: Positive = 0.25
     """From the station; a robot that is farther away is undocked already."""
     undock_time_limit: Positive = 10.0
+
+
+def load_docking_config(path: Path) -> DockingConfig:
+    """Read ``configuration/docking.yaml`` or a file like it; raises ConfigError with the reason."""
+    return load_config(DockingConfig, path)

@@ -1,17 +1,20 @@
-"""What decides where a floor is cut into rooms: sizes of doors, walls, furniture and rooms."""
+"""Sizes that decide where a floor is cut into rooms: ``configuration/rooms.yaml``."""
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Annotated
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import Field, model_validator
+
+from roomba.configuration.frozen import Frozen, load_config
 
 Length = Annotated[float, Field(gt=0.0, le=10.0, allow_inf_nan=False)]
 Area = Annotated[float, Field(gt=0.0, le=100.0, allow_inf_nan=False)]
 Share = Annotated[float, Field(ge=0.0, le=1.0, allow_inf_nan=False)]
 
 
-class RoomsConfig(BaseModel):
+class RoomsConfig(Frozen):
     """Sizes of what is built and of what stands in homes; lengths in m, areas in m².
 
     ``narrowest_door``, ``widest_door``
@@ -43,8 +46,6 @@ class RoomsConfig(BaseModel):
         what ends at nothing is outdoors, seen through a window, or not surveyed yet.
     """
 
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
     narrowest_door: Length = 0.5
     widest_door: Length = 1.3
     narrowing: Share = 0.7
@@ -65,3 +66,8 @@ class RoomsConfig(BaseModel):
                 f"{self.tightest_passage}, {self.narrowest_door}, {self.widest_door}"
             )
         return self
+
+
+def load_rooms_config(path: Path) -> RoomsConfig:
+    """Read ``configuration/rooms.yaml`` or a file like it; raises ConfigError with the reason."""
+    return load_config(RoomsConfig, path)

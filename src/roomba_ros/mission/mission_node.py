@@ -3,15 +3,10 @@
 from __future__ import annotations
 
 import time
-from pathlib import Path
 
 import rospy
 from std_srvs.srv import Trigger
 
-from roomba.configuration.docking import DockingConfig
-from roomba.configuration.mission import MissionConfig, load_mission_config
-from roomba.configuration.robot import RobotConfig
-from roomba.files.shipped import CONFIGURATION
 from roomba.geometry import Twist
 from roomba.mission.cleaning.request import CleanOutcome
 from roomba.mission.inputs.senses import Senses
@@ -31,7 +26,14 @@ from roomba_ros.runtime.alone import refuse_second
 from roomba_ros.runtime.background import Background
 from roomba_ros.runtime.calls import call_service
 from roomba_ros.runtime.node import require_master, run_node
-from roomba_ros.runtime.parameters import LiveSeedParameters, folder_of, read_robot_config
+from roomba_ros.runtime.parameters import (
+    LiveSeedParameters,
+    folder_of,
+    read_docking_config,
+    read_mission_config,
+    read_robot_config,
+    read_thing_config,
+)
 
 NAME = "mission_node"
 _FINISH_PERIOD = 5.0
@@ -44,10 +46,11 @@ class MissionNode:
 
     Publishes, subscribes and serves what :class:`MissionSenses`, :class:`HomeTopics`,
     :class:`MissionOrders`, :class:`MissionDrive` and :class:`MissionTopics` say.
-    Parameters: ``robot_config``, ``mission_config`` (paths of configuration files; by default the
-    shipped ones), ``~memory_folder`` (default: roomba_robot/mission in the ROS home folder, and in
-    it a folder for each robot's namespace), ``~zones_folder`` (default: roomba_robot/zones there),
-    ``robot_max_speed`` (m/s; it may change at any time).
+    Parameters: ``robot_config``, ``mission_config``, ``docking_config``, ``things_config`` (paths
+    of configuration files; by default the shipped ones), ``~memory_folder`` (default:
+    roomba_robot/mission in the ROS home folder, and in it a folder for each robot's namespace),
+    ``~zones_folder`` (default: roomba_robot/zones there), ``robot_max_speed`` (m/s; it may change
+    at any time).
     """
 
     period: float
@@ -58,7 +61,7 @@ class MissionNode:
         self._mission_config = read_mission_config(self._config)
         self._parameters = LiveSeedParameters()
         self.period = self._config.timing.tick
-        self._docking_config = DockingConfig()
+        self._docking_config, self._thing_config = read_docking_config(), read_thing_config()
         self._background = Background()
         self._mission: Mission | None = None
         self._home: KnownHome | None = None
@@ -157,7 +160,7 @@ class MissionNode:
         elif home.site.is_growing and not mission.wants_map(home.site.occupancy):
             return
         else:
-            self._things = ThingLayer(home.field)
+            self._things = ThingLayer(home.field, self._thing_config)
             mission.use_map(home.site, self._things, DirtMap(home.site.occupancy))
             if home.digest != before.digest:
                 self._remember_by(home, mission, senses)
@@ -172,7 +175,7 @@ class MissionNode:
 
     def _begin(self, home: KnownHome, senses: Senses) -> Mission:
         """Return a mission for a map, that goes on with what was under way there."""
-        self._things = ThingLayer(home.field)
+        self._things = ThingLayer(home.field, self._thing_config)
         dirt = DirtMap(home.site.occupancy)
         mission = Mission(
             home.site,
@@ -249,16 +252,6 @@ class MissionNode:
         self._memory.keep(mission, senses)
         if has_learned:
             self._memory.keep_dirt(mission.dirt)
-
-
-def read_mission_config(robot: RobotConfig) -> MissionConfig:
-    """Return the configuration named by the parameter ``mission_config``, or the shipped one.
-
-    Raises ConfigError, also for speeds that the robot cannot do.
-    """
-    key = rospy.search_param("mission_config")
-    path = rospy.get_param(key) if key else CONFIGURATION / "mission.yaml"
-    return load_mission_config(Path(path), robot.body)
 
 
 def main() -> None:

@@ -31,7 +31,7 @@ from roomba.storage.map_bound import map_digest
 from roomba.storage.rooms import load_rooms, save_rooms
 from roomba_ros.convert.common import map_of
 from roomba_ros.convert.rooms import rooms_markers, rooms_message
-from roomba_ros.runtime.parameters import folder_of
+from roomba_ros.runtime.parameters import folder_of, read_rooms_config
 from roomba_ros.runtime.subscriptions import subscribe
 
 
@@ -42,7 +42,8 @@ class RoomTopics:
     Subscribes: ``map``.
     Services: ``rooms/rename`` (RenameRoom), ``rooms/join`` (JoinRooms), ``rooms/split``
     (SplitRoom), ``rooms/segment`` (Trigger: forget all edits). Edits are saved at once.
-    Parameters: ``~rooms_folder`` (default: roomba_robot/rooms in the ROS home folder).
+    Parameters: ``~rooms_folder`` (default: roomba_robot/rooms in the ROS home folder),
+    ``rooms_config`` (path of a configuration file; by default the shipped one).
     """
 
     def __init__(self) -> None:
@@ -59,6 +60,7 @@ class RoomTopics:
     def start(self) -> None:
         """Connect."""
         self._folder = folder_of("~rooms_folder", "rooms")
+        self._config = read_rooms_config()
         self._publisher = rospy.Publisher("rooms", RoomArray, queue_size=1, latch=True)
         self._markers = rospy.Publisher("rooms/markers", MarkerArray, queue_size=1, latch=True)
         rospy.Service("rooms/rename", RenameRoom, self._on_rename)
@@ -82,7 +84,7 @@ class RoomTopics:
         with self._lock:
             self._map, self._rooms = occupancy, self._kept(occupancy)
             if self._rooms is None:
-                self._rooms = _segmented(occupancy)
+                self._rooms = self._segmented(occupancy)
             self._tell(self._rooms)
 
     @property
@@ -153,12 +155,11 @@ class RoomTopics:
         )
 
     def _on_segment(self, _: TriggerRequest) -> TriggerResponse:
-        return TriggerResponse(*self._edit(lambda _, occupancy: _segmented(occupancy)))
+        return TriggerResponse(*self._edit(lambda _, occupancy: self._segmented(occupancy)))
 
-
-def _segmented(occupancy: OccupancyMap) -> Rooms:
-    began = time.monotonic()
-    rooms = segment(occupancy)
-    took = time.monotonic() - began
-    rospy.loginfo("the map has %d rooms (found in %.2f s)", len(rooms.names), took)
-    return rooms
+    def _segmented(self, occupancy: OccupancyMap) -> Rooms:
+        began = time.monotonic()
+        rooms = segment(occupancy, self._config)
+        took = time.monotonic() - began
+        rospy.loginfo("the map has %d rooms (found in %.2f s)", len(rooms.names), took)
+        return rooms

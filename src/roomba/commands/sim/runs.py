@@ -15,7 +15,7 @@ from roomba.commands.sim.homes import home_of, rooms_of
 from roomba.commands.sim.things import Disc, seeded_things
 from roomba.commands.sim.trial import Trial
 from roomba.commands.sim.truth import coverable_floor, true_map
-from roomba.configuration.docking import DockingConfig
+from roomba.configuration.docking import load_docking_config
 from roomba.configuration.mission import MissionConfig, load_mission_config
 from roomba.configuration.robot import RobotConfig
 from roomba.configuration.simulation import SimulatedRobotConfig, load_simulated_config
@@ -77,7 +77,8 @@ class TrialSetup:
         self.trial = trial
         self.config = robot_config_of(trial)
         self.home = home_of(trial, self.config.body)
-        mission, docking = mission_config(self.config), DockingConfig()
+        mission = mission_config(self.config)
+        docking = load_docking_config(CONFIGURATION / "docking.yaml")
         self.robot = WatchedMission(
             self.home,
             self.config,

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Final
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field
 
-from roomba.configuration.frozen import Frozen, NotNegative, Positive
+from roomba.configuration.things import ThingConfig
 from roomba.geometry import Pose
 from roomba.perception.matching.beams import LidarBeams
 from roomba.perception.matching.field_kernels import look
@@ -31,41 +30,6 @@ _NEXT_TO: Final = 0.04
 """m; about a cell."""
 _MOST_CELLS: Final = 4096
 """Cells that may have evidence: 10 m2 of a usual map, more than stands about in a home."""
-
-Count = Annotated[int, Field(ge=1, le=1000)]
-
-
-class ThingConfig(Frozen):
-    """What is a thing and what is not; m, and evidence, of which a scan gives ``gain`` to a cell.
-
-    ``margin``, ``margin_share``
-        A beam that ends nearer to a surface of the map saw that surface: noise of the range (3
-        times 0.005), the pose (0.01), half a cell that a surveyed map is off, and 2 degrees that
-        edges and the heading are off, which count by the range.
-    ``farthest``
-        What is farther away is looked at when it is nearer: there beams are a cell apart.
-    ``clearly``
-        So much farther than a cell a beam has to go to have passed it.
-    ``gain``, ``most_gain``
-        What a scan in which a beam ends in a cell adds to it. One that stands for several scans
-        adds as many times as much, up to ``most_gain``, so that one alone is never enough.
-    ``loss``
-        What a scan that passes through the cell takes: more than ``gain``, for people walk on.
-    ``most``
-        More it does not become: seen through, it is gone within ``most / loss`` scans.
-    ``enough``
-        With so much it is a thing.
-    """
-
-    margin: Positive = 0.09
-    margin_share: NotNegative = 0.012
-    farthest: Positive = 4.0
-    clearly: Positive = 0.10
-    gain: Count = 2
-    most_gain: Count = 4
-    loss: Count = 3
-    most: Count = 24
-    enough: Count = 6
 
 
 class ThingLayer:

@@ -13,7 +13,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from roomba.configuration.docking import DockingConfig
-from roomba.configuration.robot import RobotConfig
+from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.control.speed_loop import SpeedLoop
 from roomba.geometry import Pose, Twist
 from roomba.mission.docking.docking import (
@@ -27,7 +27,7 @@ from roomba.mission.docking.docking import (
 from roomba.world.engine.state.arrays import Fault, Infrared
 from roomba.world.simulator import Simulator
 
-ROBOT, CONFIG = RobotConfig(), DockingConfig()
+ROBOT, CONFIG = SimulatedRobotConfig(), DockingConfig()
 RADIUS = ROBOT.body.radius
 STATION = Pose(RADIUS + 0.035, 2.0, math.pi)
 """The wall is what the robot touches when it goes 3.5 cm too far."""

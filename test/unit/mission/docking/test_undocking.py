@@ -13,7 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from roomba.configuration.docking import DockingConfig
-from roomba.configuration.robot import RobotConfig
+from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.control.speed_loop import SpeedLoop
 from roomba.geometry import Pose, Twist
 from roomba.mission.docking.step import DockSenses
@@ -21,7 +21,7 @@ from roomba.mission.docking.undocking import Undocking, UndockState, UndockStep
 from roomba.world.engine.state.arrays import Fault
 from roomba.world.simulator import Simulator
 
-ROBOT, CONFIG = RobotConfig(), DockingConfig()
+ROBOT, CONFIG = SimulatedRobotConfig(), DockingConfig()
 STATION = Pose(ROBOT.body.radius + 0.035, 2.0, math.pi)
 HOME = room_home(4.0, 4.0, station=STATION)
 TICK = 2 * DT
