@@ -41,9 +41,11 @@ def theta_of(rotation: Quaternion) -> float:
 
 def pose_of_message(pose: PoseMessage) -> Pose:
     """Return the planar part of a pose; raises MessageError for numbers that are not finite."""
-    planar = Pose(pose.position.x, pose.position.y, theta_of(pose.orientation))
-    require_finite("a pose", planar.x, planar.y, planar.theta)
-    return planar
+    place, turn = pose.position, pose.orientation
+    # The rotation itself, too: of infinite ones some have a heading that is finite.
+    theta = theta_of(turn)
+    require_finite("a pose", place.x, place.y, turn.x, turn.y, turn.z, turn.w, theta)
+    return Pose(place.x, place.y, theta)
 
 
 def twist_of(message: TwistMessage) -> Twist:

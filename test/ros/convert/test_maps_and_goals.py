@@ -1,0 +1,133 @@
+"""Maps, rooms, zones and goals: values, or refused with what was expected."""
+
+import math
+
+import numpy as np
+import pytest
+from fixtures.malformed import filled, grid, rooms, zones
+from geometry_msgs.msg import Point, Quaternion
+from hypothesis import given
+from hypothesis import strategies as st
+from nav_msgs.msg import OccupancyGrid
+from roomba_robot.msg import CleanGoal, Rectangle, RoomArray, ZoneArray
+from rospy import Time
+
+from roomba.mission.cleaning.request import CleanRefusedError
+from roomba_ros.convert.common import MOST_CELLS, map_of, told_map_of
+from roomba_ros.convert.errors import MessageError
+from roomba_ros.convert.mission import outlines_of, request_of, zones_of
+
+BAD = (math.nan, math.inf, -math.inf)
+
+
+def test_a_map_is_what_was_told() -> None:
+    message = grid(9)
+    message.data[5] = 100
+    known = map_of(message)
+    assert known.frame.shape == (3, 3)
+    assert np.argwhere(known.values == 100).tolist() == [[1, 2]]
+    assert not told_map_of(message).was_loaded
+    message.info.map_load_time = Time(1)
+    assert told_map_of(message).was_loaded
+
+
+@given(st.integers(0, 40))
+def test_a_map_has_as_many_values_as_cells(values: int) -> None:
+    if values == 9:
+        assert map_of(grid(9)).values.shape == (3, 3)
+        return
+    with pytest.raises(MessageError, match=rf"expected 3 x 3 map values, got {values}"):
+        map_of(grid(values))
+
+
+@pytest.mark.parametrize("number", BAD)
+def test_maps_at_places_that_are_none_are_refused(number: float) -> None:
+    with pytest.raises(MessageError, match="expected a resolution above 0 and a finite origin"):
+        map_of(filled("nav_msgs/OccupancyGrid", number))
+    messages = [grid(9), grid(9), grid(9), grid(9)]
+    messages[0].info.resolution = number
+    messages[1].info.origin.position.x = number
+    messages[2].info.origin.position.y = number
+    messages[3].info.origin.orientation.z = number
+    for message in messages:
+        with pytest.raises(MessageError):
+            map_of(message)
+
+
+@pytest.mark.parametrize(
+    ("width", "height", "resolution", "reason"),
+    [
+        (0, 3, 0.05, "1 to 20000000 cells, got 0 x 3"),
+        (MOST_CELLS, 2, 0.05, "make its cells larger"),
+        (3, 3, 0.0, "a resolution above 0"),
+        (3, 3, -0.05, "a resolution above 0"),
+    ],
+)
+def test_maps_of_sizes_that_no_map_has_are_refused(
+    width: int, height: int, resolution: float, reason: str
+) -> None:
+    message: OccupancyGrid = grid(9)
+    message.info.width, message.info.height, message.info.resolution = width, height, resolution
+    with pytest.raises(MessageError, match=reason):
+        map_of(message)
+
+
+def test_a_turned_map_is_refused() -> None:
+    message = grid(9)
+    message.info.origin.orientation = Quaternion(0.0, 0.0, math.sin(0.05), math.cos(0.05))
+    with pytest.raises(MessageError, match=r"without rotation, got one turned by 0\.1000 rad"):
+        map_of(message)
+
+
+def test_rooms_are_outlines_by_name() -> None:
+    ((name, outline),) = outlines_of(rooms(5))
+    assert name == "hall"
+    assert len(outline.exterior.coords) == 6
+    assert outlines_of(RoomArray()) == ()
+
+
+def test_broken_outlines_are_refused() -> None:
+    for corners in (0, 1, 2):
+        with pytest.raises(MessageError, match=f"3 corners or more .* 'hall', got {corners}"):
+            outlines_of(rooms(corners))
+    hole = rooms(5)
+    hole.rooms[0].holes = [rooms(2).rooms[0].outline]
+    with pytest.raises(MessageError, match="got 2"):
+        outlines_of(hole)
+
+
+@pytest.mark.parametrize("number", BAD)
+def test_outlines_and_zones_with_numbers_that_are_not_finite_are_refused(number: float) -> None:
+    message = rooms(5)
+    message.rooms[0].outline.points[3].y = number
+    with pytest.raises(MessageError, match="an outline of the room 'hall' of finite numbers"):
+        outlines_of(message)
+    zone = zones(4)
+    zone.zones[0].points[1].x = number
+    with pytest.raises(MessageError, match="zone 'bowl': expected finite numbers"):
+        zones_of(zone)
+
+
+def test_zones_are_those_that_were_told_or_refused_together() -> None:
+    assert zones_of(zones(4)).names == ("bowl",)
+    assert zones_of(ZoneArray()).all == ()
+    for corners in (0, 2):
+        with pytest.raises(MessageError, match=f"3 points or more, got {corners}"):
+            zones_of(ZoneArray(zones=[*zones(4).zones, *zones(corners).zones]))
+    wrong = zones(4)
+    wrong.zones[0].kind = 7
+    with pytest.raises(MessageError, match="a kind from 0 to 1, got 7"):
+        zones_of(wrong)
+
+
+@pytest.mark.parametrize("number", BAD)
+@pytest.mark.parametrize("mode", range(6))
+def test_goals_with_numbers_that_are_not_finite_are_refused(mode: int, number: float) -> None:
+    """Also where their mode asks for neither zones nor a spot: the program is wrong."""
+    zone = Rectangle(0.0, 0.0, number, 1.0)
+    spot = Point(0.0, number, 0.0)
+    for goal in (CleanGoal(zones=[zone]), CleanGoal(spot=spot, zones=[Rectangle(0, 0, 1, 1)])):
+        goal.mode, goal.rooms = mode, ["hall"]
+        with pytest.raises(MessageError) as refused:
+            request_of(goal)
+        assert isinstance(refused.value, CleanRefusedError)

@@ -1,0 +1,166 @@
+"""Messages that make no sense have no effect on a robot that cleans, on whatever topic."""
+
+import itertools
+import time
+import xmlrpc.client
+from collections import Counter
+from collections.abc import Iterator
+
+import pytest
+import rospy
+from diagnostic_msgs.msg import DiagnosticArray
+from fixtures.graph import LAUNCHED, RosGraph
+from fixtures.malformed import CANNOT_BE_WRONG, malformed
+from fixtures.probe import Probe
+from fixtures.tiny_home import tiny_home
+from fixtures.waiting import wait_until
+from geometry_msgs.msg import Twist
+from roomba_robot.msg import CleanActionGoal, VacuumState
+from rosgraph_msgs.msg import Log
+
+FLOOD = 200
+"""Messages of one topic, sent as fast as one can steer."""
+
+Counts = dict[tuple[str, str], int]
+"""How many messages were refused by node and topic, both without slashes before them."""
+
+
+@pytest.fixture(scope="module")
+def shared_robot(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RosGraph]:
+    """The whole robot in two little rooms, in real time."""
+    folder = tmp_path_factory.mktemp("robot")
+    with RosGraph(folder) as own:
+        own.launch(f"home:={tiny_home(folder)}")
+        yield own
+
+
+class Witness:
+    """Hears what the vacuum does, what nodes log, and what they say that they refused."""
+
+    def __init__(self, graph: RosGraph) -> None:
+        self.probe = Probe(graph)
+        self.state = VacuumState()
+        self.states: list[str] = []
+        self.lines: Counter[str] = Counter()
+        self.counts: Counts = {}
+        rospy.Subscriber("/vacuum/state", VacuumState, self._on_state)
+        rospy.Subscriber("/rosout", Log, self._on_line)
+        rospy.Subscriber("/diagnostics", DiagnosticArray, self._on_diagnostics)
+
+    def _on_state(self, message: VacuumState) -> None:
+        self.states.append(message.state)
+        self.state = message
+
+    def _on_line(self, line: Log) -> None:
+        node = line.name.strip("/")
+        if node in LAUNCHED and line.level >= Log.WARN:
+            self.lines[node] += 1
+
+    def _on_diagnostics(self, message: DiagnosticArray) -> None:
+        for status in message.status:
+            node, _, part = status.name.partition(": ")
+            if part == "messages":
+                for value in status.values:
+                    self.counts[node, value.key.strip("/")] = int(value.value)
+
+    def cleans(self) -> None:
+        """Wait until it cleans."""
+        ready = ("docked", "idle")
+        wait_until(lambda: self.state.phase in ready, 60.0, lambda: f"ready: {self.state}")
+        self.probe.send("/clean/goal", CleanActionGoal())
+        wait_until(lambda: self.state.fraction > 0.05, 60.0, lambda: f"it cleans: {self.state}")
+
+    def goes_on(self) -> None:
+        """Wait until more is clean than was at the call."""
+        before = self.state.covered
+        wait_until(lambda: self.state.covered > before + 0.02, 30.0, lambda: f"{self.state}")
+
+
+def heard(graph: RosGraph) -> dict[str, tuple[str, list[str]]]:
+    """Return the type of each topic that nodes of the robot hear, and these nodes."""
+    types = dict(xmlrpc.client.ServerProxy(graph.uri).getTopicTypes("/test")[2])
+    _, subscribers, _ = graph.system_state()
+    own = {
+        topic: [node.strip("/") for node in nodes if node.strip("/") in LAUNCHED]
+        for topic, nodes in subscribers.items()
+    }
+    return {topic: (types[topic], nodes) for topic, nodes in own.items() if nodes}
+
+
+def test_what_cannot_be_wrong_is_said_with_the_reason(shared_robot: RosGraph) -> None:
+    types = {kind for kind, _ in heard(shared_robot).values()}
+    assert {kind for kind in types if not malformed(kind)} == types & set(CANNOT_BE_WRONG)
+    assert set(CANNOT_BE_WRONG) <= types
+
+
+def test_bad_messages_on_every_topic_are_refused_and_have_no_effect(
+    shared_robot: RosGraph,
+) -> None:
+    witness, topics = Witness(shared_robot), heard(shared_robot)
+    bad = {topic: malformed(kind) for topic, (kind, _) in topics.items() if malformed(kind)}
+    publishers = {
+        topic: witness.probe.publisher(topic, type(next(iter(messages.values()))))
+        for topic, messages in bad.items()
+    }
+    for topic, publisher in publishers.items():
+        ears = len(topics[topic][1])
+        wait_until(
+            lambda publisher=publisher, ears=ears: publisher.get_num_connections() >= ears, 30.0
+        )
+    witness.cleans()
+    pids = {node: shared_robot.pid(node) for node in LAUNCHED}
+    witness.states.clear()
+    witness.lines.clear()
+    began, identities, sent = time.monotonic(), itertools.count(), Counter()
+    for what in sorted({what for messages in bad.values() for what in messages}):
+        for topic in (topic for topic, messages in bad.items() if what in messages):
+            message = bad[topic][what]
+            if hasattr(message, "goal_id"):
+                message.goal_id.id = f"bad {next(identities)}"
+            publishers[topic].publish(message)
+            sent[topic] += 1
+        # One at a time: of several that come at once a node hears the last.
+        expected = {
+            (node, topic.strip("/")): count
+            for topic, count in sent.items()
+            for node in topics[topic][1]
+        }
+        wait_until(
+            lambda expected=expected: all(
+                witness.counts.get(each, 0) >= count for each, count in expected.items()
+            ),
+            10.0,
+            lambda expected=expected, what=what: f"{what}: {missing(expected, witness.counts)}",
+        )
+    flood(witness)
+    elapsed = time.monotonic() - began
+    witness.goes_on()
+
+    assert {node: shared_robot.pid(node) for node in LAUNCHED} == pids
+    assert set(witness.states) == {"cleaning"}
+    assert {node: count for node, count in witness.lines.items() if count > elapsed + 2.0} == {}
+    assert set(witness.lines) >= {node for _, nodes in map(topics.get, bad) for node in nodes}
+
+
+def missing(expected: Counts, counts: Counts) -> list[str]:
+    return [
+        f"{node} refused {counts.get((node, topic), 0)} on {topic}, not {count}"
+        for (node, topic), count in expected.items()
+        if counts.get((node, topic), 0) < count
+    ]
+
+
+def flood(witness: Witness) -> None:
+    """Steer by what is no number, so often that a line for each would be a hundred a second."""
+    steering = witness.probe.publisher("/cmd_vel", Twist)
+    before = witness.counts["speed_pub_node", "cmd_vel"]
+    lines = Counter(witness.lines)
+    began = time.monotonic()
+    for _ in range(FLOOD):
+        steering.publish(malformed("geometry_msgs/Twist")["nan"])
+        time.sleep(0.01)
+    wait_until(
+        lambda: witness.counts["speed_pub_node", "cmd_vel"] >= before + 0.9 * FLOOD, 10.0, "all"
+    )
+    most = time.monotonic() - began + 2.0
+    assert all(witness.lines[node] - lines[node] <= most for node in LAUNCHED)

@@ -1,0 +1,38 @@
+"""A clock that was set is told from one that goes on."""
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from roomba.clock import ClockJumps
+
+
+def test_the_first_look_tells_no_jump() -> None:
+    clock = ClockJumps(longest=2.0)
+    assert clock.last is None
+    assert clock.at(500.0) == 0.0
+    assert clock.last == 500.0
+
+
+@pytest.mark.parametrize(
+    ("now", "jump"), [(10.0, 0.0), (12.0, 0.0), (12.5, 2.5), (9.9, 0.0), (9.5, -0.5), (0.0, -10.0)]
+)
+def test_a_jump_is_back_or_farther_than_a_clock_goes(now: float, jump: float) -> None:
+    assert ClockJumps(last=10.0, longest=2.0, tolerance=0.125).at(now) == pytest.approx(jump)
+
+
+def test_without_limits_only_going_back_is_a_jump() -> None:
+    clock = ClockJumps(last=10.0)
+    assert (clock.at(1e9), clock.at(1e9), clock.at(5.0)) == (0.0, 0.0, 5.0 - 1e9)
+
+
+@given(st.lists(st.floats(-100.0, 100.0), min_size=1, max_size=30))
+def test_what_went_on_and_what_was_set_are_the_whole_way(steps: list[float]) -> None:
+    clock, now, went_on, was_set = ClockJumps(last=0.0, longest=2.0), 0.0, 0.0, 0.0
+    for step in steps:
+        before, now = now, now + step
+        jump = clock.at(now)
+        was_set += jump
+        went_on += 0.0 if jump else now - before
+        assert jump == 0.0 or not 0.0 <= jump <= 2.0
+    assert went_on + was_set == pytest.approx(now, abs=1e-9)
