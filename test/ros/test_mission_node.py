@@ -204,7 +204,7 @@ def test_a_killed_node_goes_on_with_its_clean_and_keeps_its_zones(graph: RosGrap
         return world.state.phase == "paused"
 
     wait_until(is_noticed, 30.0, "the mission gives way")
-    assert "somebody else drives" in world.state.message
+    assert "another program drives" in world.state.message
     assert order("resume")[0]
     world.does("cleaning", 30.0)
 

@@ -108,7 +108,7 @@ class Mission:
     def explore(self, senses: Senses) -> None:
         """Begin to look for what the map does not show yet; raises CommandRefusedError.
 
-        Whoever calls it lets the map grow, and tells it by :meth:`use_map`.
+        The caller lets the map grow, and passes it on by :meth:`use_map`.
         """
         self._require_start(Event.EXPLORE, senses)
         self._end_job(CleanOutcome.STOPPED, "it was told to explore", senses)

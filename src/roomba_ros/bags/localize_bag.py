@@ -302,7 +302,7 @@ def _how_to_play(recording: Recording, topics: _Topics, *, has_map_transform: bo
 
 
 def _plot(options: argparse.Namespace, occupancy: OccupancyMap, tally: Tally) -> None:
-    # Here, because it takes a second that nobody should wait for who wants no picture.
+    # Imported here: it takes a second, which only a picture needs.
     from roomba_ros.bags.localize_plot import write_plot
 
     rows = [*tally.rows.rows, tally.last]

@@ -55,7 +55,7 @@ class MessageKind(IntEnum):
     LIFTED = 2
     """Whether wheels hang in the air."""
     TOLD = 3
-    """Somebody's word for where the robot is."""
+    """A pose that a person or a program told."""
     SCAN = 4
     OWN_POSE = 5
     """Where the robot itself believed to be."""

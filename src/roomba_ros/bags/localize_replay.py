@@ -27,7 +27,7 @@ _ROW_PERIOD: Final = 0.045
 _SILENCE: Final = 0.25
 """s; without odometry for so long the other messages tell that time passes."""
 _GIVEN_DEVIATION: Final = (0.1, 0.1)
-"""m, rad; how unsure a start is that somebody typed."""
+"""m, rad; deviations of a start that was typed."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -117,7 +117,7 @@ class Replay(RecordedDrive):
         )
         if self._begin is None:
             localizer.move(stamp, odometry)
-            localizer.forget("nobody told where it began")
+            localizer.forget("no start was given")
         return localizer
 
     def _hear_scan(self, stamp: float, message: LaserScan) -> None:
@@ -143,7 +143,7 @@ class Replay(RecordedDrive):
         self.scans += 1
 
     def _hear_told(self, message: PoseWithCovarianceStamped) -> None:
-        """Begin anew where somebody, or the robot itself, first told that it is."""
+        """Begin anew at the first pose that was told, by a person or by the robot itself."""
         if self._is_told:
             return
         self._is_told = True

@@ -62,7 +62,7 @@ def _run(arguments: list[str] | None) -> int:
     if output.out is not None:
         write_files(output.out, done.occupancy, done.begin)
     if output.plot is not None:
-        # Here, because it takes a second that nobody should wait for who wants no picture.
+        # Imported here: it takes a second, which only a picture needs.
         from roomba_ros.bags.map_bag_plot import write_plot
 
         write_plot(output.plot, done)

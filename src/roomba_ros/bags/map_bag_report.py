@@ -18,7 +18,7 @@ from roomba_ros.bags.map_replay import MapReplay
 
 @dataclass(frozen=True, slots=True, eq=False)
 class BagMap:
-    """A map that was made; ``true`` has rows t (s), x, y (m), none where nobody knows.
+    """A map that was made; ``true`` has rows t (s), x, y (m), none where unknown.
 
     ``begin`` is where the drive began on the map, ``processing`` what it took, s.
     """

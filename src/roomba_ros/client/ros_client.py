@@ -211,7 +211,7 @@ class _RosWalk:
 
     def report(self) -> WalkReport | None:
         if not self._ended.is_set() and self._robot.server_silent:
-            # Should it wake up, it must not walk on with nobody watching.
+            # Should it wake up, it must not walk on unseen.
             self._actions.cancel_goal()
             self._end(
                 WalkOutcome.DISCONNECTED,

@@ -118,7 +118,7 @@ class _Errand(ABC, Generic[_Told, _Report]):
                 left = deadline - time.monotonic()
                 if left <= 0.0:
                     return None
-                # In slices: that the server is silent nobody tells.
+                # In slices: no event tells that the server is silent.
                 self._news.wait(min(left, 0.1))
         return None
 
@@ -202,7 +202,7 @@ class RosClean(_Errand[CleanProgress, CleanReport]):
             outcome = OUTCOMES.get(result.outcome, ErrandOutcome.FAULT)
         return CleanReport(
             outcome=outcome,
-            # Of a clean that somebody ended only the status says who.
+            # Only the goal's status says which program ended a clean.
             message=result.message or (message if outcome is ErrandOutcome.STOPPED else ""),
             covered=result.covered,
             wanted=result.wanted,

@@ -72,7 +72,7 @@ def covariance_pose_message(
 
 
 def told_pose_of(message: PoseWithCovarianceStamped) -> tuple[Pose, tuple[float, float]]:
-    """Return a pose that somebody told, and how unsure it is, m and rad.
+    """Return a pose that a person or a program told, and its deviations, m and rad.
 
     Raises MessageError for another frame than the map's, and for numbers that are not finite.
     """

@@ -34,7 +34,7 @@ WHEEL_JOINTS = ("wheel_left_joint", "wheel_right_joint")
 _JPEG_QUALITY = 85
 _GRAVITY = 9.80665
 _NOT_MEASURED = 1e6
-"""A variance that nobody will take for a measurement."""
+"""A variance so large that no reader takes it for a measurement."""
 _UNKNOWN = -1.0
 """In the first element of a covariance: there is no such measurement."""
 

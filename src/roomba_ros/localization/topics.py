@@ -73,7 +73,7 @@ class LocalizationTopics:
         self._kept = KeptPose()
         self._place = PlaceTopics()
         self.mapper: Mapper | None = None
-        """Who knows the place instead, while a map is being made."""
+        """Knows the place instead of the localizer, while a map is being made."""
         self.is_mapping_held = False
         """Whether the mapper must not be shown anything just now: its map is being made whole."""
         self.seen: Scan | None = None
@@ -81,7 +81,7 @@ class LocalizationTopics:
         self.is_map_own = False
         """Whether this node makes the map itself: what comes by the topic is left out then."""
         self.is_asked_to_search = False
-        """Whether somebody asked it to find its place, and it has not yet."""
+        """Whether it was asked to find its place, and has not yet."""
 
     def start(self) -> None:
         """Connect."""

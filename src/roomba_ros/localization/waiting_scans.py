@@ -13,7 +13,7 @@ _KEPT: Final = 5
 
 
 class WaitingScans:
-    """The newest scans, for one who puts them in and one who takes them out."""
+    """The newest scans, between one thread that puts them in and one that takes them out."""
 
     def __init__(self) -> None:
         """Begin with none."""

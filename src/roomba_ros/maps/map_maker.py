@@ -93,7 +93,7 @@ class MapMaker:
             self._station_from_start = mapper.start.inverse().compose(mapper.pose)
             return True
         if mapper.estimate.knowledge is Knowledge.LOST and not self._finishes:
-            # Somebody carried it home.
+            # It was carried home.
             mapper.told(self.station)
         return False
 

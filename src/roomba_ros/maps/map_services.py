@@ -105,7 +105,7 @@ class MapServices:
                     f"does not go by them ({error}): mend that, and save it again"
                 )
         with own.lock:
-            # Meanwhile somebody may have let the robot go by another map.
+            # Meanwhile another call may have loaded another map.
             if own.occupancy is stored.occupancy:
                 own.name = name
                 own.remember()

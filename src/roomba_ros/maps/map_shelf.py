@@ -69,8 +69,7 @@ class MapShelf:
     def taken_over(self, name: str, stored: StoredMap) -> StoredMap:
         """Return a map that was made anew, with what people did to the saved one of this name.
 
-        Raises MapStoreError if that is of another floor, or broken so that nobody can tell: it is
-        kept.
+        Raises MapStoreError if that is of another floor, or too broken to compare: it is kept.
         """
         assert stored.rooms is not None
         old = self._old(name)
@@ -106,7 +105,7 @@ class MapShelf:
         self._store.remove(name)
 
     def keep_beside(self, stored: StoredMap) -> None:
-        """Let those find a map's rooms and zones who look for them by the map."""
+        """Write a map's rooms and zones where they are looked up by the map."""
         occupancy = stored.occupancy
         rooms_path, zones_path = self._rooms.path_of(occupancy), self._zones_path(occupancy)
         try:

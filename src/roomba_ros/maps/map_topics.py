@@ -66,7 +66,7 @@ class MapTopics:
             self._background.start()
         self._own.start(is_own=self._is_own)
         if not (self._is_own and self._memory.is_there):
-            # Else whoever explores would take the map for whole before it is taken up.
+            # Otherwise an exploration would take the map for whole before it is resumed.
             self._own.say(rospy.get_time(), is_growing=False)
         subscribe("dock_status", DockStatus, is_docked_of, self._on_dock)
         self._services.start(is_own=self._is_own)
@@ -105,7 +105,7 @@ class MapTopics:
         else:
             try:
                 stored = self._shelf.load(self._wish)
-                # Whoever comes back in the same run comes back to the same place.
+                # A node that comes back in the same run finds the robot where it was.
                 at = self._place.place if self._place.was_here_before else None
                 self._own.use(self._wish, stored, at)
             except (MapStoreError, OSError) as error:

@@ -23,7 +23,7 @@ _ENDING: Final = 2.5
 
 
 class MissionDrive:
-    """Drives while the mission wants to; notices when somebody else does.
+    """Drives while the mission wants to; notices when another program does.
 
     Publishes: ``cmd_vel_mission`` (Twist, 20 Hz while it drives), ``look_around`` (Bool, while the
     place has to be found), ``vacuum_motor``, ``main_brush_motor`` (Float32, duty 0..1),
@@ -71,7 +71,7 @@ class MissionDrive:
 
     @property
     def is_taken(self) -> bool:
-        """Whether somebody else drives the robot, whose walk was not ended by this mission."""
+        """Whether another program drives: a walk that this mission did not end, or ``cmd_vel``."""
         return self._now - self._others_drove < self._config.body.command_timeout
 
     def drive(self, twist: Twist | None, *, looks_around: bool) -> None:

@@ -200,7 +200,7 @@ class HomeTopics:
 
     def _on_map(self, told: ToldMap) -> None:
         if not told.was_loaded and self._is_mapped is None:
-            # It may be one that is being made; who makes it says so, if there is somebody.
+            # It may be one that is being made; its maker says so, if there is one.
             with self._lock:
                 self._held = (time.monotonic(), told)
             return

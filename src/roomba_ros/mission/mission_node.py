@@ -38,7 +38,7 @@ from roomba_ros.runtime.parameters import (
 NAME = "mission_node"
 _FINISH_PERIOD = 5.0
 """s of wall time; so often it asks for the whole map while it waits for that."""
-_OTHERS = "somebody else drives the robot (a walk, or cmd_vel); resume when that is done"
+_OTHERS = "another program drives the robot (a walk, or cmd_vel); resume when that is done"
 
 
 class MissionNode:
@@ -211,7 +211,7 @@ class MissionNode:
         return MissionMemory(folder, digest, self._background)
 
     def _give_way(self, mission: Mission, senses: Senses) -> None:
-        """Pause while somebody else drives."""
+        """Pause while another program drives."""
         if self._drive.is_taken and mission.state.drives:
             mission.command(Event.PAUSE, senses)
             mission.message = _OTHERS
@@ -232,13 +232,13 @@ class MissionNode:
         self._drive.set_fan(cleaning.request.fan.value if cleaning and sucks else None)
 
     def _tell(self, now: float, mission: Mission, senses: Senses) -> None:
-        """Tell everybody the state if it is due, and whoever ordered what is done how far it is."""
+        """Publish the state if it is due, and the progress to the client of the errand."""
         state = self._topics.tell(now, mission, senses)
         if state is not None:
             self._orders.tell(state)
 
     def _finish_map(self, ended: Ended, *, is_waited_for: bool) -> None:
-        """When all was seen the map is to be whole; whoever makes it is told so."""
+        """Tell the map's maker to finish it when all was seen."""
         explored = ended.exploration
         is_explored = explored is not None and explored.outcome is CleanOutcome.COMPLETED
         since = time.monotonic() - self._finished

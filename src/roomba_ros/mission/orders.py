@@ -34,7 +34,7 @@ _DONE: Final = {Event.PAUSE: "paused", Event.RESUME: "going on", Event.STOP: "st
 
 @dataclass(frozen=True, slots=True)
 class _Order:
-    """A command by service; whoever gave it waits for the answer."""
+    """A command by service; the caller waits for the answer."""
 
     event: Event
     answer: queue.SimpleQueue[tuple[bool, str]] = field(default_factory=queue.SimpleQueue)
@@ -48,8 +48,8 @@ class _Cancel:
 class MissionOrders:
     """Obeys one goal at a time; a newer one of any action takes over.
 
-    What came of an order is told by :meth:`answer` and :meth:`follow`, that are to be called when
-    the state is told: whoever has an answer finds the state that it is about.
+    :meth:`answer` and :meth:`follow` tell what came of an order. Call them after the state is
+    published, so that a caller with an answer finds the state that it is about.
 
     Publishes: ``clean/{feedback,result,status}``, ``dock/…``, ``undock/…``, ``explore/…``,
     ``beep`` (Empty: here the robot is).
@@ -130,7 +130,7 @@ class MissionOrders:
         return ended
 
     def tell(self, state: VacuumState) -> None:
-        """Tell whoever ordered what is done now how far it is."""
+        """Tell the progress to the client of the present errand."""
         if self._goal is not None:
             self._goal.tell(state)
 
@@ -150,7 +150,7 @@ class MissionOrders:
             _reject(goal, str(error))
             return
         old, self._goal = self._goal, goal
-        # Of what was under way; nobody waits for one that was taken up after an error.
+        # Of what was under way; no client waits for one that was resumed after an error.
         ended = _take_ended(mission)
         if old is not None:
             self._answers.append(partial(old.stopped, ended, _OVERTAKEN))

@@ -48,9 +48,9 @@ from roomba_ros.runtime.subscriptions import subscribe
 
 OLDEST_POSE: Final = 0.5
 _SILENCE: Final = 0.4
-"""s of the robot's clock, and of wall time, after which a pose counts no more: who told it is
-silent. Both, for a fast clock runs on while everybody works."""
-_SILENT: Final = "nobody tells its place; is position_pub_node running?"
+"""s of the robot's clock, and of wall time, after which a pose counts no more: its sender is
+silent. Both, because a fast clock runs on while all nodes work."""
+_SILENT: Final = "no message tells its place; is position_pub_node running?"
 _KEPT: Final = 40
 """Odometry messages that are remembered: two seconds of them."""
 
@@ -151,7 +151,7 @@ class MissionSenses:
         )
 
     def show(self, things: ThingLayer) -> None:
-        """Show the newest scan to those who look for things, if the robot knows its place."""
+        """Add the newest scan to the layer of things, if the robot knows its place."""
         with self._lock:
             if self._corrected is None:
                 return

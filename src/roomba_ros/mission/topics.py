@@ -35,7 +35,7 @@ _MAP_WALL_PERIOD: Final = 0.5
 class MissionTopics:
     """Publishes ``vacuum/state`` (VacuumState, latched, at each change and 1 Hz), ``plan`` (Path,
     latched: what it drives now), ``coverage_map`` and ``dirt_map`` (OccupancyGrid, latched, 1 Hz
-    while it cleans and somebody listens, and at the end of a clean).
+    while it cleans and has subscribers, and at the end of a clean).
     """
 
     def __init__(self, config: MissionConfig, background: Background) -> None:

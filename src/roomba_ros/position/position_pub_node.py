@@ -38,15 +38,15 @@ _STOP_REPEATS = 3
 class PositionPubNode:
     """Knows the robot's pose and drives it to the wished position, however far that is.
 
-    When it does not know the pose any more it forgets the wish. It looks around as long as somebody
-    still wants it to go somewhere, or asked it to find its place. What it knows of the map's rooms
-    is here as well: a process of its own would need 80 MB more (ADR 7).
+    When it does not know the pose any more it forgets the setpoint. It looks around as long as a
+    walk or a mission goes on, or until its place is found if a service asked for that. The map's
+    rooms are here as well: a process of their own would need 80 MB more (ADR 7).
 
     Publishes: ``cmd_vel`` (Twist, 20 Hz while it drives), and what :class:`LocalizationTopics` and
     :class:`RoomTopics` tell.
     Subscribes: ``change_position`` (RobotPosition, the wish), ``change_heading`` (Float32, rad, map
     frame, streamed: turn to it on the spot instead), ``look_around`` (Bool, streamed while
-    somebody else could go on if the place were known), ``bumper``, ``cliff`` (while it looks
+    the mission could go on if the place were known), ``bumper``, ``cliff`` (while it looks
     around), and what :class:`LocalizationTopics` and :class:`RoomTopics` hear.
     Services: those of :class:`LocalizationTopics` and :class:`RoomTopics`.
     Parameters: ``initial_post_x``, ``initial_post_y``, ``initial_post_theta`` (where odometry

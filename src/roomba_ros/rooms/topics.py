@@ -54,7 +54,7 @@ class RoomTopics:
 
     @staticmethod
     def is_growing() -> bool:
-        """Whether the map is being made; whoever makes it puts his own answer here."""
+        """Whether the map is being made; the map's maker replaces this function."""
         return False
 
     def start(self) -> None:

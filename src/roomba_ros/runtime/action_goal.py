@@ -37,7 +37,7 @@ class ActionGoal(ABC):
 
     @abstractmethod
     def check(self) -> None:
-        """Raise MessageError if nobody can know what it asks for."""
+        """Raise MessageError if it is not clear what the goal asks for."""
 
     @abstractmethod
     def reject(self, reason: str) -> None:

@@ -13,7 +13,7 @@ import rospy
 from rosgraph.names import ns_join
 
 _PING_TIMEOUT = 5.0
-"""s of wall time; who says nothing for so long is dead. A busy one may take more than a second."""
+"""s of wall time without an answer, after which a node is dead; a busy one takes over a second."""
 
 
 def refuse_second(node_name: str, topic: str) -> None:
@@ -46,7 +46,7 @@ def _is_alive(master: rosgraph.Master, node: str) -> bool:
     try:
         ServerProxy(master.lookupNode(node)).getPid("/roomba_robot_start")  # type: ignore[operator]
     except (OSError, HTTPException, XmlRpcError, rosgraph.MasterError):
-        # Nobody there, or somebody else on a port that was used again.
+        # Nothing listens there, or another program on a port that was used again.
         return False
     finally:
         socket.setdefaulttimeout(before)

@@ -67,7 +67,7 @@ def _stop(node: Node) -> None:
     try:
         node.stop()
     except rospy.ROSException as error:
-        # The connections were closed already, from another thread: nobody hears a last word.
+        # The connections were closed already, from another thread.
         rospy.logdebug("stopped without a last word: %s", error)
 
 

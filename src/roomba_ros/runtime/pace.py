@@ -47,8 +47,8 @@ class Pace:
     ) -> None:
         """Let a tick, ``tick`` s of the robot's clock, come every ``tick / speed`` s of wall time.
 
-        ``is_there`` tells whether a part that was heard still runs: nobody waits for the dead, but
-        for a minute the clock goes no faster than real time until they are heard again.
+        ``is_there`` tells whether a node that was heard still runs. A dead node is not waited for,
+        but for a minute the clock goes no faster than real time until it is heard again.
         """
         self._tick, self._speed = tick, speed
         self._monotonic, self._sleep, self._is_there = monotonic, sleep, is_there

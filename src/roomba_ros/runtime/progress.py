@@ -1,4 +1,4 @@
-"""How far a node is, told to a simulation that waits for those who fall behind."""
+"""How far a node is, published for a simulation that waits for nodes that fall behind."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ import rospy
 from std_msgs.msg import Time
 
 NODES: Final = ("speed_pub_node", "walk_to_point_action_server_node", "mission_node")
-"""Who drives, and so is waited for; of position_pub_node its ``/pose`` tells how far it is."""
+"""Nodes that drive, so the simulation waits for them; ``/pose`` tells it of position_pub_node."""
 _PERIOD: Final = 0.1
 """s of the ROS clock between two messages."""
 
 
 class Progress:
-    """Publishes ``~progress`` (Time: up to when this node did its work), if it is one who drives.
+    """Publishes ``~progress`` (Time: up to when this node did its work), if the node drives.
 
     Only while the clock is a simulated one.
     """

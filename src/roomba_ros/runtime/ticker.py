@@ -1,4 +1,4 @@
-"""Ticks at a steady rate of the ROS clock, whatever that clock does."""
+"""Ticks at a steady rate of the ROS clock, also when that clock is set or jumps."""
 
 from __future__ import annotations
 

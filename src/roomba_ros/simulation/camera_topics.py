@@ -1,4 +1,4 @@
-"""The camera's topics and its service: pictures of what the robot sees, when somebody looks."""
+"""The camera's topics and its service: pictures of what the robot sees, while subscribed."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _PERIOD = 0.2
 class CameraTopics:
     """Takes pictures in a thread of its own: they must not hold up time.
 
-    Publishes, 5 Hz of wall time while somebody listens: ``camera/image_raw`` (rgb8),
+    Publishes, 5 Hz of wall time while subscribed: ``camera/image_raw`` (rgb8),
     ``camera/image_raw/compressed`` (JPEG), ``camera/depth/image_raw`` (32FC1, m),
     ``camera/camera_info`` and ``camera/depth/camera_info``, looking straight ahead.
     Services: ``camera/capture`` (TurnCamera: a smooth picture, exactly at the angle; its frame is
@@ -71,7 +71,7 @@ class CameraTopics:
                     rospy.logwarn_throttle(10.0, "no picture for the stream: %s", error)
 
     def _tell(self) -> None:
-        # Made for the first who looks: it needs some megabytes.
+        # Made for the first subscriber: it needs some megabytes.
         self._quick = self._quick or Camera(self._scene, self._config, 1)
         with self._lock:
             now, pose = self._stamp, self._simulator.pose

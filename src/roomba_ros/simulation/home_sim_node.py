@@ -66,7 +66,7 @@ class HomeSimNode:
     Services: those of :class:`CameraTopics` and :class:`SimServices`.
     Parameters: ``~home`` (name or path), ``~homes_directory``, ``~speed`` (robot seconds per second
     of wall time), ``~seed``, ``~clock`` (false for all but one of several robots, which go by that
-    one's clock and wait for nobody), ``~sensors``
+    one's clock and do not wait), ``~sensors``
     (ideal or noisy; by default what ``robot_config`` says),
     ``robot_max_speed``, ``initial_post_x``, ``initial_post_y``.
     """
@@ -151,7 +151,7 @@ class HomeSimNode:
         self._sensors.tell(now, self._ticks, observation)
 
     def _now(self) -> float:
-        """Return the time for stamps, s: that of the clock, whoever owns it."""
+        """Return the time for stamps, s of the ROS clock."""
         return self._clock / 1e9
 
     def _first_clock(self) -> int:

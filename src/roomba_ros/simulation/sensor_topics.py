@@ -36,7 +36,7 @@ from roomba_ros.runtime.node import frame_id
 class _Topic:
     """A topic: ``message(now, seen)`` every ``period`` ticks; at once when ``changes(seen)`` does.
 
-    A message that nobody hears is not made.
+    Without a subscriber no message is made.
     """
 
     publisher: rospy.Publisher

@@ -37,7 +37,7 @@ _NO_REASON: Final = "no reason was given"
 
 
 class SpeedPubNode:
-    """Keeps every wanted twist within the limits and stops the drive when nobody drives.
+    """Keeps every wanted twist within the limits and stops the drive without a fresh command.
 
     Publishes: ``speed`` (Float32, m/s, 10 Hz), ``cmd_vel_out`` (Twist, to the drive, at once for
     each command, and 10 Hz), ``emergency_stop`` (String, latched: why the drive is held, empty when

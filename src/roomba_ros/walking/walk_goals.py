@@ -64,7 +64,7 @@ class WalkGoal(ActionGoal):
         self._handle.set_aborted(self._result(time_spent), reason)
 
     def cancelled(self, time_spent: float, reason: str) -> None:
-        """Tell that nobody wants it any more, or something else more."""
+        """Tell that it was cancelled, or replaced by another goal."""
         self._handle.set_canceled(self._result(time_spent), reason)
 
     def tell(self, now: float, distance: float, pose: Pose) -> None:

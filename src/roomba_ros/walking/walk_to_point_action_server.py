@@ -49,7 +49,7 @@ _LONGEST_TURN = 6.0
 _HEARD_BY = 0.3
 """s; a wish to stay where it is has reached its hearer after this, on a busy machine too."""
 _LONGEST_BRAKING = 1.0
-"""s; after this a robot whose walk was cancelled stands, whatever the odometry says."""
+"""s; after this a robot whose walk was cancelled counts as standing, without odometry too."""
 
 
 @dataclass
@@ -242,7 +242,7 @@ class WalkToPointActionServer:
             rospy.loginfo("a new way: %.2f m to walk", job.walk.path.length)
             self._show_plan(sensed.now, job.walk)
         self._change_speed.publish(step.cruise_speed)
-        # While it is astray nobody drives there, but it says that somebody still wants to go.
+        # While its place is not known the setpoint moves nothing, but tells that the walk goes on.
         self._change_position.publish(RobotPosition(*step.setpoint))
         if step.state is WalkState.ASTRAY:
             return

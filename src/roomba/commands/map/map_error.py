@@ -67,7 +67,7 @@ class MapError:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Sides:
+class WallSides:
     """Sides of a map: their middles, float64 [n, 2], m; the way that each faces, 0 along x, then
     counter-clockwise; and the occupied cell's row and column, int64 [n, 2].
     """
@@ -105,7 +105,7 @@ def map_error(occupancy: OccupancyMap, frame: GridFrame, solid: Mask, seen: Mask
     )
 
 
-def sides_of(occupancy: OccupancyMap) -> Sides:
+def sides_of(occupancy: OccupancyMap) -> WallSides:
     """Return all sides between an occupied and a free cell."""
     frame, values = occupancy.frame, np.pad(occupancy.values, 1, constant_values=UNKNOWN)
     occupied, free = values == OCCUPIED, values == FREE
@@ -119,7 +119,7 @@ def sides_of(occupancy: OccupancyMap) -> Sides:
         middles.append(np.column_stack((x, y)))
         facings.append(np.full(len(at), facing, np.int64))
         cells.append(at)
-    return Sides(np.concatenate(middles), np.concatenate(facings), np.concatenate(cells))
+    return WallSides(np.concatenate(middles), np.concatenate(facings), np.concatenate(cells))
 
 
 def wrong_sides(occupancy: OccupancyMap, frame: GridFrame, solid: Mask, seen: Mask) -> Floats:
@@ -134,7 +134,7 @@ def wrong_sides(occupancy: OccupancyMap, frame: GridFrame, solid: Mask, seen: Ma
 # ---------------------------------------------------------------- walls that are mapped twice
 
 
-def _doubled(occupancy: OccupancyMap, sides: Sides, ground: TrueSurfaces) -> tuple[Mask, Mask]:
+def _doubled(occupancy: OccupancyMap, sides: WallSides, ground: TrueSurfaces) -> tuple[Mask, Mask]:
     """Return the cells of walls that are mapped twice, and of shorter stretches that are."""
     twice = _has_second(occupancy, sides)
     middles, facings = sides.middles[twice], sides.facings[twice]
@@ -171,7 +171,7 @@ def _is_stretch(cells: Mask, facing: int, least: int) -> Mask:
     return stretch
 
 
-def _has_second(occupancy: OccupancyMap, sides: Sides) -> Mask:
+def _has_second(occupancy: OccupancyMap, sides: WallSides) -> Mask:
     """Return which sides have another one that faces alike behind them, bool [n].
 
     Between the two lies free floor, for only there a side is seen.
@@ -246,7 +246,7 @@ def _cells(middles: Floats, occupancy: OccupancyMap, axis: int) -> NDArray[np.in
 # ---------------------------------------------------------------- shift and rotation
 
 
-def _fit(sides: Sides, ground: TrueSurfaces) -> tuple[tuple[float, float], float]:
+def _fit(sides: WallSides, ground: TrueSurfaces) -> tuple[tuple[float, float], float]:
     """Return shift, m, and rotation, rad, that move the true map onto this one, least squares.
 
     A side tells how far it lies before the true one that faces alike.

@@ -148,7 +148,7 @@ class Cleaning:
     def wants_another_look(self, lasting: list[RoundObstacle]) -> bool:
         """Whether floor was out of reach: once, before the end, it is to be looked for again.
 
-        What is out of reach for ``lasting`` things alone, which nobody moves, is left out.
+        What is out of reach because of ``lasting`` things alone, which stay, is left out.
         """
         if self._looked_again or not self._unreachable or self.stage is not None:
             return False
@@ -315,7 +315,7 @@ class Cleaning:
         return _patches(todo, self.coverage.frame, least)
 
     def _note_out_of_reach(self, floor: Mask, obstacles: list[RoundObstacle]) -> None:
-        """Floor that somebody may open later is looked for again before the end."""
+        """Remember floor that a person may open later: it is tried again before the end."""
         patches = patches_of(floor, self.coverage.frame, _LEAST_AREA_TO_RETRY)
         if not all(is_hidden(patch, self._site, obstacles) for patch in patches):
             self._unreachable = True

@@ -20,7 +20,7 @@ Mask = NDArray[np.bool_]
 _MOSTLY: Final = 0.8
 """Share of a patch that is near to things: it is missed for what stands there."""
 _HARDLY_ANY: Final = 0.02
-"""Share of the wanted floor; whoever cleaned no more than this did not do what was asked."""
+"""Share of the wanted floor; a clean of no more than this did not do what was asked."""
 _IN_THE_WAY: Final = {
     MissReason.THING: "something stands there that the map does not show",
     MissReason.SHUT: "a door is shut, or something stands in the way",

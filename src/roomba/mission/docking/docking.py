@@ -112,7 +112,7 @@ class Docking:
         return self._time.elapsed - self._moved > self._config.stuck_timeout
 
     def _watch(self, senses: DockSenses) -> None:
-        """Notice what changes everything, whatever it does just now."""
+        """Notice what changes everything, in any phase."""
         is_first, self._is_first = self._is_first, False
         if senses.is_charging:
             if is_first:

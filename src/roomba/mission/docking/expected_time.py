@@ -1,4 +1,4 @@
-"""The robot's time, whatever happens to its clock."""
+"""The robot's time, also when its clock is set."""
 
 from __future__ import annotations
 

@@ -18,7 +18,7 @@ _LONGEST_STEP: Final = 0.3
 _FARTHEST_OFF: Final = 0.5
 """m; beams that say that the belief is wrong by more are of another place, or another time."""
 _DOUBT: Final = 0.1
-"""rad; so wrong the heading may be: who sees one beam alone for long is farther aside by it."""
+"""rad; so wrong the heading may be: a robot that sees one beam alone for long is farther aside."""
 _LATE_BEAMS: Final = 0.3
 """s; after a new belief, beams may still be those that were seen before it."""
 

@@ -92,7 +92,7 @@ class Drives:
         return self._rejoin.way_out(senses, self.obstacles, self.trail)
 
     def make_room(self, senses: Senses) -> None:
-        """Begin to drive aside, so that who stands beside the robot can pass, if it can."""
+        """Begin to drive aside, so that a person beside the robot can pass; if there is room."""
         points = way_aside(self.site.paths, senses, self.obstacles, self.trail)
         if points is not None:
             self.begin(points, senses)

@@ -1,7 +1,7 @@
 """Gaps between things that look just wide enough: no way for a robot that can only guess.
 
-What is seen of a thing is a part of it, and next time it may look nearer. Whoever drives in between
-the legs of a chair may be shut in there.
+What is seen of a thing is a part of it, and next time it may look nearer. A robot that drives in
+between the legs of a chair may be shut in there.
 """
 
 from __future__ import annotations

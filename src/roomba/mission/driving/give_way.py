@@ -1,4 +1,4 @@
-"""Making room for whoever stands in the way: it may be waiting for the robot to go."""
+"""Making room for what stands in the way: it may be waiting for the robot to go."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _ROOM: Final = 1.2
 """m; so far off it lets others pass, and farther away it need not go."""
 _LEAST_ROOM: Final = 0.5
 _PER_WAY: Final = 0.25
-"""m of room that a metre of way is worth: it does not squeeze past whom it makes room for."""
+"""m of room that a metre of way is worth: it does not squeeze past what it makes room for."""
 _FARTHEST: Final = 3.0
 """m of way that it goes for that, at most."""
 
@@ -34,7 +34,7 @@ def way_aside(
 ) -> Floats | None:
     """Return a way, float64 [n, 2], m, to where there is room between the robot and what stands.
 
-    Where nothing is known to stand beside it, it goes away from where it is: who stands there may
+    Where nothing is known to stand beside it, it goes away from where it is: what stands there may
     be on a map that is being made. None when there is no such place.
     """
     here = (senses.pose.x, senses.pose.y)

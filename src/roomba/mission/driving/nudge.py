@@ -22,7 +22,7 @@ _STEP: Final = 0.02
 _AHEAD: Final = 1.0
 """m; so far ahead the path is looked at, in such steps."""
 _MOST: Final = 0.08
-"""m; farther aside it is another way, which somebody else has to plan."""
+"""m; farther aside it is another way, which the planner has to find."""
 _ROUNDS: Final = 8
 _NEARLY: Final = 0.003
 """m; so much nearer than wanted is near enough."""

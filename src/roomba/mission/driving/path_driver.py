@@ -1,4 +1,4 @@
-"""Driving a path to its end, around whatever stands in the way.
+"""Driving a path to its end, around what stands in the way.
 
 No clock and no I/O: it is ticked with what the robot senses and answers with the twist it wants.
 What it finds in its way it remembers, leaves the path before it, and joins it again behind.

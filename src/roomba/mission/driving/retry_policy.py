@@ -13,7 +13,7 @@ _WAIT: Final = 30.0
 """s; so long it waits, where no way leads on, before it looks for one again: people pass sooner
 than doors are opened."""
 _LOOK: Final = 2.0
-"""s; so often it looks whether whoever stood in the way has gone."""
+"""s; so often it looks whether the way is clear."""
 _MOST_WAITS: Final = 41
 """Twenty minutes; then there is no way home."""
 

@@ -1,4 +1,4 @@
-"""Where the robot came from: the way out of whatever it drove into."""
+"""Where the robot came from: the way back out of a pocket."""
 
 from __future__ import annotations
 

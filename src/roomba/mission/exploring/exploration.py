@@ -35,7 +35,7 @@ _MOST_TRIES: Final = 12
 class ExploreResult:
     """How an exploration ended: the floor that is ``known``, m2, ``distance`` m, ``duration`` s.
 
-    ``unseen`` are frontiers that were given up: nobody can drive to where one would see beyond.
+    ``unseen`` are frontiers that were given up: no place from which they are seen can be reached.
     """
 
     outcome: CleanOutcome

@@ -1,4 +1,4 @@
-"""Looking around: driving a little, by what is in sight, while nobody knows where the robot is.
+"""Looking around: driving a little, by what is in sight, while the robot's place is not known.
 
 It needs no map and no place: it goes where the lidar shows room and where it has not been yet, so
 that each scan shows something new.

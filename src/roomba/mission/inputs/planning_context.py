@@ -27,7 +27,7 @@ Mask = NDArray[np.bool_]
 
 
 class PlanningContext:
-    """What does not change while nobody edits zones or rooms; an edit makes a new one."""
+    """What all planning uses: map, zones, rooms, station; an edit of them makes a new one."""
 
     def __init__(
         self,

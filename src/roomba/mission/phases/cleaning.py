@@ -24,7 +24,7 @@ _WAITS: Final = "all is seen; it waits for the map to be finished"
 _LONGEST_WAIT: Final = 120.0
 """s; so long it waits for the whole map."""
 _NO_WHOLE_MAP: Final = (
-    "nobody finishes the map: put the robot on its station once, so that the map knows where that "
+    "the map is not finished: put the robot on its station once, so that the map knows where that "
     "is, or call map/finish; then resume"
 )
 

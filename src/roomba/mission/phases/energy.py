@@ -15,7 +15,7 @@ _EMPTY: Final = 0.005
 _CHECK_EVERY: Final = 5.0
 """s; between two looks at how far it is home."""
 _CARRIED: Final = 0.3
-"""m; between two ticks: nobody drives as far."""
+"""m; between two ticks; farther it was carried."""
 
 
 class EnergyLedger:

@@ -90,7 +90,7 @@ class Job:
         self.dirt.note(pose.x, pose.y, senses.grains * elapsed, way)
 
     def needed_energy(self, tool_width: float) -> float:
-        """Return what the rest of it takes, Wh; nobody knows that of an exploration."""
+        """Return what the rest of it takes, Wh; of an exploration this is not known."""
         if self.exploration is not None:
             return math.inf
         if self.cleaning is None:

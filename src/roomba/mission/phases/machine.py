@@ -32,7 +32,7 @@ class Phase(Enum):
     PAUSED = "paused"
     """Stands until it is told to go on."""
     ERROR = "error"
-    """Stands until somebody helped and tells it to go on."""
+    """Stands until the operator helped and tells it to resume."""
     EMERGENCY = "emergency stop"
     """Stands until the emergency stop is released."""
 
@@ -73,7 +73,7 @@ class Event(Enum):
 
     @property
     def is_command(self) -> bool:
-        """Whether somebody asks for it, and so is told when it is refused."""
+        """Whether it is a command, whose sender is told when it is refused."""
         return self in _COMMANDS
 
 
@@ -179,7 +179,7 @@ def _standing(state: MissionState, event: Event) -> MissionState | None:
         if phase is Phase.IDLE:
             return MissionState(Phase.DOCKED)
         if phase in _HELD:
-            # Somebody carried it home. With an errand it goes on from there when it is told to.
+            # It was carried home. With an errand it resumes from there when it is told to.
             if state.errand in _GOES_ON:
                 return replace(state, phase=Phase.PAUSED, resumes=Phase.UNDOCKING)
             return MissionState(Phase.DOCKED)

@@ -1,4 +1,4 @@
-"""Noticing what nobody ordered: contact with the station, and what holds the robot up."""
+"""What is checked at each tick: contact with the station, and what holds the robot up."""
 
 from __future__ import annotations
 

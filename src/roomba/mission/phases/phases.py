@@ -112,7 +112,7 @@ def try_home_again(reason: str, drives: Drives, patience: RetryPolicy, senses: S
 def wait(reason: str, drives: Drives, patience: RetryPolicy, senses: Senses) -> PhaseStep:
     """Wait for a while, and then look anew: a door that is shut is opened again.
 
-    Who stands before the robot may be waiting for it to go: it makes room.
+    A person before the robot may be waiting for it to go: it makes room.
     """
     patience.wait(senses.now)
     drives.make_room(senses)

@@ -34,7 +34,7 @@ class WalkState(Enum):
 
     WALKING = "walking"
     ASTRAY = "astray"
-    """Under way, but nobody knows where the robot is; it goes on when that is known again."""
+    """Under way, but the robot's place is not known; it continues when that is known again."""
     ARRIVED = "arrived"
     FAILED = "failed"
     """Given up; the reason is told."""
@@ -130,7 +130,7 @@ class Walk:
         return WalkStep(WalkState.WALKING, setpoint, cruise_speed, self._follower.left)
 
     def _wait_to_be_found(self, sensed: Sensed, max_speed: float) -> WalkStep:
-        """Ask for nothing while nobody knows where the robot is; it may look around meanwhile."""
+        """Ask for nothing while the robot's place is not known; it may look around meanwhile."""
         if not self._went_astray:
             self._went_astray, self._astray_since = True, sensed.now
         self._progressed = sensed.now
