@@ -1,4 +1,4 @@
-"""Who takes part: ours in this process, and peers as processes that speak the peers' protocol."""
+"""The contestants: ours in this process, and peers as processes that speak the peers' protocol."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class ContestantError(RuntimeError):
 
 
 class Contestant(Protocol):
-    """Somebody who can be measured."""
+    """A program that can be measured."""
 
     @property
     def name(self) -> str:
@@ -45,7 +45,7 @@ class Contestant(Protocol):
 
 
 class Local:
-    """Somebody in this process: ours, or a plain reference of our own."""
+    """A contestant in this process: ours, or a plain reference of our own."""
 
     def __init__(self, name: str, make: Callable[[], Work], version: str = "") -> None:
         """``make`` is called when it is this one's turn to get ready."""

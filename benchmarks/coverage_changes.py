@@ -40,7 +40,7 @@ MOVABLE: Final = (
 )
 """Kinds of furniture that people push about."""
 _FROM_STATION: Final = 1.2
-"""m; nobody puts things before the station."""
+"""m; no thing stands nearer to the station."""
 _PUSHED: Final = (0.15, 1.2)
 """m; how far furniture is pushed."""
 _CHAIR: Final = 0.4

@@ -28,7 +28,7 @@ class Order(Enum):
     """In which order lanes are driven."""
 
     IN_ORDER = "in order"
-    """Line by line over the whole map, to and fro, whatever walls are between."""
+    """Line by line over the whole map, to and fro, through walls too."""
     NEAREST = "nearest lane next"
     """Always on to the lane whose one end is the nearest, as the robot drives."""
 

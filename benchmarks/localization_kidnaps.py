@@ -29,7 +29,7 @@ THINGS = 12
 _RIGHT, _RIGHT_TURN = 0.10, 0.1
 """m, rad; so near it must know its pose."""
 _HELD = 20
-"""Ticks in somebody's hands."""
+"""Ticks in the air."""
 _AFTER = 2.0
 """s; so long it is still watched when it has found itself."""
 _SETTLING = 6

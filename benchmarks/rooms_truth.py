@@ -108,7 +108,7 @@ def without_specks(white: NDArray[np.bool_], resolution: float) -> RoomLabels:
 def overlaps(known: KnownRooms, labels: RoomLabels) -> NDArray[np.int64]:
     """Return the cells that rooms (rows) and segments (columns) have in common; 0 is no segment.
 
-    Only cells count that are free in the map and lie in a true room. The first row is nobody's.
+    Only cells count that are free in the map and lie in a true room. The first row is of no room.
     """
     counted = (known.labels > 0) & ~known.map.solid
     shape = (known.count + 1, int(labels.max(initial=0)) + 1)

@@ -29,7 +29,7 @@ SHORTEST_TURN, LONGEST_TURN = 0.4, 3.0
 _CHECKED_POSES = 40
 _CHECKED_STEPS = 200
 _LEAST_WAY = 0.3
-"""m; who has not travelled so far after the checked steps (10 s) is stuck."""
+"""m; a robot that has not travelled so far after the checked steps (10 s) is stuck."""
 
 
 @dataclass(eq=False)

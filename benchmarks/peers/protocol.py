@@ -81,7 +81,7 @@ def serve(module: str, requests: Iterable[str], answers: TextIO) -> None:
         except LeftOutError as error:
             answer = {"error": str(error)}
         except Exception as error:
-            # A peer must not take the others down with it, whatever its library raises.
+            # No exception of a peer's library may end the other peers.
             traceback.print_exc()
             answer = {"error": f"{type(error).__name__}: {error}".splitlines()[0][:_LONGEST]}
         answers.write(json.dumps(answer) + "\n")

@@ -85,7 +85,7 @@ class Graph:
         self._logs[program.pid] = (Path(command[0]).name, log)
 
     def wait_for_topic(self, topic: str) -> None:
-        """Wait until somebody publishes a topic; raises ContestantError."""
+        """Wait until a topic has a publisher; raises ContestantError."""
         self._wait(f"{topic} is published", lambda: self._publishes(topic))
 
     def _publishes(self, topic: str) -> bool:

@@ -44,7 +44,7 @@ from roomba.commands.sim.warm import warm_up
 from roomba.world.home.home import Home
 
 _SHIPPED = ("empty", "lshape", "apartment", "flat", "studio", "family")
-"""Not the hall: nobody cleans a plane of 200 m."""
+"""Not the hall: a plane of 200 m is no floor to clean."""
 _CHANGED = ("flat", "apartment", "family")
 _DRAWN = "apartment"
 _BOUNCED = (15, 30, 60, 120)

@@ -80,7 +80,7 @@ def _trip_row(case: str, outcome: Outcome, peers: tuple[PeerFigure, ...]) -> Rec
 
 
 def _bare(graph: Graph, kind: str) -> Program:
-    """Start a node that echoes; return who asks it."""
+    """Start a node that echoes; return the client that calls it."""
     topics = [f"/{way}_{kind.replace(' ', '_')}" for way in ("ping", "pong")]
     names = [f"{name}:={topic}" for name, topic in zip(("ping", "pong"), topics, strict=True)]
     graph.start(sys.executable, "-m", "benchmarks.ros.echo", kind, *names)

@@ -1,4 +1,4 @@
-"""Getting free: back off, turn, shuffle, and the other way around."""
+"""Recovery motions: back off and turn, back off in curves, turn and drive ahead."""
 
 from __future__ import annotations
 
