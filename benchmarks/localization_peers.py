@@ -55,7 +55,7 @@ class ScannedDrive:
 
 @dataclass(frozen=True)
 class Followed:
-    """How far off each source was at each scan of a drive; ``left_out``: peers not measured, and why."""
+    """Errors of each source at each scan of a drive; ``left_out``: peers not measured, and why."""
 
     stamps: Floats
     errors: dict[str, Errors]
