@@ -1,5 +1,10 @@
 import math
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from itertools import pairwise
 
+import numpy as np
 import rospy
 from actionlib_msgs.msg import GoalStatus
 from fixtures.graph import RosGraph
@@ -7,10 +12,12 @@ from fixtures.probe import Probe, Walker
 from fixtures.waiting import wait_until
 from geometry_msgs.msg import PoseStamped
 from move_base_msgs.msg import MoveBaseAction, MoveBaseActionGoal, MoveBaseGoal
-from nav_msgs.msg import OccupancyGrid
+from nav_msgs.msg import OccupancyGrid, Path
 from roomba_robot.msg import RobotPosition
+from sensor_msgs.msg import LaserScan
 from std_msgs.msg import Float32
 
+from roomba.configuration.robot import RobotConfig
 from roomba_ros.runtime.action_client import ActionClient
 
 SCRIPT = "walk_to_point_action_server.py"
@@ -134,3 +141,90 @@ def test_a_cancelled_walk_frees_the_speed_when_its_wish_to_stay_was_heard(graph:
     wait_until(freed, 30.0, "the speed is free again")
     stays = [what for what in told[stops : freed()] if what == ("to", 0.0)]
     assert len(stays) >= 3, "at 20 Hz it was told to stay"
+
+
+BEAMS = 360
+THING = (0.7, 0.0, 0.15)
+
+
+def scan_of_room(stamp: rospy.Time, things: list[tuple[float, float, float]]) -> LaserScan:
+    """Return what a lidar in the middle of :func:`room` sees of its walls and round things."""
+    angles = 2.0 * math.pi / BEAMS * np.arange(BEAMS)
+    away = 2.0 / np.maximum(np.abs(np.cos(angles)), np.abs(np.sin(angles)))
+    for x, y, radius in things:
+        along = x * np.cos(angles) + y * np.sin(angles)
+        across = x * np.sin(angles) - y * np.cos(angles)
+        hits = (np.abs(across) < radius) & (along > 0.0)
+        depth = along - np.sqrt(np.maximum(radius**2 - across**2, 0.0))
+        away = np.where(hits, np.minimum(away, depth), away)
+    message = LaserScan(
+        angle_increment=2.0 * math.pi / BEAMS, range_min=0.1, range_max=8.0, ranges=away.tolist()
+    )
+    message.header.stamp = stamp
+    return message
+
+
+@contextmanager
+def standing_robot(probe: Probe, things: list[tuple[float, float, float]]) -> Iterator[None]:
+    """Tell pose and scans, 20 and 10 times a second, of a robot in the middle of the room.
+
+    What is in ``things`` it sees from then on.
+    """
+    ended = threading.Event()
+    poses, scans = probe.publisher("/pose", PoseStamped), probe.publisher("/scan", LaserScan)
+
+    def tell() -> None:
+        number = 0
+        while not ended.wait(0.05):
+            number += 1
+            pose = stamped(0.0, 0.0)
+            pose.header.stamp = rospy.Time.now()
+            if number % 2:
+                scans.publish(scan_of_room(pose.header.stamp, list(things)))
+            poses.publish(pose)
+
+    teller = threading.Thread(target=tell, daemon=True)
+    teller.start()
+    try:
+        yield
+    finally:
+        ended.set()
+        teller.join()
+
+
+def nearest(path: Path, x: float, y: float) -> float:
+    """Return how near a path comes to a point, m."""
+    corners = np.array([(pose.pose.position.x, pose.pose.position.y) for pose in path.poses])
+    shares = np.linspace(0.0, 1.0, 50)[:, None]
+    legs = [a + shares * (b - a) for a, b in pairwise(corners)]
+    return float(np.hypot(*(np.concatenate(legs) - (x, y)).T).min())
+
+
+def test_what_the_lidar_sees_is_walked_around_and_forgotten_when_it_is_gone(
+    graph: RosGraph,
+) -> None:
+    graph.rosrun(SCRIPT)
+    probe = Probe(graph)
+    probe.hear("/plan", Path)
+    probe.send("/map", room())
+    things: list[tuple[float, float, float]] = []
+    keeps = RobotConfig().body.radius + THING[2]
+    with standing_robot(probe, things):
+        walker = Walker()
+        walker.send(1.5, 0.0)
+        wait_until(lambda: "/plan" in probe.newest, 30.0, "a plan")
+        assert nearest(probe.newest["/plan"], *THING[:2]) < 0.01, "straight, for nothing is seen"
+        things.append(THING)
+        wait_until(
+            lambda: nearest(probe.newest["/plan"], *THING[:2]) > keeps,
+            30.0,
+            "a way around what came",
+        )
+        things.clear()
+
+        def goes_straight() -> bool:
+            walker.send(1.5, 0.0)
+            plan = probe.next("/plan", Path)
+            return nearest(plan, *THING[:2]) < 0.01
+
+        wait_until(goes_straight, 30.0, "the straight way again when it was taken away")

@@ -13,12 +13,12 @@ from roomba.configuration.robot import RobotConfig
 from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.geometry import Pose, Twist
 from roomba.grid import FREE, OCCUPIED, GridFrame, OccupancyMap
+from roomba.headless.walker import HeadlessRobot
 from roomba.perception.floors.map_changes import MapChanges
 from roomba.perception.localization.localizer import Localizer
 from roomba.perception.matching.scan_view import LidarModel
 from roomba.perception.rooms.rooms import segment
 from roomba.planning.path.grid_path import shortest_grid_path
-from roomba.planning.path.planner import PathPlanner
 from roomba.world.camera.camera import Camera, Scene
 from roomba.world.home.home import DirtSource, Home
 from roomba.world.simulator import Simulator
@@ -34,10 +34,9 @@ def main() -> None:
     _find_place(home, config, simulator)
     _look_for_changes(home, config, simulator)
     segment(home.map)
-    planner = PathPlanner(
-        home.map, config.body.radius, config.walk.clearance, config.walk.tight_clearance
-    )
-    planner.plan((1.0, 1.0), (2.0, 2.0), [(1.5, 1.5, 0.1)])
+    robot = HeadlessRobot(home, config)
+    robot.walk(2.0, 2.0)
+    robot.planner.plan((1.0, 1.0), (2.0, 2.0), [(1.5, 1.5, 0.1)])
     shortest_grid_path(np.ones((4, 4), np.bool_), (0, 0), (3, 3))
     scene = Scene.of(home)
     for supersampling in (1, 2):

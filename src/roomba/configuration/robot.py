@@ -184,6 +184,7 @@ class WalkConfig(Frozen):
     lookahead: Positive = 0.25
     clearance: Positive = 0.04
     tight_clearance: Positive = 0.01
+    look_ahead: Positive = 0.5
     corner_speed: Positive = 0.25
     careful_speed: Positive = 0.15
     astray_timeout: Positive = 60.0
@@ -191,6 +192,8 @@ class WalkConfig(Frozen):
     bump_radius: Positive = 0.06
     progress_timeout: Positive = 6.0
     max_replans: Annotated[int, Field(ge=0)] = 12
+    max_ways_around: Annotated[int, Field(ge=0)] = 60
+    patience: Positive = 10.0
 
 
 class TrackingConfig(Frozen):

@@ -10,22 +10,25 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.configuration.mission import MissionConfig
 from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.control.position_loop import PositionLoop
 from roomba.control.speed_loop import SpeedLoop
 from roomba.errors import RoombaError
 from roomba.geometry import Pose, Twist
-from roomba.mission.driving.unknown_things import UnknownThings
+from roomba.headless.parts import senses_of
+from roomba.mission.driving.obstacles import Obstacles
 from roomba.mission.exploring.look_around import SearchDrive
-from roomba.mission.walking.walk import Sensed, Walk, WalkState, WalkStep
+from roomba.mission.inputs.senses import Senses
+from roomba.mission.walking.walk import Walk, WalkState, WalkStep
+from roomba.perception.localization.estimate import Knowledge
 from roomba.perception.localization.localizer import Localizer
 from roomba.perception.matching.scan_view import LidarModel
+from roomba.perception.things.layer import ThingLayer
 from roomba.planning.path.planner import PathPlanner
 from roomba.world.home.home import Home
 from roomba.world.simulator import Observation, Simulator
 
-_STEP = 0.025
-_STEPS_PER_TICK = 2
 _LONGEST_WALK = 3600.0
 """s; a walk that is still under way then is a fault of the program."""
 
@@ -63,12 +66,15 @@ class HeadlessRobot:
         seed: int = 0,
         max_speed: float = 0.5,
         start: Pose | None = None,
+        mission: MissionConfig | None = None,
     ) -> None:
-        """Put the robot at ``start``, or at its station; raises HomeError where it does not fit."""
+        """Put the robot at ``start``, or at its station; raises HomeError where it does not fit.
+
+        ``mission`` tells how long what was felt is remembered.
+        """
         self.config = config or SimulatedRobotConfig()
         body, walk = self.config.body, self.config.walk
         self.simulator = Simulator(home, self.config, seed=seed, max_speed=max_speed, start=start)
-        self.things = UnknownThings(walk, body)
         self.planner = PathPlanner(home.map, body.radius, walk.clearance, walk.tight_clearance)
         lidar = self.config.lidar
         self.localizer = Localizer(
@@ -78,7 +84,11 @@ class HeadlessRobot:
             body.radius,
             self.simulator.start,
         )
+        self._things = ThingLayer(self.localizer.field)
+        driving = (mission or MissionConfig()).driving
+        self.obstacles = Obstacles(self._things, walk, body, driving)
         self._lidar = LidarModel.all_around(lidar.beams, lidar.min_range, lidar.max_range)
+        self._beams = self._lidar.arrays()
         self._scans = 0
         self._search = SearchDrive(body)
         self._max_speed = max_speed
@@ -88,15 +98,9 @@ class HeadlessRobot:
     def walk(self, x: float, y: float) -> WalkRecord:
         """Walk to a point of the map frame; raises NoPathError when there is no way."""
         seen = self.simulator.observe()
-        walk = Walk(
-            self.planner,
-            self.config.walk,
-            self.config.body,
-            self.things,
-            (x, y),
-            self._sense(seen),
-        )
+        walk = Walk(self.planner, self.config.walk, self.obstacles, (x, y), self._sense(seen))
         started, bumps, was_bumped = seen.time, 0, False
+        timing = self.config.timing
         steps: list[WalkStep] = []
         poses, believed = [_row(seen.time, seen.pose)], [_row(seen.time, self._pose)]
         while seen.time - started < _LONGEST_WALK:
@@ -105,8 +109,8 @@ class HeadlessRobot:
             if step.state not in (WalkState.WALKING, WalkState.ASTRAY):
                 break
             command = self._control(seen, step)
-            for _ in range(_STEPS_PER_TICK):
-                seen = self.simulator.step(command, _STEP)
+            for _ in range(timing.steps_per_tick):
+                seen = self.simulator.step(command, timing.world_step)
                 bumps += seen.bumper.pressed and not was_bumped
                 was_bumped = seen.bumper.pressed
             self._localize(seen)
@@ -134,21 +138,13 @@ class HeadlessRobot:
         self.localizer.move(seen.time, seen.odometry, seen.angular_velocity)
         if seen.scans != self._scans:
             self._scans = seen.scans
-            self.localizer.see(seen.time, self.simulator.ranges, self._lidar)
+            ranges, knowledge = self.simulator.ranges, self.localizer.estimate.knowledge
+            self.localizer.see(seen.time, ranges, self._lidar)
+            if knowledge is Knowledge.KNOWN:
+                self._things.see(ranges, self._beams, self._pose)
 
-    def _sense(self, seen: Observation) -> Sensed:
-        cliff, estimate = seen.cliff, self.localizer.estimate
-        return Sensed(
-            seen.time,
-            estimate.pose,
-            seen.odometry_twist.linear,
-            seen.bumper.left,
-            seen.bumper.right,
-            cliff.left or cliff.front_left,
-            cliff.right or cliff.front_right,
-            estimate.knowledge,
-            estimate.reason,
-        )
+    def _sense(self, seen: Observation) -> Senses:
+        return senses_of(seen, self.localizer.estimate)
 
     def _control(self, seen: Observation, step: WalkStep) -> Twist:
         touches = seen.bumper.pressed or seen.cliff.any

@@ -13,27 +13,33 @@ import rospy
 from geometry_msgs.msg import PoseStamped
 from move_base_msgs.msg import MoveBaseActionGoal
 from move_base_msgs.msg import MoveBaseGoal as MoveBaseGoalMessage
-from nav_msgs.msg import OccupancyGrid, Odometry, Path
+from nav_msgs.msg import OccupancyGrid, Path
 from nav_msgs.srv import GetPlan, GetPlanRequest, GetPlanResponse
-from roomba_robot.msg import Bumper, Cliff, Localization, RobotPosition
+from roomba_robot.msg import RobotPosition
 from std_msgs.msg import Float32
 
 from roomba.errors import RoombaError
-from roomba.geometry import Pose, wrap_angle
+from roomba.geometry import wrap_angle
 from roomba.grid import OccupancyMap
-from roomba.mission.driving.unknown_things import UnknownThings
-from roomba.mission.walking.walk import Sensed, Walk, WalkState, expected_duration
-from roomba.perception.localization.estimate import Knowledge
+from roomba.mission.driving.obstacles import Obstacles
+from roomba.mission.inputs.senses import Senses
+from roomba.mission.walking.walk import Walk, WalkState, expected_duration
+from roomba.perception.matching.surface_field import SurfaceField
+from roomba.perception.things.layer import ThingLayer
 from roomba.planning.path.planner import PathPlanner
-from roomba_ros.convert.common import header, map_of, path_message, pose_in_map, pose_of
-from roomba_ros.convert.localization import knowledge_of
-from roomba_ros.convert.readings import OdometryReading, Sides, bumper_of, cliff_of, odometry_of
+from roomba_ros.convert.common import header, map_of, path_message, pose_in_map
 from roomba_ros.runtime.action_goal import server_of
 from roomba_ros.runtime.alone import refuse_second
 from roomba_ros.runtime.node import require_master, run_node
-from roomba_ros.runtime.parameters import LiveSeedParameters, read_robot_config
+from roomba_ros.runtime.parameters import (
+    LiveSeedParameters,
+    read_mission_config,
+    read_robot_config,
+    read_thing_config,
+)
 from roomba_ros.runtime.subscriptions import subscribe
 from roomba_ros.walking.walk_goals import MoveBaseGoal, WalkGoal, WalkToPointGoal, checked_goal
+from roomba_ros.walking.walk_senses import WalkSenses
 
 NAME = "walk_to_point_action_server_node"
 SENSES_DEADLINE = 6.0
@@ -71,19 +77,21 @@ class _Job:
 class WalkToPointActionServer:
     """Walks to one goal at a time; a newer goal, of either action, takes over without a halt.
 
-    It takes goals as soon as it knows the map and where the robot is. ``move_base`` is the same
-    walk by the name that RViz's 2D Nav Goal and other programs know; there the robot also turns to
-    the heading that was asked for.
+    It takes goals as soon as it knows the map and where the robot is. It remembers what the lidar
+    sees besides the map, and walks around that. ``move_base`` is the same walk by the name that
+    RViz's 2D Nav Goal and other programs know; there the robot also turns to the heading that was
+    asked for.
 
     Publishes: ``change_position`` (RobotPosition) and ``change_speed`` (Float32, m/s) at 20 Hz
     while it walks, ``change_heading`` (Float32, rad, 20 Hz while it turns at the end), ``plan``
     (Path, latched), ``walk_to_point/{feedback,result,status}``,
     ``move_base/{goal,feedback,result,status}``.
-    Subscribes: ``pose``, ``localization``, ``odom``, ``bumper``, ``cliff``, ``map``,
-    ``walk_to_point/{goal,cancel}``, ``move_base/{goal,cancel}``, ``move_base_simple/goal``
-    (PoseStamped: becomes a goal of ``move_base``).
+    Subscribes: ``map``, ``walk_to_point/{goal,cancel}``, ``move_base/{goal,cancel}``,
+    ``move_base_simple/goal`` (PoseStamped: becomes a goal of ``move_base``), and what
+    :class:`WalkSenses` hears.
     Services: ``make_plan`` (GetPlan: the path to a point, without walking it).
-    Parameters: ``robot_max_speed``, ``min_cordinate``, ``max_cordinate``.
+    Parameters: ``robot_max_speed``, ``min_cordinate``, ``max_cordinate``, ``robot_config``,
+    ``mission_config``, ``things_config`` (obstacles are noticed and remembered as on a clean).
     """
 
     period: float
@@ -93,15 +101,15 @@ class WalkToPointActionServer:
         self._parameters = LiveSeedParameters()
         self._config = read_robot_config()
         self.period = self._config.timing.tick
-        self._things = UnknownThings(self._config.walk, self._config.body)
+        self._thing_config = read_thing_config()
+        self._things = ThingLayer(SurfaceField.unknown(), self._thing_config)
+        driving = read_mission_config(self._config).driving
+        self._obstacles = Obstacles(self._things, self._config.walk, self._config.body, driving)
         # Plans are made by ticks and by make_plan, and the planner works on one at a time.
         self._planning = threading.Lock()
         self._planner: PathPlanner | None = None
-        self._pose: Pose | None = None
-        self._knowledge, self._trouble = Knowledge.KNOWN, ""
-        self._speed = self._turning = 0.0
-        self._bumper = Sides(False, False)
-        self._cliff = Sides(False, False)
+        self._newer_map: tuple[PathPlanner, ThingLayer] | None = None
+        self._senses = WalkSenses()
         self._goals: deque[WalkGoal] = deque()
         self._cancels: deque[tuple[str, str]] = deque()
         self._job: _Job | None = None
@@ -116,11 +124,7 @@ class WalkToPointActionServer:
         )
         self._plan = rospy.Publisher("plan", Path, queue_size=1, latch=True)
         subscribe("map", OccupancyGrid, map_of, self._on_map)
-        subscribe("localization", Localization, knowledge_of, self._on_localization)
-        subscribe("pose", PoseStamped, pose_of, self._on_pose, tcp_nodelay=True)
-        subscribe("odom", Odometry, odometry_of, self._on_odometry)
-        subscribe("bumper", Bumper, bumper_of, self._on_bumper, tcp_nodelay=True)
-        subscribe("cliff", Cliff, cliff_of, self._on_cliff, tcp_nodelay=True)
+        self._senses.start()
         rospy.Service("make_plan", GetPlan, self._on_make_plan)
         self._servers = [
             server_of(kind, self._goals.append, self._cancels.append)
@@ -134,14 +138,16 @@ class WalkToPointActionServer:
         self._serves_by = time.monotonic() + SENSES_DEADLINE
 
     def tick(self, now: float) -> None:
-        """Take new goals, obey cancels, and walk on."""
+        """Look around, take new goals, obey cancels, and walk on."""
         self._parameters.refresh()
-        sensed = self._sense(now)
-        self._serve_when_ready(sensed)
-        self._take_goals(sensed)
+        self._use_newer_map()
+        self._look_around()
+        senses = self._sense(now)
+        self._serve_when_ready(senses)
+        self._take_goals(senses)
         self._obey_cancels()
-        if self._job is not None and sensed is not None:
-            self._walk_on(self._job, sensed)
+        if self._job is not None and senses is not None:
+            self._walk_on(self._job, senses)
 
     def stop(self) -> None:
         """End the goal under way; the robot stops because its setpoint's sender is gone."""
@@ -151,21 +157,27 @@ class WalkToPointActionServer:
             time_spent = job.walk.time_spent(rospy.get_time())
             job.goal.given_up(time_spent, "the action server was told to end")
 
-    def _sense(self, now: float) -> Sensed | None:
-        if self._pose is None or self._planner is None:
-            return None
-        return Sensed(
-            now,
-            self._pose,
-            self._speed,
-            *self._bumper,
-            *self._cliff,
-            self._knowledge,
-            self._trouble,
-        )
+    def _use_newer_map(self) -> None:
+        """Plan on the newest map; a walk under way goes on by the one that it was planned on."""
+        if self._job is not None and not self._goals:
+            return
+        with self._planning:
+            newer, self._newer_map = self._newer_map, None
+            if newer is not None:
+                self._planner, self._things = newer
+                self._obstacles.use(self._things)
 
-    def _serve_when_ready(self, sensed: Sensed | None) -> None:
-        knows = sensed is not None and sensed.knowledge.is_usable
+    def _look_around(self) -> None:
+        """Notice what the lidar sees and the map does not show."""
+        if self._planner is not None:
+            with self._planning:
+                self._senses.show(self._things)
+
+    def _sense(self, now: float) -> Senses | None:
+        return None if self._planner is None else self._senses.at(now)
+
+    def _serve_when_ready(self, senses: Senses | None) -> None:
+        knows = senses is not None and senses.knowledge.is_usable
         ready = knows or time.monotonic() > self._serves_by
         if ready and not self._serves:
             self._serves = True
@@ -174,31 +186,30 @@ class WalkToPointActionServer:
             for server in self._servers:
                 server.start()
 
-    def _take_goals(self, sensed: Sensed | None) -> None:
+    def _take_goals(self, senses: Senses | None) -> None:
         while self._goals:
             goal = self._goals.popleft()
             if goal.is_recalled:
                 goal.cancelled(0.0, "cancelled before it began")
                 continue
             try:
-                walk = self._begin(goal.destination, sensed)
+                walk = self._begin(goal.destination, senses)
             except (RoombaError, ValueError) as error:
                 rospy.logwarn("goal rejected: %s", error)
                 goal.reject(str(error))
                 continue
             self._replace_job(goal, walk)
 
-    def _begin(self, goal: tuple[float, float], sensed: Sensed | None) -> Walk:
+    def _begin(self, goal: tuple[float, float], senses: Senses | None) -> Walk:
         self._require_allowed(*goal)
-        if sensed is None or self._planner is None:
+        if senses is None or self._planner is None:
             raise RoombaError(
                 "the robot does not know its map and position yet; is home_sim_node running?"
             )
-        if not sensed.knowledge.is_usable:
-            raise RoombaError(f"the robot does not know where it is: {sensed.trouble}")
-        config = self._config
+        if not senses.knowledge.is_usable:
+            raise RoombaError(f"the robot does not know where it is: {senses.trouble}")
         with self._planning:
-            return Walk(self._planner, config.walk, config.body, self._things, goal, sensed)
+            return Walk(self._planner, self._config.walk, self._obstacles, goal, senses)
 
     def _require_allowed(self, x: float, y: float) -> None:
         limits = self._parameters.values
@@ -227,82 +238,82 @@ class WalkToPointActionServer:
             if job is not None and job.goal.identity == cancelled:
                 job.rest_by = rospy.get_time() + _LONGEST_BRAKING
 
-    def _walk_on(self, job: _Job, sensed: Sensed) -> None:
+    def _walk_on(self, job: _Job, senses: Senses) -> None:
         if job.rest_by is not None:
-            self._come_to_rest(job, sensed, job.rest_by)
+            self._come_to_rest(job, senses, job.rest_by)
             return
         if job.turned_by is not None:
-            self._turn(job, sensed, job.turned_by)
+            self._turn(job, senses, job.turned_by)
             return
         path = job.walk.path
         max_speed = self._parameters.values.robot_max_speed
         with self._planning:
-            step = job.walk.tick(sensed, max_speed)
+            step = job.walk.tick(senses, max_speed)
         if job.walk.path is not path:
             rospy.loginfo("a new way: %.2f m to walk", job.walk.path.length)
-            self._show_plan(sensed.now, job.walk)
+            self._show_plan(senses.now, job.walk)
         self._change_speed.publish(step.cruise_speed)
         # While its place is not known the setpoint moves nothing, but tells that the walk goes on.
         self._change_position.publish(RobotPosition(*step.setpoint))
         if step.state is WalkState.ASTRAY:
             return
         if step.state is WalkState.WALKING:
-            self._tell_feedback(job, sensed, step.distance_left)
+            self._tell_feedback(job, senses, step.distance_left)
             return
         if step.state is WalkState.ARRIVED and job.goal.heading is not None:
-            job.turned_by = sensed.now + _LONGEST_TURN
+            job.turned_by = senses.now + _LONGEST_TURN
             return
         self._job = None
-        time_spent = job.walk.time_spent(sensed.now)
+        time_spent = job.walk.time_spent(senses.now)
         if step.state is WalkState.ARRIVED:
             job.goal.arrived(time_spent, "arrived")
         else:
             rospy.logwarn("walk given up: %s", step.reason)
             job.goal.given_up(time_spent, step.reason)
 
-    def _turn(self, job: _Job, sensed: Sensed, turned_by: float) -> None:
+    def _turn(self, job: _Job, senses: Senses, turned_by: float) -> None:
         """Turn on the spot to the heading that the goal wants."""
         wanted = job.goal.heading
         assert wanted is not None
-        wrong = wrap_angle(wanted - sensed.pose.theta)
-        is_there = abs(wrong) < _AIMED and abs(self._turning) < _NOT_TURNING
-        if not is_there and sensed.now < turned_by:
+        wrong = wrap_angle(wanted - senses.pose.theta)
+        is_there = abs(wrong) < _AIMED and abs(senses.twist.angular) < _NOT_TURNING
+        if not is_there and senses.now < turned_by:
             self._change_heading.publish(wanted)
-            self._tell_feedback(job, sensed, 0.0)
+            self._tell_feedback(job, senses, 0.0)
             return
         self._job = None
-        time_spent = job.walk.time_spent(sensed.now)
+        time_spent = job.walk.time_spent(senses.now)
         if is_there:
             job.goal.arrived(time_spent, "arrived")
         else:
             job.goal.given_up(time_spent, f"it is there, but {wrong:.2f} rad were not turned")
 
-    def _come_to_rest(self, job: _Job, sensed: Sensed, rest_by: float) -> None:
+    def _come_to_rest(self, job: _Job, senses: Senses, rest_by: float) -> None:
         """Stop a cancelled walk: speed 0 at once, then the place where it stands is the wish.
 
         Only when that was heard the speed is free: else it would set off to the old one.
         """
         if job.free_at is None:
             self._change_speed.publish(0.0)
-            if abs(sensed.speed) <= _STANDSTILL or sensed.now >= rest_by:
-                job.free_at = sensed.now + _HEARD_BY
+            if abs(senses.twist.linear) <= _STANDSTILL or senses.now >= rest_by:
+                job.free_at = senses.now + _HEARD_BY
             return
-        if sensed.knowledge.is_usable:
-            self._change_position.publish(RobotPosition(sensed.pose.x, sensed.pose.y))
+        if senses.knowledge.is_usable:
+            self._change_position.publish(RobotPosition(senses.pose.x, senses.pose.y))
         # By a clock that was set back it is not waited for.
-        if job.free_at - _HEARD_BY <= sensed.now < job.free_at:
+        if job.free_at - _HEARD_BY <= senses.now < job.free_at:
             return
         self._change_speed.publish(self._parameters.values.robot_max_speed)
         self._job = None
-        job.goal.cancelled(job.walk.time_spent(sensed.now), "cancelled")
+        job.goal.cancelled(job.walk.time_spent(senses.now), "cancelled")
 
-    def _tell_feedback(self, job: _Job, sensed: Sensed, distance_left: float) -> None:
-        now = sensed.now
+    def _tell_feedback(self, job: _Job, senses: Senses, distance_left: float) -> None:
+        now = senses.now
         if now < job.feedback_due - job.feedback_period:
             job.feedback_due = now
         if now >= job.feedback_due:
             job.feedback_due += job.feedback_period
-            job.goal.tell(now, distance_left, sensed.pose)
+            job.goal.tell(now, distance_left, senses.pose)
 
     def _show_plan(self, now: float, walk: Walk) -> None:
         self._plan.publish(path_message(now, walk.path.points, "map"))
@@ -320,38 +331,27 @@ class WalkToPointActionServer:
             wanted = pose_in_map(request.goal)
             goal = (wanted.x, wanted.y)
             self._require_allowed(*goal)
-            pose = self._pose
+            pose = self._senses.pose
             if pose is None or self._planner is None:
                 raise RoombaError("the robot does not know its map and position yet")
             if request.start.header.frame_id:
                 pose = pose_in_map(request.start)
             now = rospy.get_time()
             with self._planning:
-                path = self._planner.plan((pose.x, pose.y), goal, self._things.at(now))
+                standing = self._obstacles.standing(now)
+                path = self._planner.plan((pose.x, pose.y), goal, standing)
         except (RoombaError, ValueError) as error:
             raise rospy.ServiceException(str(error)) from error
         return GetPlanResponse(path_message(now, path.points, "map"))
 
     def _on_map(self, occupancy: OccupancyMap) -> None:
         walk = self._config.walk
-        self._planner = PathPlanner(
+        planner = PathPlanner(
             occupancy, self._config.body.radius, walk.clearance, walk.tight_clearance
         )
-
-    def _on_pose(self, pose: Pose) -> None:
-        self._pose = pose
-
-    def _on_localization(self, told: tuple[Knowledge, str]) -> None:
-        self._knowledge, self._trouble = told
-
-    def _on_odometry(self, told: OdometryReading) -> None:
-        self._speed, self._turning = told.twist.linear, told.twist.angular
-
-    def _on_bumper(self, pressed: Sides) -> None:
-        self._bumper = pressed
-
-    def _on_cliff(self, seen: Sides) -> None:
-        self._cliff = seen
+        things = ThingLayer(SurfaceField.of(occupancy), self._thing_config)
+        with self._planning:
+            self._newer_map = planner, things
 
 
 def main() -> None:

@@ -7,11 +7,13 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from typing import Final
+from typing import Final, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
 
 from roomba.configuration.mission import DrivingConfig
 from roomba.configuration.robot import BodyConfig, WalkConfig
-from roomba.control.path_tracker import PathTracker
 from roomba.mission.driving.unknown_things import UnknownThings
 from roomba.mission.inputs.senses import Senses
 from roomba.perception.things.layer import ThingLayer
@@ -31,8 +33,25 @@ _LEAST: Final = 0.01
 """m; the thinnest thing that stands."""
 
 
+class Way(Protocol):
+    """A path: ``points``, float64 [n, 2], m, and the way along it to each, ``stations`` [n], m."""
+
+    @property
+    def points(self) -> NDArray[np.float64]:
+        """The corners and both ends."""
+
+    @property
+    def stations(self) -> NDArray[np.float64]:
+        """From 0 to the length."""
+
+
 class Obstacles:
-    """Round things in the way; ``version`` changes when there are others."""
+    """Round things in the way; ``version`` changes when there are others.
+
+    The one memory of a robot's drives, of cleans and walks alike: what was felt is forgotten after
+    ``felt_memory`` s, what was felt again at the same place after half an hour, what was seen when
+    the lidar sees through it, where the floor ends never.
+    """
 
     def __init__(
         self, seen: ThingLayer, walk: WalkConfig, body: BodyConfig, config: DrivingConfig
@@ -85,7 +104,7 @@ class Obstacles:
 
     def standing(self, now: float) -> list[RoundObstacle]:
         """Return all that is in the way now, m, map frame."""
-        return self._edges.at(now) + self._all_felt(now) + self._seen.obstacles()
+        return self.felt(now) + self._seen.obstacles()
 
     def edges(self) -> list[RoundObstacle]:
         """Return where the floor ends, which is never forgotten, m, map frame."""
@@ -96,14 +115,16 @@ class Obstacles:
         felt = [(x, y, _LEAST) for x, y, _ in self._all_felt(now)]
         return self._edges.at(now) + felt + [(x, y, _LEAST) for x, y, _ in self._seen.obstacles()]
 
-    def first_in_way(self, tracker: PathTracker, first: float, last: float) -> float | None:
+    def felt(self, now: float) -> list[RoundObstacle]:
+        """Return what bumper and cliff sensors found, m, map frame."""
+        return self._edges.at(now) + self._all_felt(now)
+
+    def first_in_way(self, way: Way, first: float, last: float) -> float | None:
         """Return where on a path, m, something seen first comes too near, or None.
 
         It is looked at from station ``first`` to ``last``, m.
         """
-        return self._seen.first_blocked(
-            tracker.course.points, tracker.course.stations, first, last, self._keep
-        )
+        return self._seen.first_blocked(way.points, way.stations, first, last, self._keep)
 
     def _all_felt(self, now: float) -> list[RoundObstacle]:
         return self._felt.at(now) + self._lasting.at(now)

@@ -24,17 +24,13 @@ from roomba.mission.driving.obstacles import Obstacles
 from roomba.mission.driving.recovery import Recovery
 from roomba.mission.driving.rejoin import Rejoin
 from roomba.mission.driving.trail import Trail
+from roomba.mission.driving.way_ahead import LEAVING, WayAhead
 from roomba.mission.inputs.senses import Senses
 
 _PROGRESS: Final = 0.02
 """m; less than this along the path is no progress."""
 _LONGEST_TICK: Final = 2.0
 """s; more between two ticks than this is a clock that was set."""
-_HORIZON: Final = 2.0
-"""m; so far ahead its path is looked at for what stands in the way."""
-_NEVER: Final = -1
-_LEAVING_WAY: Final = 0.25
-"""m; on so much of a new way it may still be near to what it goes around."""
 _MOST_FUTILE: Final = 3
 """New ways from one place; then it tries to get free in other ways."""
 _SAME_PLACE: Final = 0.10
@@ -85,8 +81,6 @@ class DriveStep:
 class PathDriver:
     """Drives along ``points``, float64 [n, 2], m, from wherever the robot stands.
 
-    Up to ``clear_to``, m along the path, nothing that is known is in its way.
-
     Each tick ends in bounded time, and so does the drive: what blocks it is remembered, and it
     gives up after so many recoveries without progress.
     """
@@ -117,14 +111,10 @@ class PathDriver:
         self._backs_from: tuple[float, float, float] | None = None
         self._wriggle: Recovery | None = None
         self._recoveries = 0
-        self._checked = _NEVER
-        self.clear_to = 0.0
-        self._mark_progress(senses, 0.0, 0)
-        self._freed_at = self._leaves_until = 0.0
         self._planned_at, self._futile = (math.inf, math.inf), 0
         self._nudged_at = (math.inf, math.inf)
         self._touched_at, self._touches = (math.inf, math.inf), 0
-        self.tracker = self._track(points)
+        self._begin(points, senses)
         if self.tracker.off_path(senses.pose) > _PROGRESS:
             self._go_around(senses)
 
@@ -139,9 +129,14 @@ class PathDriver:
         return (
             self._state is DriveState.DRIVING
             and not self.tracker.is_done
-            and self._checked == self._obstacles.version
+            and self._ahead.is_current
             and self.tracker.along < self.clear_to
         )
+
+    @property
+    def clear_to(self) -> float:
+        """Up to where on the path, m, nothing that is known is in the way."""
+        return self._ahead.clear_to
 
     def tick(self, senses: Senses, limit: float) -> DriveStep:
         """Return what is wanted now; ``limit`` is the speed wanted, m/s."""
@@ -168,10 +163,6 @@ class PathDriver:
     def caught_up(self, senses: Senses) -> None:
         """Go on after ticks that were the tracker's alone."""
         self._jumps.last = senses.now
-
-    def _track(self, points: NDArray[np.float64]) -> PathTracker:
-        robot = self._robot
-        return PathTracker(points, robot.tracking, robot.body, robot.timing.tick)
 
     def _follow_clock(self, now: float) -> None:
         """When the clock was set, move the times that are remembered with it."""
@@ -217,14 +208,7 @@ class PathDriver:
         """Whether it was moved, or something that was seen stands in its way."""
         if self.tracker.off_path(senses.pose) > self._config.off_path:
             return True
-        along = self.tracker.along
-        if self._checked != self._obstacles.version or along >= self.clear_to:
-            self._checked = self._obstacles.version
-            # What it has just planned to leave is not in its way.
-            first = max(along, self._leaves_until)
-            blocked = self._obstacles.first_in_way(self.tracker, first, along + _HORIZON)
-            self.clear_to = (blocked or along + _HORIZON) - self._config.look_ahead
-        return along >= self.clear_to
+        return self._ahead.is_blocked(self.tracker.along)
 
     def _leave_path(self, senses: Senses) -> None:
         """Go around what stands on the path, or have the rest of it planned anew."""
@@ -241,12 +225,17 @@ class PathDriver:
         else:
             self._go_around(senses)
 
-    def _begin(self, points: NDArray[np.float64], senses: Senses) -> None:
-        """Drive another path."""
-        self.tracker = self._track(points)
+    def _begin(
+        self, points: NDArray[np.float64], senses: Senses, leaves_until: float = 0.0
+    ) -> None:
+        """Drive another path; before ``leaves_until``, m along it, nothing seen is in its way."""
+        robot = self._robot
+        self.tracker = PathTracker(points, robot.tracking, robot.body, robot.timing.tick)
+        self._ahead = WayAhead(
+            self.tracker.course, self._obstacles, self._config.look_ahead, leaves_until
+        )
         self._mark_progress(senses, 0.0, 0)
-        self._checked, self.clear_to = _NEVER, 0.0
-        self._freed_at = self._leaves_until = 0.0
+        self._freed_at = 0.0
 
     def _go_around(self, senses: Senses) -> None:
         """Plan to the next piece of the path that can be reached; a bump may have shortened it."""
@@ -263,8 +252,7 @@ class PathDriver:
             self._state = DriveState.CUT_OFF
             self._reason = f"no way leads on from {senses.where}: {self._rejoin.trouble}"
             return
-        self._begin(points, senses)
-        self._leaves_until = back + _LEAVING_WAY
+        self._begin(points, senses, leaves_until=back + LEAVING)
 
     def _mark_progress(self, senses: Senses, along: float, leg: int) -> None:
         self._progressed, self._progress_along, self._progress_leg = senses.now, along, leg

@@ -34,6 +34,11 @@ class PathFollower:
         self._angles = np.abs(path.corner_angles[1:-1])
 
     @property
+    def along(self) -> float:
+        """How far along its path the robot is, m."""
+        return self._along
+
+    @property
     def left(self) -> float:
         """The length of path still before the robot, m."""
         return self._path.length - self._along

@@ -1,5 +1,7 @@
 """Walking to a point: a path, a setpoint that moves along it, and what to do when it is blocked.
 
+What the lidar sees on the path is walked around before the robot comes there, as on a clean.
+
 No clock and no I/O: it is ticked with what the robot senses and answers with what it wants.
 """
 
@@ -10,12 +12,13 @@ from dataclasses import dataclass
 from enum import Enum
 
 from roomba.clock import ClockJumps
-from roomba.configuration.robot import BodyConfig, WalkConfig
-from roomba.geometry import Pose
+from roomba.configuration.robot import WalkConfig
+from roomba.mission.driving.obstacles import Obstacles
 from roomba.mission.driving.path_follower import PathFollower
-from roomba.mission.driving.unknown_things import UnknownThings
+from roomba.mission.driving.way_ahead import LEAVING, WayAhead
+from roomba.mission.inputs.senses import Senses
 from roomba.perception.localization.estimate import Knowledge
-from roomba.planning.path.planner import NoPathError, Path, PathPlanner
+from roomba.planning.path.planner import NoPathError, NoPathReason, Path, PathPlanner
 
 Point = tuple[float, float]
 
@@ -27,6 +30,11 @@ _LONGEST_TICK = 2.0
 """s; more between two ticks than this is a clock that was set."""
 _OFF_PATH = 0.35
 """m; farther from its path than this the robot was carried or pushed, and plans anew."""
+_CARRIED = 1.0
+"""m; farther from where its place was known last the robot was carried."""
+_LOOK_AGAIN = 1.0
+"""s; so often a robot that waits before something looks for a way around it."""
+_UNKNOWN = "something that the map does not show stands"
 
 
 class WalkState(Enum):
@@ -41,29 +49,6 @@ class WalkState(Enum):
 
 
 @dataclass(frozen=True, slots=True)
-class Sensed:
-    """What a walk needs to know at a tick: time in s, pose in the map frame, speed in m/s.
-
-    ``knowledge`` is how well the pose is known, and ``trouble`` why not better.
-    """
-
-    now: float
-    pose: Pose
-    speed: float
-    bumper_left: bool = False
-    bumper_right: bool = False
-    cliff_left: bool = False
-    cliff_right: bool = False
-    knowledge: Knowledge = Knowledge.KNOWN
-    trouble: str = ""
-
-    @property
-    def touches(self) -> tuple[bool, bool]:
-        """Whether something is in the way on the left, on the right: felt, or no floor seen."""
-        return self.bumper_left or self.cliff_left, self.bumper_right or self.cliff_right
-
-
-@dataclass(frozen=True, slots=True)
 class WalkStep:
     """What a walk wants at a tick: the setpoint, m, and the cruise speed to go there, m/s."""
 
@@ -75,74 +60,78 @@ class WalkStep:
 
 
 class Walk:
-    """One walk to ``goal``.
+    """One walk to ``goal``, around what the map does not show, by ``obstacles``.
 
-    It ends by arriving or by failing, never otherwise: each new plan needs a bump, a standstill or
-    a push, and there are at most ``max_replans`` of them.
+    It ends by arriving or by failing, never otherwise: each new plan needs a bump, a standstill, a
+    push or something seen on the path, and of all of them there are only so many.
     """
 
     def __init__(
         self,
         planner: PathPlanner,
         config: WalkConfig,
-        body: BodyConfig,
-        things: UnknownThings,
+        obstacles: Obstacles,
         goal: Point,
-        sensed: Sensed,
+        senses: Senses,
     ) -> None:
         """Plan the way; raises NoPathError when there is none, ValueError for a goal not finite."""
         self.goal = goal
-        self.path = planner.plan((sensed.pose.x, sensed.pose.y), goal, things.at(sensed.now))
-        self._planner = planner
-        self._config = config
-        self._body = body
-        self._things = things
-        self._follower = PathFollower(self.path, config)
-        self._started = sensed.now
-        self._jumps = ClockJumps(last=sensed.now, longest=_LONGEST_TICK)
-        self._replans = 0
-        self._was_touching = any(sensed.touches)
-        self._least_left = math.inf
-        self._progressed = sensed.now
-        self._went_astray = False
-        self._astray_since = sensed.now
+        self._planner, self._config, self._obstacles = planner, config, obstacles
+        self._started = senses.now
+        self._jumps = ClockJumps(last=senses.now, longest=_LONGEST_TICK)
+        self._replans = self._ways_around = 0
+        self._was_touching = any(senses.touches)
+        self._went_astray, self._astray_since = False, senses.now
+        self._known_at = (senses.pose.x, senses.pose.y)
+        self._begin(self._plan_to_look(senses), senses)
 
     def time_spent(self, now: float) -> float:
         """Return how long it has walked, s."""
         return now - self._started
 
-    def tick(self, sensed: Sensed, max_speed: float) -> WalkStep:
+    def tick(self, senses: Senses, max_speed: float) -> WalkStep:
         """Return what is wanted now; ``max_speed`` in m/s."""
-        self._follow_clock(sensed.now)
-        if not sensed.knowledge.is_usable:
-            return self._wait_to_be_found(sensed, max_speed)
-        if sensed.knowledge is Knowledge.ROUGH:
+        self._follow_clock(senses.now)
+        if not senses.knowledge.is_usable:
+            return self._wait_to_be_found(senses, max_speed)
+        if senses.knowledge is Knowledge.ROUGH:
             max_speed = min(max_speed, self._config.careful_speed)
-        if self._has_arrived(sensed):
+        if self._has_arrived(senses):
             return WalkStep(WalkState.ARRIVED, self.goal, max_speed, 0.0)
-        trouble = self._notice_trouble(sensed)
-        if trouble:
-            failure = self._plan_anew(sensed, trouble)
-            if failure:
-                here = (sensed.pose.x, sensed.pose.y)
-                return WalkStep(WalkState.FAILED, here, max_speed, self._follower.left, failure)
-        setpoint, cruise_speed = self._follower.tick(sensed.pose, max_speed)
+        failure = self._go_around(senses)
+        if failure:
+            return self._stay(WalkState.FAILED, senses, max_speed, failure)
+        if self._blocked_since is not None:
+            return self._stay(WalkState.WALKING, senses, 0.0, self._trouble)
+        setpoint, cruise_speed = self._follower.tick(senses.pose, max_speed)
         return WalkStep(WalkState.WALKING, setpoint, cruise_speed, self._follower.left)
 
-    def _wait_to_be_found(self, sensed: Sensed, max_speed: float) -> WalkStep:
+    def _begin(self, path: Path, senses: Senses) -> None:
+        """Walk along a path."""
+        self.path = path
+        self._follower = PathFollower(path, self._config)
+        # A path may begin closely beside what it leads away from.
+        is_beside = self._obstacles.first_in_way(path, 0.0, 0.0) is not None
+        leaves_until = LEAVING if is_beside else 0.0
+        self._ahead = WayAhead(path, self._obstacles, self._config.look_ahead, leaves_until)
+        self._blocked_since: float | None = None
+        self._looked, self._trouble = -math.inf, ""
+        self._least_left, self._progressed = math.inf, senses.now
+
+    def _stay(self, state: WalkState, senses: Senses, speed: float, reason: str) -> WalkStep:
+        here = (senses.pose.x, senses.pose.y)
+        return WalkStep(state, here, speed, self._follower.left, reason)
+
+    def _wait_to_be_found(self, senses: Senses, max_speed: float) -> WalkStep:
         """Ask for nothing while the robot's place is not known; it may look around meanwhile."""
         if not self._went_astray:
-            self._went_astray, self._astray_since = True, sensed.now
-        self._progressed = sensed.now
-        is_lost = sensed.knowledge is Knowledge.LOST
-        is_lost |= sensed.now - self._astray_since > self._config.astray_timeout
-        return WalkStep(
-            WalkState.FAILED if is_lost else WalkState.ASTRAY,
-            (sensed.pose.x, sensed.pose.y),
-            max_speed,
-            self._follower.left,
-            f"the robot does not know where it is: {sensed.trouble}",
-        )
+            self._went_astray, self._astray_since = True, senses.now
+        self._progressed = senses.now
+        is_lost = senses.knowledge is Knowledge.LOST
+        is_lost |= senses.now - self._astray_since > self._config.astray_timeout
+        state = WalkState.FAILED if is_lost else WalkState.ASTRAY
+        reason = f"the robot does not know where it is: {senses.trouble}"
+        return self._stay(state, senses, max_speed, reason)
 
     def _follow_clock(self, now: float) -> None:
         """When the clock was set, move the times that are remembered with it."""
@@ -150,47 +139,102 @@ class Walk:
         self._started += jump
         self._progressed += jump
         self._astray_since += jump
+        self._looked += jump
+        if self._blocked_since is not None:
+            self._blocked_since += jump
 
-    def _has_arrived(self, sensed: Sensed) -> bool:
-        near = sensed.pose.distance_to(*self.goal) <= self._config.arrival_tolerance
-        return near and abs(sensed.speed) <= _STANDSTILL
+    def _has_arrived(self, senses: Senses) -> bool:
+        near = senses.pose.distance_to(*self.goal) <= self._config.arrival_tolerance
+        return near and abs(senses.twist.linear) <= _STANDSTILL
 
-    def _notice_trouble(self, sensed: Sensed) -> str:
-        """Return why a new plan is needed, or nothing."""
-        where = f"near ({sensed.pose.x:.2f}, {sensed.pose.y:.2f})"
-        went_astray, self._went_astray = self._went_astray, False
-        if went_astray:
+    def _go_around(self, senses: Senses) -> str:
+        """Plan anew if need be; return why the walk is given up, or nothing."""
+        trouble = self._notice_trouble(senses)
+        if trouble:
+            return self._plan_anew(senses, trouble)
+        if self._ahead.is_blocked(self._follower.along):
+            return self._plan_around(senses)
+        self._blocked_since = None
+        return ""
+
+    def _notice_trouble(self, senses: Senses) -> str:
+        """Return why a new plan is needed, or nothing; what is seen ahead is not looked at."""
+        where = f"near {senses.where}"
+        if self._is_found_again(senses):
             return f"the robot found itself again {where}"
-        left, right = sensed.touches
+        left, right = senses.touches
         is_new, self._was_touching = (left or right) and not self._was_touching, left or right
         if is_new:
-            self._things.felt(sensed.now, sensed.pose, left, right)
-            if sensed.cliff_left or sensed.cliff_right:
-                return f"the floor ends {where}"
-            return f"something that the map does not show stands in the way {where}"
-        if self._follower.distance_off(sensed.pose) > _OFF_PATH:
+            self._obstacles.feel(senses)
+            return f"the floor ends {where}" if senses.cliff else f"{_UNKNOWN} in the way {where}"
+        if self._follower.distance_off(senses.pose) > _OFF_PATH:
             return f"the robot was moved off its path {where}"
-        if self._follower.left < self._least_left - _PROGRESS:
-            self._least_left = self._follower.left
-            self._progressed = sensed.now
-        if sensed.now - self._progressed > self._config.progress_timeout:
+        if self._follower.left < self._least_left - _PROGRESS or self._blocked_since is not None:
+            self._least_left = min(self._least_left, self._follower.left)
+            self._progressed = senses.now
+        if senses.now - self._progressed > self._config.progress_timeout:
             return f"the robot comes no nearer {where}"
         return ""
 
-    def _plan_anew(self, sensed: Sensed, trouble: str) -> str:
-        """Plan from here; return why the walk is given up, or nothing."""
+    def _is_found_again(self, senses: Senses) -> bool:
+        """Whether the place is known again; what is remembered of another place is forgotten."""
+        went_astray, self._went_astray = self._went_astray, False
+        if went_astray and senses.pose.distance_to(*self._known_at) > _CARRIED:
+            self._obstacles.forget()
+        self._known_at = (senses.pose.x, senses.pose.y)
+        return went_astray
+
+    def _plan_anew(self, senses: Senses, trouble: str) -> str:
+        """Plan from here after trouble; return why the walk is given up, or nothing."""
         self._replans += 1
         if self._replans > self._config.max_replans:
             return f"gave up after {self._config.max_replans} ways around: {trouble}"
-        obstacles = self._things.at(sensed.now)
         try:
-            self.path = self._planner.plan((sensed.pose.x, sensed.pose.y), self.goal, obstacles)
+            self._begin(self._plan_to_look(senses), senses)
         except NoPathError as error:
             return f"{trouble}, and there is no way around it: {error}"
-        self._follower = PathFollower(self.path, self._config)
-        self._least_left = math.inf
-        self._progressed = sensed.now
         return ""
+
+    def _plan_around(self, senses: Senses) -> str:
+        """Plan around what is seen on the path; return why the walk is given up, or nothing.
+
+        Without a way the robot stands and looks again: people pass.
+        """
+        if self._blocked_since is None:
+            self._blocked_since = senses.now
+            self._ways_around += 1
+        elif senses.now - self._looked < _LOOK_AGAIN:
+            return ""
+        self._looked = senses.now
+        x, y = self.path.point_at(self._ahead.blocked_at or 0.0)
+        self._trouble = f"{_UNKNOWN} in the way near ({x:.2f}, {y:.2f})"
+        if self._ways_around > self._config.max_ways_around:
+            return f"gave up after {self._config.max_ways_around} ways around: {self._trouble}"
+        try:
+            self._begin(self._plan(senses), senses)
+        except NoPathError as error:
+            self._trouble += f", and there is no way around it: {error}"
+            if error.reason is NoPathReason.GOAL_IN_OBSTACLE:
+                self._trouble = f"{_UNKNOWN} at the goal: {error}"
+            if senses.now - self._blocked_since > self._config.patience:
+                return self._trouble
+        return ""
+
+    def _plan(self, senses: Senses) -> Path:
+        """Return a way around all that is known, if need be closely; raises NoPathError."""
+        here, now = (senses.pose.x, senses.pose.y), senses.now
+        try:
+            return self._planner.plan(here, self.goal, self._obstacles.standing(now))
+        except NoPathError:
+            return self._planner.plan(here, self.goal, self._obstacles.at_least(now))
+
+    def _plan_to_look(self, senses: Senses) -> Path:
+        """Return the same, or a way to where something stood that was seen: it may have gone."""
+        try:
+            return self._plan(senses)
+        except NoPathError:
+            here = (senses.pose.x, senses.pose.y)
+            return self._planner.plan(here, self.goal, self._obstacles.felt(senses.now))
 
 
 def expected_duration(path: Path, max_speed: float) -> float:

@@ -135,16 +135,16 @@ def test_where_something_is_first_in_the_way_of_a_path_is_told() -> None:
     known, layer = obstacles()
     points = np.array([(0.6, 1.0), (1.6, 1.0), (2.6, 1.0)])
     tracker = PathTracker(points, CONFIG.tracking, CONFIG.body, 0.05)
-    assert known.first_in_way(tracker, 0.0, 2.0) is None
+    assert known.first_in_way(tracker.course, 0.0, 2.0) is None
     see_a_thing(layer)
-    first = known.first_in_way(tracker, 0.0, 2.0)
+    first = known.first_in_way(tracker.course, 0.0, 2.0)
     assert first is not None
     # The thing is 1.4 m along the path; the body touches it about its radius earlier.
     assert 1.4 - BODY - 0.15 < first < 1.4
-    assert known.first_in_way(tracker, 0.0, first - 0.1) is None
-    assert known.first_in_way(tracker, 1.4 + BODY + 0.15, 2.0) is None
+    assert known.first_in_way(tracker.course, 0.0, first - 0.1) is None
+    assert known.first_in_way(tracker.course, 1.4 + BODY + 0.15, 2.0) is None
     aside = PathTracker(points + np.array((0.0, 0.5)), CONFIG.tracking, CONFIG.body, 0.05)
-    assert known.first_in_way(aside, 0.0, 2.0) is None
+    assert known.first_in_way(aside.course, 0.0, 2.0) is None
 
 
 def test_what_is_felt_next_to_a_wall_counts_when_it_is_felt_again() -> None:
@@ -181,5 +181,5 @@ def test_what_is_only_a_little_nearer_than_planned_is_not_in_the_way() -> None:
         aside = top + BODY - off
         points = np.array([(1.0, aside), (3.0, aside)])
         tracker = PathTracker(points, CONFIG.tracking, CONFIG.body, 0.05)
-        blocked.append(known.first_in_way(tracker, 0.0, 2.0) is not None)
+        blocked.append(known.first_in_way(tracker.course, 0.0, 2.0) is not None)
     assert blocked == [False, True]

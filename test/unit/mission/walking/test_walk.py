@@ -6,13 +6,17 @@ from fixtures.rooms import Block, room_home
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from roomba.configuration.mission import MissionConfig
 from roomba.configuration.robot import RobotConfig
 from roomba.files.shipped import HOMES
-from roomba.geometry import Pose
+from roomba.geometry import Pose, Twist
 from roomba.headless.walker import HeadlessRobot
-from roomba.mission.driving.unknown_things import UnknownThings
-from roomba.mission.walking.walk import Sensed, Walk, WalkState, feedback_period
+from roomba.mission.driving.obstacles import Obstacles
+from roomba.mission.inputs.senses import Senses
+from roomba.mission.walking.walk import Walk, WalkState, feedback_period
 from roomba.perception.localization.estimate import Knowledge
+from roomba.perception.matching.surface_field import SurfaceField
+from roomba.perception.things.layer import ThingLayer
 from roomba.planning.path.planner import NoPathError, PathPlanner
 from roomba.world.layers.layer import load_home
 
@@ -71,11 +75,11 @@ def test_a_little_further_right_after_arriving_is_walked_too(further: float) -> 
     assert math.dist(record.poses[-1, 1:3], (0.8, 1.0 + further)) < 0.04
 
 
-def test_a_thing_that_the_map_does_not_know_is_gone_around() -> None:
+def test_a_thing_that_only_the_lidar_sees_is_gone_around_without_a_touch() -> None:
     robot = furnished(hidden=((1.6, 2.9, 2.0, 3.3),))
     record = robot.walk(2.8, 3.0)
     assert record.state is WalkState.ARRIVED
-    assert record.bumps >= 1
+    assert record.bumps == 0
     assert math.dist(record.poses[-1, 1:3], (2.8, 3.0)) < 0.05
 
 
@@ -126,18 +130,19 @@ def test_a_goal_beside_the_stairs_is_reached_without_a_wheel_over_the_edge() -> 
     assert record.poses[:, 1].max() < 6.5
 
 
-def stuck_walk() -> tuple[Walk, Sensed]:
+def stuck_walk() -> tuple[Walk, Senses]:
     home = room_home()
     planner = PathPlanner(home.map, CONFIG.body.radius, 0.04, 0.01)
-    sensed = Sensed(100.0, Pose(1.0, 1.0, 0.0), 0.0)
-    things = UnknownThings(CONFIG.walk, CONFIG.body)
-    return Walk(planner, CONFIG.walk, CONFIG.body, things, (4.0, 3.0), sensed), sensed
+    senses = Senses(100.0, Pose(1.0, 1.0, 0.0))
+    things = ThingLayer(SurfaceField.of(home.map))
+    obstacles = Obstacles(things, CONFIG.walk, CONFIG.body, MissionConfig().driving)
+    return Walk(planner, CONFIG.walk, obstacles, (4.0, 3.0), senses), senses
 
 
 def test_a_robot_that_does_not_move_gives_up_with_the_reason() -> None:
-    walk, sensed = stuck_walk()
+    walk, senses = stuck_walk()
     for tick in range(20 * 200):
-        step = walk.tick(Sensed(100.0 + 0.05 * tick, sensed.pose, 0.0), 0.5)
+        step = walk.tick(Senses(100.0 + 0.05 * tick, senses.pose), 0.5)
         if step.state is not WalkState.WALKING:
             break
     assert step.state is WalkState.FAILED
@@ -147,10 +152,10 @@ def test_a_robot_that_does_not_move_gives_up_with_the_reason() -> None:
 
 
 def test_a_robot_that_was_carried_away_plans_anew() -> None:
-    walk, sensed = stuck_walk()
+    walk, senses = stuck_walk()
     path = walk.path
-    walk.tick(sensed, 0.5)
-    walk.tick(Sensed(101.0, Pose(3.5, 0.6, 0.0), 0.0), 0.5)
+    walk.tick(senses, 0.5)
+    walk.tick(Senses(101.0, Pose(3.5, 0.6, 0.0)), 0.5)
     assert walk.path is not path
     assert walk.path.points[0].tolist() == [3.5, 0.6]
 
@@ -164,17 +169,17 @@ def test_it_slows_for_corners() -> None:
 
 def test_a_walk_that_passed_its_goal_at_speed_has_not_arrived() -> None:
     walk, _ = stuck_walk()
-    assert walk.tick(Sensed(101.0, Pose(4.0, 3.0), 0.5), 0.5).state is WalkState.WALKING
-    assert walk.tick(Sensed(101.1, Pose(4.0, 3.0), 0.0), 0.5).state is WalkState.ARRIVED
+    assert walk.tick(Senses(101.0, Pose(4.0, 3.0), Twist(0.5)), 0.5).state is WalkState.WALKING
+    assert walk.tick(Senses(101.1, Pose(4.0, 3.0)), 0.5).state is WalkState.ARRIVED
 
 
 @pytest.mark.parametrize("jump", [-3600.0, 3600.0])
 def test_a_clock_that_is_set_changes_neither_the_time_spent_nor_the_time_out(jump: float) -> None:
-    walk, sensed = stuck_walk()
+    walk, senses = stuck_walk()
     now, ended = 100.0, WalkState.WALKING
     for tick in range(20 * 200):
         now += 0.05 + (jump if tick == 100 else 0.0)
-        ended = walk.tick(Sensed(now, sensed.pose, 0.0), 0.5).state
+        ended = walk.tick(Senses(now, senses.pose), 0.5).state
         if ended is not WalkState.WALKING:
             break
     assert ended is WalkState.FAILED
@@ -191,9 +196,9 @@ def test_feedback_comes_as_often_as_the_report_says() -> None:
 def test_a_walk_waits_for_its_place_to_be_found_but_not_for_ever() -> None:
     robot = furnished()
     at = Pose(0.5, 0.5, 0.0)
-    sensed = Sensed(0.0, at, 0.0)
-    walk = Walk(robot.planner, CONFIG.walk, CONFIG.body, robot.things, (4.5, 3.5), sensed)
-    astray = replace(sensed, knowledge=Knowledge.SEARCHING, trouble="it was carried")
+    senses = Senses(0.0, at)
+    walk = Walk(robot.planner, CONFIG.walk, robot.obstacles, (4.5, 3.5), senses)
+    astray = replace(senses, knowledge=Knowledge.SEARCHING, trouble="it was carried")
     steps = [walk.tick(replace(astray, now=0.05 * tick), 0.5) for tick in range(1, 1400)]
     assert steps[0].state is WalkState.ASTRAY
     assert "it was carried" in steps[-1].reason
@@ -203,26 +208,26 @@ def test_a_walk_waits_for_its_place_to_be_found_but_not_for_ever() -> None:
 
 def test_a_walk_goes_on_from_where_the_robot_was_found() -> None:
     robot = furnished()
-    sensed = Sensed(0.0, Pose(0.5, 0.5, 0.0), 0.0)
-    walk = Walk(robot.planner, CONFIG.walk, CONFIG.body, robot.things, (4.5, 3.5), sensed)
-    walk.tick(replace(sensed, now=0.05, knowledge=Knowledge.SEARCHING), 0.5)
-    found = replace(sensed, now=0.1, pose=Pose(4.5, 0.5, 0.0))
+    senses = Senses(0.0, Pose(0.5, 0.5))
+    walk = Walk(robot.planner, CONFIG.walk, robot.obstacles, (4.5, 3.5), senses)
+    walk.tick(replace(senses, now=0.05, knowledge=Knowledge.SEARCHING), 0.5)
+    found = replace(senses, now=0.1, pose=Pose(4.5, 0.5, 0.0))
     assert walk.tick(found, 0.5).state is WalkState.WALKING
     assert tuple(walk.path.points[0]) == pytest.approx((4.5, 0.5), abs=0.06)
 
 
 def test_a_robot_that_knows_its_place_but_roughly_walks_slowly() -> None:
     robot = furnished()
-    sensed = Sensed(0.0, Pose(0.5, 0.5, 0.0), 0.0, knowledge=Knowledge.ROUGH)
-    walk = Walk(robot.planner, CONFIG.walk, CONFIG.body, robot.things, (0.5, 3.5), sensed)
-    assert walk.tick(replace(sensed, now=0.05), 0.5).cruise_speed <= CONFIG.walk.careful_speed
+    senses = Senses(0.0, Pose(0.5, 0.5), knowledge=Knowledge.ROUGH)
+    walk = Walk(robot.planner, CONFIG.walk, robot.obstacles, (0.5, 3.5), senses)
+    assert walk.tick(replace(senses, now=0.05), 0.5).cruise_speed <= CONFIG.walk.careful_speed
 
 
 def test_a_lost_robot_gives_its_walk_up() -> None:
     robot = furnished()
-    sensed = Sensed(0.0, Pose(0.5, 0.5, 0.0), 0.0)
-    walk = Walk(robot.planner, CONFIG.walk, CONFIG.body, robot.things, (0.5, 3.5), sensed)
-    lost = replace(sensed, now=0.05, knowledge=Knowledge.LOST, trouble="several places fit")
+    senses = Senses(0.0, Pose(0.5, 0.5))
+    walk = Walk(robot.planner, CONFIG.walk, robot.obstacles, (0.5, 3.5), senses)
+    lost = replace(senses, now=0.05, knowledge=Knowledge.LOST, trouble="several places fit")
     step = walk.tick(lost, 0.5)
     assert step.state is WalkState.FAILED
     assert "several places fit" in step.reason
