@@ -35,9 +35,9 @@ class Limits:
 
 @dataclass(frozen=True, slots=True)
 class RobotState:
-    """The newest values the robot has told; ``dirt`` in g under its body.
+    """The newest values that the robot reported; ``dirt`` in g under its body.
 
-    ``doubt`` says why it does not know well where it is, and what helps; empty if it does.
+    ``doubt`` says why its place is not known well, and what helps; empty if it is.
     """
 
     x: float
@@ -222,7 +222,7 @@ class DockingHandle(Protocol):
 class ExploreReport:
     """The end of an exploration: ``known`` m2 of floor, m, s of the robot's clock.
 
-    What is not known, as after DISCONNECTED, is not a number.
+    What is not known, as after DISCONNECTED, is NaN.
     """
 
     outcome: ErrandOutcome
@@ -250,7 +250,7 @@ class ExploringHandle(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class VacuumSnapshot:
-    """What the robot does, in the words of smart homes, and how far it is.
+    """The robot's state, in the words of smart homes, and its progress.
 
     ``phase`` is ``state`` in more detail; ``message`` says why it does not do what was asked, and
     what helps, empty when all is well. The rest is as in :class:`CleanProgress`; areas, share and
@@ -283,7 +283,7 @@ class RobotClient(Protocol):
     def state(self, timeout: float = 5.0) -> RobotState:
         """Return the newest state; RobotUnavailableError when none comes in ``timeout`` s.
 
-        A value that the robot has not told for a few seconds counts as none.
+        A value that is a few seconds old counts as missing.
         """
 
     def path_length(self, x: float, y: float) -> float:
@@ -335,7 +335,7 @@ class RobotClient(Protocol):
         """End what it does, and stay; RequestRefusedError with the reason."""
 
     def locate(self) -> None:
-        """Let the robot be heard."""
+        """Let the robot beep, so that a person finds it."""
 
     def vacuum(self, timeout: float = 5.0) -> VacuumSnapshot:
         """Return what it does now; RobotUnavailableError when it does not tell in ``timeout`` s."""

@@ -1,1 +1,1 @@
-"""Loops that turn wishes into twists, and the limits above them."""
+"""Control loops: from setpoints and paths to twists, and the limits above them."""

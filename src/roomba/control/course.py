@@ -1,4 +1,4 @@
-"""A path made ready for driving: its legs, and how fast its corners can be taken."""
+"""A path prepared for driving: its legs, and how fast its corners can be taken."""
 
 from __future__ import annotations
 

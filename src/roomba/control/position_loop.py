@@ -1,4 +1,4 @@
-"""The position loop: from where the robot is and where it should be to the twist it wants."""
+"""The position loop: from the robot's pose and its setpoint to a twist."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ _STANDSTILL = Twist()
 
 
 class PositionLoop:
-    """Drives to a setpoint that may stand or move; turns on the spot for what lies far aside.
+    """Drives to a setpoint, fixed or moving; turns on the spot when it lies far aside.
 
-    Having arrived it stands until it is farther from that setpoint than ``restart_distance``, so
-    that noise and the way of braking do not make it dance.
+    After arrival it stands until it is farther from the setpoint than ``restart_distance``: this
+    hysteresis keeps noise and braking from moving it to and fro.
     """
 
     def __init__(self, control: ControlConfig, body: BodyConfig) -> None:
@@ -54,7 +54,7 @@ class PositionLoop:
 
     def _turning_speed(self, bearing: float) -> float:
         top = min(self._control.turning_speed, self._body.max_angular_speed)
-        # What can still be braked away before the bearing is zero.
+        # The turning speed that can still be braked before the bearing is zero.
         brakeable = math.sqrt(self._body.max_angular_acceleration * abs(bearing))
         speed = min(self._control.heading_gain * abs(bearing), top, brakeable)
         return math.copysign(speed, bearing)

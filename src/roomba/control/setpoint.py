@@ -1,7 +1,7 @@
-"""Where the robot should be: the newest wish, and whether its sender still stands behind it.
+"""The setpoint: where the robot should be, and whether its sender is still connected.
 
-A single wish is driven to the end. A stream of wishes, a setpoint on the move, is only good while
-its sender is there: when the sender vanishes, the robot stops at once.
+A single setpoint is driven to the end. A stream of them, a moving setpoint, is only valid while its
+sender is connected: when the sender vanishes, the robot stops at once.
 """
 
 from __future__ import annotations
@@ -12,10 +12,10 @@ Point = tuple[float, float]
 
 
 class Setpoint:
-    """The newest wish, m in the map frame; times in s of the robot's clock."""
+    """The newest setpoint, m in the map frame; times in s of the robot's clock."""
 
     def __init__(self, stream_timeout: float) -> None:
-        """A stream is wishes that follow each other within ``stream_timeout`` s."""
+        """A stream is setpoints that follow each other within ``stream_timeout`` s."""
         self._stream_timeout = stream_timeout
         self._target: Point | None = None
         self._received = -math.inf
@@ -24,11 +24,11 @@ class Setpoint:
 
     @property
     def target(self) -> Point | None:
-        """The point to be at, or None when nothing is wished."""
+        """The point to be at, or None without a setpoint."""
         return self._target
 
     def wish(self, now: float, target: Point, senders: int) -> None:
-        """Take a new wish; ``senders`` is how many programs are connected to send wishes."""
+        """Take a new setpoint; ``senders`` is how many publishers are connected."""
         since = now - self._received
         self._streamed = self._target is not None and 0.0 <= since <= self._stream_timeout
         self._target = target
@@ -36,16 +36,16 @@ class Setpoint:
         self._senders = senders
 
     def fulfilled(self, now: float) -> None:
-        """The robot is there: wish nothing any more, unless wishes are still streaming in."""
+        """The robot is there: forget the setpoint, unless more are still streaming in."""
         if not 0.0 <= now - self._received <= self._stream_timeout:
             self._target = None
 
     def is_wished(self, now: float) -> bool:
-        """Whether the newest wish is not older than a stream's, though it may be forgotten."""
+        """Whether the newest setpoint is as recent as a stream's; it may be forgotten already."""
         return 0.0 <= now - self._received <= self._stream_timeout
 
     def forget(self) -> None:
-        """Wish nothing any more."""
+        """Forget the setpoint."""
         self._target = None
 
     def check(self, now: float, senders: int) -> bool:

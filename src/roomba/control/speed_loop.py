@@ -1,4 +1,4 @@
-"""The speed loop: the last word on what the drive is told.
+"""The speed loop: it decides the twist that the drive gets.
 
 It chooses one source of commands, keeps to the speed limit, stops for stale commands, backs
 away from what the bumper meets and from cliffs, and stands when a wheel hangs in the air. Above all
@@ -15,14 +15,14 @@ from roomba.geometry import Twist
 
 
 class Hold(Enum):
-    """Why the drive does not get what was asked for."""
+    """Why the drive gets less than the command."""
 
     NONE = "drives as asked"
     NO_COMMAND = "no command"
-    """Nothing was asked for yet, or the newest command is too old."""
+    """There is no command yet, or the newest one is too old."""
     SPEED_ZERO = "the speed wanted is 0"
     BUMPER = "the bumper is pressed"
-    """It backs off a little, so that it can turn to another side; then it only does not push."""
+    """It backs off a little, so that it can turn away; then it only does not push."""
     CLIFF = "there is no floor ahead"
     """It backs away until there is, whatever the command, for BACKING_TIME at most."""
     WHEEL_DROP = "a wheel hangs in the air"
@@ -44,7 +44,7 @@ BACKING_SPEED = 0.1
 BACKING_TIME = 2.5
 """s; then it stands: no sensor looks behind, and a cliff sensor may be dirty."""
 BACKING_OFF_TIME = 0.6
-"""s; so long at most it backs off from what the bumper meets."""
+"""s; the longest time that it backs off from what the bumper met."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,7 +84,7 @@ class SpeedLoop:
         self._max_speed = max_speed
 
     def set_cruise_speed(self, speed: float) -> None:
-        """Set the speed wanted from now on; raises ValueError for what is no speed."""
+        """Set the cruise speed; raises ValueError unless it is finite and not negative."""
         if not math.isfinite(speed) or speed < 0.0:
             raise ValueError(f"expected a finite speed of 0 m/s or more, got {speed}")
         self._cruise_speed = speed
@@ -112,9 +112,9 @@ class SpeedLoop:
         self._wheel_hangs = dropped
 
     def tick(self, now: float) -> tuple[Twist, Hold]:
-        """Return the twist for the drive, and why it is less than what was asked for."""
+        """Return the twist for the drive, and why it is less than the command."""
         if self.emergency:
-            # What was asked for before is not to be driven when it is released.
+            # Commands from before are dropped, so that nothing is driven at the release.
             self._commands.clear()
             return Twist(), Hold.EMERGENCY
         command = self._fresh_command(now)
@@ -162,5 +162,5 @@ class SpeedLoop:
 
 
 def _began(since: float | None, now: float) -> float:
-    """Return since when something holds; it began now if it did not, or the clock was set back."""
+    """Return since when a state holds: from now on if it is new, or the clock was set back."""
     return now if since is None or now < since else since

@@ -1,4 +1,4 @@
-"""Compiled tracking of a path: from where the robot is on it to the twist that keeps it there.
+"""Compiled path tracking: from the robot's place along its path to the twist that keeps it there.
 
 A path is followed leg by leg. Sharp corners are turned on the spot; at soft ones the heading goes
 over from one leg to the next while driving.
@@ -55,11 +55,11 @@ class Course(NamedTuple):
 
 
 _ASKEW: Final = 0.6
-"""rad; aiming so badly it turns on the spot first."""
+"""rad; with a larger error of the heading it turns on the spot first."""
 _LEAD: Final = 0.06
-"""s; so much later the drive has the turning speed that it is told: a tick, and its ramp."""
+"""s; delay until the drive has the turning speed that it is told: a tick, and its ramp."""
 _LATE: Final = 2.0
-"""Ticks; so late it reckons with at corners: one of its own, one of messages."""
+"""Ticks; delay that is expected at corners: one of its own, one of messages."""
 _SLOWEST: Final = 0.015
 """m/s and rad/s; slower than this drives do not turn reliably."""
 
@@ -101,10 +101,10 @@ def track(
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def turn_speed(state: Row, error: float) -> float:
-    """Return the turning speed that ends a turn on the spot well, rad/s."""
+    """Return the turning speed, rad/s, that ends a turn on the spot without overshoot."""
     size = abs(error)
     speed = min(state.turning_speed, math.sqrt(2.0 * state.turning_braking * size))
-    # What is left at the end takes a few ticks more: the drive is a tick or two late.
+    # The rest at the end takes a few ticks more: the drive is a tick or two late.
     speed = max(min(speed, size / (1.7 * state.period)), 4.0 * _SLOWEST)
     return math.copysign(min(speed, size / state.period), error)
 
@@ -129,7 +129,7 @@ def drive(
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def corner_limit(state: Row, course: Course, left: float, limit: float) -> float:
-    """Return the fastest speed from which all that comes can be braked for, m/s."""
+    """Return the fastest speed, m/s, from which it can brake for all corners ahead."""
     last = course.headings.size - 1
     speed: float = limit
     horizon = limit * limit / (2.0 * state.braking) + 2.0 * limit * state.period
@@ -155,7 +155,7 @@ def corner_limit(state: Row, course: Course, left: float, limit: float) -> float
 def stopping_speed(state: Row, way: float) -> float:
     """Return the speed, m/s, from which it stops within ``way``, m.
 
-    The drive does what it is told a little late, and goes on for that: v T + v^2 / (2 b) = way.
+    The drive obeys with a delay T, for which it goes on: v T + v^2 / (2 b) = way.
     """
     late, braking = _LATE * state.period, state.braking
     speed: float = braking * (math.sqrt(late * late + 2.0 * max(way, 0.0) / braking) - late)

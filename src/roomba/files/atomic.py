@@ -22,7 +22,7 @@ UNREADABLE: Final = (
     zipfile.BadZipFile,
     zlib.error,
 )
-"""What reading arrays raises that the disk refuses, or that are broken or something else."""
+"""What reading arrays raises: the disk refuses, or the file is broken or no array."""
 
 _MODE: Final = 0o600
 """Read and written by the owner alone: maps and pictures show a home from inside."""

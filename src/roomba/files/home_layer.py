@@ -28,12 +28,12 @@ LAYER_NAME: Final = "home.yaml"
 """The files of a home's folder: a map_server map, and the layer beside it."""
 
 DAY: Final = 86_400.0
-"""s; how long a script of what moves may be: what would end later does not begin."""
+"""s; the longest script of what moves: an occurrence that would end later does not begin."""
 
 DIRECTIONS = {"east": 0.0, "north": math.pi / 2.0, "west": math.pi, "south": -math.pi / 2.0}
 
 SHORTEST_PERIOD: Final = 10.0
-"""s; what moved all the time would make the day's track endless."""
+"""s; the shortest period: with 0 the day's track would be endless."""
 
 
 def _direction(value: Any) -> Any:

@@ -30,7 +30,7 @@ RAW_UNKNOWN = 255
 
 
 class MapDescription(BaseModel):
-    """The YAML file: keys of other programs beside these are of no concern here."""
+    """The YAML file; other keys are ignored."""
 
     model_config = ConfigDict(extra="ignore", frozen=True)
 

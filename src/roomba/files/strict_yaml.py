@@ -24,7 +24,7 @@ _Model = TypeVar("_Model", bound=BaseModel)
 
 
 class _Loader(Reader, Scanner, Parser, Composer, SafeConstructor, Resolver):
-    """What ``yaml.SafeLoader`` is, but out of reach of ROS, which teaches that one to run code."""
+    """A copy of ``yaml.SafeLoader``: ROS adds constructors to the original that run code."""
 
     def __init__(self, text: str) -> None:
         Reader.__init__(self, text)
@@ -142,7 +142,7 @@ def _refuse_duplicates(file: YamlFile, node: Node | None, seen: set[int]) -> Non
 
 
 def _reason(error: dict[str, Any], known: list[str]) -> str:
-    """Turn pydantic's first finding into: what was expected, what came, what to do."""
+    """Turn pydantic's first error into: what was expected, what came, what to do."""
     name = ".".join(str(part) for part in error["loc"])
     key = str(error["loc"][-1]) if error["loc"] else ""
     if error["type"] == "extra_forbidden":

@@ -1,1 +1,1 @@
-"""What the robot believes about itself and its home, from its sensors alone."""
+"""The robot's estimate of itself and its home, from its sensors alone."""

@@ -1,1 +1,1 @@
-"""Ways over the floor."""
+"""Planning of paths, coverage and exploration over a map."""

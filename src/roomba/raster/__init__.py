@@ -1,1 +1,1 @@
-"""What can be computed over any grid of cells: distances, regions, values on another grid."""
+"""Computations over any grid of cells: distances, regions, values on another grid."""

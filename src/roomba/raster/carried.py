@@ -1,4 +1,4 @@
-"""What was noted cell by cell on one map of a home, brought to another map of it."""
+"""Resampling: values of the cells of one map of a home, on another map of it."""
 
 from __future__ import annotations
 

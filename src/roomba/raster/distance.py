@@ -1,6 +1,6 @@
 """Exact Euclidean distances over a grid, compiled.
 
-The way of Felzenszwalb and Huttenlocher, "Distance Transforms of Sampled Functions" (2012): along
+After Felzenszwalb and Huttenlocher, "Distance Transforms of Sampled Functions" (2012): along
 columns first, then the lower envelope of parabolas along rows. OpenCV has it too, but costs each
 process that loads it 100 MB (ADR 4).
 """

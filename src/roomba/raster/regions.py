@@ -33,7 +33,7 @@ def numbered_regions(mask: Mask) -> Labels:
 
 @njit(cache=True, nogil=True)
 def _grow(mask: Mask, heights: NDArray[np.int16], grown: Mask) -> None:
-    """Set the cells whose column, or one beside it, has a true cell near enough.
+    """Set the cells that have a true cell near enough in their column or one beside it.
 
     ``heights`` [2 n + 1] is how far the reach goes up and down, in each of its columns; -1 where it
     is empty.
@@ -46,7 +46,7 @@ def _grow(mask: Mask, heights: NDArray[np.int16], grown: Mask) -> None:
     for row in range(rows):
         for index in range(heights.size):
             right, height = index - aside, heights[index]
-            # Slices of one length: so the compiler takes many columns at once.
+            # Slices of one length let the compiler vectorize over columns.
             beside = away[row, max(right, 0) : max(columns + right, 0)]
             into = grown[row, max(-right, 0) : max(columns - right, 0)]
             for column in range(min(beside.size, into.size)):

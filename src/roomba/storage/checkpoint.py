@@ -1,4 +1,4 @@
-"""What a robot remembers of its work on disk: the errand that it is on, and where it was dirty.
+"""Checkpoints on disk: the robot's present errand, and where it was dirty.
 
 Each file is replaced atomically: a node that was killed finds the old checkpoint or the new one.
 """
@@ -25,17 +25,17 @@ class CheckpointFileError(RoombaError):
 
 
 def save_checkpoint(values: Values, run: str, path: Path, taken_up: int = 0) -> None:
-    """Write what a mission must remember; ``run`` names the launch of the robot that it is of.
+    """Write what a mission must remember; ``run`` names this launch of the robot.
 
-    ``taken_up`` is how often it was taken up without getting anywhere. Raises OSError when the disk
-    refuses, and ValueError for what is no plain value.
+    ``taken_up`` is how often it was resumed without progress. Raises OSError when the disk
+    refuses, and ValueError for a value that JSON does not have.
     """
     text = json.dumps({"run": run, "taken_up": taken_up, "mission": values}, allow_nan=False)
     write_whole(path, text.encode("utf-8"))
 
 
 def load_checkpoint(path: Path, run: str) -> tuple[Values, int] | None:
-    """Return what was saved in this run of the robot, and how often it was taken up; None: nothing.
+    """Return what was saved in this run, and how often it was resumed; None without a file.
 
     A checkpoint of another run is ignored: after a launch the robot must not begin to drive by
     itself. Raises CheckpointFileError for a file that cannot be read.

@@ -1,4 +1,4 @@
-"""Files of what belongs to one map alone, in YAML: each says by a digest which map that is."""
+"""YAML files that belong to one map: each names its map by a digest."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Number = Annotated[float, Field(ge=-1e5, le=1e5)]
 
 
 class Entry(BaseModel):
-    """A part of such a file; what it does not know is left alone."""
+    """A part of such a file; unknown keys are ignored."""
 
     model_config = ConfigDict(extra="ignore", frozen=True)
 
@@ -33,7 +33,7 @@ _File = TypeVar("_File", bound=MapBound)
 
 
 def map_digest(occupancy: OccupancyMap) -> str:
-    """Return what tells a map from all others: a SHA-256 of its frame and values, hexadecimal."""
+    """Return a map's digest: the SHA-256 of its frame and values, hexadecimal."""
     frame = occupancy.frame
     place = f"{frame.resolution:.6f} {frame.origin_x:.6f} {frame.origin_y:.6f} {frame.shape}"
     return hashlib.sha256(place.encode() + occupancy.values.tobytes()).hexdigest()
@@ -42,7 +42,7 @@ def map_digest(occupancy: OccupancyMap) -> str:
 def save_map_bound(
     path: Path, occupancy: OccupancyMap, key: str, entries: list[dict[str, object]], comment: str
 ) -> None:
-    """Write a map's entries under ``key``; a file that is there is replaced at once or not at all.
+    """Write a map's entries under ``key``, atomically.
 
     Raises OSError when the disk refuses.
     """

@@ -71,9 +71,9 @@ class StoredMap:
 
 
 def write_map(stored: StoredMap, folder: Path) -> None:
-    """Write a map's files into a folder that is there, and check that they say the same.
+    """Write a map's files into an existing folder, read them back, and compare.
 
-    Raises MapStoreError for what files cannot say, and OSError when the disk refuses.
+    Raises MapStoreError for a map that files cannot hold, and OSError when the disk refuses.
     """
     try:
         save_map(stored.occupancy, folder / MAP_NAME)
@@ -140,7 +140,7 @@ def _layer_text(stored: StoredMap) -> str:
 
 
 def _corners(outline: shapely.Geometry) -> list[list[float]]:
-    """Return the corners around a room, m; a home's layer knows no holes."""
+    """Return the corners around a room, m; a home's layer has no holes."""
     if not isinstance(outline, shapely.Polygon):
         raise RoomsError("expected rooms in one piece each, got one in several; split it")
     # Not rounded: a corner on the map's border must not come to lie outside of it.

@@ -1,8 +1,7 @@
 """Several maps of the robot's own, one for each floor, by name, in a folder.
 
-A map is replaced at once or not at all: it is written whole beside the old one, then takes its
-place. A writer that is killed in between leaves the old map or the new one, never half of one.
-Symbolic links in the folder are no maps, and are not followed.
+A map is replaced atomically: it is written beside the old one, then renamed. A writer that is
+killed in between leaves the old map or the new one. Symbolic links in the folder are not followed.
 """
 
 from __future__ import annotations
@@ -29,8 +28,8 @@ _GONE: Final = "gone"
 class MapStore:
     """Maps by name, each a folder of ``folder``. One writer at a time.
 
-    All methods raise MapStoreError for a name that cannot be one, or that no map has, and OSError
-    when the disk refuses.
+    All methods raise MapStoreError for an invalid or unknown name, and OSError when the disk
+    refuses.
     """
 
     def __init__(self, folder: Path) -> None:
@@ -46,9 +45,9 @@ class MapStore:
         return tuple(sorted(name for name in found if name))
 
     def save(self, name: str, stored: StoredMap) -> None:
-        """Store a map; one that is there by this name is replaced.
+        """Store a map; one of the same name is replaced.
 
-        Raises MapStoreError for a map that files cannot hold; then what was there stays.
+        Raises MapStoreError for a map that files cannot hold; the old one stays then.
         """
         _check_name(name)
         self.folder.mkdir(parents=True, exist_ok=True)
@@ -74,7 +73,7 @@ class MapStore:
         return read_map(self._folder_of(name))
 
     def remove(self, name: str) -> None:
-        """Forget a map, a broken one as well."""
+        """Remove a map, also a broken one."""
         self._folder_of(name)
         self._tidy_up(name)
         (self.folder / name).rename(self._beside(name, _GONE))
@@ -98,7 +97,7 @@ class MapStore:
         _wait_for_disk(self.folder)
 
     def _folder_of(self, name: str) -> Path:
-        """Return where a map is whole, though a writer was killed before it put it in place."""
+        """Return the folder in which a map is whole, also when its writer was killed."""
         _check_name(name)
         for path in (self.folder / name, self._beside(name, _OLD)):
             if path.is_dir() and not path.is_symlink():
@@ -109,7 +108,7 @@ class MapStore:
         raise MapStoreError(f"{self.folder}: expected one of {known}, got {name!r}; {advice}")
 
     def _tidy_up(self, name: str) -> None:
-        """End what a writer that was killed began."""
+        """Complete or undo what a killed writer began."""
         place, old = self.folder / name, self._beside(name, _OLD)
         if old.is_dir() and not old.is_symlink() and not place.exists():
             old.rename(place)
@@ -122,12 +121,12 @@ class MapStore:
                 shutil.rmtree(beside)
 
     def _beside(self, name: str, end: str) -> Path:
-        """Return a hidden folder in the same place: only there a rename is done at once."""
+        """Return a hidden folder on the same file system, where a rename is atomic."""
         return self.folder / f".{name}.{end}"
 
 
 def _check_name(name: str) -> None:
-    """Refuse a name that cannot be a folder's everywhere. Raises MapStoreError."""
+    """Raise MapStoreError for a name that some file system does not allow."""
     is_good = (
         0 < len(name) <= LONGEST_NAME
         and name == name.strip()

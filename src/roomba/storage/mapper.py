@@ -1,4 +1,4 @@
-"""A map that is being made, on disk: plain arrays in one file, replaced at once or not at all."""
+"""A map that is being made, on disk: plain arrays in one file, replaced atomically."""
 
 from __future__ import annotations
 
@@ -34,9 +34,9 @@ class MapperFileError(RoombaError):
 class KeptMap:
     """A map that is being made, and what its maker knows beside it.
 
-    ``run`` names the launch of the robot that it is of. ``station`` is where the docked robot
-    stands, map frame, None while that is not known; ``station_from_start`` the same seen from where
-    the map began. ``taken_up`` is how often it was taken up without getting anywhere.
+    ``run`` names the launch of the robot. ``station`` is where the docked robot stands, map frame,
+    None while that is not known; ``station_from_start`` the same seen from where the map began.
+    ``taken_up`` is how often it was resumed without progress.
     """
 
     state: MapperState
@@ -124,7 +124,7 @@ class _Fields:
         return found
 
     def pose(self, name: str) -> Pose | None:
-        """Return a pose; none is three numbers that are none."""
+        """Return a pose; None for three NaN."""
         found = self._of(name, np.dtype(np.float64), (3,))
         if np.isnan(found).all():
             return None

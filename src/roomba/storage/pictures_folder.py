@@ -1,4 +1,4 @@
-"""The robot's picture folder: the newest picture of each angle, written whole or not at all."""
+"""The robot's picture folder: the newest picture of each angle, written atomically."""
 
 from __future__ import annotations
 

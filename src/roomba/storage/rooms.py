@@ -29,7 +29,7 @@ class _RoomsFile(MapBound):
 
 
 def save_rooms(rooms: Rooms, occupancy: OccupancyMap, path: Path) -> None:
-    """Write the rooms of a map; a file that is there is replaced at once or not at all.
+    """Write the rooms of a map, atomically.
 
     Raises OSError when the disk refuses.
     """

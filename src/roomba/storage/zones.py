@@ -22,7 +22,7 @@ class _ZonesFile(MapBound):
 
 
 def save_zones(zones: Zones, occupancy: OccupancyMap, path: Path) -> None:
-    """Write the zones of a map; a file that is there is replaced at once or not at all.
+    """Write the zones of a map, atomically.
 
     Raises OSError when the disk refuses.
     """

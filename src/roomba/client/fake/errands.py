@@ -1,4 +1,4 @@
-"""What a fake vacuum cleaner works on: cleans and ways to the station that go by a script."""
+"""Errands of a fake vacuum cleaner: cleans and ways to the station that follow a script."""
 
 from __future__ import annotations
 

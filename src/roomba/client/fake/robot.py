@@ -1,4 +1,4 @@
-"""A robot without ROS for tests and demos: it keeps a script, and the same calls give the same run.
+"""A robot without ROS for tests and demos: it follows a script, so runs repeat exactly.
 
 It drives straight lines at its top speed. What may go wrong on a walk is written in a
 :class:`WalkScript`. Its time is a :class:`SteppedClock`, which passes only while a caller waits, or
@@ -62,7 +62,7 @@ class SteppedClock:
 
 
 class Turn(Enum):
-    """What a scripted walk comes to."""
+    """How a scripted walk ends."""
 
     ARRIVES = "arrives"
     ABSENT = "absent"
@@ -251,7 +251,7 @@ class FakeWalk:
             self.preempt()
 
     def preempt(self) -> None:
-        """Stop on the spot, whatever the script says: another walk takes over."""
+        """Stop on the spot, also against the script: another walk takes over."""
         self._stopped_at = min(self._stopped_at, self._elapsed)
 
     @property

@@ -1,1 +1,1 @@
-"""Which floor the robot is on, and what changed there."""
+"""Recognition of floors, and of changes on them."""

@@ -1,4 +1,4 @@
-"""A floor that was mapped again: its rooms keep their names, and its zones stay where they are."""
+"""Carrying names of rooms and zones over to a new map of the same floor."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A home that changed: what stands there now, and did not, or no longer does.
+"""Change detection: what stands on a known map's floor now, and what no longer does.
 
 While the robot goes about its work, and knows its place, its scans are counted on the cells of the
 map. A *look* is what it saw from several places in some time; several looks decide, so that
@@ -28,29 +28,30 @@ from roomba.raster.regions import dilated, numbered_regions
 Mask = NDArray[np.bool_]
 
 _FARTHEST: Final = 5.0
-"""m; what is farther away is looked at from nearer: there a degree is two cells."""
+"""m; the longest range that counts: there a degree is two cells."""
 _NEW_WAY: Final = 0.05
 _NEW_TURN: Final = 0.2
 """m, rad; a scan from nearer to the last one says nothing new."""
 _LOOK_WAY: Final = 0.5
 _LOOK_TIME: Final = 15.0
-"""m, s; a look lasts until the robot is so far from where it began, and so much time is over."""
+"""m, s; a look lasts until both this way and this time have passed."""
 _SURE: Final = 4
-"""Looks, more than those that say otherwise, of a cell that changed."""
+"""Looks that show a change of a cell, minus those that show none, for the change to count."""
 _BLUR: Final = 0.12
 """m; nearer to what stands as mapped a cell tells no change: there noise of range and pose, and
 the edges of cells, let beams end and pass by turns, and things are moved a bit.
 """
 _LEAST_AREA: Final = 0.06
 _LEAST_LENGTH: Final = 0.4
-"""m2, m; what has less of both is no furniture: a bag, feet, a leg of a chair."""
+"""m2, m; a change with less area and extent is no furniture: a bag, feet, a leg of a chair."""
 _BEHIND: Final = 0.8
-"""m; so far behind what vanished the unknown is known now: as deep as furniture is."""
+"""m; depth of unknown cells behind vanished furniture that become known."""
 _NEAR: Final = np.ones((5, 5), np.bool_)
-"""Cells: so near to a change what changed belongs to it."""
+"""Cells; changed cells as near to each other are one change."""
 _MOVABLE: Final = 0.7
 _MOVED: Final = 1.0
-"""m; what is not larger, and vanished so near to where such a thing appeared, was moved a bit."""
+"""m; up to this size, and within this distance, a thing that vanished and one that appeared are one
+that was moved."""
 
 
 class ChangeKind(Enum):
@@ -85,10 +86,10 @@ class Change:
 
 
 class MapChanges:
-    """Changes of one map; needs the same memory however long it looks.
+    """Collects the changes of one map, in constant memory.
 
-    When a person takes what is :meth:`proposed`, go on with a new one for that map; what a person
-    does not want is :meth:`dismissed`.
+    When a person accepts what is :meth:`proposed`, begin a new object for that map; what a person
+    refuses is :meth:`dismissed`.
     """
 
     def __init__(self, occupancy: OccupancyMap) -> None:
@@ -107,7 +108,7 @@ class MapChanges:
         self._look_from = Pose()
         self._known: tuple[Change, ...] | None = ()
         self.looks = 0
-        """How many were finished; changes can be others only when there is one more."""
+        """Number of finished looks; the changes are updated at the end of each."""
 
     def see(self, now: float, ranges: NDArray[np.float32], lidar: LidarBeams, pose: Pose) -> None:
         """Take a scan, float32 [beams], m, taken at ``now``, s, at a pose of the map that is known.
@@ -147,7 +148,7 @@ class MapChanges:
         return self._known
 
     def dismissed(self, change: Change) -> None:
-        """Offer a change no more, unless as much as makes a change is added to it."""
+        """Do not offer this change again, unless it grows by as much as makes a change."""
         refused = self._refused[change.kind]
         cells = np.zeros(refused.shape, np.bool_)
         cells[change.cells[:, 0], change.cells[:, 1]] = True

@@ -15,13 +15,13 @@ from roomba.perception.slam.surface_kernels import NORMAL_X, NORMAL_Y, X, Y
 Floats = NDArray[np.float64]
 
 MOST: Final = 5
-"""A score becomes no more: what changes is noticed soon, however long it was otherwise."""
+"""The largest score of a cell, so that a change is noticed soon also after a long time."""
 NO_BOUNDS: Final = np.array([2**40, -1, 2**40, -1])
 """First and last row and column with counts, while there are none."""
 _LEAST: Final = 2
-"""Beams in a cell; fewer say nothing."""
+"""The fewest beams in a cell that count."""
 _SOLID_SHARE: Final = 0.25
-"""Of a cell's beams that end there: the noise of ranges and poses lets many end in the next one."""
+"""Share of a cell's beams that must end in it: with noise many end in the next cell."""
 _OPEN_SHARE: Final = 0.1
 
 
@@ -51,7 +51,7 @@ def count_scan(
         cosine, sine = directions[beam, 0], directions[beam, 1]
         points[count, X] = mount[0] + length * (turn_cosine * cosine - turn_sine * sine)
         points[count, Y] = mount[1] + length * (turn_sine * cosine + turn_cosine * sine)
-        # Which way surfaces face would place them better by half a cell, for as much time again.
+        # Surface normals would place them better by half a cell, but double the time.
         points[count, NORMAL_X], points[count, NORMAL_Y] = 0.0, 0.0
         count += 1
     draw(cells, points[:count], mount[:2], pose)

@@ -1,8 +1,8 @@
-"""Which of several floors the robot woke on, and where there; or none of them, a new floor.
+"""Recognition of the floor on which the robot woke, and of its pose there; or of a new floor.
 
-Every place of every floor is compared by how well the same scans fit there, and so is the guess
-that the floor is a new one. Whichever is clearly the likeliest is believed; until then more scans,
-from other places, are wanted.
+All places of all floors are compared by how well the same scans fit there, and so is the hypothesis
+that the floor is new. The one that is clearly the likeliest is believed; until then more scans from
+other places are needed.
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ from roomba.perception.matching.surface_field import SurfaceField
 
 _STATION_RADIUS: Final = 0.3
 _STATION_TURN: Final = 0.3
-"""m, rad; so far around its station the robot is expected to wake."""
+"""m, rad; around its station, where the robot is expected to wake."""
 _STATION_EVIDENCE: Final = 6.0
-"""What that counts: less than what is needed to believe a place, so that it never decides alone."""
+"""Evidence for that: less than believing a place needs, so that it never decides alone."""
 _NEW_EVIDENCE: Final = -0.11
 """Of each beam, for a new floor: as if 7 of 10 beams agreed with a map and 3 did not at all.
 

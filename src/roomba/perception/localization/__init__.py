@@ -1,1 +1,1 @@
-"""Where the robot is on a map."""
+"""Localization: the robot's pose on a known map."""

@@ -1,4 +1,4 @@
-"""What the robot believes of its place, and by what numbers: rows that kernels read and write.
+"""The belief of the robot's pose, and the numbers of the models: rows that kernels read and write.
 
 Both are arrays of one row. Lengths in m, angles in rad, times in s of the robot's clock; "map" and
 "own" are frames: that of the map, and that of dead reckoning, in which the pose never jumps.
@@ -73,11 +73,11 @@ SMOOTHING: Final = 0.4
 ADAPTING: Final = 0.02
 """Share of it in the usual fit: about the last 5 s."""
 _MOST_SMOOTHING: Final = 0.5
-"""The same if few scans are looked at: one that fits half as well as usual makes no doubts."""
+"""The same if few scans are used: one that fits half as well as usual raises no doubt."""
 
 
 def unknown_belief() -> Rows:
-    """Return a belief before anything was told: at the origin, and as sure as can be."""
+    """Return the initial belief: at the origin, without variance."""
     belief = np.zeros(1, BELIEF)
     belief["stamp"] = belief["seen"] = -np.inf
     belief["turning"], belief["still_since"] = np.nan, np.inf

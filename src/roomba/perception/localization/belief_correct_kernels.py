@@ -22,14 +22,14 @@ from roomba.perception.matching.match_kernels import MATCH_WORK, beam_ends, matc
 Floats = NDArray[np.float64]
 
 ASTRAY: Final = 0.3
-"""m; a pose less sure than this is searched around, as if it had been told."""
+"""m; a pose with a larger deviation is searched around, as a reported one is."""
 _NARROW: Final = np.array([0.10, 0.05, 0.05])
 _WIDE: Final = np.array([0.40, 0.30, 0.20, 0.10, 0.05, 0.05])
 """m; beams that end farther off than this lose weight, round by round."""
 _UNSURE: Final = 0.08
-"""m; a pose less sure than this is matched from farther away."""
+"""m; a pose with a larger deviation is matched from farther away."""
 _STRIDE: Final = 8
-"""Each such beam is judged; of 360 these are enough to notice a wrong pose."""
+"""Stride over the beams that are judged; of 360 these are enough to notice a wrong pose."""
 _WORSE: Final = 0.45
 """Share of beams that agree less than usual, at which the pose is doubted."""
 _THROUGH: Final = 0.15
@@ -37,7 +37,7 @@ _THROUGH: Final = 0.15
 _LEAST: Final = 0.35
 """Share of beams that must agree, whatever is usual."""
 _STILL: Final = (0.0005**2, 0.0005**2, 0.0003**2)
-"""m2, rad2; what a scan leaves unsure however often it is seen: errors of the map."""
+"""m2, rad2; the least variance, of the map's errors, which more scans do not reduce."""
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -70,7 +70,7 @@ def correct(
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def is_calm(beliefs: Rows, numbers: Rows, now: float) -> bool:
-    """Whether a pose that was known is known still, so that nothing else has to be done for it."""
+    """Whether a known pose is still known, so that kernels alone can go on."""
     belief, known = beliefs[0], numbers[0]
     if belief.is_doubtful or belief.beams == 0 or not now - belief.seen <= known.scan_timeout:
         return False
@@ -117,7 +117,7 @@ def match_ends(
 def _beam_variance(numbers: Row, place: Place, count: int) -> float:
     """Return the variance of a beam, m2.
 
-    Few beams are of one thing: they err together, and so do the scans that follow.
+    Beams of one thing err together, and so do the scans that follow.
     """
     cell = 0.5 * place[2]
     share = max(1.0, numbers.least_beams / max(count, 1))
@@ -159,7 +159,7 @@ def judge_ends(
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def trust(beliefs: Rows) -> None:
-    """Take the newest fit for the usual one."""
+    """Use the newest fit as the usual one."""
     belief = beliefs[0]
     belief.agree = belief.usual_agree = belief.fit[AGREE]
     belief.through = belief.usual_through = belief.fit[THROUGH]

@@ -1,4 +1,4 @@
-"""Compiled dead reckoning: a step of the wheels, bent to the turn that is believed."""
+"""Compiled dead reckoning: a step of the wheels, along the fused turn of wheels and gyro."""
 
 from __future__ import annotations
 
@@ -14,20 +14,20 @@ from roomba.perception.localization.belief import Row, Rows
 LEFT_OUT: Final = 0
 WENT_ON: Final = 1
 WAS_SET_BACK: Final = 2
-"""What :func:`reckon` did: nothing, as the stamp is old; a step; one over a clock set back."""
+"""Results of :func:`reckon`: nothing (the stamp is old); a step; a step over a clock set back."""
 
 _STANDS: Final = 1e-4
-"""m and rad; encoders that went on by less than this stood still."""
+"""m and rad; steps of the encoders below this count as standstill."""
 _SETTLING: Final = 0.3
-"""s; so long after it stopped the gyro of a robot that stands shows its bias alone."""
+"""s; time after a stop from which on the gyro shows its bias alone."""
 SET_BACK: Final = 0.1
-"""s; a time so much before the last one is of a clock that was set back."""
+"""s; a stamp older than the last one by this is of a clock that was set back."""
 _UNSEEN: Final = 0.3
-"""Share of a change of the turning speed between two samples: so unsure its mean is."""
+"""Deviation of the mean turning speed between two samples, as a share of its change."""
 _JOLT: Final = 0.05
-"""s; what a step may be quicker than the fastest robot's: its time is not exact."""
+"""s; tolerance for a step that seems faster than any robot: its time is not exact."""
 _LONGEST_STEP: Final = 1.0
-"""s; the gyro says nothing of a time that was not sampled."""
+"""s; the longest time between two samples over which the gyro is integrated."""
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -120,11 +120,11 @@ def _turn(
         before = turning
     gyro = (0.5 * (before + turning) - belief.bias) * elapsed
     noise = numbers.gyro_noise * elapsed
-    # Sampled now and then, it does not know how the turning changed in between.
+    # Between two samples the change of the turning is not known.
     unseen = _UNSEEN * (turning - before) * elapsed
     by_gyro = noise * noise + numbers.drift_variance * elapsed
     by_gyro += numbers.turn_variance * abs(gyro) + unseen * unseen
-    # What the wheels say beside the gyro may be slip.
+    # A difference of the wheels from the gyro may be slip.
     by_wheels += (gyro - wheels) * (gyro - wheels)
     share = by_wheels / (by_wheels + by_gyro)
     return wheels + share * (gyro - wheels), share * by_gyro

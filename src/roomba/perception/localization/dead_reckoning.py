@@ -24,8 +24,8 @@ _Row = tuple[float, float, float, float]
 class DeadReckoning:
     """Keeps a pose in a frame of its own, in which it never jumps but slowly drifts.
 
-    Wheels and gyro both measure each turn; the one counts that is the surer by what is known of
-    its errors. Kernels may go on with its ``belief`` and ``numbers``, until :meth:`begin_history`.
+    Wheels and gyro both measure each turn; they are weighted by their variances. Kernels may go on
+    with its ``belief`` and ``numbers``, until :meth:`begin_history`.
     """
 
     def __init__(

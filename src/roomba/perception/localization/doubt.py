@@ -22,7 +22,7 @@ _COMPARED_EVERY: Final = 1.0
 
 
 class Doubt:
-    """Is shown the scans; ``reckoned`` is always where dead reckoning says that one was taken."""
+    """Gets each scan; ``reckoned`` is the pose of dead reckoning at which it was taken."""
 
     def __init__(self, config: LocalizationConfig, body_radius: float) -> None:
         """Begin with nothing seen."""

@@ -1,4 +1,4 @@
-"""What the robot knows of where it is."""
+"""The estimate of the robot's pose, as it is reported."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class Knowledge(Enum):
     KNOWN = "known"
     """The pose can be relied on."""
     ROUGH = "rough"
-    """Only by wheels and gyro, or by too little in sight: good for going slowly."""
+    """Only by wheels and gyro, or by too little in sight: good enough for driving slowly."""
     SEARCHING = "searching"
     """Not known: places are compared, and looking around helps."""
     LOST = "lost"

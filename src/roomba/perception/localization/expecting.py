@@ -1,4 +1,4 @@
-"""Where the robot is expected when places are compared: near a pose that was told, or known."""
+"""Expectations for a comparison of places: near a pose that was told, or was known."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ _HERE_RADIUS: Final = 0.04
 _HERE_TURN: Final = 0.04
 """m, rad; so far around a pose that was told, and one that was known, the robot is expected."""
 _HERE_DRIFT: Final = 0.01
-"""m and rad, per s of a search: so much dead reckoning may be off while it looks around."""
+"""m and rad, per s of a search: the error of dead reckoning while it looks around."""
 _HERE_EVIDENCE: Final = 14.0
-"""More than what is needed to believe a place: where it was it is, unless another is likelier."""
+"""Evidence, more than believing a place needs: the robot stays unless another place is likelier."""
 _STILL_EVIDENCE: Final = 60.0
 """The same of a robot that sees what it saw before: it was not carried."""
 

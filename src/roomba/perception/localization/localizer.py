@@ -1,4 +1,4 @@
-"""Knowing where the robot is on a known map: the stages put together.
+"""Localization on a known map: the stages put together.
 
 Dead reckoning says how it moved, a tracker corrects that by each scan, and when scans do not fit
 any more, or it was carried, a relocation looks for it in the whole map. Plain values in and
@@ -34,7 +34,7 @@ _ANYWHERE: Final = np.diag([100.0**2, 100.0**2, math.pi**2])
 _FOUND_SPREAD: Final = np.diag([0.05**2, 0.05**2, 0.03**2])
 """m2, rad2; of a place that was found, before scans narrow it down."""
 _PATIENCE: Final = 0.5
-"""s; so long it waits for a scan that tells places apart before it moves to get one."""
+"""s; how long it waits for a scan that tells places apart before it moves to get one."""
 _SEARCHED_EVERY: Final = 1.0
 """s; after which a search that found nothing is tried anew."""
 _GOOD_AGREE: Final = 0.95
@@ -46,7 +46,7 @@ _FAIR_THROUGH: Final = 0.12
 and 0.02 or better on the map of its home, and at most 0.57 on those of 15 other homes.
 """
 _HARDLY_TURNED: Final = 0.02
-"""rad; if it turned less since a scan, that was as good as taken where it is now."""
+"""rad; after a smaller turn since a scan, the scan counts as taken at the present pose."""
 _HELP: Final = (
     "carry it to its station, or tell where it is (in RViz: 2D Pose Estimate), "
     "or let it look around (global_localization)"
@@ -158,7 +158,7 @@ class Localizer:
             self._doubt.note(seen, self._reckoning.pose, self.view)
 
     def pass_time(self, now: float) -> None:
-        """Tell the time when nothing else does: silence tells something, too."""
+        """Tell the time when no sensor does: silence counts, too."""
         if self._has_clock:
             self._follow_clock(now, self._times)
 
@@ -224,7 +224,7 @@ class Localizer:
 
     @property
     def needs_to_look_around(self) -> bool:
-        """Whether more must be seen to know where the robot is, so that driving a little helps."""
+        """Whether more must be seen to find the robot's place, so that driving a little helps."""
         knowledge, _ = self._knowledge()
         sees_nothing = self._map is None or self._is_blind or self._is_late
         if knowledge is not Knowledge.SEARCHING or self._is_lifted or sees_nothing:

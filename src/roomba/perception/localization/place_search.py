@@ -16,9 +16,9 @@ STEP: Final = 0.15
 TURN: Final = math.radians(4.0)
 """rad; between headings that are tried."""
 WIDTH: Final = 0.35
-"""m; a beam that ends so far from a surface speaks not at all for a place."""
+"""m; a beam that ends farther than this from a surface adds nothing to a place's score."""
 BEAMS: Final = 48
-"""Beams that are compared: more do not find more, and take longer."""
+"""Number of beams that are compared: more take longer and find no more."""
 PIECE: Final = 200_000
 """Poses that are tried at once: some 10 ms of work."""
 

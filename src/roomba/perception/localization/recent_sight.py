@@ -1,7 +1,7 @@
-"""Whether the robot sees now what it saw a moment ago, from where it says that it has gone since.
+"""Comparison of a scan with those of the last seconds, by dead reckoning in between.
 
-Then it was not carried, however badly the map fits: furniture was moved around it. For a robot that
-was carried, what it sees now contradicts what it saw.
+If they agree the robot was not carried, however badly the map fits: furniture was moved around it.
+A robot that was carried sees what contradicts the earlier scans.
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ _APART: Final = 0.4
 """s; between two scans that are kept."""
 _KEPT: Final = 12
 _OLD_ENOUGH: Final = 1.0
-"""s; doubts take so long: what it saw later it may have seen after it was carried."""
+"""s; the least age of a scan to compare with: later ones may be from after it was carried."""
 _TOO_OLD: Final = 6.0
-"""s; by then it may have gone elsewhere by itself."""
+"""s; the greatest age: by then it may have driven elsewhere."""
 _SLACK: Final = 0.10
 _SLACK_SHARE: Final = 0.03
 """m, and share of the range: how far from what was seen a beam may end and mean the same."""

@@ -1,4 +1,4 @@
-"""Finding the robot again: places that fit a scan, compared while it looks at more of the home."""
+"""Relocation: places that fit a scan, compared by further scans until one is the likeliest."""
 
 from __future__ import annotations
 
@@ -29,13 +29,13 @@ _FROM_NEAR: Final = np.array([0.15, 0.10, 0.05, 0.05])
 """m; beams that end farther off than this lose weight, round by round."""
 _NEW_WAY: Final = 0.12
 _NEW_TURN: Final = 0.4
-"""m, rad; a scan from so far away, or so much turned, says something new."""
+"""m, rad; motion after which another scan counts."""
 _LEAST_AGREE: Final = 0.7
 _CONVINCING: Final = 0.75
 _MOST_THROUGH_THEN: Final = 0.08
 """Shares of beams that agree, and that go through walls."""
 _MOST_THROUGH: Final = 0.15
-"""Shares of beams that a place which is found must have, and may have."""
+"""The least share of agreeing beams, and the largest of those through walls, of a found place."""
 _HOPELESS: Final = 14.0
 """Evidence; a place that has so much less than the best is dropped."""
 
@@ -157,9 +157,9 @@ class Relocation:
         back, expected = self._reckoned.inverse(), self._expectation
         tries = [(Pose(*start), _FROM_AFAR) for start in starts.tolist()]
         if expected is not None:
-            # From afar what stands there now, and did not before, would draw it away.
+            # Matched from farther away, new furniture would draw it off.
             tries = [(expected.pose, _FROM_NEAR), (expected.pose, _FROM_AFAR), *tries]
-            # And where it was is where it is, as likely as not.
+            # The place where it was gets its prior evidence.
             self._weigh(expected.pose, self._view.fit(self._field, _array(expected.pose)), back)
         for start, scales in tries:
             self._weigh(*self._matched(start, scales), back)

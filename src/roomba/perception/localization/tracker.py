@@ -1,4 +1,4 @@
-"""Following a pose that is known: each scan corrects it by what the map shows nearby."""
+"""Pose tracking: each scan corrects a known pose by the map's surfaces nearby."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""Scans beside the surfaces of a map."""
+"""Matching of scans to the surfaces of a map."""

@@ -17,7 +17,7 @@ Place = NDArray[np.float64]
 """[3]: x and y of the middle of the first cell, and the resolution, m."""
 
 OFF_MAP: Final = 1e3
-"""m; the distance to surfaces, where there is no map: as far from fitting as can be."""
+"""m; the distance to surfaces where there is no map."""
 _TOUCH: Final = 0.005
 """m; a ray that is this near to a surface has met it."""
 _LEAST_STEP: Final = 0.02
@@ -94,7 +94,7 @@ def _nearest_squares(up: NDArray[np.int16], most: int, squares: NDArray[np.int32
     columns = up.size
     squares[:] = most * most
     for right in range(-most, most + 1):
-        # Slices of one length: so the compiler takes many columns at once.
+        # Slices of one length let the compiler vectorize over columns.
         beside = up[max(right, 0) : max(columns + right, 0)]
         into = squares[max(-right, 0) : max(columns - right, 0)]
         aside = np.int32(right * right)

@@ -1,4 +1,4 @@
-"""Compiled judgement of how well a scan fits a pose: beam by beam, what the map says of it."""
+"""Compiled likelihood of a scan at a pose, beam by beam."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ _TOUCH: Final = 0.005
 _LEAST_STEP: Final = 0.02
 """m; a ray that grazes a surface goes on by at least this."""
 _SHARE: Final = 0.1
-"""What one beam counts: neighbours, and the scans of nearby places, say much the same."""
+"""Weight of one beam: neighbours, and scans from nearby places, are not independent."""
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

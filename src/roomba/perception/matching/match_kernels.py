@@ -1,8 +1,8 @@
 """Compiled matching of a scan to a surface field, and how well a scan fits a pose.
 
 A pose is found by Gauss and Newton's method: the ends of the beams should lie on surfaces. Ends
-that lie off by much more than a scale count ever less (weights of Geman and McClure), so that what
-the map does not know pulls but little.
+that lie off by much more than a scale lose weight (Geman and McClure), so that things that the map
+does not show hardly matter.
 """
 
 from __future__ import annotations

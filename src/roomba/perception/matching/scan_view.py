@@ -26,8 +26,8 @@ from roomba.perception.matching.surface_field import SurfaceField
 class Fit:
     """How well a scan fits a pose: shares of its beams, and the evidence to compare poses by.
 
-    LidarBeams that end where the map has a surface ``agree``; ``short`` ones met something that
-    the map does not know; those that go ``through`` something that it does are the worst.
+    Beams that end where the map has a surface ``agree``; ``short`` ones met something that the map
+    does not show; those that go ``through`` a surface of the map are the worst.
     """
 
     agree: float

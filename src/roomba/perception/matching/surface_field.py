@@ -1,4 +1,4 @@
-"""How far every spot of a map is from the nearest surface: what a scan is matched against."""
+"""The signed distance field of a map's surfaces, to which scans are matched."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The rooms of a map in which furniture came, went or was moved: they stay, as people made them."""
+"""Fitting a map's rooms, with a person's edits, to the map after furniture was moved."""
 
 from __future__ import annotations
 

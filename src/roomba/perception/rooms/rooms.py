@@ -1,4 +1,4 @@
-"""The rooms of a floor: which cell belongs to which, their names, and what a person may change."""
+"""The rooms of a floor: labelled cells, names, and the edits that a person may make."""
 
 from __future__ import annotations
 

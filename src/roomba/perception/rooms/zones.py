@@ -1,4 +1,4 @@
-"""Where the robot must not go, though it could: no-go areas and virtual walls."""
+"""Zones that the robot must not enter: no-go areas and virtual walls."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ Corners = tuple[tuple[float, float], ...]
 
 
 class ZonesError(RoombaError):
-    """A zone that makes no sense, or a file of zones that cannot be read."""
+    """An invalid zone, or a file of zones that cannot be read."""
 
 
 class ZoneKind(Enum):
@@ -46,7 +46,7 @@ class Zone:
     points: Corners
 
     def __post_init__(self) -> None:
-        """Check that it encloses or parts something. Raises ZonesError."""
+        """Check the number of points, and that an area encloses floor. Raises ZonesError."""
         least = 3 if self.kind is ZoneKind.NO_GO else 2
         if not self.name.strip():
             raise ZonesError(f"expected a zone's name, got {self.name!r}; name every zone")

@@ -1,1 +1,1 @@
-"""Making a map of a home while driving in it."""
+"""SLAM: making a map of a home while driving in it."""

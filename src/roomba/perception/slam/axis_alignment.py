@@ -1,4 +1,4 @@
-"""How the walls of a home lie to the axes of its map, and to the cells of its grid."""
+"""Axis alignment: the turn and shift that lay a home's walls along the map's axes and cells."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 
 _NEAR: Final = math.radians(4.0)
-"""Walls that lie farther from the axes are meant to."""
+"""Walls at a larger angle to the axes are oblique by design."""
 _ALONG: Final = 0.995
 """Cosine; a wall that faces along an axis so well has one place on it."""
 _LEAST_POINTS: Final = 200
 _LEAST_AGREEMENT: Final = 0.4
-"""Length of the mean of directions; below it walls lie anyhow, and nothing is gained."""
+"""Length of the mean of directions; below it walls have no common direction."""
 
 
 def turn_of_walls(cloud: Floats) -> float:
@@ -24,7 +24,7 @@ def turn_of_walls(cloud: Floats) -> float:
 
     ``cloud`` is float64 [n, 4], points with normals.
     """
-    # Of columns apart from each other numpy's last bit depends on where they lie in memory.
+    # For strided columns numpy's last bit depends on their place in memory.
     angles = np.arctan2(np.ascontiguousarray(cloud[:, 3]), np.ascontiguousarray(cloud[:, 2]))
     quarter = math.pi / 2.0
     off = np.remainder(angles + quarter / 2.0, quarter) - quarter / 2.0

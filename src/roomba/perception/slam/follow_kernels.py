@@ -38,7 +38,7 @@ FOLLOWER: Final = np.dtype(
 """State and numbers of a follower, one row."""
 
 LEAST_POINTS: Final = 30
-"""Fewer say nothing."""
+"""The fewest points that count."""
 _MANY: Final = 5
 """Misses after which a scan is matched from farther away."""
 _SCALES: Final = np.array([0.1, 0.05, 0.03])
@@ -49,11 +49,11 @@ _STRIDE: Final = 2
 _FAR_REACH: Final = 3
 """Cells of surfels; so far a scan is matched after many misses."""
 _LEAST_SPREAD: Final = (0.001**2, 0.001**2, 0.0005**2)
-"""m2, rad2; no prior is surer, be the robot standing or not."""
+"""m2, rad2; the least variance of a prior, also at standstill."""
 
 
 class Following(NamedTuple):
-    """All that a scan needs to be followed by.
+    """The input of following a scan.
 
     ``follower`` is FOLLOWER [1]; ``belief`` and ``numbers`` are those of dead reckoning;
     ``points`` float64 [beams, POINT] is filled with what the newest scan met. ``submap`` [3] is

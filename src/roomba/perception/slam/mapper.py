@@ -1,4 +1,4 @@
-"""Making a map: the stages put together.
+"""The mapper: the stages of SLAM put together.
 
 Dead reckoning says how the robot moved, each scan is matched to the surfels of the last metres,
 scans are kept as keyframes of submaps, submaps are linked to others that show the same walls, and
@@ -34,7 +34,7 @@ from roomba.perception.slam.surfels import SurfelGrid
 Floats = NDArray[np.float64]
 
 _SPARE: Final = 4.0
-"""m; so far a robot gets from the beginning of a submap, at most."""
+"""m; the farthest that a robot gets from the beginning of a submap."""
 _REDRAWN_TURN: Final = 0.002
 """rad; a submap that turned more is drawn anew."""
 _SURE: Final = np.diag([0.01**2, 0.01**2, 0.005**2])
@@ -49,9 +49,9 @@ _NO_MATCH: Final = "what is in sight does not fit what was seen just now; going 
 
 
 class Mapper:
-    """Keeps a map that grows, and the robot's place on it; tell it things in the order of time.
+    """Keeps a growing map, and the robot's place on it; call it in the order of time.
 
-    ``version`` is another number whenever there is more on the map, or it lies otherwise.
+    ``version`` changes whenever the map does.
     """
 
     def __init__(
@@ -61,7 +61,7 @@ class Mapper:
         gyro: GyroConfig,
         start: Pose,
     ) -> None:
-        """Begin at ``start``, map frame: that is where the map's frame comes from."""
+        """Begin at ``start``, which defines the map frame."""
         self._config = config
         self._reckoning = DeadReckoning(localization, gyro)
         self._follower = ScanFollower(config, self._reckoning)
@@ -190,7 +190,7 @@ class Mapper:
 
     @property
     def estimate(self) -> Estimate:
-        """What is known of where the robot is."""
+        """The estimate of the robot's pose."""
         if self._is_lifted or self._is_lost:
             return Estimate(self.pose, _NOWHERE, Knowledge.LOST, 0.0, _WAS_LIFTED)
         agreement = self._follower.met * self._follower.close

@@ -1,4 +1,4 @@
-"""All that a map which is being made consists of: enough to go on with it in another process."""
+"""The state of a map that is being made: enough to continue it in another process."""
 
 from __future__ import annotations
 

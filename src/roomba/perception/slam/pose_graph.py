@@ -1,4 +1,4 @@
-"""Poses that measurements between them tie together: all of them made to agree as well as can be.
+"""The pose graph: the poses that agree best, in least squares, with measurements between them.
 
 Gauss and Newton's method on the sum of squared, weighted errors (Lu and Milios, "Globally
 consistent range scan alignment", 1997). The first pose stays where it is. Homes have some dozens

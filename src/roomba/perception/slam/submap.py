@@ -1,4 +1,4 @@
-"""Submaps: stretches of a drive so short that the scans in them fit together as they are."""
+"""Submaps: stretches of a drive so short that the scans in them need no correction."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Submaps and where they lie on the map: tied together by links, moved until these agree."""
+"""The graph of submaps: links tie them together, and its solution places them on the map."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ Floats = NDArray[np.float64]
 _CLOUD: Final = 1500
 """Points of a submap that are matched to others."""
 _OF_PEOPLE: Final = np.diag([0.05**-2, 0.05**-2, 0.05**-2])
-"""1/m2, 1/rad2; of a link to where people say that the robot is."""
+"""1/m2, 1/rad2; information of a link to a reported pose."""
 _REFINEMENTS: Final = 2
 """Times that all links are looked for anew when the map is finished."""
 

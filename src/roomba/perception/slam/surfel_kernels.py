@@ -3,8 +3,8 @@
 A cell keeps apart what faces left, right, up and down, so that both sides of a thin wall are two
 surfaces. A pose is found by Gauss and Newton's method: each point of the scan should lie in the
 plane of the surfel next to it (point to plane, Chen and Medioni, "Object modelling by registration
-of multiple range images", 1992); what lies off by much more than a scale counts ever less (weights
-of Geman and McClure).
+of multiple range images", 1992); points that lie off by much more than a scale lose weight (Geman
+and McClure).
 """
 
 from __future__ import annotations

@@ -1,1 +1,1 @@
-"""What floor was cleaned, and how dirty it was."""
+"""The floor that was swept, and how dirty it was."""

@@ -1,4 +1,4 @@
-"""What is noted of each cell of a coverage map, as bits."""
+"""The bits of a cell of a coverage map."""
 
 from __future__ import annotations
 

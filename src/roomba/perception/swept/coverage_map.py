@@ -1,4 +1,4 @@
-"""What floor was really cleaned, and what was left."""
+"""The coverage map: the floor that was really swept, and what was left."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ GRANTED: Final = 0.002
 """m; a cell counts as swept when the tool's rim comes so near to its middle: two swaths that touch
 in the middle of a row of cells, each a millimetre off, leave none of it."""
 LONGEST_STEP: Final = 0.3
-"""m; a robot that is farther from where it last was did not drive there: it was carried."""
+"""m; a larger step between two ticks means that the robot was carried."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -62,7 +62,7 @@ class CoverageMap:
         self.at = (x, y)
 
     def lift(self) -> None:
-        """What follows does not begin where it last was."""
+        """Interrupt the path: the next pose does not continue the last one."""
         self.at = None
 
     def carry(self, frame: GridFrame, moved: Pose) -> None:

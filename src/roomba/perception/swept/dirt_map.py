@@ -1,4 +1,4 @@
-"""Where it was dirty: what the dirt sensor counted, place by place, learned over many runs."""
+"""The dirt map: what the dirt sensor counted, place by place, learned over many runs."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Floats = NDArray[np.float32]
 Mask = NDArray[np.bool_]
 
 CELL: Final = 0.20
-"""m; about the width of the tool: finer the sensor does not tell places apart."""
+"""m; about the width of the tool, which limits the sensor's resolution."""
 _LEAST_DIRTY: Final = 500.0
 """Grains/m2; with fewer, 25 mg/m2 of what was picked up, no floor is dirty."""
 _LEARNING: Final = 0.4

@@ -1,1 +1,1 @@
-"""What the lidar sees and the map does not show."""
+"""Things: what the lidar sees and the map does not show."""

@@ -1,4 +1,4 @@
-"""Compiled bookkeeping of what the lidar sees and the map does not know, cell by cell.
+"""Compiled evidence, cell by cell, of what the lidar sees and the map does not show.
 
 A cell has *evidence*: beams that end in it add to it, beams that pass through it take from it, and
 what has enough of it is a *thing*. Cells with any are listed, so that looking at all of them costs

@@ -1,4 +1,4 @@
-"""What the lidar sees and the map does not know: chairs, shut doors, people."""
+"""The layer of things: what the lidar sees and the map does not show, as chairs and people."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ class ThingLayer:
 
     @property
     def version(self) -> int:
-        """A number that is another one when a thing came or went."""
+        """A number that changes when a thing comes or goes."""
         return int(self.arrays.layer["version"][0])
 
     def see(

@@ -1,4 +1,4 @@
-"""The part of the floor that a robot can get to, cut out, with what every plan over it needs."""
+"""The part of the floor that a robot can reach, with what every plan over it needs."""
 
 from __future__ import annotations
 

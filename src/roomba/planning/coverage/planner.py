@@ -67,9 +67,8 @@ class CoveragePlanner:
         ``todo``, bool on ``floor.frame``, marks the floor to sweep, all by default; what cannot be
         reached does not count. ``obstacles`` are round things that the map does not show. With
         ``edges_only`` only the floor along walls and furniture is swept. Raises
-        :class:`~roomba.planning.path.planner.NoPathError` when the robot cannot move from the
-        start, or
-        not get to the end, and ValueError for a ``todo`` of another shape or numbers that are not
+        :class:`~roomba.planning.path.planner.NoPathError` when the robot cannot leave the start or
+        reach the end, and ValueError for a ``todo`` of another shape or numbers that are not
         finite.
         """
         if todo is not None and (todo.shape != self.floor.frame.shape or todo.dtype != np.bool_):
@@ -115,7 +114,7 @@ class CoveragePlanner:
 
 
 def _off_middles(line: Line) -> Line:
-    """Return a swath moved aside a little, so that no seam of two lies on middles of cells."""
+    """Return a swath shifted a little, so that no seam between two lies on centres of cells."""
     along = np.abs(line[-1] - line[0])
     aside = np.array([0.0, _OFF_MIDDLES]) if along[0] >= along[1] else np.array([_OFF_MIDDLES, 0.0])
     moved: Line = line + aside
@@ -131,7 +130,7 @@ def _end_on(ground: Ground, end: Point) -> Line:
 
 
 def _from_to(ground: Ground, line: Line, start: Point, end: Point | None) -> Line:
-    """Return the line in m, with exactly these ends and without needless points."""
+    """Return the line in m, with exactly these ends and without redundant points."""
     ends = np.array([start] if end is None else [start, end], np.float64)
     places = ground.places(ends)
     if end is None and len(line) == 1:

@@ -1,1 +1,1 @@
-"""Where the known floor ends."""
+"""Frontiers: where known floor borders on the unknown."""

@@ -1,4 +1,4 @@
-"""Frontiers: where what is known of a floor ends, and from where to look beyond.
+"""Frontiers, where known floor borders on the unknown, and the viewpoints to look beyond.
 
 Going to the nearest one each time explores a floor with little more driving than the best order
 (Yamauchi, "A frontier-based approach for autonomous exploration", 1997).
@@ -19,17 +19,17 @@ from roomba.planning.frontiers.kernels import clusters, frontier_cells, seen_fro
 from roomba.planning.path.costmap import Point
 
 _LEAST_UNKNOWN: Final = 0.03
-"""m2; smaller patches of the unknown are not worth a way."""
+"""m2; smaller patches of the unknown are not driven to."""
 _LEAST_CELLS: Final = 3
 _LOOK_FROM: Final = 1.2
-"""m; so near to a frontier the robot goes to look beyond it, at most."""
+"""m; the farthest viewpoint from its frontier."""
 _NEARER: Final = 2.0
 """m of way that one metre nearer to the frontier is worth."""
 _STRIDE: Final = 0.3
 """m; about so far apart are the places of a frontier that are tried."""
 _SMALL: Final = 0.4
 _SMALL_COSTS: Final = 1.0
-"""m; a frontier shorter than the one costs the other more: what is large comes first."""
+"""m; a frontier shorter than the first costs the second more: large ones come first."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,8 +54,8 @@ def frontiers(
     """Return the frontiers that can be looked at, the best to go to first.
 
     ``fits``, bool over the map's grid, tells where the robot's middle may be; ``here`` is where it
-    is, m. Those nearer than ``away``, m, to a point ``left_out`` are not told. Raises ValueError
-    when it is not on the map.
+    is, m. Those nearer than ``away``, m, to a point ``left_out`` are left out. Raises ValueError
+    when ``here`` is not on the map.
     """
     frame = occupancy.frame
     if not frame.contains(*here):

@@ -1,4 +1,4 @@
-"""Compiled: how far it is to each cell, and where what is known of a floor ends."""
+"""Compiled: lengths of the ways to each cell, and the cells of frontiers."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ Values = NDArray[np.int8]
 _DIAGONAL: Final = math.sqrt(2.0)
 _SMALL: Final = 1
 _LARGE: Final = 2
-"""What is known of the patch of a cell."""
+"""Whether the patch of a cell is known to be large, small, or neither yet."""
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

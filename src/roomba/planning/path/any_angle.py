@@ -17,7 +17,7 @@ _INSIDE = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class FreeSpace:
-    """The cells that fit, surveyed; uint8 arrays with a closed border of one cell around."""
+    """The survey of the cells that fit: uint8 arrays with a closed border of one cell around."""
 
     fits: NDArray[np.uint8]
     open_squares: NDArray[np.uint8]

@@ -23,7 +23,7 @@ RoundObstacle = tuple[float, float, float]
 """x, y and radius of a round thing that the map does not show, m."""
 
 _TOUCH = 1e-9
-"""m; a body exactly as far from a wall as it must be does fit, whatever the rounding."""
+"""m; tolerance, so that a body at exactly the wanted distance fits despite rounding."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -26,7 +26,7 @@ EPSILON = 1e-9
 
 
 class Work(NamedTuple):
-    """What the search reads and writes; its owner uses it again and again, one search at a time."""
+    """What the search reads and writes; it is reused, by one search at a time."""
 
     fits: Bytes
     """uint8 [rows, columns], as are the next two; from :func:`.floor_kernels.survey`."""

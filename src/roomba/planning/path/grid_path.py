@@ -152,7 +152,7 @@ def _reach(work: _Work, epoch: int, index: int, cost: float, before: int, entere
 
 @njit(cache=True, nogil=True)
 def _estimate(index: int, width: int, goal: int) -> float:
-    """Return the length of the way to the goal if nothing was closed."""
+    """Return the length of the way to the goal over an empty grid (the heuristic)."""
     across, along = abs(index // width - goal // width), abs(index % width - goal % width)
     return max(across, along) + (_DIAGONAL - 1.0) * min(across, along)
 

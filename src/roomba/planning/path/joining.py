@@ -1,4 +1,4 @@
-"""How points that are not cells' centres are joined, straight, to those where the body fits."""
+"""Joining: straight ways from any point to near cell centres where the body fits."""
 
 from __future__ import annotations
 

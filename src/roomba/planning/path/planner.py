@@ -60,7 +60,7 @@ class NoPathError(RoombaError):
     """
 
     def __init__(self, goal: Point, reason: NoPathReason, nearest: Point | None) -> None:
-        """Say what was asked, why not, and how near one can come."""
+        """Take the goal, the reason, and the nearest point that can be reached."""
         text = f"({goal[0]:.2f}, {goal[1]:.2f}) cannot be reached: {reason.value}"
         if nearest is not None:
             text += f"; nearest reachable point: ({nearest[0]:.2f}, {nearest[1]:.2f})"

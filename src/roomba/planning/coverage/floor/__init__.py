@@ -1,1 +1,1 @@
-"""What floor there is to cover, and where the robot fits."""
+"""The floor to cover, and where the robot fits."""

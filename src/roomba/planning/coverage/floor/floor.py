@@ -17,7 +17,7 @@ from roomba.planning.coverage.floor.masks import filled_from, grown, half_widths
 from roomba.planning.path.costmap import Mask, Point, RoundObstacle, checked_obstacles, clear_of
 
 FINE = 0.01
-"""m; about how large the cells are on which floor is counted."""
+"""m; approximate size of the cells on which floor is counted."""
 _DOCKED = 0.4
 """m; how far the middle of a robot that stands in its station is from where it can drive freely."""
 _TOUCH = 1e-7

@@ -15,7 +15,7 @@ from roomba.planning.compilation import part
 from roomba.raster.regions import Mask
 
 _TILE = 32
-"""Cells to a side of the squares that are turned at once: as many lines as the cache holds."""
+"""Cells to a side of the squares that are transposed at once: as many lines as the cache holds."""
 
 
 def half_widths(radius: float, to_squares: bool = False) -> NDArray[np.int32]:

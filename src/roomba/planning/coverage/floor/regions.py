@@ -14,9 +14,9 @@ from roomba.raster.regions import Labels, Mask, join, numbered_regions, root_of
 _BLOCK = 5
 """Cells to a side of the blocks that are told apart."""
 _NARROW = 6.0
-"""Blocks from the middle of a place to its sides: a narrower one parts the floor."""
+"""Blocks from the middle of a place to its sides: a narrower place divides the floor."""
 _SMALL = 300
-"""Blocks; parts with a smaller wide place are no parts of their own."""
+"""Blocks; a part with a smaller wide place is joined to its neighbour."""
 
 
 class Regions(NamedTuple):

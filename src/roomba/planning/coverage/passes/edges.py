@@ -31,7 +31,7 @@ _STRETCH = 10.0
 _WORTH = 1.0
 """cells of new floor for a cell of way: the least that an edge is driven for."""
 _BRIDGE = 4
-"""stretches without new floor that are driven rather than gone around."""
+"""stretches; a gap without new floor of up to this length is driven, not gone around."""
 
 
 def rings(middles: Mask) -> list[Line]:

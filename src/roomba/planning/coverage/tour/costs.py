@@ -21,9 +21,9 @@ Tour = NDArray[np.int32]
 and 2 k + 1, a connection between 2 k + 1 and 2 k + 2."""
 
 _HIDDEN = 2.0
-"""Times the straight way that a way is taken to be that is neither known nor in sight."""
+"""Estimated length of an unknown way out of sight, as a multiple of the straight one."""
 _AROUND = 200.0
-"""cells; more for that."""
+"""cells; added to that estimate."""
 _LOOKS = 8.0
 """cells."""
 _PARTS = 256.0

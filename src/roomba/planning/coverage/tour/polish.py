@@ -1,7 +1,7 @@
 """Stage polish: makes the way shorter and straighter where that leaves hardly any floor unswept.
 
-Ends of swaths that something else sweeps draw back, corners are cut, small zigzags and pieces that
-have become needless vanish. Places in cells of the window: (x, y) is (column, row).
+Ends of swaths that other legs sweep are shortened, corners are cut, small zigzags and redundant
+pieces are removed. Places in cells of the window: (x, y) is (column, row).
 """
 
 from __future__ import annotations
@@ -255,7 +255,7 @@ def _improve_at(bent: Bent, at: int, radius: float, turning: float, floor: float
 
 @njit(cache=True, nogil=True)
 def _polish(bent: Bent, radius: float, turning: float, floor: float) -> None:
-    """Change the way point by point, until no change costs less or it has been long enough."""
+    """Change the way point by point, until no change costs less or the rounds are used up."""
     points = bent.points
     sweep(bent.counts, points, radius)
     waiting = np.ones(len(points), np.bool_)

@@ -12,9 +12,9 @@ from roomba.planning.coverage.tour.moves import Trip, exchange, improve
 
 _MOST_ROUNDS = 12000
 _A_WHILE = 2000
-"""rounds; so many at least, and no more after as many that brought too little."""
+"""rounds; the fewest, and how many without enough gain end the search."""
 _PAYS = 0.005
-"""Share of the cost that the rounds of a while must bring."""
+"""Share of the cost that these rounds must gain."""
 _NEAR_SHARE = 30
 """Of a hundred rounds, those that exchange runs between connections that are near each other."""
 _LONGEST = 25
