@@ -20,12 +20,12 @@ class MappingConfig(Frozen):
     submap_keyframes: Annotated[int, Field(ge=4)] = 40
     point_deviation: Positive = 0.03
     least_met: Ratio = 0.35
-    least_close: Ratio = 0.75
+    least_close: Ratio = 0.6
     link_radius: Positive = 5.0
     link_met: Ratio = 0.3
     link_close: Ratio = 0.8
     link_points: Annotated[int, Field(ge=50)] = 150
-    drift: Positive = 0.01
+    drift: Positive = 0.03
     least_link_deviation: Positive = 0.004
     least_link_turn: Positive = 0.0015
     occupied_share: Ratio = 0.3

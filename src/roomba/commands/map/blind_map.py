@@ -52,7 +52,7 @@ class BlindMap:
             self._lidar, self._beams = lidar, lidar.arrays()
         beams, points = self._beams, np.empty((lidar.beams, POINT))
         count = surface_points(
-            ranges, beams.directions, beams.mount, beams.nearest, beams.farthest, points
+            ranges, beams.directions, beams.mount, beams.nearest, beams.farthest, 0.0, points
         )
         pose = np.array([here.x, here.y, here.theta])
         self._sheet.draw(points[:count].astype(np.float32), beams.mount[:2], pose, beams.farthest)

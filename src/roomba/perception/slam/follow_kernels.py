@@ -28,6 +28,10 @@ FOLLOWER: Final = np.dtype(
         ("close", "f8"),  # and of those that lie in it
         ("is_sure", "?"),  # whether it confirmed the pose
         ("misses", "i8"),  # scans since one did
+        ("unsure_way", "f8"),  # m; driven since one did
+        ("unsure_turn", "f8"),  # rad; turned since one did
+        ("odometry_scale", "f8", (3,)),  # how many times its variances dead reckoning is off by
+        ("range_deviation", "f8"),  # m; of a range, as measured
         # what does not change
         ("variance", "f8"),  # m2; of a point
         ("least_met", "f8"),
@@ -41,8 +45,24 @@ LEAST_POINTS: Final = 30
 """The fewest points that count."""
 _MANY: Final = 5
 """Misses after which a scan is matched from farther away."""
-_SCALES: Final = np.array([0.1, 0.05, 0.03])
-"""m; of the rounds of a match."""
+_FIRST_SCALES: Final = (0.1, 0.05)
+"""m; of the first rounds of a match."""
+_LAST_SCALE: Final = 0.03
+_SCALE_IN_DEVIATIONS: Final = 3.0
+"""m, and in deviations of a range: of the rest of the rounds, the larger one."""
+_IN_PLANE: Final = 0.03
+_IN_PLANE_IN_DEVIATIONS: Final = 3.0
+_MAP_ERROR: Final = 0.01
+"""m; a point that is off a plane by less lies in it: so much, or so many deviations of a range and
+what the map itself may be off."""
+_LEARNING: Final = 0.02
+"""Share of the newest scan in how far off dead reckoning is thought to be."""
+_MARGIN: Final = 4.0
+"""What was seen of its errors is taken times this: they are not the same all the time."""
+_DOUBTED_MORE: Final = 1.2
+"""Times that it is thought to be off by more after a scan that confirms nothing."""
+_MOST_OFF: Final = 200.0
+"""Times its variance that one scan makes it off at most: a jump says nothing of the usual."""
 _ROUNDS: Final = 6
 _STRIDE: Final = 2
 """Each such point follows the robot; keyframes have all of them."""
@@ -78,7 +98,13 @@ def follow_scan(parts: Following, ranges: NDArray[np.float32]) -> int:
     """Take a scan, float32 [beams], m, taken here and now; return how many ``points`` it has."""
     beams = parts.beams
     count = surface_points(
-        ranges, beams.directions, beams.mount, beams.nearest, beams.farthest, parts.points
+        ranges,
+        beams.directions,
+        beams.mount,
+        beams.nearest,
+        beams.farthest,
+        parts.follower[0].range_deviation,
+        parts.points,
     )
     follow(
         parts.follower, parts.belief, parts.belief[0].reckoned, parts.surfels, parts.points, count
@@ -101,9 +127,11 @@ def follow(
         covariance[row, row] += _LEAST_SPREAD[row]
     reach = _FAR_REACH if follower.misses >= _MANY else 1
     information, counts = np.zeros((3, 3)), np.zeros(COUNTS)
+    noise = follower.range_deviation
+    scales = np.array([_FIRST_SCALES[0], _FIRST_SCALES[1], last_scale(noise)])
     is_solved = align(
-        surfels, points, count, _STRIDE, reach, prior, covariance, _SCALES, follower.variance,
-        _ROUNDS, pose, information, counts,
+        surfels, points, count, _STRIDE, reach, prior, covariance, scales, follower.variance,
+        in_plane(noise), _ROUNDS, pose, information, counts,
     )  # fmt: skip
     is_solved = is_solved and math.isfinite(pose[0] + pose[1] + pose[2])
     follower.met = follower.close = 0.0
@@ -118,28 +146,68 @@ def follow(
     )
     if not follower.is_sure:
         follower.misses += 1
+        for axis in range(3):
+            # It may be dead reckoning that is off by more than is thought.
+            follower.odometry_scale[axis] = min(
+                _DOUBTED_MORE * follower.odometry_scale[axis], _MOST_OFF
+            )
         return
+    _learn_scale(follower, prior, pose)
     follower.here[0], follower.here[1], follower.here[2] = pose[0], pose[1], wrapped(pose[2])
     follower.spread[:] = 0.0
     follower.misses = 0
+    follower.unsure_way = follower.unsure_turn = 0.0
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def last_scale(deviation: float) -> float:
+    """Return the scale of a match's last rounds, m, for ranges of a standard deviation, m."""
+    return max(_LAST_SCALE, _SCALE_IN_DEVIATIONS * deviation)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def in_plane(deviation: float) -> float:
+    """Return how far off a plane, m, a point still lies in it, by the deviation of a range, m."""
+    return max(_IN_PLANE, _IN_PLANE_IN_DEVIATIONS * deviation + _MAP_ERROR)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _learn_scale(follower: Row, prior: Floats, pose: Floats) -> None:
+    """Learn from a match how far off dead reckoning was, by its own variances: 1 or more."""
+    cosine, sine = math.cos(prior[2]), math.sin(prior[2])
+    off_x, off_y, turn = pose[0] - prior[0], pose[1] - prior[1], wrapped(pose[2] - prior[2])
+    off = (cosine * off_x + sine * off_y, cosine * off_y - sine * off_x, turn)
+    spread, scale = follower.spread, follower.odometry_scale
+    along = cosine * cosine * spread[0, 0] + sine * sine * spread[1, 1]
+    along += 2.0 * cosine * sine * spread[0, 1]
+    across = spread[0, 0] + spread[1, 1] - along
+    thought = (along, across, spread[2, 2])
+    for axis in range(3):
+        if thought[axis] < _LEAST_SPREAD[axis]:
+            continue  # it hardly moved: the match itself is no surer
+        seen = min(_MARGIN * off[axis] * off[axis] * scale[axis] / thought[axis], _MOST_OFF)
+        scale[axis] = max(1.0, scale[axis] + _LEARNING * (seen - scale[axis]))
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _move_on(follower: Row, belief: Row, reckoned: Floats) -> None:
     """Go by dead reckoning, and be as unsure as that became since the last scan."""
     ahead, aside, turn = _step_to(follower.reckoned, reckoned)
-    follower.way += math.hypot(ahead, aside)
+    driven = math.hypot(ahead, aside)
+    follower.way += driven
+    follower.unsure_way += driven
+    follower.unsure_turn += abs(turn)
     compose(follower.here, ahead, aside, turn)
     for axis in range(3):
         follower.reckoned[axis] = reckoned[axis]
     cosine, sine = math.cos(follower.here[2]), math.sin(follower.here[2])
-    along, across = belief.spread[0], belief.spread[1]
-    spread = follower.spread
+    scale, spread = follower.odometry_scale, follower.spread
+    along, across = scale[0] * belief.spread[0], scale[1] * belief.spread[1]
     spread[0, 0] += cosine * cosine * along + sine * sine * across
     spread[1, 1] += sine * sine * along + cosine * cosine * across
     spread[0, 1] += cosine * sine * (along - across)
     spread[1, 0] = spread[0, 1]
-    spread[2, 2] += belief.spread[2]
+    spread[2, 2] += scale[2] * belief.spread[2]
     belief.spread[:] = 0.0
 
 

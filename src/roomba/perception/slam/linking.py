@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 
 from roomba.configuration.mapping import MappingConfig
 from roomba.perception.matching.match_kernels import invert
+from roomba.perception.slam.correlative import CorrelativeMatcher
+from roomba.perception.slam.follow_kernels import in_plane, last_scale
 from roomba.perception.slam.pose_graph import Link, relative_to
 from roomba.perception.slam.submap import Submap
 from roomba.perception.slam.surfels import Match, SurfelGrid
@@ -18,17 +20,27 @@ from roomba.perception.slam.surfels import Match, SurfelGrid
 Floats = NDArray[np.float64]
 
 _COARSE: Final = np.array([0.3, 0.2, 0.1])
-_FINE: Final = np.array([0.05, 0.03])
-"""m; scales of a match, far off and near."""
+_FINE: Final = (0.05,)
+"""m; scales of a match, far off and near; the last one is that of the lidar's noise."""
 _ROUNDS: Final = 8
 _COARSE_REACH: Final = 3
 """Cells of surfels; so far off a link is found at first."""
 _COARSE_STRIDE: Final = 3
 _BESIDE: Final = 0.15
 """m; two submaps may always lie so far from where they were thought to be."""
-_STEP: Final = 0.2
-_TURN_STEP: Final = 0.04
-"""m, rad; between the places that are tried when the drift may be long."""
+_NARROW: Final = 0.35
+"""m; in a window that is no wider points find their surfaces by themselves."""
+_WIDEST: Final = 6.0
+"""m; the widest window that is searched."""
+_TURN: Final = 0.1
+_TURN_PER_METRE: Final = 0.15
+"""rad, and rad/m; how much two submaps may be turned, by the width of the window."""
+_LIKELY: Final = 0.45
+"""Mean likelihood of points, 0..1, from which a pose of a wide window is looked at closely."""
+_HARDLY: Final = 0.3
+"""m; standard deviation of a link over which no scan led."""
+_KEPT: Final = 40
+"""Submaps whose grids of likelihoods are kept: some 2 MB each."""
 
 
 class Linker:
@@ -38,13 +50,25 @@ class Linker:
         """Take the numbers, and how far the points of a submap reach, m."""
         self._config = config
         self._grid = SurfelGrid(half_width)
+        self._matchers: dict[int, CorrelativeMatcher] = {}
+        self._scale = np.array([_FINE[0], last_scale(0.0)])
+        self._in_plane = in_plane(0.0)
+
+    def use_noise(self, deviation: float) -> None:
+        """Go by the standard deviation of a range, m."""
+        self._scale = np.array([_FINE[0], last_scale(deviation)])
+        self._in_plane = in_plane(deviation)
+
+    def forget(self, submap: int) -> None:
+        """The submap of this number is another one from now on."""
+        self._matchers.pop(submap, None)
 
     def links_to(
         self, child: int, last: int, submaps: list[Submap], poses: Floats, links: list[Link]
     ) -> list[Link]:
         """Return the links of a submap to those before ``last`` that lie near."""
         found = []
-        ways = _ways(child, poses, links)
+        ways = _ways(child, poses, links, self._config.drift)
         for parent in range(last):
             away = math.hypot(*(poses[parent, :2] - poses[child, :2]))
             if away > self._config.link_radius or parent == child:
@@ -62,33 +86,46 @@ class Linker:
         if len(cloud) < self._config.link_points or not len(submaps[parent].cloud):
             return None
         thought = relative_to(poses[parent : parent + 1], poses[child : child + 1])[0]
-        farthest = _BESIDE + self._config.drift * way
+        window = min(_BESIDE + self._config.drift * way, _WIDEST)
+        start: Floats | None = thought
+        if window > _NARROW:
+            start = self._found(parent, submaps[parent].cloud, cloud, thought, window)
+        if start is None:
+            return None
         self._grid.clear()
         self._grid.add(submaps[parent].cloud, np.zeros(3))
-        best = None
-        for start in _starts(thought, farthest):
-            match = self._match(cloud, start)
-            if match is None or math.hypot(*(match.pose[:2] - thought[:2])) > farthest:
-                continue
-            if best is None or match.met * match.close > best.met * best.close:
-                best = match
-            if self._is_good(best):
-                break
-        if best is None or not self._is_good(best):
+        match = self._match(cloud, start)
+        if match is None or not self._is_good(match):
             return None
-        return Link(parent, child, best.pose, self._information(best))
+        if math.hypot(*(match.pose[:2] - thought[:2])) > max(window, _NARROW):
+            return None
+        return Link(parent, child, match.pose, self._information(match))
+
+    def _found(
+        self, parent: int, there: Floats, cloud: Floats, thought: Floats, window: float
+    ) -> Floats | None:
+        """Return about where points lie in a submap, [3], by a search of a wide window."""
+        matcher = self._matchers.pop(parent, None) or CorrelativeMatcher(there)
+        self._matchers[parent] = matcher
+        if len(self._matchers) > _KEPT:
+            self._matchers.pop(next(iter(self._matchers)))
+        turn = _TURN + _TURN_PER_METRE * window
+        found = matcher.best(cloud, thought, window, turn, _LIKELY)
+        return None if found is None else found.pose
 
     def _match(self, cloud: Floats, start: Floats) -> Match | None:
         """Match from far off, then exactly."""
         deviation = self._config.point_deviation
         loose = np.diag([1.0, 1.0, 0.3])
         coarse = self._grid.match(
-            cloud, start, loose, _COARSE, deviation,
+            cloud, start, loose, _COARSE, deviation, self._in_plane,
             rounds=_ROUNDS, reach=_COARSE_REACH, stride=_COARSE_STRIDE,
         )  # fmt: skip
         if coarse is None:
             return None
-        return self._grid.match(cloud, coarse.pose, loose, _FINE, deviation, rounds=_ROUNDS)
+        return self._grid.match(
+            cloud, coarse.pose, loose, self._scale, deviation, self._in_plane, rounds=_ROUNDS
+        )
 
     def _is_good(self, match: Match) -> bool:
         config = self._config
@@ -104,13 +141,18 @@ class Linker:
         return information
 
 
-def _ways(submap: int, poses: Floats, links: list[Link]) -> Floats:
-    """Return how long the shortest chains of links are from one submap to each other one, m."""
+def _ways(submap: int, poses: Floats, links: list[Link], drift: float) -> Floats:
+    """Return how long the shortest chains of links are from one submap to each other one, m.
+
+    A link that is hardly known counts as the way over which as much drift comes about.
+    """
     joined = np.array([(link.parent, link.child) for link in links], np.int64).reshape(-1, 2)
     away = poses[joined[:, 0], :2] - poses[joined[:, 1], :2]
+    unsure = np.array([link.information[0, 0] for link in links]).reshape(-1) ** -0.5
+    lengths = np.hypot(away[:, 0], away[:, 1]) + np.where(unsure > _HARDLY, unsure / drift, 0.0)
     ways = np.full(len(poses), np.inf)
     ways[submap] = 0.0
-    _shorten(joined, np.hypot(away[:, 0], away[:, 1]), ways)
+    _shorten(joined, lengths, ways)
     return ways
 
 
@@ -129,20 +171,3 @@ def _shorten(joined: NDArray[np.int64], lengths: Floats, ways: Floats) -> None:
                 ways[other], has_changed = ways[one] + lengths[index], True
             elif ways[other] + lengths[index] < ways[one]:
                 ways[one], has_changed = ways[other] + lengths[index], True
-
-
-def _starts(thought: Floats, farthest: float) -> list[Floats]:
-    """Return where to begin: where it was thought to be, and ever farther around it."""
-    reach = int(max(0.0, farthest - 2.0 * _BESIDE) / _STEP)
-    if reach == 0:
-        return [thought]
-    shifts = np.arange(-reach, reach + 1) * _STEP
-    turns = np.array([0.0, -1.0, 1.0]) * _TURN_STEP
-    places = [(float(x), float(y)) for x in shifts for y in shifts]
-    # The nearest first: the first that fits is taken, and rooms look alike from afar.
-    return [
-        thought + np.array([x, y, turn])
-        for x, y in sorted(places, key=lambda place: math.hypot(*place))
-        for turn in turns
-        if math.hypot(x, y) <= farthest
-    ]

@@ -16,17 +16,20 @@ from numpy.typing import NDArray
 
 from roomba.configuration.mapping import MappingConfig
 from roomba.configuration.robot import GyroConfig, LocalizationConfig
-from roomba.geometry import Pose
+from roomba.geometry import Pose, wrap_angle
 from roomba.grid import OccupancyMap
 from roomba.perception.localization.dead_reckoning import DeadReckoning
 from roomba.perception.localization.estimate import Estimate, Knowledge
+from roomba.perception.matching.range_noise import RangeNoise
 from roomba.perception.matching.scan_view import LidarModel
+from roomba.perception.slam.correlative import CorrelativeMatcher
 from roomba.perception.slam.follow_kernels import LEAST_POINTS, Following, beyond, is_apart
+from roomba.perception.slam.latency import Latency
 from roomba.perception.slam.mapper_state import KeptSubmap, LidarNumbers, MapperState
 from roomba.perception.slam.occupancy_counts import OccupancyCounts
 from roomba.perception.slam.pose_graph import relative_to
 from roomba.perception.slam.scan_follower import ScanFollower
-from roomba.perception.slam.submap import Keyframe
+from roomba.perception.slam.submap import Keyframe, moved
 from roomba.perception.slam.submap_graph import SubmapGraph
 from roomba.perception.slam.surface_kernels import POINT, surface_points
 from roomba.perception.slam.surfels import SurfelGrid
@@ -37,6 +40,25 @@ _SPARE: Final = 4.0
 """m; the farthest that a robot gets from the beginning of a submap."""
 _REDRAWN_TURN: Final = 0.002
 """rad; a submap that turned more is drawn anew."""
+_SEARCHED_AFTER: Final = 3
+"""Scans that confirm nothing; then it is looked farther around."""
+_SEARCHED_WAY: Final = 0.5
+_SEARCHED_TURN: Final = 0.8
+"""m, rad; so far to each side,"""
+_SEARCHED_SHARE: Final = 0.2
+"""and by this share of what was driven and turned since a scan confirmed the pose."""
+_SEARCHED_LIKELIHOOD: Final = 0.5
+"""Mean likelihood of points, 0..1, from which a pose is looked at closely."""
+_SEARCHED_STRIDE: Final = 2
+"""Each such point of the keyframes is looked at: neighbours say the same."""
+_GIVEN_UP_AFTER: Final = 7
+"""Scans that show enough and confirm nothing, searched for twice."""
+_PIECE_WAY: Final = 0.6
+_PIECE_TURN: Final = 2.0
+"""m, rad; driven and turned without a scan that confirms the pose: then the map goes on in a piece
+of its own, which is joined when it is known how."""
+_FARTHEST: Final = 30.0
+"""m; what is farther is drawn, but nothing is matched to it."""
 _SURE: Final = np.diag([0.01**2, 0.01**2, 0.005**2])
 _UNSURE: Final = np.diag([0.1**2, 0.1**2, 0.05**2])
 """m2, rad2; of the pose against what was seen in the last metres."""
@@ -67,6 +89,10 @@ class Mapper:
         self._follower = ScanFollower(config, self._reckoning)
         self._graph = SubmapGraph(config, localization, _row_of(start))
         self.at_scan = start
+        self._noise = RangeNoise()
+        self._latency = Latency()
+        self._misses = 0
+        self._finished = -1
         self._lidar: LidarModel | None = None
         self._phase = (0.0, 0.0)
         self._sheet = OccupancyCounts(config.resolution)
@@ -120,11 +146,18 @@ class Mapper:
 
         Raises ValueError for another number of beams than the lidar has.
         """
-        reckoned = self._reckoning.at(stamp)
+        reckoned = self._reckoning.at(stamp - self._latency.seconds)
         if reckoned is None or self._is_lifted or self._is_lost:
             return
         points = self._points_of(ranges, lidar)
+        if self._is_without_hold(len(points)):
+            self._begin_piece()
+        before = self._follower.here if self._follower.is_sure else None
         self._follower.follow(reckoned, points, self._surfels)
+        self._count_misses(len(points))
+        if self._misses and self._misses % _SEARCHED_AFTER == 0:
+            self._search_around(points)
+        self._learn_latency(stamp, before)
         if self._is_keyframe(len(points)):
             self._keep(points)
         self.at_scan = self._place()
@@ -132,7 +165,7 @@ class Mapper:
     @property
     def is_calm(self) -> bool:
         """Whether scans follow each other: kernels may take them, until it has :meth:`resumed`."""
-        is_held = self._is_lifted or self._is_lost
+        is_held = self._is_lifted or self._is_lost or self._latency.seconds > 0.0
         keyframes = self._graph.newest.keyframes
         return self.version > 0 and self._follower.is_sure and not is_held and bool(keyframes)
 
@@ -156,6 +189,7 @@ class Mapper:
     def resumed(self, points: int = 0) -> None:
         """Take over from kernels; the newest scan is a keyframe if it has so many ``points``."""
         self._reckoning.begin_history()
+        self._latency.interrupted()
         if points:
             self._keep(self._points[:points])
         self.at_scan = self._place()
@@ -227,23 +261,68 @@ class Mapper:
 
         Raises ValueError before the first scan.
         """
+        if self.version in (0, self._finished):
+            return self.occupancy()
         self._close_submap()
         self._graph.refine()
+        self._graph.refine_keyframes()
         self._phase = self._graph.square(self._config.resolution)
         self._redraw()
         self.at_scan = self._place()
+        self._finished = self.version
         return self.occupancy()
+
+    def _count_misses(self, points: int) -> None:
+        """Count the scans in a row that show enough and confirm nothing."""
+        if self._follower.is_sure:
+            self._misses = 0
+        elif points >= LEAST_POINTS and self.version:
+            self._misses += 1
+
+    def _search_around(self, points: Floats) -> None:
+        """Look for where a scan fits in a wide window around where it was thought to be."""
+        frames = self._graph.keyframes_beside([*self._beside, len(self._graph.submaps) - 1])
+        clouds = [moved(frame.points, pose) for frame, pose in frames]
+        if not clouds or len(points) < LEAST_POINTS:
+            return
+        around = CorrelativeMatcher(np.concatenate(clouds)[::_SEARCHED_STRIDE])
+        follower = self._follower
+        window = _SEARCHED_WAY + _SEARCHED_SHARE * follower.unsure_way
+        turn = min(_SEARCHED_TURN + _SEARCHED_SHARE * follower.unsure_turn, math.pi)
+        found = around.best(points, follower.here, window, turn, _SEARCHED_LIKELIHOOD)
+        if found is not None:
+            self._follower.try_at(found.pose, points, self._surfels)
+
+    def _learn_latency(self, stamp: float, before: Floats | None) -> None:
+        """Learn how late scans are from where this one and the one ``before`` were taken."""
+        turn = None
+        if before is not None and self._follower.is_sure:
+            turn = wrap_angle(float(self._follower.here[2] - before[2]))
+        self._latency.learn(turn, stamp, self._reckoning.at)
 
     # ---------------------------------------------------------------- keeping what was seen
 
+    def _is_without_hold(self, points: int) -> bool:
+        """Whether it has gone on for so long unconfirmed that the map must come to where it is."""
+        follower = self._follower
+        if self._misses < _GIVEN_UP_AFTER or points < LEAST_POINTS:
+            return False
+        return follower.unsure_way > _PIECE_WAY or follower.unsure_turn > _PIECE_TURN
+
+    def _begin_piece(self) -> None:
+        """Begin a submap that scans are matched to, though none tells where it lies."""
+        self._close_submap()
+        self._graph.begin_piece(self._follower.here, self._follower.way)
+        self._enter_newest([])
+        self._follower.jump()
+        self._misses = 0
+
     def _is_keyframe(self, points: int) -> bool:
         keyframes = self._graph.newest.keyframes
-        if not self.version:
+        if not keyframes:
             return points >= LEAST_POINTS
         if not self._follower.is_sure:
             return False
-        if not keyframes:
-            return True
         way, turn = self._config.keyframe_way, self._config.keyframe_turn
         return bool(is_apart(self._follower.here, keyframes[-1].pose, way, turn))
 
@@ -331,17 +410,30 @@ class Mapper:
         if lidar is not self._lidar:
             self._use(lidar)
         beams, points = self._beams, self._points
+        self._noise.add(ranges, beams.nearest, beams.farthest)
+        self._use_noise()
         count = surface_points(
-            ranges, beams.directions, beams.mount, beams.nearest, beams.farthest, points
+            ranges,
+            beams.directions,
+            beams.mount,
+            beams.nearest,
+            beams.farthest,
+            self._noise.deviation,
+            points,
         )
         return points[:count]
+
+    def _use_noise(self) -> None:
+        self._follower.use_noise(self._noise.deviation)
+        self._graph.use_noise(self._noise.deviation)
 
     def _use(self, lidar: LidarModel) -> None:
         """Make what depends on the lidar."""
         self._lidar, self._beams = lidar, lidar.arrays()
         self._points = np.empty((lidar.beams, POINT))
-        reach = self._beams.farthest + _SPARE
+        reach = min(self._beams.farthest, _FARTHEST) + _SPARE
         self._graph.use_reach(reach)
+        self._use_noise()
         self._surfels = SurfelGrid(reach)
         newest = len(self._graph.submaps) - 1
         self._fill_surfels(sorted({*self._beside, newest}))

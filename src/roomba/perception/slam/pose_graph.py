@@ -2,11 +2,12 @@
 
 Gauss and Newton's method on the sum of squared, weighted errors (Lu and Milios, "Globally
 consistent range scan alignment", 1997). The first pose stays where it is. Homes have some dozens
-of submaps, so the normal equations are solved as a dense matrix.
+of submaps: few normal equations are solved as a dense matrix, many as a sparse one.
 """
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Final
 
@@ -17,11 +18,22 @@ from roomba.angles import wrap_angles
 
 Floats = NDArray[np.float64]
 
-_ROUNDS: Final = 12
+_ROUNDS: Final = 30
 _SETTLED: Final = 1e-5
 """m and rad; corrections that are smaller end the search."""
 _DOUBTED: Final = 9.0
 """Squared error, in deviations, of which a link loses three quarters of its weight."""
+_LAST_ROUNDS: Final = 8
+"""Rounds, at most, once that error is as small as it becomes."""
+_STRICTER: Final = 0.1
+"""That error is larger at first, so that links can pull far off poses together, and becomes so many
+times less each round (graduated non-convexity: Yang et al., RA-L 2020)."""
+
+
+_DENSE: Final = 600
+"""Numbers to solve for; with more a sparse matrix is quicker."""
+_HELD: Final = 1e-6
+"""1/m2; a pose that no link holds stays where it is."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -64,6 +76,12 @@ def composed(parents: Floats, relative: Floats) -> Floats:
     )
 
 
+def inverse(pose: Floats) -> Floats:
+    """Return the pose [3] that undoes one, [3]."""
+    undone: Floats = relative_to(pose[None], np.zeros((1, 3)))[0]
+    return undone
+
+
 def optimised(poses: Floats, links: list[Link]) -> Floats:
     """Return ``poses``, float64 [n, 3], moved so that they agree best with the links.
 
@@ -79,46 +97,87 @@ def optimised(poses: Floats, links: list[Link]) -> Floats:
     information = np.array([link.information for link in links])
     doubted = np.array([link.may_be_wrong for link in links])
     result = poses.copy()
+    tolerance, left = math.inf, _LAST_ROUNDS
     for _ in range(_ROUNDS):
-        step = _step(result, parents, children, measured, information, doubted)
+        error, predicted = _errors(result, parents, children, measured)
+        square = (error[:, None] @ information @ error[:, :, None])[:, 0, 0]
+        worst = float(square[doubted].max()) if doubted.any() else 0.0
+        tolerance = max(_DOUBTED, min(_STRICTER * tolerance, worst))
+        weight = np.where(doubted, (tolerance / (tolerance + square)) ** 2, 1.0)
+        weighted = information * weight[:, None, None]
+        step = _step(result, parents, children, error, predicted, weighted)
         result[1:] += step
         result[:, 2] = wrap_angles(result[:, 2])
-        if not len(step) or np.abs(step).max() < _SETTLED:
+        is_settled = not len(step) or np.abs(step).max() < _SETTLED
+        left -= tolerance == _DOUBTED
+        if (is_settled and tolerance == _DOUBTED) or left == 0:
             break
     return result
+
+
+def _errors(
+    poses: Floats, parents: NDArray[np.int64], children: NDArray[np.int64], measured: Floats
+) -> tuple[Floats, Floats]:
+    """Return by how much each link is off, and what it should have measured, [n, 3] each."""
+    predicted = relative_to(poses[parents], poses[children])
+    error = predicted - measured
+    error[:, 2] = wrap_angles(error[:, 2])
+    return error, predicted
 
 
 def _step(
     poses: Floats,
     parents: NDArray[np.int64],
     children: NDArray[np.int64],
-    measured: Floats,
-    information: Floats,
-    doubted: NDArray[np.bool_],
+    error: Floats,
+    predicted: Floats,
+    weighted: Floats,
 ) -> Floats:
     """Return the correction of all poses but the first, float64 [n - 1, 3]."""
-    predicted = relative_to(poses[parents], poses[children])
-    error = predicted - measured
-    error[:, 2] = wrap_angles(error[:, 2])
-    square = np.einsum("ni,nij,nj->n", error, information, error)
-    weight = np.where(doubted, (_DOUBTED / (_DOUBTED + square)) ** 2, 1.0)
-    weighted = information * weight[:, None, None]
     of_parent, of_child = _slopes(poses[parents], predicted)
     count, axes = len(poses), np.arange(3)
-    matrix = np.zeros((3 * count, 3 * count))
     gradient = np.zeros((count, 3))
+    rows, columns, values = [], [], []
     for slopes, nodes in ((of_parent, parents), (of_child, children)):
-        np.add.at(gradient, nodes, np.einsum("nki,nkl,nl->ni", slopes, weighted, error))
+        np.add.at(
+            gradient, nodes, (slopes.transpose(0, 2, 1) @ (weighted @ error[:, :, None]))[:, :, 0]
+        )
         for others, beside in ((of_parent, parents), (of_child, children)):
-            block = np.einsum("nki,nkl,nlj->nij", slopes, weighted, others)
-            rows = (3 * nodes[:, None] + axes)[:, :, None]
-            columns = (3 * beside[:, None] + axes)[:, None, :]
-            np.add.at(matrix, (rows, columns), block)
-    size = 3 * (count - 1)
-    left = matrix[3:, 3:]
-    # A pose that no link holds stays where it is.
-    left[np.diag_indices(size)] += 1e-6
-    return -np.linalg.solve(left, gradient[1:].reshape(size)).reshape(-1, 3)
+            block = slopes.transpose(0, 2, 1) @ (weighted @ others)
+            row = (3 * nodes[:, None] + axes)[:, :, None]
+            column = (3 * beside[:, None] + axes)[:, None, :]
+            rows.append(np.broadcast_to(row, block.shape).ravel())
+            columns.append(np.broadcast_to(column, block.shape).ravel())
+            values.append(block.ravel())
+    places = np.concatenate(rows), np.concatenate(columns)
+    solved = _solved(places, np.concatenate(values), -gradient.reshape(-1))
+    return solved.reshape(-1, 3)[1:]
+
+
+def _solved(
+    places: tuple[NDArray[np.int64], NDArray[np.int64]], values: Floats, right: Floats
+) -> Floats:
+    """Return the solution of the normal equations, float64 [n], whose first three are 0.
+
+    The matrix is the sum of ``values`` [m] at the rows and columns of ``places``, [m] each.
+    """
+    size = right.size
+    solution = np.zeros(size)
+    if size <= _DENSE:
+        matrix = np.zeros((size, size))
+        np.add.at(matrix, places, values)
+        left = matrix[3:, 3:]
+        left[np.diag_indices(size - 3)] += _HELD
+        solution[3:] = np.linalg.solve(left, right[3:])
+        return solution
+    # Here, for only large maps need it, and it takes 40 MB.
+    from scipy.sparse import csc_matrix, identity
+    from scipy.sparse.linalg import spsolve
+
+    sparse = csc_matrix((values, places), shape=(size, size))[3:, 3:]
+    sparse = (sparse + _HELD * identity(size - 3, format="csc")).tocsc()
+    solution[3:] = spsolve(sparse, right[3:], permc_spec="MMD_AT_PLUS_A")
+    return solution
 
 
 def _slopes(parents: Floats, predicted: Floats) -> tuple[Floats, Floats]:

@@ -17,6 +17,8 @@ Floats = NDArray[np.float64]
 
 _TAKEN_UP_SPREAD: Final = np.diag([0.1**2, 0.1**2, 0.05**2])
 """m2, rad2; of a pose by the wheels alone, after the mapping process was away."""
+_FOUND_SPREAD: Final = np.diag([0.1**2, 0.1**2, 0.05**2])
+"""m2, rad2; of a pose that a search found."""
 
 
 class ScanFollower:
@@ -34,6 +36,7 @@ class ScanFollower:
         self._row = row = self.state[0]
         row["variance"] = config.point_deviation**2
         row["least_met"], row["least_close"] = config.least_met, config.least_close
+        row["odometry_scale"] = 1.0
         self._go_on_from(np.zeros(3))
 
     @property
@@ -56,6 +59,20 @@ class ScanFollower:
     def close(self) -> float:
         """Share of those that lie in it."""
         return float(self._row["close"])
+
+    @property
+    def unsure_way(self) -> float:
+        """What was driven since a scan confirmed the pose, m."""
+        return float(self._row["unsure_way"])
+
+    @property
+    def unsure_turn(self) -> float:
+        """What was turned since then, rad."""
+        return float(self._row["unsure_turn"])
+
+    def use_noise(self, deviation: float) -> None:
+        """Go by the standard deviation of a range, m."""
+        self._row["range_deviation"] = deviation
 
     @property
     def is_sure(self) -> bool:
@@ -85,7 +102,22 @@ class ScanFollower:
         at = np.array([reckoned.x, reckoned.y, reckoned.theta])
         follow(self.state, self._reckoning.belief, at, surfels.arrays, points, len(points))
 
+    @property
+    def misses(self) -> int:
+        """Scans since one confirmed the pose."""
+        return int(self._row["misses"])
+
+    def try_at(self, pose: Floats, points: Floats, surfels: SurfelGrid) -> None:
+        """Be at ``pose`` [3] if a scan, points [n, 4], confirms it; else stay where it was."""
+        before = self.state.copy()
+        self._row["here"], self._row["spread"] = pose, _FOUND_SPREAD
+        reckoned = self._row["reckoned"].copy()
+        follow(self.state, self._reckoning.belief, reckoned, surfels.arrays, points, len(points))
+        if not self.is_sure:
+            self.state[:] = before
+
     def _go_on_from(self, here: Floats) -> None:
         self._row["here"], self._row["spread"] = here, 0.0
+        self._row["unsure_way"] = self._row["unsure_turn"] = 0.0
         reckoned = self._reckoning.pose
         self._row["reckoned"] = reckoned.x, reckoned.y, reckoned.theta

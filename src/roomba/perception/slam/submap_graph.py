@@ -14,7 +14,8 @@ from roomba.configuration.robot import LocalizationConfig
 from roomba.perception.slam.axis_alignment import phase_of_walls, turn_of_walls
 from roomba.perception.slam.linking import Linker
 from roomba.perception.slam.mapper_state import KeptSubmap
-from roomba.perception.slam.pose_graph import Link, composed, optimised, relative_to
+from roomba.perception.slam.pose_graph import Link, composed, inverse, optimised, relative_to
+from roomba.perception.slam.refinement import refined
 from roomba.perception.slam.submap import Keyframe, Submap, moved
 
 Floats = NDArray[np.float64]
@@ -23,6 +24,8 @@ _CLOUD: Final = 1500
 """Points of a submap that are matched to others."""
 _OF_PEOPLE: Final = np.diag([0.05**-2, 0.05**-2, 0.05**-2])
 """1/m2, 1/rad2; information of a link to a reported pose."""
+_OF_A_PIECE: Final = np.diag([1.0**-2, 1.0**-2, 0.5**-2])
+"""1/m2, 1/rad2; of a link over which no scan led."""
 _REFINEMENTS: Final = 2
 """Times that all links are looked for anew when the map is finished."""
 
@@ -36,6 +39,7 @@ class SubmapGraph:
         """Begin with an empty submap at ``start``, float64 [3]."""
         self._config, self._localization = config, localization
         self._linker: Linker | None = None
+        self._reach, self._range_deviation = 0.0, 0.0
         self.submaps = [Submap(0.0)]
         self.poses = start[None].copy()
         self.links: list[Link] = []
@@ -51,7 +55,15 @@ class SubmapGraph:
 
     def use_reach(self, reach: float) -> None:
         """Take how far the points of a submap are from its origin at most, m."""
+        self._reach = reach
         self._linker = Linker(self._config, reach)
+        self._linker.use_noise(self._range_deviation)
+
+    def use_noise(self, deviation: float) -> None:
+        """Go by the standard deviation of a range, m."""
+        self._range_deviation = deviation
+        if self._linker is not None:
+            self._linker.use_noise(deviation)
 
     @property
     def newest(self) -> Submap:
@@ -68,6 +80,12 @@ class SubmapGraph:
         information = self._driven(way - self.newest.way)
         count = len(self.submaps)
         self.links.append(Link(count - 1, count, relative.copy(), information, False))
+        self._add(self.placed(relative), way)
+
+    def begin_piece(self, relative: Floats, way: float) -> None:
+        """Begin a submap at a pose of the newest one, [3], that no scan confirmed."""
+        count = len(self.submaps)
+        self.links.append(Link(count - 1, count, relative.copy(), _OF_A_PIECE, False))
         self._add(self.placed(relative), way)
 
     def begin_at(self, pose: Floats, way: float) -> None:
@@ -92,6 +110,44 @@ class SubmapGraph:
             for child in range(1, len(self.submaps)):
                 self.links += self._links_of(child, known)
             self.poses = optimised(self.poses, self.links)
+
+    def refine_keyframes(self) -> None:
+        """Let each keyframe for itself agree with all others that show the same."""
+        frames, poses = zip(*self.keyframes(), strict=True)
+        before = np.array(poses)
+        after = refined(
+            list(frames),
+            before,
+            self._steps_between_submaps(),
+            self._reach,
+            self._range_deviation,
+            self._config.point_deviation,
+        )
+        first = 0
+        for number, submap in enumerate(self.submaps):
+            last = first + len(submap.keyframes)
+            if last > first:
+                self._lay(number, after[first:last])
+            first = last
+
+    def _lay(self, number: int, poses: Floats) -> None:
+        """Let a submap lie so that its keyframes are at ``poses``, float64 [n, 3], map frame."""
+        submap = self.submaps[number]
+        origin = composed(poses[:1], inverse(submap.keyframes[0].pose)[None])
+        self.poses[number] = origin[0]
+        relative = relative_to(np.repeat(origin, len(poses), axis=0), poses)
+        submap.keyframes = [
+            Keyframe(frame.points, pose)
+            for frame, pose in zip(submap.keyframes, relative, strict=True)
+        ]
+        submap.close(_CLOUD)
+        if self._linker is not None:
+            self._linker.forget(number)
+
+    def _steps_between_submaps(self) -> dict[int, Link]:
+        """Return the links that lead into submaps, by the number of their first keyframe."""
+        firsts = np.cumsum([0, *(len(submap.keyframes) for submap in self.submaps)])
+        return {int(firsts[link.child]): link for link in self.links if not link.may_be_wrong}
 
     def square(self, resolution: float) -> tuple[float, float]:
         """Turn all around the first submap, so that walls lie along the axes.

@@ -19,13 +19,19 @@ POINT: Final = 4
 """Columns of a point: x, y, m, and its surface's unit normal towards the lidar; 0, 0: not known."""
 
 _HALF_SPAN: Final = 0.07
-"""m; so far to each side a surface is looked at, to know how it faces in spite of the noise."""
+"""m; so far to each side a surface is looked at, at least, to know how it faces."""
+_SPAN_IN_DEVIATIONS: Final = 10.0
+"""The same, in deviations of a range: a noisy lidar needs more of a surface."""
 _MOST_BESIDE: Final = 10
 _LEAST_BESIDE: Final = 2
 _LEAST_POINTS: Final = 3
 _SUMS: Final = 6
 _STRAIGHT: Final = 0.009
 """m; root mean square off a line, above which points are not of one plane surface."""
+_STRAIGHT_IN_DEVIATIONS: Final = 1.8
+"""The same, in deviations of a range; the larger one counts."""
+_ALL_AROUND: Final = 0.01
+"""rad; a fan of beams that lacks no more of a full turn has no first and no last one."""
 _GRAZING: Final = 0.12
 """Cosine between a beam and a normal; below it the two points lie on different things."""
 
@@ -37,14 +43,18 @@ def surface_points(
     mount: Floats,
     nearest: float,
     farthest: float,
+    deviation: float,
     points: Floats,
 ) -> int:
     """Fill ``points`` [beams, 4] from the beams that met something; return how many.
 
     Robot's frame. ``directions`` is [beams, 2], cosine and sine in the lidar's frame, evenly
-    spaced all around or over an arc; ``mount`` x, y, theta of the lidar in the robot's frame.
+    spaced all around or over an arc; ``mount`` x, y, theta of the lidar in the robot's frame;
+    ``deviation`` the standard deviation of a range, m.
     """
     beams = ranges.size
+    half_span = max(_HALF_SPAN, _SPAN_IN_DEVIATIONS * deviation)
+    straight = max(_STRAIGHT, _STRAIGHT_IN_DEVIATIONS * deviation)
     turn_cosine, turn_sine = math.cos(mount[2]), math.sin(mount[2])
     step = _angle_between(directions, beams)
     sums = np.empty((beams + 2 * _MOST_BESIDE + 1, _SUMS))
@@ -56,13 +66,13 @@ def surface_points(
             continue
         along_x = turn_cosine * directions[beam, 0] - turn_sine * directions[beam, 1]
         along_y = turn_sine * directions[beam, 0] + turn_cosine * directions[beam, 1]
-        beside = math.ceil(_HALF_SPAN / max(length * step, 1e-6))
+        beside = math.ceil(half_span / max(length * step, 1e-6))
         beside = min(max(beside, _LEAST_BESIDE), _MOST_BESIDE)
         normal_x, normal_y = 0.0, 0.0
         for side in range(3):
             first = beam if side == 2 else beam - beside
             last = beam if side == 1 else beam + beside
-            is_plane, x, y = _normal(sums, first, last)
+            is_plane, x, y = _normal(sums, first, last, straight)
             if is_plane:
                 normal_x = turn_cosine * x - turn_sine * y
                 normal_y = turn_sine * x + turn_cosine * y
@@ -94,15 +104,20 @@ def _add_up(
     """Fill ``sums`` [beams + 2 * _MOST_BESIDE + 1, _SUMS], all around and on to both sides.
 
     Of the ends of all beams before one, the first of which is ``_MOST_BESIDE`` before beam 0: how
-    many there are, and the sums of x, y, and of their squares and product, lidar's frame.
+    many there are, and the sums of x, y, and of their squares and product, lidar's frame. Beyond
+    the ends of a fan that is not all around there are no beams.
     """
     beams = ranges.size
+    is_around = beams * _angle_between(directions, beams) > 2.0 * math.pi - _ALL_AROUND
     sums[0] = 0.0
     for row in range(sums.shape[0] - 1):
-        beam = (row - _MOST_BESIDE) % beams
+        place = row - _MOST_BESIDE
+        beam = place % beams
         length = ranges[beam]
         for column in range(_SUMS):
             sums[row + 1, column] = sums[row, column]
+        if beam != place and not is_around:
+            continue
         if not nearest <= length <= farthest:
             continue
         x, y = length * directions[beam, 0], length * directions[beam, 1]
@@ -116,8 +131,11 @@ def _add_up(
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _normal(sums: Floats, first: int, last: int) -> tuple[bool, float, float]:
-    """Return whether beams ``first`` to ``last`` met one plane, and its normal, lidar's frame."""
+def _normal(sums: Floats, first: int, last: int, straight: float) -> tuple[bool, float, float]:
+    """Return whether beams ``first`` to ``last`` met one plane, and its normal, lidar's frame.
+
+    Points that are off a line by more than ``straight``, m, root mean square, are of no plane.
+    """
     before, after = sums[first + _MOST_BESIDE], sums[last + _MOST_BESIDE + 1]
     count = after[0] - before[0]
     if count < _LEAST_POINTS:
@@ -129,7 +147,7 @@ def _normal(sums: Floats, first: int, last: int) -> tuple[bool, float, float]:
     yy = (after[5] - before[5]) * share - y * y
     half, middle = 0.5 * (xx - yy), 0.5 * (xx + yy)
     spread = math.sqrt(half * half + xy * xy)
-    if max(middle - spread, 0.0) > _STRAIGHT * _STRAIGHT:
+    if max(middle - spread, 0.0) > straight * straight:
         return False, 0.0, 0.0
     if spread == 0.0:
         return True, 0.0, 1.0

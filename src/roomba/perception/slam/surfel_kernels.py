@@ -32,8 +32,6 @@ COUNTS: Final = 3
 
 _SAME_WAY: Final = 0.8
 """Cosine; surfaces that face farther apart are not the same."""
-_CLOSE: Final = 0.03
-"""m; off a plane by less than this a point lies in it."""
 _SETTLED: Final = 1e-4
 """m and rad; a correction that is smaller ends the search."""
 
@@ -104,6 +102,7 @@ def align(
     covariance: Floats,
     scales: Floats,
     variance: float,
+    close: float,
     rounds: int,
     pose: Floats,
     information: Floats,
@@ -113,8 +112,9 @@ def align(
 
     Surfels are looked for up to ``reach`` cells away. ``covariance`` [3, 3] is the prior's, and
     becomes that of the pose; ``information`` [3, 3] is what the points alone say, ``counts``
-    [COUNTS] how well they fit. ``scales``, m, are those of the first rounds, the last one that of
-    the rest. Returns whether there was anything to solve.
+    [COUNTS] how well they fit: a point that is less than ``close``, m, off a plane lies in it.
+    ``scales``, m, are those of the first rounds, the last one that of the rest. Returns whether
+    there was anything to solve.
     """
     of_prior, solved, total = np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 3))
     gradient = np.empty(3)
@@ -125,8 +125,8 @@ def align(
         information[:] = 0.0
         gradient[:] = 0.0
         _add_matches(
-            surfels, points, count, stride, reach, pose, scale, variance, information, gradient,
-            counts,
+            surfels, points, count, stride, reach, pose, scale, variance, close, information,
+            gradient, counts,
         )  # fmt: skip
         for row in range(3):
             for column in range(3):
@@ -157,6 +157,7 @@ def _add_matches(
     pose: Floats,
     scale: float,
     variance: float,
+    close: float,
     information: Floats,
     gradient: Floats,
     counts: Floats,
@@ -182,7 +183,7 @@ def _add_matches(
         if square == math.inf:
             continue
         counts[MATCHED] += 1.0
-        if abs(off) < _CLOSE:
+        if abs(off) < close:
             counts[CLOSE] += 1.0
         share = off * inverse
         weight = certainty / (1.0 + share * share) ** 2

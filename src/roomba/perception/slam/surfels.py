@@ -76,6 +76,7 @@ class SurfelGrid:
         covariance: Floats,
         scales: Floats,
         deviation: float,
+        close: float,
         *,
         rounds: int,
         reach: int = 1,
@@ -83,14 +84,14 @@ class SurfelGrid:
     ) -> Match | None:
         """Return where ``points`` [n, 4] fit best near ``prior`` [3], unsure by ``covariance``.
 
-        ``deviation``, m, is what a point is taken to be off by; ``scales``, m, see
-        :func:`~roomba.perception.slam.surfel_kernels.align`. None when it cannot be told.
+        ``deviation``, m, is what a point is taken to be off by; for ``scales`` and ``close``, m,
+        see :func:`~roomba.perception.slam.surfel_kernels.align`. None when it cannot be told.
         """
         pose, spread = prior.copy(), covariance.copy()
         information, counts = np.zeros((3, 3)), np.zeros(COUNTS)
         is_solved = align(
             self.arrays, points, len(points), stride, reach, prior, spread, scales,
-            deviation**2, rounds, pose, information, counts,
+            deviation**2, close, rounds, pose, information, counts,
         )  # fmt: skip
         if not is_solved or not np.isfinite(pose).all():
             return None

@@ -38,7 +38,7 @@ def grid_of(eye: Eye = EYE, *poses: Pose) -> SurfelGrid:
 def matched(
     grid: SurfelGrid, points: Floats, prior: Floats, spread: Floats = LOOSE, **changes: int
 ) -> Match:
-    found = grid.match(points, prior, spread, SCALES, 0.03, **{"rounds": 8, **changes})
+    found = grid.match(points, prior, spread, SCALES, 0.03, 0.03, **{"rounds": 8, **changes})
     assert found is not None
     return found
 
@@ -129,7 +129,9 @@ def test_a_prior_as_sure_as_the_points_is_met_halfway() -> None:
     grid.add(plane(1.0, -1.0), np.zeros(3))
     as_sure = np.eye(3) * 0.03**2 / 100.0
     wide = np.array([10.0])
-    found = grid.match(plane(1.0, -1.0), np.array([0.02, 0.0, 0.0]), as_sure, wide, 0.03, rounds=8)
+    found = grid.match(
+        plane(1.0, -1.0), np.array([0.02, 0.0, 0.0]), as_sure, wide, 0.03, 0.03, rounds=8
+    )
     assert found is not None
     assert found.pose[0] == pytest.approx(0.01, abs=1e-4)
     assert found.covariance[0, 0] == pytest.approx(0.5 * as_sure[0, 0], rel=0.01)
@@ -158,7 +160,9 @@ def test_without_anything_to_match_the_prior_stays() -> None:
         assert found.pose == pytest.approx(prior)
         assert (found.met, found.close) == (0.0, 0.0)
         assert found.covariance == pytest.approx(LOOSE)
-    assert SurfelGrid(3.0).match(points, prior, np.zeros((3, 3)), SCALES, 0.03, rounds=3) is None
+    assert (
+        SurfelGrid(3.0).match(points, prior, np.zeros((3, 3)), SCALES, 0.03, 0.03, rounds=3) is None
+    )
 
 
 def test_what_was_cleared_is_not_met() -> None:
@@ -186,7 +190,8 @@ def test_points_off_the_grid_or_without_a_surface_are_left_out() -> None:
     assert grid.used[0] == 0
     prior, pose, counts = np.zeros(3), np.zeros(3), np.zeros(3)
     assert align(
-        grid, points, 3, 1, 1, prior, LOOSE.copy(), SCALES, 0.03**2, 4, pose, np.zeros((3, 3)),
+        grid, points, 3, 1, 1, prior, LOOSE.copy(), SCALES, 0.03**2, 0.03, 4, pose,
+        np.zeros((3, 3)),
         counts,
     )  # fmt: skip
     assert counts[ASKED] == 2.0

@@ -1,0 +1,212 @@
+"""Finding where points lie on others within a wide window, however bad the guess.
+
+The points of a place are spread out to a grid of likelihoods; above it lie grids of the greatest
+likelihood in blocks of 2, 4, 8 ... cells. Poses are searched from the coarsest grid down, and what
+cannot beat the best one found so far is left out: branch and bound, so that the best pose of the
+window is found (Hess et al., "Real-time loop closure in 2D LIDAR SLAM", ICRA 2016; Olson,
+"Real-time correlative scan matching", ICRA 2009).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Likelihoods = NDArray[np.uint8]
+
+_CELL: Final = 0.05
+"""m; of the finest grid."""
+_LEVELS: Final = 6
+_BLUR: Final = 0.06
+"""m; standard deviation of where a surface may be."""
+_REACH: Final = 12.0
+"""m; points farther from the place's origin are left out, their bearing being less sure."""
+_TURN_STEP: Final = 0.012
+"""rad; a cell and a bit at the usual range of 5 m."""
+_MOST_POINTS: Final = 250
+"""More make the search no surer."""
+_FULL: Final = 255
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CorrelativeMatch:
+    """The best pose of a window, float64 [3], and the mean likelihood of the points there, 0..1."""
+
+    pose: Floats
+    score: float
+
+
+class CorrelativeMatcher:
+    """Finds points on those of one place, float64 [n, 2 or more], x, y, m, in its frame."""
+
+    def __init__(self, points: Floats) -> None:
+        """Make the grids; raises ValueError without a point in reach."""
+        near = points[np.hypot(points[:, 0], points[:, 1]) < _REACH, :2]
+        if not len(near):
+            raise ValueError("expected points in reach, got none")
+        room = 1 << (_LEVELS - 1)
+        first = np.floor(near.min(axis=0) / _CELL).astype(np.int64) - 4 - room
+        last = np.floor(near.max(axis=0) / _CELL).astype(np.int64) + 4
+        self._corner = first * _CELL
+        columns, rows = (last - first + 1).tolist()
+        self._levels = np.zeros((_LEVELS, rows, columns), np.uint8)
+        _spread_out(near, self._corner, _CELL, _BLUR, self._levels[0])
+        _heighten(self._levels)
+
+    def best(
+        self, points: Floats, around: Floats, window: float, turn: float, least: float
+    ) -> CorrelativeMatch | None:
+        """Return the best pose within ``window``, m, and ``turn``, rad, of a pose [3].
+
+        ``points`` are float64 [n, 2 or more], x, y, m. None if no pose has a mean likelihood of
+        more than ``least``, 0..1.
+        """
+        stride = max(1, -(-len(points) // _MOST_POINTS))
+        few = np.ascontiguousarray(points[::stride, :2])
+        if not len(few):
+            return None
+        found = np.empty(4)
+        if not _search(
+            self._levels, self._corner, _CELL, few, around, window, turn, _TURN_STEP, least, found
+        ):
+            return None
+        return CorrelativeMatch(found[:3].copy(), float(found[3]))
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _spread_out(
+    points: Floats, corner: Floats, cell: float, blur: float, grid: Likelihoods
+) -> None:
+    """Fill a grid, uint8 [rows, columns], with how likely a surface is in each cell."""
+    rows, columns = grid.shape
+    reach = math.ceil(2.5 * blur / cell)
+    for index in range(points.shape[0]):
+        u, v = (points[index, 0] - corner[0]) / cell, (points[index, 1] - corner[1]) / cell
+        middle_column, middle_row = math.floor(u), math.floor(v)
+        for row in range(max(middle_row - reach, 0), min(middle_row + reach + 1, rows)):
+            for column in range(
+                max(middle_column - reach, 0), min(middle_column + reach + 1, columns)
+            ):
+                off_u, off_v = (column + 0.5 - u) * cell, (row + 0.5 - v) * cell
+                square = (off_u * off_u + off_v * off_v) / (blur * blur)
+                likelihood = np.uint8(_FULL * math.exp(-0.5 * square))
+                grid[row, column] = max(grid[row, column], likelihood)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _heighten(levels: Likelihoods) -> None:
+    """Fill each grid with the greatest of blocks of 2^level cells that begin at the cell."""
+    rows, columns = levels.shape[1], levels.shape[2]
+    for level in range(1, levels.shape[0]):
+        half = 1 << (level - 1)
+        below, here = levels[level - 1], levels[level]
+        for row in range(rows):
+            next_row = min(row + half, rows - 1)
+            for column in range(columns):
+                next_column = min(column + half, columns - 1)
+                here[row, column] = max(
+                    max(below[row, column], below[row, next_column]),
+                    max(below[next_row, column], below[next_row, next_column]),
+                )
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _score(
+    grid: Likelihoods, columns: NDArray[np.int32], rows: NDArray[np.int32], right: int, up: int
+) -> float:
+    """Return the mean likelihood of points in cells that are shifted right and up, 0..1."""
+    total = 0
+    for index in range(columns.size):
+        row, column = rows[index] + up, columns[index] + right
+        if 0 <= row < grid.shape[0] and 0 <= column < grid.shape[1]:
+            total += grid[row, column]
+    return total / (columns.size * float(_FULL))
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _search(
+    levels: Likelihoods,
+    corner: Floats,
+    cell: float,
+    points: Floats,
+    around: Floats,
+    window: float,
+    turn: float,
+    turn_step: float,
+    least: float,
+    found: Floats,
+) -> bool:
+    """Fill ``found`` [4] with the best pose and its score; tell if one is better than ``least``."""
+    top = levels.shape[0] - 1
+    turns, reach = math.ceil(turn / turn_step), math.ceil(window / cell)
+    count, angles = points.shape[0], 2 * turns + 1
+    columns = np.empty((angles, count), np.int32)
+    rows = np.empty((angles, count), np.int32)
+    for angle in range(angles):
+        theta = around[2] + (angle - turns) * turn_step
+        cosine, sine = math.cos(theta), math.sin(theta)
+        for index in range(count):
+            x = around[0] + cosine * points[index, 0] - sine * points[index, 1]
+            y = around[1] + sine * points[index, 0] + cosine * points[index, 1]
+            columns[angle, index] = math.floor((x - corner[0]) / cell)
+            rows[angle, index] = math.floor((y - corner[1]) / cell)
+    block = 1 << top
+    per_side = 2 * reach // block + 1
+    scores = np.empty(angles * per_side * per_side)
+    places = np.empty((angles * per_side * per_side, 3), np.int32)
+    many = 0
+    for angle in range(angles):
+        for across in range(per_side):
+            for along in range(per_side):
+                right, up = along * block - reach, across * block - reach
+                scores[many] = _score(levels[top], columns[angle], rows[angle], right, up)
+                places[many, 0], places[many, 1], places[many, 2] = angle, right, up
+                many += 1
+    best, best_angle, best_right, best_up = least, -1, 0, 0
+    pending = np.empty((4 * (top + 1), 4), np.int32)
+    bounds = np.empty(4 * (top + 1))
+    for candidate in np.argsort(-scores):
+        if scores[candidate] <= best:
+            break
+        pending[0, 0], pending[0, 1] = top, places[candidate, 0]
+        pending[0, 2], pending[0, 3] = places[candidate, 1], places[candidate, 2]
+        bounds[0] = scores[candidate]
+        waiting = 1
+        while waiting > 0:
+            waiting -= 1
+            if bounds[waiting] <= best:
+                continue
+            level, angle = pending[waiting, 0], pending[waiting, 1]
+            right, up = pending[waiting, 2], pending[waiting, 3]
+            if level == 0:
+                best, best_angle, best_right, best_up = bounds[waiting], angle, right, up
+                continue
+            half = 1 << (level - 1)
+            first = waiting
+            for quarter in range(4):
+                next_right, next_up = right + half * (quarter % 2), up + half * (quarter // 2)
+                if next_right > reach or next_up > reach:
+                    continue
+                bound = _score(levels[level - 1], columns[angle], rows[angle], next_right, next_up)
+                if bound <= best:
+                    continue
+                place = waiting
+                while place > first and bounds[place - 1] > bound:
+                    bounds[place] = bounds[place - 1]
+                    pending[place] = pending[place - 1]
+                    place -= 1
+                bounds[place] = bound
+                pending[place, 0], pending[place, 1] = level - 1, angle
+                pending[place, 2], pending[place, 3] = next_right, next_up
+                waiting += 1
+    if best_angle < 0:
+        return False
+    found[0], found[1] = around[0] + best_right * cell, around[1] + best_up * cell
+    found[2], found[3] = around[2] + (best_angle - turns) * turn_step, best
+    return True

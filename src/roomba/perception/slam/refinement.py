@@ -1,0 +1,163 @@
+"""Bringing all keyframes of a finished drive to agree, each for itself.
+
+Within a submap keyframes lie as they were followed, with errors of centimetres on noisy lidars.
+Here
+each one is matched to groups of keyframes: to the one just before it and to those that were taken
+nearby at other times. A sparse graph of all keyframes then agrees best with all that (as in Lu and
+Milios, "Globally consistent range scan alignment", 1997), and all of it is done again from there.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import defaultdict
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.perception.matching.match_kernels import invert
+from roomba.perception.slam.follow_kernels import in_plane, last_scale
+from roomba.perception.slam.pose_graph import Link, optimised, relative_to
+from roomba.perception.slam.submap import Keyframe
+from roomba.perception.slam.surfels import SurfelGrid
+
+Floats = NDArray[np.float64]
+
+_SIZE: Final = 10
+_STRIDE: Final = 5
+"""Keyframes of a group, and from the first of one to the first of the next."""
+_NEARBY: Final = 2.0
+"""m; from a keyframe to the middle of a group that it is matched to."""
+_APART: Final = 25
+"""Keyframes; groups that are farther away in time are of another visit."""
+_MOST_VISITS: Final = 5
+_BETWEEN: Final = 12
+"""Keyframes; groups that are nearer to each other in time say the same."""
+_ROUNDS: Final = 2
+_MATCH_ROUNDS: Final = 5
+_POINTS: Final = 120
+"""Of a keyframe, about so many are matched: neighbouring beams err alike."""
+_SETTLED: Final = 0.002
+"""m; when no keyframe moved farther, all agree."""
+_SCALES: Final = (0.1, 0.05)
+"""m; of the first rounds of a match."""
+_LOOSE: Final = np.diag([0.2**2, 0.2**2, 0.1**2])
+"""m2, rad2; how unsure the present poses are taken to be."""
+_LEAST_POINTS: Final = 25
+_LEAST_MET: Final = 0.5
+_LEAST_CLOSE: Final = 0.75
+_FARTHEST: Final = 0.3
+"""m; a match that corrects more is of another place."""
+_LEAST: Final = np.diag([0.004**2, 0.004**2, 0.0015**2])
+"""m2, rad2; no match is surer: neighbouring beams err alike."""
+_DRIVEN: Final = np.diag([0.02**-2, 0.02**-2, 0.02**-2])
+"""1/m2, 1/rad2; of a step between two keyframes of one submap, if nothing else is known."""
+
+
+def refined(
+    keyframes: list[Keyframe],
+    poses: Floats,
+    steps: dict[int, Link],
+    half_width: float,
+    range_deviation: float,
+    point_deviation: float,
+) -> Floats:
+    """Return better poses of all keyframes, float64 [n, 3], map frame, the first one kept.
+
+    ``steps`` are the links from one keyframe to the next of another submap, by the number of the
+    latter. ``half_width``, m, is how far a scan reaches; the deviations are those of a range and of
+    a point in a match, m.
+    """
+    if len(keyframes) < 2 * _SIZE:
+        return poses
+    points = [np.asarray(frame.points, np.float64) for frame in keyframes]
+    matcher = _GroupMatcher(points, half_width, range_deviation, point_deviation)
+    now = poses
+    for _ in range(_ROUNDS):
+        links = _steps(poses, steps) + matcher.links(now)
+        before, now = now, optimised(now, links)
+        if np.hypot(*(now - before)[:, :2].T).max() < _SETTLED:
+            break
+    return now
+
+
+def _steps(poses: Floats, steps: dict[int, Link]) -> list[Link]:
+    """Return the links from each keyframe to the next one, as the drive was followed."""
+    relative = relative_to(poses[:-1], poses[1:])
+    links = []
+    for later in range(1, len(poses)):
+        step = steps.get(later)
+        information = _DRIVEN if step is None else step.information
+        links.append(Link(later - 1, later, relative[later - 1], information, False))
+    return links
+
+
+class _GroupMatcher:
+    """Matches keyframes, whose points [n, 4] are given, to groups of others."""
+
+    def __init__(
+        self, points: list[Floats], half_width: float, range_deviation: float, deviation: float
+    ) -> None:
+        self._points = points
+        self._grid = SurfelGrid(half_width)
+        self._scales = np.array([*_SCALES, last_scale(range_deviation)])
+        self._in_plane = in_plane(range_deviation)
+        self._deviation = deviation
+
+    def links(self, poses: Floats) -> list[Link]:
+        """Return the links between keyframes that matches at the present poses tell."""
+        found = []
+        for first, frames in _asked(poses).items():
+            middle = first + _SIZE // 2
+            self._grid.clear()
+            within = np.arange(first, first + _SIZE)
+            group = relative_to(np.repeat(poses[middle][None], _SIZE, axis=0), poses[within])
+            for index, pose in zip(within.tolist(), group, strict=True):
+                self._grid.add(self._points[index], pose)
+            for frame in frames:
+                link = self._link(middle, frame, poses)
+                if link is not None:
+                    found.append(link)
+        return found
+
+    def _link(self, middle: int, frame: int, poses: Floats) -> Link | None:
+        thought = relative_to(poses[middle][None], poses[frame][None])[0]
+        points = self._points[frame]
+        match = self._grid.match(
+            points, thought, _LOOSE, self._scales, self._deviation,
+            self._in_plane, rounds=_MATCH_ROUNDS, stride=max(1, len(points) // _POINTS),
+        )  # fmt: skip
+        if match is None or match.met * match.asked < _LEAST_POINTS:
+            return None
+        if match.met < _LEAST_MET or match.close < _LEAST_CLOSE:
+            return None
+        if math.hypot(*(match.pose[:2] - thought[:2])) > _FARTHEST:
+            return None
+        covariance, information = np.empty((3, 3)), np.empty((3, 3))
+        if not invert(match.information + 1e-3 * np.eye(3), covariance):
+            return None
+        invert(covariance + _LEAST, information)
+        return Link(middle, frame, match.pose, information)
+
+
+def _asked(poses: Floats) -> dict[int, list[int]]:
+    """Return for groups, by their first keyframe, the keyframes to be matched to them."""
+    asked: dict[int, list[int]] = defaultdict(list)
+    firsts = np.arange(0, len(poses) - _SIZE + 1, _STRIDE)
+    middles = firsts + _SIZE // 2
+    for frame in range(len(poses)):
+        before = (frame // _STRIDE - _SIZE // _STRIDE) * _STRIDE
+        if before >= 0:
+            asked[before].append(frame)
+        away = np.hypot(*(poses[middles, :2] - poses[frame, :2]).T)
+        chosen: list[int] = []
+        for index in np.argsort(away, kind="stable").tolist():
+            if away[index] > _NEARBY or len(chosen) == _MOST_VISITS:
+                break
+            middle = int(middles[index])
+            is_other = abs(middle - frame) > _APART
+            if is_other and all(abs(middle - other) > _BETWEEN for other in chosen):
+                chosen.append(middle)
+                asked[int(firsts[index])].append(frame)
+    return asked
