@@ -45,6 +45,8 @@ class Robot:
 
 
 def true_pose(time: float) -> Pose:
+    """It stands for two seconds, and then drives around, turning to and fro."""
+    time = max(time - 2.0, 0.0)
     angle = SPEED / RADIUS * time + 0.4 * math.sin(0.8 * time) * min(time, 1.0)
     heading = angle + 0.5 * math.pi + 0.3 * math.sin(1.7 * time)
     return Pose(2.5 + RADIUS * math.cos(angle), 2.1 + RADIUS * math.sin(angle), heading)
