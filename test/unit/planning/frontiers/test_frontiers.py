@@ -6,21 +6,13 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
-from hypothesis.extra import numpy as arrays
 from numpy.typing import NDArray
 
 from roomba.grid import FREE, OCCUPIED, UNKNOWN, GridFrame, OccupancyMap
 from roomba.planning.frontiers.frontiers import Frontier, frontiers, is_frontier
-from roomba.planning.frontiers.kernels import clusters, frontier_cells, viewpoint, ways_from
 
 CELL = 0.05
 Point = tuple[float, float]
-cells = arrays.arrays(
-    np.int8, st.tuples(st.integers(4, 14), st.integers(4, 14)),
-    elements=st.sampled_from([FREE, FREE, UNKNOWN, OCCUPIED]), fill=st.nothing(),
-)  # fmt: skip
 
 
 def occupancy(values: NDArray[np.int8]) -> OccupancyMap:
@@ -152,23 +144,6 @@ def test_it_looks_around_corners_only_where_it_sees() -> None:
         assert along != OCCUPIED
 
 
-def test_a_viewpoint_is_in_sight_and_near() -> None:
-    """A screen of two cells before a place 20 cells away: only from its ends is it seen."""
-    values = np.full((30, 60), FREE, np.int8)
-    values[5:25, 40:42] = OCCUPIED
-    ways = np.empty(values.shape)
-    ways_from(values == FREE, 15, 5, ways)
-    row, column, cost = viewpoint(values, ways, 15, 50, 24, 0.1)
-    assert row <= 5 or row >= 24 or column >= 42
-    assert math.hypot(row - 15, column - 50) <= 24
-    assert cost == pytest.approx(ways[row, column] + 0.1 * math.hypot(row - 15, column - 50))
-    # Without it the nearest place within reach does.
-    open_floor = np.full((30, 60), FREE, np.int8)
-    ways_from(open_floor == FREE, 2, 5, ways)
-    row, column, _ = viewpoint(open_floor, ways, 20, 50, 24, 0.1)
-    assert math.hypot(row - 20, column - 50) <= 24
-
-
 def test_a_place_off_the_map_is_refused() -> None:
     with pytest.raises(ValueError, match="expected a place on the map"):
         found_in(room(), (-5.0, 0.5))
@@ -186,94 +161,3 @@ def test_whether_one_is_left_is_told() -> None:
     assert not is_frontier(room(gaps=()), frontier.middle, 0.25)
     for far in ((-9.0, 1.0), (9.0, 1.0), (1.0, -9.0), (1.0, 9.0)):
         assert not is_frontier(made, far, 0.25)
-
-
-@given(cells)
-def test_frontier_cells_are_free_with_a_side_to_much_unknown(values: NDArray[np.int8]) -> None:
-    least = 5
-    marked = np.empty(values.shape, np.bool_)
-    frontier_cells(values, least, marked)
-    rows, columns = values.shape
-    for row in range(rows):
-        for column in range(columns):
-            expected = False
-            if 0 < row < rows - 1 and 0 < column < columns - 1 and values[row, column] == FREE:
-                sides = ((row - 1, column), (row + 1, column), (row, column - 1), (row, column + 1))
-                expected = any(
-                    values[side] == UNKNOWN and len(_patch(values, side)) >= least for side in sides
-                )
-            assert marked[row, column] == expected
-
-
-def _patch(values: NDArray[np.int8], begin: tuple[int, int]) -> set[tuple[int, int]]:
-    """The unknown cells that hang together with one by their sides."""
-    known, todo = {begin}, [begin]
-    while todo:
-        row, column = todo.pop()
-        for at in ((row + 1, column), (row - 1, column), (row, column + 1), (row, column - 1)):
-            inside = 0 <= at[0] < values.shape[0] and 0 <= at[1] < values.shape[1]
-            if inside and at not in known and values[at] == UNKNOWN:
-                known.add(at)
-                todo.append(at)
-    return known
-
-
-@given(arrays.arrays(np.bool_, st.tuples(st.integers(1, 10), st.integers(1, 10))))
-def test_cells_that_touch_are_one_cluster(marked: NDArray[np.bool_]) -> None:
-    labels = np.empty(marked.shape, np.int32)
-    count = clusters(marked, labels)
-    assert ((labels > 0) == marked).all()
-    assert set(labels[marked].tolist()) == set(range(1, count + 1))
-    at = np.argwhere(marked)
-    for row, column in at.tolist():
-        for other_row, other_column in at.tolist():
-            if max(abs(row - other_row), abs(column - other_column)) == 1:
-                assert labels[row, column] == labels[other_row, other_column]
-
-
-@given(
-    arrays.arrays(np.bool_, st.tuples(st.integers(2, 9), st.integers(2, 9))),
-    st.integers(0, 1),
-    st.integers(0, 1),
-)
-@settings(max_examples=60)
-def test_ways_are_the_shortest_ones(fitting: NDArray[np.bool_], row: int, column: int) -> None:
-    ways = np.empty(fitting.shape)
-    ways_from(fitting, row, column, ways)
-    assert ways == pytest.approx(_relaxed(fitting, row, column))
-
-
-def _relaxed(fitting: NDArray[np.bool_], row: int, column: int) -> NDArray[np.float64]:
-    """The same by repeated relaxing (Bellman and Ford)."""
-    ways = np.full(fitting.shape, math.inf)
-    ways[row, column] = 0.0
-    steps = [(a, b) for a in (-1, 0, 1) for b in (-1, 0, 1) if (a, b) != (0, 0)]
-    changed = True
-    while changed:
-        changed = False
-        for at in np.argwhere(np.isfinite(ways)).tolist():
-            for down, right in steps:
-                to = at[0] + down, at[1] + right
-                inside = 0 <= to[0] < fitting.shape[0] and 0 <= to[1] < fitting.shape[1]
-                if not inside or not fitting[to]:
-                    continue
-                if down and right and not (fitting[at[0], to[1]] and fitting[to[0], at[1]]):
-                    continue
-                on = ways[at[0], at[1]] + math.hypot(down, right)
-                if on < ways[to] - 1e-9:
-                    ways[to], changed = on, True
-    return ways
-
-
-def test_the_viewpoint_weighs_the_way_against_how_near_it_is() -> None:
-    values = np.full((5, 40), FREE, np.int8)
-    ways = np.empty(values.shape)
-    ways_from(np.ones(values.shape, np.bool_), 2, 2, ways)
-    # A metre nearer is worth two of way: it goes all the way.
-    assert viewpoint(values, ways, 2, 30, 12, 2.0)[:2] == (2, 30)
-    # Were it worth less, it stops as soon as it sees it.
-    row, column, cost = viewpoint(values, ways, 2, 30, 12, 0.5)
-    assert (row, column) == (2, 18)
-    assert cost == pytest.approx(16.0 + 0.5 * 12.0)
-    ways[:] = math.inf
-    assert viewpoint(values, ways, 2, 30, 12, 2.0) == (-1, -1, math.inf)

@@ -29,8 +29,8 @@ def left(line: Line, need: Mask) -> int:
     return int((need & ~swept_cells(need.shape, [line], RADIUS)).sum())
 
 
-def cost(line: Line, need: Mask) -> float:
-    return length_of(line) + TURNING * turning_of(line) + FLOOR * left(line, need)
+def cost(line: Line, need: Mask, turning: float) -> float:
+    return length_of(line) + turning * turning_of(line) + FLOOR * left(line, need)
 
 
 @st.composite
@@ -54,16 +54,16 @@ def ways(draw: st.DrawFn) -> tuple[Mask, Line, Mask]:
     return part, line, need
 
 
-@given(ways())
-@settings(max_examples=50)
+@given(ways(), st.sampled_from([0.0, TURNING, 100.0]))
+@settings(max_examples=80)
 def test_a_polished_way_costs_no_more_is_no_longer_and_leaves_hardly_more_floor(
-    drawn: tuple[Mask, Line, Mask],
+    drawn: tuple[Mask, Line, Mask], turning: float
 ) -> None:
     fits, line, need = drawn
-    found = polished(line.copy(), need, fits, RADIUS, TURNING, FLOOR)
+    found = polished(line.copy(), need, fits, RADIUS, turning, FLOOR)
     assert np.array_equal(found[[0, -1]], line[[0, -1]])
     assert length_of(found) <= length_of(line) + 1e-6
-    assert cost(found, need) <= cost(line, need) + 1e-6
+    assert cost(found, need, turning) <= cost(line, need, turning) + 1e-6
     assert left(found, need) <= left(line, need) + int(SPARE * need.sum())
     # Legs of the line itself may be off its cells by what they were straightened.
     assert crosses_between_centres_that_fit(fits, found, 0.05)

@@ -1,0 +1,228 @@
+"""Tests mirror the modules: each has a file of its own, or its test is told here with the reason.
+
+``test/unit/a/b/test_c.py`` tests ``src/roomba/a/b/c.py``; nodes and what they are made of have
+``test/ros/test_c.py``. Folders stay small enough to be looked over.
+"""
+
+from __future__ import annotations
+
+import ast
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+SOURCE, TEST = ROOT / "src", ROOT / "test"
+MOST_FILES = 15
+
+PART = "a compiled or private part of one stage, tested through it"
+VALUES = "values without behaviour of their own"
+COMMAND = "a part of one command, tested by running it"
+PICTURES = "a picture is drawn with all others, and its figures are looked at"
+WORLD = "a part of the simulated world, tested by what the robot meets there"
+NODE = "a part of a node, tested with the node in a graph"
+WARM = "compiles ahead of time what others test"
+
+TESTED_BY: dict[str, tuple[str, str]] = {
+    "roomba/client/clock": ("unit/client/fake/test_robot.py", VALUES),
+    "roomba/client/fake/": ("unit/client/fake/test_robot.py", "one robot in three files"),
+    "roomba/client/protocol": ("unit/client/fake/test_robot.py", "an interface"),
+    "roomba/commands/draw_homes": ("unit/world/layers/test_homes.py", COMMAND),
+    "roomba/commands/map/": ("unit/commands/map/test_command.py", COMMAND),
+    "roomba/commands/pictures/": ("unit/commands/pictures/test_pictures.py", PICTURES),
+    "roomba/commands/progress": ("unit/commands/map/test_command.py", COMMAND),
+    "roomba/commands/sim/": ("unit/commands/sim/test_command.py", COMMAND),
+    "roomba/commands/telling": ("unit/commands/map/test_command.py", COMMAND),
+    "roomba/commands/warm_up": ("system/test_workspace.py", WARM),
+    "roomba/configuration/": ("unit/configuration/test_robot.py", "numbers with their limits"),
+    "roomba/control/tracking_kernels": ("unit/control/test_path_tracker.py", PART),
+    "roomba/errors": ("unit/world/test_simulator.py", VALUES),
+    "roomba/files/": ("unit/world/layers/test_layer.py", "read and written with what they hold"),
+    "roomba/gym/": ("unit/gym/test_single.py", "one environment, tested by stepping it"),
+    "roomba/headless/closed_loop_kernels": ("unit/headless/test_closed_loop.py", PART),
+    "roomba/headless/exploring_loop_kernels": ("unit/headless/test_exploring_loop.py", PART),
+    "roomba/headless/walker": ("unit/mission/walking/test_walk.py", "the robot that walks"),
+    "roomba/mission/docking/step": ("unit/mission/docking/test_docking.py", VALUES),
+    "roomba/mission/inputs/senses": ("unit/mission/test_mission.py", VALUES),
+    "roomba/mission/phases/cleaning": ("unit/mission/phases/test_phases.py", "one of the phases"),
+    "roomba/mission/phases/step": ("unit/mission/phases/test_phases.py", VALUES),
+    "roomba/perception/floors/map_changes_kernels": (
+        "unit/perception/floors/test_map_changes.py",
+        PART,
+    ),
+    "roomba/perception/localization/belief": (
+        "unit/perception/localization/test_belief_kernels.py",
+        "the belief and its kernels are one",
+    ),
+    "roomba/perception/localization/belief_correct_kernels": (
+        "unit/perception/localization/test_belief_kernels.py",
+        "the belief and its kernels are one",
+    ),
+    "roomba/perception/localization/belief_reckon_kernels": (
+        "unit/perception/localization/test_belief_kernels.py",
+        "the belief and its kernels are one",
+    ),
+    "roomba/perception/localization/estimate": (
+        "unit/perception/localization/test_belief_kernels.py",
+        VALUES,
+    ),
+    "roomba/perception/localization/search_kernels": (
+        "unit/perception/localization/test_place_search.py",
+        PART,
+    ),
+    "roomba/perception/matching/beams": ("unit/perception/matching/test_match_kernels.py", VALUES),
+    "roomba/perception/rooms/doorways": ("unit/perception/rooms/test_segmentation.py", PART),
+    "roomba/perception/slam/follow_kernels": ("unit/perception/slam/test_mapper.py", PART),
+    "roomba/perception/slam/mapper_state": (
+        "unit/perception/slam/test_mapper_taken_up.py",
+        VALUES,
+    ),
+    "roomba/perception/slam/scan_follower": ("unit/perception/slam/test_mapper.py", PART),
+    "roomba/perception/slam/submap_graph": ("unit/perception/slam/test_mapper.py", PART),
+    "roomba/perception/slam/surfel_kernels": ("unit/perception/slam/test_surfels.py", PART),
+    "roomba/perception/swept/coverage_bits": (
+        "unit/perception/swept/test_coverage_map.py",
+        VALUES,
+    ),
+    "roomba/perception/swept/coverage_kernels": (
+        "unit/perception/swept/test_coverage_map.py",
+        PART,
+    ),
+    "roomba/perception/things/kernels": ("unit/perception/things/test_layer.py", PART),
+    "roomba/plots/": ("unit/plots/test_home.py", "a drawing of a home is made of them"),
+    "roomba/storage/map_bound": ("unit/storage/test_rooms.py", "a base of what it stores"),
+    "roomba/ui/errand_progress": ("unit/ui/test_cleaning.py", "shown by the menu for cleaning"),
+    "roomba/ui/prompt": ("unit/ui/test_menu.py", "asked by the menu"),
+    "roomba/world/camera/": ("unit/world/camera/test_camera.py", WORLD),
+    "roomba/world/catalogue/": ("unit/world/catalogue/test_furniture.py", WORLD),
+    "roomba/world/engine/": ("unit/world/test_simulator.py", WORLD),
+    "roomba/world/home/": ("unit/world/layers/test_layer.py", WORLD),
+    "roomba/world/layers/": ("unit/world/layers/test_layer.py", WORLD),
+    "roomba/world/random/": ("unit/world/random/test_home.py", WORLD),
+    "roomba_ros/bags/": ("ros/test_localize.py", COMMAND),
+    "roomba_ros/camera/": ("ros/test_turn_camera.py", NODE),
+    "roomba_ros/client/": ("ros/test_ros_clean.py", NODE),
+    "roomba_ros/convert/": ("ros/test_mission_node_conversions.py", NODE),
+    "roomba_ros/localization/": ("ros/test_position_pub_node.py", NODE),
+    "roomba_ros/maps/": ("ros/test_map_topics.py", NODE),
+    "roomba_ros/mission/": ("ros/test_mission_node.py", NODE),
+    "roomba_ros/rooms/": ("ros/test_position_pub_node.py", NODE),
+    "roomba_ros/runtime/": ("ros/test_position_pub_node.py", NODE),
+    "roomba_ros/simulation/": ("ros/test_home_sim_node.py", NODE),
+    "roomba_ros/walking/": ("ros/test_walk_to_point_action_server.py", NODE),
+}
+"""Modules, or folders of them, without files of their own: the test that would fail, and why."""
+
+LARGE_FOLDERS = {
+    "src/roomba/commands/pictures": "one file a picture",
+    "src/roomba/commands/sim": "one command: its options, runs, figures and what they are told in",
+    "test/fixtures": "one file a fixture",
+    "test/ros": "one file a node",
+    "test/unit/benchmarks": "one file a benchmark",
+}
+
+
+def modules() -> list[str]:
+    """Paths under ``src`` without the suffix."""
+    return sorted(
+        path.relative_to(SOURCE).with_suffix("").as_posix()
+        for package in ("roomba", "roomba_ros")
+        for path in (SOURCE / package).rglob("*.py")
+        if path.stem not in ("__init__", "__main__")
+    )
+
+
+def own_test(module: str) -> Path:
+    """The file that tests a module, whether it exists or not."""
+    package, *folders, name = module.split("/")
+    if package == "roomba":
+        return TEST.joinpath("unit", *folders, f"test_{name}.py")
+    nested = TEST.joinpath("ros", *folders, f"test_{name}.py")
+    return nested if nested.exists() else TEST / "ros" / f"test_{name}.py"
+
+
+def entry_of(module: str) -> str | None:
+    """The most particular line of the table that tells of a module."""
+    lines = [
+        key for key in TESTED_BY if module == key or (key[-1] == "/" and module.startswith(key))
+    ]
+    return max(lines, key=len, default=None)
+
+
+@cache
+def imported_by(path: Path) -> frozenset[Path]:
+    """The files of the project that a file imports, anywhere in it."""
+    names = set()
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            names |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom) and node.module is not None:
+            names |= {node.module, *(f"{node.module}.{alias.name}" for alias in node.names)}
+    places = [base.joinpath(*name.split(".")) for name in names for base in (SOURCE, TEST)]
+    files = [file for place in places for file in (place.with_suffix(".py"), place / "__init__.py")]
+    return frozenset(file for file in files if file.is_file())
+
+
+def reached_from(path: Path) -> set[Path]:
+    """The files that are imported by a file, and by those, and so on."""
+    found, todo = {path}, [path]
+    while todo:
+        new = imported_by(todo.pop()) - found
+        found |= new
+        todo += new
+    return found
+
+
+def test_every_module_has_a_test_of_its_own_or_a_reason() -> None:
+    missing = [
+        f"{own_test(module).relative_to(ROOT)} for src/{module}.py"
+        for module in modules()
+        if not own_test(module).exists() and entry_of(module) is None
+    ]
+    assert not missing, "expected a test for each module; write, or name with a reason: " + str(
+        missing
+    )
+
+
+def test_no_line_of_the_table_is_needless() -> None:
+    untested = [module for module in modules() if not own_test(module).exists()]
+    assert set(TESTED_BY) == {entry_of(module) for module in untested} - {None}
+
+
+@pytest.mark.parametrize("entry", sorted(TESTED_BY))
+def test_what_tests_a_module_in_place_of_a_file_of_its_own_loads_it(entry: str) -> None:
+    """Nodes are started by launch files; of what is imported the way is followed."""
+    test, reason = TESTED_BY[entry]
+    assert (TEST / test).is_file()
+    if reason in (NODE, WARM):
+        return
+    reached = reached_from(TEST / test)
+    untested = [
+        module
+        for module in modules()
+        if entry_of(module) == entry and not own_test(module).exists()
+    ]
+    assert any(SOURCE / f"{module}.py" in reached for module in untested)
+    if not entry.endswith("/"):
+        assert SOURCE / f"{entry}.py" in reached
+
+
+def test_tests_stand_in_the_folders_of_what_they_are_about() -> None:
+    """Files named after behaviours too; what does not lie in ``src`` has folders of its own."""
+    folders = {module.rpartition("/")[0].partition("/")[2] for module in modules()}
+    tops = {folder.partition("/")[0] for folder in folders}
+    for path in (TEST / "unit").rglob("test_*.py"):
+        folder = path.parent.relative_to(TEST / "unit").as_posix()
+        assert folder in folders or folder.partition("/")[0] not in tops, path
+
+
+def test_folders_can_be_looked_over() -> None:
+    large = {
+        folder.relative_to(ROOT).as_posix()
+        for top in (SOURCE, TEST)
+        for folder in (top, *top.rglob("*"))
+        if folder.is_dir()
+        and sum(path.name != "__init__.py" for path in folder.glob("*.py")) > MOST_FILES
+    }
+    assert large == set(LARGE_FOLDERS)
