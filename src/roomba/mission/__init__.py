@@ -1,1 +1,1 @@
-"""What the robot does: each task is a plain object that is ticked."""
+"""The robot's tasks: each one is a plain object that is ticked."""

@@ -1,4 +1,4 @@
-"""Where a mission is, as plain values and back."""
+"""Checkpoints of a mission: its state as plain values, and back."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from roomba.mission.phases.machine import Errand, MissionState, Phase
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Remembered:
-    """What a checkpoint tells; ``book`` is way, m, energy, Wh, and dirt, g; ``duration`` s."""
+    """The content of a checkpoint; ``book`` is distance m, energy Wh and dirt g; ``duration`` s."""
 
     state: MissionState
     message: str
@@ -30,7 +30,7 @@ class Remembered:
 
 
 def checkpoint_of(state: MissionState, message: str, job: Job, now: float) -> Values | None:
-    """Return all that must be remembered to go on, as plain values; None without an errand."""
+    """Return the checkpoint of a job as plain values; None without an errand."""
     if state.errand is Errand.NONE or state.errand is Errand.UNDOCK:
         return None
     return {
@@ -99,11 +99,11 @@ def take_up(found: Remembered, job: Job, senses: Senses) -> None:
 
 
 def state_after(state: MissionState, *, is_docked: bool) -> MissionState:
-    """Return the state in which a remembered mission goes on, wherever the robot stands now."""
+    """Return the state in which a mission resumes from a checkpoint."""
     if state.phase is Phase.CHARGING and not is_docked:
         return MissionState(Phase.RETURNING, state.errand)
     if state.resumes in (Phase.CLEANING, Phase.EXPLORING):
-        # Should it stand on the station by now, it has to come out first.
+        # If it stands on the station by now, it has to undock first.
         return replace(state, resumes=Phase.UNDOCKING)
     if not state.drives:
         return state

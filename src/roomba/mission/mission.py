@@ -1,8 +1,8 @@
-"""The mission: what the robot does from one command to the next, all of it put together.
+"""The mission: the robot's behaviour from one command to the next, put together from its parts.
 
-No clock and no I/O: it is told commands and, 20 times a second, what the robot senses; it answers
-with the twist it wants. :mod:`.machine` says what comes after what; :mod:`.phases` and
-:mod:`.at_station` do it; :mod:`.job` is what it is at, and :mod:`.watch` notices what comes up.
+No clock and no I/O: it gets commands and, 20 times a second, the senses; it returns the wanted
+twist. :mod:`.machine` is the state machine, :mod:`.phases` and :mod:`.at_station` do the work of a
+phase, :mod:`.job` is the present errand, and :mod:`.monitor` notices what comes up in any phase.
 """
 
 from __future__ import annotations
@@ -39,11 +39,11 @@ from roomba.perception.swept.dirt_map import DirtMap
 from roomba.perception.things.layer import ThingLayer
 
 _SHARE_OF_SPEED: Final = 0.65
-"""Of the speed it is given that a robot comes to on the whole: it turns a lot."""
+"""Mean speed as a share of the speed limit: a clean turns a lot."""
 
 
 class CommandRefusedError(RoombaError):
-    """A command that means nothing now; the message says why."""
+    """A command that is not possible now; the message says why."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,7 +118,7 @@ class Mission:
         self._go(Event.EXPLORE, senses)
 
     def command(self, event: Event, senses: Senses, reason: str = "") -> None:
-        """Obey a command without further wishes; raises CommandRefusedError with the reason."""
+        """Obey a command without arguments; raises CommandRefusedError with the reason."""
         if next_state(self.state, event) is None:
             raise CommandRefusedError(
                 f"cannot {event.value} now: the robot is {self.state.phase.value}"

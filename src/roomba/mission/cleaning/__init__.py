@@ -1,1 +1,1 @@
-"""What is to be cleaned, what was, and what was missed."""
+"""A clean: its request, its ledger, and its result."""

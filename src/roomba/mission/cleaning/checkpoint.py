@@ -1,7 +1,7 @@
-"""What a mission must remember to go on after it was ended at any moment, as plain values.
+"""Plain values for checkpoints: masks and requests.
 
-Everything that can be found out again (paths, what stands in the way) is not part of it: the rest
-of a clean is planned anew from the floor that is left.
+Paths and obstacles are not part of a checkpoint: the rest of a clean is planned anew from the floor
+that is left.
 """
 
 from __future__ import annotations

@@ -38,21 +38,21 @@ Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 _LITTLE_GAIN: Final = 0.05
-"""Share of what was missed; a round that gains less of it than this was for nothing."""
+"""Share of what was missed; a round that gains less of it than this ends the retries."""
 _LEAST_AREA_TO_RETRY: Final = 0.5
-"""m2; so much floor out of reach is looked for again, as behind a door: less is below a chair."""
+"""m2; the least floor out of reach that is tried again, as behind a door; less is below a chair."""
 _WORTH_A_ROUND: Final = 0.02
 """m2; one patch as large as this is worth another round, though enough is clean."""
 _MOST_WAYS_OUT: Final = 40
-"""So often, in a clean, it gets out of where it is shut in, or waits there; then that part ends."""
+"""Times, in a clean, that it leaves a place where it is shut in, or waits; then that part ends."""
 _MOST_CUT_OFFS: Final = 12
-"""So many paths, in a clean, that were given up do not count as rounds."""
+"""Paths that were given up and do not count as rounds, in a clean."""
 _PLANNED_ANEW: Final = 20.0
-"""s; at least, between two plans that are made because something stood on the path."""
+"""s; the least time between two new plans because of things on the path."""
 _MOST_ANEW: Final = 40
 """Such plans in one clean."""
 _LEAST_WAY_TO_REPLAN: Final = 8.0
-"""m; less of a path is driven to its end before it is planned anew."""
+"""m; with less than this left of it a path is driven to its end, not planned anew."""
 
 
 class Cleaning:
@@ -191,7 +191,7 @@ class Cleaning:
         return True
 
     def _begin_anew(self) -> None:
-        """What was planned last counts as no round."""
+        """Do not count the last plan as a round."""
         self._rounds, self._last_missed, self._is_anew = 1, np.inf, True
         self._book.try_again()
 

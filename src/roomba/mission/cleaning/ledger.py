@@ -1,4 +1,4 @@
-"""What floor a clean wants, part by part, and what of it is clean by now."""
+"""The coverage ledger: the floor that a clean wants, part by part, and what of it is clean."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What floor of a clean is not clean, and why."""
+"""Missed floor, and the reasons."""
 
 from __future__ import annotations
 

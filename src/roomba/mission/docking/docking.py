@@ -18,18 +18,18 @@ from roomba.mission.docking.track import StationTrack
 __all__ = ["DockSenses", "DockState", "DockStep", "Docking", "Trouble", "staging_pose"]
 
 _SHORTEST_REACH: Final = 0.15
-"""m; so far ahead it aims at the middle of the beams, or farther while it is far away."""
+"""m; look-ahead for aiming at the middle of the beams; it is longer while the robot is far away."""
 _MOST_ASIDE: Final = 0.5
-"""rad; so far from straight at the station it aims at most, and less when it is near."""
+"""rad; the largest angle to the straight way at which it aims; smaller when it is near."""
 _LEAST_ASIDE: Final = 0.09
-"""rad; it may still aim so far aside at the end: within what the contacts bear."""
+"""rad; the same angle at the end: within what the contacts tolerate."""
 _NARROW: Final = 0.3
-"""Of the way that is left, it may be so much aside; else it drives to the staging place first."""
+"""Share of the way left that it may be aside; beyond it drives to the staging place first."""
 _SHORTEST_WAY: Final = 0.2
 """m; with less way left it cannot get straight any more."""
 _DOCKED_BLIND: Final = "docked without its beams: wipe the robot's infrared receiver"
 _SIDE_STEP: Final = 0.15
-"""m; so far it backs off from what it meets while it looks for beams."""
+"""m; how far it backs off from what it meets while it looks for beams."""
 _MOVED: Final = 0.02
 """m; less than this is standing still."""
 _TURNED: Final = 0.1

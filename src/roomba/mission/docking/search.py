@@ -1,4 +1,4 @@
-"""Where the robot looks for its station's beams, place by place."""
+"""The search for the station's beams, place by place."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from roomba.geometry import TWO_PI, Twist
 from roomba.mission.docking.track import StationTrack
 
 _THERE: Final = 0.08
-"""m; so near it is at a place."""
+"""m; tolerance of arriving at a place."""
 _AIMED: Final = 0.5
 """rad; when its heading is wrong by more, it turns on the spot."""
 

@@ -1,4 +1,4 @@
-"""What docking senses, what it answers, and why it fails."""
+"""The input and output of docking at a tick, and the reasons of failures."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class DockState(Enum):
     BACKING_OFF = "backing off"
     """It goes back for another attempt."""
     WAITING = "waiting"
-    """It stands off for what is in its way to leave."""
+    """It waits at a distance for what is in its way to leave."""
     DOCKED = "docked"
     """Current comes."""
     FAILED = "failed"

@@ -1,4 +1,4 @@
-"""Where the robot is before its charging station, by what it believes and by the beams it sees.
+"""Tracking of the robot before its charging station, by its believed pose and the beams it sees.
 
 In the frame of the docked robot: x ahead into the station, y to its left. So the robot comes from
 negative x, and a heading of 0 looks straight at the station. Lengths in m, angles in rad.
@@ -14,11 +14,11 @@ from roomba.configuration.robot import BodyConfig, StationConfig
 from roomba.geometry import Pose, Twist, wrap_angle
 
 _LONGEST_STEP: Final = 0.3
-"""m; when the believed place changes by more from one tick to the next, it is a new belief."""
+"""m; a larger change of the believed place in a tick is a new belief."""
 _FARTHEST_OFF: Final = 0.5
 """m; beams that say that the belief is wrong by more are of another place, or another time."""
 _DOUBT: Final = 0.1
-"""rad; so wrong the heading may be: a robot that sees one beam alone for long is farther aside."""
+"""rad; possible error of the heading: a robot that long sees one beam alone is farther aside."""
 _LATE_BEAMS: Final = 0.3
 """s; after a new belief, beams may still be those that were seen before it."""
 
@@ -42,7 +42,7 @@ class StationBeams:
 
 
 class StationTrack:
-    """Follows the robot in the station's frame: moved as the robot believes, put right by beams.
+    """Follows the robot in the station's frame: predicted by its belief, corrected by beams.
 
     The believed pose may be wrong by some cm and degrees. Each beam that is seen or not limits
     where the robot can be, and it is taken to be at the nearest such place.

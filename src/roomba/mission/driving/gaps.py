@@ -1,4 +1,4 @@
-"""Gaps between things that look just wide enough: no way for a robot that can only guess.
+"""Gaps between things that look hardly wide enough: planning closes them.
 
 What is seen of a thing is a part of it, and next time it may look nearer. A robot that drives in
 between the legs of a chair may be shut in there.

@@ -19,14 +19,14 @@ from roomba.planning.path.planner import NoPathError, PathPlanner
 Floats = NDArray[np.float64]
 
 _BESIDE: Final = 1.2
-"""m; what stands nearer may want to pass."""
+"""m; a person who stands nearer may want to pass."""
 _ROOM: Final = 1.2
-"""m; so far off it lets others pass, and farther away it need not go."""
+"""m; the least and the largest useful distance to let others pass."""
 _LEAST_ROOM: Final = 0.5
 _PER_WAY: Final = 0.25
 """m of room that a metre of way is worth: it does not squeeze past what it makes room for."""
 _FARTHEST: Final = 3.0
-"""m of way that it goes for that, at most."""
+"""m; the longest way aside."""
 
 
 def way_aside(

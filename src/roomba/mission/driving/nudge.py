@@ -1,4 +1,4 @@
-"""Moving a piece of a path aside a little, from things that stand nearer to it than was thought.
+"""Moving a piece of a path aside a little, from things that turn out to stand nearer to it.
 
 Each look at a thing shows a bit more of it. A path along it, so that the floor beside it gets
 clean, is kept that way, instead of leaving it and coming back another time.
@@ -20,12 +20,12 @@ Floats = NDArray[np.float64]
 
 _STEP: Final = 0.02
 _AHEAD: Final = 1.0
-"""m; so far ahead the path is looked at, in such steps."""
+"""m; the length of path that is moved, and its steps."""
 _MOST: Final = 0.08
 """m; farther aside it is another way, which the planner has to find."""
 _ROUNDS: Final = 8
 _NEARLY: Final = 0.003
-"""m; so much nearer than wanted is near enough."""
+"""m; tolerance of the wanted distance."""
 
 
 def nudged(

@@ -1,6 +1,6 @@
-"""What the map does not show and the robot found: felt by bumper and cliff sensors, or seen.
+"""Obstacles that the map does not show: felt by bumper and cliff sensors, or seen by the lidar.
 
-Nothing of it changes the map: it is remembered for a while, and looked for again.
+They do not change the map: they are remembered for a while.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from roomba.planning.path.costmap import RoundObstacle
 
 _FOREVER: Final = math.inf
 _LASTING: Final = 1800.0
-"""s; so long it is remembered what was felt more than once."""
+"""s; how long an obstacle that was felt more than once is remembered."""
 _SAME_PLACE: Final = 0.06
 """m; touches from places nearer to each other are of the same thing."""
 _TOUCHES: Final = 20
@@ -69,7 +69,7 @@ class Obstacles:
 
     @property
     def version(self) -> int:
-        """A number that is another one when something came or went."""
+        """A number that changes when something comes or goes."""
         return self._seen.version + self._felt_version
 
     def use(self, seen: ThingLayer) -> None:
@@ -95,7 +95,7 @@ class Obstacles:
         self._felt_version += 1
 
     def forget(self) -> None:
-        """Look at everything anew, but for edges."""
+        """Forget all obstacles but edges, so that they are found anew."""
         self._felt.forget()
         self._lasting.forget()
         self._touched.clear()

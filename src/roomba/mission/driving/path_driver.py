@@ -32,13 +32,13 @@ _PROGRESS: Final = 0.02
 _LONGEST_TICK: Final = 2.0
 """s; more between two ticks than this is a clock that was set."""
 _MOST_FUTILE: Final = 3
-"""New ways from one place; then it tries to get free in other ways."""
+"""New paths from one place; after these it tries recoveries."""
 _SAME_PLACE: Final = 0.10
 """m; touches from places nearer to each other are of the same thing."""
 _MOST_TOUCHES: Final = 4
-"""One after the other of the same thing; then this path is given up."""
+"""Consecutive touches of the same thing, after which this path is given up."""
 _LEAVES_TROUBLE: Final = 0.5
-"""m of progress after which earlier recoveries count no more."""
+"""m; progress after which earlier recoveries are forgotten."""
 
 
 class DriveState(Enum):

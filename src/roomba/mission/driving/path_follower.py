@@ -15,7 +15,7 @@ _SHARP = 0.3
 _CORNER_REACHED = 0.04
 """m; the setpoint goes on when the robot is this near to a sharp corner."""
 _SEARCH_AHEAD = 0.6
-"""m; how far along the path the robot is looked for from where it last was."""
+"""m; window of the path, from the robot's last place on, in which its place is searched."""
 _SLOW_DOWN = 0.4
 """m/s2; braking before corners."""
 _SLOWEST = 0.08

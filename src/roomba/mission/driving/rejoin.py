@@ -1,4 +1,4 @@
-"""Finding the way around what stands on a path: where to leave it, and where to join it again."""
+"""Finding the way around a thing on a path: where to leave the path, and where to rejoin it."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ _FREE_RUN: Final = 3
 _OUT: Final = 1.0
 """m; of the way home, after which it is out of where it was shut in."""
 _MOST_TRIES: Final = 8
-"""Places to join that are tried before it is given up."""
+"""The most places to join that are tried."""
 
 
 class Rejoin:

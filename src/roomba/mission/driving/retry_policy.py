@@ -1,4 +1,4 @@
-"""Waiting for a way to open: doors that are shut are opened again."""
+"""The retry policy for a way home that is shut: when to wait, to look again, and to give up."""
 
 from __future__ import annotations
 
@@ -6,16 +6,16 @@ import math
 from typing import Final
 
 _MOST_WAYS_HOME: Final = 5
-"""So often it looks for a way home before it begins to wait."""
+"""Attempts to find a way home before it begins to wait."""
 _FIRST_WAITS: Final = 2
 _FIRST_WAIT: Final = 10.0
 _WAIT: Final = 30.0
 """s; so long it waits, where no way leads on, before it looks for one again: people pass sooner
 than doors are opened."""
 _LOOK: Final = 2.0
-"""s; so often it looks whether the way is clear."""
+"""s; period of looking whether the way is clear."""
 _MOST_WAITS: Final = 41
-"""Twenty minutes; then there is no way home."""
+"""The most waits, twenty minutes in all; then it gives up."""
 
 
 class RetryPolicy:

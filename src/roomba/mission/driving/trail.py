@@ -19,7 +19,7 @@ _STEP: Final = 0.05
 _LENGTH: Final = 100
 """Places: the last five metres."""
 _EVERY: Final = 4
-"""Each such place is tried as one to go on from."""
+"""Stride over the places that are tried as a start."""
 
 
 class Trail:

@@ -1,1 +1,1 @@
-"""Looking at what the map does not show yet."""
+"""Exploring what the map does not show yet."""

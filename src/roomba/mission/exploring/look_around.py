@@ -18,22 +18,22 @@ from roomba.perception.localization.estimate import Knowledge
 from roomba.perception.localization.localizer import Localizer
 
 SPEED: Final = 0.25
-"""m/s; slow, among things that it knows nothing about."""
+"""m/s; slow, among unknown things."""
 TURNING: Final = 1.5
 """rad/s."""
 _MARGINS: Final = (0.06, 0.02)
-"""m; kept from all that is in sight; less of it only where there is no other way to go."""
+"""m; clearance to all that is in sight; less only where there is no other way to go."""
 _LONGEST_LEG: Final = 1.5
-"""m; then it chooses anew."""
+"""m; the longest leg."""
 _SHORTEST_LEG: Final = 0.15
-"""m; where there is less room than this it goes only if there is more nowhere."""
+"""m; shorter legs are driven only where there is no longer one."""
 _THERE: Final = 0.02
 """m; so near to where it goes, or to what is in its way, a leg has ended."""
 _DIRECTIONS: Final = 36
 _AIMED: Final = 0.08
-"""rad; so well it aims before it goes."""
+"""rad; tolerance of the heading before it drives."""
 _BACKING: Final = 0.8
-"""s; so long it backs away from what it touched."""
+"""s; how long it backs away from what it touched."""
 
 
 class LookAround:

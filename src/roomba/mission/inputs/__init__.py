@@ -1,1 +1,1 @@
-"""What the mission is told: what the robot senses, and the map that it plans on."""
+"""The inputs of the mission: the senses, and the planning context."""

@@ -1,4 +1,4 @@
-"""The home as a mission plans in it: map, zones, rooms, station, and the planners over them."""
+"""The planning context: map, zones, rooms and station, with the planners over them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a mission is told at each tick."""
+"""The senses: the input of a mission at each tick."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""The phases of the mission, and what leads from one to another."""
+"""The phases of the mission, and the state machine of their transitions."""

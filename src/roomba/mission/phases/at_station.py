@@ -1,4 +1,4 @@
-"""What is done on the station and before it: out of it, into it, and charging to go on."""
+"""The phases at the station: undocking, docking, and charging."""
 
 from __future__ import annotations
 

@@ -22,7 +22,7 @@ from roomba.planning.path.planner import NoPathError
 
 _WAITS: Final = "all is seen; it waits for the map to be finished"
 _LONGEST_WAIT: Final = 120.0
-"""s; so long it waits for the whole map."""
+"""s; how long it waits for the whole map."""
 _NO_WHOLE_MAP: Final = (
     "the map is not finished: put the robot on its station once, so that the map knows where that "
     "is, or call map/finish; then resume"
@@ -100,7 +100,7 @@ class CleanPhase:
         return points is not None
 
     def _look_or_wait(self, senses: Senses) -> PhaseStep | None:
-        """Go to see more when all that is known is clean; with all seen the map is to be whole."""
+        """Explore further when all that is known is clean; ask for the whole map at the end."""
         exploration, drives = self._job.exploration, self._drives
         assert exploration is not None
         given_up = len(exploration.unseen)

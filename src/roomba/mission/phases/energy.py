@@ -1,4 +1,4 @@
-"""Energy, way and dirt of an errand: what was used, and when it is time to go home."""
+"""The energy ledger: energy, distance and dirt of an errand, and when it is time to go home."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ class EnergyLedger:
         return spare < self._config.margin * self.per_metre * way_home(senses)
 
     def is_empty(self, senses: Senses) -> bool:
-        """Whether the battery gives nothing any more."""
+        """Whether the battery is empty."""
         return senses.battery.level < _EMPTY
 
     def is_charged(self, senses: Senses, needed: float) -> bool:

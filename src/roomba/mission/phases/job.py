@@ -1,4 +1,4 @@
-"""The clean or the exploration that the robot is on: its books, and the result at its end."""
+"""The present job, a clean or an exploration: its ledgers, and the result at its end."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from roomba.perception.swept.dirt_map import DirtMap
 _LONGEST_TICK: Final = 2.0
 """s; more between two ticks than this is a clock that was set."""
 _DETOURS: Final = 1.2
-"""Way that cleaning takes, by the shortest that could sweep the floor."""
+"""Length of a clean's way, as a multiple of the shortest that could sweep the floor."""
 
 
 class Job:

@@ -14,7 +14,7 @@ from roomba.mission.phases.step import Failure
 from roomba.perception.localization.estimate import Knowledge
 
 _CARRIED: Final = 1.0
-"""m; farther from where it last knew its place it did not drive itself while it looked around."""
+"""m; a robot that is farther from its last known place than this was carried."""
 
 
 class Monitor:

@@ -1,4 +1,4 @@
-"""Exploring and going home: what each of these phases wants at a tick."""
+"""The phases of exploring and of going home."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from roomba.mission.phases.step import Failure, PhaseStep
 from roomba.planning.path.planner import NoPathError
 
 _NEAR_STAGING: Final = 0.08
-"""m; so near to the place before the station docking takes over."""
+"""m; distance to the place before the station at which docking takes over."""
 
 
 def explore(job: Job, drives: Drives, senses: Senses, limit: float, most_stuck: int) -> PhaseStep:

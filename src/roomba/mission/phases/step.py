@@ -1,4 +1,4 @@
-"""What a phase of the mission answers at a tick."""
+"""The output of a phase at a tick."""
 
 from __future__ import annotations
 

@@ -33,7 +33,7 @@ _OFF_PATH = 0.35
 _CARRIED = 1.0
 """m; farther from where its place was known last the robot was carried."""
 _LOOK_AGAIN = 1.0
-"""s; so often a robot that waits before something looks for a way around it."""
+"""s; period in which a robot that waits before something looks for a way around it."""
 _UNKNOWN = "something that the map does not show stands"
 
 
@@ -243,7 +243,7 @@ def expected_duration(path: Path, max_speed: float) -> float:
 
 
 def feedback_period(duration: float) -> float:
-    """Return how often to tell the distance left, s, on a walk of ``duration`` s (SEED's rule)."""
+    """Return the period of feedback, s, on a walk of ``duration`` s (the report's rule)."""
     if duration < 10.0:
         return 2.0
     return 3.0 if duration < 20.0 else 4.0
