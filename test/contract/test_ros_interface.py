@@ -2,7 +2,6 @@
 
 import contextlib
 import re
-import xmlrpc.client
 from pathlib import Path
 
 from fixtures.graph import LAUNCHED, RosGraph
@@ -55,7 +54,7 @@ def test_nodes_do_what_the_table_says(shared_robot: RosGraph) -> None:
 
 def test_topics_have_the_types_that_the_table_says(shared_robot: RosGraph) -> None:
     listed = {next(iter(names(row[0]))): next(iter(names(row[1]))) for row in table("Topics")}
-    types = dict(xmlrpc.client.ServerProxy(shared_robot.uri).getTopicTypes("/test")[2])
+    types = shared_robot.topic_types()
     running = {topic: kind for topic, kind in types.items() if not topic.startswith("/rosout")}
     assert listed == running
 
@@ -69,7 +68,7 @@ def test_services_have_the_types_that_the_table_says(shared_robot: RosGraph) -> 
         for row in table("Services and actions")
     }
     actions = {name: kind for name, kind in listed.items() if kind.endswith("Action")}
-    types = dict(xmlrpc.client.ServerProxy(shared_robot.uri).getTopicTypes("/test")[2])
+    types = shared_robot.topic_types()
     goals = {name for name, kind in types.items() if kind.endswith("ActionGoal")}
     assert {f"{name}/goal" for name in actions} == goals
     for name, kind in actions.items():

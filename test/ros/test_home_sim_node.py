@@ -95,7 +95,7 @@ def test_a_node_that_drives_and_falls_behind_is_waited_for(shared_robot: RosGrap
         time.sleep(0.5)
         told = rospy.get_time()
         time.sleep(0.5)
-        return rospy.get_time() == told
+        return bool(rospy.get_time() == told)
 
     wait_until(held, 30.0, "the clock stands")
     told = rospy.get_time()
@@ -129,7 +129,7 @@ def test_the_bumper_is_told(shared_robot: RosGraph) -> None:
 
     def is_pressed() -> bool:
         bumper = body.probe.newest.get("/bumper", Bumper())
-        return bumper.is_left_pressed and bumper.is_right_pressed
+        return bool(bumper.is_left_pressed and bumper.is_right_pressed)
 
     assert not is_pressed()
     body.drive(0.4, 0.0, is_pressed, "it feels the station")

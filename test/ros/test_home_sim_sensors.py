@@ -3,7 +3,9 @@
 import io
 import math
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from functools import partial
+from typing import Any
 
 import numpy as np
 import pytest
@@ -195,7 +197,11 @@ def test_sensors_can_be_blocked_and_freed(apartment: RosGraph) -> None:
         assert body.inject(fault, 1.0).success
         body.until(topic, kind, shows)
         assert body.inject(fault, 0.0).success
-        body.until(topic, kind, lambda message, shows=shows: not shows(message))
+        body.until(topic, kind, partial(does_not_show, shows))
+
+
+def does_not_show(shows: Callable[[Any], bool], message: Any) -> bool:
+    return not shows(message)
 
 
 def test_faults_that_there_are_not_are_refused_with_those_that_there_are(
@@ -206,7 +212,8 @@ def test_faults_that_there_are_not_are_refused_with_those_that_there_are(
     assert not unknown.success
     assert "station_dead" in unknown.message
     assert "gravity" in unknown.message
-    names = re.search(r"expected a fault of: (.*); got", unknown.message)[1].split(", ")
+    (listed,) = re.findall(r"expected a fault of: (.*); got", unknown.message)
+    names = listed.split(", ")
     assert [name for name in names if not re.search(rf"\b{name}\b", DESCRIPTION)] == []
     too_much = body.inject("slip", 1.5)
     assert not too_much.success
@@ -245,7 +252,7 @@ def test_diagnostics_say_what_is_wrong_and_what_to_do(apartment: RosGraph) -> No
     body.inject("lidar_blocked")
 
     def is_ill(told: dict[str, DiagnosticStatus]) -> bool:
-        return told["drive"].level == told["lidar"].level == DiagnosticStatus.ERROR
+        return bool(told["drive"].level == told["lidar"].level == DiagnosticStatus.ERROR)
 
     ill = wait_until(
         lambda: next((told for told in (next_parts(),) if is_ill(told)), None), 20.0, "both are ill"

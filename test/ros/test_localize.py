@@ -191,7 +191,8 @@ def test_a_drive_is_followed_from_a_given_start(
     assert "\x1b" not in done.output + done.error
     with Picture.open(plot) as picture:
         assert picture.width >= 800
-        colours = dict(map(reversed, picture.convert("RGB").getcolors(1_000_000)))
+        counted = picture.convert("RGB").getcolors(1_000_000)
+    colours = {colour: count for count, colour in counted or []}
     assert colours[ImageColor.getrgb(BLUE)] > 1000
     with rosbag.Bag(str(output)) as written:
         topics = written.get_type_and_topic_info().topics

@@ -134,7 +134,7 @@ def test_a_map_that_is_being_made_outlives_the_node(graph: RosGraph) -> None:
 
     def is_saved() -> bool:
         answers.append(robot.on_maps("save", HOME))
-        return answers[-1].success
+        return bool(answers[-1].success)
 
     wait_until(is_saved, 30.0, "it is saved, its rooms found")
     for words in ("saved as home", "does not go by them", "save it again"):

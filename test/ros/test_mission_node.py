@@ -201,7 +201,7 @@ def test_a_killed_node_goes_on_with_its_clean_and_keeps_its_zones(graph: RosGrap
 
     def is_noticed() -> bool:
         world.send("/cmd_vel", steered)
-        return world.state.phase == "paused"
+        return bool(world.state.phase == "paused")
 
     wait_until(is_noticed, 30.0, "the mission gives way")
     assert "another program drives" in world.state.message

@@ -99,7 +99,7 @@ def test_a_clean_from_its_goal_to_its_report(graph: RosGraph) -> None:
     clean = roomba.robot.clean(
         CleanMode.ROOMS, rooms=rooms, in_order=True, passes=2, fan=FanLevel.STRONG
     )
-    handle = wait_until(lambda: mission.cleans.goals and mission.cleans.goals[0], 30.0)
+    handle = wait_until(lambda: next(iter(mission.cleans.goals), None), 30.0)
     goal = handle.get_goal()
     assert (goal.mode, goal.rooms, goal.in_order) == (CleanGoal.ROOMS, list(rooms), True)
     assert (goal.passes, goal.fan, goal.spot_is_here) == (2, CleanGoal.STRONG, True)
@@ -129,7 +129,7 @@ def test_a_clean_from_its_goal_to_its_report(graph: RosGraph) -> None:
     assert report.missed == (MissedFloor(0.5, 1.0, 2.0, "Hall", "a chair"),)
 
     docking = roomba.robot.dock()
-    handle = wait_until(lambda: mission.docks.goals and mission.docks.goals[0], 30.0)
+    handle = wait_until(lambda: next(iter(mission.docks.goals), None), 30.0)
     handle.publish_feedback(DockFeedback("docking"))
     assert docking.next_feedback(30.0) == "docking"
     handle.set_aborted(DockResult(False, "no beam"), "no beam")
@@ -176,7 +176,7 @@ def test_a_mission_that_began_anew_or_is_silent_has_lost_the_clean(graph: RosGra
     with pytest.raises(RobotUnavailableError, match="nothing came on vacuum/state"):
         roomba.robot.vacuum(timeout=0.1)
     first = roomba.robot.clean()
-    handle = wait_until(lambda: mission.cleans.goals and mission.cleans.goals[0], 30.0)
+    handle = wait_until(lambda: next(iter(mission.cleans.goals), None), 30.0)
     handle.publish_feedback(CleanFeedback("cleaning", "", 1.0, 8.0, 0.125, 20.0, 0.5))
     wait_until(lambda: first.next_feedback(0.1), 30.0)
     with mission.cleans.lock:
@@ -201,7 +201,7 @@ def test_the_example_cleans_once_and_tells_what_came_of_it(graph: RosGraph) -> N
     rospy.init_node("mission_node", disable_signals=True)
     mission = FakeMission()
     program = graph.run(sys.executable, str(EXAMPLE))
-    handle = wait_until(lambda: mission.cleans.goals and mission.cleans.goals[0], 30.0)
+    handle = wait_until(lambda: next(iter(mission.cleans.goals), None), 30.0)
     handle.publish_feedback(CleanFeedback("cleaning", "Hall", 2.0, 8.0, 0.25, 20.0, 0.5))
     program.says(" 25% cleaning Hall", 30.0)
     area = MissedArea(2.0, Point(), "", MissedArea.SHUT, "a door is shut")

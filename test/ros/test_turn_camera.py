@@ -10,6 +10,7 @@ from fixtures.graph import RosGraph
 from fixtures.probe import Probe
 from fixtures.waiting import wait_until
 from geometry_msgs.msg import PoseStamped
+from numpy.typing import NDArray
 from roomba_robot.srv import TurnCamera, TurnCameraRequest, TurnCameraResponse
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import Image
@@ -17,7 +18,7 @@ from sensor_msgs.msg import Image
 ANGLES = (-30, -15, 0, 15, 30)
 
 
-def picture(value: int) -> np.ndarray:
+def picture(value: int) -> NDArray[np.uint8]:
     return np.full((768, 1024, 3), value, np.uint8)
 
 

@@ -1,4 +1,5 @@
 import math
+import signal
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -43,7 +44,7 @@ def test_a_second_server_is_refused_by_name_and_by_topic(graph: RosGraph) -> Non
 def test_a_server_that_died_is_no_rival(graph: RosGraph) -> None:
     first = graph.rosrun(SCRIPT)
     wait_until(lambda: serving(graph), 30.0)
-    graph.signal(SERVER.strip("/"), 9)
+    graph.signal(SERVER.strip("/"), signal.SIGKILL)
     first.ends(30.0)
     second = graph.rosrun(SCRIPT)
     wait_until(lambda: graph.answers(SERVER), 30.0, "the new server answers")

@@ -196,19 +196,19 @@ def touched(result: CleanResult) -> float:
     On a busy machine the robot's clock runs on while its nodes wait for their turn: then it
     touches a wall now and then, where it takes such a thing to be.
     """
-    return sum(missed.area for missed in result.missed if missed.reason == MissedArea.THING)
+    return math.fsum(missed.area for missed in result.missed if missed.reason == MissedArea.THING)
 
 
 def is_clean(result: CleanResult) -> bool:
     """Whether nothing is left, but for what it touched, and that is little."""
     left = touched(result)
-    return left < 0.1 * result.wanted and result.covered + left > 0.99 * result.wanted
+    return bool(left < 0.1 * result.wanted and result.covered + left > 0.99 * result.wanted)
 
 
 def cleaned(message: OccupancyGrid) -> float:
     """Return the share of the wanted floor that a coverage map shows as clean."""
     shares = [share for share in message.data if share >= 0]
-    return sum(shares) / (100.0 * len(shares))
+    return math.fsum(shares) / (100.0 * len(shares))
 
 
 def test_a_clean_is_held_and_completed(shared_robot: RosGraph) -> None:

@@ -41,8 +41,7 @@ def test_a_home_is_cleaned_while_it_is_mapped_though_the_node_is_killed(graph: R
     covered = states[-1].covered
     # The first that is written from now on may be of before.
     for _ in range(2):
-        written = when_remembered(graph)
-        wait_until(lambda old=written: when_remembered(graph) != old, 30.0, "it is remembered")
+        wait_until_remembered(graph)
     assert is_growing(robot.maps[-1]), "the map is not whole yet"
 
     graph.signal("mission_node", signal.SIGKILL)
@@ -59,6 +58,12 @@ def test_a_home_is_cleaned_while_it_is_mapped_though_the_node_is_killed(graph: R
     assert (1.0 - UNREACHED) * FLOOR < done.wanted < FLOOR
     # On a busy machine it touches a wall now and then, and leaves the floor there for later.
     assert done.fraction > 0.9
+
+
+def wait_until_remembered(graph: RosGraph) -> None:
+    """Wait until the mission writes once more what it did."""
+    before = when_remembered(graph)
+    wait_until(lambda: when_remembered(graph) != before, 30.0, "it is remembered")
 
 
 def when_remembered(graph: RosGraph) -> int:

@@ -81,11 +81,15 @@ def test_a_server_told_to_end_ends_and_the_robot_stops(shared_robot: RosGraph) -
     for number in (signal.SIGINT, signal.SIGTERM):
         probe, walker = walking(shared_robot)
         pid = shared_robot.signal(SERVER, number)
-        wait_until(lambda pid=pid: not alive(pid), 10.0, "the server ends")
+        wait_until_ended(pid)
         stands(probe)
         assert math.dist(probe.position(), (3.0, 4.0)) > 1.0
         assert walker.ends(30.0) in (GoalStatus.ABORTED, GoalStatus.LOST)
         is_back(shared_robot, SERVER, pid)
+
+
+def wait_until_ended(pid: int) -> None:
+    wait_until(lambda: not alive(pid), 10.0, "the server ends")
 
 
 def alive(pid: int) -> bool:

@@ -2,7 +2,6 @@
 
 import itertools
 import time
-import xmlrpc.client
 from collections import Counter
 from collections.abc import Iterator
 
@@ -63,6 +62,18 @@ class Witness:
                 for value in status.values:
                     self.counts[node, value.key.strip("/")] = int(value.value)
 
+    def is_heard(self, publisher: rospy.Publisher, ears: int) -> None:
+        """Wait until so many nodes hear a publisher."""
+        wait_until(lambda: publisher.get_num_connections() >= ears, 30.0)
+
+    def hears_refusals(self, expected: Counts, what: str) -> None:
+        """Wait until nodes told that they refused so many messages."""
+        wait_until(
+            lambda: all(self.counts.get(each, 0) >= count for each, count in expected.items()),
+            10.0,
+            lambda: f"{what}: {missing(expected, self.counts)}",
+        )
+
     def cleans(self) -> None:
         """Wait until it cleans."""
         ready = ("docked", "idle")
@@ -78,7 +89,7 @@ class Witness:
 
 def heard(graph: RosGraph) -> dict[str, tuple[str, list[str]]]:
     """Return the type of each topic that nodes of the robot hear, and these nodes."""
-    types = dict(xmlrpc.client.ServerProxy(graph.uri).getTopicTypes("/test")[2])
+    types = graph.topic_types()
     _, subscribers, _ = graph.system_state()
     own = {
         topic: [node.strip("/") for node in nodes if node.strip("/") in LAUNCHED]
@@ -103,15 +114,13 @@ def test_bad_messages_on_every_topic_are_refused_and_have_no_effect(
         for topic, messages in bad.items()
     }
     for topic, publisher in publishers.items():
-        ears = len(topics[topic][1])
-        wait_until(
-            lambda publisher=publisher, ears=ears: publisher.get_num_connections() >= ears, 30.0
-        )
+        witness.is_heard(publisher, len(topics[topic][1]))
     witness.cleans()
     pids = {node: shared_robot.pid(node) for node in LAUNCHED}
     witness.states.clear()
     witness.lines.clear()
-    began, identities, sent = time.monotonic(), itertools.count(), Counter()
+    began, identities = time.monotonic(), itertools.count()
+    sent: Counter[str] = Counter()
     for what in sorted({what for messages in bad.values() for what in messages}):
         for topic in (topic for topic, messages in bad.items() if what in messages):
             message = bad[topic][what]
@@ -125,13 +134,7 @@ def test_bad_messages_on_every_topic_are_refused_and_have_no_effect(
             for topic, count in sent.items()
             for node in topics[topic][1]
         }
-        wait_until(
-            lambda expected=expected: all(
-                witness.counts.get(each, 0) >= count for each, count in expected.items()
-            ),
-            10.0,
-            lambda expected=expected, what=what: f"{what}: {missing(expected, witness.counts)}",
-        )
+        witness.hears_refusals(expected, what)
     flood(witness)
     elapsed = time.monotonic() - began
     witness.goes_on()
@@ -139,7 +142,7 @@ def test_bad_messages_on_every_topic_are_refused_and_have_no_effect(
     assert {node: shared_robot.pid(node) for node in LAUNCHED} == pids
     assert set(witness.states) == {"cleaning"}
     assert {node: count for node, count in witness.lines.items() if count > elapsed + 2.0} == {}
-    assert set(witness.lines) >= {node for _, nodes in map(topics.get, bad) for node in nodes}
+    assert set(witness.lines) >= {node for topic in bad for node in topics[topic][1]}
 
 
 def missing(expected: Counts, counts: Counts) -> list[str]:

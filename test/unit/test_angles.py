@@ -1,6 +1,7 @@
 """All forms of the angle wrap return the same bits, those of IEEE's remainder."""
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 import pytest
@@ -14,9 +15,11 @@ from roomba.geometry import TWO_PI, wrap_angle
 angles = st.one_of(st.floats(-20.0, 20.0), st.floats(-1e300, 1e300))
 
 
-@njit
-def wrapped_in_a_kernel(angle: float) -> float:
+def caller(angle: float) -> float:
     return wrapped(angle)
+
+
+wrapped_in_a_kernel: Callable[[float], float] = njit()(caller)
 
 
 def by_remainder(angle: float) -> float:

@@ -220,6 +220,7 @@ def _topics(options: argparse.Namespace, recording: Recording, start: Pose | Non
     """Return what is read of the recording; raises RecordingError if too little is there."""
     scan = recording.require(options.scan_topic, MessageKind.SCAN, "--scan-topic")
     odometry = recording.require(options.odom_topic, MessageKind.ODOMETRY, "--odom-topic")
+    gyro: str | None
     if options.imu_topic is not None:
         gyro = recording.require(options.imu_topic, MessageKind.GYRO, "--imu-topic")
     else:

@@ -15,6 +15,7 @@ from typing import Any, Final
 import genpy
 import numpy as np
 import rosbag
+from numpy.typing import NDArray
 from rosgraph_msgs.msg import Clock
 from tf2_msgs.msg import TFMessage
 
@@ -126,9 +127,10 @@ def coverage_on_map(setup: TrialSetup) -> OccupancyMap:
     frame = setup.home.frame
     factor = setup.robot.site.frame.rows // frame.rows
 
-    def share(mask: np.ndarray) -> np.ndarray:
+    def share(mask: NDArray[np.bool_]) -> NDArray[np.float64]:
         blocks = mask.reshape(frame.rows, factor, frame.columns, factor)
-        return blocks.mean(axis=(1, 3))
+        shares: NDArray[np.float64] = blocks.mean(axis=(1, 3))
+        return shares
 
     wanted = share(setup.coverable)
     swept = share(setup.robot.truth.swept & setup.coverable)

@@ -7,6 +7,7 @@ import threading
 import time
 from pathlib import Path
 
+import numpy as np
 import rospkg
 import rospy
 from geometry_msgs.msg import PoseStamped
@@ -83,7 +84,7 @@ class TurnCameraService:
         turned = abs(wrap_angle(pose.theta - last.theta))
         return pose.distance_to(last.x, last.y) > _TRAVELLED or turned > _TURNED
 
-    def _take(self, angle: int) -> NDArray:
+    def _take(self, angle: int) -> NDArray[np.uint8]:
         pose = self._pose
         try:
             picture = picture_of(call_service(self._capture, float(angle)).image)
@@ -101,7 +102,7 @@ class TurnCameraService:
             raise rospy.ServiceException(str(error)) from error
         return TurnCameraResponse(image_message(rospy.get_time(), picture, frame_id("camera")))
 
-    def _picture_near(self, degrees: float) -> NDArray:
+    def _picture_near(self, degrees: float) -> NDArray[np.uint8]:
         angle = nearest_angle(degrees)
         if angle not in self._pictured:
             return self._take_or_old(angle)
@@ -114,7 +115,7 @@ class TurnCameraService:
             except PictureError as second:
                 raise PictureError(f"{error}; and {second}") from second
 
-    def _take_or_old(self, angle: int) -> NDArray:
+    def _take_or_old(self, angle: int) -> NDArray[np.uint8]:
         """Take the first picture of this run; without a camera the last good one counts."""
         try:
             return self._take(angle)

@@ -109,8 +109,8 @@ class RosRobot(RosVacuum):
                     "is the robot running (`./roomba run`)?"
                 )
             x, y = self._values["position"]
-            speed, dirt = self._values["speed"], self._values["dirt"]
-            return RobotState(x, y, *speed, *dirt, self._doubt)
+            (speed,), (dirt,) = self._values["speed"], self._values["dirt"]
+            return RobotState(x, y, speed, dirt, self._doubt)
 
     def path_length(self, x: float, y: float) -> float:
         """Return the length of the planned way, m."""

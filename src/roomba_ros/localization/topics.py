@@ -168,7 +168,7 @@ class LocalizationTopics:
     def known_place(self) -> Pose | None:
         """Where the robot is, map frame, if that is known."""
         with self._tick_lock:
-            estimate = self._localizer and self._localizer.estimate
+            estimate = None if self._localizer is None else self._localizer.estimate
         if estimate is None or not estimate.knowledge.is_usable:
             return None
         return estimate.pose

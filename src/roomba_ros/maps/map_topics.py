@@ -73,7 +73,7 @@ class MapTopics:
 
     @property
     def _is_own(self) -> bool:
-        return self._wish != GIVEN
+        return bool(self._wish != GIVEN)
 
     def tick(self, now: float, estimate: Estimate) -> None:
         """Begin, grow, recognise, or look for changes; tell what is new."""

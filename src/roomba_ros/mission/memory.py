@@ -50,7 +50,7 @@ class MissionMemory:
     def recall_dirt(self, dirt: DirtMap) -> None:
         """Let a dirt map know what was learned before."""
         try:
-            learned = load_dirt(self._dirt, dirt.learned.shape)
+            learned = load_dirt(self._dirt, dirt.frame.shape)
         except CheckpointFileError as error:
             rospy.logwarn("where it is dirty is learned anew: %s", error)
             return

@@ -51,11 +51,8 @@ class RoomTopics:
         self._lock = threading.Lock()
         self._map: OccupancyMap | None = None
         self._rooms: Rooms | None = None
-
-    @staticmethod
-    def is_growing() -> bool:
-        """Whether the map is being made; the map's maker replaces this function."""
-        return False
+        self.is_growing: Callable[[], bool] = lambda: False
+        """Tells whether the map is being made; the maker of maps puts its answer here."""
 
     def start(self) -> None:
         """Connect."""

@@ -8,7 +8,7 @@ from typing import Any
 import actionlib
 
 
-class ActionClient(actionlib.SimpleActionClient):  # type: ignore[misc]
+class ActionClient(actionlib.SimpleActionClient):
     """The stock client with one lock around sending and its callbacks.
 
     Without it an answer that comes while a goal is being sent is taken for one to an older goal

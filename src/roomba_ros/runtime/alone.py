@@ -44,7 +44,7 @@ def _is_alive(master: rosgraph.Master, node: str) -> bool:
     before = socket.getdefaulttimeout()
     socket.setdefaulttimeout(_PING_TIMEOUT)
     try:
-        ServerProxy(master.lookupNode(node)).getPid("/roomba_robot_start")  # type: ignore[operator]
+        ServerProxy(master.lookupNode(node)).getPid("/roomba_robot_start")
     except (OSError, HTTPException, XmlRpcError, rosgraph.MasterError):
         # Nothing listens there, or another program on a port that was used again.
         return False

@@ -64,8 +64,8 @@ class Pace:
         One that tells the same again has not got any farther.
         """
         now, before = self._monotonic(), self._heard.get(part)
-        is_same = before is not None and before.stamp == stamp
-        self._heard[part] = _Heard(stamp, before.advanced if is_same else now, now)
+        advanced = before.advanced if before is not None and before.stamp == stamp else now
+        self._heard[part] = _Heard(stamp, advanced, now)
 
     def wait(self, now: float, ended: Callable[[], bool]) -> None:
         """Return when the next tick is due, or at the end.

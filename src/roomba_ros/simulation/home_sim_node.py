@@ -8,7 +8,7 @@ from functools import partial
 from pathlib import Path
 
 import rospy
-from geometry_msgs.msg import PoseStamped
+from geometry_msgs.msg import PoseStamped, TransformStamped
 from geometry_msgs.msg import Twist as TwistMessage
 from nav_msgs.msg import OccupancyGrid, Odometry
 from rosgraph_msgs.msg import Clock
@@ -217,7 +217,7 @@ class HomeSimNode:
         self._station = rospy.Publisher("station_pose", PoseStamped, queue_size=1, latch=True)
         self._station.publish(pose_message(self._now(), home.station, "map"))
 
-    def _mounted(self) -> list:
+    def _mounted(self) -> list[TransformStamped]:
         """Return where the sensors are on the body, which never changes."""
         camera, lidar = self._config.camera, self._config.lidar
         forward, up = camera.mount_forward, camera.mount_height

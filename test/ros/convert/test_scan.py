@@ -1,6 +1,7 @@
 """Scans become ranges and the lidar that they are of, or are refused."""
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -8,6 +9,7 @@ from fixtures.malformed import filled, scan
 from geometry_msgs.msg import Quaternion, TransformStamped
 from hypothesis import given
 from hypothesis import strategies as st
+from numpy.typing import NDArray
 from rospy import Time
 from tf2_msgs.msg import TFMessage
 
@@ -26,13 +28,13 @@ def decoder(*transforms: TransformStamped) -> ScanDecoder:
     return ScanDecoder.on_robot(mounts, "base_link")
 
 
-def ends(decoder: ScanDecoder, message: object) -> np.ndarray:
+def ends(decoder: ScanDecoder, message: Any) -> NDArray[np.float64]:
     """Return where the beams of a scan end, robot's frame, float64 [n, 2], m."""
     decoded = decoder.decode(message)
     return decoded.lidar.view(decoded.ranges).ends[:, :2]
 
 
-def quarter(ranges: int = 3) -> object:
+def quarter(ranges: int = 3) -> Any:
     """Return a scan of beams ahead, to the left, behind …, each 2 m long."""
     message = scan(ranges)
     message.angle_increment, message.ranges = 0.5 * math.pi, [2.0] * ranges

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from roomba.configuration.simulation import SimulatedRobotConfig
-from roomba.gym.task import HOMES
+from roomba.files.shipped import HOMES
 from roomba.world.fleet import Fleet
 from roomba.world.layers.layer import load_home
 

@@ -4,9 +4,9 @@ from fixtures.rooms import room_home
 
 from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.errors import HomeError
+from roomba.files.shipped import HOMES
 from roomba.geometry import Pose
 from roomba.gym.floor import Coverage, FloorDistances
-from roomba.gym.task import HOMES
 from roomba.world.fleet import Fleet
 from roomba.world.layers.layer import load_home
 

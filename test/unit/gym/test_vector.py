@@ -61,12 +61,13 @@ def test_what_was_returned_stays_as_it_was() -> None:
     robots = RoombaCleanVector(ROBOTS, **TASK)
     robots.reset(seed=0)
     first = robots.step(np.ones((ROBOTS, 2), np.float32))
-    kept = [first[0].copy(), first[1].copy(), {name: v.copy() for name, v in first[4].items()}]
+    observations, rewards = first[0].copy(), first[1].copy()
+    infos = {name: values.copy() for name, values in first[4].items()}
     robots.step(np.zeros((ROBOTS, 2), np.float32))
-    assert np.array_equal(first[0], kept[0])
-    assert np.array_equal(first[1], kept[1])
+    assert np.array_equal(first[0], observations)
+    assert np.array_equal(first[1], rewards)
     for name, values in first[4].items():
-        assert np.array_equal(values, kept[2][name]), name
+        assert np.array_equal(values, infos[name]), name
 
 
 @pytest.mark.parametrize("threads", [1, 2])
@@ -81,7 +82,8 @@ def test_every_robot_lives_as_it_would_alone(threads: int) -> None:
     for _ in range(25):
         actions = random.uniform(-1.0, 1.0, (ROBOTS, 2)).astype(np.float32)
         got, wanted = ours.step(actions), theirs.step(actions)
-        for ours_part, theirs_part in zip(got[:4], wanted[:4], strict=True):
+        parts: list[tuple[Any, Any]] = list(zip(got[:4], wanted[:4], strict=True))
+        for ours_part, theirs_part in parts:
             assert np.array_equal(ours_part, theirs_part)
         assert got[4].keys() == wanted[4].keys()
         for name, values in got[4].items():

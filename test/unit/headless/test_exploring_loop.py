@@ -57,8 +57,8 @@ def test_both_drive_the_same_way(config: SimulatedRobotConfig, burst: int) -> No
     assert len(robots[0].passed) == FIRST_PATH
     # Undocking is none of it, and the rest was nearly all compiled.
     assert len(robots[1].passed) < 100 + 0.5 * FIRST_PATH
-    maps = [robot.mapper.occupancy().values for robot in robots]
-    assert np.array_equal(*maps)
+    one, other = (robot.mapper.occupancy().values for robot in robots)
+    assert np.array_equal(one, other)
 
 
 def test_both_explore_as_well() -> None:

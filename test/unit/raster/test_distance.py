@@ -5,12 +5,13 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import array_shapes, arrays
+from numpy.typing import NDArray
 
 from roomba.raster.distance import distance_to_nearest
 
 
 @given(arrays(np.bool_, array_shapes(min_dims=2, max_dims=2, max_side=25)))
-def test_it_is_the_smallest_of_all_distances(targets: np.ndarray) -> None:
+def test_it_is_the_smallest_of_all_distances(targets: NDArray[np.bool_]) -> None:
     found = distance_to_nearest(targets)
     there = np.argwhere(targets)
     for cell in np.ndindex(*targets.shape):

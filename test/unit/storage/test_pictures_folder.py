@@ -44,7 +44,7 @@ def test_the_old_picture_stays_when_the_new_one_cannot_be_written(
 
     monkeypatch.setattr("os.fsync", full_disk)
     with pytest.raises(PictureError, match=r"0\.png: cannot be written: No space left"):
-        folder.write(0, 255 - PICTURE)
+        folder.write(0, np.invert(PICTURE))
     assert np.array_equal(folder.read(0), PICTURE)
 
 

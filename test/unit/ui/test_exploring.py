@@ -6,7 +6,8 @@ from collections.abc import Iterable
 import pytest
 from rich.console import Console
 
-from roomba.client.fake.robot import ErrandScript, FakeRobot
+from roomba.client.fake.errands import ErrandScript
+from roomba.client.fake.robot import FakeRobot
 from roomba.client.protocol import ErrandOutcome
 from roomba.ui.cleaning import CLEANING_HEADING
 from roomba.ui.exploring import TASKS

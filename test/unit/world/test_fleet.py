@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -50,7 +51,7 @@ def run(fleet: Fleet, twists: Twists, steps: int = 25) -> None:
         fleet.step(wanted, DT, steps)
 
 
-def without_places(state: dict[str, NDArray[np.generic]], robot: int) -> dict[str, object]:
+def without_places(state: dict[str, NDArray[Any]], robot: int) -> dict[str, object]:
     """Return what can be compared of one robot's world: all but the rows' numbers."""
     world = state["worlds"][robot]
     parts: dict[str, object] = {

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -29,7 +30,8 @@ Poses = NDArray[np.float64]
 
 
 def slow_scan(solid: Solid, frame: GridFrame, pose: Poses, config: LidarConfig) -> Poses:
-    ranges = ranges_to_cells(solid, frame, *pose.tolist(), config.beams)
+    x, y, theta = pose.tolist()
+    ranges = ranges_to_cells(solid, frame, x, y, theta, config.beams)
     return within(ranges, config.min_range, config.max_range)
 
 
@@ -93,7 +95,8 @@ def test_it_sees_what_plain_geometry_sees_in_any_maze(
 ) -> None:
     random = np.random.default_rng(seed)
     solid = maze(*shape, density, random)
-    frame = GridFrame(resolution, *random.uniform(-5.0, 5.0, 2).tolist(), *shape)
+    x, y = random.uniform(-5.0, 5.0, 2).tolist()
+    frame = GridFrame(resolution, x, y, *shape)
     config = FAR.model_copy(update={"beams": beams})
     poses = free_poses(solid, frame, 8, random)
     scans = Lidar.on_grid(solid, frame, config, tile).scan(poses)
@@ -201,7 +204,8 @@ def test_what_is_given_to_be_filled_is_filled() -> None:
     out = np.zeros((2, 360), np.float32)
     assert lidar.scan(poses, out) is out
     assert out.tobytes() == lidar.scan(poses).tobytes()
-    for wrong in (np.zeros((1, 360), np.float32), np.zeros((2, 360))):
+    wrongs: list[Any] = [np.zeros((1, 360), np.float32), np.zeros((2, 360))]
+    for wrong in wrongs:
         with pytest.raises(ValueError, match="expected out to be float32"):
             lidar.scan(poses, wrong)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import lru_cache, partial
 from pathlib import Path
+from typing import Any
 
 import cv2
 import numpy as np
@@ -18,7 +19,7 @@ from roomba.world.home.home import Home
 from roomba.world.layers.layer import load_home
 
 SMALL_CAMERA = CameraConfig(width=64, height=48)
-QUICK = {
+QUICK: dict[str, dict[str, Any]] = {
     "lidar": {"scans": 2},
     "odometry": {"seconds": 5.0},
     "bumper": {"posts": 8},

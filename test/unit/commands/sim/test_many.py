@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import time
+from collections.abc import Generator
 from dataclasses import replace
 from pathlib import Path
 
@@ -71,6 +72,7 @@ def test_who_stops_listening_ends_all_at_once(tmp_path: Path) -> None:
     next(runs)
     wait_until(lambda: note.is_file() and note.read_text(), 20.0, "what hangs has begun")
     began = time.monotonic()
+    assert isinstance(runs, Generator)
     runs.close()
     assert time.monotonic() - began < 5.0
     with pytest.raises(ProcessLookupError):

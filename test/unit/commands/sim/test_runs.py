@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from roomba.commands.sim.command import main
 from roomba.commands.sim.json_file import TIMES, run_as_json
@@ -47,7 +48,7 @@ def run(room: Path) -> Run:
     return run_trial(Trial(home=str(room), seed=5, station=Pose(0.3, 0.8, math.pi)))
 
 
-def swept_by_discs(trajectory: np.ndarray, run: Run) -> float:
+def swept_by_discs(trajectory: NDArray[np.float64], run: Run) -> float:
     """Count the floor that discs along the trajectory cover, m2, in the plainest way."""
     frame = run.truth.frame
     x = frame.origin_x + (np.arange(frame.columns) + 0.5) * frame.resolution

@@ -7,6 +7,7 @@ import math
 import numpy as np
 from fixtures.missions import TWO_ROOMS, WALL_X
 from fixtures.obstacles import Standing
+from numpy.typing import NDArray
 
 from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose
@@ -22,7 +23,7 @@ IN_THE_DOOR = Senses(0.0, Pose(WALL_X + 0.05, 1.2, math.pi))
 PERSON: list[RoundObstacle] = [(WALL_X - 0.45, 1.2 + 0.05 * step, 0.02) for step in range(-5, 6)]
 
 
-def off(points: np.ndarray, things: list[RoundObstacle]) -> float:
+def off(points: NDArray[np.float64], things: list[RoundObstacle]) -> float:
     """How far the end of a way is from the nearest of some things, m."""
     x, y = points[-1]
     return min(math.dist((x, y), (thing[0], thing[1])) for thing in things)

@@ -20,7 +20,7 @@ TICK = 0.05
 def twists(number: int, began: float = 0.0) -> list[Twist]:
     """Return all that an attempt wants."""
     recovery = Recovery(number, CONFIG, Senses(began, Pose()))
-    made = []
+    made: list[Twist] = []
     for tick in range(1000):
         twist = recovery.tick(Senses(began + tick * TICK, Pose()))
         if twist is None:

@@ -160,7 +160,8 @@ def test_reckoning_is_that_of_plain_python(told: list[tuple[float, Pose, float]]
 
 def same(row: Floats, pose: Pose) -> bool:
     x, y, theta = row.tolist()
-    return max(abs(x - pose.x), abs(y - pose.y), abs(wrap_angle(theta - pose.theta))) < 1e-9
+    apart = (x - pose.x, y - pose.y, wrap_angle(theta - pose.theta))
+    return bool(max(map(abs, apart)) < 1e-9)
 
 
 @given(st.floats(-2.0, 2.0), st.floats(-2.0, 2.0), st.floats(-2.0, 2.0))

@@ -10,6 +10,7 @@ from fixtures.rooms import room_home
 from fixtures.worlds import DT, IDEAL
 from hypothesis import given
 from hypothesis import strategies as st
+from numpy.typing import NDArray
 
 from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose, Twist, wrap_angle
@@ -259,7 +260,7 @@ def test_between_two_headings_the_short_way_counts() -> None:
 
 
 def test_variances_grow_with_the_way_and_are_taken_once() -> None:
-    def spread(way: float, pieces: int) -> np.ndarray:
+    def spread(way: float, pieces: int) -> NDArray[np.float64]:
         reckoned = reckoning()
         for step in range(pieces + 1):
             reckoned.move(DT * step, Pose(way * step / pieces, 0.0, 0.0), None)

@@ -27,6 +27,7 @@ from fixtures.located import (
     steps,
 )
 from fixtures.rooms import room_home
+from numpy.typing import NDArray
 
 from roomba.geometry import Pose, Twist
 from roomba.grid import FREE, OCCUPIED
@@ -267,9 +268,9 @@ def test_a_search_while_the_clock_is_set_back_lasts_no_longer() -> None:
 @pytest.mark.parametrize("late", [0.1, 0.5, 1.5])
 def test_a_scan_that_comes_late_counts_for_where_it_was_taken(late: float) -> None:
     robot = started()
-    waiting: list[tuple[float, np.ndarray]] = []
+    waiting: list[tuple[float, NDArray[np.float32]]] = []
 
-    def keep(ranges: np.ndarray) -> None:
+    def keep(ranges: NDArray[np.float32]) -> None:
         waiting.append((robot.world.time, ranges))
 
     robot.see_as = keep
@@ -288,7 +289,7 @@ def test_a_scan_that_comes_late_counts_for_where_it_was_taken(late: float) -> No
 def test_a_scan_that_comes_late_does_not_drag_the_pose_back(late: float) -> None:
     """Straight on, where it fits well enough now as well."""
     robot = started()
-    waiting: list[tuple[float, np.ndarray]] = []
+    waiting: list[tuple[float, NDArray[np.float32]]] = []
     robot.see_as = lambda ranges: waiting.append((robot.world.time, ranges))
     for _ in steps(3.0):
         robot.step(Twist(0.1, 0.0))

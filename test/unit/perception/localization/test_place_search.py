@@ -20,7 +20,7 @@ from roomba.world.home.home import Home
 RADIUS = CONFIG.body.radius
 
 
-def search(home: Home, pose: Pose, most: int = 30) -> np.ndarray:
+def search(home: Home, pose: Pose, most: int = 30) -> NDArray[np.float64]:
     view = LIDAR.view(Eye(home).scan(pose))
     searched = PlaceSearch(SurfaceField.of(home.map), view.ends, RADIUS)
     for _ in range(1000):
@@ -124,7 +124,7 @@ def scores(
     score_heading(
         field.values, field.place, ends, chosen, np.array(spots), theta, 0.35, found, headings
     )
-    return found.tolist()
+    return list(found)
 
 
 def test_a_beam_counts_the_less_the_farther_off_a_surface_it_ends() -> None:

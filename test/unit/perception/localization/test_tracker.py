@@ -261,8 +261,9 @@ def test_a_step_carries_the_covariance_along(
 ) -> None:
     """Against differences of the motion itself, by the pose and by the step's own errors."""
     random = np.random.default_rng(seed)
-    root = np.tril(random.uniform(-0.3, 0.3, (3, 3)))
-    covariance, spread = root @ root.T, np.diag(random.uniform(0.0, 0.1, 3))
+    root: NDArray[np.float64] = np.tril(random.uniform(-0.3, 0.3, (3, 3)))
+    covariance = root @ root.T
+    spread: NDArray[np.float64] = np.diag(random.uniform(0.0, 0.1, 3))
     pose, after = moved(Pose(*start), covariance, Pose(*step), spread)
 
     def end(off: NDArray[np.float64], error: NDArray[np.float64]) -> NDArray[np.float64]:

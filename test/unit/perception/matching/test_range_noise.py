@@ -4,19 +4,21 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from roomba.perception.matching.range_noise import RangeNoise
 
 NEAREST, FARTHEST = 0.1, 30.0
 
 
-def walls(angles: np.ndarray, half: float = 2.0) -> np.ndarray:
+def walls(angles: NDArray[np.float64], half: float = 2.0) -> NDArray[np.float64]:
     """Ranges to the walls of a square room from a place off its middle, m."""
     x, y = 0.3, -0.5
     with np.errstate(divide="ignore"):
         along = np.where(np.cos(angles) > 0, half - x, half + x) / np.abs(np.cos(angles))
         across = np.where(np.sin(angles) > 0, half - y, half + y) / np.abs(np.sin(angles))
-    return np.minimum(along, across)
+    result: NDArray[np.float64] = np.minimum(along, across)
+    return result
 
 
 @pytest.mark.parametrize("deviation", [0.003, 0.01, 0.03])

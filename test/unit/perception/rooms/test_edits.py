@@ -19,7 +19,8 @@ def labelled(draw: st.DrawFn) -> Labels:
     """Labels from 1 on without a gap between them, 0 for none."""
     cells = draw(arrays(np.int16, (7, 9), elements=st.integers(0, 4)))
     _, labels = np.unique(np.append(0, cells), return_inverse=True)
-    return labels[1:].reshape(cells.shape).astype(np.int16)
+    gapless: Labels = labels[1:].reshape(cells.shape).astype(np.int16)
+    return gapless
 
 
 @given(labelled(), st.sets(st.integers(1, 4), min_size=1, max_size=3))

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from fixtures.located import Eye
 from fixtures.mapped import FURNISHED, Floats, wrong_cells
+from numpy.typing import NDArray
 
 from roomba.configuration.mapping import MappingConfig
 from roomba.configuration.robot import RobotConfig
@@ -85,13 +86,16 @@ def mapped(robot: Robot, seconds: float = 45.0) -> tuple[Mapper, float]:
     return mapper, worst
 
 
-def scan(robot: Robot, at: Pose, angles: Floats, generator: np.random.Generator) -> np.ndarray:
+def scan(
+    robot: Robot, at: Pose, angles: Floats, generator: np.random.Generator
+) -> NDArray[np.float32]:
     """Return what its lidar tells from a pose: a tenth of the beams have no echo."""
     around = EYE.scan(at.compose(MOUNT))
     beams = np.round(np.degrees(angles)).astype(int) % 360
     ranges = around[beams] + generator.normal(0.0, robot.noise, len(beams)).astype(np.float32)
     ranges[generator.random(len(beams)) < 0.1] = robot.no_echo
-    return ranges.astype(np.float32)
+    result: NDArray[np.float32] = ranges.astype(np.float32)
+    return result
 
 
 ROBOTS = {

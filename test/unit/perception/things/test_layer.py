@@ -11,13 +11,15 @@ from fixtures.located import CONFIG, FURNISHED, LIDAR, TWO_ROOMS, Eye, Ranges, f
 from fixtures.rooms import room_home
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from numpy.typing import NDArray
 
+from roomba.configuration.things import ThingConfig
 from roomba.geometry import Pose, Twist
 from roomba.grid import UNKNOWN, GridFrame, OccupancyMap
 from roomba.perception.matching.scan_view import LidarModel
 from roomba.perception.matching.surface_field import SurfaceField
 from roomba.perception.things.kernels import SPOT_RADIUS
-from roomba.perception.things.layer import ThingConfig, ThingLayer
+from roomba.perception.things.layer import ThingLayer
 from roomba.world.home.home import Home
 from roomba.world.simulator import Simulator
 
@@ -337,7 +339,7 @@ def test_no_scan_at_all_breaks_it() -> None:
 
 
 def blocked_by_sampling(
-    layer: ThingLayer, points: np.ndarray, first: float, last: float, radius: float
+    layer: ThingLayer, points: NDArray[np.float64], first: float, last: float, radius: float
 ) -> float | None:
     legs = np.hypot(*np.diff(points, axis=0).T)
     stations = np.concatenate(([0.0], np.cumsum(legs)))

@@ -185,15 +185,17 @@ def test_the_first_cell_that_is_not_left_out_and_can_be_looked_at_is_taken(
 ) -> None:
     random = np.random.default_rng(seed)
     ways = np.empty(values.shape)
-    ways_from(values == FREE, *random.integers(0, values.shape).tolist(), ways)
+    start_row, start_column = random.integers(0, values.shape).tolist()
+    ways_from(values == FREE, start_row, start_column, ways)
     tried = random.integers(0, values.shape, (5, 2))
     middles = (tried[:, ::-1] + 0.5) * 0.1
     left_out = random.uniform(0.0, 1.4, (int(random.integers(0, 3)), 2))
     found = seen_from(tried, middles, left_out, 0.25, values, ways, RADIUS, 2.0)
     for index, (cell, middle) in enumerate(zip(tried.tolist(), middles.tolist(), strict=True)):
+        at_row, at_column = cell
         if any(math.dist(middle, each) < 0.25 for each in left_out.tolist()):
             continue
-        row, column, cost = viewpoint(values, ways, *cell, RADIUS, 2.0)
+        row, column, cost = viewpoint(values, ways, at_row, at_column, RADIUS, 2.0)
         if math.isfinite(cost):
             assert found == (index, row, column)
             return

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from roomba.errors import PictureError
 from roomba.geometry import Pose
 from roomba.world.camera.camera import Camera, Scene
-from roomba.world.camera.scene.moving import MOST_DISCS
+from roomba.world.engine.state.arrays import MOST_DISCS
 from roomba.world.home.home import Box, Door, Home, MovingKind, MovingThing, Rectangle, Script
 
 BLOCK = Box(0.1, 0.0, 0.0, 0.4, 0.6, 0.0, 1.0, "red")

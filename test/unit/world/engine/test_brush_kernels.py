@@ -87,7 +87,7 @@ def test_only_cells_under_the_turned_brush_are_touched_and_all_of_them(
     field.micrograms[:] = 1_000_000
     sweep_at(field, (x, y, theta), 0.01, turn, brush=(0.4, 0.3))
     rows, columns = np.indices(field.frame.shape)
-    cell_x, cell_y = field.frame.centre_of(rows, columns)  # type: ignore[arg-type]
+    cell_x, cell_y = field.frame.centres(rows, columns)
     turned = ((cell_x - x) + 1j * (cell_y - y)) * np.exp(-1j * theta)
     over = np.maximum(np.abs(turned.real) - 0.15, np.abs(turned.imag) - 0.2)
     touched = field.micrograms < 1_000_000
@@ -139,7 +139,7 @@ def test_the_amount_under_a_disc_is_that_of_its_cells() -> None:
     field = clean_field()
     field.spread(1.4, 2.9, 0.3, 25.0)
     rows, columns = np.indices(field.frame.shape)
-    x, y = field.frame.centre_of(rows, columns)  # type: ignore[arg-type]
+    x, y = field.frame.centres(rows, columns)
     for disc in ((1.51, 3.02), (1.2, 2.7), (0.0, 0.0), (5.05, 4.05), (-9.0, 0.0)):
         under = amount_under_disc(field.micrograms, field.place, *disc, 0.174)
         expected = field.micrograms[np.hypot(x - disc[0], y - disc[1]) <= 0.174].sum()

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from fixtures.rooms import room_home
 from fixtures.worlds import drive
+from numpy.typing import NDArray
 
 from roomba.world.engine.fall_kernels import CRUMB
 from roomba.world.home.home import DirtSource
@@ -14,7 +15,7 @@ from roomba.world.simulator import Simulator
 HOUR = 3600.0
 
 
-def fallen(world: Simulator, hours: float) -> np.ndarray:
+def fallen(world: Simulator, hours: float) -> NDArray[np.int64]:
     """Let time pass while the robot stands and its brush is off; return what fell, by cells."""
     before = world.dirt.micrograms.copy()
     drive(world, 0.0, 0.0, hours * HOUR, 60.0)

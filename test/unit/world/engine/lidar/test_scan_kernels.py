@@ -17,6 +17,7 @@ from fixtures.slow_lidar import (
 from fixtures.worlds import DT, IDEAL, NOISY, block_that_moves, drive
 from hypothesis import given, reject, settings
 from hypothesis import strategies as st
+from numpy.typing import NDArray
 
 from roomba.configuration.robot import LidarConfig
 from roomba.configuration.simulation import SimulatedLidar, SimulatedRobotConfig, SimulationConfig
@@ -31,12 +32,12 @@ BLOCKS = ((1.0, 1.0, 1.3, 1.2),)
 BEAMS = LIDAR.beams
 
 
-def slow_walls(pose: Pose) -> np.ndarray:
+def slow_walls(pose: Pose) -> NDArray[np.float64]:
     home = room_home(blocks=BLOCKS)
     return ranges_to_cells(home.solid, home.frame, pose.x, pose.y, pose.theta, BEAMS)
 
 
-def cut(ranges: np.ndarray) -> np.ndarray:
+def cut(ranges: NDArray[np.float64]) -> NDArray[np.float64]:
     return within(ranges, LIDAR.min_range, LIDAR.max_range)
 
 
@@ -116,14 +117,15 @@ def test_other_robots_are_seen_as_discs() -> None:
     starts = np.array([(1.0, 2.0, 0.4), (2.5, 2.2, 1.0), (3.5, 1.0, 2.0)])
     fleet = Fleet([room_home(blocks=BLOCKS)], IDEAL, robots_per_home=3, starts=starts)
     fleet.step(np.zeros((3, 2)), 0.1)
-    for robot, start in enumerate(starts.tolist()):
-        expected = slow_walls(Pose(*start))
+    for robot, (here_x, here_y, theta) in enumerate(starts.tolist()):
+        start = Pose(here_x, here_y, theta)
+        expected = slow_walls(start)
         for other, (x, y, _) in enumerate(starts.tolist()):
             if other != robot:
                 disc = x, y, CONFIG.body.radius
-                expected = np.minimum(expected, ranges_to_disc(*start, BEAMS, disc))
+                expected = np.minimum(expected, ranges_to_disc(here_x, here_y, theta, BEAMS, disc))
         assert disagreeing(fleet.ranges[robot], cut(expected)).sum() <= 1
-        assert np.abs(expected - slow_walls(Pose(*start))).max() > 0.1
+        assert np.abs(expected - slow_walls(start)).max() > 0.1
 
 
 def test_noise_has_its_mean_its_deviation_and_its_misses_and_each_beam_its_own() -> None:
