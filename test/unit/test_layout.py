@@ -117,6 +117,7 @@ TESTED_BY: dict[str, tuple[str, str]] = {
 LARGE_FOLDERS = {
     "src/roomba/commands/pictures": "one file a picture",
     "src/roomba/commands/sim": "one command: its options, runs, figures and what they are told in",
+    "src/roomba/perception/slam": "one algorithm: its stages, and the kernels of each beside it",
     "test/fixtures": "one file a fixture",
     "test/ros": "one file a node",
     "test/unit/benchmarks": "one file a benchmark",
