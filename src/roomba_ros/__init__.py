@@ -1,1 +1,1 @@
-"""ROS at the edge: messages become values in convert.py, and one node stands in each file."""
+"""ROS at the edge: messages become values in ``convert``; each node has a file."""

@@ -126,7 +126,7 @@ class DirtSensorConfig(Frozen):
 
 
 class CameraConfig(Frozen):
-    """The pan camera; ``horizontal_field`` and ``max_pan`` in degrees as the seed's angles are."""
+    """The pan camera; ``horizontal_field`` and ``max_pan`` in degrees, as in the report."""
 
     width: Annotated[int, Field(gt=0)] = 1024
     height: Annotated[int, Field(gt=0)] = 768

@@ -1,8 +1,9 @@
 """The mission: the robot's behaviour from one command to the next, put together from its parts.
 
 No clock and no I/O: it gets commands and, 20 times a second, the senses; it returns the wanted
-twist. :mod:`.machine` is the state machine, :mod:`.phases` and :mod:`.at_station` do the work of a
-phase, :mod:`.job` is the present errand, and :mod:`.monitor` notices what comes up in any phase.
+twist. :mod:`.phases.machine` is the state machine, :mod:`.phases.phases` and
+:mod:`.phases.at_station` do the work of a phase, :mod:`.phases.job` is the present errand, and
+:mod:`.phases.monitor` notices what comes up in any phase.
 """
 
 from __future__ import annotations

@@ -31,9 +31,9 @@ from roomba.world.home.dirt import DirtField
 from roomba.world.home.home import Home
 
 _CHUNKS_PER_THREAD = 4
-"""Worlds are shared out in so many parts for each thread, as some take longer than others."""
+"""Parts of the worlds for each thread: several, since some take longer than others."""
 _WORTH_A_THREAD = 32
-"""World-steps; fewer of them are done sooner than a thread begins."""
+"""World-steps from which on threads pay."""
 
 
 class Fleet:
@@ -272,7 +272,7 @@ class Fleet:
     def put(self, robot: int, pose: Pose) -> None:
         """Put a robot down somewhere else, standing; raises HomeError where it does not fit.
 
-        What it believes about its way stays as it was.
+        Its odometry stays as it was.
         """
         before = self.robots[robot].copy()
         row = self.robots[robot]

@@ -1,4 +1,4 @@
-"""What a battery shows of itself, and how loud the robot is."""
+"""The battery's voltage, current and temperature, and the robot's noise level."""
 
 from __future__ import annotations
 

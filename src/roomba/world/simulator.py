@@ -76,7 +76,7 @@ class Wheels:
 
 @dataclass(frozen=True, slots=True)
 class Observation:
-    """What is so after a step: the truth (``pose``, ``twist``), and what the sensors tell of it.
+    """The state after a step: the truth (``pose``, ``twist``), and what the sensors measure.
 
     ``odometry`` and ``odometry_twist`` are by the wheel encoders, in the frame that the robot
     started in; ``angular_velocity`` (rad/s) and ``acceleration`` (m/s2, ahead) are the gyro's and
@@ -197,7 +197,7 @@ class Simulator:
         return self._fleet.discs(0)
 
     def step(self, wanted: Twist, dt: float) -> Observation:
-        """Let ``dt`` s pass while the drive is asked for ``wanted``; return what is so then.
+        """Let ``dt`` s pass with the command ``wanted``; return the observation after it.
 
         Raises ValueError for a twist or a time that is not finite, or a time that is not above 0.
         """
@@ -212,7 +212,7 @@ class Simulator:
         self._fleet.step(self._wanted, dt, steps)
 
     def observe(self) -> Observation:
-        """Return what is so now; no time passes."""
+        """Return the present observation; no time passes."""
         now = self.numbers
         radius = self.config.body.radius
         under = amount_under_disc(self.dirt.micrograms, self.dirt.place, now["x"], now["y"], radius)

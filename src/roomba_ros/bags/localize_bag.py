@@ -1,8 +1,7 @@
 """Localizes a recorded drive on a map, offline: ``./roomba localize --map FILE --bag FILE``.
 
-Any bag will do that has a lidar's scans and odometry. The localizer hears it as the robot would
-have, but as fast as it can; what came of it is told in a short table, and written where it is
-asked for.
+Any bag with a lidar's scans and odometry will do. The localizer gets the messages as on the robot,
+but as fast as it can; the result is printed as a short table, and written to the files asked for.
 """
 
 from __future__ import annotations
@@ -41,7 +40,7 @@ from roomba_ros.convert.mounts import Mounts, usable_transforms
 _PROGRAM: Final = "./roomba localize"
 _MOUNT_MESSAGES: Final = 1000
 _MOVING_MESSAGES: Final = 300
-"""Messages of /tf_static and /tf that are looked through for where the sensors are."""
+"""Messages of /tf_static and /tf that are searched for the mounts of the sensors."""
 _REDRAWN: Final = 0.1
 _TOLD: Final = 1.0
 """s between two pictures of the progress bar, and two lines where there is none."""

@@ -1,4 +1,4 @@
-"""What was found of a recorded drive, written down: as a table of numbers, and as a bag."""
+"""The files of a localized drive: a table of numbers, and a bag."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Localization of a recorded drive: the localizer hears what was recorded as if it were there."""
+"""Replay of a recorded drive through the localizer."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What came of localizing a recorded drive: figures, for people and for programs."""
+"""The report of a localized drive: figures, for people and for programs."""
 
 from __future__ import annotations
 
@@ -116,7 +116,7 @@ class Tally:
         self._compared = 0
 
     def take(self, row: Row) -> None:
-        """Count what was known at a moment."""
+        """Count a state."""
         before, self.last = self.last, row
         self.rows.append(row)
         is_usable = row.estimate.knowledge.is_usable

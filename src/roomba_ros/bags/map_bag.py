@@ -1,8 +1,8 @@
 """Makes a map of a recorded drive, offline: ``./roomba map --bag FILE``.
 
-Any bag will do that has a lidar's scans and odometry; a gyro helps. There is no truth to compare
-with, but in bags of ``./roomba sim --bag``: what is told is how far the drive was, whether it
-closes, and how much was corrected.
+Any bag with a lidar's scans and odometry will do; a gyro helps. Only bags of ``./roomba sim --bag``
+have the truth to compare with. The report is the length of the drive, whether it closes, and how
+much was corrected.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ from roomba_ros.convert.mounts import Mounts, usable_transforms
 
 _MOUNT_MESSAGES: Final = 1000
 _MOVING_MESSAGES: Final = 300
-"""Messages of /tf_static and /tf that are looked through for where the sensors are."""
+"""Messages of /tf_static and /tf that are searched for the mounts of the sensors."""
 
 
 @dataclass(frozen=True, slots=True)

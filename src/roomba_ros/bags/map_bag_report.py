@@ -1,4 +1,4 @@
-"""What came of mapping a recorded drive: figures, for people and for programs."""
+"""The report of a mapped drive: figures, for people and for programs."""
 
 from __future__ import annotations
 

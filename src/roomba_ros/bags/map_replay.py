@@ -1,4 +1,4 @@
-"""Mapping of a recorded drive: the mapper hears what was recorded as if it were there."""
+"""Replay of a recorded drive through the mapper."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What replays of a recorded drive have in common: gyro, lidars, and what is noted."""
+"""The common part of replays of a recorded drive: gyro, lidars, and notes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``./roomba sim --bag FILE.bag``: a headless run as a bag, as the live robot would have told it.
+"""``./roomba sim --bag FILE.bag``: a headless run as a bag, with the live robot's topics.
 
 Topics: ``/map`` and ``/tf_static`` once; ``/clock``, ``/tf`` (map -> odom -> base_link), ``/odom``,
 ``/pose`` (where the robot took itself to be), ``/ground_truth/pose`` and ``/scan`` 10 Hz;

@@ -132,7 +132,7 @@ class RosVacuum:
         self._order("stop")
 
     def locate(self) -> None:
-        """Let it be heard."""
+        """Let it beep."""
         self._order("locate")
 
     def vacuum(self, timeout: float = 5.0) -> VacuumSnapshot:

@@ -12,7 +12,7 @@ from roomba_ros.convert.errors import require_finite
 from roomba_ros.convert.localization import knowledge_of
 
 BATTERY_NOT_HEARD: Final = -1.0
-"""The charge that a state tells until the battery was heard; a snapshot has NaN for it."""
+"""The charge in a state before the first message of the battery; a snapshot has NaN for it."""
 
 
 def vacuum_of(message: VacuumState) -> VacuumSnapshot:

@@ -1,4 +1,4 @@
-"""What nodes say of themselves, as diagnostics (REP 107)."""
+"""The nodes' own diagnostics (REP 107)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is wrong with a message that is refused."""
+"""The error of a message that is refused."""
 
 from __future__ import annotations
 

@@ -1,5 +1,4 @@
-"""What is known of the robot's place, as ROS messages: a part of
-:mod:`roomba_ros.convert.common`."""
+"""The robot's estimate of its pose as ROS messages, and poses that are told, as values."""
 
 from __future__ import annotations
 

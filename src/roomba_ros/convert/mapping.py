@@ -1,4 +1,4 @@
-"""What becomes of maps, as ROS messages: a part of :mod:`roomba_ros.convert.common`."""
+"""The state of a map, and offered changes, as ROS messages."""
 
 from __future__ import annotations
 

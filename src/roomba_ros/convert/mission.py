@@ -1,5 +1,4 @@
-"""The mission's commands, states and zones as ROS messages: a part of
-:mod:`roomba_ros.convert.common`."""
+"""The mission's commands, states and zones, as values and as ROS messages."""
 
 from __future__ import annotations
 
@@ -70,11 +69,11 @@ RoomOutlines = tuple[tuple[str, shapely.Polygon], ...]
 
 
 class CleanGoalError(MessageError, CleanRefusedError):
-    """A goal of a clean that makes no sense."""
+    """An invalid goal of a clean."""
 
 
 def request_of(goal: CleanGoal) -> CleanRequest:
-    """Return what a goal asks for; raises CleanGoalError for what makes no sense."""
+    """Return the request of a goal; raises CleanGoalError for an invalid one."""
     if goal.mode not in MODES:
         raise CleanGoalError(f"expected a mode from 0 to {len(MODES) - 1}, got {goal.mode}")
     if goal.fan not in FANS:
@@ -142,7 +141,7 @@ def _missed_message(missed: Missed) -> MissedArea:
 
 
 def feedback_message(state: VacuumState) -> CleanFeedback:
-    """Return how far a clean is, by the state that everybody is told."""
+    """Return the progress of a clean, from the state that is published."""
     return CleanFeedback(
         state.state,
         state.room,
@@ -195,7 +194,7 @@ def _outline_of(room: Room) -> shapely.Polygon:
 
 
 def zone_of(message: ZoneMessage) -> Zone:
-    """Return a zone; raises ZonesError for one that makes no sense."""
+    """Return a zone; raises ZonesError for an invalid one."""
     if message.kind not in KINDS:
         raise ZonesError(
             f"zone {message.name!r}: expected a kind from 0 to {len(KINDS) - 1}, got {message.kind}"
@@ -205,7 +204,7 @@ def zone_of(message: ZoneMessage) -> Zone:
 
 
 def zones_of(message: ZoneArray) -> Zones:
-    """Return all zones; raises MessageError when one of them makes no sense."""
+    """Return all zones; raises MessageError when one of them is invalid."""
     try:
         return Zones(tuple(zone_of(zone) for zone in message.zones))
     except ZonesError as error:

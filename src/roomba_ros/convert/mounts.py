@@ -1,4 +1,4 @@
-"""Where sensors are mounted on a robot, by the transforms that are told of its frames."""
+"""The mounts of sensors on a robot, from static transforms."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from roomba.geometry import Pose
 from roomba_ros.convert.errors import MessageError, require_finite
 
 _DEEPEST: Final = 50
-"""Frames between a sensor and the root of its tree; more are a circle."""
+"""The most frames between a sensor and the root of its tree; more mean a cycle."""
 _SHORTEST_ROTATION: Final = 1e-6
 """Length of a quaternion; a shorter one is no rotation."""
 

@@ -1,4 +1,4 @@
-"""What sensors say, as values; each function raises MessageError for what is none."""
+"""Sensor messages as values; each function raises MessageError for an invalid message."""
 
 from __future__ import annotations
 

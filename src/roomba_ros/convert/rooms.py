@@ -1,4 +1,4 @@
-"""Rooms as ROS messages: a part of :mod:`roomba_ros.convert.common`."""
+"""Rooms as ROS messages."""
 
 from __future__ import annotations
 

@@ -1,5 +1,4 @@
-"""What the robot's sensors tell, as ROS messages: the other half of
-:mod:`roomba_ros.convert.common`."""
+"""The simulated sensors' measurements as ROS messages."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Single values of messages; each function raises MessageError for what is none.
+"""Single values of messages; each function raises MessageError for an invalid one.
 
 Nodes that need no more than these load neither arrays nor maps.
 """

@@ -1,4 +1,4 @@
-"""Tells how much dirt lies under the robot."""
+"""The node that publishes the dirt under the robot."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""The robot's place on ROS."""
+"""Localization on ROS."""

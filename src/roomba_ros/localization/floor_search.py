@@ -1,4 +1,4 @@
-"""Which of the robot's saved maps is that of this floor, on ROS: found out by the newest scans."""
+"""Recognition of the present floor among the robot's saved maps, on ROS, by the newest scans."""
 
 from __future__ import annotations
 

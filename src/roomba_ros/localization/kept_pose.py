@@ -1,4 +1,4 @@
-"""Where the robot was, kept by the master: a node that was killed comes back knowing it."""
+"""The pose that the master keeps, so that a node that was killed comes back knowing it."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _KEPT_DEVIATION: Final = (0.10, 0.05)
 
 
 class KeptPose:
-    """Writes now and then, in a thread of its own: a master that hangs must not stop the robot."""
+    """Writes the pose in a thread of its own: a master that hangs must not stop the robot."""
 
     def __init__(self) -> None:
         """Keep nothing yet."""

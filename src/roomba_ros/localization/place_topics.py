@@ -1,4 +1,4 @@
-"""The robot's place on ROS: where it is, how sure that is, and where it may be."""
+"""The topics of the robot's place: pose, covariance, and hypotheses."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where the robot was lately: the poses that were told, and those between them."""
+"""The robot's recent poses, interpolated."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The robot's place on ROS: a localizer fed with what the sensors publish."""
+"""Localization on ROS: a localizer fed with the sensors' topics."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ class LocalizationTopics:
         self.mapper: Mapper | None = None
         """Knows the place instead of the localizer, while a map is being made."""
         self.is_mapping_held = False
-        """Whether the mapper must not be shown anything just now: its map is being made whole."""
+        """Whether the mapper must wait: its map is being finished."""
         self.seen: Scan | None = None
         """The newest scan that was used."""
         self.is_map_own = False

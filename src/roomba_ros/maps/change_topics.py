@@ -1,4 +1,4 @@
-"""What of its own map the robot would change, on ROS: looked for, offered, refused."""
+"""Changes of the robot's own map, on ROS: detected, offered, refused."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _PERIOD: Final = 0.4
 
 
 class ChangeTopics:
-    """Looks through scans for what stands otherwise than on a map, and offers it.
+    """Detects changes against the map by scans, and offers them.
 
     Publishes: ``map/update`` (MapUpdate, latched).
     """
@@ -42,7 +42,7 @@ class ChangeTopics:
         self._tell(now)
 
     def look(self, now: float, estimate: Estimate, *, is_docked: bool) -> None:
-        """Look through a scan now and then; offer what stands otherwise when the robot is home."""
+        """Use a scan now and then; offer the changes when the robot is on its station."""
         seen, changes = self._place.seen, self._changes
         if changes is None or seen is None or estimate.knowledge is not Knowledge.KNOWN:
             return

@@ -1,6 +1,6 @@
 """Making a map on ROS: a mapper in place of the localizer, until its map is whole.
 
-What it has is remembered while it grows, and taken up by the next process if this one is killed.
+The map is saved while it grows, and resumed by the next process if this one is killed.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What people do with the robot's own maps on ROS: finish, save, load, remove, list, change."""
+"""The services of the robot's own maps: finish, save, load, remove, list, update."""
 
 from __future__ import annotations
 

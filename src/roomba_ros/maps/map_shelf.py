@@ -1,4 +1,4 @@
-"""The robot's saved maps on ROS: kept by name, with their rooms and zones where others look."""
+"""The robot's saved maps on ROS: kept by name, with their rooms and zones."""
 
 from __future__ import annotations
 

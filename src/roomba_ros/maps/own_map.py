@@ -1,4 +1,4 @@
-"""The robot's own map, as it is told: the newest, its station, its name, what people know of it."""
+"""The topics of the robot's own map: the newest map, its station, its name and its state."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The mission's hold on the drive, the fan, and on others who would drive the robot."""
+"""The mission's access to drive and fan, and its priority over walks."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from roomba_ros.runtime.subscriptions import subscribe
 _STOP_REPEATS: Final = 5
 """Ticks for which a stop is repeated before the drive is left to others."""
 _ENDING: Final = 2.5
-"""s; so long a walk that was cancelled, or looking around, may still drive."""
+"""s; how long a cancelled walk, or looking around, may still drive."""
 
 
 class MissionDrive:

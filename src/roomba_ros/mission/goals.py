@@ -94,7 +94,7 @@ class MissionGoal(ActionGoal):
         self._handle.set_canceled(self._result(reason), reason)
 
     def given_up(self, reason: str) -> None:
-        """Tell why it comes to no good end."""
+        """Tell why it failed."""
         self._handle.set_aborted(self._result(reason), reason)
 
 

@@ -1,4 +1,4 @@
-"""What the mission remembers on disk: its errand, in case this node is killed, and dirt."""
+"""The mission's memory on disk: its errand, in case this node is killed, and the dirt map."""
 
 from __future__ import annotations
 

@@ -37,7 +37,7 @@ from roomba_ros.runtime.parameters import (
 
 NAME = "mission_node"
 _FINISH_PERIOD = 5.0
-"""s of wall time; so often it asks for the whole map while it waits for that."""
+"""s of wall time; period of asking for the whole map while it waits for that."""
 _OTHERS = "another program drives the robot (a walk, or cmd_vel); resume when that is done"
 
 
@@ -90,7 +90,7 @@ class MissionNode:
             part.start()
 
     def tick(self, now: float) -> None:
-        """Sense, obey, answer, act, tell, remember."""
+        """Sense, obey, answer, act, publish, save."""
         self._drive.follow_clock(now)
         senses = self._senses.at(now)
         self._follow_home(senses)

@@ -1,4 +1,4 @@
-"""What people and programs order the mission to do: actions and services, obeyed by a tick."""
+"""The mission's actions and services, obeyed by a tick."""
 
 from __future__ import annotations
 

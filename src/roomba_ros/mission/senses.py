@@ -168,7 +168,7 @@ class MissionSenses:
     def _correct(self) -> None:
         """Find out where the odometry's frame is in the map: by pose and odometry of one time.
 
-        So a pose that comes late is none the worse: the wheels tell the way since.
+        So a pose that comes late is as good: the wheels tell the way since.
         """
         if self._pose is None or self._pose == self._corrected:
             return

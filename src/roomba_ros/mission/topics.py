@@ -1,4 +1,4 @@
-"""What is told of the mission: its state, what is clean and dirty, and what it drives."""
+"""The topics of the mission: its state, coverage and dirt maps, and its path."""
 
 from __future__ import annotations
 
@@ -120,7 +120,7 @@ class MissionTopics:
 
 
 def state_of(now: float, mission: Mission, senses: Senses) -> VacuumState:
-    """Return what the mission does now, in the words of smart homes."""
+    """Return the mission's state, in the words of smart homes."""
     state = VacuumState(
         header=header(now, ""),
         state=VACUUM_STATES[mission.state.phase],

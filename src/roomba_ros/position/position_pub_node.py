@@ -1,4 +1,4 @@
-"""Where the robot is, and driving to where it should be."""
+"""The position node: localization, rooms, and the position loop."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from roomba_ros.runtime.parameters import LiveSeedParameters, read_robot_config
 from roomba_ros.runtime.subscriptions import subscribe
 
 _LOOK_TIMEOUT = 0.5
-"""s; so long counts what was heard on ``look_around``."""
+"""s; how long a message on ``look_around`` counts."""
 _AHEAD = 10.0
 """m; to a point so far in the direction of a heading it turns on the spot."""
 _STOP_REPEATS = 3
@@ -36,7 +36,7 @@ _STOP_REPEATS = 3
 
 
 class PositionPubNode:
-    """Knows the robot's pose and drives it to the wished position, however far that is.
+    """Knows the robot's pose and drives the robot to its setpoint, however far that is.
 
     When it does not know the pose any more it forgets the setpoint. It looks around as long as a
     walk or a mission goes on, or until its place is found if a service asked for that. The map's
@@ -44,7 +44,7 @@ class PositionPubNode:
 
     Publishes: ``cmd_vel`` (Twist, 20 Hz while it drives), and what :class:`LocalizationTopics` and
     :class:`RoomTopics` tell.
-    Subscribes: ``change_position`` (RobotPosition, the wish), ``change_heading`` (Float32, rad, map
+    Subscribes: ``change_position`` (RobotPosition, setpoint), ``change_heading`` (Float32, rad, map
     frame, streamed: turn to it on the spot instead), ``look_around`` (Bool, streamed while
     the mission could go on if the place were known), ``bumper``, ``cliff`` (while it looks
     around), and what :class:`LocalizationTopics` and :class:`RoomTopics` hear.
@@ -86,7 +86,7 @@ class PositionPubNode:
         subscribe("cliff", Cliff, cliff_of, self._on_cliff)
 
     def tick(self, now: float) -> None:
-        """Tell where the robot is, and drive towards the wish."""
+        """Publish the pose, and drive towards the setpoint."""
         self._parameters.refresh()
         estimate = self._place.tick(now)
         if estimate is None:
@@ -120,7 +120,7 @@ class PositionPubNode:
             self._setpoint.forget()
 
     def _twist_to_wish(self, now: float, estimate: Estimate) -> Twist | None:
-        """Return what is wanted to come to the wish; None when nothing is."""
+        """Return the twist towards the setpoint; None without one."""
         with self._lock:
             target = self._setpoint.target
         if target is None:
@@ -132,7 +132,7 @@ class PositionPubNode:
         if not self._loop.arrived:
             return twist
         if self._stops_left == 0:
-            # Others may steer now; nothing drives it back here.
+            # Other programs may steer now; nothing drives it back here.
             with self._lock:
                 self._setpoint.fulfilled(now)
         return None

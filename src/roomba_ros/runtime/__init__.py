@@ -1,1 +1,1 @@
-"""What every node is made of."""
+"""The common parts of all nodes."""

@@ -1,4 +1,4 @@
-"""How fast the simulation goes: as fast as asked for, as long as the robot keeps up."""
+"""The pace of the simulation: as fast as asked for, as long as the robot's nodes keep up."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _MOST_BEHIND: Final = 0.12
 """s of the robot's clock; a robot that thinks of longer ago is waited for. One that keeps up is two
 ticks behind at most; at 0.3 s a turn on the spot ends no more: it swings to and fro."""
 _LONGEST_HOLD: Final = 2.0
-"""s of wall time; a robot that says nothing for longer is not waited for any more."""
+"""s of wall time; a node that is silent for longer is not waited for any more."""
 _LONGEST_ABSENCE: Final = 60.0
 """s of wall time; a part that was not heard for longer does not come back."""
 _LOOK: Final = 0.001
@@ -32,9 +32,9 @@ class _Heard(NamedTuple):
 class Pace:
     """Says when the next tick is due. The robot's parts tell how far they are by :meth:`heard`.
 
-    On a busy machine a world that goes on while its robot still thinks about what was is another
-    world than the one at real time: commands come too late for it. And a part that was killed
-    comes back in a few seconds of wall time: faster than real time they would be minutes for it.
+    On a busy machine commands would come late for a world that goes on while the robot's nodes
+    still work. And a node that was killed comes back in a few seconds of wall time, which would be
+    minutes of a clock that is faster than real time.
     """
 
     def __init__(

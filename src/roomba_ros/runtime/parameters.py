@@ -1,4 +1,4 @@
-"""The seed's parameters on the ROS parameter server: read, validated, and watched while it runs."""
+"""The report's parameters on the ROS parameter server: read, validated, and watched."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a node refused to hear: counted by topic, and summed up for the log."""
+"""Refused messages of a node: counted by topic, and summed up for the log."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Subscriptions whose messages are values when they are heard; what cannot be used is refused.
+"""Subscriptions that convert messages to values and refuse those that cannot be used.
 
 A node has one count of what it refused, as it has one set of connections. It logs one line a second
 at most about that, and tells it on ``/diagnostics``.

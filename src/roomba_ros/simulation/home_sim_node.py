@@ -49,7 +49,7 @@ _FASTEST = 100.0
 _LONGEST_STEP = 5.0
 """s; a clock that went on by more than this at once was set."""
 _POSE = "pose"
-"""The part of the robot that knows its place, as the pace is told of it."""
+"""The name by which the pace knows the node that publishes the pose."""
 
 
 class HomeSimNode:

@@ -1,4 +1,4 @@
-"""The topics of the robot's sensors: what is told, how often, and in which frame."""
+"""The topics of the robot's sensors: message, rate, and frame of each."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Services of the simulation, by which people meddle with the home and the robot."""
+"""Services of the simulation, by which a person interferes with the home and the robot."""
 
 from __future__ import annotations
 

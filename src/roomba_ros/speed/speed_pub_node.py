@@ -1,4 +1,4 @@
-"""The speed loop on ROS: the last word on what the drive is told, and the robot's speed."""
+"""The speed node: the speed loop, which decides the twist of the drive; and the robot's speed."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What may ask the robot to walk to a point, each in its own words, for one server to serve."""
+"""The goals of both actions that walk to a point, in one form for the server."""
 
 from __future__ import annotations
 

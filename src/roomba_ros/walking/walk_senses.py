@@ -1,4 +1,4 @@
-"""What a walk senses on ROS: the newest of each sensor, and what the lidar sees."""
+"""The senses of a walk on ROS: the newest of each sensor, and what the lidar sees."""
 
 from __future__ import annotations
 

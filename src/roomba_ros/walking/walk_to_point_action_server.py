@@ -47,13 +47,13 @@ SENSES_DEADLINE = 6.0
 _STANDSTILL = 0.02
 """m/s; a robot that is slower stands."""
 _AIMED = 0.05
-"""rad; so well it looks to where it was asked to."""
+"""rad; tolerance of the final heading."""
 _NOT_TURNING = 0.2
-"""rad/s; slower than this it stays so."""
+"""rad/s; a robot that turns slower than this keeps its heading."""
 _LONGEST_TURN = 6.0
-"""s; half a turn takes two of them."""
+"""s; limit of the turn at the goal; half a turn takes two."""
 _HEARD_BY = 0.3
-"""s; a wish to stay where it is has reached its hearer after this, on a busy machine too."""
+"""s; after this a setpoint has reached its subscriber, on a busy machine too."""
 _LONGEST_BRAKING = 1.0
 """s; after this a robot whose walk was cancelled counts as standing, without odometry too."""
 
@@ -289,9 +289,9 @@ class WalkToPointActionServer:
             job.goal.given_up(time_spent, f"it is there, but {wrong:.2f} rad were not turned")
 
     def _come_to_rest(self, job: _Job, senses: Senses, rest_by: float) -> None:
-        """Stop a cancelled walk: speed 0 at once, then the place where it stands is the wish.
+        """Stop a cancelled walk: speed 0 at once, then its place is the setpoint.
 
-        Only when that was heard the speed is free: else it would set off to the old one.
+        The speed is freed after that arrived: else the robot would drive to the old one.
         """
         if job.free_at is None:
             self._change_speed.publish(0.0)
@@ -319,7 +319,7 @@ class WalkToPointActionServer:
         self._plan.publish(path_message(now, walk.path.points, "map"))
 
     def _on_simple_goal(self, message: PoseStamped) -> None:
-        # By its own topic and not directly: so everybody sees what is walked to.
+        # By its own topic and not directly, so that all subscribers see the goal.
         goal = MoveBaseActionGoal(goal=MoveBaseGoalMessage(message))
         goal.header = header(rospy.get_time(), "")
         goal.goal_id.stamp = goal.header.stamp

@@ -21,8 +21,8 @@ Floats = NDArray[np.float64]
 _BESIDE: Final = 1.2
 """m; a person who stands nearer may want to pass."""
 _ROOM: Final = 1.2
-"""m; the least and the largest useful distance to let others pass."""
 _LEAST_ROOM: Final = 0.5
+"""m; the distance at which it goes no farther aside, and the least that lets others pass."""
 _PER_WAY: Final = 0.25
 """m of room that a metre of way is worth: it does not squeeze past what it makes room for."""
 _FARTHEST: Final = 3.0

@@ -1,1 +1,1 @@
-"""What the robot's camera sees."""
+"""The robot's camera: scenes, and compiled kernels that draw them."""

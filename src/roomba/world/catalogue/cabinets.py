@@ -1,4 +1,4 @@
-"""Tables and what things are kept in: desk, wardrobe, bookshelf, TV bench and the like."""
+"""Tables and cabinets: desk, wardrobe, bookshelf, TV bench and the like."""
 
 from __future__ import annotations
 

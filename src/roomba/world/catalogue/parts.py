@@ -1,4 +1,4 @@
-"""The words that the catalogue is written in: sizes, blocks, legs, and kinds made of them.
+"""Building blocks of the catalogue: sizes, blocks, legs, and kinds made of them.
 
 A piece is described in its own frame, m: the middle of its footprint is the origin, x points out
 of its front, y to its left, z up from the floor.

@@ -1,4 +1,4 @@
-"""What people sit and lie on: sofa, armchair, chairs, bed."""
+"""Seats and beds: sofa, armchair, chairs, bed."""
 
 from __future__ import annotations
 

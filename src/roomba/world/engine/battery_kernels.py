@@ -1,4 +1,4 @@
-"""Compiled battery: what everything draws, what the station brings, and how warm it gets."""
+"""Compiled battery: the load, the charger's power, and the temperature."""
 
 from __future__ import annotations
 

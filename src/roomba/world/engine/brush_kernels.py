@@ -15,9 +15,9 @@ from roomba.world.engine.state.random_kernels import next_normal
 Floats = NDArray[np.float64]
 
 COUNTING_TIME: Final = 0.1
-"""s; over which the dirt sensor counts."""
+"""s; window over which the dirt sensor counts."""
 _LEAST: Final = 20
-"""Micrograms; so little comes up as a whole."""
+"""Micrograms; a smaller amount is picked up completely."""
 
 
 @part

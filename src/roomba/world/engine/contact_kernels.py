@@ -14,13 +14,13 @@ from roomba.world.engine.state.arrays import Row, Rows, Solid
 from roomba.world.engine.state.compilation import part
 
 PROBE_STEP: Final = 1e-3
-"""m; how finely contact is felt for when something solid is nearer than the way to go."""
+"""m; step of the search for contact when something solid is nearer than the way to go."""
 FARTHEST_LOOK: Final = 0.5
 """m; longer ways are looked at part by part."""
 CONTACT_ERROR: Final = 1e-7
 """m; how exactly the place of contact is found."""
 _TRIES: Final = 60
-"""False position needs two or three of them."""
+"""Iterations at most; false position needs two or three."""
 CONTACT_GAP: Final = 1e-3
 """m; a bumper stays pressed until what it touches is farther away than this."""
 BOTH_BUMPERS_ANGLE: Final = 0.3

@@ -1,4 +1,4 @@
-"""Compiled motion: speed ramps, wheels that slip, exact arcs; what encoders and gyro make of it."""
+"""Compiled motion: speed ramps, slipping wheels, exact arcs; what encoders and gyro measure."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def slips(
     """Return which share of its ``way``, m, each wheel loses in this step.
 
     What varies of it stays about the same over SLIP_LENGTH (a process of Ornstein and Uhlenbeck),
-    so that the noise of a long way grows as a random walk does, whatever the step.
+    so that the noise of a long way grows as a random walk does, for any step.
     """
     left, right = body.slip_left, body.slip_right
     if numbers.noisy > 0.0 and way > 0.0:

@@ -11,9 +11,9 @@ from roomba.world.engine.state.random_kernels import next_exponential, next_unif
 from roomba.world.home.dirt import FULL_CELL
 
 CRUMB: Final = 2000
-"""Micrograms; what falls at once."""
+"""Micrograms of one crumb."""
 _TRIES: Final = 64
-"""How often a place on the floor is looked for before a crumb counts as fallen on the furniture."""
+"""Attempts to find a place on the floor before a crumb counts as fallen on the furniture."""
 
 
 @part

@@ -1,4 +1,4 @@
-"""The pattern of dirt that the camera shows: which crumb lies where, and at how much dirt."""
+"""The pattern of dirt that the camera shows: the crumbs, and the amount of dirt that shows each."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which cells of a grid things cover, and where a round body fits between them."""
+"""Rasterizing: the cells that things cover, and where a round body fits between them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Finds a sensible place for the charging station in a home that names none."""
+"""Finds a place for the charging station in a home that names none."""
 
 from __future__ import annotations
 

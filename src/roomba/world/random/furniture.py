@@ -21,15 +21,15 @@ ALONG_WALLS: Final = (
 )
 """What stands at the walls of a room, for each use of a room."""
 _SEVERAL: Final = ("plant", "lamp", "box", "nightstand", "kitchen_counter", "stool")
-"""What a room may have more than one of."""
+"""Kinds of which a room may have several."""
 _TABLES: Final = ("dining_table", "table", "coffee_table")
 _FULL: Final = 0.38
 """Share of a room that furniture covers at most."""
 _TRIES: Final = 12
 _DOOR_DEPTH: Final = 0.75
-"""m; so far before a door nothing stands."""
+"""m; distance before a door that is kept free."""
 _NEAREST: Final = 0.02
-"""m; pieces stand so far apart at least; what the robot fits through is left to chance."""
+"""m; the least distance between pieces; the robot may fit through or not."""
 
 
 def random_furniture(
@@ -63,7 +63,7 @@ def random_furniture(
 
 
 class _Setting:
-    """What stands in a room so far."""
+    """The furniture of a room while it is being filled."""
 
     def __init__(self, room: shapely.Polygon, clear: list[shapely.Geometry]) -> None:
         self.room = room

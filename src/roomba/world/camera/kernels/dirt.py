@@ -1,4 +1,4 @@
-"""Compiled feeling of the floor: how much light falls on it, and how much dirt lies there."""
+"""Compiled sampling of the floor: how much light falls on it, and how much dirt lies there."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Compiled column caster of the camera: which runs of rows of a picture column show what.
+"""Compiled column caster of the camera: the runs of rows of a picture column, and what each shows.
 
 The camera looks level, so every upright edge stays upright in the picture: one ray in the plane
 per column finds the wall and the boxes, and heights become rows. Row 0 is the top; row r looks up

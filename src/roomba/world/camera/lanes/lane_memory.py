@@ -1,8 +1,7 @@
 """Lanes from and to arrays: runs of values, look-ups in tables, turned squares, packed pixels.
 
-See :mod:`roomba.world.camera.lanes.lanes`. Places count an array's values from its first, whatever
-its
-shape; nothing checks that they, and all lanes from there on, are within it. Processors are taken
+See :mod:`roomba.world.camera.lanes.lanes`. Places count an array's values from its first, in any
+shape; nothing checks that they, and all lanes from there on, are within it. Processors are assumed
 to be little-endian.
 """
 

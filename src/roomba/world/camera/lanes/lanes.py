@@ -28,7 +28,7 @@ from numba.extending import (
 )
 
 LANES: Final = 16
-"""What processors with the widest instructions do at once; others take two or four turns."""
+"""The lanes of the widest instructions; other processors take two or four steps."""
 _FLAGS: Final = ("arcp", "contract", "nsz")
 
 

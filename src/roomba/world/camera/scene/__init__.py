@@ -1,1 +1,1 @@
-"""What there is to see: surfaces, their textures, and light."""
+"""The scene of the camera: surfaces, their textures, and light."""

@@ -24,7 +24,7 @@ class Surfaces(NamedTuple):
     glows: NDArray[np.bool_]
     """[surfaces]: shines by itself, so that no shadow falls on it."""
     texels: NDArray[np.uint8]
-    """All textures: see :class:`roomba.world.camera.scene.textures.Atlas`, also for the
+    """All textures: see :class:`roomba.world.camera.scene.texture_atlas.Atlas`, also for the
     following."""
     offsets: NDArray[np.int32]
     bits: NDArray[np.int32]
@@ -75,7 +75,7 @@ class FloorSurfaces(NamedTuple):
     """m."""
     surfaces: NDArray[np.uint8]
     crumbs: NDArray[np.uint16]
-    """[1024 * 1024]: see :func:`roomba.world.camera.scene.textures.crumbs`."""
+    """[1024 * 1024]: see :func:`roomba.world.home.crumbs.crumbs`."""
     fewest: NDArray[np.uint8]
     """[128 * 128]: the lowest level at which a crumb is seen in 8 x 8 texels of ``crumbs``."""
     colours: NDArray[np.uint32]

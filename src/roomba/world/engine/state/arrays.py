@@ -1,4 +1,4 @@
-"""All that the compiled step reads and writes, as rows of named numbers.
+"""The state that the compiled step reads and writes, as rows of named numbers.
 
 A *home* is what never changes; a *world* is a home in which time passes, with its own dirt and
 moving things; a *robot* lives in a world. Rows refer to each other by number: ``things_at`` and
@@ -212,7 +212,7 @@ def code_of(seen: Infrared) -> int:
 
 
 class Fault(Enum):
-    """What can be wrong with a robot; the value is the name of the number in its row, 0..1."""
+    """Faults of a robot; the value is the name of the number in its row, 0..1."""
 
     SLIP_LEFT = "slip_left"
     """Share of the left wheel's way that is lost."""
@@ -265,7 +265,7 @@ class Dirt(NamedTuple):
 
 
 class Edges(NamedTuple):
-    """What the lidar sees of homes: see :class:`.lidar_edges.LidarEdges`."""
+    """What the lidar sees of homes: see :class:`roomba.world.engine.lidar.edges.LidarEdges`."""
 
     items: Rows
     """EDGE: those of all homes."""

@@ -16,7 +16,7 @@ from roomba.world.engine.state.arrays import Rows
 from roomba.world.home.dirt import MICROGRAMS_PER_GRAM
 
 SLIP_LENGTH: Final = 0.1
-"""m; over so much way the slip of a wheel stays about the same (assumed)."""
+"""m; correlation length of a wheel's slip (assumed)."""
 TAPER_FROM: Final = 0.9
 """Share of the charge from which on charging becomes slower, evenly, down to TAPER_TO."""
 TAPER_TO: Final = 0.2
