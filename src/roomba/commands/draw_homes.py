@@ -1,9 +1,8 @@
 """Draws the maps of the homes whose layer names their walls: map.yaml and its picture.
 
 Run it after a change of a ``home.yaml``: ``./roomba exec python -m roomba.commands.draw_homes
-[--homes FOLDER]``. A map
-shows what a robot that had mapped the home would know: walls with open doors, and mapped furniture
-at its body's height. What is no wall and in no room is unknown.
+[--homes FOLDER]``. A map shows what a robot that had mapped the home would know: walls with open
+doors, and mapped furniture at its body's height. What is no wall and in no room is unknown.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The floor of a home as a cleaner sees it: which cells a brush can reach, and which it did."""
+"""The floor of a home for the reward: the cells that a brush can reach, and those that it did."""
 
 from __future__ import annotations
 

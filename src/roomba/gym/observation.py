@@ -1,4 +1,4 @@
-"""What an agent is told: the robot's own sensors and nothing of the truth.
+"""The observation of an agent: the robot's own sensors and nothing of the truth.
 
 An observation is one flat float32 array, so that a network takes it as it is, and a thousand robots
 are one array [robots, SIZE]; the slices below name its parts, ``observation[..., LIDAR]``. Numbers

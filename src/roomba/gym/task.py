@@ -1,4 +1,4 @@
-"""What an agent is asked to do: where, with which robot, for how long, and what it is paid for."""
+"""The task of an agent: home, robot, duration, and the weights of the reward."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class Task:
     * ``max_speed``: m/s; what an action of 1 asks for. Turning goes up to the body's own limit.
     * ``energy_weight``, g/Wh, and ``time_weight``, g/s: what energy and time cost, in dirt.
 
-    Raises ValueError for numbers that make no sense.
+    Raises ValueError for numbers out of range.
     """
 
     home: str | Path | Home = "apartment"

@@ -1,1 +1,1 @@
-"""How plots look, and how homes are drawn in them."""
+"""The style of plots, and the drawing of homes in them."""

@@ -1,1 +1,1 @@
-"""What a person sees and types."""
+"""User interfaces on a terminal."""

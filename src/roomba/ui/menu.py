@@ -1,4 +1,4 @@
-"""The report's menu: four things to ask of the robot, by number; there may be more below.
+"""The report's menu: four options by number, and room for more below.
 
 Speaks to :mod:`roomba.client.protocol` alone, and decides nothing: distances, reasons and reports
 are the robot's.

@@ -156,7 +156,7 @@ def encode_png(picture: NDArray[np.uint8]) -> bytes:
 
 
 def default_directories() -> tuple[Path, ...]:
-    """Where pictures are saved: here, or where everybody may write."""
+    """Where pictures are saved: in the current folder, or in the temporary one."""
     return Path.cwd(), Path(tempfile.gettempdir())
 
 

@@ -25,7 +25,7 @@ STATE_TIMEOUT = 0.2
 """s to wait for a state while walking; without one the speed is told as unknown."""
 
 SILENCE_LIMIT = 6.0
-"""s without feedback and without movement until a walk is lost; feedback is due every 4 s."""
+"""s without feedback and movement until a walk is disconnected; feedback is due every 4 s."""
 
 CANCEL_DEADLINE = 5.0
 """s that a robot has to confirm a cancellation; it should need 0.5 s."""
@@ -142,8 +142,8 @@ def follow_walk(
     """Show a walk of ``total`` m until it ends; always returns, and never turns in circles.
 
     ``wants_to_stop`` is asked every :data:`POLL_TIME`; once true, the walk is cancelled. A robot
-    that neither tells nor moves for :data:`SILENCE_LIMIT`, or does not confirm a cancellation
-    within :data:`CANCEL_DEADLINE`, has lost the walk.
+    that neither reports nor moves for :data:`SILENCE_LIMIT`, or does not confirm a cancellation
+    within :data:`CANCEL_DEADLINE`, counts as disconnected.
     """
     signs_of_life = _SignsOfLife(total, clock)
     cancelled = math.inf

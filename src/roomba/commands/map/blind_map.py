@@ -1,4 +1,4 @@
-"""A map made by odometry alone: what the mapper's corrections are worth is seen beside it."""
+"""A map made by odometry alone, to show what the mapper's corrections are worth."""
 
 from __future__ import annotations
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 COMPLETED, ENDED_OTHERWISE, USAGE, INTERRUPTED = 0, 1, 2, 130
 _SHOWN: Final = 0.25
-"""s between two looks at how far it is."""
+"""s between two updates of the progress."""
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -28,7 +28,7 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def guarded(work: Callable[[], int], refused: int = ENDED_OTHERWISE) -> int:
-    """Return the status of some work; what goes wrong in it is told in a line.
+    """Return the exit status of some work; an error is printed in a line.
 
     ``refused`` is the status for an input that cannot be used.
     """

@@ -1,4 +1,4 @@
-"""The command line: what may be asked for, checked before anything heavy is loaded."""
+"""The command line, parsed and checked before anything heavy is loaded."""
 
 from __future__ import annotations
 

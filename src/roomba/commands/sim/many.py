@@ -1,4 +1,4 @@
-"""Many trials on all cores, each in one of some processes; one that breaks is told by its seed."""
+"""Many trials on all cores, in a pool of processes; one that fails is reported by its seed."""
 
 from __future__ import annotations
 
@@ -103,7 +103,7 @@ class _WorkerPool:
         return self._idle.pop()
 
     def ended(self) -> list[tuple[Trial, Outcome]]:
-        """Return what has come to an end, after waiting for the first of it."""
+        """Wait for the next trial that ends; return all that have ended by then."""
         ready = wait(list(self.at_work), timeout=LONGEST_RUN)
         found: list[tuple[Trial, Outcome]] = []
         for pipe in ready or list(self.at_work):

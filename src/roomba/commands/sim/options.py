@@ -1,4 +1,4 @@
-"""The command line: what may be asked for, checked before anything heavy is loaded."""
+"""The command line, parsed and checked before anything heavy is loaded."""
 
 from __future__ import annotations
 
@@ -312,7 +312,7 @@ def _request_of(given: argparse.Namespace) -> CleanRequest:
 
 
 def _check_files(given: argparse.Namespace) -> None:
-    """Refuse before the work what could not be written after it."""
+    """Refuse, before the run, output that could not be written after it."""
     if given.plot is not None and given.plot.suffix.lower() != ".png":
         raise UsageError(f"--plot: expected a name that ends with .png, got {given.plot}")
     if given.config is not None and not given.config.is_file():

@@ -1,4 +1,4 @@
-"""How the figures of many runs are spread."""
+"""Percentiles of the figures of many runs."""
 
 from __future__ import annotations
 

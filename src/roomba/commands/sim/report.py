@@ -11,7 +11,7 @@ from roomba.commands.sim.figures import Figures, MissedShare
 from roomba.commands.sim.percentiles import PERCENTS, ROWS
 
 _SHOWN: Final = 8
-"""So many missed areas or failures are told one by one."""
+"""The most missed areas or failures that are listed one by one."""
 
 
 def lines_of(figures: Figures) -> list[tuple[str, str]]:
@@ -89,7 +89,7 @@ def failure_lines(
 
 
 def clock(seconds: float) -> str:
-    """Return a time as people say it."""
+    """Return a time for people."""
     minutes, rest = divmod(round(seconds), 60)
     hours, minutes = divmod(minutes, 60)
     if hours:
