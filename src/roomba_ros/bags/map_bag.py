@@ -17,6 +17,7 @@ import rosbag
 from geometry_msgs.msg import PoseStamped
 
 from roomba.commands.map.command import COMPLETED, guarded
+from roomba.commands.map.drive_log import write_trajectory
 from roomba.commands.map.files import write_files
 from roomba.commands.map.options import Output, Parser, output_of
 from roomba.commands.progress import progress
@@ -43,6 +44,8 @@ class _Options:
     scan: str
     odometry: str
     gyro: str | None
+    trajectory: Path | None
+    online: Path | None
     output: Output
 
 
@@ -61,6 +64,11 @@ def _run(arguments: list[str] | None) -> int:
     output = options.output
     if output.out is not None:
         write_files(output.out, done.occupancy, done.begin)
+    log, mapper = done.replay.log, done.replay.mapper
+    if options.trajectory is not None:
+        write_trajectory(options.trajectory, log.at_the_end(mapper))
+    if options.online is not None:
+        write_trajectory(options.online, log.online)
     if output.plot is not None:
         # Imported here: it takes a second, which only a picture needs.
         from roomba_ros.bags.map_bag_plot import write_plot
@@ -79,15 +87,30 @@ def _options_of(arguments: list[str] | None) -> _Options:
         "A home without a bag: see ./roomba map --help.",
     )
     parser.add_argument("--bag", type=Path, required=True, metavar="FILE.bag")
-    parser.add_argument("--scan-topic", default="/scan", metavar="TOPIC", help="default: /scan")
-    parser.add_argument("--odom-topic", default="/odom", metavar="TOPIC", help="default: /odom")
     parser.add_argument(
-        "--imu-topic", metavar="TOPIC", help="default: /imu, if there is one; a gyro helps"
+        "--scan", "--scan-topic", default="/scan", metavar="TOPIC", help="default: /scan"
+    )
+    parser.add_argument(
+        "--odom", "--odom-topic", default="/odom", metavar="TOPIC", help="default: /odom"
+    )
+    parser.add_argument(
+        "--imu", "--imu-topic", metavar="TOPIC", help="default: /imu, if there is one; a gyro helps"
+    )
+    parser.add_argument(
+        "--trajectory",
+        type=Path,
+        metavar="FILE",
+        help="write where the robot was at each scan, as known at the end: lines 't x y theta'",
+    )
+    parser.add_argument(
+        "--online", type=Path, metavar="FILE", help="the same, as known when it drove there"
     )
     parser.add_output()
     given = parser.parse_args(arguments)
     output = output_of(given, [("--bag", given.bag)])
-    return _Options(given.bag, given.scan_topic, given.odom_topic, given.imu_topic, output)
+    return _Options(
+        given.bag, given.scan, given.odom, given.imu, given.trajectory, given.online, output
+    )
 
 
 def _map(options: _Options, recording: Recording) -> BagMap:
@@ -134,10 +157,10 @@ def _map(options: _Options, recording: Recording) -> BagMap:
 
 def _topics(options: _Options, recording: Recording) -> tuple[dict[str, MessageKind], str | None]:
     """Return what is read, and the topic of true poses if there is one."""
-    scan = recording.require(options.scan, MessageKind.SCAN, "--scan-topic")
-    odometry = recording.require(options.odometry, MessageKind.ODOMETRY, "--odom-topic")
+    scan = recording.require(options.scan, MessageKind.SCAN, "--scan")
+    odometry = recording.require(options.odometry, MessageKind.ODOMETRY, "--odom")
     if options.gyro is not None:
-        gyro: str | None = recording.require(options.gyro, MessageKind.GYRO, "--imu-topic")
+        gyro: str | None = recording.require(options.gyro, MessageKind.GYRO, "--imu")
     else:
         gyro = recording.beside(odometry, "imu", MessageKind.GYRO)
     truth = recording.beside(odometry, "ground_truth/pose", MessageKind.OWN_POSE)

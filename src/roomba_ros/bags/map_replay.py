@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from sensor_msgs.msg import LaserScan
 
 from roomba.commands.map.blind_map import BlindMap
+from roomba.commands.map.drive_log import DriveLog
 from roomba.configuration.mapping import MappingConfig
 from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose
@@ -36,6 +37,7 @@ class MapReplay(RecordedDrive):
         self.mapper = Mapper(mapping, config.localization, config.gyro, start)
         self.blind = BlindMap(mapping, config.localization, config.gyro, start)
         self.rows = Thinned()
+        self.log = DriveLog()
         self.way = self.elapsed = 0.0
         self._stamp = -math.inf
         self._at: Pose | None = None
@@ -97,6 +99,7 @@ class MapReplay(RecordedDrive):
             return
         self.mapper.see(stamp, scan.ranges, scan.lidar)
         self.blind.see(stamp, scan.ranges, scan.lidar)
+        self.log.add(stamp, self.mapper)
         self.scans += 1
         mapped, reckoned = self.mapper.pose, self.blind.pose
         self.rows.append(

@@ -243,6 +243,20 @@ class Mapper:
         return [self.pose]
 
     @property
+    def newest_keyframe(self) -> tuple[int, Pose]:
+        """The number in :attr:`trajectory` of the newest keyframe, and its pose, map frame.
+
+        Raises ValueError before the first scan.
+        """
+        submaps = self._graph.submaps
+        count = sum(len(submap.keyframes) for submap in submaps)
+        if not count:
+            raise ValueError("expected a map with a keyframe or more, got an empty one")
+        last = max(index for index, submap in enumerate(submaps) if submap.keyframes)
+        pose = submaps[last].poses(self._graph.poses[last])[-1]
+        return count - 1, Pose(*pose.tolist())
+
+    @property
     def trajectory(self) -> Floats:
         """Where keyframes were taken, float64 [n, 3], map frame, in the order of time."""
         return np.array([pose for _, pose in self._graph.keyframes()]).reshape(-1, 3)
