@@ -7,8 +7,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from fixtures.located import LIDAR
-from fixtures.mapped import AROUND, CIRCLE, DT, START, Floats, Mapped, steps
+from fixtures.located import LIDAR, steps
+from fixtures.mapped import AROUND, CIRCLE, START, Floats, Mapped
+from fixtures.worlds import DT
 
 from roomba.commands.map.drive_log import DriveLog, write_trajectory
 
