@@ -47,10 +47,6 @@ TESTED_BY: dict[str, tuple[str, str]] = {
     "roomba/mission/inputs/senses": ("unit/mission/test_mission.py", VALUES),
     "roomba/mission/phases/cleaning": ("unit/mission/phases/test_phases.py", "one of the phases"),
     "roomba/mission/phases/step": ("unit/mission/phases/test_phases.py", VALUES),
-    "roomba/perception/floors/map_changes_kernels": (
-        "unit/perception/floors/test_map_changes.py",
-        PART,
-    ),
     "roomba/perception/localization/belief": (
         "unit/perception/localization/test_belief_kernels.py",
         "the belief and its kernels are one",
@@ -79,7 +75,6 @@ TESTED_BY: dict[str, tuple[str, str]] = {
         VALUES,
     ),
     "roomba/perception/slam/scan_follower": ("unit/perception/slam/test_mapper.py", PART),
-    "roomba/perception/slam/submap_graph": ("unit/perception/slam/test_mapper.py", PART),
     "roomba/perception/slam/surfel_kernels": ("unit/perception/slam/test_surfels.py", PART),
     "roomba/perception/swept/coverage_bits": (
         "unit/perception/swept/test_coverage_map.py",
@@ -121,6 +116,7 @@ LARGE_FOLDERS = {
     "test/fixtures": "one file a fixture",
     "test/ros": "one file a node",
     "test/unit/benchmarks": "one file a benchmark",
+    "test/unit/perception/slam": "one file a stage, and some for whole maps",
 }
 
 
