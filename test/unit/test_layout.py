@@ -68,7 +68,6 @@ TESTED_BY: dict[str, tuple[str, str]] = {
         PART,
     ),
     "roomba/perception/matching/beams": ("unit/perception/matching/test_match_kernels.py", VALUES),
-    "roomba/perception/rooms/doorways": ("unit/perception/rooms/test_segmentation.py", PART),
     "roomba/perception/slam/follow_kernels": ("unit/perception/slam/test_mapper.py", PART),
     "roomba/perception/slam/mapper_state": (
         "unit/perception/slam/test_mapper_taken_up.py",
