@@ -4,9 +4,10 @@ from dataclasses import replace
 from unittest.mock import MagicMock
 
 import pytest
+import rospy
 from actionlib_msgs.msg import GoalID, GoalStatus
 from fixtures.missions import HOME
-from roomba_robot.msg import CleanGoal, DockGoal
+from roomba_robot.msg import CleanGoal, DockGoal, VacuumState
 
 from roomba.configuration.docking import DockingConfig
 from roomba.configuration.mission import MissionConfig
@@ -21,8 +22,8 @@ from roomba.perception.matching.surface_field import SurfaceField
 from roomba.perception.swept.dirt_map import DirtMap
 from roomba.perception.things.layer import ThingLayer
 from roomba_ros.mission.goals import CleaningGoal, DockingGoal, MissionGoal
-from roomba_ros.mission.mission_node import MissionNode
-from roomba_ros.mission.orders import MissionOrders, _Cancel, _Order
+from roomba_ros.mission.orders import Cancel, MissionOrders, Order
+from roomba_ros.mission.round import MissionRound
 from roomba_ros.mission.topics import MissionTopics
 
 CONFIG, MISSION_CONFIG = RobotConfig(), MissionConfig()
@@ -39,15 +40,30 @@ TELLS = {
 }
 
 
-class Rig:
-    """A mission node whose senses are made by hand, and what it tells, in its order."""
+class Publisher:
+    """A publisher without a graph: states go to the rig, and nothing else has a subscriber."""
 
-    def __init__(self) -> None:
+    state = MagicMock()
+
+    def __init__(self, topic: str, kind: type, **_: object) -> None:
+        self.name, self._is_state = topic, kind is VacuumState
+
+    def publish(self, message: object) -> None:
+        if self._is_state:
+            self.state.publish(message)
+
+    @staticmethod
+    def get_num_connections() -> int:
+        return 0
+
+
+class Rig:
+    """A mission between its orders and its topics, and what it tells, in its order."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
         self.senses = AWAY
         self.world = MagicMock()
-        self.node = MissionNode()
-        self.node._newer = None
-        self.node._mission = Mission(
+        self.mission = Mission(
             SITE,
             CONFIG,
             MISSION_CONFIG,
@@ -56,18 +72,13 @@ class Rig:
             DirtMap(HOME.map),
             AWAY,
         )
-        self.node._orders = self.orders = MissionOrders(lambda: None)
-        self.orders._servers = []
-        self.node._topics = MissionTopics(MISSION_CONFIG, MagicMock())
-        self.node._topics._state = self.world.state
-        self.node._topics._plan = self.node._topics._coverage = self.node._topics._dirt = MagicMock(
-            get_num_connections=lambda: 0
-        )
-        self.node._drive = MagicMock(is_taken=False)
-        self.node._site = MagicMock(take=lambda: None, is_changing=False)
-        self.node._senses = MagicMock(at=lambda now: self.senses)
-        self.node._memory, self.node._things = MagicMock(), MagicMock()
-        self.node._finished = 0.0
+        self.orders = MissionOrders(lambda: None)
+        monkeypatch.setattr(Publisher, "state", self.world.state)
+        monkeypatch.setattr(rospy, "Publisher", Publisher)
+        topics = MissionTopics(MISSION_CONFIG, MagicMock())
+        topics.start()
+        drive = MagicMock(is_taken=False)
+        self.round = MissionRound(self.orders, topics, drive, Mission.tick)
         self.world.handle.get_goal_id.return_value = GoalID(id="1")
         self.world.handle.get_goal_status.return_value = GoalStatus(status=GoalStatus.PENDING)
 
@@ -75,7 +86,7 @@ class Rig:
         """Tick once; return what was told, and the phase of each state that was."""
         self.world.mock_calls.clear()
         self.senses = replace(self.senses, now=self.senses.now + 0.05)
-        self.node.tick(self.senses.now)
+        self.round.tick(self.senses.now, self.mission, self.senses)
         return [
             call.args[0].phase if call[0] == "state.publish" else TELLS[call[0]]
             for call in self.world.mock_calls
@@ -84,16 +95,18 @@ class Rig:
 
     def ask(self, kind: type[MissionGoal], goal: object) -> list[str]:
         self.world.handle.get_goal.return_value = goal
-        self.orders._asked.append(kind(self.world.handle))
+        self.orders.ask(kind(self.world.handle))
         return self.tick()
 
     def order(self, event: Event) -> list[str]:
-        self.orders._asked.append(_Order(event, self.world.answer))
+        self.orders.ask(Order(event, self.world.answer))
         return self.tick()
 
 
-def test_a_state_is_told_before_the_answer_to_the_order_that_led_to_it() -> None:
-    rig = Rig()
+def test_a_state_is_told_before_the_answer_to_the_order_that_led_to_it(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    rig = Rig(monkeypatch)
     assert rig.ask(DockingGoal, DockGoal()) == ["accepted", "returning", "feedback"]
     assert rig.order(Event.PAUSE) == ["paused", "feedback", "answer"]
     assert rig.world.answer.put.call_args.args == ((True, "paused"),)
@@ -103,25 +116,31 @@ def test_a_state_is_told_before_the_answer_to_the_order_that_led_to_it() -> None
     assert rig.world.answer.put.call_args.args == ((False, "cannot pause now: the robot is idle"),)
 
 
-def test_a_state_is_told_before_the_result_of_a_goal_that_was_cancelled() -> None:
-    rig = Rig()
+def test_a_state_is_told_before_the_result_of_a_goal_that_was_cancelled(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    rig = Rig(monkeypatch)
     rig.ask(CleaningGoal, CleanGoal())
-    rig.orders._asked.append(_Cancel(("clean", "1")))
+    rig.orders.ask(Cancel(("clean", "1")))
     assert rig.tick() == ["idle", "canceled"]
 
 
-def test_a_state_is_told_before_the_result_of_a_goal_that_a_newer_one_took_over() -> None:
-    rig = Rig()
+def test_a_state_is_told_before_the_result_of_a_goal_that_a_newer_one_took_over(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    rig = Rig(monkeypatch)
     rig.ask(CleaningGoal, CleanGoal())
     assert rig.ask(DockingGoal, DockGoal()) == ["accepted", "returning", "feedback", "canceled"]
 
 
 @pytest.mark.parametrize("emergency", [False, True])
-def test_a_state_is_told_before_the_result_of_a_goal_that_ended(emergency: bool) -> None:
-    rig = Rig()
+def test_a_state_is_told_before_the_result_of_a_goal_that_ended(
+    monkeypatch: pytest.MonkeyPatch, emergency: bool
+) -> None:
+    rig = Rig(monkeypatch)
     rig.ask(DockingGoal, DockGoal())
     if emergency:
-        rig.orders._on_emergency_stop("a child")
+        rig.orders.hold("a child")
         assert rig.tick() == ["emergency stop", "feedback", "aborted"]
     else:
         rig.senses = replace(rig.senses, battery=Battery(1.0, 26.0, is_docked=True))
@@ -129,7 +148,7 @@ def test_a_state_is_told_before_the_result_of_a_goal_that_ended(emergency: bool)
 
 
 def test_the_clean_floor_is_counted_once_for_a_state(monkeypatch: pytest.MonkeyPatch) -> None:
-    rig, areas = Rig(), iter((1.0, 1.5, 2.0))
+    rig, areas = Rig(monkeypatch), iter((1.0, 1.5, 2.0))
     monkeypatch.setattr(Cleaning, "clean_area", property(lambda _: next(areas)))
     rig.ask(CleaningGoal, CleanGoal())
     told = [call.args[0] for call in rig.world.state.publish.call_args_list]

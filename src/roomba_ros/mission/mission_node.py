@@ -7,11 +7,9 @@ import time
 import rospy
 from std_srvs.srv import Trigger
 
-from roomba.geometry import Twist
 from roomba.mission.cleaning.request import CleanOutcome
 from roomba.mission.inputs.senses import Senses
 from roomba.mission.mission import Mission, MissionStep
-from roomba.mission.phases.machine import Event, Phase
 from roomba.perception.swept.dirt_map import DirtMap
 from roomba.perception.things.layer import ThingLayer
 from roomba_ros.convert.mission import names_of
@@ -20,6 +18,7 @@ from roomba_ros.mission.goals import Ended
 from roomba_ros.mission.home import GROWING, HomeTopics, KnownHome
 from roomba_ros.mission.memory import MissionMemory
 from roomba_ros.mission.orders import MissionOrders
+from roomba_ros.mission.round import MissionRound
 from roomba_ros.mission.senses import MissionSenses
 from roomba_ros.mission.topics import MissionTopics
 from roomba_ros.runtime.alone import refuse_second
@@ -38,7 +37,6 @@ from roomba_ros.runtime.parameters import (
 NAME = "mission_node"
 _FINISH_PERIOD = 5.0
 """s of wall time; period of asking for the whole map while it waits for that."""
-_OTHERS = "another program drives the robot (a walk, or cmd_vel); resume when that is done"
 
 
 class MissionNode:
@@ -79,6 +77,7 @@ class MissionNode:
         self._drive = MissionDrive(self._config)
         self._orders = MissionOrders(self._drive.take)
         self._topics = MissionTopics(self._mission_config, self._background)
+        self._round = MissionRound(self._orders, self._topics, self._drive, self._step)
         for part in (
             self._background,
             self._topics,
@@ -102,15 +101,7 @@ class MissionNode:
         if mission is None or senses is None:
             self._wait(now)
             return
-        self._orders.obey(mission, senses)
-        self._give_way(mission, senses)
-        # Before the answers, and before the step: that may take long to plan.
-        self._tell(now, mission, senses)
-        self._orders.answer()
-        step = self._step(mission, senses)
-        self._act(mission, step)
-        self._tell(now, mission, senses)
-        ended = self._orders.follow(mission, senses)
+        step, ended = self._round.tick(now, mission, senses)
         self._finish_map(ended, is_waited_for=step.wants_whole_map)
         self._remember(mission, senses, has_learned=ended.clean is not None)
 
@@ -210,32 +201,12 @@ class MissionNode:
         folder = folder_of("~memory_folder", "mission") / robot
         return MissionMemory(folder, digest, self._background)
 
-    def _give_way(self, mission: Mission, senses: Senses) -> None:
-        """Pause while another program drives."""
-        if self._drive.is_taken and mission.state.drives:
-            mission.command(Event.PAUSE, senses)
-            mission.message = _OTHERS
-            rospy.logwarn("the mission is paused: %s", _OTHERS)
-
     def _step(self, mission: Mission, senses: Senses) -> MissionStep:
         if self._site.is_changing and mission.state.drives:
             # Zones are obeyed at once: until they are known it stands.
             return MissionStep()
         self._senses.show(self._things)
         return mission.tick(senses)
-
-    def _act(self, mission: Mission, step: MissionStep) -> None:
-        is_driving = mission.state.drives or step.twist != Twist()
-        self._drive.drive(step.twist if is_driving else None, looks_around=step.looks_around)
-        cleaning = mission.cleaning
-        sucks = cleaning is not None and mission.state.phase is not Phase.ERROR
-        self._drive.set_fan(cleaning.request.fan.value if cleaning and sucks else None)
-
-    def _tell(self, now: float, mission: Mission, senses: Senses) -> None:
-        """Publish the state if it is due, and the progress to the client of the errand."""
-        state = self._topics.tell(now, mission, senses)
-        if state is not None:
-            self._orders.tell(state)
 
     def _finish_map(self, ended: Ended, *, is_waited_for: bool) -> None:
         """Tell the map's maker to finish it when all was seen."""

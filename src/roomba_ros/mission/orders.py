@@ -33,7 +33,7 @@ _DONE: Final = {Event.PAUSE: "paused", Event.RESUME: "going on", Event.STOP: "st
 
 
 @dataclass(frozen=True, slots=True)
-class _Order:
+class Order:
     """A command by service; the caller waits for the answer."""
 
     event: Event
@@ -41,7 +41,9 @@ class _Order:
 
 
 @dataclass(frozen=True, slots=True)
-class _Cancel:
+class Cancel:
+    """A goal's client wants it to end; the goal by its :attr:`MissionGoal.identity`."""
+
     identity: tuple[str, str]
 
 
@@ -61,7 +63,7 @@ class MissionOrders:
     def __init__(self, takes_drive: Callable[[], None]) -> None:
         """Connect nothing yet; ``takes_drive`` is called when the mission is about to drive."""
         self._takes_drive = takes_drive
-        self._asked: deque[MissionGoal | _Order | _Cancel] = deque()
+        self._asked: deque[MissionGoal | Order | Cancel] = deque()
         self._goal: MissionGoal | None = None
         self._answers: list[Callable[[], object]] = []
         self._emergency: str | None = None
@@ -71,13 +73,10 @@ class MissionOrders:
     def start(self) -> None:
         """Connect; goals are taken from the first :meth:`serve` on."""
         self._servers = [
-            server_of(
-                kind, self._asked.append, lambda identity: self._asked.append(_Cancel(identity))
-            )
-            for kind in GOALS
+            server_of(kind, self.ask, lambda identity: self.ask(Cancel(identity))) for kind in GOALS
         ]
         self._beep = rospy.Publisher("beep", Empty, queue_size=1)
-        subscribe("emergency_stop", String, data_of, self._on_emergency_stop, queue_size=10)
+        subscribe("emergency_stop", String, data_of, self.hold, queue_size=10)
         for name, event in (
             ("pause", Event.PAUSE),
             ("resume", Event.RESUME),
@@ -85,6 +84,14 @@ class MissionOrders:
         ):
             rospy.Service(name, Trigger, lambda _, event=event: self._on_order(event))
         rospy.Service("locate", Trigger, self._on_locate)
+
+    def ask(self, asked: MissionGoal | Order | Cancel) -> None:
+        """Take what the next :meth:`obey` is to do."""
+        self._asked.append(asked)
+
+    def hold(self, reason: str) -> None:
+        """Take an emergency stop for a reason; an empty reason releases it."""
+        self._emergency = reason
 
     def serve(self, is_ready: bool) -> None:
         """Take goals from now on, if the mission is ready or did not become so in time."""
@@ -100,7 +107,7 @@ class MissionOrders:
             asked = self._asked.popleft()
             if isinstance(asked, MissionGoal):
                 _reject(asked, reason)
-            elif isinstance(asked, _Order):
+            elif isinstance(asked, Order):
                 asked.answer.put((False, reason))
 
     def obey(self, mission: Mission, senses: Senses) -> None:
@@ -110,7 +117,7 @@ class MissionOrders:
             asked = self._asked.popleft()
             if isinstance(asked, MissionGoal):
                 self._begin(asked, mission, senses)
-            elif isinstance(asked, _Order):
+            elif isinstance(asked, Order):
                 answer = self._command(asked.event, mission, senses)
                 self._answers.append(partial(asked.answer.put, answer))
             elif self._goal is not None and self._goal.identity == asked.identity:
@@ -180,8 +187,8 @@ class MissionOrders:
             mission.command(Event.RELEASE, senses)
 
     def _on_order(self, event: Event) -> TriggerResponse:
-        order = _Order(event)
-        self._asked.append(order)
+        order = Order(event)
+        self.ask(order)
         try:
             return TriggerResponse(*order.answer.get(timeout=_ANSWER_DEADLINE))
         except queue.Empty:
@@ -193,9 +200,6 @@ class MissionOrders:
         rospy.loginfo("beep, beep: here is the robot")
         self._beep.publish()
         return TriggerResponse(True, "it beeped")
-
-    def _on_emergency_stop(self, reason: str) -> None:
-        self._emergency = reason
 
 
 def _take_ended(mission: Mission) -> Ended:

@@ -1,0 +1,64 @@
+"""One round of a mission on ROS: in which order it obeys, tells, answers and acts."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import rospy
+
+from roomba.geometry import Twist
+from roomba.mission.inputs.senses import Senses
+from roomba.mission.mission import Mission, MissionStep
+from roomba.mission.phases.machine import Event, Phase
+from roomba_ros.mission.drive import MissionDrive
+from roomba_ros.mission.goals import Ended
+from roomba_ros.mission.orders import MissionOrders
+from roomba_ros.mission.topics import MissionTopics
+
+_OTHERS = "another program drives the robot (a walk, or cmd_vel); resume when that is done"
+
+
+class MissionRound:
+    """Ticks a mission between its orders and what is told of it."""
+
+    def __init__(
+        self,
+        orders: MissionOrders,
+        topics: MissionTopics,
+        drive: MissionDrive,
+        step: Callable[[Mission, Senses], MissionStep],
+    ) -> None:
+        """Take the parts, which the node starts; ``step`` lets a mission go on for one tick."""
+        self._orders, self._topics, self._drive, self._step = orders, topics, drive, step
+
+    def tick(self, now: float, mission: Mission, senses: Senses) -> tuple[MissionStep, Ended]:
+        """Obey, answer, act and tell; return what the mission wants, and what ended."""
+        self._orders.obey(mission, senses)
+        self._give_way(mission, senses)
+        # Before the answers, and before the step: that may take long to plan.
+        self._tell(now, mission, senses)
+        self._orders.answer()
+        step = self._step(mission, senses)
+        self._act(mission, step)
+        self._tell(now, mission, senses)
+        return step, self._orders.follow(mission, senses)
+
+    def _give_way(self, mission: Mission, senses: Senses) -> None:
+        """Pause while another program drives."""
+        if self._drive.is_taken and mission.state.drives:
+            mission.command(Event.PAUSE, senses)
+            mission.message = _OTHERS
+            rospy.logwarn("the mission is paused: %s", _OTHERS)
+
+    def _act(self, mission: Mission, step: MissionStep) -> None:
+        is_driving = mission.state.drives or step.twist != Twist()
+        self._drive.drive(step.twist if is_driving else None, looks_around=step.looks_around)
+        cleaning = mission.cleaning
+        sucks = cleaning is not None and mission.state.phase is not Phase.ERROR
+        self._drive.set_fan(cleaning.request.fan.value if cleaning and sucks else None)
+
+    def _tell(self, now: float, mission: Mission, senses: Senses) -> None:
+        """Publish the state if it is due, and the progress to the client of the errand."""
+        state = self._topics.tell(now, mission, senses)
+        if state is not None:
+            self._orders.tell(state)
