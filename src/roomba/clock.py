@@ -1,8 +1,12 @@
-"""Jumps of a clock: one is set when a simulation begins anew, or a bag is played again."""
+"""Jumps of a clock, set when a simulation begins anew or a bag is played again, and ages."""
 
 from __future__ import annotations
 
 import math
+from typing import Final
+
+_ROUNDING: Final = 1e-6
+"""s; two times since 1970, as floating-point numbers, differ by as much from what they should."""
 
 
 class ClockJumps:
@@ -27,3 +31,11 @@ class ClockJumps:
             return 0.0
         step = now - last
         return 0.0 if -self._tolerance <= step <= self._longest else step
+
+
+def is_recent(now: float, heard: float, longest: float) -> bool:
+    """Whether what was heard at a time is not yet ``longest`` s old; times are in s of one clock.
+
+    What comes from the future, by a clock that was set back, is not recent.
+    """
+    return 0.0 <= now - heard < longest - _ROUNDING

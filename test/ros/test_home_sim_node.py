@@ -9,6 +9,7 @@ from fixtures.graph import RosGraph
 from fixtures.probe import Probe
 from fixtures.refusal import refusal
 from fixtures.simulated import Body, simulated, twist
+from fixtures.standstill import PROMISE
 from fixtures.waiting import wait_until
 from nav_msgs.msg import OccupancyGrid, Odometry
 from roomba_robot.msg import Bumper
@@ -82,8 +83,7 @@ def test_the_body_drives_and_a_command_that_is_not_repeated_stops_it(
     body.drive(-0.4, 0.0, has_driven, "it drives back")
     last = rospy.get_time()
     wait_until(lambda: body.odometry().twist.twist.linear.x == 0.0, 20.0, "it stands")
-    # Of the robot's clock, and several times what the drive's time-out and braking take.
-    assert body.probe.newest["/odom"].header.stamp.to_sec() - last < 4.0
+    assert body.probe.newest["/odom"].header.stamp.to_sec() - last <= PROMISE + 1e-6
 
 
 def test_a_node_that_drives_and_falls_behind_is_waited_for(shared_robot: RosGraph) -> None:

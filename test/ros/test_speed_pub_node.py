@@ -4,6 +4,7 @@ import threading
 import time
 from collections.abc import Iterator
 from functools import partial
+from itertools import pairwise
 
 import pytest
 import rospy
@@ -123,6 +124,30 @@ def test_bad_wishes_are_refused_and_the_old_ones_stay(node: RosGraph) -> None:
     wait_until(lambda: "cmd_vel refused" in node.programs[-1].output, 20.0)
     probe.newest.clear()
     wait_until(lambda: probe.drive_gets(0.3), 20.0, "the old ones")
+
+
+def test_ten_commands_a_second_drive_without_a_halt(node: RosGraph) -> None:
+    """Of a sender that is late itself nothing is expected: it tries again."""
+    probe = start(node)
+    probe.wanted = None
+    gets: list[float] = []
+    rospy.Subscriber("/cmd_vel_out", Twist, lambda message: gets.append(message.linear.x))
+    command, sender = Twist(), probe.publisher("/cmd_vel", Twist)
+    command.linear.x = 0.3
+
+    def is_steady() -> bool:
+        gets.clear()
+        sent = [time.monotonic()]
+        sender.publish(command)
+        while len(sent) < 25:
+            time.sleep(max(0.0, sent[-1] + 0.1 - time.monotonic()))
+            sent.append(time.monotonic())
+            sender.publish(command)
+        return max(b - a for a, b in pairwise(sent)) < 0.12
+
+    wait_until(is_steady, 60.0, "commands that come in time")
+    assert len(gets) > 40
+    assert min(gets[5:]) == pytest.approx(0.3)
 
 
 def test_silence_stops_the_drive(node: RosGraph) -> None:

@@ -24,9 +24,6 @@ from roomba_robot.msg import CleanGoal, CleanResult, ExploreResult, Zone
 from roomba_robot.srv import RenameRoom, SetZone
 from std_srvs.srv import Trigger
 
-SOON = 12.0
-"""s of the robot's clock: one on the wall."""
-
 
 @pytest.fixture(scope="module")
 def shared_robot(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RosGraph]:
@@ -51,11 +48,11 @@ def test_an_exploration_is_held_ended_and_taken_up(shared_robot: RosGraph) -> No
     pause.wait_for_service(60.0)
     errand = robot.explore()
     robot.does("exploring")
-    assert robot.stops(pause) < SOON
+    robot.stops(pause)
     robot.does("paused", 30.0)
     assert robot.trigger("/resume").success
     robot.does("exploring", 30.0)
-    assert robot.stops(errand.cancel) < SOON
+    robot.stops(errand.cancel)
     stopped = errand.ends(GoalStatus.PREEMPTED, 30.0)
     assert stopped.outcome == ExploreResult.STOPPED
     robot.does("idle", 30.0)

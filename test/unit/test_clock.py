@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from roomba.clock import ClockJumps
+from roomba.clock import ClockJumps, is_recent
 
 
 def test_the_first_look_tells_no_jump() -> None:
@@ -36,3 +36,15 @@ def test_what_went_on_and_what_was_set_are_the_whole_way(steps: list[float]) -> 
         went_on += 0.0 if jump else now - before
         assert jump == 0.0 or not 0.0 <= jump <= 2.0
     assert went_on + was_set == pytest.approx(now, abs=1e-9)
+
+
+@pytest.mark.parametrize("since", [0.0, 0.05, 0.1])
+def test_what_is_younger_is_recent(since: float) -> None:
+    heard = 1_795_391_806.4
+    assert is_recent(heard + since, heard, 0.15)
+
+
+@pytest.mark.parametrize("since", [-0.05, 0.15, 0.2])
+def test_what_is_as_old_or_of_the_future_is_not_recent(since: float) -> None:
+    heard = 1_795_391_806.4
+    assert not is_recent(heard + since, heard, 0.15)

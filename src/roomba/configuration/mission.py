@@ -66,6 +66,11 @@ class MissionConfig(Frozen):
     exploring: ExploringConfig = ExploringConfig()
     energy: EnergyConfig = EnergyConfig()
 
+    @property
+    def top_speed(self) -> float:
+        """The fastest that it wants to drive, m/s."""
+        return max(self.driving.speed, self.exploring.speed)
+
     def require_possible(self, body: BodyConfig) -> None:
         """Raise ConfigError when a speed is more than a body can do."""
         for name, speed in (

@@ -27,6 +27,8 @@ SIMULATION: Final = "simulation"
 """The part of a robot's file that is the simulator's; a brain does not read it."""
 UNKNOWN: Final = "unknown; what is true of the simulated robot alone stands under simulation:"
 """What is said of a key that the robot's file does not have."""
+STANDSTILL_WITHIN: Final = 0.5
+"""s; the robot stands so soon after its commands end, for whatever reason."""
 
 
 class BodyConfig(Frozen):
@@ -41,12 +43,25 @@ class BodyConfig(Frozen):
     max_acceleration: Positive = 0.9
     max_deceleration: Positive = 2.0
     max_angular_acceleration: Positive = 7.7
-    command_timeout: Positive = 0.5
+    command_timeout: Positive = 0.15
 
     @property
     def radius(self) -> float:
         """Radius of the body's disc, m."""
         return self.diameter / 2.0
+
+    @property
+    def max_angular_deceleration(self) -> float:
+        """Braking of a turn on the spot, rad/s2: each wheel brakes as in a straight drive."""
+        return 2.0 * self.max_deceleration / self.wheel_separation
+
+    @property
+    def braking_time(self) -> float:
+        """Time from top speed to rest, straight or turning, s."""
+        return max(
+            self.max_speed / self.max_deceleration,
+            self.max_angular_speed / self.max_angular_deceleration,
+        )
 
 
 class BrushConfig(Frozen):
@@ -175,7 +190,7 @@ class ControlConfig(Frozen):
     arrival_tolerance: Positive = 0.02
     restart_distance: Positive = 0.03
     turning_speed: Positive = 2.5
-    stream_timeout: Positive = 0.3
+    stream_timeout: Positive = 0.15
 
 
 class WalkConfig(Frozen):
@@ -259,6 +274,38 @@ class RobotConfig(Frozen):
     walk: WalkConfig = WalkConfig()
     tracking: TrackingConfig = TrackingConfig()
     timing: TimingConfig = TimingConfig()
+
+    @property
+    def longest_silence(self) -> float:
+        """Longest time-out of a stream of commands, s, with which the robot stands in time.
+
+        Beside braking there is a tick in which the silence is noticed, and one in which the drive
+        is told.
+        """
+        return self._silence(self.body.braking_time)
+
+    def longest_silence_at(self, speed: float) -> float:
+        """Return the same for a stream by which the robot drives at ``speed`` m/s at most."""
+        return self._silence(speed / self.body.max_deceleration)
+
+    def _silence(self, braking_time: float) -> float:
+        return STANDSTILL_WITHIN - braking_time - 2.0 * self.timing.tick
+
+    @model_validator(mode="after")
+    def _stands_in_time(self) -> RobotConfig:
+        longest = self.longest_silence
+        for name, timeout in (
+            ("body.command_timeout", self.body.command_timeout),
+            ("control.stream_timeout", self.control.stream_timeout),
+        ):
+            if timeout > longest + 1e-6:
+                raise ValueError(
+                    f"expected {name} of at most {longest:.3f} s, got {timeout} s: of the "
+                    f"{STANDSTILL_WITHIN} s to standstill braking takes "
+                    f"{self.body.braking_time:.3f} s and two ticks {2.0 * self.timing.tick:g} s; "
+                    "lower it, or brake harder (body.max_deceleration)"
+                )
+        return self
 
     @model_validator(mode="after")
     def _walks_arrive(self) -> RobotConfig:

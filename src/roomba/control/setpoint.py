@@ -1,12 +1,14 @@
 """The setpoint: where the robot should be, and whether its sender is still connected.
 
-A single setpoint is driven to the end. A stream of them, a moving setpoint, is only valid while its
-sender is connected: when the sender vanishes, the robot stops at once.
+A single setpoint, repeated or not, is driven to the end. A stream of them, a moving setpoint, is
+only valid while it flows: when its sender vanishes, or is silent, the robot stops.
 """
 
 from __future__ import annotations
 
 import math
+
+from roomba.clock import is_recent
 
 Point = tuple[float, float]
 
@@ -15,7 +17,7 @@ class Setpoint:
     """The newest setpoint, m in the map frame; times in s of the robot's clock."""
 
     def __init__(self, stream_timeout: float) -> None:
-        """A stream is setpoints that follow each other within ``stream_timeout`` s."""
+        """A stream is setpoints that differ and follow in less than ``stream_timeout`` s."""
         self._stream_timeout = stream_timeout
         self._target: Point | None = None
         self._received = -math.inf
@@ -29,33 +31,33 @@ class Setpoint:
 
     def wish(self, now: float, target: Point, senders: int) -> None:
         """Take a new setpoint; ``senders`` is how many publishers are connected."""
-        since = now - self._received
-        self._streamed = self._target is not None and 0.0 <= since <= self._stream_timeout
+        follows = self._target is not None and self.is_wished(now)
+        self._streamed = follows and (self._streamed or target != self._target)
         self._target = target
         self._received = now
         self._senders = senders
 
     def fulfilled(self, now: float) -> None:
         """The robot is there: forget the setpoint, unless more are still streaming in."""
-        if not 0.0 <= now - self._received <= self._stream_timeout:
+        if not self.is_wished(now):
             self._target = None
 
     def is_wished(self, now: float) -> bool:
         """Whether the newest setpoint is as recent as a stream's; it may be forgotten already."""
-        return 0.0 <= now - self._received <= self._stream_timeout
+        return is_recent(now, self._received, self._stream_timeout)
 
     def forget(self) -> None:
         """Forget the setpoint."""
         self._target = None
 
     def check(self, now: float, senders: int) -> bool:
-        """Drop a stream whose sender vanished; return True when that happened just now."""
+        """Drop a stream that is silent, or whose sender vanished; return whether it was dropped."""
         if self._target is None:
             return False
         if senders > self._senders:
             self._senders = senders
-        lost = self._streamed and senders < self._senders
-        self._streamed = self._streamed and now - self._received <= self._stream_timeout
+        is_silent = now >= self._received and not self.is_wished(now)
+        lost = self._streamed and (is_silent or senders < self._senders)
         if lost:
             self._target = None
         return lost

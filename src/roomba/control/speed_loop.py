@@ -11,6 +11,7 @@ import math
 from dataclasses import dataclass
 from enum import Enum
 
+from roomba.clock import is_recent
 from roomba.geometry import Twist
 
 
@@ -60,7 +61,7 @@ class SpeedLoop:
     """
 
     def __init__(self, command_timeout: float, max_speed: float, max_angular_speed: float) -> None:
-        """A command older than ``command_timeout`` s counts no more."""
+        """A command of ``command_timeout`` s or older counts no more."""
         self._max_angular_speed = max_angular_speed
         self._command_timeout = command_timeout
         self._max_speed = max_speed
@@ -146,7 +147,7 @@ class SpeedLoop:
             if now < command.given:
                 # The clock was set back (a bag played again): the command's age starts anew.
                 self._commands[source] = command = _Command(command.twist, now)
-            if now - command.given <= self._command_timeout:
+            if is_recent(now, command.given, self._command_timeout):
                 return command.twist
             del self._commands[source]
         return None

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import time
+from dataclasses import replace
 
 import rospy
 from std_srvs.srv import Trigger
 
+from roomba.geometry import STANDSTILL
 from roomba.mission.cleaning.request import CleanOutcome
 from roomba.mission.inputs.senses import Senses
 from roomba.mission.mission import Mission, MissionStep
+from roomba.mission.phases.machine import Phase
 from roomba.perception.swept.dirt_map import DirtMap
 from roomba.perception.things.layer import ThingLayer
 from roomba_ros.convert.mission import names_of
@@ -59,6 +62,7 @@ class MissionNode:
         self._mission_config = read_mission_config(self._config)
         self._parameters = LiveSeedParameters()
         self.period = self._config.timing.tick
+        self._longest_silence = self._config.longest_silence_at(self._mission_config.top_speed)
         self._docking_config, self._thing_config = read_docking_config(), read_thing_config()
         self._background = Background()
         self._mission: Mission | None = None
@@ -206,7 +210,14 @@ class MissionNode:
             # Zones are obeyed at once: until they are known it stands.
             return MissionStep()
         self._senses.show(self._things)
-        return mission.tick(senses)
+        step = mission.tick(senses)
+        # Docking goes by the station's beams.
+        if (
+            self._senses.is_late(senses.now, self._longest_silence)
+            and mission.state.phase is not Phase.DOCKING
+        ):
+            return replace(step, twist=STANDSTILL)
+        return step
 
     def _finish_map(self, ended: Ended, *, is_waited_for: bool) -> None:
         """Tell the map's maker to finish it when all was seen."""

@@ -18,7 +18,7 @@ from sensor_msgs.msg import BatteryState, LaserScan
 from std_msgs.msg import Float32, UInt16
 from tf2_msgs.msg import TFMessage
 
-from roomba.clock import ClockJumps
+from roomba.clock import ClockJumps, is_recent
 from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose, Twist
 from roomba.mission.inputs.senses import Battery, Senses, StationBeams
@@ -105,6 +105,15 @@ class MissionSenses:
         )
         for topic, kind, convert, take in topics:
             subscribe(topic, kind, convert, take, queue_size=5, tcp_nodelay=True)
+
+    def is_late(self, now: float, longest: float) -> bool:
+        """Whether the newest pose is ``longest`` s old, or older: the robot must not drive by it.
+
+        It may be another while until it is told that the place is unknown: a busy machine catches
+        up.
+        """
+        stamp = -math.inf if self._corrected is None else self._corrected.stamp
+        return now > stamp and not is_recent(now, stamp, longest)
 
     @property
     def missing(self) -> tuple[str, ...]:

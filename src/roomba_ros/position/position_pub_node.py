@@ -10,6 +10,7 @@ from geometry_msgs.msg import Twist as TwistMessage
 from roomba_robot.msg import Bumper, Cliff, RobotPosition
 from std_msgs.msg import Bool, Float32
 
+from roomba.clock import is_recent
 from roomba.control.position_loop import PositionLoop
 from roomba.control.setpoint import Setpoint
 from roomba.errors import ConfigError
@@ -27,8 +28,6 @@ from roomba_ros.runtime.node import run_node
 from roomba_ros.runtime.parameters import LiveSeedParameters, read_robot_config
 from roomba_ros.runtime.subscriptions import subscribe
 
-_LOOK_TIMEOUT = 0.5
-"""s; how long a message on ``look_around`` counts."""
 _AHEAD = 10.0
 """m; to a point so far in the direction of a heading it turns on the spot."""
 _STOP_REPEATS = 3
@@ -96,7 +95,7 @@ class PositionPubNode:
         if not estimate.knowledge.is_usable:
             self._forget_wish()
             twist = self._twist_to_look_around(now)
-        elif 0.0 <= now - self._heading[0] <= self._config.control.stream_timeout:
+        elif self._is_fresh(now, self._heading[0]):
             self._forget_wish()
             twist = self._twist_to_heading(estimate.pose, self._heading[1])
         else:
@@ -111,9 +110,16 @@ class PositionPubNode:
     def _drop_vanished_wish(self, now: float) -> None:
         with self._lock:
             has_vanished = self._setpoint.check(now, self._wishes.get_num_connections())
-        if has_vanished:
-            rospy.logwarn("the sender of change_position vanished while it drove; stopping")
+        # A walk that has arrived sends no more.
+        if has_vanished and not self._loop.arrived:
+            rospy.logwarn(
+                "the sender of change_position vanished or froze while it drove; stopping"
+            )
             self._stops_left = _STOP_REPEATS
+
+    def _is_fresh(self, now: float, heard: float) -> bool:
+        """Whether the newest message of a stream, heard at a time, s, still counts."""
+        return is_recent(now, heard, self._config.control.stream_timeout)
 
     def _forget_wish(self) -> None:
         with self._lock:
@@ -145,7 +151,7 @@ class PositionPubNode:
     def _twist_to_look_around(self, now: float) -> Twist | None:
         with self._lock:
             is_wanted = self._setpoint.is_wished(now) or self._place.is_asked_to_search
-        is_wanted |= 0.0 <= now - self._look_asked <= _LOOK_TIMEOUT
+        is_wanted |= self._is_fresh(now, self._look_asked)
         if self._place.localizer is None or not (self._may_look_around and is_wanted):
             return None
         touches = self._bumps or self._sees_cliff

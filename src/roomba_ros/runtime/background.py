@@ -37,18 +37,27 @@ class Background:
                 lambda: not self._waiting and not self._is_at_work, timeout=deadline
             )
 
+    def work_off(self) -> None:
+        """Do all that waits, in the caller's thread: for a caller that starts no other."""
+        while self._waiting:
+            self._do_next()
+
     def _run(self) -> None:
         while True:
             with self._news:
                 self._news.wait_for(lambda: self._waiting)
-                name = next(iter(self._waiting))
-                work = self._waiting.pop(name)
-                self._is_at_work = True
-            try:
-                work()
-            except (RoombaError, OSError, ValueError, rospy.ROSException) as error:
-                rospy.logwarn("%s: %s", name, error)
-            finally:
-                with self._news:
-                    self._is_at_work = False
-                    self._news.notify_all()
+            self._do_next()
+
+    def _do_next(self) -> None:
+        with self._news:
+            name = next(iter(self._waiting))
+            work = self._waiting.pop(name)
+            self._is_at_work = True
+        try:
+            work()
+        except (RoombaError, OSError, ValueError, rospy.ROSException) as error:
+            rospy.logwarn("%s: %s", name, error)
+        finally:
+            with self._news:
+                self._is_at_work = False
+                self._news.notify_all()

@@ -98,7 +98,7 @@ class HomeSimNode:
         if self._owns_clock:
             self._keep_clock()
         else:
-            Ticker(self._timing.tick, told_to_end).run(self._follow_clock)
+            Ticker(self._timing.tick, told_to_end).run(self.tick)
 
     def _keep_clock(self) -> None:
         """Step in real time, or as many times faster as asked for."""
@@ -110,8 +110,8 @@ class HomeSimNode:
                 rospy.logwarn("this machine is too slow for speed %g; going on slower", self._speed)
             self._tick()
 
-    def _follow_clock(self, now: float) -> None:
-        """Step as far as the clock of another simulation went."""
+    def tick(self, now: float) -> None:
+        """Step as far as the clock, which is another's, went; ``now`` in s of the ROS clock."""
         if self._jumps.at(now):
             self._clock = round(now * 1e9) - self._nanoseconds
         for _ in range(round((now * 1e9 - self._clock) / self._nanoseconds)):
@@ -132,7 +132,7 @@ class HomeSimNode:
 
     def _fresh_command(self) -> Twist:
         self._command_age += self._timing.world_step
-        if self._command_age > self._config.body.command_timeout:
+        if self._command_age > self._config.body.command_timeout + 0.5 * self._timing.world_step:
             self._command = Twist()
         return self._command
 

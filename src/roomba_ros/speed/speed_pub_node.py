@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import http.client
+import math
 import threading
 import xmlrpc.client
 from functools import partial
@@ -34,13 +35,15 @@ from roomba_ros.runtime.subscriptions import subscribe
 EMERGENCY_PARAMETER: Final = "emergency_stop"
 """Why the drive is held; kept by the master, so that a node that was killed holds it again."""
 _NO_REASON: Final = "no reason was given"
+_SPEED_PERIOD: Final = 0.1
+"""s of the ROS clock between two messages of the speed."""
 
 
 class SpeedPubNode:
     """Keeps every wanted twist within the limits and stops the drive without a fresh command.
 
     Publishes: ``speed`` (Float32, m/s, 10 Hz), ``cmd_vel_out`` (Twist, to the drive, at once for
-    each command, and 10 Hz), ``emergency_stop`` (String, latched: why the drive is held, empty when
+    each command, and 20 Hz), ``emergency_stop`` (String, latched: why the drive is held, empty when
     it is not).
     Subscribes: ``change_speed`` (Float32, cruise speed wanted, m/s), ``cmd_vel`` (Twist), and
     ``cmd_vel_mission`` (Twist), which counts while no fresh ``cmd_vel`` does; ``odom`` (Odometry),
@@ -49,20 +52,22 @@ class SpeedPubNode:
     Parameters: ``robot_max_speed``; a bad value is refused and set back. ``emergency_stop``: kept.
     """
 
-    period = 0.1
+    period: float
 
     def start(self) -> None:
         """Read the limits and connect."""
         self._parameters = LiveSeedParameters(guardian=True)
         self._lock, self._keeping = threading.Lock(), threading.Lock()
         self._reason = ""
-        body = read_robot_config().body
+        config = read_robot_config()
+        body, self.period = config.body, config.timing.tick
         self._loop = SpeedLoop(
             body.command_timeout,
             self._parameters.values.robot_max_speed,
             body.max_angular_speed,
         )
         self._speed: float | None = None
+        self._speed_told = -math.inf
         self._hold = Hold.NO_COMMAND
         self._speed_publisher = rospy.Publisher("speed", Float32, queue_size=1)
         self._drive = rospy.Publisher("cmd_vel_out", Twist, queue_size=1, tcp_nodelay=True)
@@ -84,8 +89,7 @@ class SpeedPubNode:
         with self._lock:
             self._loop.set_max_speed(max_speed)
         self._tell_drive(now)
-        if self._speed is not None:
-            self._speed_publisher.publish(self._speed)
+        self._tell_speed(now)
 
     def stop(self) -> None:
         """Stop the drive."""
@@ -98,6 +102,12 @@ class SpeedPubNode:
         self._drive.publish(twist_message(twist))
         if changed and hold not in (Hold.NONE, Hold.NO_COMMAND):
             rospy.loginfo("the drive is held: %s", hold.value)
+
+    def _tell_speed(self, now: float) -> None:
+        is_due = not 0.0 <= now - self._speed_told < _SPEED_PERIOD - 0.5 * self.period
+        if self._speed is not None and is_due:
+            self._speed_told = now
+            self._speed_publisher.publish(self._speed)
 
     def _engage_again(self) -> None:
         """Hold the drive if it was held when this node's predecessor ended."""
@@ -135,6 +145,7 @@ class SpeedPubNode:
     def _on_change_speed(self, speed: float) -> None:
         with self._lock:
             self._loop.set_cruise_speed(speed)
+        self._tell_drive(rospy.get_time())
 
     def _on_bumper(self, pressed: Sides) -> None:
         with self._lock:

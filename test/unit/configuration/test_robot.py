@@ -1,3 +1,4 @@
+import re
 from pathlib import Path
 
 import pytest
@@ -55,3 +56,26 @@ def test_a_robots_file_may_hold_what_only_its_simulator_reads(tmp_path: Path) ->
     path = tmp_path / "robot.yaml"
     path.write_text("body: {diameter: 0.3}\nsimulation: {sensors: ideal}\n", encoding="utf-8")
     assert load_robot_config(path) == RobotConfig(body=BodyConfig(diameter=0.3))
+
+
+@pytest.mark.parametrize(
+    ("text", "named"),
+    [
+        ("body: {command_timeout: 0.2}", "body.command_timeout"),
+        ("control: {stream_timeout: 0.3}", "control.stream_timeout"),
+        ("body: {max_deceleration: 0.9}", "body.max_deceleration"),
+    ],
+)
+def test_timeouts_with_which_it_would_stand_too_late_are_refused(
+    tmp_path: Path, text: str, named: str
+) -> None:
+    path = tmp_path / "robot.yaml"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(ConfigError, match=re.escape(named)):
+        load_robot_config(path)
+
+
+def test_silence_braking_and_two_ticks_are_half_a_second() -> None:
+    config = RobotConfig()
+    assert config.longest_silence + config.body.braking_time + 0.1 == pytest.approx(0.5)
+    assert config.body.command_timeout <= config.longest_silence + 1e-9

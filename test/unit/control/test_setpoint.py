@@ -32,11 +32,28 @@ def test_a_stream_stops_when_its_sender_vanishes() -> None:
     assert not setpoint.check(now + 0.15, senders=0)
 
 
-def test_another_sender_leaving_long_after_the_stream_ended_changes_nothing() -> None:
+def test_a_stream_stops_when_its_sender_is_silent() -> None:
     setpoint, now = streaming()
-    assert not setpoint.check(now + 5.0, senders=1)
-    assert not setpoint.check(now + 5.1, senders=0)
-    assert setpoint.target is not None
+    assert not setpoint.check(now + TIMEOUT - 0.05, senders=1)
+    assert setpoint.check(now + TIMEOUT, senders=1)
+    assert setpoint.target is None
+    assert not setpoint.check(now + TIMEOUT + 0.1, senders=1)
+
+
+def test_a_setpoint_on_the_move_may_wait_while_it_is_still_sent() -> None:
+    setpoint, now = streaming()
+    for tick in range(1, 10):
+        setpoint.wish(now + 0.05 * tick, (0.9, 0.0), 1)
+        assert not setpoint.check(now + 0.05 * tick, senders=1)
+    assert setpoint.check(now + 1.0, senders=1)
+
+
+def test_a_wish_that_is_repeated_is_no_stream() -> None:
+    setpoint = Setpoint(TIMEOUT)
+    for tick in range(5):
+        setpoint.wish(10.0 + 0.05 * tick, (3.0, 4.0), senders=1)
+    assert not setpoint.check(20.0, senders=0)
+    assert setpoint.target == (3.0, 4.0)
 
 
 def test_a_sender_that_joined_later_and_leaves_is_noticed() -> None:

@@ -25,8 +25,8 @@ def test_it_drives_as_asked() -> None:
 def test_an_old_command_counts_no_more() -> None:
     speed_loop = loop()
     speed_loop.command(10.0, Twist(0.3, 0.0))
-    assert speed_loop.tick(10.5)[0] == Twist(0.3, 0.0)
-    assert speed_loop.tick(10.51) == (Twist(), Hold.NO_COMMAND)
+    assert speed_loop.tick(10.49)[0] == Twist(0.3, 0.0)
+    assert speed_loop.tick(10.5) == (Twist(), Hold.NO_COMMAND)
     assert speed_loop.tick(10.2) == (Twist(), Hold.NO_COMMAND)
 
 
@@ -43,7 +43,7 @@ def test_a_direct_command_counts_above_the_missions_while_it_is_fresh() -> None:
         speed_loop.command(0.1 * tenth, Twist(0.1, 0.0), Source.MISSION)
         if tenth == 5:
             speed_loop.command(0.5, Twist(-0.2, 1.0))
-        is_direct = 5 <= tenth <= 10
+        is_direct = 5 <= tenth < 10
         expected = Twist(-0.2, 1.0) if is_direct else Twist(0.1, 0.0)
         assert speed_loop.tick(0.1 * tenth)[0] == expected, tenth
 
@@ -51,8 +51,8 @@ def test_a_direct_command_counts_above_the_missions_while_it_is_fresh() -> None:
 def test_the_missions_command_grows_old_as_any_other() -> None:
     speed_loop = loop()
     speed_loop.command(10.0, Twist(3.0, 0.0), Source.MISSION)
-    assert speed_loop.tick(10.5) == (Twist(0.5, 0.0), Hold.NONE)
-    assert speed_loop.tick(10.51) == (Twist(), Hold.NO_COMMAND)
+    assert speed_loop.tick(10.49) == (Twist(0.5, 0.0), Hold.NONE)
+    assert speed_loop.tick(10.5) == (Twist(), Hold.NO_COMMAND)
 
 
 @pytest.mark.parametrize("source", Source)

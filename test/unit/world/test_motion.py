@@ -115,12 +115,21 @@ def test_speeds_and_accelerations_keep_their_limits(commands: list[tuple[float, 
         # An arc that hardly turns has a radius of up to 1e7 m, and is rounded by as much less.
         assert world.pose.distance_to(was_at.x, was_at.y) <= 0.5 * DT + 1e-8
         assert abs(twist.angular) <= BODY.max_angular_speed + 1e-12
-        assert abs(twist.angular - angular) <= BODY.max_angular_acceleration * DT + 1e-12
+        is_turning_faster = abs(twist.angular) > abs(angular)
+        most = BODY.max_angular_acceleration if is_turning_faster else BODY.max_angular_deceleration
+        assert abs(twist.angular - angular) <= most * DT + 1e-12
         is_faster = abs(twist.linear) > abs(linear)
         limit = BODY.max_acceleration if is_faster else BODY.max_deceleration
         was_stopped_by_contact = world.numbers["hit"] > 0.0
         assert was_stopped_by_contact or abs(twist.linear - linear) <= limit * DT + 1e-12
         linear, angular = twist.linear, twist.angular
+
+
+def test_a_turn_on_the_spot_is_braked_as_soon_as_a_straight_drive() -> None:
+    world = robot(FREE, IDEAL)
+    assert drive(world, 0.0, BODY.max_angular_speed, 1.0).twist.angular == pytest.approx(4.25)
+    assert drive(world, 0.0, 0.0, BODY.braking_time - DT).twist.angular > 0.0
+    assert drive(world, 0.0, 0.0, DT).twist.angular == 0.0
 
 
 def test_it_speeds_up_and_brakes_as_configured() -> None:

@@ -37,10 +37,9 @@ def ramped(body: Row, numbers: Row, dt: float) -> tuple[float, float]:
     angular = min(max(body.wanted_angular, -most), most)
     if body.charge <= 0.0:
         linear = angular = 0.0
-    limit = numbers.angular_acceleration
     return (
         ramp(body.linear, linear, numbers.acceleration, numbers.deceleration, dt),
-        ramp(body.angular, angular, limit, limit, dt),
+        ramp(body.angular, angular, numbers.angular_acceleration, numbers.angular_deceleration, dt),
     )
 
 

@@ -37,6 +37,7 @@ def numbers_of(config: SimulatedRobotConfig) -> Rows:
         "acceleration": body.max_acceleration,
         "deceleration": body.max_deceleration,
         "angular_acceleration": body.max_angular_acceleration,
+        "angular_deceleration": body.max_angular_deceleration,
         "radians_per_count": noise * 2.0 * math.pi / config.wheels.counts_per_turn,
         "slip": noise * truth.wheels.slip,
         "carpet_slip": noise * truth.wheels.carpet_slip,
