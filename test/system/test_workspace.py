@@ -173,7 +173,24 @@ def test_launch_file_is_found_with_its_nodes(space: tuple[Path, str]) -> None:
     assert set(listed) >= NODES_OF_LAUNCH
 
 
-@pytest.mark.parametrize("folder", ["config", "homes", "launch"])
+def test_homes_and_configuration_are_found_from_the_space(space: tuple[Path, str]) -> None:
+    workspace, name = space
+    script = """python3 - <<'PYTHON'
+from roomba.files.shipped import CONFIGURATION, HOMES
+for folder in (CONFIGURATION, HOMES):
+    print(folder, *sorted(path.name for path in folder.iterdir()))
+PYTHON"""
+    allowed = {"devel": "src/roomba_robot/src", "install": "install"}[name]
+    data = REPOSITORY / "src/roomba/data"
+    for line, part in zip(
+        in_space(workspace, name, script).splitlines(), ("configuration", "homes"), strict=True
+    ):
+        folder, *found = line.split()
+        assert Path(folder).is_relative_to(workspace / allowed)
+        assert found == sorted(path.name for path in (data / part).iterdir())
+
+
+@pytest.mark.parametrize("folder", ["launch"])
 def test_data_are_installed(installed_workspace: Path, folder: str) -> None:
     shared = installed_workspace / "install/share/roomba_robot" / folder
     ours = {path.name for path in (REPOSITORY / folder).iterdir()}

@@ -11,9 +11,10 @@ from pathlib import Path
 from typing import Final, NoReturn
 
 from roomba.commands.sim.trial import RANDOM, Trial, UsageError
+from roomba.commands.spelling import spelled
 from roomba.geometry import Pose
 
-PROGRAM: Final = "./roomba map"
+PROGRAM: Final = spelled("map")
 _MOST_SEED: Final = 2**63 - 1
 
 

@@ -30,13 +30,16 @@ from roomba.commands.pictures.odometry import picture_of_odometry
 from roomba.commands.pictures.rooms import picture_of_rooms
 from roomba.commands.pictures.station import picture_of_station
 from roomba.commands.pictures.tour import VIEWS, picture_of_home, picture_of_view, picture_of_walk
+from roomba.commands.spelling import spelled
 from roomba.errors import RoombaError
 from roomba.files.shipped import HOMES
 from roomba.plots.canvas import Picture
 from roomba.world.home.home import Home
 from roomba.world.layers.layer import load_home
 
-_ROOT = Path(__file__).parents[4]
+_CHECKOUT = Path(__file__).parents[4] / "docs" / "pictures"
+_DOCUMENTS = _CHECKOUT if _CHECKOUT.is_dir() else Path("pictures")
+"""Where the documents have their pictures; without documents a folder of the current one."""
 
 PICTURES: dict[str, tuple[str, Callable[[Home], Picture]]] = {
     "home": ("flat", picture_of_home),
@@ -67,8 +70,8 @@ PICTURES: dict[str, tuple[str, Callable[[Home], Picture]]] = {
 
 def main(arguments: list[str] | None = None) -> int:
     """Write all pictures; returns the exit status."""
-    parser = argparse.ArgumentParser(prog="./roomba pictures", description=__doc__)
-    parser.add_argument("folder", nargs="?", type=Path, default=_ROOT / "docs" / "pictures")
+    parser = argparse.ArgumentParser(prog=spelled("pictures"), description=__doc__)
+    parser.add_argument("folder", nargs="?", type=Path, default=_DOCUMENTS)
     parser.add_argument("--only", nargs="+", choices=PICTURES, default=list(PICTURES))
     wanted = parser.parse_args(arguments)
     try:
@@ -77,7 +80,7 @@ def main(arguments: list[str] | None = None) -> int:
             home, picture_of = PICTURES[name]
             _write(wanted.folder / f"{name}.png", picture_of(load_home(home, HOMES)))
     except (RoombaError, OSError) as error:
-        print(f"./roomba pictures: {error}", file=sys.stderr)
+        print(f"{spelled('pictures')}: {error}", file=sys.stderr)
         return 1
     return 0
 

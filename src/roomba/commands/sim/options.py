@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any, Final, NoReturn
 
 from roomba.commands.sim.trial import MOST_THINGS, RANDOM, Trial, UsageError
+from roomba.commands.spelling import spelled
 from roomba.geometry import Pose
 from roomba.mission.cleaning.request import (
     MOST_PASSES,
@@ -20,7 +21,7 @@ from roomba.mission.cleaning.request import (
     FanLevel,
 )
 
-PROGRAM: Final = "./roomba sim"
+PROGRAM: Final = spelled("sim")
 MOST_HOMES: Final = 100_000
 _MOST_SEED: Final = 2**63 - 1
 

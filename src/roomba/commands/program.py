@@ -1,0 +1,85 @@
+"""The program ``roomba`` of the installed library: the commands that need no ROS.
+
+``./roomba`` of a checkout has the same commands, and those that need ROS beside.
+"""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+import sys
+from pathlib import Path
+from typing import Final
+
+from roomba.commands.doctor import Finding, StepState, as_json, as_table, why_not_importable
+from roomba.commands.spelling import spelled
+
+_COMMANDS: Final = {
+    "sim": "roomba.commands.sim.command",
+    "map": "roomba.commands.map.command",
+    "pictures": "roomba.commands.pictures.__main__",
+    "doctor": __name__,
+}
+"""The module whose ``main`` is the command; each is loaded when it is asked for."""
+_NEED_ROS: Final = ("run", "control", "camera", "exec", "localize")
+_NEED_CHECKOUT: Final = ("test", "bench")
+_USAGE: Final = """\
+usage: roomba COMMAND ...
+
+  sim [ARGS]       clean a home with the whole robot: --home NAME --seed N, --map FILE.yaml,
+                   --homes N, --plot FILE.png, --json FILE (see --help)
+  map [ARGS]       explore a home without a map, and tell how good the map becomes: --home NAME
+                   --seed N, --map FILE.yaml, --out FOLDER, --plot FILE.png (see --help)
+  pictures [ARGS]  make the pictures of the documents: [FOLDER] [--only NAME ...]
+  doctor [--json]  what is missing, and how to mend it
+  help             this text
+
+The commands run, control, camera, exec and localize need ROS, test and bench the checkout: there
+it is ./roomba COMMAND.
+"""
+_MODULES: Final = (
+    "cv2", "matplotlib", "numba", "numpy", "PIL", "pydantic", "rich", "shapely", "typer", "yaml",
+)  # fmt: skip
+_EXTRAS: Final = {"gymnasium": "gym"}
+
+
+def program() -> int:
+    """Run the command of the command line; returns the exit status, 2 for one that is not here."""
+    command, *arguments = sys.argv[1:] or ["help"]
+    if command in ("help", "-h", "--help"):
+        print(_USAGE, end="")
+        return 0
+    if command in _NEED_ROS:
+        return _refused(f"{command}: needs ROS, which only a checkout sets up: ./roomba {command}")
+    if command in _NEED_CHECKOUT:
+        return _refused(f"{command}: needs the sources; in a checkout: ./roomba {command}")
+    if command not in _COMMANDS:
+        return _refused(f"expected a command of `roomba help`, got {command!r}")
+    return int(importlib.import_module(_COMMANDS[command]).main(arguments))
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Tell whether all that the library needs can be imported; returns 1 if something cannot."""
+    parser = argparse.ArgumentParser(
+        prog=spelled("doctor"), description="Tell what is missing and how to mend it."
+    )
+    parser.add_argument("--json", action="store_true", help="for a program to read")
+    wanted = parser.parse_args(arguments)
+    findings = [_imported(module) for module in (*_MODULES, *_EXTRAS)]
+    print(as_json(findings) if wanted.json else as_table(findings))
+    return 1 if any(finding.state is StepState.MISSING for finding in findings) else 0
+
+
+def _imported(module: str) -> Finding:
+    reason = why_not_importable(Path(sys.executable), module, {"PATH": ""})
+    if not reason:
+        return Finding(module, StepState.FINE)
+    if module in _EXTRAS:
+        mend = f"pip install 'roomba_robot[{_EXTRAS[module]}]', if you want it"
+        return Finding(module, StepState.NOTE, reason, mend)
+    return Finding(module, StepState.MISSING, reason, "install roomba_robot anew with pip")
+
+
+def _refused(reason: str) -> int:
+    print(f"roomba: {reason}", file=sys.stderr)
+    return 2

@@ -1,0 +1,42 @@
+"""pyproject.toml, requirements.txt and setup.py agree about the Python packages."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+from xml.etree import ElementTree
+
+ROOT = Path(__file__).parents[2]
+OF_THE_DISTRIBUTION = {"numpy", "opencv-python-headless", "pyyaml"}
+"""In a checkout with ROS these come from the distribution's packages."""
+
+
+def names(lines: list[str]) -> dict[str, str]:
+    """Return the bounds of each package."""
+    found = (re.fullmatch(r"([a-zA-Z-]+)(.*)", line.strip()) for line in lines)
+    return {match[1].lower(): match[2] for match in found if match}
+
+
+def test_a_checkout_and_the_wheel_need_the_same() -> None:
+    text = (ROOT / "pyproject.toml").read_text(encoding="utf-8")
+    table = text.split("\ndependencies = [")[1].split("\n]")[0]
+    wheel = names(re.findall(r'"([^"]+)"', table))
+    checkout = names((ROOT / "requirements.txt").read_text(encoding="utf-8").splitlines())
+    assert len(checkout) >= 7
+    assert wheel.keys() - checkout.keys() == OF_THE_DISTRIBUTION
+    assert {name: wheel.get(name) for name in checkout} == checkout
+
+
+def test_the_version_is_that_of_package_xml() -> None:
+    done = subprocess.run(
+        [sys.executable, "setup.py", "--version"],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=True,
+        timeout=60.0,
+    )
+    version = ElementTree.parse(ROOT / "package.xml").findtext("version")
+    assert done.stdout.split()[-1] == version
