@@ -3,6 +3,7 @@
 #
 #   ./install_dependencies.sh         what running the robot needs
 #   ./install_dependencies.sh --dev   also what the tests need
+#   ./install_dependencies.sh --library   what the library needs: no ROS, no system package
 #
 # May be run again at any time: what is there is kept, what is missing or was left half made is mended.
 # ./roomba sources this file for its functions.
@@ -230,26 +231,66 @@ environment_identity() {
   printf '%s in %s\n' "$(readlink -f "$PYTHON")" "$(readlink -f "$VENV")"
 }
 
-requirement_files() { # runtime|dev
+requirement_files() { # library|runtime|dev
   printf '%s\n' requirements.txt
+  [[ $1 != library ]] || printf '%s\n' requirements-library.txt
   [[ $1 != dev ]] || printf '%s\n' requirements-dev.txt
 }
 
-python_hash() { # runtime|dev
+python_hash() { # library|runtime|dev
   local -a files
   mapfile -t files < <(requirement_files "$1")
   (cd "$REPOSITORY" && environment_identity | hash_of constraints.txt "${files[@]}")
 }
 
-python_is_current() { # runtime|dev
+python_is_current() { # library|runtime|dev
   [[ -x $VENV/bin/python3 ]] && stamp_is "$VENV/.stamp-$1" "$(python_hash "$1")"
+}
+
+# The library runs in its own environment, and in that of the robot, which has all that it needs.
+library_is_current() {
+  python_is_current library || python_is_current runtime
+}
+
+ros_is_installed() {
+  command -v dpkg-query >/dev/null && system_is_current runtime
+}
+
+# Nothing is installed for the library but into .venv: what is missing is told.
+require_python() {
+  [[ -x $PYTHON ]] || fail "expected $PYTHON, there is none. Have this run as root, then try again:"$'\n'"    apt-get install python3 python3-venv"
+  "$PYTHON" -c 'import ensurepip' 2>/dev/null ||
+    fail "expected $PYTHON with ensurepip, which makes .venv. Have this run as root, then try again:"$'\n'"    apt-get install python3-venv"
+}
+
+# OpenCV, numpy and YAML come as wheels here. The robot's environment must not see them, for cv_bridge is compiled
+# against the distribution's: make_python_environment makes it anew when there is a mark of this one.
+make_library_environment() {
+  printf 'Making %s, without ROS\n' "$VENV"
+  "$PYTHON" -m venv --clear "$VENV"
+  environment_identity >"$VENV/.made-for"
+  touch "$VENV/.unfinished" "$VENV/.without-ros"
+  install_requirements library
+  printf 'Trying that what the library needs can be imported\n'
+  PYTHONNOUSERSITE=1 "$VENV/bin/python3" -c 'import cv2, matplotlib, numba, numpy, pydantic, shapely, yaml'
+  rm "$VENV/.unfinished"
+  python_hash library >"$VENV/.stamp-library"
+}
+
+# What a user has in ~/.local does not count: it may be built against another numpy than the distribution's.
+install_requirements() { # library|runtime|dev
+  local -a arguments=()
+  local file
+  while read -r file; do
+    arguments+=(--requirement "$REPOSITORY/$file")
+  done < <(requirement_files "$1")
+  PYTHONNOUSERSITE=1 PIP_USER=no PIP_DISABLE_PIP_VERSION_CHECK=1 "$VENV/bin/python3" -m pip install --no-input \
+    --progress-bar off --retries 5 --prefer-binary --constraint "$REPOSITORY/constraints.txt" "${arguments[@]}"
 }
 
 # An environment is made anew if its Python is gone, it was moved, or an installation into it was interrupted.
 make_python_environment() { # runtime|dev
-  local -a arguments=()
-  local file
-  if ! stamp_is "$VENV/.made-for" "$(environment_identity)" || [[ -e $VENV/.unfinished ]] ||
+  if ! stamp_is "$VENV/.made-for" "$(environment_identity)" || [[ -e $VENV/.unfinished || -e $VENV/.without-ros ]] ||
     ! "$VENV/bin/python3" -m pip --version; then
     printf 'Making %s\n' "$VENV"
     "$PYTHON" -m venv --clear --system-site-packages "$VENV"
@@ -257,12 +298,7 @@ make_python_environment() { # runtime|dev
   fi
   rm -f "$VENV"/.stamp-*
   touch "$VENV/.unfinished"
-  while read -r file; do
-    arguments+=(--requirement "$REPOSITORY/$file")
-  done < <(requirement_files "$1")
-  # What a user has in ~/.local does not count: it may be built against another numpy than the distribution's.
-  PYTHONNOUSERSITE=1 PIP_USER=no PIP_DISABLE_PIP_VERSION_CHECK=1 "$VENV/bin/python3" -m pip install --no-input \
-    --progress-bar off --retries 5 --prefer-binary --constraint "$REPOSITORY/constraints.txt" "${arguments[@]}"
+  install_requirements "$1"
   printf 'Trying that OpenCV, cv_bridge and numba agree about numpy\n'
   PYTHONNOUSERSITE=1 "$VENV/bin/python3" -c 'import cv2, cv_bridge.boost.cv_bridge_boost, numba, numpy, pydantic, rospy, shapely'
   rm "$VENV/.unfinished"
@@ -338,7 +374,18 @@ install_bench() {
 
 # ---------------------------------------------------------------- all of it
 
-install_dependencies() { # runtime|dev
+install_dependencies() { # library|runtime|dev
+  if [[ $1 == library ]]; then
+    if library_is_current; then
+      return
+    elif ros_is_installed; then # then the robot's environment does, and a later `run` has nothing to make anew
+      run_step "Installing Python packages into .venv" make_python_environment runtime
+    else
+      require_python
+      run_step "Installing Python packages into .venv" make_library_environment
+    fi
+    return
+  fi
   if ! system_is_current "$1"; then
     distribution >/dev/null
     local -a missing
@@ -356,8 +403,10 @@ main() {
   case ${1:-} in
     "") ;;
     --dev) extent=dev ;;
+    --library) extent=library ;;
     *)
-      say "usage: ./install_dependencies.sh [--dev]   (--dev: also what the tests need); came: $*"
+      say "usage: ./install_dependencies.sh [--library | --dev]   (--library: without ROS; --dev: also what the tests need)"
+      say "came: $*"
       exit 2
       ;;
   esac

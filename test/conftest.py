@@ -27,6 +27,7 @@ LONGEST_FIRST = (
     "test_faults.py",
     "test_workspace.py",
     "test_wheel.py",
+    "test_library_set_up.py",
     "test_turn_camera.py",
     "test_explore_with_person.py",
     "test_map_kept.py",
