@@ -17,7 +17,7 @@ settings.register_profile(
 )
 settings.load_profile("project")
 
-# Tests that somebody starts in the background inherit that Ctrl-C is ignored, and so would the
+# Tests that are started in the background inherit that Ctrl-C is ignored, and so would the
 # programs that they start: these would end after their deadlines only.
 signal.signal(signal.SIGINT, signal.default_int_handler)
 

@@ -33,7 +33,7 @@ def shared_robot(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RosGraph]
 
 @pytest.fixture
 def follower(tmp_path: Path) -> Iterator[RosGraph]:
-    """The simulation of the apartment by somebody else's clock."""
+    """The simulation of the apartment by the clock of another one."""
     with simulated(tmp_path, "_home:=apartment", "_clock:=false") as graph:
         yield graph
 

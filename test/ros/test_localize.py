@@ -313,7 +313,7 @@ def test_a_gyro_that_hangs_upside_down(drive: Drive, localize: Localize, tmp_pat
 
 
 def test_it_says_where_and_why_a_robot_was_lost(localize: Localize, tmp_path: Path) -> None:
-    """Somebody slides it to another corner, without lifting its wheels."""
+    """It is slid to another corner, without lifting its wheels."""
     robot = recorded_robot(seed=4)
     robot.walk(3.0, 0.8)
     slid = robot.drive.records[-1][2] - BEGAN

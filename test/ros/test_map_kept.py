@@ -90,7 +90,7 @@ def knows_its_place(robot: Explorer) -> None:
 
 
 def test_a_map_that_is_being_made_outlives_the_node(graph: RosGraph) -> None:
-    # Left behind by a run of yesterday, or by nobody knows whom.
+    # Left behind by a run of yesterday, or by an unknown one.
     file_of(graph).parent.mkdir(parents=True)
     file_of(graph).write_bytes(b"of something else")
     keep_home_map(graph.folder / "ros_home", HOME)
@@ -184,7 +184,7 @@ def test_what_cannot_be_taken_up_is_said_and_a_new_map_begins(graph: RosGraph) -
         wait_until(lambda: kept_keyframes(graph) > 0, 30.0, "it is kept")
         kept = load_mapper(file_of(graph))
         assert kept is not None
-        # Else the next process would not know that somebody was here, and leave it unread.
+        # Else the next process would not know that a map was begun, and leave it unread.
         assert graph.param("/map_to_odometry")
         kill(graph, robot)
         change(kept, file_of(graph))

@@ -61,7 +61,7 @@ def node(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RosGraph]:
 
 
 def start(graph: RosGraph) -> SpeedProbe:
-    """Become who steers; nothing is left of the wishes of a test before."""
+    """Become the program that steers; nothing is left of the commands of a test before."""
     probe = SpeedProbe(graph)
     graph.set_param("/robot_max_speed", 0.5)
     probe.send("/bumper", Bumper())
@@ -161,7 +161,7 @@ def test_silence_stops_the_drive(node: RosGraph) -> None:
 def test_the_mission_drives_while_nobody_else_does(node: RosGraph) -> None:
     probe = start(node)
     probe.wanted = None
-    wait_until(lambda: probe.drive_gets(0.0), 20.0, "nobody drives")
+    wait_until(lambda: probe.drive_gets(0.0), 20.0, "no command is fresh")
     mission = probe.publisher("/cmd_vel_mission", Twist)
     wait_until(lambda: mission.get_num_connections() > 0, 10.0)
     wish = Twist()
@@ -174,7 +174,7 @@ def test_the_mission_drives_while_nobody_else_does(node: RosGraph) -> None:
 
     wait_until(lambda: drives(0.5), 20.0, "the mission drives, within the same limit")
     probe.want(-0.2)
-    wait_until(lambda: drives(-0.2), 20.0, "who steers directly comes first")
+    wait_until(lambda: drives(-0.2), 20.0, "direct steering comes first")
     probe.wanted = None
     wait_until(lambda: drives(0.5), 20.0, "the mission drives again")
 

@@ -103,7 +103,7 @@ class Vacuum:
     def _on_state(self, message: VacuumState) -> None:
         if self.phases[-1:] != [message.phase]:
             self.phases.append(message.phase)
-        # The last: whoever waits for it looks at the others then.
+        # The last: a test that waits for it looks at the others then.
         self.state = message
 
     def clean(self, goal: CleanGoal) -> Order:
@@ -158,7 +158,7 @@ class Vacuum:
 
     @contextlib.contextmanager
     def steered(self, angular: float) -> Iterator[None]:
-        """Let somebody steer: turn the robot on the spot, rad/s."""
+        """Steer by ``cmd_vel``: turn the robot on the spot, rad/s."""
         command = Twist()
         command.angular.z = angular
         ended = threading.Event()
@@ -334,11 +334,11 @@ def test_after_a_walk_and_an_emergency_stop_it_finds_home(shared_robot: RosGraph
     vacuum.does("emergency stop", 30.0)
     assert (vacuum.state.state, vacuum.state.message) == ("error", "a child")
     vacuum.clean(SMALL).ends(GoalStatus.REJECTED, 30.0)
-    # The mission stands by itself; that nobody else can drive is the speed loop's work.
+    # The mission stands by itself; that no other program can drive is the speed loop's work.
     with vacuum.steered(0.8):
         assert vacuum.stands_for(80)
         vacuum.hold(False)
-        wait_until(lambda: vacuum.twist()[1] > 0.4, 30.0, "it obeys who steers")
+        wait_until(lambda: vacuum.twist()[1] > 0.4, 30.0, "it obeys manual steering")
     vacuum.does("idle", 30.0)
     assert vacuum.dock().ends(GoalStatus.SUCCEEDED).is_docked
     vacuum.does("docked")

@@ -1,4 +1,4 @@
-"""The robot makes a map of its own, whatever comes between, and goes on with it."""
+"""The robot makes a map of its own, despite interruptions, and goes on with it."""
 
 import math
 from collections.abc import Iterator

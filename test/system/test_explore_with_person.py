@@ -32,7 +32,7 @@ OUTLINE = 12
 
 @pytest.fixture
 def graph(tmp_path: Path) -> Iterator[RosGraph]:
-    """Somebody mistyped the name of the robot's map of the home: it begins a new one.
+    """The name of the robot's map of the home was mistyped: it begins a new one.
 
     A person walks about there.
     """

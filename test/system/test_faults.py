@@ -139,7 +139,7 @@ def test_a_bad_top_speed_changes_nothing(shared_robot: RosGraph, bad: object) ->
 
 
 def test_at_a_faster_clock_it_walks_and_ctrl_c_ends_it_without_violence(tmp_path: Path) -> None:
-    """Row 9 for the whole stack: each node ends by itself, and roslaunch has to kill nobody."""
+    """Row 9 for the whole stack: each node ends by itself, and roslaunch has to kill none."""
     with RosGraph(tmp_path) as graph:
         # `./roomba run` waits 1.8 s for them; here the machine may be a busy one.
         launch = graph.launch(f"speed:={FAST}", "--sigint-timeout=20")

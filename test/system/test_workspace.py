@@ -35,7 +35,7 @@ DEADLINE = 60.0
 def run(
     command: Sequence[str | Path], folder: Path, deadline: float = DEADLINE
 ) -> subprocess.CompletedProcess[str]:
-    """Run a command as somebody would who has just logged in, without a terminal."""
+    """Run a command as after a fresh login, without a terminal."""
     environment = {
         "HOME": os.environ["HOME"],
         "LANG": "C.UTF-8",

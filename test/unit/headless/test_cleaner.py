@@ -1,4 +1,4 @@
-"""Whole cleans of small homes: how they end, and whatever may come up meanwhile.
+"""Whole cleans of small homes: how they end, and what may come up meanwhile.
 
 What is clean is counted by where the robot really was, never by what it believes.
 """

@@ -194,7 +194,7 @@ def test_low_it_goes_home_charges_until_it_is_full_and_goes_on() -> None:
     rig.tick(pose=TWO_ROOMS.station, battery=replace(LOW, is_docked=True))
     assert rig.phase is Phase.CHARGING
     assert rig.mission.take_exploration() is None
-    # Nobody knows how much an exploration still needs.
+    # How much an exploration still needs is not known.
     rig.tick(20, battery=Battery(CONFIG.energy.full_enough - 0.01, 26.0, is_docked=True))
     assert rig.phase is Phase.CHARGING
     rig.tick(battery=Battery(CONFIG.energy.full_enough, 26.0, is_docked=True))

@@ -1,4 +1,4 @@
-"""Maps by name: what is there is always whole, whoever was killed, and names are sensible."""
+"""Maps by name: a stored map is always whole, also after a kill, and names are sensible."""
 
 from __future__ import annotations
 

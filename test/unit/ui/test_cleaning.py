@@ -216,7 +216,7 @@ def test_a_clean_that_tells_nothing_gives_the_menu_back_and_is_not_cancelled() -
 
 
 def interrupting_clock(*moments: float) -> SteppedClock:
-    """A clock at whose moments somebody presses Ctrl-C."""
+    """A clock at whose moments Ctrl-C is pressed."""
     return SteppedClock((moment, lambda: signal.raise_signal(signal.SIGINT)) for moment in moments)
 
 

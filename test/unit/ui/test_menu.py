@@ -196,7 +196,7 @@ def test_messages_of_the_robot_are_printed_as_they_are() -> None:
 
 
 def interrupting_clock(*moments: float) -> SteppedClock:
-    """A clock at whose moments somebody presses Ctrl-C."""
+    """A clock at whose moments Ctrl-C is pressed."""
     return SteppedClock((moment, lambda: signal.raise_signal(signal.SIGINT)) for moment in moments)
 
 

@@ -204,7 +204,7 @@ class QuietWalk:
         return WalkReport(WalkOutcome.ARRIVED, distance=15.0, duration=30.0, message="")
 
     def cancel(self) -> None:
-        raise AssertionError("nobody asked for it")
+        raise AssertionError("it was not asked for")
 
 
 class MovingRobot(FakeRobot):

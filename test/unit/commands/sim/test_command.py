@@ -1,4 +1,4 @@
-"""Exit status, messages and Ctrl-C of the command, with runs that nobody drives."""
+"""Exit status, messages and Ctrl-C of the command, with made-up runs."""
 
 from __future__ import annotations
 

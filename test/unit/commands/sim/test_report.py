@@ -1,4 +1,4 @@
-"""Tables and percentiles, of figures that nobody drove for."""
+"""Tables and percentiles, of made-up figures."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The robot's time goes on, whatever happens to its clock."""
+"""The robot's time goes on, also when its clock is set."""
 
 from __future__ import annotations
 

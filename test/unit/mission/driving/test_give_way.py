@@ -1,4 +1,4 @@
-"""Making room for whoever stands in the way."""
+"""Making room for what stands in the way."""
 
 from __future__ import annotations
 

@@ -319,7 +319,7 @@ def test_what_stands_in_the_middle_of_its_path_has_it_planned_anew_or_gone_aroun
 
 
 def test_what_only_the_bumper_finds_time_and_again_ends_the_path() -> None:
-    # Whatever is felt is forgotten at once: the robot drives against it as if for the first time.
+    # What is felt is forgotten at once: the robot drives against it as if for the first time.
     rig = Rig(discs=[(1.5, 0.5, 0.05)])
     rig.obstacles.feel = lambda senses: None  # type: ignore[method-assign]
     step = rig.run()

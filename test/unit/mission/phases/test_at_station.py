@@ -93,7 +93,7 @@ def test_it_charges_until_there_is_enough_for_the_rest() -> None:
     job.begin_exploration(DOCKED)
     station = at_the_station()
     full = replace(DOCKED, battery=Battery(1.0, 26.0, is_docked=True))
-    # Nobody knows what an exploration takes.
+    # What an exploration takes is not known.
     assert station.charge(DOCKED, job, TOOL) == PhaseStep(STANDSTILL)
     assert station.charge(full, job, TOOL) == PhaseStep(event=Event.CHARGED)
     job.forget()

@@ -24,7 +24,7 @@ def senses(
 
 
 def no_way_home(senses: Senses) -> float:
-    raise AssertionError("nobody needs to know")
+    raise AssertionError("the way home is not needed")
 
 
 def driven(metres: float, energy: float, level: float = 0.9) -> EnergyLedger:
@@ -81,7 +81,7 @@ def test_begun_again_it_counts_from_there() -> None:
 def test_what_a_metre_takes_is_learned() -> None:
     assert driven(5.0, 1.0).per_metre == CONFIG.per_metre
     assert driven(20.0, 1.0).per_metre == pytest.approx(0.05)
-    # But nobody drives for nothing.
+    # But it does not drive for nothing.
     assert 0.0 < driven(20.0, 0.0).per_metre < CONFIG.per_metre
 
 

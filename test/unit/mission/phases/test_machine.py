@@ -53,12 +53,12 @@ def test_every_state_takes_every_event(state: MissionState, event: Event) -> Non
         assert after.resumes not in (Phase.PAUSED, Phase.ERROR, Phase.EMERGENCY)
     else:
         assert after.resumes is None
-    # Nobody drives for nothing, and no errand is lost but by commands and by its end.
+    # It does not drive without an errand, and no errand is lost but by commands and by its end.
     if after.drives and state.errand is not Errand.NONE:
         assert after.errand is not Errand.NONE
     if not event.is_command and state.errand in GOES_ON and after.errand is not state.errand:
         assert event is Event.FINISHED or state.phase in (Phase.IDLE, Phase.DOCKED)
-    # Nobody explores on a clean, nor cleans while it explores.
+    # It does not explore on a clean, nor clean while it explores.
     if after.phase in GOES_ON.values() and state.phase not in HELD:
         assert after.phase is GOES_ON.get(after.errand, state.phase)
 

@@ -88,7 +88,7 @@ def test_a_door_that_is_opened_meanwhile_is_driven_through() -> None:
         waited = rig.go_home(replace(IN_THE_DEN, now=now))
         now += 0.05
     rig.obstacles.things = []
-    # It has time, and makes room for whoever may stand there.
+    # It has time, and makes room for a person who may stand there.
     assert rig.makes_room
     aside = rig.go_home(replace(IN_THE_DEN, now=now + 5.0))
     assert (aside.twist == STANDSTILL, aside.message) == (False, None)

@@ -168,7 +168,7 @@ def test_no_name_is_there_twice_and_none_is_lost_whose_room_is_there(
         for label in range(1, len(new.names) + 1):
             its = new.labels == label
             shared = np.count_nonzero(mine & its)
-            # More than half of either: nobody else can be as much the same room.
+            # More than half of either: no other one can be as much the same room.
             if 2 * shared > max(np.count_nonzero(mine), np.count_nonzero(its)):
                 assert name in carried.names
 

@@ -178,7 +178,7 @@ def test_people_who_stand_about_for_a_minute_are_no_change() -> None:
 
 
 def put_foot(world: Simulator, x: float, y: float) -> None:
-    """Put it down where it fits: nobody stands on the robot."""
+    """Put it down where it fits, not on the robot."""
     here = world.pose
     if here.distance_to(x, y) > 0.3:
         world.place_obstacle(x, y, 0.05)

@@ -207,7 +207,7 @@ class Kernels:
 
 
 def ticks(robot: Located, seconds: float) -> Iterator[tuple[Observation, Ranges | None]]:
-    """Drive about by the lidar alone, and tell nobody what is sensed."""
+    """Drive about by the lidar alone, without feeding the localizer."""
     scans = robot.world.observe().scans
     random = np.random.default_rng(3)
     wanted, seen = Twist(0.2, 0.5), robot.world.observe()
@@ -285,7 +285,7 @@ def test_a_robot_that_is_carried_off_is_noticed_and_found_again(every: int) -> N
     assert seen.time - before <= 1.3
     twin.resumed(seen.time, seen.time, robot.world.ranges, LIDAR)
     assert not twin.is_calm
-    # The next scan decides: what was seen just now may tell that nobody carried it.
+    # The next scan decides: what was seen just now may tell that it was not carried.
     robot.look()
     assert twin.estimate.knowledge is Knowledge.SEARCHING
     assert "does not fit" in twin.estimate.reason

@@ -210,7 +210,7 @@ def test_a_clock_set_back_loses_no_way(back: float) -> None:
 
 
 def test_over_a_clock_set_back_the_wheels_alone_say_the_turn() -> None:
-    """Nobody knows for how long the gyro's turning speed went on."""
+    """It is not known for how long the gyro's turning speed went on."""
     reckoned = reckoning()
     reckoned.move(5000.0, Pose(), 0.5)
     reckoned.move(4000.0, Pose(0.0, 0.0, 0.02), 0.5)

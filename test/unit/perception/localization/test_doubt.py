@@ -69,7 +69,7 @@ def test_wrong_before_it_finds_that_out_though_nobody_carried_it() -> None:
     carried = Rig(HERE, HERE)
     carried.place = ELSEWHERE
     moved = carried.asked(12.0)
-    # It takes more to believe that it is elsewhere though nobody carried it.
+    # It takes more to believe that it is elsewhere though it was not carried.
     assert moved is not None
     assert found[0].evidence > moved.evidence
 

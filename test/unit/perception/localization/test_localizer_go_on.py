@@ -67,7 +67,7 @@ def test_on_a_map_of_another_frame_it_is_where_it_was_put(off: Pose) -> None:
     expected = AWAY.compose(robot.world.pose)
     assert robot.estimate.pose.distance_to(expected.x, expected.y) < 0.02
 
-    # Somebody's word alone is compared with all other places: here it fits but fairly.
+    # A reported pose alone is compared with all other places: here it fits but fairly.
     robot.localizer.told(AWAY.compose(robot.world.pose), DEVIATION)
     assert Knowledge.SEARCHING in knowledge_of(robot)
 

@@ -202,7 +202,7 @@ def test_told_to_forget_it_looks_in_the_whole_map() -> None:
 
 
 def test_a_search_that_found_nothing_is_tried_anew() -> None:
-    """Somebody's feet are all around it, for a while; it stands."""
+    """A person's feet are all around it, for a while; it stands."""
     robot = started()
     random = np.random.default_rng(1)
     feet = random.uniform(0.3, 6.0, LIDAR.beams).astype(np.float32)

@@ -89,7 +89,7 @@ def test_the_prior_s_correlations_count() -> None:
 
 
 def test_what_the_map_does_not_know_pulls_but_little() -> None:
-    """A quarter of the beams ends 40 cm too early: somebody stands there."""
+    """A quarter of the beams ends 40 cm too early: a person stands there."""
     true = Pose(1.4, 2.6, 0.7)
     ranges = EYE.scan(true)
     ranges[40:130] = np.maximum(ranges[40:130] - 0.4, 0.2)

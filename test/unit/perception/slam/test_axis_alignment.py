@@ -96,7 +96,7 @@ def test_where_walls_lie_between_cells_is_told(x: float, y: float) -> None:
 
 
 def test_walls_that_lie_anyhow_have_no_phase() -> None:
-    """Two walls half a cell out of step: whatever is chosen is wrong for one of them."""
+    """Two walls half a cell out of step: any choice is wrong for one of them."""
     cloud = walls(4.025, 3.0)
     x, y = phase_of_walls(cloud, CELL)
     assert x == 0.0

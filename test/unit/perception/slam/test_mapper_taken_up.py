@@ -98,7 +98,7 @@ def test_what_was_driven_since_is_made_up_for() -> None:
 
 
 def test_far_from_what_it_saw_last_it_knows_what_it_saw_there_before() -> None:
-    """It drove on to the last of three rooms; while nobody followed it it came to the first."""
+    """It drove on to the last of three rooms; while no mapper ran it came to the first."""
     home = room_home(10.0, 2.4, ((3.3, 0.0, 3.4, 1.6), (6.6, 0.8, 6.7, 2.4), (8.0, 2.0, 8.6, 2.4)))
     robot = Mapped(home, Pose(9.0, 0.4, math.pi)).drive(Twist(0.3, 0.0), 13.5)
     robot.drive(Twist(0.0, -0.5), math.pi).drive(Twist(0.3, 0.0), 5.2)

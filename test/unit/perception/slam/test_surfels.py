@@ -83,7 +83,7 @@ def test_every_few_points_suffice(stride: int) -> None:
 
 
 def test_somebody_who_walks_about_does_not_pull() -> None:
-    """A third of what is in sight belongs to somebody who came 0.15 m nearer."""
+    """A third of what is in sight belongs to a person who came 0.15 m nearer."""
     person = (1.2, 1.6, 1.6, 2.6)
     before = Eye(room_home(5.0, 4.0, ((3.3, 3.1, 3.8, 4.0), (0.0, 1.4, 0.3, 1.9), person)))
     moved = (1.3, 1.5, 1.7, 2.5)

@@ -149,7 +149,7 @@ def test_what_is_off_the_map_is_no_thing() -> None:
 
 @pytest.mark.parametrize(("length", "cells"), [(0.46, 1), (0.49, 0), (0.52, 0)])
 def test_what_ends_at_the_very_edge_of_a_map_is_no_thing(length: float, cells: int) -> None:
-    """From the middle of the last cell on nobody knows how far surfaces are."""
+    """From the middle of the last cell on the distance of surfaces is not known."""
     frame = GridFrame(0.05, 0.0, 0.0, 20, 20)
     layer = ThingLayer(SurfaceField(frame, np.ones(frame.shape, np.float32)))
     ranges = np.full(360, np.nan, np.float32)

@@ -127,7 +127,7 @@ def test_flat_lets_the_body_walk_straight_from_home_to_3_4(homes: dict[str, Home
     """The report's 5.0 m in 10 s: a clear corridor, 12 cm wider than the body on both sides."""
     flat = homes["flat"]
     assert flat.map.values[flat.frame.cell_of(3.0, 4.0)] == FREE
-    # What lies behind the start, as the station does, is in nobody's way.
+    # What lies behind the start, as the station does, is not in the way.
     corridor = shapely.LineString([(0.12, 0.16), (3.0, 4.0)]).buffer(
         RADIUS + 0.12, cap_style="flat"
     )
