@@ -4,18 +4,21 @@ import itertools
 import time
 from collections import Counter
 from collections.abc import Iterator
+from typing import Any
 
 import pytest
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray
 from fixtures.graph import LAUNCHED, RosGraph
-from fixtures.malformed import CANNOT_BE_WRONG, malformed
+from fixtures.malformed import CANNOT_BE_WRONG, has_numbers, malformed, not_finite
 from fixtures.probe import Probe
 from fixtures.tiny_home import tiny_home
 from fixtures.waiting import wait_until
 from geometry_msgs.msg import Twist
 from roomba_robot.msg import CleanActionGoal, VacuumState
 from rosgraph_msgs.msg import Log
+from roslib.message import get_message_class
+from std_srvs.srv import Trigger
 
 FLOOD = 200
 """Messages of one topic, sent as fast as one can steer."""
@@ -81,6 +84,11 @@ class Witness:
         self.probe.send("/clean/goal", CleanActionGoal())
         wait_until(lambda: self.state.fraction > 0.05, 60.0, lambda: f"it cleans: {self.state}")
 
+    def stops(self) -> None:
+        """Let it end what it does."""
+        assert rospy.ServiceProxy("/stop", Trigger)().success
+        wait_until(lambda: self.state.phase == "idle", 30.0, lambda: f"it stops: {self.state}")
+
     def goes_on(self) -> None:
         """Wait until more is clean than was at the call."""
         before = self.state.covered
@@ -143,6 +151,34 @@ def test_bad_messages_on_every_topic_are_refused_and_have_no_effect(
     assert set(witness.states) == {"cleaning"}
     assert {node: count for node, count in witness.lines.items() if count > elapsed + 2.0} == {}
     assert set(witness.lines) >= {node for topic in bad for node in topics[topic][1]}
+    witness.stops()
+
+
+def test_all_numbers_that_the_robot_tells_are_finite(shared_robot: RosGraph) -> None:
+    witness = Witness(shared_robot)
+    told: Counter[str] = Counter()
+    found: set[str] = set()
+    publishers, _, _ = shared_robot.system_state()
+    types = shared_robot.topic_types()
+    kinds = {
+        topic: types[topic]
+        for topic, nodes in publishers.items()
+        if has_numbers(types[topic]) and any(node.strip("/") in LAUNCHED for node in nodes)
+    }
+
+    def look(message: Any, topic: str) -> None:
+        told[topic] += 1
+        found.update(f"{topic}: {field}" for field in not_finite(kinds[topic], message))
+
+    for topic, kind in kinds.items():
+        rospy.Subscriber(topic, get_message_class(kind), look, topic)
+    witness.cleans()
+    witness.goes_on()
+    witness.stops()
+    wait_until(lambda: told["/clean/result"] > 0, 30.0, "the result")
+    # A beam that meets nothing is infinite (REP 117).
+    assert found <= {"/scan: ranges"}
+    assert len(told) > 20
 
 
 def missing(expected: Counts, counts: Counts) -> list[str]:
