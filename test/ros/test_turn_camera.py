@@ -66,12 +66,13 @@ def test_while_it_travels_it_keeps_the_newest_picture_of_each_angle(
     start(graph, tmp_path / "Images")
     message = PoseStamped()
     message.pose.orientation.w = 1.0
-    for step in range(100):
-        message.pose.position.x = 0.1 * step
+
+    def has_travelled() -> bool:
+        message.pose.position.x += 0.1
         probe.send("/pose", message)
-        time.sleep(0.2)
-        if len(asked) >= 8:
-            break
+        return len(asked) >= 8
+
+    wait_until(has_travelled, 20.0, "eight pictures", pause=0.2)
     assert asked[:5] == [float(angle) for angle in ANGLES]
     assert asked[5:8] == [-30.0, -15.0, 0.0]
     assert {path.name for path in (tmp_path / "Images").glob("*.png")} == {
