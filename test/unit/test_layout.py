@@ -114,6 +114,7 @@ LARGE_FOLDERS = {
     "src/roomba/perception/slam": "one algorithm: its stages, and the kernels of each beside it",
     "test/fixtures": "one file a fixture",
     "test/ros": "one file a node",
+    "test/system": "one file a promise of the whole",
     "test/unit/benchmarks": "one file a benchmark",
     "test/unit/perception/slam": "one file a stage, and some for whole maps",
 }

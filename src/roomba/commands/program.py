@@ -38,7 +38,8 @@ The commands run, control, camera, exec and localize need ROS, test and bench th
 it is ./roomba COMMAND.
 """
 _MODULES: Final = (
-    "cv2", "matplotlib", "numba", "numpy", "PIL", "pydantic", "rich", "shapely", "typer", "yaml",
+    "cv2", "matplotlib", "numba", "numpy", "PIL", "pydantic", "rich", "scipy", "shapely", "typer",
+    "yaml",
 )  # fmt: skip
 _EXTRAS: Final = {"gymnasium": "gym"}
 

@@ -1,0 +1,59 @@
+from __future__ import annotations
+
+import json
+import sys
+
+import pytest
+
+from roomba.commands.program import program
+
+
+def call(monkeypatch: pytest.MonkeyPatch, *words: str) -> int:
+    monkeypatch.setattr(sys, "argv", ["/opt/venv/bin/roomba", *words])
+    return program()
+
+
+@pytest.mark.parametrize("words", [(), ("help",), ("--help",)])
+def test_usage_names_each_command(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], words: tuple[str, ...]
+) -> None:
+    assert call(monkeypatch, *words) == 0
+    told = capsys.readouterr().out
+    assert told.startswith("usage: roomba COMMAND")
+    assert all(f"\n  {command}" in told for command in ("sim", "map", "pictures", "doctor"))
+
+
+@pytest.mark.parametrize(
+    ("command", "said"),
+    [
+        ("run", "run: needs ROS, which only a checkout sets up: ./roomba run"),
+        ("control", "control: needs ROS"),
+        ("test", "test: needs the sources; in a checkout: ./roomba test"),
+        ("bogus", "expected a command of `roomba help`, got 'bogus'"),
+    ],
+)
+def test_a_command_that_is_not_here_is_refused_in_one_line(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], command: str, said: str
+) -> None:
+    assert call(monkeypatch, command) == 2
+    told = capsys.readouterr()
+    assert told.out == ""
+    assert said in told.err
+    assert len(told.err.splitlines()) == 1
+
+
+def test_arguments_are_handed_to_the_command(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert call(monkeypatch, "map", "--bag", "drive.bag") == 2
+    assert "--bag: expected a Python with ROS" in capsys.readouterr().err
+
+
+def test_the_doctor_tells_of_each_module(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    status = call(monkeypatch, "doctor", "--json")
+    rows = {row["subject"]: row["state"] for row in json.loads(capsys.readouterr().out)}
+    assert {"numba", "cv2", "gymnasium"} <= rows.keys()
+    assert rows["numba"] == "fine"
+    assert status == ("missing" in rows.values())
