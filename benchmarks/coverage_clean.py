@@ -120,7 +120,7 @@ class Clean:
         return self.share < least and hidden > (1.0 - least) * self.area
 
 
-class _Watched(HeadlessMission):
+class _Observed(HeadlessMission):
     """A robot whose belief is compared with the truth now and then while it cleans."""
 
     wrong = 0.0
@@ -156,7 +156,7 @@ def clean(task: Task, keeps_poses: bool = False) -> Clean:
         there = changed(there.home, task.change, task.seed)
     home, things = there.home, there.things
     setup = time.process_time()
-    robot = _Watched(home, SimulatedRobotConfig().with_sensors(task.sensors), seed=task.seed)
+    robot = _Observed(home, SimulatedRobotConfig().with_sensors(task.sensors), seed=task.seed)
     setup = time.process_time() - setup
     for thing in things:
         robot.simulator.place_obstacle(*thing)

@@ -208,7 +208,7 @@ class WalkConfig(Frozen):
     progress_timeout: Positive = 6.0
     max_replans: Annotated[int, Field(ge=0)] = 12
     max_ways_around: Annotated[int, Field(ge=0)] = 60
-    patience: Positive = 10.0
+    blocked_wait: Positive = 10.0
 
 
 class TrackingConfig(Frozen):

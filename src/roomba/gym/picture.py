@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.geometry import Pose
-from roomba.plots.home import draw_plan
+from roomba.plots.home import draw_floor_plan
 from roomba.world.fleet import Fleet
 
 PIXELS_PER_METRE = 40.0
@@ -22,7 +22,7 @@ def picture_of(fleet: Fleet, world: int) -> NDArray[np.uint8]:
     fineness = dirt.frame.rows // rows
     density = dirt.density.reshape(rows, fineness, columns, fineness).mean(axis=(1, 3))
     x, y, theta = fleet.poses[world].tolist()
-    return draw_plan(
+    return draw_floor_plan(
         home,
         pixels_per_metre=PIXELS_PER_METRE,
         dirt=density,

@@ -36,7 +36,7 @@ SMALLEST_BODY = 7.0
 """px; and its least radius."""
 
 
-def draw_plan(
+def draw_floor_plan(
     home: Home,
     *,
     pixels_per_metre: float | None = None,

@@ -1,4 +1,4 @@
-"""How all plots look: one quiet style, colours that everybody can tell apart, and plans below.
+"""How all plots look: one quiet style, colours for all kinds of colour vision, and floor plans below.
 
 The colours are those of Okabe and Ito, "Color universal design" (2008).
 """
@@ -100,7 +100,7 @@ def stacked(figure: Any, panels: int, heights: list[float] | None = None) -> lis
     return list(axes[:, 0])
 
 
-def show_plan(axes: Axes, home: Home, area: Area) -> None:
+def show_floor_plan(axes: Axes, home: Home, area: Area) -> None:
     """Lay a pale plan of a part of a home under what is drawn; the axes are in m, map frame."""
     x_min, y_min, x_max, y_max = area
     canvas = Canvas.over(area, _PLAN_PIXELS / max(x_max - x_min, y_max - y_min), _PAPER)

@@ -90,7 +90,7 @@ class MissionGoal(ActionGoal):
             self._handle.set_aborted(message, text)
 
     def stopped(self, ended: Ended, reason: str) -> None:
-        """Tell that somebody ended it."""
+        """Tell that a command ended it."""
         self._handle.set_canceled(self._result(reason), reason)
 
     def given_up(self, reason: str) -> None:
@@ -126,7 +126,7 @@ class CleaningGoal(MissionGoal):
         return True
 
     def stopped(self, ended: Ended, reason: str) -> None:
-        """Tell that somebody ended it, and what it achieved."""
+        """Tell that a command ended it, and what it achieved."""
         result = ended.clean
         message = self._result(reason) if result is None else result_message(result)
         self._handle.set_canceled(message, reason)
@@ -229,7 +229,7 @@ class ExploringGoal(MissionGoal):
         return True
 
     def stopped(self, ended: Ended, reason: str) -> None:
-        """Tell that somebody ended it, and what it achieved."""
+        """Tell that a command ended it, and what it achieved."""
         explored = ended.exploration
         message = self._result(reason) if explored is None else explored_message(explored)
         self._handle.set_canceled(message, reason)

@@ -15,7 +15,7 @@ from roomba.commands.telling import tell_tables, write_json
 from roomba.errors import RoombaError
 
 if TYPE_CHECKING:
-    from roomba.commands.map.runs import MapRun, MapScene, RunObserver, WatchedExplorer
+    from roomba.commands.map.runs import MapRun, MapScene, RunObserver, ObservedExplorer
 
 COMPLETED, ENDED_OTHERWISE, USAGE, INTERRUPTED = 0, 1, 2, 130
 _SHOWN: Final = 0.25
@@ -83,7 +83,7 @@ def _shown_by(show: Show, scene: MapScene) -> RunObserver:
     all_of_it = float(np.count_nonzero(scene.seen)) * scene.home.frame.resolution**2
     looked = time.monotonic()
 
-    def observe(robot: WatchedExplorer) -> None:
+    def observe(robot: ObservedExplorer) -> None:
         nonlocal looked
         if time.monotonic() - looked < _SHOWN:
             return

@@ -71,14 +71,14 @@ class MapRun:
         return self.record.result.duration / max(self.record.wall, 1e-9)
 
 
-RunObserver = Callable[["WatchedExplorer"], None]
+RunObserver = Callable[["ObservedExplorer"], None]
 """Is shown the robot whenever it looked around: every few ticks, or at each."""
 
 _AS_OFTEN: Final = 0.9
 """Of the way between keyframes: by its own odometry a robot sees each of them a bit sooner."""
 
 
-class WatchedExplorer(HeadlessExplorer):
+class ObservedExplorer(HeadlessExplorer):
     """A robot that makes its map while another map is made by its odometry alone."""
 
     observers: tuple[RunObserver, ...] = ()
@@ -125,7 +125,7 @@ class MapScene:
             self.home.solid, self.home.frame, (station.x, station.y), self.config
         )
         mapping = load_mapping_config(CONFIGURATION / "mapping.yaml")
-        self.robot = WatchedExplorer(
+        self.robot = ObservedExplorer(
             self.home, self.config, mission_config(self.config), mapping, seed=trial.seed
         )
         self.robot.begin_blind(mapping)

@@ -26,7 +26,7 @@ def picture_of_depth(home: Home, config: CameraConfig | None = None) -> Figure:
     """Draw colour and depth side by side, when a person walks through the middle of the view."""
     config = config or CameraConfig()
     world = Simulator(home, start=_STAND)
-    _wait_for_somebody(world)
+    _wait_for_person(world)
     camera = Camera(Scene.of(home), config)
     camera.place_things(world.things)
     dirt = world.dirt
@@ -43,7 +43,7 @@ def picture_of_depth(home: Home, config: CameraConfig | None = None) -> Figure:
     return figure
 
 
-def _wait_for_somebody(world: Simulator) -> None:
+def _wait_for_person(world: Simulator) -> None:
     """Let time pass until a person is 2 to 3.5 m ahead, near the middle of the view."""
     people = np.array([thing.kind is MovingKind.PERSON for thing in world.home.moving], bool)
     while world.time < _LONGEST and people.any():

@@ -21,7 +21,7 @@ from roomba.plots.style import (
     draw_signals,
     drawn,
     empty_figure,
-    show_plan,
+    show_floor_plan,
     side_by_side,
     stacked,
 )
@@ -86,7 +86,7 @@ def _with_speed_loop(home: Home, seconds: float) -> DriveRecording:
 
 
 def _draw_plan(axes: Axes, home: Home, recording: DriveRecording) -> None:
-    show_plan(axes, home, _AREA)
+    show_floor_plan(axes, home, _AREA)
     draw_robot(axes, _START)
     cliff = RobotConfig().cliff
     for angle in np.radians(cliff.angles):

@@ -19,7 +19,7 @@ from roomba.plots.style import (
     draw_robot,
     drawn,
     empty_figure,
-    show_plan,
+    show_floor_plan,
 )
 from roomba.world.home.home import Home
 from roomba.world.lidar import Lidar
@@ -40,7 +40,7 @@ def picture_of_lidar(home: Home, stand: Pose = _STAND, scans: int = 100) -> Figu
     measured = np.array([_next_scan(world) for _ in range(scans)])
     figure = empty_figure(1150, 520)
     plan, errors = figure.subplots(1, 2, width_ratios=[1.25, 1.0])
-    show_plan(plan, home, area_of(home))
+    show_floor_plan(plan, home, area_of(home))
     _draw_scan(plan, stand, measured[0], exact)
     _draw_errors(errors, measured, exact, config.simulation.lidar)
     return figure

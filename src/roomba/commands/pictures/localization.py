@@ -26,7 +26,7 @@ from roomba.plots.style import (
     draw_robot,
     drawn,
     empty_figure,
-    show_plan,
+    show_floor_plan,
 )
 from roomba.world.home.home import Home
 from roomba.world.simulator import Observation, Simulator
@@ -91,7 +91,7 @@ def picture_of_relocation(home: Home, set_down: Pose = _SET_DOWN) -> Figure:
 def _draw_places(
     axes: Axes, home: Home, relocation: Relocation, reckoned: Pose, seen: Observation
 ) -> None:
-    show_plan(axes, home, area_of(home))
+    show_floor_plan(axes, home, area_of(home))
     best = relocation.hypotheses[0].evidence
     for hypothesis in reversed(relocation.hypotheses):
         likelihood = math.exp(max(hypothesis.evidence - best, -6.0) / 3.0)

@@ -71,14 +71,14 @@ def picture_of_map_errors(home: Home, seed: int = 1) -> Picture:
 
 def _explored(home: Home, seed: int) -> tuple[list[_Look], NDArray[np.float64]]:
     """Explore; return looks at the map, and rows of t (s), x, y (m), where it took itself to be."""
-    robot = _Watched(home, seed=seed)
+    robot = _Observed(home, seed=seed)
     record = robot.explore()
     end = robot.looks[-1]
     robot.looks.append(_Look(end.time, record.occupancy, robot.mapper.pose, None))
     return robot.looks, record.believed
 
 
-class _Watched(HeadlessExplorer):
+class _Observed(HeadlessExplorer):
     """Keeps the map as it is now and then."""
 
     def __init__(self, home: Home, *, seed: int) -> None:

@@ -22,7 +22,7 @@ from roomba.plots.style import (
     draw_robot,
     drawn,
     empty_figure,
-    show_plan,
+    show_floor_plan,
 )
 from roomba.world.home.home import Box, Home, MovingKind, MovingThing
 from roomba.world.simulator import Simulator
@@ -55,7 +55,7 @@ def picture_of_moving(home: Home, minutes: float = 40.0) -> Figure:
         [["plan", "close"], ["times", "times"]], width_ratios=[1.1, 1.0], height_ratios=[1.0, 0.35]
     )
     plan, close = panels["plan"], panels["close"]
-    show_plan(plan, home, area_of(home))
+    show_floor_plan(plan, home, area_of(home))
     for number, thing in enumerate(home.moving):
         _draw_way(plan, number, thing, poses[:, number])
     draw_robot(plan, _STAND)
@@ -98,7 +98,7 @@ def _draw_boxes(axes: Axes, boxes: tuple[Box, ...], pose: Pose, colour: str) -> 
 def _draw_scan(
     axes: Axes, home: Home, ranges: NDArray[np.float32], things: NDArray[np.float64]
 ) -> None:
-    show_plan(axes, home, (2.6, 0.0, 4.4, 1.6))
+    show_floor_plan(axes, home, (2.6, 0.0, 4.4, 1.6))
     height = LidarConfig().mount_height
     for number, thing in enumerate(home.moving):
         if things[number, 3] > 0.0:

@@ -16,7 +16,7 @@ from roomba.plots.style import (
     draw_robot,
     drawn,
     empty_figure,
-    show_plan,
+    show_floor_plan,
     side_by_side,
 )
 from roomba.world.home.home import Home
@@ -66,7 +66,7 @@ def picture_of_odometry(
     figure = empty_figure(1150, 620)
     left, right = side_by_side(figure, [1.15, 1.0])
     plan = left.subplots()
-    show_plan(plan, home, area_of(home))
+    show_floor_plan(plan, home, area_of(home))
     plan.plot(
         told_x[shown], told_y[shown], color=ORANGE, linewidth=1.0, label="by the wheels' encoders"
     )

@@ -19,7 +19,7 @@ from roomba.plots.style import (
     area_of,
     drawn,
     empty_figure,
-    show_plan,
+    show_floor_plan,
 )
 from roomba.world.home.home import Home
 
@@ -31,7 +31,7 @@ def picture_of_rooms(home: Home) -> Figure:
     """Draw a home's plan, and the rooms that are found in its map."""
     figure = empty_figure(1150, 520)
     plan, cut = figure.subplots(1, 2)
-    show_plan(plan, home, area_of(home))
+    show_floor_plan(plan, home, area_of(home))
     plan.set_title(f"The home: {len(home.rooms)} rooms")
     _draw_rooms(cut, home)
     return figure

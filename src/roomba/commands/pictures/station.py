@@ -10,7 +10,7 @@ from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
 from roomba.configuration.simulation import SimulatedRobotConfig
-from roomba.plots.style import draw_robot, drawn, empty_figure, show_plan
+from roomba.plots.style import draw_robot, drawn, empty_figure, show_floor_plan
 from roomba.world.engine.state.arrays import Infrared, code_of
 from roomba.world.fleet import Fleet
 from roomba.world.home.home import Home
@@ -43,7 +43,7 @@ def picture_of_station(home: Home, spacing: float = 0.01) -> Figure:
     seen = _beams(home, config, np.arange(area[0], area[2], spacing), _rows(area, spacing))
     figure = empty_figure(820, 620)
     axes = figure.subplots()
-    show_plan(axes, home, area)
+    show_floor_plan(axes, home, area)
     kinds = list(_COLOURS)
     number = np.full(seen.shape, np.nan)
     for index, kind in enumerate(kinds):

@@ -8,7 +8,7 @@ from roomba.configuration.robot import CameraConfig
 from roomba.geometry import Pose
 from roomba.headless.walker import HeadlessRobot
 from roomba.plots.canvas import Picture
-from roomba.plots.home import draw_plan
+from roomba.plots.home import draw_floor_plan
 from roomba.world.camera.camera import Camera, Scene
 from roomba.world.home.home import Home
 
@@ -26,7 +26,7 @@ VIEWS = {
 
 def picture_of_home(home: Home) -> Picture:
     """Return the plan of a home, uint8 [height, width, 3] RGB."""
-    return draw_plan(home, pixels_per_metre=_PIXELS_PER_METRE)
+    return draw_floor_plan(home, pixels_per_metre=_PIXELS_PER_METRE)
 
 
 def picture_of_walk(home: Home) -> Picture:
@@ -34,7 +34,7 @@ def picture_of_walk(home: Home) -> Picture:
     robot = HeadlessRobot(home)
     records = [robot.walk(*point) for point in _WALK]
     way = np.concatenate([record.poses[:, 1:3] for record in records])
-    return draw_plan(
+    return draw_floor_plan(
         home,
         pixels_per_metre=_PIXELS_PER_METRE,
         path=[(float(x), float(y)) for x, y in way],

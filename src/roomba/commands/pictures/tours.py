@@ -30,7 +30,7 @@ class Tour:
 
 def tour_of(home: Home, seconds: float, seed: int) -> Tour:
     """Walk to one place after the other, chosen at random, for so long."""
-    robot = _WatchedRobot(home, seed)
+    robot = _ObservedRobot(home, seed)
     random = np.random.default_rng(seed)
     x_min, x_max, y_min, y_max = home.frame.extent
     while robot.simulator.time < seconds:
@@ -42,7 +42,7 @@ def tour_of(home: Home, seconds: float, seed: int) -> Tour:
     return Tour(rows[:, 0], rows[:, 1:4], rows[:, 4:7], rows[:, 7:10], rows[:, 10:13])
 
 
-class _WatchedRobot(HeadlessRobot):
+class _ObservedRobot(HeadlessRobot):
     """Writes down, at each tick, what different ways to know its place come to."""
 
     def __init__(self, home: Home, seed: int) -> None:

@@ -23,7 +23,7 @@ from roomba.commands.sim.report import clock
 from roomba.commands.sim.runs import Run
 from roomba.grid import FREE
 from roomba.mission.cleaning.request import MissReason
-from roomba.plots.style import INK, RED, drawn, empty_figure, show_plan
+from roomba.plots.style import INK, RED, drawn, empty_figure, show_floor_plan
 
 _WIDTH: Final = 1200
 _LEAST_HEIGHT, _MOST_HEIGHT = 420, 1400
@@ -63,7 +63,7 @@ def picture_of(run: Run) -> Figure:
     height = min(max(0.88 * _WIDTH * high / wide, _LEAST_HEIGHT), _MOST_HEIGHT)
     figure = empty_figure(_WIDTH, round(height) + _REST)
     axes = figure.subplots()
-    show_plan(axes, run.home, area)
+    show_floor_plan(axes, run.home, area)
     _draw_floor(axes, run)
     path = _draw_path(axes, run)
     bar = figure.colorbar(path, ax=axes, fraction=0.03, pad=0.01, aspect=40)

@@ -57,7 +57,7 @@ class Run:
     truth: CoverageMap
 
 
-class WatchedMission(HeadlessMission):
+class ObservedMission(HeadlessMission):
     """A robot that is looked at while it cleans."""
 
     observers: tuple[RunObserver, ...] = ()
@@ -79,7 +79,7 @@ class TrialSetup:
         self.home = home_of(trial, self.config.body)
         mission = mission_config(self.config)
         docking = load_docking_config(CONFIGURATION / "docking.yaml")
-        self.robot = WatchedMission(
+        self.robot = ObservedMission(
             self.home,
             self.config,
             mission,

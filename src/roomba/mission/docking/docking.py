@@ -80,7 +80,7 @@ class Docking:
         wanted = Twist()
         if self._state not in (DockState.DOCKED, DockState.FAILED):
             self._follow(senses)
-            self._watch(senses)
+            self._notice(senses)
             wanted = self._act(senses)
         self._wanted = wanted
         return DockStep(self._state, wanted, self._reason, self._attempts, self._trouble)
@@ -111,7 +111,7 @@ class Docking:
     def _is_stuck(self) -> bool:
         return self._time.elapsed - self._moved > self._config.stuck_timeout
 
-    def _watch(self, senses: DockSenses) -> None:
+    def _notice(self, senses: DockSenses) -> None:
         """Notice what changes everything, in any phase."""
         is_first, self._is_first = self._is_first, False
         if senses.is_charging:

@@ -216,7 +216,7 @@ class Walk:
             self._trouble += f", and there is no way around it: {error}"
             if error.reason is NoPathReason.GOAL_IN_OBSTACLE:
                 self._trouble = f"{_UNKNOWN} at the goal: {error}"
-            if senses.now - self._blocked_since > self._config.patience:
+            if senses.now - self._blocked_since > self._config.blocked_wait:
                 return self._trouble
         return ""
 

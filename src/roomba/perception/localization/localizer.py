@@ -33,7 +33,7 @@ _ANYWHERE: Final = np.diag([100.0**2, 100.0**2, math.pi**2])
 """m2, rad2; of an unknown pose: so large that a reader of the covariance alone does not use it."""
 _FOUND_SPREAD: Final = np.diag([0.05**2, 0.05**2, 0.03**2])
 """m2, rad2; of a place that was found, before scans narrow it down."""
-_PATIENCE: Final = 0.5
+_WAIT_BEFORE_MOVING: Final = 0.5
 """s; how long it waits for a scan that tells places apart before it moves to get one."""
 _SEARCHED_EVERY: Final = 1.0
 """s; after which a search that found nothing is tried anew."""
@@ -230,7 +230,7 @@ class Localizer:
         if knowledge is not Knowledge.SEARCHING or self._is_lifted or sees_nothing:
             return False
         if self._relocation is None:
-            return self._now - self._searching_since > _PATIENCE
+            return self._now - self._searching_since > _WAIT_BEFORE_MOVING
         return self._relocation.verdict is not Verdict.SEARCHING
 
     @property

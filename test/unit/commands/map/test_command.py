@@ -15,7 +15,7 @@ from roomba.commands.map.command import main
 from roomba.commands.map.json_file import TIMES, run_as_json
 from roomba.commands.map.plot import picture_of
 from roomba.commands.map.report import error_lines, run_lines
-from roomba.commands.map.runs import MapRun, MapScene, WatchedExplorer
+from roomba.commands.map.runs import MapRun, MapScene, ObservedExplorer
 from roomba.commands.sim.trial import Trial
 from roomba.commands.sim.warm import closet
 from roomba.configuration.robot import RobotConfig
@@ -63,7 +63,7 @@ def test_the_same_trial_gives_the_same_run_and_another_seed_another_one(run: Map
 def test_whoever_watches_sees_it_every_now_and_then() -> None:
     seen: list[float] = []
 
-    def observe(robot: WatchedExplorer) -> None:
+    def observe(robot: ObservedExplorer) -> None:
         seen.append(robot.seen.time)
 
     run = MapScene(CLOSET).run([observe])

@@ -39,10 +39,10 @@ class Rig:
         obstacles = Obstacles(things, ROBOT.walk, ROBOT.body, CONFIG.driving)
         self.drives = Drives(SITE, ROBOT, CONFIG.driving, obstacles)
         book = EnergyLedger(CONFIG.energy, senses)
-        self.watch = Monitor(ROBOT.walk, self.drives, book, senses)
+        self.monitor = Monitor(ROBOT.walk, self.drives, book, senses)
 
     def failure(self, senses: Senses, state: MissionState = CLEANING) -> Failure | None:
-        return self.watch.failure(state, senses, (HERE.x, HERE.y))
+        return self.monitor.failure(state, senses, (HERE.x, HERE.y))
 
     def bump(self) -> None:
         """Find something, with the bumper."""
@@ -55,10 +55,10 @@ class Rig:
 
 def test_contact_that_comes_or_goes_is_noticed_once() -> None:
     docked = replace(AWAY, battery=Battery(1.0, 26.0, is_docked=True))
-    watch = Rig().watch
-    seen = [watch.contact_changed(each) for each in (AWAY, docked, docked, AWAY, AWAY)]
+    monitor = Rig().monitor
+    seen = [monitor.contact_changed(each) for each in (AWAY, docked, docked, AWAY, AWAY)]
     assert seen == [False, True, False, True, False]
-    assert not Rig(docked).watch.contact_changed(docked)
+    assert not Rig(docked).monitor.contact_changed(docked)
 
 
 @pytest.mark.parametrize(
@@ -82,7 +82,7 @@ def test_what_ends_a_drive_is_nobodys_matter_while_it_stands(
 def test_astray_it_is_given_time_and_then_the_reason_is_told() -> None:
     rig, timeout = Rig(), ROBOT.walk.astray_timeout
     assert rig.failure(SEARCHING) is None
-    assert rig.watch.is_astray
+    assert rig.monitor.is_astray
     assert rig.failure(replace(SEARCHING, now=timeout - 0.1)) is None
     failure = rig.failure(replace(SEARCHING, now=timeout + 0.1))
     assert failure is not None
@@ -94,9 +94,9 @@ def test_standing_or_docking_it_does_not_matter_where_it_is() -> None:
     rig = Rig()
     rig.failure(SEARCHING)
     rig.failure(SEARCHING, MissionState(Phase.PAUSED, Errand.CLEAN))
-    assert not rig.watch.is_astray
+    assert not rig.monitor.is_astray
     assert rig.failure(SEARCHING, MissionState(Phase.DOCKING, Errand.HOME)) is None
-    assert not rig.watch.is_astray
+    assert not rig.monitor.is_astray
 
 
 @pytest.mark.parametrize(("x", "remembers"), [(1.2, True), (2.2, False)])
@@ -108,5 +108,5 @@ def test_found_again_far_away_it_was_carried_and_forgets_what_is_here(
     rig.failure(SEARCHING)
     assert rig.remembers
     assert rig.failure(replace(AWAY, now=1.0, pose=Pose(x, 0.6, 0.0))) is None
-    assert not rig.watch.is_astray
+    assert not rig.monitor.is_astray
     assert rig.remembers is remembers

@@ -57,7 +57,7 @@ def test_it_does_not_wait_for_ever_and_tells_where_what_stands() -> None:
     assert "map does not show" in record.reason
     assert "no way around it" in record.reason
     waited = [step for step in record.steps if step.cruise_speed == 0.0]
-    assert 0.05 * len(waited) == pytest.approx(CONFIG.walk.patience, abs=1.5)
+    assert 0.05 * len(waited) == pytest.approx(CONFIG.walk.blocked_wait, abs=1.5)
 
 
 def test_where_something_stood_it_goes_and_looks_again() -> None:

@@ -15,7 +15,7 @@ from roomba.configuration.robot import BodyConfig
 from roomba.files.occupancy_map import load_map
 from roomba.files.shipped import HOMES
 from roomba.grid import FREE, OCCUPIED
-from roomba.plots.home import draw_plan
+from roomba.plots.home import draw_floor_plan
 from roomba.world.home.home import Home, MovingKind
 from roomba.world.home.raster import (
     covered_cells,
@@ -175,8 +175,8 @@ def test_the_plan_shows_what_moves_where_it_stands_at_first(homes: dict[str, Hom
     shut = replace(homes["family"], moving=(replace(door, is_present=True), chair))
     still = replace(homes["family"], moving=())
     for thing, home in ((chair, homes["family"]), (door, shut)):
-        drawn = draw_plan(home, pixels_per_metre=20.0, labels=False)
-        bare = draw_plan(still, pixels_per_metre=20.0, labels=False)
+        drawn = draw_floor_plan(home, pixels_per_metre=20.0, labels=False)
+        bare = draw_floor_plan(still, pixels_per_metre=20.0, labels=False)
         rows, columns = np.nonzero((drawn != bare).any(axis=2))
         margin = 0.03 * 8.4
         x, y = columns / 20.0 - 0.5 - margin, 6.0 + margin - rows / 20.0
