@@ -1,4 +1,4 @@
-"""How all plots look: one quiet style, colours for all kinds of colour vision, and floor plans below.
+"""The style of all plots: quiet, in colours for all kinds of colour vision, with floor plans below.
 
 The colours are those of Okabe and Ito, "Color universal design" (2008).
 """

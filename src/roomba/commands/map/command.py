@@ -15,7 +15,7 @@ from roomba.commands.telling import tell_tables, write_json
 from roomba.errors import RoombaError
 
 if TYPE_CHECKING:
-    from roomba.commands.map.runs import MapRun, MapScene, RunObserver, ObservedExplorer
+    from roomba.commands.map.runs import MapRun, MapScene, ObservedExplorer, RunObserver
 
 COMPLETED, ENDED_OTHERWISE, USAGE, INTERRUPTED = 0, 1, 2, 130
 _SHOWN: Final = 0.25
