@@ -12,8 +12,7 @@ from benchmarks.coverage_clean import home_named
 from roomba.configuration.mapping import MappingConfig
 from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.geometry import Pose
-from roomba.headless.explorer import HeadlessExplorer
-from roomba.mission.mission import MissionStep
+from roomba.headless.cleaner import HeadlessMission
 from roomba.perception.matching.scan_view import LidarModel
 from roomba.perception.slam.mapper import Mapper
 
@@ -37,7 +36,7 @@ class Recorded:
     start: Pose
 
 
-class _Listener(HeadlessExplorer):
+class _Listener(HeadlessMission):
     """Writes down what the mapper is told, all scans, not every other one."""
 
     def begin(self) -> None:
@@ -45,10 +44,9 @@ class _Listener(HeadlessExplorer):
         self._heard_scans = -1
         self._hear()
 
-    def tick(self) -> MissionStep:
-        step = super().tick()
+    def tick(self) -> None:
+        super().tick()
         self._hear()
-        return step
 
     def _hear(self) -> None:
         seen = self.seen
@@ -62,7 +60,7 @@ def speed(home: str, seed: int, folder: str = "") -> float:
 
     ``folder`` is of map_server maps, or "" for a shipped home.
     """
-    robot = HeadlessExplorer(home_named(home, folder), SimulatedRobotConfig(), seed=seed)
+    robot = HeadlessMission(home_named(home, folder), seed=seed, known=MappingConfig())
     began = time.process_time()
     record = robot.explore()
     return record.result.duration / (time.process_time() - began)
@@ -70,7 +68,7 @@ def speed(home: str, seed: int, folder: str = "") -> float:
 
 def recorded(home: str, seed: int) -> Recorded:
     """Explore a home, and keep what was heard."""
-    robot = _Listener(home_named(home), SimulatedRobotConfig(), seed=seed, longest_burst=0)
+    robot = _Listener(home_named(home), seed=seed, known=MappingConfig(), longest_burst=0)
     robot.begin()
     robot.explore()
     return Recorded(robot.heard, robot.lidar, robot.simulator.start)

@@ -13,11 +13,11 @@ from benchmarks.coverage_floor import drawn
 from roomba.commands.map.runs import Drawn, run_trial
 from roomba.commands.sim.trial import Trial
 from roomba.configuration.docking import DockingConfig
+from roomba.configuration.mapping import MappingConfig
 from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.geometry import Pose
 from roomba.grid import OccupancyMap
 from roomba.headless.cleaner import HeadlessMission
-from roomba.headless.newcomer import HeadlessNewcomer
 from roomba.mission.cleaning.request import CleanOutcome, CleanResult
 from roomba.mission.docking.docking import staging_pose
 from roomba.world.home.home import Home
@@ -89,7 +89,7 @@ def clean(task: Task, known: OccupancyMap | None) -> Cleaned:
 def clean_unknown(task: Task) -> Cleaned:
     """Clean a home that the robot has never seen, counted alike."""
     home = home_named(task.home, task.folder)
-    robot = HeadlessNewcomer(home, SimulatedRobotConfig(), seed=task.seed)
+    robot = HeadlessMission(home, seed=task.seed, known=MappingConfig())
     staging = staging_pose(home.station, DockingConfig())
     record = robot.clean()
     is_home = robot.seen.battery.is_docked

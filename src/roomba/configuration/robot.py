@@ -307,6 +307,11 @@ class RobotConfig(Frozen):
                 )
         return self
 
+    @property
+    def scan_stride(self) -> int:
+        """Scans of the lidar from one that is looked at to the next."""
+        return max(1, round(self.timing.scan_period * self.lidar.rate))
+
     @model_validator(mode="after")
     def _walks_arrive(self) -> RobotConfig:
         control, walk = self.control, self.walk

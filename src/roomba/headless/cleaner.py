@@ -1,66 +1,52 @@
-"""The whole robot without ROS: its mission, its loops and its localizer around the simulated world.
+"""The robot without ROS: its brain in a simulated body, in one home.
 
-Time passes only in :meth:`HeadlessMission.tick` and :meth:`HeadlessMission.run`. The brain gets
-what the sensors tell and nothing else.
+Time passes only while it is told to do something. The brain gets what the sensors tell and nothing
+else. It cleans and explores on the map of the home, on another one, or on one that it makes.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Final
+import time
 
 import numpy as np
 from numpy.typing import NDArray
 
 from roomba.configuration.docking import DockingConfig
+from roomba.configuration.mapping import MappingConfig
 from roomba.configuration.mission import MissionConfig
 from roomba.configuration.simulation import SimulatedRobotConfig
-from roomba.geometry import STANDSTILL, Pose, Twist
+from roomba.errors import RoombaError
+from roomba.geometry import Pose
 from roomba.grid import OccupancyMap
-from roomba.headless.closed_loop import LONGEST_BURST, STEP, STEPS_PER_TICK, ClosedLoop
-from roomba.headless.parts import SafeDrive, require_end, senses_of
-from roomba.mission.cleaning.request import CleanRequest, CleanResult
-from roomba.mission.exploring.look_around import SearchDrive
-from roomba.mission.inputs.planning_context import PlanningContext
+from roomba.headless.body import SimulatedBody
+from roomba.headless.burst import LONGEST_BURST, Burst
+from roomba.headless.records import CleanRecord, ExploreRecord, longest_errand, require_end
+from roomba.headless.rows import BELIEVED, PASSED, POSES, TIME
+from roomba.mission.cleaning.request import CleanRequest
 from roomba.mission.inputs.senses import Senses
 from roomba.mission.mission import Mission
 from roomba.mission.phases.machine import Phase
-from roomba.perception.localization.estimate import Knowledge
 from roomba.perception.localization.localizer import Localizer
 from roomba.perception.matching.scan_view import LidarModel
 from roomba.perception.rooms.rooms import Rooms
 from roomba.perception.rooms.zones import Zones
+from roomba.perception.slam.mapper import Mapper
 from roomba.perception.swept.coverage_map import CoverageMap
 from roomba.perception.swept.dirt_map import DirtMap
 from roomba.perception.things.layer import ThingLayer
+from roomba.planning.coverage.floor.floor import fine_frame
+from roomba.robot.brain import Brain
+from roomba.robot.readings import Readings
 from roomba.world.home.home import Home
-from roomba.world.simulator import Simulator
-
-_TICKS_PER_LOOK: Final = 4
-_MOST_LOOKS: Final = 5
-"""While it charges the mission has its turn after so many looks of so many ticks: each second."""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class CleanRecord:
-    """What happened on a clean.
-
-    ``poses`` has rows of t (s), x, y (m), theta (rad), true ones, map frame; ``truth`` is the floor
-    that the tool really passed over; ``planning`` what all ``plans`` took, s of a wall clock.
-    """
-
-    result: CleanResult
-    poses: NDArray[np.float64]
-    truth: CoverageMap
-    hits: int
-    distance: float
-    turning: float
-    planning: float
-    plans: int
+from roomba.world.simulator import Observation, Simulator
 
 
 class HeadlessMission:
-    """One robot with its mission in one home."""
+    """One robot with its mission in one home.
+
+    ``truth`` is the floor that its tool really passed over; ``rows`` are the ticks that passed, as
+    of :mod:`roomba.headless.rows`, in pieces; ``site`` is the home as it planned in it at first.
+    """
 
     def __init__(
         self,
@@ -70,139 +56,204 @@ class HeadlessMission:
         docking: DockingConfig | None = None,
         *,
         seed: int = 0,
+        known: OccupancyMap | MappingConfig | None = None,
         rooms: Rooms | None = None,
         zones: Zones | None = None,
         start: Pose | None = None,
+        max_speed: float | None = None,
         longest_burst: int = LONGEST_BURST,
-        known: OccupancyMap | None = None,
     ) -> None:
         """Put the robot on its station, or at ``start``.
 
-        ``longest_burst`` is how many ticks pass at once at most, while nothing comes up. ``known``
-        is the map that it goes by, in the home's frame; the home's own one by default.
+        ``known`` is the map that it goes by, in the home's frame, or how it makes one from its
+        station; the home's own one by default. ``max_speed``, m/s, is its top speed, by default its
+        body's. ``longest_burst`` is how many ticks pass at once at most, while nothing comes up.
         """
-        self.robot = robot or SimulatedRobotConfig()
-        self.config = mission or MissionConfig()
-        docking = docking or DockingConfig()
+        self.robot, self.config = robot or SimulatedRobotConfig(), mission or MissionConfig()
         known = known or home.map
-        body, lidar = self.robot.body, self.robot.lidar
-        self.simulator = Simulator(home, self.robot, seed=seed, start=start)
-        self.localizer = Localizer(
-            known, self.robot.localization, self.robot.gyro, body.radius, self.simulator.start
+        self.body = SimulatedBody(home, self.robot, seed, max_speed, start)
+        self.brain = Brain(
+            known,
+            home.station,
+            self.robot,
+            self.config,
+            docking or DockingConfig(),
+            rooms=rooms,
+            zones=zones,
+            start=start,
+            max_speed=max_speed,
         )
-        self.lidar = LidarModel.all_around(lidar.beams, lidar.min_range, lidar.max_range)
-        self._beams = self.lidar.arrays()
-        self.things = ThingLayer(self.localizer.field)
-        self.dirt = DirtMap(known)
-        self.site = PlanningContext(
-            known, home.station, self.robot, self.config, docking, rooms, zones
-        )
-        self._drive = SafeDrive(self.robot, self.simulator.max_speed)
-        self._search = SearchDrive(body)
-        self._scans = 0
-        self.seen = self.simulator.observe()
-        self._localize()
-        self.mission = Mission(
-            self.site, self.robot, self.config, docking, self.things, self.dirt, self.senses()
-        )
-        frame = self.site.frame
-        self.truth = CoverageMap(frame, np.ones(frame.shape, np.bool_), self.site.tool_width)
         self.rows: list[NDArray[np.float64]] = []
-        self._longest_burst = longest_burst
-        self._loop = ClosedLoop(self, longest_burst)
+        self.whole_at: float | None = None
+        self._longest = longest_errand(home)
+        self._stand_until_ready()
+        self.site = self.mission.site
+        frame = home.map.frame if isinstance(known, MappingConfig) else known.frame
+        fine = fine_frame(frame)
+        self.truth = CoverageMap(fine, np.ones(fine.shape, np.bool_), self.site.tool_width)
+        self._burst = Burst(self.body, self.brain, self.truth, longest_burst)
+
+    # ---------------------------------------------------------------- errands
 
     def clean(self, request: CleanRequest | None = None) -> CleanRecord:
         """Clean to the end; raises CleanRefusedError."""
-        request = request or CleanRequest()
-        self.mission.clean(request, self.senses())
-        self.simulator.set_power(fan=request.fan.value)
+        self.mission.clean(request or CleanRequest(), self.senses())
         return self.run()
 
     def run(self) -> CleanRecord:
         """Let time pass until the clean under way has a result."""
-        began, hits = self.seen.time, self.simulator.numbers["hits"]
-        distance, turning = self._driven()
+        began, hits = self.seen.time, self._hits
+        distance, turning = self._driven
         while (result := self.mission.take_result()) is None:
-            require_end(self.seen.time - began, self.simulator.home)
+            require_end(self.seen.time - began, self._longest)
             self.advance()
-        now_distance, now_turning = self._driven()
+        now_distance, now_turning = self._driven
         return CleanRecord(
             result,
-            np.concatenate(self.rows) if self.rows else np.zeros((0, 4)),
+            self.passed[:, POSES],
             self.truth,
-            int(self.simulator.numbers["hits"] - hits),
+            self._hits - hits,
             now_distance - distance,
             now_turning - turning,
             self.site.planning_time,
             self.site.plans,
+            self.mission.site.occupancy,
+            self.seen.time if self.whole_at is None else self.whole_at,
         )
 
+    def explore(self) -> ExploreRecord:
+        """Explore to the end, and make the map whole.
+
+        Raises CommandRefusedError, and RoombaError on a known map.
+        """
+        mapper = self.mapper
+        began, hits, start = time.perf_counter(), self._hits, self.seen.time
+        self.mission.explore(self.senses())
+        while (result := self.mission.take_exploration()) is None:
+            require_end(self.seen.time - start, self._longest)
+            self.advance()
+        occupancy, rows = mapper.finish(), self.passed
+        return ExploreRecord(
+            result,
+            occupancy,
+            rows[:, POSES],
+            np.column_stack((rows[:, TIME], rows[:, BELIEVED])),
+            self._hits - hits,
+            time.perf_counter() - began,
+        )
+
+    # ---------------------------------------------------------------- time
+
     def advance(self) -> None:
-        """Let some ticks pass: many at once while nothing comes up, then one that looks around."""
-        if self._loop.may_run():
-            self._loop.run()
-        elif self.mission.state.phase is Phase.CHARGING and self.seen.battery.is_docked:
-            self._stand()
-        self.tick()
+        """Let time pass: many ticks at once while it is known what they do, else one."""
+        rows = self._burst.run()
+        if len(rows):
+            self.rows.append(rows)
+        else:
+            self.tick()
 
     def tick(self) -> None:
         """Let one tick pass, by the ordinary classes."""
-        senses = self.senses()
-        step = self.mission.tick(senses)
-        command = self._command(senses, step.twist, step.looks_around)
-        for _ in range(STEPS_PER_TICK):
-            self.simulator.advance(command, STEP, 1)
-        self._look()
-
-    def _look(self) -> None:
-        self.seen = self.simulator.observe()
-        self._localize()
+        growing = self.brain.growing
+        was_whole = growing is None or growing.is_whole
+        self.body.act(self.brain.decide())
+        self.brain.sense(self.readings())
         pose = self.seen.pose
         self.truth.sweep(pose.x, pose.y)
-        self.rows.append(np.array([[self.seen.time, pose.x, pose.y, pose.theta]]))
+        self.rows.append(self.row())
+        if growing is not None and growing.is_whole and not was_whole:
+            self.whole_at = self.seen.time
 
-    def _stand(self) -> None:
-        """Let time pass in which the robot stands at its station without an errand."""
-        for _ in range(min(_MOST_LOOKS, self._longest_burst // _TICKS_PER_LOOK)):
-            self.simulator.advance(STANDSTILL, STEP, STEPS_PER_TICK * _TICKS_PER_LOOK)
-            self._look()
+    def readings(self) -> Readings:
+        """Return what the body tells now."""
+        return self.body.read()
 
-    def senses(self) -> Senses:
-        """Return what the robot senses now."""
-        return senses_of(self.seen, self.localizer.estimate)
+    def look(self) -> None:
+        """Let the brain know how the world is now, after it was changed while no time passed."""
+        self.brain.told(self.readings())
 
-    def _localize(self) -> None:
-        seen = self.seen
-        self.localizer.lift(seen.wheels.dropped_left and seen.wheels.dropped_right)
-        self.localizer.move(seen.time, seen.odometry, seen.angular_velocity)
-        if seen.scans != self._scans:
-            self._scans = seen.scans
-            ranges, estimate = self.simulator.ranges, self.localizer.estimate
-            self.localizer.see(seen.time, ranges, self.lidar)
-            if estimate.knowledge is Knowledge.KNOWN:
-                self.things.see(ranges, self._beams, self.localizer.estimate.pose)
+    def _stand_until_ready(self) -> None:
+        """Stand until the first scan came: without a map there is nothing to do."""
+        self.brain.sense(self.readings())
+        while not self.brain.is_ready:
+            self.body.act(self.brain.decide())
+            self.brain.sense(self.readings())
 
-    def caught_up(self, scanned: float, way: float) -> None:
-        """Take over after the compiled loop: ``way`` m were driven, the last scan was at a time, s.
+    # ---------------------------------------------------------------- what others may look at
 
-        Without a scan that time is negative.
-        """
-        self.seen = seen = self.simulator.observe()
-        self._scans = seen.scans
-        self.localizer.resumed(seen.time, scanned, self.simulator.ranges, self.lidar)
-        self.mission.caught_up(self.senses(), way)
+    @property
+    def seen(self) -> Observation:
+        """What is so now: the truth, and what the sensors tell."""
+        return self.body.seen
 
-    def _command(self, senses: Senses, twist: Twist, looks_around: bool) -> Twist:
-        if looks_around:
-            touches = senses.is_disturbed
-            twist = self._search.tick(senses.now, self.localizer, touches) or twist
-        return self._drive.command(self.seen, twist)
+    @property
+    def simulator(self) -> Simulator:
+        """The world with the body in it."""
+        return self.body.simulator
 
-    def _driven(self) -> tuple[float, float]:
-        numbers = self.simulator.numbers
-        return numbers["distance"], numbers["turned"]
+    @property
+    def lidar(self) -> LidarModel:
+        """The body's lidar."""
+        return self.body.lidar
+
+    @property
+    def mission(self) -> Mission:
+        """What it is at; another one may take over, as after its process was killed."""
+        return self.brain.mission
+
+    @mission.setter
+    def mission(self, mission: Mission) -> None:
+        self.brain.mission = mission
+
+    @property
+    def localizer(self) -> Localizer:
+        """What knows its place on a known map; raises RoombaError without one."""
+        if self.brain.localizer is None:
+            raise RoombaError("a robot that makes its map has a mapper, no localizer")
+        return self.brain.localizer
+
+    @property
+    def mapper(self) -> Mapper:
+        """What makes its map; raises RoombaError on a known one."""
+        if self.brain.mapper is None:
+            raise RoombaError("only a robot that makes its map has a mapper: give a MappingConfig")
+        return self.brain.mapper
+
+    @property
+    def things(self) -> ThingLayer:
+        """What it sees that its map does not show."""
+        return self.brain.things
+
+    @property
+    def dirt(self) -> DirtMap:
+        """Where it found dirt."""
+        return self.mission.dirt
+
+    @property
+    def passed(self) -> NDArray[np.float64]:
+        """All ticks that passed, float64 [n, PASSED], as of :mod:`roomba.headless.rows`."""
+        return np.concatenate([np.empty((0, PASSED)), *self.rows])
 
     @property
     def is_home(self) -> bool:
         """Whether it stands on its station."""
         return self.mission.state.phase is Phase.DOCKED
+
+    def senses(self) -> Senses:
+        """Return what the robot senses now."""
+        return self.brain.senses()
+
+    def row(self) -> NDArray[np.float64]:
+        """Return what is so now, as a tick that passed: float64 [1, PASSED]."""
+        seen, believed = self.seen, self.brain.pose
+        poses = [(each.x, each.y, each.theta) for each in (seen.pose, believed, seen.odometry)]
+        return np.array([[seen.time, *poses[0], *poses[1], *poses[2], seen.angular_velocity]])
+
+    @property
+    def _hits(self) -> int:
+        return int(self.simulator.numbers["hits"])
+
+    @property
+    def _driven(self) -> tuple[float, float]:
+        numbers = self.simulator.numbers
+        return numbers["distance"], numbers["turned"]

@@ -16,7 +16,7 @@ from roomba.control.position_loop import PositionLoop
 from roomba.control.speed_loop import SpeedLoop
 from roomba.errors import RoombaError
 from roomba.geometry import Pose, Twist
-from roomba.headless.parts import senses_of
+from roomba.headless.body import readings_of
 from roomba.mission.driving.obstacles import Obstacles
 from roomba.mission.exploring.look_around import SearchDrive
 from roomba.mission.inputs.senses import Senses
@@ -26,6 +26,7 @@ from roomba.perception.localization.localizer import Localizer
 from roomba.perception.matching.scan_view import LidarModel
 from roomba.perception.things.layer import ThingLayer
 from roomba.planning.path.planner import PathPlanner
+from roomba.robot.readings import senses_of
 from roomba.world.home.home import Home
 from roomba.world.simulator import Observation, Simulator
 
@@ -144,7 +145,7 @@ class HeadlessRobot:
                 self._things.see(ranges, self._beams, self._pose)
 
     def _sense(self, seen: Observation) -> Senses:
-        return senses_of(seen, self.localizer.estimate)
+        return senses_of(readings_of(seen, None), self.localizer.estimate)
 
     def _control(self, seen: Observation, step: WalkStep) -> Twist:
         touches = seen.bumper.pressed or seen.cliff.any

@@ -11,6 +11,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Final
 
+import numpy as np
+from numpy.typing import NDArray
+
 from roomba.configuration.docking import DockingConfig
 from roomba.configuration.mission import MissionConfig
 from roomba.configuration.robot import RobotConfig
@@ -34,7 +37,9 @@ from roomba.mission.phases.cleaning import CleanPhase
 from roomba.mission.phases.job import Job
 from roomba.mission.phases.machine import Errand, Event, MissionState, Phase, next_state
 from roomba.mission.phases.monitor import Monitor
+from roomba.mission.phases.phases import NEAR_STAGING
 from roomba.mission.phases.step import PhaseStep
+from roomba.mission.steady import Steady
 from roomba.perception.localization.estimate import Knowledge
 from roomba.perception.swept.dirt_map import DirtMap
 from roomba.perception.things.layer import ThingLayer
@@ -250,15 +255,30 @@ class Mission:
     def driver(self, driver: PathDriver | None) -> None:
         self._drives.driver = driver
 
+    def steady(self, senses: Senses) -> Steady | None:
+        """Return what it does until something comes up; None: a tick decides."""
+        phase, driver = self.state.phase, self.driver
+        if phase is Phase.CHARGING:
+            needed = self._at_station.needed
+            if needed is None:
+                return None
+            return Steady(None, most_energy=self.book.charged_at(senses, needed))
+        is_driving = phase in (Phase.CLEANING, Phase.EXPLORING, Phase.RETURNING)
+        if not is_driving or driver is None or not driver.is_undisturbed or self._watch.is_astray:
+            return None
+        if self._patience.is_pending and phase is not Phase.EXPLORING:
+            return None
+        limit, empty = self.speed_limit(senses), self.book.empty
+        if phase is Phase.RETURNING:
+            staging = self.site.staging
+            goal = (staging.x, staging.y)
+            return Steady(driver, limit, least_level=empty, goal=goal, near=NEAR_STAGING)
+        return Steady(driver, limit, self.book.next_check, empty)
+
     @property
-    def is_undisturbed(self) -> bool:
-        """Whether the next ticks are the driver's tracker's alone, while nothing comes up."""
-        return (
-            self.state.phase in (Phase.CLEANING, Phase.EXPLORING, Phase.RETURNING)
-            and self.driver is not None
-            and self.driver.is_undisturbed
-            and not self._watch.is_astray
-        )
+    def last(self) -> Senses:
+        """What it sensed at the last tick."""
+        return self._last
 
     @property
     def last_place(self) -> tuple[float, float]:
@@ -300,9 +320,13 @@ class Mission:
         self._last = senses
         return step
 
-    def caught_up(self, senses: Senses, way: float) -> None:
-        """Go on after ticks that were the tracker's alone: ``way`` m were driven in them."""
-        self._drives.caught_up(senses, way)
+    def caught_up(self, senses: Senses, places: NDArray[np.float64], way: float) -> None:
+        """Go on after steady ticks, the last of which began with these senses.
+
+        They began at ``places``, float64 [n, 2], m; ``way`` m were driven from the tick before the
+        first of them to the last.
+        """
+        self._drives.caught_up(senses, places)
         self.book.note(senses, way)
         self._last = senses
 

@@ -34,7 +34,8 @@ from fixtures.worlds import IDEAL, NOISY
 from roomba.configuration.docking import DockingConfig
 from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.geometry import Pose
-from roomba.headless.cleaner import CleanRecord, HeadlessMission
+from roomba.headless.cleaner import HeadlessMission
+from roomba.headless.records import CleanRecord
 from roomba.mission.cleaning.checkpoint import CheckpointError
 from roomba.mission.cleaning.request import (
     CleanMode,
@@ -222,8 +223,16 @@ def test_two_passes_go_over_everything_twice() -> None:
 
 def test_the_fan_runs_as_asked_for() -> None:
     robot = HeadlessMission(HOME)
-    robot.clean(CleanRequest(CleanMode.SPOT, spot=(1.0, 0.6), fan=FanLevel.QUIET))
+    request = CleanRequest(CleanMode.SPOT, spot=(1.0, 0.6), fan=FanLevel.QUIET)
+    robot.mission.clean(request, robot.senses())
+    until(robot, in_phase(robot, Phase.CLEANING))
     assert robot.simulator.duty[1] == pytest.approx(FanLevel.QUIET.value)
+    until(robot, in_phase(robot, Phase.RETURNING))
+    assert robot.simulator.duty[1] == pytest.approx(FanLevel.QUIET.value)
+    robot.run()
+    robot.tick()
+    # As on ROS the next one who drives finds it as it was.
+    assert robot.simulator.duty[1] == pytest.approx(robot.robot.fan.duty)
 
 
 def test_a_thing_that_the_map_does_not_show_is_gone_around_and_told() -> None:

@@ -14,19 +14,18 @@ from fixtures.missions import HOME, TWO_ROOMS
 from fixtures.rooms import room_home
 from fixtures.worlds import IDEAL, NOISY
 
+from roomba.configuration.mapping import MappingConfig
 from roomba.configuration.simulation import SimulatedRobotConfig
-from roomba.geometry import Pose, Twist
+from roomba.geometry import Pose
 from roomba.grid import FREE
-from roomba.headless.explorer import ExploreRecord, HeadlessExplorer
-from roomba.headless.parts import SafeDrive, senses_of
+from roomba.headless.cleaner import HeadlessMission
+from roomba.headless.records import ExploreRecord
 from roomba.mission.cleaning.request import CleanOutcome
-from roomba.mission.inputs.senses import StationBeams
 from roomba.mission.mission import CommandRefusedError
 from roomba.mission.phases.machine import Event, Phase
-from roomba.perception.localization.estimate import Estimate, Knowledge
+from roomba.perception.localization.estimate import Knowledge
 from roomba.world.engine.state.arrays import Fault
 from roomba.world.home.home import Home
-from roomba.world.simulator import Simulator
 
 HOMES = [pytest.param(HOME, id="one room"), pytest.param(TWO_ROOMS, id="two rooms")]
 WORST = 0.03
@@ -37,7 +36,7 @@ def free_area(home: Home) -> float:
     return float((~home.solid).sum()) * home.frame.resolution**2
 
 
-def assert_explored(robot: HeadlessExplorer, record: ExploreRecord, home: Home) -> None:
+def assert_explored(robot: HeadlessMission, record: ExploreRecord, home: Home) -> None:
     assert (record.result.outcome, record.result.message) == (CleanOutcome.COMPLETED, "")
     assert robot.mission.state.phase is Phase.DOCKED
     assert robot.seen.battery.is_docked
@@ -50,21 +49,21 @@ def assert_explored(robot: HeadlessExplorer, record: ExploreRecord, home: Home) 
     assert away.max() < WORST
 
 
-def until(robot: HeadlessExplorer, is_so: Callable[[], bool], seconds: float = 300.0) -> None:
+def until(robot: HeadlessMission, is_so: Callable[[], bool], seconds: float = 300.0) -> None:
     ends = robot.seen.time + seconds
     while not is_so():
         assert robot.seen.time < ends, f"not within {seconds} s: {robot.mission.state}"
         robot.tick()
 
 
-def in_phase(robot: HeadlessExplorer, phase: Phase) -> Callable[[], bool]:
+def in_phase(robot: HeadlessMission, phase: Phase) -> Callable[[], bool]:
     return lambda: robot.mission.state.phase is phase
 
 
 @pytest.mark.parametrize("config", [IDEAL, NOISY], ids=["ideal", "noisy"])
 @pytest.mark.parametrize("home", HOMES)
 def test_it_maps_the_home_without_a_hit_and_docks(home: Home, config: SimulatedRobotConfig) -> None:
-    robot = HeadlessExplorer(home, config, seed=1)
+    robot = HeadlessMission(home, config, seed=1, known=MappingConfig())
     record = robot.explore()
     assert_explored(robot, record, home)
     assert record.hits == 0
@@ -84,14 +83,16 @@ def test_it_goes_into_all_rooms() -> None:
     walls = [(x, low, x + 0.1, high) for x, low, high in ((1.6, 0.0, 0.9), (1.6, 1.7, 2.4))]
     walls += [(x, low, x + 0.1, high) for x, low, high in ((3.3, 0.0, 1.6), (3.3, 2.35, 2.4))]
     home = room_home(5.0, 2.4, walls, station=Pose(0.2, 1.2, np.pi))
-    robot = HeadlessExplorer(home, seed=2)
+    robot = HeadlessMission(home, seed=2, known=MappingConfig())
     record = robot.explore()
     assert_explored(robot, record, home)
     assert record.poses[:, 1].max() > 2.6
 
 
 def test_the_same_seed_gives_the_same_trace_and_another_one_another() -> None:
-    records = [HeadlessExplorer(HOME, seed=seed).explore() for seed in (3, 3, 4)]
+    records = [
+        HeadlessMission(HOME, seed=seed, known=MappingConfig()).explore() for seed in (3, 3, 4)
+    ]
     traces = [record.poses.tobytes() for record in records]
     assert traces[0] == traces[1]
     assert traces[0] != traces[2]
@@ -100,7 +101,7 @@ def test_the_same_seed_gives_the_same_trace_and_another_one_another() -> None:
 
 
 def test_with_a_low_battery_it_goes_home_charges_and_goes_on() -> None:
-    robot = HeadlessExplorer(TWO_ROOMS, seed=1)
+    robot = HeadlessMission(TWO_ROOMS, seed=1, known=MappingConfig())
     mission = robot.mission
     mission.explore(robot.senses())
     until(robot, in_phase(robot, Phase.EXPLORING))
@@ -121,7 +122,7 @@ def test_with_a_low_battery_it_goes_home_charges_and_goes_on() -> None:
 
 
 def test_paused_and_resumed_it_maps_all() -> None:
-    robot = HeadlessExplorer(TWO_ROOMS, seed=2)
+    robot = HeadlessMission(TWO_ROOMS, seed=2, known=MappingConfig())
     mission = robot.mission
     mission.explore(robot.senses())
     until(robot, in_phase(robot, Phase.EXPLORING))
@@ -139,7 +140,7 @@ def test_paused_and_resumed_it_maps_all() -> None:
 
 
 def test_stopped_it_stands_and_what_it_mapped_stays() -> None:
-    robot = HeadlessExplorer(TWO_ROOMS, seed=2)
+    robot = HeadlessMission(TWO_ROOMS, seed=2, known=MappingConfig())
     robot.mission.explore(robot.senses())
     until(robot, in_phase(robot, Phase.EXPLORING))
     robot.mission.command(Event.STOP, robot.senses())
@@ -156,7 +157,7 @@ def test_stopped_it_stands_and_what_it_mapped_stays() -> None:
 
 
 def test_things_that_stand_about_are_mapped_like_walls() -> None:
-    robot = HeadlessExplorer(HOME, seed=1)
+    robot = HeadlessMission(HOME, seed=1, known=MappingConfig())
     robot.simulator.place_obstacle(1.4, 1.9, 0.12)
     record = robot.explore()
     assert record.result.outcome is CleanOutcome.COMPLETED
@@ -166,7 +167,7 @@ def test_things_that_stand_about_are_mapped_like_walls() -> None:
 
 
 def test_a_lidar_that_fails_for_a_while_does_not_spoil_the_map() -> None:
-    robot = HeadlessExplorer(TWO_ROOMS, seed=1)
+    robot = HeadlessMission(TWO_ROOMS, seed=1, known=MappingConfig())
     robot.mission.explore(robot.senses())
     until(robot, in_phase(robot, Phase.EXPLORING))
     robot.simulator.inject(Fault.LIDAR_BLOCKED, 1.0)
@@ -179,45 +180,7 @@ def test_a_lidar_that_fails_for_a_while_does_not_spoil_the_map() -> None:
 
 
 def test_a_dead_robot_refuses_and_drives_nowhere() -> None:
-    robot = HeadlessExplorer(HOME)
+    robot = HeadlessMission(HOME, known=MappingConfig())
     robot.mission.command(Event.EMERGENCY, robot.senses(), "pressed")
     with pytest.raises(CommandRefusedError, match="cannot explore now"):
         robot.explore()
-
-
-def test_senses_are_what_sensors_tell_and_where_it_believes_to_be() -> None:
-    world = Simulator(HOME, NOISY, seed=1)
-    world.advance(Twist(), 0.025, 4)
-    believed = Estimate(Pose(9.0, 8.0, 7.0), np.eye(3), Knowledge.ROUGH, 0.5, "fog")
-    senses = senses_of(world.observe(), believed)
-    assert senses.pose == believed.pose
-    assert (senses.knowledge, senses.trouble) == (Knowledge.ROUGH, "fog")
-    assert senses.battery.is_docked
-    assert senses.battery.capacity == NOISY.battery.capacity
-    assert not senses.is_disturbed
-    world.inject(Fault.BUMPER_STUCK, 1.0)
-    world.inject(Fault.CLIFF_DIRTY, 1.0)
-    world.inject(Fault.INFRARED_BLOCKED, 1.0)
-    world.advance(Twist(), 0.025, 4)
-    senses = senses_of(world.observe(), believed)
-    assert (senses.bumper_left, senses.bumper_right) == (True, True)
-    assert (senses.cliff_left, senses.cliff_right) == (True, True)
-    assert senses.beams == StationBeams()
-    world.inject(Fault.LIFTED, 1.0)
-    world.advance(Twist(), 0.025, 4)
-    assert senses_of(world.observe(), believed).lifted
-
-
-@pytest.mark.parametrize("fault", [Fault.BUMPER_STUCK, Fault.CLIFF_DIRTY, Fault.LIFTED])
-def test_nothing_makes_it_drive_into_a_hazard(fault: Fault) -> None:
-    world = Simulator(HOME, NOISY, seed=1, start=Pose(1.2, 0.6, 0.0))
-    drive = SafeDrive(NOISY, 0.3)
-    assert drive.command(world.observe(), Twist(0.9, 0.0)).linear == pytest.approx(0.3)
-    world.inject(fault, 1.0)
-    world.advance(Twist(), 0.025, 4)
-    seen = world.observe()
-    assert drive.command(seen, Twist(0.3, 0.0)).linear <= 0.0
-    if fault is Fault.LIFTED:
-        assert drive.command(seen, Twist(-0.1, 0.5)) == Twist()
-    else:
-        assert drive.command(seen, Twist(-0.1, 0.0)).linear < 0.0

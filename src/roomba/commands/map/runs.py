@@ -20,8 +20,9 @@ from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.files.shipped import CONFIGURATION
 from roomba.geometry import Pose
 from roomba.grid import OccupancyMap
-from roomba.headless.explorer import ExploreRecord, HeadlessExplorer
-from roomba.headless.exploring_loop_kernels import GYRO, ODOMETRY, TIME, TRUE
+from roomba.headless.cleaner import HeadlessMission
+from roomba.headless.records import ExploreRecord
+from roomba.headless.rows import GYRO, ODOMETRY, TIME, TRUE
 from roomba.mission.cleaning.request import CleanOutcome
 from roomba.world.home.home import Home
 
@@ -78,7 +79,7 @@ _AS_OFTEN: Final = 0.9
 """Of the way between keyframes: by its own odometry a robot sees each of them a bit sooner."""
 
 
-class ObservedExplorer(HeadlessExplorer):
+class ObservedExplorer(HeadlessMission):
     """A robot that makes its map while another map is made by its odometry alone."""
 
     observers: tuple[RunObserver, ...] = ()
@@ -93,10 +94,15 @@ class ObservedExplorer(HeadlessExplorer):
         self._seen_scans = -1
         self._hear(self.row())
 
+    @property
+    def station(self) -> Pose:
+        """Where its own map has its station."""
+        return Pose(*self.mapper.trajectory[0].tolist())
+
     def advance(self) -> None:
         """Let time pass, and look at what it brought."""
         super().advance()
-        self._hear(self.passed[-1])
+        self._hear(self.rows[-1])
         for observe in self.observers:
             observe(self)
 
@@ -126,7 +132,7 @@ class MapScene:
         )
         mapping = load_mapping_config(CONFIGURATION / "mapping.yaml")
         self.robot = ObservedExplorer(
-            self.home, self.config, mission_config(self.config), mapping, seed=trial.seed
+            self.home, self.config, mission_config(self.config), known=mapping, seed=trial.seed
         )
         self.robot.begin_blind(mapping)
 
@@ -136,7 +142,7 @@ class MapScene:
         robot.observers = tuple(observers)
         record = robot.explore()
         true, off = robot.seen.pose, record.believed[:, 1:3] - record.poses[:, 1:3]
-        last = robot.mapper.pose.distance_to(true.x, true.y)
+        last = robot.brain.pose.distance_to(true.x, true.y)
         largest = float(np.hypot(*off.T).max())
         blind = robot.blind.occupancy()
         last_blind = robot.blind.pose.distance_to(true.x, true.y)
@@ -148,7 +154,7 @@ class MapScene:
             Drawn(record.occupancy, self.error_of(record.occupancy), largest, last),
             Drawn(blind, self.error_of(blind), robot.largest_blind, last_blind),
             self.seen,
-            Pose(*robot.mapper.trajectory[0].tolist()),
+            robot.station,
         )
 
     def error_of(self, occupancy: OccupancyMap) -> MapError:

@@ -10,7 +10,7 @@ from roomba.commands.map.seen_floor import seen_floor
 from roomba.commands.sim.warm import closet
 from roomba.configuration.mapping import MappingConfig
 from roomba.configuration.robot import RobotConfig
-from roomba.headless.explorer import HeadlessExplorer
+from roomba.headless.cleaner import HeadlessMission
 from roomba.perception.rooms.rooms import segment
 
 _ALWAYS: Final[dict[str, Any]] = {"submap_keyframes": 4, "link_points": 50, "redrawn_shift": 1e-6}
@@ -22,7 +22,7 @@ def warm_up() -> None:
     """Explore it once in this process, compare the map with it, and cut it into rooms."""
     home = closet()
     station = (home.station.x, home.station.y)
-    robot = HeadlessExplorer(home, mapping=MappingConfig(**_ALWAYS))
+    robot = HeadlessMission(home, known=MappingConfig(**_ALWAYS))
     made = robot.explore().occupancy
     # What it does where it got stuck between things that it did not see.
     robot.mission.site.squeeze((0.6, 0.9), (1.0, 0.5), [(0.8, 0.7, 0.02)])

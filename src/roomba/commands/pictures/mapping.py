@@ -15,10 +15,10 @@ from roomba.commands.map.plot import area_of_maps, draw_map, draw_station, draw_
 from roomba.commands.map.runs import run_trial
 from roomba.commands.sim.report import clock
 from roomba.commands.sim.trial import Trial
+from roomba.configuration.mapping import MappingConfig
 from roomba.geometry import Pose
 from roomba.grid import FREE, OccupancyMap
-from roomba.headless.explorer import HeadlessExplorer
-from roomba.mission.mission import MissionStep
+from roomba.headless.cleaner import HeadlessMission
 from roomba.planning.path.costmap import Point
 from roomba.plots.canvas import Picture
 from roomba.plots.style import BLUE, INK, ORANGE, Area, draw_robot, drawn, empty_figure
@@ -78,16 +78,16 @@ def _explored(home: Home, seed: int) -> tuple[list[_Look], NDArray[np.float64]]:
     return robot.looks, record.believed
 
 
-class _Observed(HeadlessExplorer):
+class _Observed(HeadlessMission):
     """Keeps the map as it is now and then."""
 
     def __init__(self, home: Home, *, seed: int) -> None:
-        super().__init__(home, seed=seed, longest_burst=0)
+        super().__init__(home, seed=seed, known=MappingConfig(), longest_burst=0)
         self.looks: list[_Look] = []
         self._ticks = 0
 
-    def tick(self) -> MissionStep:
-        step = super().tick()
+    def tick(self) -> None:
+        super().tick()
         if self._ticks % _EVERY == 0:
             exploration = self.mission.exploration
             goal = exploration.goal if exploration is not None else None
@@ -95,7 +95,6 @@ class _Observed(HeadlessExplorer):
             look = _Look(self.seen.time, self.mapper.occupancy(), self.mapper.pose, middle)
             self.looks.append(look)
         self._ticks += 1
-        return step
 
 
 def _draw(axes: Axes, look: _Look, way: NDArray[np.float64], area: Area, *, is_last: bool) -> None:

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 BagOpener = Callable[[Path, "TrialSetup"], AbstractContextManager["RunObserver"]]
 """Opens a bag; what it gives is shown the robot again and again."""
 
-BAG_BURST: Final = 1
+BAG_BURST: Final = 2
 """Ticks between two looks for a bag: its fastest topics have 10 Hz."""
 COMPLETED, ENDED_OTHERWISE, USAGE, INTERRUPTED = 0, 1, 2, 130
 
@@ -67,7 +67,7 @@ def _run_one(options: SimOptions, open_bag: BagOpener | None) -> int:
     # Imported here: it takes a second, and a mistyped option should be reported at once.
     from roomba.commands.sim.runs import TrialSetup
     from roomba.commands.sim.warm import warm_up
-    from roomba.headless.closed_loop import LONGEST_BURST
+    from roomba.headless.burst import LONGEST_BURST
 
     burst = LONGEST_BURST if options.bag is None else BAG_BURST
     setup = TrialSetup(options.trial, burst)

@@ -22,8 +22,9 @@ from roomba.configuration.simulation import SimulatedRobotConfig, load_simulated
 from roomba.files.shipped import CONFIGURATION
 from roomba.geometry import Pose
 from roomba.grid import FREE
-from roomba.headless.cleaner import CleanRecord, HeadlessMission
-from roomba.headless.closed_loop import LONGEST_BURST
+from roomba.headless.burst import LONGEST_BURST
+from roomba.headless.cleaner import HeadlessMission
+from roomba.headless.records import CleanRecord
 from roomba.perception.rooms.zones import Zone, ZoneKind, Zones
 from roomba.perception.swept.coverage_map import CoverageMap
 from roomba.planning.path.costmap import RoundObstacle
@@ -94,7 +95,7 @@ class TrialSetup:
             self.robot.simulator.place_obstacle(x, y, radius)
         if trial.battery < 1.0:
             self.robot.simulator.set_charge(trial.battery)
-            self.robot.seen = self.robot.simulator.observe()
+            self.robot.look()
         self.coverable = coverable_floor(
             self.home, self.robot.site, trial.request, self.things, self.config, mission, docking
         )

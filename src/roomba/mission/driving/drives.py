@@ -64,11 +64,11 @@ class Drives:
             plans_anew or _never,
         )
 
-    def caught_up(self, senses: Senses, way: float) -> None:
-        """Go on after ticks that were the tracker's alone: ``way`` m were driven in them."""
+    def caught_up(self, senses: Senses, places: Floats) -> None:
+        """Go on after ticks that were the tracker's alone, begun at places, float64 [n, 2], m."""
         if self.driver is not None:
-            along = self.driver.tracker.along
-            self.trail.follow(self.driver.tracker, along - way, along)
+            for x, y in places.tolist():
+                self.trail.add(x, y)
             self.driver.caught_up(senses)
 
     def leaves_zone(self, senses: Senses) -> bool:

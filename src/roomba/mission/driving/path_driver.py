@@ -21,14 +21,13 @@ from roomba.configuration.robot import RobotConfig
 from roomba.control.path_tracker import PathTracker
 from roomba.geometry import STANDSTILL, Twist
 from roomba.mission.driving.obstacles import Obstacles
+from roomba.mission.driving.progress_kernels import LEAST, PROGRESS, mark_progress
 from roomba.mission.driving.recovery import Recovery
 from roomba.mission.driving.rejoin import Rejoin
 from roomba.mission.driving.trail import Trail
 from roomba.mission.driving.way_ahead import LEAVING, WayAhead
 from roomba.mission.inputs.senses import Senses
 
-_PROGRESS: Final = 0.02
-"""m; less than this along the path is no progress."""
 _LONGEST_TICK: Final = 2.0
 """s; more between two ticks than this is a clock that was set."""
 _MOST_FUTILE: Final = 3
@@ -37,8 +36,6 @@ _SAME_PLACE: Final = 0.10
 """m; touches from places nearer to each other are of the same thing."""
 _MOST_TOUCHES: Final = 4
 """Consecutive touches of the same thing, after which this path is given up."""
-_LEAVES_TROUBLE: Final = 0.5
-"""m; progress after which earlier recoveries are forgotten."""
 
 
 class DriveState(Enum):
@@ -81,6 +78,9 @@ class DriveStep:
 class PathDriver:
     """Drives along ``points``, float64 [n, 2], m, from wherever the robot stands.
 
+    How it comes farther is in ``progress``, PROGRESS [1], that kernels go on with while it
+    :attr:`is_undisturbed`.
+
     Each tick ends in bounded time, and so does the drive: what blocks it is remembered, and it
     gives up after so many recoveries without progress.
     """
@@ -110,12 +110,12 @@ class PathDriver:
         self._jumps = ClockJumps(last=senses.now, longest=_LONGEST_TICK)
         self._backs_from: tuple[float, float, float] | None = None
         self._wriggle: Recovery | None = None
-        self._recoveries = 0
+        self.progress = np.zeros(1, PROGRESS)
         self._planned_at, self._futile = (math.inf, math.inf), 0
         self._nudged_at = (math.inf, math.inf)
         self._touched_at, self._touches = (math.inf, math.inf), 0
         self._begin(points, senses)
-        if self.tracker.off_path(senses.pose) > _PROGRESS:
+        if self.tracker.off_path(senses.pose) > LEAST:
             self._go_around(senses)
 
     @property
@@ -162,12 +162,12 @@ class PathDriver:
 
     def caught_up(self, senses: Senses) -> None:
         """Go on after ticks that were the tracker's alone."""
-        self._jumps.last = senses.now
+        self._jumps.last, self._was_touching = senses.now, False
 
     def _follow_clock(self, now: float) -> None:
         """When the clock was set, move the times that are remembered with it."""
         jump = self._jumps.at(now)
-        self._progressed += jump
+        self.progress["at"] += jump
         if self._backs_from is not None:
             since, x, y = self._backs_from
             self._backs_from = since + jump, x, y
@@ -194,7 +194,7 @@ class PathDriver:
             return DriveStep(self._state, Twist(-config.backing_speed, 0.0))
         self._backs_from = None
         self._state = DriveState.DRIVING
-        self._recoveries += 1 if way < 0.25 * config.backing_way else 0
+        self.progress["recoveries"] += way < 0.25 * config.backing_way
         if any(senses.touches) and way < 0.25 * config.backing_way:
             self._begin_recovery(senses)
         elif self._touches > _MOST_TOUCHES:
@@ -217,7 +217,7 @@ class PathDriver:
             return
         moved = senses.pose.distance_to(*self._nudged_at)
         points = self._rejoin.nudged(senses, self.tracker, self._obstacles)
-        if points is not None and moved > _PROGRESS:
+        if points is not None and moved > LEAST:
             self._nudged_at = senses.pose.x, senses.pose.y
             self._begin(points, senses)
         elif self._plans_anew(senses.now, self.left):
@@ -234,14 +234,14 @@ class PathDriver:
         self._ahead = WayAhead(
             self.tracker.course, self._obstacles, self._config.look_ahead, leaves_until
         )
-        self._mark_progress(senses, 0.0, 0)
-        self._freed_at = 0.0
+        row = self.progress[0]
+        row["at"], row["along"], row["leg"] = senses.now, 0.0, 0
 
     def _go_around(self, senses: Senses) -> None:
         """Plan to the next piece of the path that can be reached; a bump may have shortened it."""
         x, y = self._planned_at
         moved = senses.pose.distance_to(x, y)
-        self._futile = self._futile + 1 if moved < _PROGRESS else 0
+        self._futile = self._futile + 1 if moved < LEAST else 0
         self._planned_at = senses.pose.x, senses.pose.y
         if self._futile > _MOST_FUTILE:
             self._futile = 0
@@ -254,20 +254,15 @@ class PathDriver:
             return
         self._begin(points, senses, leaves_until=back + LEAVING)
 
-    def _mark_progress(self, senses: Senses, along: float, leg: int) -> None:
-        self._progressed, self._progress_along, self._progress_leg = senses.now, along, leg
-
     def _comes_no_farther(self, senses: Senses) -> bool:
-        along, leg = self.tracker.along, self.tracker.leg
-        if along > self._progress_along + _PROGRESS or leg > self._progress_leg:
-            self._mark_progress(senses, max(along, self._progress_along), leg)
-            if along > self._freed_at + _LEAVES_TROUBLE:
-                self._recoveries = 0
-        return senses.now - self._progressed > self._config.progress_timeout
+        tracker = self.tracker
+        since = mark_progress(self.progress, tracker.along, tracker.leg, senses.now)
+        return bool(since > self._config.progress_timeout)
 
     def _begin_recovery(self, senses: Senses) -> None:
-        self._recoveries += 1
-        if self._recoveries > self._config.most_recoveries:
+        self.progress["recoveries"] += 1
+        recoveries = int(self.progress["recoveries"][0])
+        if recoveries > self._config.most_recoveries:
             self._state = DriveState.STUCK
             self._reason = (
                 f"stuck near {senses.where}: backing, turning and wriggling did not help; "
@@ -275,7 +270,7 @@ class PathDriver:
             )
             return
         self._state = DriveState.RECOVERING
-        self._wriggle = Recovery(self._recoveries, self._config, senses)
+        self._wriggle = Recovery(recoveries, self._config, senses)
 
     def _get_free(self, senses: Senses, recovery: Recovery) -> DriveStep:
         twist = recovery.tick(senses)

@@ -62,6 +62,11 @@ class RetryPolicy:
         self._has_begun = self._has_begun and not ended
         return ended
 
+    @property
+    def is_pending(self) -> bool:
+        """Whether a wait began whose end was not noticed yet."""
+        return self._has_begun
+
     def found_no_way_home(self) -> None:
         """Count it."""
         self._tries += 1

@@ -9,7 +9,6 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.control.path_tracker import PathTracker
 from roomba.planning.path.costmap import Point
 
 Floats = NDArray[np.float64]
@@ -36,15 +35,6 @@ class Trail:
             if abs(x - last_x) + abs(y - last_y) < _STEP:
                 return
         self._places.append((x, y))
-
-    def follow(self, tracker: PathTracker, first: float, last: float) -> None:
-        """The robot drove along a path from one station to another, m."""
-        course = tracker.course
-        stations = np.arange(max(first, last - _LENGTH * _STEP), last, _STEP)
-        x = np.interp(stations, course.stations, course.points[:, 0])
-        y = np.interp(stations, course.stations, course.points[:, 1])
-        for place in zip(x.tolist(), y.tolist(), strict=True):
-            self.add(*place)
 
     def forget(self) -> None:
         """The robot was carried: there is no way back."""

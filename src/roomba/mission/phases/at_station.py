@@ -53,6 +53,11 @@ class AtStation:
             return PhaseStep(step.twist, failure=Failure(CleanOutcome.NOT_DOCKED, step.reason))
         return PhaseStep(step.twist)
 
+    @property
+    def needed(self) -> float | None:
+        """The energy, Wh, that the rest of the job takes, while it charges for that."""
+        return self._needed
+
     def charge(self, senses: Senses, job: Job, tool_width: float) -> PhaseStep:
         """Stand until there is enough for the rest of the job."""
         if self._needed is None:

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Final
 
 from roomba.configuration.mission import EnergyConfig
-from roomba.mission.inputs.senses import Senses
+from roomba.mission.inputs.senses import Battery, Senses
 
 _TRUSTED: Final = 10.0
 """m; after so much way the consumption that was seen counts, before that the configured one."""
@@ -49,6 +49,16 @@ class EnergyLedger:
             return self._config.per_metre
         return max(self.energy / self.distance, 0.2 * self._config.per_metre)
 
+    @property
+    def next_check(self) -> float:
+        """When it is looked at again how far it is home, s."""
+        return self._checked + _CHECK_EVERY
+
+    @property
+    def empty(self) -> float:
+        """A level with less than which the battery gives nothing any more, 0..1."""
+        return _EMPTY
+
     def must_go_home(self, senses: Senses, way_home: Callable[[Senses], float]) -> bool:
         """Whether what is left just suffices for the way home; ``way_home`` tells that way, m."""
         if 0.0 <= senses.now - self._checked < _CHECK_EVERY:
@@ -67,7 +77,15 @@ class EnergyLedger:
 
     def is_charged(self, senses: Senses, needed: float) -> bool:
         """Whether it is charged enough to go on, with ``needed`` Wh still to be used."""
-        battery, config = senses.battery, self._config
-        if battery.level >= config.full_enough:
+        battery = senses.battery
+        if battery.level >= self._config.full_enough:
             return True
-        return battery.energy > config.margin * needed + 2.0 * config.reserve * battery.capacity
+        return battery.energy > self._enough(battery, needed)
+
+    def charged_at(self, senses: Senses, needed: float) -> float:
+        """Return with which energy, Wh, :meth:`is_charged` becomes true."""
+        full = self._config.full_enough * senses.battery.capacity
+        return min(full, self._enough(senses.battery, needed))
+
+    def _enough(self, battery: Battery, needed: float) -> float:
+        return self._config.margin * needed + 2.0 * self._config.reserve * battery.capacity

@@ -16,7 +16,7 @@ from roomba.mission.phases.machine import Event
 from roomba.mission.phases.step import Failure, PhaseStep
 from roomba.planning.path.planner import NoPathError
 
-_NEAR_STAGING: Final = 0.08
+NEAR_STAGING: Final = 0.08
 """m; distance to the place before the station at which docking takes over."""
 
 
@@ -69,7 +69,7 @@ def go_home(drives: Drives, patience: RetryPolicy, senses: Senses, limit: float)
     staging = drives.site.staging
     if senses.battery.is_docked:
         return PhaseStep(event=Event.CONTACT)
-    if senses.pose.distance_to(staging.x, staging.y) < _NEAR_STAGING:
+    if senses.pose.distance_to(staging.x, staging.y) < NEAR_STAGING:
         return PhaseStep(event=Event.ARRIVED)
     waiting = wait_on(drives, patience, senses, limit)
     if waiting is not None:

@@ -22,18 +22,21 @@ _COMPARED_EVERY: Final = 1.0
 
 
 class Doubt:
-    """Gets each scan; ``reckoned`` is the pose of dead reckoning at which it was taken."""
+    """Gets each scan; ``reckoned`` is the pose of dead reckoning at which it was taken.
+
+    ``sight`` has those of the last seconds.
+    """
 
     def __init__(self, config: LocalizationConfig, body_radius: float) -> None:
         """Begin with nothing seen."""
         self._config, self._body_radius = config, body_radius
-        self._sight = RecentSight()
+        self.sight = RecentSight()
         self._comparison: Relocation | None = None
         self._compared = -math.inf
 
     def note(self, stamp: float, reckoned: Pose, view: ScanView) -> None:
         """Remember a scan that was taken at a time, s."""
-        self._sight.note(stamp, reckoned, view)
+        self.sight.note(stamp, reckoned, view)
 
     def drop(self) -> None:
         """End a comparison that is under way: the map is another one, or the pose not known."""
@@ -52,7 +55,7 @@ class Doubt:
 
         Comparing takes some scans: meanwhile it is kept. ``now`` and ``stamp`` are in s.
         """
-        is_still = self._sight.is_still(stamp, reckoned, view)
+        is_still = self.sight.is_still(stamp, reckoned, view)
         here = where_known(pose, self._config, is_still=is_still)
         if is_still and not self._is_elsewhere(now, view, reckoned, here, field):
             return None

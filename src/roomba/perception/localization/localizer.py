@@ -24,6 +24,7 @@ from roomba.perception.localization.dead_reckoning import DeadReckoning
 from roomba.perception.localization.doubt import Doubt
 from roomba.perception.localization.estimate import Estimate, Knowledge
 from roomba.perception.localization.expecting import searched_for, where_told
+from roomba.perception.localization.recent_sight_kernels import Sights
 from roomba.perception.localization.relocation import Expectation, Hypothesis, Relocation, Verdict
 from roomba.perception.localization.tracker import Tracker
 from roomba.perception.matching.scan_view import Fit, LidarModel, ScanView
@@ -45,8 +46,6 @@ _FAIR_THROUGH: Final = 0.12
 """The same of a pose with more evidence than a report. On its station a robot has 0.98
 and 0.02 or better on the map of its home, and at most 0.57 on those of 15 other homes.
 """
-_HARDLY_TURNED: Final = 0.02
-"""rad; after a smaller turn since a scan, the scan counts as taken at the present pose."""
 _HELP: Final = (
     "carry it to its station, or tell where it is (in RViz: 2D Pose Estimate), "
     "or let it look around (global_localization)"
@@ -57,7 +56,8 @@ class Localizer:
     """Keeps the estimate; tell it what the sensors say in the order of time.
 
     ``view`` is the newest scan. While it :attr:`is_calm`, kernels may do its work on ``belief``
-    (see :mod:`roomba.perception.localization.belief_correct_kernels`), until it has
+    and ``numbers`` (see :mod:`roomba.perception.localization.belief_correct_kernels`), and on
+    ``sights`` (see :mod:`roomba.perception.localization.recent_sight_kernels`), until it has
     :meth:`resumed`.
     """
 
@@ -69,17 +69,19 @@ class Localizer:
         body_radius: float,
         start: Pose,
         deviation: tuple[float, float] = (0.05, 0.05),
+        stride: int = 1,
     ) -> None:
         """Begin near ``start``, map frame, unsure by ``deviation``, m and rad.
 
-        Without a map it goes by wheels and gyro, until :meth:`use_map`.
+        Without a map it goes by wheels and gyro, until :meth:`use_map`. A scan that it is shown
+        stands for so many of the lidar's, its ``stride``.
         """
         self._map = occupancy
         self.field = SurfaceField.of(occupancy) if occupancy else SurfaceField.unknown()
         self.view: ScanView | None = None
         self._config, self._body_radius = config, body_radius
         self.belief = unknown_belief()
-        self._row, self._numbers = self.belief[0], numbers_of(config, gyro)
+        self._row, self.numbers = self.belief[0], numbers_of(config, gyro, stride)
         self._doubt = Doubt(config, body_radius)
         self._reckoning = DeadReckoning(config, gyro, self.belief)
         self._is_lifted = self._is_blind = False
@@ -135,27 +137,33 @@ class Localizer:
         """Whether the place is known and nothing waits to be done: the belief says it all."""
         if self._is_lifted or self._forgotten or self._told is not None or self._map is None:
             return False
-        return bool(is_calm(self.belief, self._numbers, self._now))
+        return bool(is_calm(self.belief, self.numbers, self._now))
 
-    def resumed(
-        self, now: float, seen: float, ranges: NDArray[np.float32], lidar: LidarModel
-    ) -> None:
-        """Go on after kernels that brought the belief up to ``now``, s, from when it was calm.
+    def sights(self, beams: int) -> Sights:
+        """Return what was seen in the last seconds, with room for scans of so many beams."""
+        self._doubt.sight.reserve(beams)
+        return self._doubt.sight.arrays
 
-        ``ranges`` is the newest scan, as of :meth:`see`, taken at ``seen``.
-        """
-        self.view = lidar.view(ranges)
-        self._row["beams"] = len(self.view)
-        self._is_blind = len(self.view) == 0
-        if not self._is_blind:
-            self._row["seen"] = max(seen, self._row["seen"])
+    def resumed(self, now: float) -> None:
+        """Go on after kernels that brought the belief up to ``now``, s, from when it was calm."""
         self._stamps.last = float(self._row["stamp"])
         self._times.last = max(self._times.last or now, now)
         self._now = max(self._now, now)
         self._reckoning.begin_history()
-        turned = (now - seen) * abs(float(self._row["turning"]))
-        if turned < _HARDLY_TURNED and not self._is_blind:
-            self._doubt.note(seen, self._reckoning.pose, self.view)
+
+    def reconsider(self, stamp: float, ranges: NDArray[np.float32], lidar: LidarModel) -> None:
+        """Finish what kernels left of a scan that they corrected the pose by: it is not calm now.
+
+        As of :meth:`see`; it was taken just now.
+        """
+        self.view = view = lidar.view(ranges)
+        self._is_blind = len(view) == 0
+        if self._is_blind:
+            return
+        reckoned = self._reckoning.pose
+        if len(view) >= self._config.least_beams and self._tracker.is_doubtful:
+            self._reconsider(stamp, view, reckoned)
+        self._doubt.note(stamp, reckoned, view)
 
     def pass_time(self, now: float) -> None:
         """Tell the time when no sensor does: silence counts, too."""
@@ -356,7 +364,7 @@ class Localizer:
         return Relocation(self.field, self._config, self._body_radius, view, reckoned, expectation)
 
     def _tracker_at(self, pose: Pose, covariance: NDArray[np.float64]) -> Tracker:
-        return Tracker(self.field, self._config, pose, covariance, self.belief)
+        return Tracker(self.field, self._config, pose, covariance, self.belief, self.numbers)
 
     def _search_on(self, relocation: Relocation, view: ScanView, reckoned: Pose) -> None:
         was_searching = relocation.verdict is Verdict.SEARCHING

@@ -7,20 +7,17 @@ A robot that was carried sees what contradicts the earlier scans.
 from __future__ import annotations
 
 import math
-from collections import deque
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from roomba.geometry import Pose
+from roomba.perception.localization.recent_sight_kernels import KEPT, Sights, newest_of, note_sight
 from roomba.perception.matching.scan_view import ScanView
 
 _SECTORS: Final = 360
 """Directions that are told apart."""
-_APART: Final = 0.4
-"""s; between two scans that are kept."""
-_KEPT: Final = 12
 _OLD_ENOUGH: Final = 1.0
 """s; the least age of a scan to compare with: later ones may be from after it was carried."""
 _TOO_OLD: Final = 6.0
@@ -35,23 +32,45 @@ _MOST_OTHER: Final = 0.2
 
 
 class RecentSight:
-    """Scans of the last seconds, each with where dead reckoning said that it was taken."""
+    """Scans of the last seconds, each with where dead reckoning said that it was taken.
 
-    def __init__(self) -> None:
-        """Begin with nothing seen."""
-        self._seen: deque[tuple[float, Pose, ScanView]] = deque(maxlen=_KEPT)
+    Kernels may go on with its ``arrays``.
+    """
+
+    def __init__(self, beams: int = 0) -> None:
+        """Begin with nothing seen; there is room for scans of so many ``beams``, and for larger."""
+        self._mount = np.zeros(3)
+        self._ring = np.zeros(2, np.int64)
+        self._stamps, self._places = np.zeros(KEPT), np.zeros((KEPT, 3))
+        self._counts = np.zeros(KEPT, np.int64)
+        self._ends = np.zeros((KEPT, beams, 4))
+
+    @property
+    def arrays(self) -> Sights:
+        """Return it as kernels know it: another one after scans of more beams."""
+        return Sights(self._ring, self._stamps, self._places, self._counts, self._ends)
+
+    def reserve(self, beams: int) -> None:
+        """Make room for scans of so many beams."""
+        before = self._ends
+        if beams > before.shape[1]:
+            self._ends = np.zeros((KEPT, beams, 4))
+            self._ends[:, : before.shape[1]] = before
 
     def note(self, stamp: float, reckoned: Pose, view: ScanView) -> None:
         """Keep a scan that was taken at a time, s, and a place of dead reckoning's frame."""
-        if self._seen and stamp < self._seen[-1][0]:
-            self._seen.clear()
-        if not self._seen or stamp - self._seen[-1][0] >= _APART:
-            self._seen.append((stamp, reckoned, view))
+        self.reserve(len(view))
+        self._mount = view.mount
+        place = np.array([reckoned.x, reckoned.y, reckoned.theta])
+        note_sight(self.arrays, stamp, place, view.ends, len(view))
 
     def is_still(self, stamp: float, reckoned: Pose, view: ScanView) -> bool:
         """Whether a newer scan shows what was seen there before it."""
-        for then, place, before in reversed(self._seen):
-            if _OLD_ENOUGH <= stamp - then <= _TOO_OLD:
+        for number in range(int(self._ring[1])):
+            kept = newest_of(self._ring, number)
+            if _OLD_ENOUGH <= stamp - self._stamps[kept] <= _TOO_OLD:
+                before = ScanView(self._ends[kept, : self._counts[kept]], self._mount)
+                place = Pose(*self._places[kept].tolist())
                 return _is_same(before, view, place.inverse().compose(reckoned))
         return False
 

@@ -25,14 +25,18 @@ class Tracker:
         pose: Pose,
         covariance: NDArray[np.float64],
         belief: Rows | None = None,
+        numbers: Rows | None = None,
     ) -> None:
-        """Begin where the robot is known to be; of a ``belief`` it takes the place over."""
+        """Begin where the robot is known to be; of a ``belief`` it takes the place over.
+
+        ``numbers`` are those that its owner goes by; by default those for each scan of a lidar.
+        """
         self._beliefs = unknown_belief() if belief is None else belief
         self._belief = self._beliefs[0]
         self._pose: NDArray[np.float64] = self._belief["pose"]
         self._covariance: NDArray[np.float64] = self._belief["covariance"]
         self._fit: NDArray[np.float64] = self._belief["fit"]
-        self._numbers = numbers_of(config, GyroConfig())
+        self._numbers = numbers_of(config, GyroConfig()) if numbers is None else numbers
         self._field, self._place = field.values, field.place
         self.pose, self.covariance = pose, covariance
         self._belief["is_judged"] = self._belief["is_doubtful"] = False

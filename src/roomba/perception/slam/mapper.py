@@ -86,6 +86,7 @@ class Mapper:
         """Begin at ``start``, which defines the map frame."""
         self._config = config
         self._reckoning = DeadReckoning(localization, gyro)
+        self.belief, self.numbers = self._reckoning.belief, self._reckoning.numbers
         self._follower = ScanFollower(config, self._reckoning)
         self._graph = SubmapGraph(config, localization, _row_of(start))
         self.at_scan = start

@@ -35,12 +35,14 @@ _MOST_CELLS: Final = 4096
 class ThingLayer:
     """A grid over the map's frame of what is seen there besides what the map shows.
 
-    While a robot knows its place, show it each scan; ``arrays`` is what kernels work on.
+    While a robot knows its place, show it each scan; ``arrays`` is what kernels work on, and
+    ``field`` that of the map.
     """
 
     def __init__(self, field: SurfaceField, config: ThingConfig | None = None) -> None:
         """Begin with nothing; ``field`` is that of the map."""
         self.config = config or ThingConfig()
+        self.field = field
         self._field, self._place = field.values, field.place
         rows, columns = field.values.shape
         self._columns = columns

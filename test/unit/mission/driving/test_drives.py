@@ -91,16 +91,13 @@ def test_shut_in_it_is_as_far_home_as_the_map_is_wide() -> None:
 
 def test_ticks_that_were_the_trackers_alone_leave_a_trail() -> None:
     at_work = drives()
-    at_work.caught_up(AWAY, 0.5)
+    at_work.caught_up(AWAY, np.array([[1.0, 0.6]]))
+    assert at_work.trail.back_and_on(lambda place: np.array([place]))[0] is None
     at_work.begin(np.array([[1.0, 0.6], [2.4, 0.6]]), AWAY)
     assert at_work.driver is not None
-    senses = AWAY
-    for tick in range(60):
-        senses = replace(AWAY, now=0.05 * tick, pose=Pose(1.0 + 0.01 * tick, 0.6, 0.0))
-        at_work.driver.tracker.tick(senses.pose, 0.3)
-    along = at_work.driver.tracker.along
-    assert along > 0.4
-    at_work.caught_up(senses, along)
+    places = np.column_stack((np.linspace(1.0, 1.59, 60), np.full(60, 0.6)))
+    senses = replace(AWAY, now=3.0, pose=Pose(1.6, 0.6, 0.0))
+    at_work.caught_up(senses, places)
     back, way = at_work.trail.back_and_on(lambda place: np.array([place]))
     assert back is not None
     assert way > 0.1

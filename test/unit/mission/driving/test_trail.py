@@ -2,16 +2,11 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from roomba.configuration.robot import RobotConfig
-from roomba.control.path_tracker import PathTracker
 from roomba.mission.driving.trail import Trail
 from roomba.planning.path.costmap import Point
 
@@ -94,20 +89,3 @@ def test_standing_and_turning_it_adds_nothing() -> None:
     for _ in range(500):
         trail.add(3.91, 0.01)
     assert (places_of(trail) == before).all()
-
-
-@given(st.floats(0.0, 3.0), st.floats(0.0, 3.0))
-def test_a_way_that_was_driven_at_once_counts_as_if_step_by_step(first: float, way: float) -> None:
-    points = np.array([(0.0, 0.0), (1.5, 0.0), (1.5, 3.0), (0.0, 3.0)])
-    tracker = PathTracker(points, CONFIG.tracking, CONFIG.body, 0.05)
-    at_once, slowly = Trail(), Trail()
-    at_once.follow(tracker, first, first + way)
-    for along in np.arange(first, first + way, 0.01):
-        x = np.interp(along, [0.0, 1.5, 4.5, 6.0], points[:, 0])
-        y = np.interp(along, [0.0, 1.5, 4.5, 6.0], points[:, 1])
-        slowly.add(float(x), float(y))
-    one, other = places_of(at_once), places_of(slowly)
-    for places, others in ((one, other), (other, one)):
-        for place in places:
-            assert min((math.dist(place, near) for near in others), default=0.0) < 0.5
-    assert (len(one) > 2) or way <= 1.3

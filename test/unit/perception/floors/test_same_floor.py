@@ -12,10 +12,11 @@ import pytest
 from fixtures.located import FURNISHED, MOVED
 
 from roomba.commands.sim.homes import with_doors_shut
+from roomba.configuration.mapping import MappingConfig
 from roomba.files.shipped import HOMES
 from roomba.geometry import Pose, wrap_angle
 from roomba.grid import FREE, OCCUPIED, UNKNOWN, GridFrame, OccupancyMap
-from roomba.headless.explorer import HeadlessExplorer
+from roomba.headless.cleaner import HeadlessMission
 from roomba.perception.floors.recognition import FloorRecord
 from roomba.perception.floors.same_floor import match_floors
 from roomba.world.home.home import Home
@@ -46,7 +47,7 @@ def standing(home: Home) -> OccupancyMap:
 def made(name: str, seed: int, *, shut: bool = False) -> FloorRecord:
     """Return the map that a robot makes of a home, in a run of its own."""
     home = with_doors_shut(shipped(name)) if shut else shipped(name)
-    robot = HeadlessExplorer(home, seed=seed)
+    robot = HeadlessMission(home, seed=seed, known=MappingConfig())
     record = robot.explore()
     return FloorRecord(record.occupancy, Pose(*robot.mapper.trajectory[0].tolist()))
 

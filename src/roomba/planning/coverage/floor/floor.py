@@ -23,6 +23,18 @@ _DOCKED = 0.4
 _TOUCH = 1e-7
 
 
+def fine_frame(coarse: GridFrame) -> GridFrame:
+    """Return the fine grid over the extent of a map's."""
+    parts = max(1, round(coarse.resolution / FINE))
+    return GridFrame(
+        coarse.resolution / parts,
+        coarse.origin_x,
+        coarse.origin_y,
+        coarse.rows * parts,
+        coarse.columns * parts,
+    )
+
+
 @dataclass(frozen=True, eq=False)
 class CoverageFloor:
     """Where the middle of a robot may be, and what its tool sweeps from there.
@@ -49,15 +61,8 @@ class CoverageFloor:
         for name, length in (("reach", reach), ("tool_width", tool_width)):
             if not (math.isfinite(length) and length > 0.0):
                 raise ValueError(f"expected a finite {name} above 0 m, got {length}")
-        coarse = map.frame
-        parts = max(1, round(coarse.resolution / FINE))
-        frame = GridFrame(
-            coarse.resolution / parts,
-            coarse.origin_x,
-            coarse.origin_y,
-            coarse.rows * parts,
-            coarse.columns * parts,
-        )
+        frame = fine_frame(map.frame)
+        parts = frame.rows // map.frame.rows
         solid = np.repeat(np.repeat(map.solid, parts, axis=0), parts, axis=1)
         fenced = np.pad(solid, 1, constant_values=True)
         near = half_widths((reach - _TOUCH) / frame.resolution, to_squares=True)

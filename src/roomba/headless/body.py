@@ -1,0 +1,89 @@
+"""The simulated body of a headless robot: it tells what sensors say, and does what is wanted."""
+
+from __future__ import annotations
+
+from roomba.configuration.simulation import SimulatedRobotConfig
+from roomba.geometry import Pose
+from roomba.mission.inputs.senses import Battery, StationBeams
+from roomba.perception.matching.scan_view import LidarModel
+from roomba.robot.command import Command
+from roomba.robot.readings import Cliff, Readings, Scan
+from roomba.world.engine.state.arrays import Infrared
+from roomba.world.home.home import Home
+from roomba.world.simulator import Observation, Simulator
+
+
+class SimulatedBody:
+    """One robot's body in one home; ``seen`` is what is so, true and sensed, after the last tick.
+
+    ``scans`` is how many scans there were by then.
+    """
+
+    def __init__(
+        self,
+        home: Home,
+        robot: SimulatedRobotConfig,
+        seed: int,
+        max_speed: float | None,
+        start: Pose | None,
+    ) -> None:
+        """Put it on its station, or at ``start``; raises HomeError where it does not fit."""
+        self.simulator = Simulator(home, robot, seed=seed, max_speed=max_speed, start=start)
+        lidar = robot.lidar
+        self.lidar = LidarModel.all_around(lidar.beams, lidar.min_range, lidar.max_range)
+        self._timing, self._usual = robot.timing, (robot.brush.duty, robot.fan.duty)
+        self._wanted: tuple[float | None, float | None] = (None, None)
+        self.seen = self.simulator.observe()
+        self.scans = 0
+
+    def read(self) -> Readings:
+        """Return what the sensors tell now."""
+        self.seen = seen = self.simulator.observe()
+        scan = None
+        if seen.scans != self.scans:
+            self.scans = seen.scans
+            scan = self.newest_scan()
+        return readings_of(seen, scan)
+
+    def newest_scan(self) -> Scan:
+        """Return the newest scan, as if it were taken now."""
+        return Scan(self.seen.time, self.simulator.ranges, self.lidar)
+
+    def act(self, command: Command) -> None:
+        """Do what is wanted for a tick."""
+        self._set_power(command.brush, command.fan)
+        timing = self._timing
+        self.simulator.advance(command.twist, timing.world_step, timing.steps_per_tick)
+
+    def _set_power(self, brush: float | None, fan: float | None) -> None:
+        """Set the duty of brush and fan when another one is wanted; None: their usual one."""
+        if (brush, fan) == self._wanted:
+            return
+        self._wanted = brush, fan
+        usual_brush, usual_fan = self._usual
+        self.simulator.set_power(
+            usual_brush if brush is None else brush, usual_fan if fan is None else fan
+        )
+
+
+def readings_of(seen: Observation, scan: Scan | None) -> Readings:
+    """Return what the sensors tell, without the truth."""
+    cliff, wheels, infrared, battery = seen.cliff, seen.wheels, seen.infrared, seen.battery
+    return Readings(
+        seen.time,
+        seen.odometry,
+        seen.odometry_twist,
+        seen.angular_velocity,
+        scan,
+        seen.bumper.left,
+        seen.bumper.right,
+        Cliff(cliff.left, cliff.front_left, cliff.front_right, cliff.right),
+        wheels.dropped_left,
+        wheels.dropped_right,
+        StationBeams(
+            Infrared.HALO in infrared, Infrared.GREEN in infrared, Infrared.RED in infrared
+        ),
+        Battery(battery.level, battery.capacity, battery.is_docked),
+        seen.grains,
+        seen.in_bin,
+    )

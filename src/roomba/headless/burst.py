@@ -1,0 +1,241 @@
+"""Letting steady ticks pass at once: a compiled burst with the arrays of body, brain and truth."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.control.path_tracker import PathTracker
+from roomba.geometry import Pose
+from roomba.headless.body import SimulatedBody
+from roomba.headless.burst_kernels import (
+    BURST,
+    Drive,
+    Floor,
+    PlaceParts,
+    Sight,
+    World,
+    run,
+)
+from roomba.headless.rows import BELIEVED, PASSED
+from roomba.mission.driving.progress_kernels import PROGRESS
+from roomba.mission.steady import Steady
+from roomba.perception.localization.recent_sight import RecentSight
+from roomba.perception.slam.follow_kernels import FOLLOWER, Following
+from roomba.perception.slam.surface_kernels import POINT
+from roomba.perception.slam.surfels import SurfelGrid
+from roomba.perception.swept.coverage_map import CoverageMap
+from roomba.robot.brain import Brain
+from roomba.robot.place import least_apart
+
+Floats = NDArray[np.float64]
+
+LONGEST_BURST: Final = 100
+"""Ticks: five seconds; about as often the mission looks at its battery anyway."""
+_EARLY: Final = 1e-6
+"""s; so much before a time the classes have their turn: to the last bit both tell time alike."""
+_HARDLY_LESS: Final = 1.0 - 1e-9
+"""Times the energy at which the battery is looked at, for the same reason."""
+
+
+class Burst:
+    """Lets a robot's ticks pass, as long as it is known what they do; ``longest`` at once."""
+
+    def __init__(self, body: SimulatedBody, brain: Brain, truth: CoverageMap, longest: int) -> None:
+        """Take the parts whose arrays it works on, and those that never change place."""
+        self._body, self._brain, self._truth = body, brain, truth
+        self._world = World(*body.simulator.compiled)
+        self._rows = np.empty((longest, PASSED))
+        self._burst = np.zeros(1, BURST)
+        timing, row = brain.robot.timing, self._burst[0]
+        row["step"], row["steps"] = timing.world_step, timing.steps_per_tick
+        row["apart"] = least_apart(timing)
+        row["stride"], row["is_mapping"] = brain.robot.scan_stride, brain.mapper is not None
+        self._has_ended = False
+        self._nowhere = _nowhere(brain)
+        self._no_following = _no_following(brain, body)
+
+    def run(self) -> Floats:
+        """Let ticks pass until something comes up; return their rows, float64 [ticks, PASSED]."""
+        brain = self._brain
+        if self._has_ended or not self._may_run:
+            # What ended the last one is most likely there still.
+            self._has_ended = False
+            return self._rows[:0]
+        senses = brain.senses()
+        steady = brain.mission.steady(senses)
+        if steady is None:
+            return self._rows[:0]
+        start = senses.pose.x, senses.pose.y
+        self._begin(steady)
+        ticks = run(
+            self._burst,
+            self._world,
+            self._place(),
+            self._sight(),
+            self._drive(steady),
+            self._floor(),
+            self._rows,
+        )
+        rows = self._rows[:ticks].copy()
+        self._has_ended = 0 < ticks < len(self._rows)
+        if ticks:
+            self._end(np.vstack((start, rows[:-1, BELIEVED][:, :2])))
+            # A scan that was kept may have moved the map below it.
+            believed = brain.pose
+            rows[-1, BELIEVED] = believed.x, believed.y, believed.theta
+        return rows
+
+    @property
+    def _may_run(self) -> bool:
+        return len(self._rows) > 0 and self._brain.keeper.place.is_calm
+
+    # ---------------------------------------------------------------- taking over
+
+    def _begin(self, steady: Steady) -> None:
+        """Take over from the classes."""
+        brain, row = self._brain, self._burst[0]
+        mission, last = brain.mission, brain.mission.last
+        until = (
+            steady.until if brain.growing is None else min(steady.until, brain.growing.next_look)
+        )
+        capacity = brain.robot.battery.capacity
+        row["drives"], row["limit"] = steady.driver is not None, steady.limit
+        row["until"] = until - _EARLY
+        row["least_charge"] = steady.least_level * capacity / _HARDLY_LESS
+        row["most_charge"] = steady.most_energy * _HARDLY_LESS
+        row["goal"], row["near"] = steady.goal, steady.near
+        if steady.driver is not None:
+            row["clear_to"] = steady.driver.clear_to
+            row["off_path"] = brain.config.driving.off_path
+            row["patience"] = brain.config.driving.progress_timeout
+        row["things_version"] = brain.things.version
+        row["clock"] = brain.readings.time - self._body.simulator.time
+        row["scans"], row["seen_at"] = self._body.scans, brain.keeper.seen_at
+        if brain.mapper is not None:
+            at = brain.mapper.at_scan
+            row["at_scan"] = at.x, at.y, at.theta
+        row["last"], row["way"] = (last.now, last.pose.x, last.pose.y), 0.0
+        row["sweeps"] = mission.sweeps
+        cleaning = mission.cleaning
+        row["swept_at"] = _place_of(None if cleaning is None else cleaning.coverage.at)
+        row["true_at"] = _place_of(self._truth.at)
+        row["swept"] = row["truth_swept"] = row["points"] = 0
+        row["is_doubtful"] = False
+
+    def _place(self) -> PlaceParts:
+        brain, beams = self._brain, self._brain.beams_of(self._body.lidar)
+        if brain.localizer is not None:
+            at = brain.localizer
+            sights = at.sights(self._body.lidar.beams)
+            return PlaceParts(at.belief, at.numbers, beams, sights, self._no_following)
+        assert brain.mapper is not None
+        mapper = brain.mapper
+        return PlaceParts(mapper.belief, mapper.numbers, beams, _NO_SIGHTS, mapper.following)
+
+    def _sight(self) -> Sight:
+        things = self._brain.things
+        return Sight(things.arrays, things.field.values, things.field.place)
+
+    def _drive(self, steady: Steady) -> Drive:
+        driver = steady.driver
+        if driver is None:
+            return self._nowhere
+        return Drive(driver.tracker.state, driver.tracker.course, driver.progress)
+
+    def _floor(self) -> Floor:
+        """Return what is cleaned now; without a clean what is driven over does not count."""
+        mission, truth = self._brain.mission, self._truth
+        coverage = truth if mission.cleaning is None else mission.cleaning.coverage
+        dirt = mission.dirt
+        return Floor(
+            coverage.cells,
+            coverage.place,
+            truth.cells,
+            truth.place,
+            truth.radius,
+            dirt.grains,
+            dirt.way,
+            dirt.place,
+        )
+
+    # ---------------------------------------------------------------- handing back
+
+    def _end(self, places: Floats) -> None:
+        """Let the classes go on; ticks began at ``places``, float64 [n, 2], m."""
+        brain, row = self._brain, self._burst[0]
+        mission = brain.mission
+        self._tell_floor()
+        self._body.scans = int(row["scans"])
+        brain.keeper.seen_at = float(row["seen_at"])
+        readings = self._body.read()
+        readings = replace(readings, time=readings.time + float(row["clock"]))
+        brain.told(readings)
+        self._finish_scan(readings.time)
+        time, x, y = row["last"].tolist()
+        last = replace(brain.senses(), now=time, pose=Pose(x, y, 0.0))
+        mission.caught_up(last, places, float(row["way"]))
+        brain.use_newer_map()
+
+    def _tell_floor(self) -> None:
+        """Tell what was swept."""
+        row, cleaning = self._burst[0], self._brain.mission.cleaning
+        if row["sweeps"] and cleaning is not None:
+            x, y = row["swept_at"].tolist()
+            cleaning.coverage.swept_cells += int(row["swept"])
+            cleaning.coverage.at = x, y
+        x, y = row["true_at"].tolist()
+        self._truth.swept_cells += int(row["truth_swept"])
+        self._truth.at = x, y
+
+    def _finish_scan(self, now: float) -> None:
+        """Do what is left of the newest scan."""
+        brain, row, body = self._brain, self._burst[0], self._body
+        if brain.localizer is not None:
+            brain.localizer.resumed(now)
+            if row["is_doubtful"]:
+                scan = body.newest_scan()
+                brain.localizer.reconsider(now, scan.ranges, scan.lidar)
+                brain.look(scan)
+        elif brain.mapper is not None:
+            brain.mapper.resumed(int(row["points"]))
+            if row["points"]:
+                brain.look(body.newest_scan())
+
+
+def _place_of(place: tuple[float, float] | None) -> tuple[float, float]:
+    return (np.nan, np.nan) if place is None else place
+
+
+def _nowhere(brain: Brain) -> Drive:
+    """Return the drive of a robot that stands."""
+    robot = brain.robot
+    points = np.array([[0.0, 0.0], [1.0, 0.0]])
+    tracker = PathTracker(points, robot.tracking, robot.body, robot.timing.tick)
+    return Drive(tracker.state, tracker.course, np.zeros(1, PROGRESS))
+
+
+_NO_SIGHTS: Final = RecentSight().arrays
+"""A mapper doubts nothing."""
+
+
+def _no_following(brain: Brain, body: SimulatedBody) -> Following:
+    """Return what a localizer follows scans with: nothing."""
+    belief = np.zeros(1, FOLLOWER), np.zeros(3)
+    place = brain.localizer or brain.mapper
+    assert place is not None
+    return Following(
+        belief[0],
+        place.belief,
+        place.numbers,
+        SurfelGrid(0.5).arrays,
+        brain.beams_of(body.lidar),
+        np.empty((1, POINT)),
+        belief[1],
+        belief[1],
+        1.0,
+        1.0,
+    )

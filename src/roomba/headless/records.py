@@ -1,0 +1,72 @@
+"""What headless robots did."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.errors import RoombaError
+from roomba.grid import OccupancyMap
+from roomba.mission.cleaning.request import CleanResult
+from roomba.mission.exploring.exploration import ExploreResult
+from roomba.perception.swept.coverage_map import CoverageMap
+from roomba.world.home.home import Home
+
+_LONGEST_CLEAN: Final = 12 * 3600.0
+_LONGEST_PER_AREA: Final = 150.0
+"""s, and s for each m2 of floor: more than twice what an office of 1,476 m2 takes, 26 hours with
+ten charges."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CleanRecord:
+    """What happened on a clean.
+
+    ``poses`` has rows of t (s), x, y (m), theta (rad), true ones, map frame; ``truth`` is the floor
+    that the tool really passed over; ``planning`` what all ``plans`` took, s of a wall clock.
+    ``occupancy`` is the map in the end; ``whole_at`` when it became whole, s: at the end, if it
+    was from the beginning.
+    """
+
+    result: CleanResult
+    poses: NDArray[np.float64]
+    truth: CoverageMap
+    hits: int
+    distance: float
+    turning: float
+    planning: float
+    plans: int
+    occupancy: OccupancyMap
+    whole_at: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ExploreRecord:
+    """What happened: rows of ``poses`` and ``believed`` are t (s), x, y (m), theta (rad), of each
+    tick; the first are true ones, map frame. ``occupancy`` is the map in the end.
+    """
+
+    result: ExploreResult
+    occupancy: OccupancyMap
+    poses: NDArray[np.float64]
+    believed: NDArray[np.float64]
+    hits: int
+    wall: float
+    """s of a wall clock that it took."""
+
+
+def longest_errand(home: Home) -> float:
+    """Return how long an errand lasts that only a fault keeps from ending, s."""
+    return _LONGEST_CLEAN + _LONGEST_PER_AREA * home.map.free_area
+
+
+def require_end(spent: float, longest: float) -> None:
+    """Raise RoombaError for an errand that has taken longer than the ``longest`` one, s."""
+    if spent > longest:
+        raise RoombaError(
+            f"expected an errand to end within {longest / 3600.0:.0f} h of the robot's time, it is "
+            "still under way; that is a fault of the program"
+        )

@@ -1,0 +1,67 @@
+"""How far a drive came on its path, and whether it stays near it, as compiled code tells it."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, Final
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from roomba.control.tracking_kernels import Course
+
+Rows = NDArray[np.void]
+Row = Any
+"""One row of an array, in a kernel."""
+
+PROGRESS: Final = np.dtype(
+    [
+        ("at", "f8"),  # s; when it last came farther
+        ("along", "f8"),  # m; how far along its path it was then
+        ("leg", "i8"),
+        ("recoveries", "i8"),  # in vain, one after the other
+    ]
+)
+"""What a drive remembers of its progress, one row."""
+
+LEAST: Final = 0.02
+"""m; less than this along the path is no progress."""
+_LEAVES_TROUBLE: Final = 0.5
+"""m of progress after which earlier recoveries count no more."""
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def along_of(track: Row, course: Course) -> float:
+    """Return how far along its path a tracker, a row of TRACK, is, m."""
+    last = course.stations.size - 1
+    if track.done > 0.0 or course.headings.size == 0:
+        return float(course.stations[last])
+    first, end = course.stations[track.leg], course.stations[track.leg + 1]
+    return float(min(max(first + track.along, first), end))
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def off_path(track: Row, course: Course, x: float, y: float) -> float:
+    """Return how far a place is from the leg that a tracker is on, m."""
+    first_x, first_y = course.points[0, 0], course.points[0, 1]
+    if course.headings.size == 0:
+        return math.hypot(x - first_x, y - first_y)
+    first_x, first_y = course.points[track.leg, 0], course.points[track.leg, 1]
+    way_x = course.points[track.leg + 1, 0] - first_x
+    way_y = course.points[track.leg + 1, 1] - first_y
+    share = ((x - first_x) * way_x + (y - first_y) * way_y) / (way_x * way_x + way_y * way_y)
+    share = min(max(share, 0.0), 1.0)
+    return math.hypot(x - (first_x + share * way_x), y - (first_y + share * way_y))
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def mark_progress(rows: Rows, along: float, leg: int, now: float) -> float:
+    """Remember whether a drive came farther by a time, s; return for how long it has not."""
+    progress = rows[0]
+    if along > progress.along + LEAST or leg > progress.leg:
+        progress.at, progress.leg = now, leg
+        if along > _LEAVES_TROUBLE:
+            progress.recoveries = 0
+        progress.along = max(along, progress.along)
+    return float(now - progress.at)

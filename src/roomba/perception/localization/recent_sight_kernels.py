@@ -1,0 +1,58 @@
+"""Keeping what was seen a moment ago, as compiled code does it: a ring of scans."""
+
+from __future__ import annotations
+
+from typing import Final, NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+
+KEPT: Final = 12
+"""Scans that are kept."""
+_APART: Final = 0.4
+"""s; between two scans that are kept."""
+
+
+class Sights(NamedTuple):
+    """The newest scans, in a ring of KEPT.
+
+    ``ring`` int64 [2] is where the next one goes and how many there are; ``stamps`` [KEPT] are s,
+    ``places`` [KEPT, 3] of dead reckoning; of ``ends`` [KEPT, beams, 4] the first ``counts`` count.
+    """
+
+    ring: NDArray[np.int64]
+    stamps: Floats
+    places: Floats
+    counts: NDArray[np.int64]
+    ends: Floats
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def note_sight(sights: Sights, stamp: float, place: Floats, ends: Floats, count: int) -> None:
+    """Keep a scan, the first ``count`` of ``ends`` [n, 4], taken at a time, s, and a place [3]."""
+    ring = sights.ring
+    if ring[1] > 0:
+        newest = sights.stamps[newest_of(ring, 0)]
+        if stamp < newest:
+            # The clock was set back.
+            ring[1] = 0
+        elif stamp - newest < _APART:
+            return
+    kept = ring[0]
+    sights.stamps[kept], sights.counts[kept] = stamp, count
+    for axis in range(3):
+        sights.places[kept, axis] = place[axis]
+    for row in range(count):
+        for column in range(4):
+            sights.ends[kept, row, column] = ends[row, column]
+    ring[0] = (kept + 1) % KEPT
+    ring[1] = min(ring[1] + 1, KEPT)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def newest_of(ring: NDArray[np.int64], number: int) -> int:
+    """Return where in the ring the newest scan but ``number`` is."""
+    return int((ring[0] - 1 - number) % KEPT)

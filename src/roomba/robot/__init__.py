@@ -1,0 +1,1 @@
+"""The robot put together: one brain for any body; its parts are usable one by one."""

@@ -1,0 +1,16 @@
+"""What a brain wants of its body."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from roomba.geometry import STANDSTILL, Twist
+
+
+@dataclass(frozen=True, slots=True)
+class Command:
+    """The twist wanted of the drive, and the duty of fan and brush, 0..1; None: their usual one."""
+
+    twist: Twist = STANDSTILL
+    fan: float | None = None
+    brush: float | None = None

@@ -1,0 +1,98 @@
+"""All that a body tells its brain at a tick."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.geometry import STANDSTILL, Pose, Twist
+from roomba.mission.inputs.senses import Battery, Senses, StationBeams
+from roomba.perception.localization.estimate import Estimate
+from roomba.perception.matching.scan_view import LidarModel
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Scan:
+    """A scan of a lidar: ``ranges`` is float32 [beams], m, taken at ``stamp``, s."""
+
+    stamp: float
+    ranges: NDArray[np.float32]
+    lidar: LidarModel
+
+
+@dataclass(frozen=True, slots=True)
+class Cliff:
+    """Which of the cliff sensors see no floor."""
+
+    left: bool = False
+    front_left: bool = False
+    front_right: bool = False
+    right: bool = False
+
+    @property
+    def any(self) -> bool:
+        """Whether one of them does."""
+        return self.left or self.front_left or self.front_right or self.right
+
+
+_NO_CLIFF = Cliff()
+_FULL = Battery()
+_NO_BEAMS = StationBeams()
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Readings:
+    """What the sensors tell at ``time``, s of the robot's clock.
+
+    ``odometry`` and ``twist`` (m/s, rad/s) are by the wheels, ``turning`` (rad/s) by the gyro, None
+    without one; ``scan`` is the newest one if it is new. ``grains`` is what the dirt sensor counts,
+    1/s, ``in_bin`` what was picked up, g.
+    """
+
+    time: float
+    odometry: Pose
+    twist: Twist = STANDSTILL
+    turning: float | None = None
+    scan: Scan | None = None
+    bumper_left: bool = False
+    bumper_right: bool = False
+    cliff: Cliff = _NO_CLIFF
+    dropped_left: bool = False
+    dropped_right: bool = False
+    beams: StationBeams = _NO_BEAMS
+    battery: Battery = _FULL
+    grains: float = 0.0
+    in_bin: float = 0.0
+
+    @property
+    def bumps(self) -> bool:
+        """Whether the bumper is pressed anywhere."""
+        return self.bumper_left or self.bumper_right
+
+    @property
+    def is_lifted(self) -> bool:
+        """Whether both wheels hang in the air: somebody holds the robot."""
+        return self.dropped_left and self.dropped_right
+
+
+def senses_of(readings: Readings, estimate: Estimate) -> Senses:
+    """Return what a mission senses, of what the body tells and what is known of the place."""
+    turning = readings.twist.angular if readings.turning is None else readings.turning
+    return Senses(
+        readings.time,
+        estimate.pose,
+        Twist(readings.twist.linear, turning),
+        estimate.knowledge,
+        estimate.reason,
+        readings.bumper_left,
+        readings.bumper_right,
+        readings.cliff.left or readings.cliff.front_left,
+        readings.cliff.right or readings.cliff.front_right,
+        readings.dropped_left or readings.dropped_right,
+        readings.beams,
+        readings.battery,
+        readings.grains,
+        readings.in_bin,
+    )

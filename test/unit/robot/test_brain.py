@@ -1,0 +1,111 @@
+"""The brain in a body that is not simulated: ticked with readings made by hand."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from fixtures.missions import HOME, STATION
+from fixtures.worlds import NOISY
+
+from roomba.configuration.docking import DockingConfig
+from roomba.configuration.mapping import MappingConfig
+from roomba.configuration.mission import DrivingConfig, MissionConfig
+from roomba.errors import ConfigError, RoombaError
+from roomba.geometry import STANDSTILL, Pose
+from roomba.grid import OccupancyMap
+from roomba.headless.body import SimulatedBody
+from roomba.mission.cleaning.request import CleanRequest, FanLevel
+from roomba.mission.inputs.senses import Battery
+from roomba.mission.phases.machine import Phase
+from roomba.robot.brain import Brain
+from roomba.robot.command import Command
+from roomba.robot.readings import Readings
+
+DOCKED = Readings(0.0, Pose(), battery=Battery(1.0, 26.0, is_docked=True))
+
+
+def brain(known: OccupancyMap | MappingConfig, mission: MissionConfig | None = None) -> Brain:
+    return Brain(known, STATION, NOISY, mission or MissionConfig(), DockingConfig())
+
+
+def first_scan() -> Readings:
+    """What the body tells once its first scan came."""
+    body = SimulatedBody(HOME, NOISY, 1, None, None)
+    readings = body.read()
+    while readings.scan is None:
+        body.act(Command())
+        readings = body.read()
+    return readings
+
+
+def test_on_a_known_map_it_is_ready_at_once_and_stands() -> None:
+    robot = brain(HOME.map)
+    assert robot.tick(DOCKED) == Command()
+    assert robot.mission.state.phase is Phase.DOCKED
+    assert robot.pose == STATION
+
+
+def test_before_it_was_told_anything_it_knows_nothing() -> None:
+    robot = brain(HOME.map)
+    with pytest.raises(RoombaError, match="nothing was told"):
+        robot.senses()
+    with pytest.raises(RoombaError, match="no map yet"):
+        _ = robot.mission
+
+
+def test_without_a_map_it_stands_until_its_first_scan() -> None:
+    robot = brain(MappingConfig())
+    assert robot.tick(DOCKED) == Command()
+    assert not robot.is_ready
+    with pytest.raises(RoombaError, match="no map yet"):
+        _ = robot.things
+    robot.tick(first_scan())
+    assert robot.is_ready
+    assert robot.mission.site.is_growing
+
+
+@pytest.mark.parametrize("fan", [FanLevel.QUIET, FanLevel.STRONG])
+def test_told_to_clean_it_drives_off_with_the_fan_that_is_asked_for(fan: FanLevel) -> None:
+    robot = brain(HOME.map)
+    robot.tick(DOCKED)
+    robot.mission.clean(CleanRequest(fan=fan), robot.senses())
+    commands = [robot.tick(replace(DOCKED, time=0.05 * tick)) for tick in range(1, 4)]
+    assert commands[-1].twist != STANDSTILL
+    assert commands[-1].fan == fan.value
+
+
+def test_no_command_is_faster_than_the_robot() -> None:
+    robot = brain(HOME.map)
+    robot.tick(DOCKED)
+    robot.limit_speed(0.07)
+    assert robot.mission.max_speed == 0.07
+    robot.mission.clean(CleanRequest(), robot.senses())
+    twists = [robot.tick(replace(DOCKED, time=0.05 * tick)).twist for tick in range(1, 9)]
+    assert max(abs(twist.linear) for twist in twists) == pytest.approx(0.07)
+
+
+def test_a_speed_that_its_body_cannot_do_is_refused() -> None:
+    with pytest.raises(ConfigError, match=r"driving\.speed.*0\.5 m/s.*got 0\.8"):
+        brain(HOME.map, MissionConfig(driving=DrivingConfig(speed=0.8)))
+
+
+def test_readings_are_told_without_a_step() -> None:
+    robot = brain(HOME.map)
+    robot.tick(DOCKED)
+    low = replace(DOCKED, battery=Battery(0.1, 26.0, is_docked=False))
+    robot.told(low)
+    assert robot.senses().battery.level == 0.1
+    assert robot.mission.state.phase is Phase.DOCKED
+
+
+def test_the_same_readings_give_the_same_commands() -> None:
+    commands = []
+    for _ in range(2):
+        robot = brain(HOME.map)
+        robot.tick(DOCKED)
+        robot.mission.clean(CleanRequest(), robot.senses())
+        ticks = np.arange(1, 40) * 0.05
+        commands.append([robot.tick(replace(DOCKED, time=float(now))) for now in ticks])
+    assert commands[0] == commands[1]

@@ -1,0 +1,139 @@
+"""The parts of the robot, one by one: readings, the place's keeper, the safe drive."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from fixtures.missions import HOME
+from fixtures.worlds import NOISY
+
+from roomba.configuration.robot import TimingConfig
+from roomba.geometry import Pose, Twist
+from roomba.headless.body import SimulatedBody
+from roomba.mission.inputs.senses import StationBeams
+from roomba.perception.localization.estimate import Estimate, Knowledge
+from roomba.perception.matching.scan_view import LidarModel
+from roomba.robot.command import Command
+from roomba.robot.place import PlaceKeeper
+from roomba.robot.readings import Readings, Scan, senses_of
+from roomba.robot.safe_drive import SafeDrive
+from roomba.world.engine.state.arrays import Fault
+
+LIDAR = LidarModel.all_around(8, 0.1, 5.0)
+
+
+class Noted:
+    """A place that writes down what it is told."""
+
+    is_calm = True
+
+    def __init__(self) -> None:
+        self.lifts: list[bool] = []
+        self.moves: list[float] = []
+        self.scans: list[float] = []
+
+    @property
+    def estimate(self) -> Estimate:
+        return Estimate(Pose(), np.eye(3), Knowledge.KNOWN, 1.0, "")
+
+    def lift(self, is_lifted: bool) -> None:
+        self.lifts.append(is_lifted)
+
+    def move(self, stamp: float, odometry: Pose, turning: float | None = None) -> None:
+        self.moves.append(stamp)
+
+    def see(self, stamp: float, ranges: np.ndarray, lidar: LidarModel) -> None:
+        self.scans.append(stamp)
+
+
+def body(start: Pose | None = None) -> SimulatedBody:
+    return SimulatedBody(HOME, NOISY, 1, None, start)
+
+
+def passed(robot: SimulatedBody) -> Readings:
+    for _ in range(2):
+        robot.act(Command())
+    return robot.read()
+
+
+def test_senses_are_what_sensors_tell_and_where_it_believes_to_be() -> None:
+    robot = body()
+    believed = Estimate(Pose(9.0, 8.0, 7.0), np.eye(3), Knowledge.ROUGH, 0.5, "fog")
+    senses = senses_of(passed(robot), believed)
+    assert senses.pose == believed.pose
+    assert (senses.knowledge, senses.trouble) == (Knowledge.ROUGH, "fog")
+    assert senses.battery.is_docked
+    assert senses.battery.capacity == NOISY.battery.capacity
+    assert not senses.is_disturbed
+    robot.simulator.inject(Fault.BUMPER_STUCK, 1.0)
+    robot.simulator.inject(Fault.CLIFF_DIRTY, 1.0)
+    robot.simulator.inject(Fault.INFRARED_BLOCKED, 1.0)
+    senses = senses_of(passed(robot), believed)
+    assert (senses.bumper_left, senses.bumper_right) == (True, True)
+    assert (senses.cliff_left, senses.cliff_right) == (True, True)
+    assert senses.beams == StationBeams()
+    robot.simulator.inject(Fault.LIFTED, 1.0)
+    assert senses_of(passed(robot), believed).lifted
+
+
+def test_without_a_gyro_the_wheels_tell_how_it_turns() -> None:
+    known = Estimate(Pose(), np.eye(3), Knowledge.KNOWN, 1.0, "")
+    wheels = Twist(0.2, 0.5)
+    assert senses_of(Readings(1.0, Pose(), wheels), known).twist == wheels
+    assert senses_of(Readings(1.0, Pose(), wheels, 0.4), known).twist == Twist(0.2, 0.4)
+
+
+@pytest.mark.parametrize("fault", [Fault.BUMPER_STUCK, Fault.CLIFF_DIRTY, Fault.LIFTED])
+def test_nothing_makes_it_drive_into_a_hazard(fault: Fault) -> None:
+    robot = body(Pose(1.2, 0.6, 0.0))
+    drive = SafeDrive(NOISY.body, 0.3)
+    assert drive.command(robot.read(), Twist(0.9, 0.0)).linear == pytest.approx(0.3)
+    robot.simulator.inject(fault, 1.0)
+    readings = passed(robot)
+    assert drive.command(readings, Twist(0.3, 0.0)).linear <= 0.0
+    if fault is Fault.LIFTED:
+        assert drive.command(readings, Twist(-0.1, 0.5)) == Twist()
+    else:
+        assert drive.command(readings, Twist(-0.1, 0.0)).linear < 0.0
+
+
+def test_its_top_speed_may_change() -> None:
+    drive, readings = SafeDrive(NOISY.body, 0.3), Readings(1.0, Pose())
+    drive.limit(0.1)
+    assert drive.command(readings, Twist(0.2, 0.4)) == Twist(0.1, 0.2)
+
+
+def scan_at(stamp: float) -> Scan:
+    return Scan(stamp, np.ones(8, np.float32), LIDAR)
+
+
+@pytest.mark.parametrize(("rate", "looked_at"), [(10.0, 5), (20.0, 5), (5.0, 5), (2.0, 2)])
+def test_one_scan_in_a_period_is_looked_at(rate: float, looked_at: int) -> None:
+    place = Noted()
+    keeper = PlaceKeeper(place, TimingConfig())
+    due = 0.0
+    for tick in range(20):
+        now = 100.0 + 0.05 * tick
+        scan = None
+        if 0.05 * tick >= due - 1e-9:
+            scan, due = scan_at(now), due + 1.0 / rate
+        seen = keeper.follow(Readings(now, Pose(), scan=scan))
+        assert (seen is not None) == (bool(place.scans) and place.scans[-1] == now)
+    assert len(place.scans) == looked_at
+    assert len(place.moves) == 20
+
+
+def test_a_clock_that_is_set_back_hides_no_scan() -> None:
+    place = Noted()
+    keeper = PlaceKeeper(place, TimingConfig())
+    for stamp in (100.0, 50.0, 50.05, 50.2):
+        keeper.follow(Readings(stamp, Pose(), scan=scan_at(stamp)))
+    assert place.scans == [100.0, 50.0, 50.2]
+
+
+def test_only_both_wheels_in_the_air_mean_that_it_is_held() -> None:
+    place = Noted()
+    keeper = PlaceKeeper(place, TimingConfig())
+    for left, right in ((True, False), (False, True), (True, True)):
+        keeper.follow(Readings(1.0, Pose(), dropped_left=left, dropped_right=right))
+    assert place.lifts == [False, False, True]
