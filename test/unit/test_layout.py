@@ -40,13 +40,16 @@ TESTED_BY: dict[str, tuple[str, str]] = {
     "roomba/errors": ("unit/world/test_simulator.py", VALUES),
     "roomba/files/": ("unit/world/layers/test_layer.py", "read and written with what they hold"),
     "roomba/gym/": ("unit/gym/test_single.py", "one environment, tested by stepping it"),
-    "roomba/headless/closed_loop_kernels": ("unit/headless/test_closed_loop.py", PART),
-    "roomba/headless/exploring_loop_kernels": ("unit/headless/test_exploring_loop.py", PART),
+    "roomba/headless/body": ("unit/robot/test_parts.py", "the robot's parts are tested in it"),
+    "roomba/headless/burst_kernels": ("unit/headless/test_burst.py", PART),
+    "roomba/headless/rows": ("unit/headless/test_burst.py", VALUES),
     "roomba/headless/walker": ("unit/mission/walking/test_walk.py", "the robot that walks"),
     "roomba/mission/docking/step": ("unit/mission/docking/test_docking.py", VALUES),
+    "roomba/mission/driving/progress_kernels": ("unit/mission/driving/test_path_driver.py", PART),
     "roomba/mission/inputs/senses": ("unit/mission/test_mission.py", VALUES),
     "roomba/mission/phases/cleaning": ("unit/mission/phases/test_phases.py", "one of the phases"),
     "roomba/mission/phases/step": ("unit/mission/phases/test_phases.py", VALUES),
+    "roomba/mission/steady": ("unit/headless/test_burst.py", VALUES),
     "roomba/perception/localization/belief": (
         "unit/perception/localization/test_belief_kernels.py",
         "the belief and its kernels are one",
@@ -62,6 +65,10 @@ TESTED_BY: dict[str, tuple[str, str]] = {
     "roomba/perception/localization/estimate": (
         "unit/perception/localization/test_belief_kernels.py",
         VALUES,
+    ),
+    "roomba/perception/localization/recent_sight_kernels": (
+        "unit/perception/localization/test_recent_sight.py",
+        PART,
     ),
     "roomba/perception/localization/search_kernels": (
         "unit/perception/localization/test_place_search.py",
@@ -85,6 +92,7 @@ TESTED_BY: dict[str, tuple[str, str]] = {
     ),
     "roomba/perception/things/kernels": ("unit/perception/things/test_layer.py", PART),
     "roomba/plots/": ("unit/plots/test_home.py", "a drawing of a home is made of them"),
+    "roomba/robot/": ("unit/robot/test_parts.py", "the parts of one robot"),
     "roomba/storage/map_bound": ("unit/storage/test_rooms.py", "a base of what it stores"),
     "roomba/ui/errand_progress": ("unit/ui/test_cleaning.py", "shown by the menu for cleaning"),
     "roomba/ui/prompt": ("unit/ui/test_menu.py", "asked by the menu"),

@@ -20,13 +20,11 @@ from roomba.headless.burst_kernels import (
     World,
     run,
 )
-from roomba.headless.rows import BELIEVED, PASSED
+from roomba.headless.rows import BELIEVED, PASSED, RECKONED, TIME
 from roomba.mission.driving.progress_kernels import PROGRESS
 from roomba.mission.steady import Steady
 from roomba.perception.localization.recent_sight import RecentSight
-from roomba.perception.slam.follow_kernels import FOLLOWER, Following
-from roomba.perception.slam.surface_kernels import POINT
-from roomba.perception.slam.surfels import SurfelGrid
+from roomba.perception.slam.follow_kernels import FOLLOWER
 from roomba.perception.swept.coverage_map import CoverageMap
 from roomba.robot.brain import Brain
 from roomba.robot.place import least_apart
@@ -56,7 +54,6 @@ class Burst:
         row["stride"], row["is_mapping"] = brain.robot.scan_stride, brain.mapper is not None
         self._has_ended = False
         self._nowhere = _nowhere(brain)
-        self._no_following = _no_following(brain, body)
 
     def run(self) -> Floats:
         """Let ticks pass until something comes up; return their rows, float64 [ticks, PASSED]."""
@@ -83,7 +80,7 @@ class Burst:
         rows = self._rows[:ticks].copy()
         self._has_ended = 0 < ticks < len(self._rows)
         if ticks:
-            self._end(np.vstack((start, rows[:-1, BELIEVED][:, :2])))
+            self._end(rows, np.vstack((start, rows[:-1, BELIEVED][:, :2])))
             # A scan that was kept may have moved the map below it.
             believed = brain.pose
             rows[-1, BELIEVED] = believed.x, believed.y, believed.theta
@@ -123,18 +120,18 @@ class Burst:
         cleaning = mission.cleaning
         row["swept_at"] = _place_of(None if cleaning is None else cleaning.coverage.at)
         row["true_at"] = _place_of(self._truth.at)
-        row["swept"] = row["truth_swept"] = row["points"] = 0
-        row["is_doubtful"] = False
+        row["swept"] = row["truth_swept"] = 0
+        row["is_left"] = False
 
     def _place(self) -> PlaceParts:
         brain, beams = self._brain, self._brain.beams_of(self._body.lidar)
         if brain.localizer is not None:
             at = brain.localizer
             sights = at.sights(self._body.lidar.beams)
-            return PlaceParts(at.belief, at.numbers, beams, sights, self._no_following)
+            return PlaceParts(at.belief, at.numbers, beams, sights, _NO_FOLLOWER)
         assert brain.mapper is not None
         mapper = brain.mapper
-        return PlaceParts(mapper.belief, mapper.numbers, beams, _NO_SIGHTS, mapper.following)
+        return PlaceParts(mapper.belief, mapper.numbers, beams, _NO_SIGHTS, mapper.follower)
 
     def _sight(self) -> Sight:
         things = self._brain.things
@@ -164,7 +161,7 @@ class Burst:
 
     # ---------------------------------------------------------------- handing back
 
-    def _end(self, places: Floats) -> None:
+    def _end(self, rows: Floats, places: Floats) -> None:
         """Let the classes go on; ticks began at ``places``, float64 [n, 2], m."""
         brain, row = self._brain, self._burst[0]
         mission = brain.mission
@@ -174,7 +171,7 @@ class Burst:
         readings = self._body.read()
         readings = replace(readings, time=readings.time + float(row["clock"]))
         brain.told(readings)
-        self._finish_scan(readings.time)
+        self._finish_scan(readings.time, rows)
         time, x, y = row["last"].tolist()
         last = replace(brain.senses(), now=time, pose=Pose(x, y, 0.0))
         mission.caught_up(last, places, float(row["way"]))
@@ -191,19 +188,21 @@ class Burst:
         self._truth.swept_cells += int(row["truth_swept"])
         self._truth.at = x, y
 
-    def _finish_scan(self, now: float) -> None:
-        """Do what is left of the newest scan."""
-        brain, row, body = self._brain, self._burst[0], self._body
+    def _finish_scan(self, now: float, rows: Floats) -> None:
+        """Do what is left of the newest scan; ``rows`` are the ticks that passed."""
+        brain, scan = self._brain, None
+        if self._burst[0]["is_left"]:
+            scan = replace(self._body.newest_scan(), stamp=now)
         if brain.localizer is not None:
             brain.localizer.resumed(now)
-            if row["is_doubtful"]:
-                scan = body.newest_scan()
-                brain.localizer.reconsider(now, scan.ranges, scan.lidar)
-                brain.look(scan)
+            if scan is not None:
+                brain.localizer.reconsider(scan.stamp, scan.ranges, scan.lidar)
         elif brain.mapper is not None:
-            brain.mapper.resumed(int(row["points"]))
-            if row["points"]:
-                brain.look(body.newest_scan())
+            stamps = rows[:, TIME] + float(self._burst[0]["clock"])
+            brain.mapper.resumed(np.column_stack((stamps, rows[:, RECKONED])))
+            if scan is not None:
+                brain.mapper.see(scan.stamp, scan.ranges, scan.lidar)
+        brain.look(scan)
 
 
 def _place_of(place: tuple[float, float] | None) -> tuple[float, float]:
@@ -220,22 +219,5 @@ def _nowhere(brain: Brain) -> Drive:
 
 _NO_SIGHTS: Final = RecentSight().arrays
 """A mapper doubts nothing."""
-
-
-def _no_following(brain: Brain, body: SimulatedBody) -> Following:
-    """Return what a localizer follows scans with: nothing."""
-    belief = np.zeros(1, FOLLOWER), np.zeros(3)
-    place = brain.localizer or brain.mapper
-    assert place is not None
-    return Following(
-        belief[0],
-        place.belief,
-        place.numbers,
-        SurfelGrid(0.5).arrays,
-        brain.beams_of(body.lidar),
-        np.empty((1, POINT)),
-        belief[1],
-        belief[1],
-        1.0,
-        1.0,
-    )
+_NO_FOLLOWER: Final = np.zeros(1, FOLLOWER)
+"""A localizer needs none."""

@@ -15,20 +15,13 @@ from numba import njit
 from numpy.typing import NDArray
 
 from roomba.control.tracking_kernels import Course, track
-from roomba.headless.rows import GYRO, TIME
+from roomba.headless.rows import GYRO, RECKONED, TIME
 from roomba.mission.driving.progress_kernels import along_of, mark_progress, off_path
 from roomba.perception.localization.belief_correct_kernels import correct, is_calm
 from roomba.perception.localization.belief_reckon_kernels import reckon
 from roomba.perception.localization.recent_sight_kernels import Sights, note_sight
 from roomba.perception.matching.beams import LidarBeams
-from roomba.perception.matching.match_kernels import beam_ends
-from roomba.perception.slam.follow_kernels import (
-    Following,
-    beyond,
-    follow_scan,
-    is_apart,
-    moved_since,
-)
+from roomba.perception.slam.follow_kernels import moved_since
 from roomba.perception.swept.coverage_kernels import sweep
 from roomba.perception.swept.coverage_map import LONGEST_STEP
 from roomba.perception.swept.dirt_map import note_dirt
@@ -40,6 +33,7 @@ from roomba.world.engine.step_kernels import advance
 Floats = NDArray[np.float64]
 Rows = NDArray[np.void]
 
+RECKONED_AT: Final = RECKONED.start
 BURST: Final = np.dtype(
     [
         # what does not change
@@ -73,8 +67,7 @@ BURST: Final = np.dtype(
         ("swept", "i8"),  # wanted cells that became clean
         ("truth_swept", "i8"),
         # what the classes have to finish
-        ("points", "i8"),  # of the newest scan, if it is to be a mapper's keyframe
-        ("is_doubtful", "?"),  # the newest scan was followed, and does not confirm the place
+        ("is_left", "?"),  # the newest scan: a mapper's, or one that does not confirm the place
     ],
     align=True,
 )
@@ -91,13 +84,13 @@ class World(NamedTuple):
 
 
 class PlaceParts(NamedTuple):
-    """What knows the place: ``sights`` counts for a localizer, ``following`` for a mapper."""
+    """What knows the place: ``sights`` counts for a localizer, ``follower`` for a mapper."""
 
     belief: Rows
     numbers: Rows
     beams: LidarBeams
     sights: Sights
-    following: Following
+    follower: Rows
 
 
 class Sight(NamedTuple):
@@ -161,7 +154,7 @@ def run(
         is_settled = follow(burst, world, place, sight, now)
         x, y, theta = believed(burst, place)
         sweep_truth(burst, robot, floor)
-        write_down(rows[ticks], now - burst.clock, robot, x, y, theta)
+        write_down(rows[ticks], now - burst.clock, robot, place.belief[0], x, y, theta)
         ticks += 1
         if not is_settled:
             break
@@ -264,13 +257,17 @@ def from_where(last: Floats, x: float, y: float) -> tuple[float, float]:
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def write_down(row: Floats, now: float, robot: Any, x: float, y: float, theta: float) -> None:
+def write_down(
+    row: Floats, now: float, robot: Any, belief: Any, x: float, y: float, theta: float
+) -> None:
     """Fill a row with what is so after a tick."""
     row[TIME] = now
     row[1], row[2], row[3] = robot.x, robot.y, robot.theta
     row[4], row[5], row[6] = x, y, theta
     row[7], row[8], row[9] = robot.odometry_x, robot.odometry_y, robot.odometry_theta
     row[GYRO] = robot.gyro
+    for axis in range(3):
+        row[RECKONED_AT + axis] = belief.reckoned[axis]
 
 
 # ---------------------------------------------------------------- knowing the place
@@ -281,7 +278,7 @@ def believed(burst: Any, place: PlaceParts) -> tuple[float, float, float]:
     """Return where the robot takes itself to be, x, y, theta, map."""
     if burst.is_mapping:
         at = burst.at_scan
-        return moved_since(place.following.follower, place.belief, at[0], at[1], at[2])
+        return moved_since(place.follower, place.belief, at[0], at[1], at[2])
     pose: Any = place.belief[0].pose
     return pose[0], pose[1], pose[2]
 
@@ -305,7 +302,8 @@ def follow(burst: Any, world: World, place: PlaceParts, sight: Sight, now: float
         burst.seen_at = now
         ranges = world.state.ranges[0]
         if burst.is_mapping:
-            return map_on(burst, place, sight, ranges)
+            burst.is_left = True
+            return False
         return localize(burst, place, sight, ranges, now)
     if burst.is_mapping:
         return True
@@ -320,31 +318,9 @@ def localize(
     belief, beams = place.belief, place.beams
     count = correct(belief, place.numbers, sight.field, sight.place, beams, ranges, now)
     if not is_calm(belief, place.numbers, now):
-        burst.is_doubtful = True
+        burst.is_left = True
         return False
     note_sight(place.sights, now, belief[0].reckoned, beams.ends, count)
     pose = belief[0].pose
     note(sight.things, sight.field, sight.place, beams, ranges, count, pose, burst.stride)
-    return True
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def map_on(burst: Any, place: PlaceParts, sight: Sight, ranges: NDArray[np.float32]) -> bool:
-    """Follow a mapper's place by a scan; tell whether it is sure of it, and need not keep it."""
-    following = place.following
-    points = follow_scan(following, ranges)
-    follower: Any = following.follower[0]
-    here, at, submap = follower.here, burst.at_scan, following.submap
-    at[0], at[1], at[2] = beyond(submap[0], submap[1], submap[2], here[0], here[1], here[2])
-    if not follower.is_sure:
-        return False
-    if is_apart(here, following.keyframe, following.apart, following.turned):
-        # What else is seen in it is told when the map has it.
-        burst.points = points
-        return False
-    beams = following.beams
-    count = beam_ends(
-        ranges, beams.directions, beams.mount, beams.nearest, beams.farthest, beams.ends
-    )
-    note(sight.things, sight.field, sight.place, beams, ranges, count, at, burst.stride)
     return True

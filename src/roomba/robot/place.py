@@ -18,6 +18,9 @@ from roomba.robot.readings import Readings, Scan
 class Place(Protocol):
     """What knows where the robot is: a localizer on its map, or a mapper on the one it makes."""
 
+    belief: NDArray[np.void]
+    """What is reckoned by wheels and gyro, BELIEF [1]."""
+
     @property
     def estimate(self) -> Estimate:
         """What is known now."""

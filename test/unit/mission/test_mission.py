@@ -136,7 +136,7 @@ def test_not_knowing_its_place_it_stands_and_looks_around() -> None:
     step = rig.tick(10, knowledge=Knowledge.SEARCHING)
     assert step == MissionStep(Twist(), looks_around=True)
     assert rig.phase is Phase.CLEANING
-    assert not rig.mission.is_undisturbed
+    assert rig.mission.steady(rig.senses) is None
     step = rig.tick(2, knowledge=Knowledge.KNOWN)
     assert not step.looks_around
     assert step.twist != Twist()

@@ -47,7 +47,7 @@ def test_told_to_explore_it_drives_and_sweeps_nothing() -> None:
     assert rig.mission.state.errand is Errand.EXPLORE
     assert rig.tick().twist != Twist()
     assert not rig.mission.sweeps
-    assert rig.mission.is_undisturbed
+    assert rig.mission.steady(rig.senses) is not None
     assert rig.mission.seconds_to_go() == 0.0
     assert rig.mission.speed_limit(rig.senses) == CONFIG.exploring.speed
     rough = replace(rig.senses, knowledge=Knowledge.ROUGH)

@@ -6,11 +6,13 @@ import numpy as np
 import pytest
 from fixtures.missions import HOME
 from fixtures.worlds import NOISY
+from numpy.typing import NDArray
 
 from roomba.configuration.robot import TimingConfig
 from roomba.geometry import Pose, Twist
 from roomba.headless.body import SimulatedBody
 from roomba.mission.inputs.senses import StationBeams
+from roomba.perception.localization.belief import unknown_belief
 from roomba.perception.localization.estimate import Estimate, Knowledge
 from roomba.perception.matching.scan_view import LidarModel
 from roomba.robot.command import Command
@@ -28,6 +30,7 @@ class Noted:
     is_calm = True
 
     def __init__(self) -> None:
+        self.belief = unknown_belief()
         self.lifts: list[bool] = []
         self.moves: list[float] = []
         self.scans: list[float] = []
@@ -42,7 +45,7 @@ class Noted:
     def move(self, stamp: float, odometry: Pose, turning: float | None = None) -> None:
         self.moves.append(stamp)
 
-    def see(self, stamp: float, ranges: np.ndarray, lidar: LidarModel) -> None:
+    def see(self, stamp: float, ranges: NDArray[np.float32], lidar: LidarModel) -> None:
         self.scans.append(stamp)
 
 

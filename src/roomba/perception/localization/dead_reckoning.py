@@ -59,6 +59,12 @@ class DeadReckoning:
             self._past.clear()
         self._remember(stamp)
 
+    def went_on(self, reckoned: NDArray[np.float64]) -> None:
+        """Remember what kernels reckoned in the belief: rows [n, 4] of stamp, s, x, y, theta."""
+        self._past.extend(tuple(row) for row in reckoned.tolist())
+        while self._past[0][0] < self._past[-1][0] - _REMEMBERED:
+            self._past.popleft()
+
     def begin_history(self) -> None:
         """Forget the past, as after steps that a compiled burst made in the belief."""
         self._past.clear()

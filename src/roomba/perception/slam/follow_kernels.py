@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Final, NamedTuple
+from typing import Final
 
 import numpy as np
 from numba import njit
@@ -12,8 +12,6 @@ from numpy.typing import NDArray
 from roomba.angles import wrapped
 from roomba.perception.localization.belief import Row, Rows
 from roomba.perception.localization.belief_reckon_kernels import compose
-from roomba.perception.matching.beams import LidarBeams
-from roomba.perception.slam.surface_kernels import surface_points
 from roomba.perception.slam.surfel_kernels import ASKED, CLOSE, COUNTS, MATCHED, Surfels, align
 
 Floats = NDArray[np.float64]
@@ -70,46 +68,6 @@ _FAR_REACH: Final = 3
 """Cells of surfels; so far a scan is matched after many misses."""
 _LEAST_SPREAD: Final = (0.001**2, 0.001**2, 0.0005**2)
 """m2, rad2; the least variance of a prior, also at standstill."""
-
-
-class Following(NamedTuple):
-    """The input of following a scan.
-
-    ``follower`` is FOLLOWER [1]; ``belief`` and ``numbers`` are those of dead reckoning;
-    ``points`` float64 [beams, POINT] is filled with what the newest scan met. ``submap`` [3] is
-    where the newest submap lies on the map, ``keyframe`` [3] where in it the last scan was kept;
-    so far from there, ``apart``, m, or ``turned``, rad, another one is kept.
-    """
-
-    follower: Rows
-    belief: Rows
-    numbers: Rows
-    surfels: Surfels
-    beams: LidarBeams
-    points: Floats
-    submap: Floats
-    keyframe: Floats
-    apart: float
-    turned: float
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def follow_scan(parts: Following, ranges: NDArray[np.float32]) -> int:
-    """Take a scan, float32 [beams], m, taken here and now; return how many ``points`` it has."""
-    beams = parts.beams
-    count = surface_points(
-        ranges,
-        beams.directions,
-        beams.mount,
-        beams.nearest,
-        beams.farthest,
-        parts.follower[0].range_deviation,
-        parts.points,
-    )
-    follow(
-        parts.follower, parts.belief, parts.belief[0].reckoned, parts.surfels, parts.points, count
-    )
-    return count
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

@@ -23,7 +23,7 @@ from roomba.perception.localization.estimate import Estimate, Knowledge
 from roomba.perception.matching.range_noise import RangeNoise
 from roomba.perception.matching.scan_view import LidarModel
 from roomba.perception.slam.correlative import CorrelativeMatcher
-from roomba.perception.slam.follow_kernels import LEAST_POINTS, Following, beyond, is_apart
+from roomba.perception.slam.follow_kernels import LEAST_POINTS, beyond, is_apart
 from roomba.perception.slam.latency import Latency
 from roomba.perception.slam.mapper_state import KeptSubmap, LidarNumbers, MapperState
 from roomba.perception.slam.occupancy_counts import OccupancyCounts
@@ -171,29 +171,13 @@ class Mapper:
         return self.version > 0 and self._follower.is_sure and not is_held and bool(keyframes)
 
     @property
-    def following(self) -> Following:
-        """What kernels take scans with; it is another one in each submap."""
-        reckoning = self._reckoning
-        return Following(
-            self._follower.state,
-            reckoning.belief,
-            reckoning.numbers,
-            self._surfels.arrays,
-            self._beams,
-            self._points,
-            self._graph.poses[-1],
-            self._graph.newest.keyframes[-1].pose,
-            self._config.keyframe_way,
-            self._config.keyframe_turn,
-        )
+    def follower(self) -> NDArray[np.void]:
+        """Where the robot was at the newest scan, FOLLOWER [1], for kernels."""
+        return self._follower.state
 
-    def resumed(self, points: int = 0) -> None:
-        """Take over from kernels; the newest scan is a keyframe if it has so many ``points``."""
-        self._reckoning.begin_history()
-        self._latency.interrupted()
-        if points:
-            self._keep(self._points[:points])
-        self.at_scan = self._place()
+    def resumed(self, reckoned: Floats) -> None:
+        """Go on after kernels that reckoned rows [n, 4]: stamp, s, and pose by dead reckoning."""
+        self._reckoning.went_on(reckoned)
 
     def lift(self, is_lifted: bool) -> None:
         """Tell whether the wheels hang in the air: set down elsewhere, it must be :meth:`told`."""

@@ -238,21 +238,16 @@ def tell(localizer: Localizer, seen: Observation, ranges: Ranges | None) -> None
 
 def test_kernels_do_what_the_classes_do_tick_by_tick_and_the_classes_go_on_from_there() -> None:
     robot, twin = twins()
-    kernels, newest, at = Kernels(twin), robot.world.ranges, robot.world.time
+    kernels = Kernels(twin)
     for seen, ranges in ticks(robot, 20.0):
         tell(robot.localizer, seen, ranges)
         assert kernels.tick(seen, ranges)
-        if ranges is not None:
-            newest, at = ranges, seen.time
         one, other = robot.localizer.belief[0], twin.belief[0]
         for name in ("pose", "covariance", "reckoned", "fit", "agree", "usual_agree", "bias"):
             assert np.abs(one[name] - other[name]).max() < 1e-9, name
         assert one["beams"] == other["beams"]
-    twin.resumed(seen.time, at, newest, LIDAR)
+    twin.resumed(seen.time)
     assert twin.is_calm
-    assert twin.view is not None
-    assert robot.localizer.view is not None
-    assert (twin.view.ends == robot.localizer.view.ends).all()
     for seen, ranges in ticks(robot, 3.0):
         for localizer in (robot.localizer, twin):
             tell(localizer, seen, ranges)
@@ -260,6 +255,9 @@ def test_kernels_do_what_the_classes_do_tick_by_tick_and_the_classes_go_on_from_
         assert one_estimate.knowledge is other_estimate.knowledge is Knowledge.KNOWN
         assert one_estimate.pose.distance_to(other_estimate.pose.x, other_estimate.pose.y) < 1e-9
         assert one_estimate.agreement == other_estimate.agreement
+    assert twin.view is not None
+    assert robot.localizer.view is not None
+    assert (twin.view.ends == robot.localizer.view.ends).all()
 
 
 @pytest.mark.parametrize("every", [2, 3, 4])
@@ -283,10 +281,10 @@ def test_a_robot_that_is_carried_off_is_noticed_and_found_again(every: int) -> N
         if not kernels.tick(seen, ranges):
             break
     assert seen.time - before <= 1.3
-    twin.resumed(seen.time, seen.time, robot.world.ranges, LIDAR)
+    twin.resumed(seen.time)
+    twin.reconsider(seen.time, robot.world.ranges, LIDAR)
     assert not twin.is_calm
-    # The next scan decides: what was seen just now may tell that it was not carried.
-    robot.look()
+    # The scan that made the doubt decides.
     assert twin.estimate.knowledge is Knowledge.SEARCHING
     assert "does not fit" in twin.estimate.reason
     look_until_known(robot, 15.0)
@@ -317,7 +315,7 @@ def test_after_kernels_scans_that_are_late_are_left_out_and_those_that_follow_co
     kernels = Kernels(twin)
     for seen, ranges in ticks(robot, 2.0):
         kernels.tick(seen, ranges)
-    twin.resumed(seen.time, seen.time, robot.world.ranges, LIDAR)
+    twin.resumed(seen.time)
     before = twin.estimate.pose
     twin.see(seen.time - 0.3, np.full(360, 0.5, np.float32), LIDAR)
     assert twin.estimate.pose == before
@@ -336,7 +334,8 @@ def test_a_blind_lidar_is_not_calm_and_a_silent_one_not_for_long() -> None:
     assert is_calm(twin.belief, kernels.numbers, seen.time + 0.49)
     assert not is_calm(twin.belief, kernels.numbers, seen.time + 0.51)
     assert not kernels.tick(seen, np.full(360, np.inf, np.float32))
-    twin.resumed(seen.time, seen.time, np.full(360, np.inf, np.float32), LIDAR)
+    twin.resumed(seen.time)
+    twin.reconsider(seen.time, np.full(360, np.inf, np.float32), LIDAR)
     assert twin.estimate.knowledge is Knowledge.ROUGH
     assert "sees next to nothing" in twin.estimate.reason
 
