@@ -71,11 +71,15 @@ class HomeSimNode:
     ``robot_max_speed``, ``initial_post_x``, ``initial_post_y``.
     """
 
+    period: float
+    """s of the ROS clock between two ticks."""
+
     def start(self) -> None:
         """Load the home, put the robot in it, connect; raises RoombaError."""
         self._parameters = LiveSeedParameters()
         self._config = _config_with_sensors(read_simulated_config())
         self._timing = self._config.timing
+        self.period = self._timing.tick
         self._nanoseconds = round(self._timing.tick * 1e9)
         self._speed = _speed_parameter()
         self._owns_clock = rospy.get_param("~clock", True)
@@ -99,6 +103,9 @@ class HomeSimNode:
             self._keep_clock()
         else:
             Ticker(self._timing.tick, told_to_end).run(self.tick)
+
+    def stop(self) -> None:
+        """Nothing is left to do: without commands the body comes to rest by itself."""
 
     def _keep_clock(self) -> None:
         """Step in real time, or as many times faster as asked for."""
