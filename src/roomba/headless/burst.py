@@ -78,7 +78,8 @@ class Burst:
             self._rows,
         )
         rows = self._rows[:ticks].copy()
-        self._has_ended = 0 < ticks < len(self._rows)
+        is_left = bool(self._burst[0]["is_left"])
+        self._has_ended = 0 < ticks < len(self._rows) and not is_left
         if ticks:
             self._end(rows, np.vstack((start, rows[:-1, BELIEVED][:, :2])))
             # A scan that was kept may have moved the map below it.
