@@ -110,7 +110,12 @@ class Walking(Drive):
         x, y = self.rest.probe.position()
         goal = max(ENDS, key=lambda end: math.dist(end, (x, y)))
         self.walker.send(*goal)
-        self.wait(lambda: self.rest.moves(0.48))
+        try:
+            self.wait(lambda: self.rest.moves(0.48))
+        except AssertionError as error:
+            fastest = max(abs(each.linear) for each in self.rest.motions)
+            told = f"goal status {self.walker.status}: {self.walker.text!r}"
+            raise AssertionError(f"{error}; {fastest:.2f} m/s at most, {told}") from error
 
     def end(self) -> None:
         self.walker.cancel()
