@@ -165,7 +165,7 @@ def clean(task: Task, keeps_poses: bool = False) -> Clean:
     record = robot.clean()
     cpu, wall = time.process_time() - cpu, time.perf_counter() - wall
     poses = np.concatenate([np.array([[0.0, here.x, here.y, here.theta]]), record.poses])
-    floor = true_floor(home, (robot.site.staging.x, robot.site.staging.y), things)
+    floor = true_floor(home, (robot.context.staging.x, robot.context.staging.y), things)
     left = floor.floor & ~drawn(floor.frame, poses[:, 1:3])
     result = record.result
     return Clean(

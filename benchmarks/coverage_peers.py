@@ -61,19 +61,19 @@ class Driven:
     poses: Floats = field(repr=False)
 
 
-def site_of(home: Home) -> PlanningContext:
+def context_of(home: Home) -> PlanningContext:
     """Return the home as the robot plans in it."""
     return PlanningContext(home.map, home.station, RobotConfig(), MissionConfig(), DockingConfig())
 
 
-def planned(home: Home, site: PlanningContext, floor: Reachable, rounds: int) -> Planned:
+def planned(home: Home, context: PlanningContext, floor: Reachable, rounds: int) -> Planned:
     """Plan the whole floor as a clean does at its start; of the CPU time the best round counts."""
-    start = (site.staging.x, site.staging.y)
-    width, todo = site.coverage.floor.tool_width, site.coverable()
+    start = (context.staging.x, context.staging.y)
+    width, todo = context.coverage.floor.tool_width, context.coverable()
 
     def plan() -> CoveragePlan:
         # A planner keeps what it knows of the ground, so each time a new one.
-        return CoveragePlanner(site.known, site.reach, width).plan(start, start, todo)
+        return CoveragePlanner(context.known, context.reach, width).plan(start, start, todo)
 
     made, cpu = plan(), float("inf")
     for _ in range(rounds):

@@ -80,7 +80,7 @@ def clean(task: Task, known: OccupancyMap | None) -> Cleaned:
     """Clean a home by a map of it, its own true one by default, counted by true poses."""
     home = home_named(task.home, task.folder)
     robot = HeadlessMission(home, SimulatedRobotConfig(), seed=task.seed, known=known)
-    staging = robot.site.staging
+    staging = robot.context.staging
     record = robot.clean()
     is_home = robot.seen.battery.is_docked
     return _cleaned(home, staging, record.poses, record.result, is_home=is_home)

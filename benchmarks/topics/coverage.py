@@ -22,12 +22,12 @@ from benchmarks.coverage_lanes import Order
 from benchmarks.coverage_peers import (
     BOUNCE,
     Driven,
+    context_of,
     drive_bounce,
     drive_lanes,
     name_of,
     planned,
     shares_at,
-    site_of,
 )
 from benchmarks.coverage_plot import OURS, plot_over_time, plot_way
 from benchmarks.coverage_recorded import recorded
@@ -127,13 +127,13 @@ def _timed_rows(place: _Place, extent: Extent) -> list[Record]:
     )
     place.ideal = done
     home = home_named(task.home, task.folder)
-    site = site_of(home)
-    floor = true_floor(home, (site.staging.x, site.staging.y))
-    plan = planned(home, site, floor, max(2, extent.rounds))
+    context = context_of(home)
+    floor = true_floor(home, (context.staging.x, context.staging.y))
+    plan = planned(home, context, floor, max(2, extent.rounds))
     orders = [] if home.moving else list(Order)
     left_out = [PeerFigure(name_of(order), error=_BLIND) for order in Order if home.moving]
-    lanes = [drive_lanes(home, site.staging, floor, order) for order in orders]
-    bounced = [drive_bounce(home, site.staging, floor, done.seconds, 0)]
+    lanes = [drive_lanes(home, context.staging, floor, order) for order in orders]
+    bounced = [drive_bounce(home, context.staging, floor, done.seconds, 0)]
     records = ideal_rows(place.case, done, plan, [*lanes, *bounced], recorded(task.home), left_out)
     if task.home == _DRAWN and not task.folder:
         records += _over_time(home, floor, done, lanes, extent.bounces)
@@ -144,7 +144,7 @@ def _over_time(
     home: Home, floor: Reachable, done: Clean, lanes: list[Driven], bounces: int
 ) -> list[Record]:
     """Return how coverage grows with time, ours and the peers', and draw it."""
-    start = site_of(home).staging
+    start = context_of(home).staging
     seconds = 60.0 * _BOUNCED[-1]
     bounced = [drive_bounce(home, start, floor, seconds, seed) for seed in range(bounces)]
     poses = {OURS: done.poses, **{one.name: one.poses for one in lanes}}

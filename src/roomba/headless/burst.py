@@ -109,7 +109,7 @@ class Burst:
         if steady.driver is not None:
             row["clear_to"] = steady.driver.clear_to
             row["off_path"] = brain.config.driving.off_path
-            row["patience"] = brain.config.driving.progress_timeout
+            row["progress_timeout"] = brain.config.driving.progress_timeout
         row["things_version"] = brain.things.version
         row["clock"] = brain.readings.time - self._body.simulator.time
         row["scans"], row["seen_at"] = self._body.scans, brain.keeper.seen_at

@@ -52,7 +52,7 @@ BURST: Final = np.dtype(
         ("near", "f8"),  # m
         ("clear_to", "f8"),  # m along the path
         ("off_path", "f8"),  # m
-        ("patience", "f8"),  # s without progress
+        ("progress_timeout", "f8"),  # s without progress
         ("things_version", "i8"),  # of what is known to stand in the way
         # what goes on
         ("clock", "f8"),  # s; of the robot, beside the world's
@@ -185,7 +185,7 @@ def comes_up(
     along = along_of(tracker, drive.course)
     if along >= burst.clear_to:
         return True
-    return bool(mark_progress(drive.progress, along, tracker.leg, now) > burst.patience)
+    return bool(mark_progress(drive.progress, along, tracker.leg, now) > burst.progress_timeout)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -220,7 +220,7 @@ def wanted(burst: Any, drive: Drive, x: float, y: float, theta: float) -> tuple[
     return linear, angular, False
 
 
-# ---------------------------------------------------------------- keeping the books
+# ---------------------------------------------------------------- keeping the ledgers
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

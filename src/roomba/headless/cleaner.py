@@ -45,7 +45,7 @@ class HeadlessMission:
     """One robot with its mission in one home.
 
     ``truth`` is the floor that its tool really passed over; ``rows`` are the ticks that passed, as
-    of :mod:`roomba.headless.rows`, in pieces; ``site`` is the home as it planned in it at first.
+    of :mod:`roomba.headless.rows`, in pieces; ``context`` is the home as it planned in it at first.
     """
 
     def __init__(
@@ -87,10 +87,10 @@ class HeadlessMission:
         self.whole_at: float | None = None
         self._longest = longest_errand(home)
         self._stand_until_ready()
-        self.site = self.mission.site
+        self.context = self.mission.context
         frame = home.map.frame if isinstance(known, MappingConfig) else known.frame
         fine = fine_frame(frame)
-        self.truth = CoverageMap(fine, np.ones(fine.shape, np.bool_), self.site.tool_width)
+        self.truth = CoverageMap(fine, np.ones(fine.shape, np.bool_), self.context.tool_width)
         self._burst = Burst(self.body, self.brain, self.truth, longest_burst)
 
     # ---------------------------------------------------------------- errands
@@ -115,9 +115,9 @@ class HeadlessMission:
             self._hits - hits,
             now_distance - distance,
             now_turning - turning,
-            self.site.planning_time,
-            self.site.plans,
-            self.mission.site.occupancy,
+            self.context.planning_time,
+            self.context.plans,
+            self.mission.context.occupancy,
             self.seen.time if self.whole_at is None else self.whole_at,
         )
 

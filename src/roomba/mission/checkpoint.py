@@ -18,14 +18,14 @@ from roomba.mission.phases.machine import Errand, MissionState, Phase
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Remembered:
-    """The content of a checkpoint; ``book`` is distance m, energy Wh and dirt g; ``duration`` s."""
+    """A checkpoint's content; ``ledger`` is distance m, energy Wh and dirt g; ``duration`` s."""
 
     state: MissionState
     message: str
     outcome: CleanOutcome | None
     cleaning: Cleaning | None
     exploration: Exploration | None
-    book: tuple[float, float, float]
+    ledger: tuple[float, float, float]
     duration: float
 
 
@@ -42,7 +42,7 @@ def checkpoint_of(state: MissionState, message: str, job: Job, now: float) -> Va
         "outcome": None if job.outcome is None else job.outcome.name,
         "cleaning": None if job.cleaning is None else job.cleaning.values(),
         "exploration": None if job.exploration is None else job.exploration.values(),
-        "book": [job.book.distance, job.book.energy, job.book.dirt],
+        "ledger": [job.ledger.distance, job.ledger.energy, job.ledger.dirt],
         "duration": job.duration(now),
     }
 
@@ -76,7 +76,7 @@ def _remembered(values: Values, begin: Callable[[CleanRequest], Cleaning]) -> Re
     exploration = None if unseen is None else Exploration.of(unseen)
     if errand is Errand.EXPLORE and exploration is None:
         raise CheckpointError("expected the exploration that it was on, got none")
-    distance, energy, dirt = (float(value) for value in values["book"])
+    distance, energy, dirt = (float(value) for value in values["ledger"])
     duration = float(values["duration"])
     if not all(math.isfinite(value) for value in (distance, energy, dirt, duration)):
         raise CheckpointError("expected finite numbers")
@@ -95,7 +95,7 @@ def take_up(found: Remembered, job: Job, senses: Senses) -> None:
     """Let the job be the one that was remembered."""
     job.cleaning, job.exploration, job.outcome = found.cleaning, found.exploration, found.outcome
     job.goes_on_after(found.duration, senses)
-    job.book.distance, job.book.energy, job.book.dirt = found.book
+    job.ledger.distance, job.ledger.energy, job.ledger.dirt = found.ledger
 
 
 def state_after(state: MissionState, *, is_docked: bool) -> MissionState:

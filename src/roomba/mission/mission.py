@@ -70,7 +70,7 @@ class Mission:
 
     def __init__(
         self,
-        site: PlanningContext,
+        context: PlanningContext,
         robot: RobotConfig,
         config: MissionConfig,
         docking: DockingConfig,
@@ -90,13 +90,13 @@ class Mission:
         self.state = MissionState(Phase.DOCKED if senses.battery.is_docked else Phase.IDLE)
         self.message = ""
         self._job = Job(dirt, config.energy, senses)
-        self.book = self._job.book
-        self._drives = Drives(site, robot, config.driving, self.obstacles)
+        self.ledger = self._job.ledger
+        self._drives = Drives(context, robot, config.driving, self.obstacles)
         self.trail = self._drives.trail
-        self._patience = RetryPolicy()
-        self._clean_phase = CleanPhase(self._job, self._drives, self._patience, config.exploring)
+        self._retries = RetryPolicy()
+        self._clean_phase = CleanPhase(self._job, self._drives, self._retries, config.exploring)
         self._at_station = AtStation(docking, robot)
-        self._watch = Monitor(robot.walk, self._drives, self.book, senses)
+        self._monitor = Monitor(robot.walk, self._drives, self.ledger, senses)
         self._last = senses
 
     # ---------------------------------------------------------------- commands
@@ -137,7 +137,7 @@ class Mission:
             self._end_job(CleanOutcome.FAULT, f"emergency stop: {reason}", senses)
             self._job.forget()
         if event is Event.RESUME:
-            self._patience.renew()
+            self._retries.renew()
             self._job.take_up()
         self._go(event, senses)
         self.message = reason if event is Event.EMERGENCY else ""
@@ -155,15 +155,15 @@ class Mission:
             )
 
     def _cleaning_of(self, request: CleanRequest, senses: Senses) -> Cleaning:
-        return Cleaning(request, self.site, self.dirt, self._config.cleaning, senses.pose)
+        return Cleaning(request, self.context, self.dirt, self._config.cleaning, senses.pose)
 
-    def use_site(self, site: PlanningContext) -> None:
+    def use_context(self, context: PlanningContext) -> None:
         """Go on with other zones or rooms, from the next tick on."""
-        self._drives.use_site(site)
+        self._drives.use_context(context)
         if not self._goes_on_looking():
             self._drop_driver()
         if self.cleaning is not None:
-            self.cleaning.use_site(site, self.dirt)
+            self.cleaning.use_context(context, self.dirt)
             self._look_no_more()
 
     def _look_no_more(self) -> None:
@@ -171,15 +171,15 @@ class Mission:
         if self.cleaning is not None and not self.cleaning.explores:
             self._job.exploration = None
 
-    def use_map(self, site: PlanningContext, things: ThingLayer, dirt: DirtMap) -> None:
+    def use_map(self, context: PlanningContext, things: ThingLayer, dirt: DirtMap) -> None:
         """Go on with a map that has grown, or with the whole one, from the next tick on.
 
         ``things`` and ``dirt`` are new ones of that map.
         """
-        dirt.carry_on(self.dirt, site.station.compose(self.site.station.inverse()))
+        dirt.carry_on(self.dirt, context.station.compose(self.context.station.inverse()))
         self.obstacles.use(things)
         self._job.dirt = dirt
-        self.use_site(site)
+        self.use_context(context)
 
     def wants_map(self, occupancy: OccupancyMap) -> bool:
         """Whether a map that has grown to this makes a difference to what it does."""
@@ -193,9 +193,9 @@ class Mission:
         looks = self.state.phase in (Phase.EXPLORING, Phase.CLEANING)
         if not (looks and self.exploration is not None and self.exploration.is_under_way):
             return False
-        if self.driver is None or self.exploration.wants_another(self.site.known):
+        if self.driver is None or self.exploration.wants_another(self.context.known):
             return False
-        return self.site.paths.is_free(self.driver.tracker.rest)
+        return self.context.paths.is_free(self.driver.tracker.rest)
 
     def take_exploration(self) -> ExploreResult | None:
         """Return the result of an exploration that ended, once."""
@@ -219,7 +219,7 @@ class Mission:
         self._look_no_more()
         self.message = found.message
         self._last = senses
-        is_docked = self._watch.was_docked = senses.battery.is_docked
+        is_docked = self._monitor.was_docked = senses.battery.is_docked
         self.state = state_after(found.state, is_docked=is_docked)
         if self.state.phase is Phase.DOCKED:
             self._end_job(self._job.outcome or CleanOutcome.STOPPED, "", senses)
@@ -227,9 +227,9 @@ class Mission:
     # ---------------------------------------------------------------- what others may look at
 
     @property
-    def site(self) -> PlanningContext:
+    def context(self) -> PlanningContext:
         """The home as it plans in it."""
-        return self._drives.site
+        return self._drives.context
 
     @property
     def dirt(self) -> DirtMap:
@@ -262,18 +262,18 @@ class Mission:
             needed = self._at_station.needed
             if needed is None:
                 return None
-            return Steady(None, most_energy=self.book.charged_at(senses, needed))
+            return Steady(None, most_energy=self.ledger.charged_at(senses, needed))
         is_driving = phase in (Phase.CLEANING, Phase.EXPLORING, Phase.RETURNING)
-        if not is_driving or driver is None or not driver.is_undisturbed or self._watch.is_astray:
+        if not is_driving or driver is None or not driver.is_undisturbed or self._monitor.is_astray:
             return None
-        if self._patience.is_pending and phase is not Phase.EXPLORING:
+        if self._retries.is_pending and phase is not Phase.EXPLORING:
             return None
-        limit, empty = self.speed_limit(senses), self.book.empty
+        limit, empty = self.speed_limit(senses), self.ledger.empty
         if phase is Phase.RETURNING:
-            staging = self.site.staging
+            staging = self.context.staging
             goal = (staging.x, staging.y)
             return Steady(driver, limit, least_level=empty, goal=goal, near=NEAR_STAGING)
-        return Steady(driver, limit, self.book.next_check, empty)
+        return Steady(driver, limit, self.ledger.next_check, empty)
 
     @property
     def last(self) -> Senses:
@@ -306,7 +306,7 @@ class Mission:
             return 0.0
         driving = 0.0 if self.driver is None else self.driver.left
         if self.state.phase is Phase.CLEANING:
-            driving = max(driving, self.cleaning.left / self.site.tool_width)
+            driving = max(driving, self.cleaning.left / self.context.tool_width)
         speed = min(self._config.driving.speed, self.max_speed)
         return driving / (_SHARE_OF_SPEED * speed)
 
@@ -327,27 +327,27 @@ class Mission:
         first of them to the last.
         """
         self._drives.caught_up(senses, places)
-        self.book.note(senses, way)
+        self.ledger.note(senses, way)
         self._last = senses
 
     def _notice(self, senses: Senses) -> None:
         """Find out what happened, and let the machine know."""
         # Under way to it, docking says when the contact is good, and undocking when it is out.
         at_station = self.state.phase in (Phase.DOCKING, Phase.UNDOCKING)
-        if self._watch.contact_changed(senses) and not at_station:
+        if self._monitor.contact_changed(senses) and not at_station:
             self._go(Event.CONTACT if senses.battery.is_docked else Event.CONTACT_LOST, senses)
-        failure = self._watch.failure(self.state, senses, self.last_place)
+        failure = self._monitor.failure(self.state, senses, self.last_place)
         if failure is not None:
             self._fail(failure.outcome, failure.reason, senses)
 
     def _act(self, senses: Senses) -> MissionStep:
-        if self._watch.is_astray and self.state.phase is not Phase.DOCKING:
+        if self._monitor.is_astray and self.state.phase is not Phase.DOCKING:
             return MissionStep(STANDSTILL, looks_around=self.state.drives)
         step = self._step(senses)
         if step.message is not None:
             self.message = step.message
         if step.event is Event.CONTACT:
-            self._watch.was_docked = True
+            self._monitor.was_docked = True
         if step.event is not None:
             self._go(step.event, senses)
         if step.failure is not None:
@@ -359,18 +359,18 @@ class Mission:
         job, drives, limit = self._job, self._drives, self.speed_limit(senses)
         match self.state.phase:
             case Phase.UNDOCKING:
-                return self._at_station.undock(senses, self.site.station)
+                return self._at_station.undock(senses, self.context.station)
             case Phase.CLEANING:
                 return self._clean_phase.tick(senses, limit)
             case Phase.EXPLORING:
                 most_stuck = self._config.exploring.most_stuck
                 return phases.explore(job, drives, senses, limit, most_stuck)
             case Phase.RETURNING:
-                return phases.go_home(drives, self._patience, senses, limit)
+                return phases.go_home(drives, self._retries, senses, limit)
             case Phase.DOCKING:
-                return self._at_station.dock(senses, self.site.station)
+                return self._at_station.dock(senses, self.context.station)
             case Phase.CHARGING:
-                return self._at_station.charge(senses, job, self.site.tool_width)
+                return self._at_station.charge(senses, job, self.context.tool_width)
         return PhaseStep()
 
     # ---------------------------------------------------------------- transitions
@@ -388,7 +388,7 @@ class Mission:
         if event is Event.FINISHED:
             self._job.outcome = CleanOutcome.COMPLETED
         if after.phase is Phase.DOCKED:
-            self._patience.renew()
+            self._retries.renew()
             if before.errand in (Errand.HOME, Errand.CLEAN):
                 self._end_job(self._job.outcome or CleanOutcome.STOPPED, "", senses)
 
@@ -406,4 +406,4 @@ class Mission:
     def _end_job(self, outcome: CleanOutcome, message: str, senses: Senses) -> None:
         """Tell the result of the job under way, if there is one; after an error it can go on."""
         can_go_on = self.state.phase is Phase.ERROR
-        self._job.end(outcome, message, self.site, self.obstacles, senses, can_go_on=can_go_on)
+        self._job.end(outcome, message, self.context, self.obstacles, senses, can_go_on=can_go_on)

@@ -136,26 +136,26 @@ class Brain:
     def _begin(self) -> None:
         """Begin the mission, as soon as there is a map."""
         if not isinstance(self._known, MappingConfig):
-            site = self._site(self._known)
+            context = self._context(self._known)
         elif self.mapper is not None and self.mapper.version:
-            site = self._site(self.mapper.occupancy())
+            context = self._context(self.mapper.occupancy())
         else:
             return
         self._mission = Mission(
-            site,
+            context,
             self.robot,
             self.config,
             self._docking,
-            self._look_beside(site),
-            DirtMap(site.occupancy),
+            self._look_beside(context),
+            DirtMap(context.occupancy),
             self.senses(),
             self._max_speed,
         )
 
     def _use(self, occupancy: OccupancyMap) -> None:
         """Let the mission go on with another map."""
-        site = self._site(occupancy)
-        self.mission.use_map(site, self._look_beside(site), DirtMap(occupancy))
+        context = self._context(occupancy)
+        self.mission.use_map(context, self._look_beside(context), DirtMap(occupancy))
 
     def _finish_map(self, step: MissionStep) -> None:
         """When all was seen go on with the whole map."""
@@ -245,16 +245,16 @@ class Brain:
             self._beams = lidar, lidar.arrays()
         return self._beams[1]
 
-    def _site(self, occupancy: OccupancyMap) -> PlanningContext:
+    def _context(self, occupancy: OccupancyMap) -> PlanningContext:
         is_growing = self.growing is not None and not self.growing.is_whole
         parts = self._station, self.robot, self.config, self._docking
         return PlanningContext(occupancy, *parts, self._rooms, self._zones, is_growing=is_growing)
 
-    def _look_beside(self, site: PlanningContext) -> ThingLayer:
-        """Look from now on for what a site's map does not show."""
+    def _look_beside(self, context: PlanningContext) -> ThingLayer:
+        """Look from now on for what a planning context's map does not show."""
         if self.localizer is not None:
             field = self.localizer.field
         else:
-            field = SurfaceField.near(site.occupancy, _BESIDE_SURFACES)
+            field = SurfaceField.near(context.occupancy, _BESIDE_SURFACES)
         self._things = ThingLayer(field)
         return self._things

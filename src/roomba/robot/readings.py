@@ -73,7 +73,7 @@ class Readings:
 
     @property
     def is_lifted(self) -> bool:
-        """Whether both wheels hang in the air: somebody holds the robot."""
+        """Whether both wheels hang in the air: the robot is held."""
         return self.dropped_left and self.dropped_right
 
 

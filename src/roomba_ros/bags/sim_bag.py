@@ -125,7 +125,7 @@ class SimBag:
 def coverage_on_map(setup: TrialSetup) -> OccupancyMap:
     """Return what was truly swept over the map's own cells: half of a cell and more counts."""
     frame = setup.home.frame
-    factor = setup.robot.site.frame.rows // frame.rows
+    factor = setup.robot.context.frame.rows // frame.rows
 
     def share(mask: NDArray[np.bool_]) -> NDArray[np.float64]:
         blocks = mask.reshape(frame.rows, factor, frame.columns, factor)

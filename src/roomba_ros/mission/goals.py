@@ -212,7 +212,7 @@ class ExploringGoal(MissionGoal):
 
     def begin(self, mission: Mission, senses: Senses) -> None:
         """Let the mission explore."""
-        if not mission.site.is_growing:
+        if not mission.context.is_growing:
             raise CommandRefusedError(_MAP_IS_WHOLE)
         mission.explore(senses)
         self._look_at(mission)
@@ -239,7 +239,7 @@ class ExploringGoal(MissionGoal):
         self._handle.publish_feedback(ExploreFeedback(state.state, self._known, state.battery))
 
     def _look_at(self, mission: Mission) -> None:
-        occupancy = mission.site.occupancy
+        occupancy = mission.context.occupancy
         if mission.exploration is not None and occupancy is not self._looked_at:
             self._looked_at, self._known = occupancy, occupancy.free_area
 

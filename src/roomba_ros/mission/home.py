@@ -56,23 +56,23 @@ MOST_FINE_CELLS: Final = 40_000_000
 _MAPPING_DEADLINE: Final = 3.0
 """s of wall time that a map without a load time waits to be told whole or growing."""
 _ROOMS_DEADLINE: Final = 3.0
-"""s of wall time that a site waits for the map's rooms; later ones make a new site."""
+"""s of wall time that a context waits for the map's rooms; later ones make a new context."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class KnownHome:
-    """A site, the field of surfaces of its map, and what tells that map from all others.
+    """A planning context, the surface field of its map, and the map's digest.
 
     All stages of a map that is being made have the same ``digest``.
     """
 
-    site: PlanningContext
+    context: PlanningContext
     field: SurfaceField
     digest: str
 
 
 class HomeTopics:
-    """Makes sites in the background: a new one for each map, edit of rooms, and edit of zones.
+    """Makes contexts in the background: a new one for each map, edit of rooms, and edit of zones.
 
     Publishes: ``zones`` (ZoneArray, latched), ``zones/markers`` (MarkerArray, latched, for RViz).
     Subscribes: ``map``, ``mapping`` (whether it is being made), ``rooms``, ``station_pose``
@@ -105,7 +105,7 @@ class HomeTopics:
         self._is_mapped: bool | None = None
         self._held: tuple[float, ToldMap] | None = None
         self.trouble = ""
-        """Why there is no site of this map, in words; empty while one may still come."""
+        """Why there is no context of this map, in words; empty while one may still come."""
 
     def start(self) -> None:
         """Connect."""
@@ -120,18 +120,18 @@ class HomeTopics:
 
     @property
     def missing(self) -> tuple[str, ...]:
-        """The topics without which there is no site and that were not heard yet."""
+        """The topics without which there is no context and that were not heard yet."""
         heard = {"map": self._map, "station_pose": self._station}
         return tuple(topic for topic, value in heard.items() if value is None)
 
     @property
     def is_changing(self) -> bool:
-        """Whether another site is being made than the one that there is, but for more map."""
+        """Whether another context is being made than the one that there is, but for more map."""
         with self._lock:
             return self._wanted != self._tried and self._is_edited
 
     def take(self) -> KnownHome | None:
-        """Return a site that was made since the last call."""
+        """Return a context that was made since the last call."""
         with self._lock:
             if self._wanted != self._tried:
                 return None
@@ -139,7 +139,7 @@ class HomeTopics:
             return made
 
     def tick(self) -> None:
-        """Let the first site be made as soon as all that it takes was heard."""
+        """Let the first context be made as soon as all that it takes was heard."""
         held = self._held
         if held is not None and time.monotonic() > held[0] + _MAPPING_DEADLINE:
             self._take_held()
@@ -151,10 +151,10 @@ class HomeTopics:
                 self._make()
 
     def _make(self, *, is_edited: bool = True) -> None:
-        """Let a site be made of what is known now; hold the lock."""
+        """Let a context be made of what is known now; hold the lock."""
         self._is_edited = is_edited or (self._is_edited and self._wanted != self._tried)
         self._wanted += 1
-        self._background.do("no site for the mission", self._make_now)
+        self._background.do("no context for the mission", self._make_now)
 
     def _make_now(self) -> None:
         with self._lock:
@@ -169,7 +169,7 @@ class HomeTopics:
                     raise ZonesError(f"its zones cannot be read: {self._path()}")
                 _require_small(occupancy)
                 field = field or SurfaceField.of(occupancy)
-                site = PlanningContext(
+                context = PlanningContext(
                     occupancy,
                     station,
                     self._robot,
@@ -179,14 +179,14 @@ class HomeTopics:
                     zones,
                     is_growing=digest == GROWING,
                 )
-                if not site.is_growing:
+                if not context.is_growing:
                     # It takes a while, and the mission shall not wait for it.
-                    _ = site.coverage
-                made = KnownHome(site, field, digest)
+                    _ = context.coverage
+                made = KnownHome(context, field, digest)
         except (RoombaError, ValueError, MemoryError) as error:
             trouble = f"nothing can be cleaned in this map: {error}"
             rospy.logwarn(trouble)
-        rospy.logdebug("a site was made in %.2f s", time.monotonic() - began)
+        rospy.logdebug("a context was made in %.2f s", time.monotonic() - began)
         with self._lock:
             if wanted != self._wanted:
                 # A newer one waits already.

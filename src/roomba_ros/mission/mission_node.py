@@ -71,7 +71,7 @@ class MissionNode:
         self._memory: MissionMemory | None = None
         self._finished = -_FINISH_PERIOD
         self._senses = MissionSenses(self._config)
-        self._site = HomeTopics(
+        self._context = HomeTopics(
             self._config,
             self._mission_config,
             self._docking_config,
@@ -87,7 +87,7 @@ class MissionNode:
             self._topics,
             self._drive,
             self._senses,
-            self._site,
+            self._context,
             self._orders,
         ):
             part.start()
@@ -117,29 +117,29 @@ class MissionNode:
 
     def _wait(self, now: float) -> None:
         """Tell what is not there yet."""
-        missing = self._site.missing + self._senses.missing
-        reason = self._site.trouble or (
+        missing = self._context.missing + self._senses.missing
+        reason = self._context.trouble or (
             f"waits for {names_of(missing)}" if missing else "gets to know its map"
         )
         self._orders.refuse(f"the robot is not ready: it {reason}")
         self._topics.wait(now, reason)
 
     def _follow_home(self, senses: Senses | None) -> None:
-        """Take over another site, or begin another mission for another map."""
-        self._site.tick()
+        """Take over another context, or begin another mission for another map."""
+        self._context.tick()
         if senses is None:
             return
-        home = self._newer = self._site.take() or self._newer
+        home = self._newer = self._context.take() or self._newer
         if home is None:
             return
         mission, before = self._mission, self._home
         if mission is not None and before is not None:
-            if before.site.is_growing:
+            if before.context.is_growing:
                 self._grow(mission, senses, before, home)
                 return
             if home.digest == before.digest:
                 self._newer = None
-                mission.use_site(home.site)
+                mission.use_context(home.context)
                 return
             self._orders.give_up("the robot was given another map")
             if self._memory is not None:
@@ -149,14 +149,14 @@ class MissionNode:
 
     def _grow(self, mission: Mission, senses: Senses, before: KnownHome, home: KnownHome) -> None:
         """Let the mission go on with more of the map, when that makes a difference to it."""
-        is_more = home.site.occupancy is not before.site.occupancy
+        is_more = home.context.occupancy is not before.context.occupancy
         if not is_more:
-            mission.use_site(home.site)
-        elif home.site.is_growing and not mission.wants_map(home.site.occupancy):
+            mission.use_context(home.context)
+        elif home.context.is_growing and not mission.wants_map(home.context.occupancy):
             return
         else:
             self._things = ThingLayer(home.field, self._thing_config)
-            mission.use_map(home.site, self._things, DirtMap(home.site.occupancy))
+            mission.use_map(home.context, self._things, DirtMap(home.context.occupancy))
             if home.digest != before.digest:
                 self._remember_by(home, mission, senses)
         self._home, self._newer = home, None
@@ -171,9 +171,9 @@ class MissionNode:
     def _begin(self, home: KnownHome, senses: Senses) -> Mission:
         """Return a mission for a map, that goes on with what was under way there."""
         self._things = ThingLayer(home.field, self._thing_config)
-        dirt = DirtMap(home.site.occupancy)
+        dirt = DirtMap(home.context.occupancy)
         mission = Mission(
-            home.site,
+            home.context,
             self._config,
             self._mission_config,
             self._docking_config,
@@ -182,7 +182,7 @@ class MissionNode:
             senses,
         )
         self._memory = self._memory_by(home.digest)
-        if not home.site.is_growing:
+        if not home.context.is_growing:
             self._memory.recall_dirt(dirt)
         if self._memory.recall_errand(mission, senses) or self._recall_growing(mission, senses):
             self._drive.take()
@@ -190,7 +190,7 @@ class MissionNode:
 
     def _recall_growing(self, mission: Mission, senses: Senses) -> bool:
         """Take up what was under way on this map while it was being made."""
-        if mission.site.is_growing:
+        if mission.context.is_growing:
             return False
         memory = self._memory_by(GROWING)
         if not memory.recall_errand(mission, senses):
@@ -206,7 +206,7 @@ class MissionNode:
         return MissionMemory(folder, digest, self._background)
 
     def _step(self, mission: Mission, senses: Senses) -> MissionStep:
-        if self._site.is_changing and mission.state.drives:
+        if self._context.is_changing and mission.state.drives:
             # Zones are obeyed at once: until they are known it stands.
             return MissionStep()
         self._senses.show(self._things)

@@ -104,7 +104,7 @@ class MissionTopics:
         if not (has_ended or (cleans and is_due)):
             return
         self._mapped, self._mapped_wall = now, time.monotonic()
-        rows = mission.site.known.frame.rows
+        rows = mission.context.known.frame.rows
         if mission.cleaning is not None and (has_ended or self._coverage.get_num_connections()):
             coverage = mission.cleaning.coverage
             cells, frame = coverage.cells.copy(), coverage.frame
@@ -129,7 +129,7 @@ def state_of(now: float, mission: Mission, senses: Senses) -> VacuumState:
         battery=senses.battery.level,
     )
     if senses.knowledge.is_usable:
-        state.room = mission.site.room_at(senses.pose.x, senses.pose.y)
+        state.room = mission.context.room_at(senses.pose.x, senses.pose.y)
     if mission.cleaning is not None:
         # Counted once: it is a look at every cell of the floor.
         state.covered = mission.cleaning.clean_area

@@ -13,7 +13,7 @@ from benchmarks.coverage_clean import true_floor
 from benchmarks.coverage_floor import Reachable, length
 from benchmarks.coverage_lanes import Order, boustrophedon, lanes_on, way_over
 from benchmarks.coverage_peer import PeerRobot
-from benchmarks.coverage_peers import drive_bounce, drive_lanes, planned, shares_at, site_of
+from benchmarks.coverage_peers import context_of, drive_bounce, drive_lanes, planned, shares_at
 from benchmarks.coverage_recorded import FAILED, recorded
 from roomba.commands.sim.warm import closet
 from roomba.geometry import Pose
@@ -112,9 +112,9 @@ def test_lanes_cover_most_of_a_closet(home: Home, floor: Reachable) -> None:
 
 
 def test_plan_of_ours_is_judged_by_the_same_evaluator(home: Home) -> None:
-    site = site_of(home)
-    floor = true_floor(home, (site.staging.x, site.staging.y))
-    plan = planned(home, site, floor, rounds=1)
+    context = context_of(home)
+    floor = true_floor(home, (context.staging.x, context.staging.y))
+    plan = planned(home, context, floor, rounds=1)
     assert plan.share > 0.98
     assert 0.8 < plan.ratio < 3.0
     assert 0.0 < plan.cpu < math.inf

@@ -99,10 +99,10 @@ def test_it_cleans_all_the_floor_without_a_hit_and_docks(config: SimulatedRobotC
     assert record.hits == 0
     result = record.result
     assert result.missed == ()
-    cells = np.count_nonzero(robot.site.coverable())
-    assert result.wanted == pytest.approx(cells * robot.site.frame.resolution**2)
+    cells = np.count_nonzero(robot.context.coverable())
+    assert result.wanted == pytest.approx(cells * robot.context.frame.resolution**2)
     # All but the table, and the strip along walls that a round body's tool cannot reach.
-    strip = NOISY.body.radius - 0.5 * robot.site.tool_width
+    strip = NOISY.body.radius - 0.5 * robot.context.tool_width
     assert result.wanted == pytest.approx(3.0 * 2.5 - 0.5 * 0.3 - 12.6 * strip, abs=0.15)
     poses = record.poses
     assert result.duration == pytest.approx(robot.seen.time, abs=0.1)
@@ -141,8 +141,8 @@ def test_rooms_are_cleaned_and_no_others() -> None:
     record = robot.clean(CleanRequest(CleanMode.ROOMS, rooms=(DEN,)))
     assert record.result.outcome is CleanOutcome.COMPLETED
     assert robot.is_home
-    assert floor_clean(robot, robot.site.in_room(DEN)) >= FLOOR_TOO_LITTLE
-    assert floor_clean(robot, robot.site.in_room(HALL)) < 0.5
+    assert floor_clean(robot, robot.context.in_room(DEN)) >= FLOOR_TOO_LITTLE
+    assert floor_clean(robot, robot.context.in_room(HALL)) < 0.5
 
 
 @pytest.mark.parametrize("names", [(DEN, HALL), (HALL, DEN)])
@@ -152,7 +152,7 @@ def test_rooms_in_order_are_cleaned_one_after_the_other(names: tuple[str, ...]) 
     robot.mission.clean(request, robot.senses())
     cleaning = robot.mission.cleaning
     assert cleaning is not None
-    first, second = (robot.site.in_room(name) for name in names)
+    first, second = (robot.context.in_room(name) for name in names)
     until(robot, lambda: cleaning.stage_number == 1)
     assert floor_clean(robot, first) >= FLOOR_TOO_LITTLE
     assert floor_clean(robot, second) < 0.5
@@ -174,7 +174,7 @@ def test_zones_are_cleaned_and_little_else() -> None:
     assert record.result.outcome is CleanOutcome.COMPLETED
     assert robot.is_home
     assert record.result.wanted == pytest.approx(0.36, rel=0.01)
-    frame = robot.site.frame
+    frame = robot.context.frame
     wanted = np.zeros(frame.shape, np.bool_)
     low, left = frame.cell_of(zone[0] + 1e-6, zone[1] + 1e-6)
     high, right = frame.cell_of(zone[2] - 1e-6, zone[3] - 1e-6)
@@ -189,7 +189,7 @@ def test_a_spot_is_a_square_around_a_point_or_the_robot() -> None:
         record = robot.clean(CleanRequest(CleanMode.SPOT, spot=spot))
         assert record.result.outcome is CleanOutcome.COMPLETED
         assert robot.is_home
-        frame = robot.site.frame
+        frame = robot.context.frame
         row, column = frame.cell_of(2.2, 1.7)
         wanted = np.zeros(frame.shape, np.bool_)
         wanted[row - 74 : row + 74, column - 74 : column + 74] = True
@@ -202,7 +202,7 @@ def test_edges_are_cleaned_and_the_middle_is_not() -> None:
     record = robot.clean(CleanRequest(CleanMode.EDGES))
     assert record.result.outcome is CleanOutcome.COMPLETED
     assert robot.is_home
-    floor = robot.site.coverable()
+    floor = robot.context.coverable()
     along = np.zeros(floor.shape, np.bool_)
     inside = np.argwhere(floor)
     (top, left), (bottom, right) = inside.min(axis=0), inside.max(axis=0)
@@ -249,7 +249,7 @@ def test_a_thing_that_the_map_does_not_show_is_gone_around_and_told() -> None:
     # All but its shadow: the disc, and what the tool cannot reach around it.
     shadow = math.pi * THING[2] ** 2
     assert shadow < missed.area < 4.0 * shadow
-    floor = np.count_nonzero(robot.site.coverable()) * robot.site.frame.resolution**2
+    floor = np.count_nonzero(robot.context.coverable()) * robot.context.frame.resolution**2
     assert floor_clean(robot) * floor > FLOOR_TOO_LITTLE * floor - missed.area
 
 
@@ -277,8 +277,8 @@ def test_behind_a_shut_door_the_floor_is_told_as_shut() -> None:
     behind = [missed for missed in result.missed if missed.reason is MissReason.SHUT]
     assert sum(missed.area for missed in behind) == pytest.approx(1.4 * 2.4, abs=0.5)
     assert behind[0].room == DEN
-    hall = robot.site.in_room(HALL)
-    hall[:, robot.site.frame.cell_of(WALL_X - 0.45, 0.0)[1] :] = False
+    hall = robot.context.in_room(HALL)
+    hall[:, robot.context.frame.cell_of(WALL_X - 0.45, 0.0)[1] :] = False
     assert floor_clean(robot, hall) >= FLOOR_TOO_LITTLE
 
 
@@ -519,7 +519,7 @@ def zoned(robot: HeadlessMission, *zones: Zone) -> PlanningContext:
         robot.robot,
         robot.config,
         DockingConfig(),
-        robot.site.rooms,
+        robot.context.rooms,
         Zones(zones),
     )
 
@@ -545,7 +545,7 @@ def test_a_zone_from_the_beginning_is_never_entered() -> None:
     record = robot.clean()
     assert_all_clean(robot, record)
     assert inside_by(record, 0.0, AREA) < 0.0
-    bare = HeadlessMission(HOME).site
+    bare = HeadlessMission(HOME).context
     assert record.result.wanted < np.count_nonzero(bare.coverable()) * 1e-4 - 0.9
 
 
@@ -556,7 +556,7 @@ def test_a_zone_set_while_it_cleans_is_not_entered_any_more(after: float) -> Non
     # A corner of the room in which it does not stand.
     left, right = (2.0, 3.0) if pose.x < 1.4 else (0.9, 1.4) if pose.y > 1.0 else (0.0, 1.0)
     area = (left, 1.7, right, 2.5) if pose.y < 1.25 else (left, 0.0, right, 0.7)
-    robot.mission.use_site(zoned(robot, no_go(*area)))
+    robot.mission.use_context(zoned(robot, no_go(*area)))
     since = robot.seen.time
     record = robot.run()
     assert record.result.outcome is CleanOutcome.COMPLETED
@@ -571,7 +571,7 @@ def test_a_zone_that_is_set_around_it_is_left() -> None:
     until(robot, lambda: robot.simulator.pose.x > 2.4)
     pose = robot.simulator.pose
     area = (pose.x - 0.3, pose.y - 0.3, pose.x + 0.3, pose.y + 0.3)
-    robot.mission.use_site(zoned(robot, no_go(*area)))
+    robot.mission.use_context(zoned(robot, no_go(*area)))
     since = robot.seen.time
     record = robot.run()
     assert record.result.outcome is CleanOutcome.COMPLETED
@@ -582,14 +582,14 @@ def test_a_zone_that_is_set_around_it_is_left() -> None:
 def test_a_virtual_wall_before_the_rest_leaves_it_out() -> None:
     robot = begun(10.0, HeadlessMission(TWO_ROOMS))
     wall = Zone("wall", ZoneKind.WALL, ((WALL_X, 0.0), (WALL_X, 2.4)))
-    site = zoned(robot, wall)
-    robot.mission.use_site(site)
+    context = zoned(robot, wall)
+    robot.mission.use_context(context)
     record = robot.run()
     assert record.result.outcome is CleanOutcome.COMPLETED
     assert robot.is_home
     assert record.poses[:, 1].max() < WALL_X
     assert record.result.missed == ()
-    assert floor_clean(robot, site.coverable()) >= FLOOR_TOO_LITTLE
+    assert floor_clean(robot, context.coverable()) >= FLOOR_TOO_LITTLE
 
 
 def restarted(robot: HeadlessMission, values: dict[str, Any] | None = None) -> None:
@@ -602,7 +602,7 @@ def restarted(robot: HeadlessMission, values: dict[str, Any] | None = None) -> N
 
 def fresh(robot: HeadlessMission) -> Mission:
     return Mission(
-        robot.site,
+        robot.context,
         robot.robot,
         robot.config,
         DockingConfig(),
@@ -632,7 +632,7 @@ def test_ended_at_any_moment_a_new_mission_goes_on(seed: int) -> None:
     assert {missed.reason for missed in result.missed} <= {MissReason.THING}
     shadow = math.pi * (THING[2] + 0.1) ** 2
     assert floor_clean(robot) >= FLOOR_TOO_LITTLE - shadow / result.wanted
-    # The books go on, too.
+    # The ledgers go on, too.
     assert result.duration == pytest.approx(robot.seen.time, abs=1.0)
     assert result.dirt == pytest.approx(robot.seen.in_bin, rel=0.05)
     driven = robot.simulator.numbers["distance"]
@@ -751,9 +751,9 @@ def set_in(values: Any, path: str, new: object) -> None:
         ("cleaning.swept", ""),
         ("cleaning.swept", 12),
         ("cleaning.ever", None),
-        ("book", [1.0, 2.0]),
-        ("book", ["far", 0.0, 0.0]),
-        ("book", None),
+        ("ledger", [1.0, 2.0]),
+        ("ledger", ["far", 0.0, 0.0]),
+        ("ledger", None),
         ("duration", "long"),
     ],
 )

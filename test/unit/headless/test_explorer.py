@@ -68,7 +68,7 @@ def test_it_maps_the_home_without_a_hit_and_docks(home: Home, config: SimulatedR
     assert_explored(robot, record, home)
     assert record.hits == 0
     assert record.wall > 0.0
-    assert robot.mission.site.is_growing
+    assert robot.mission.context.is_growing
     poses = record.poses
     assert np.diff(poses[:, 0]) == pytest.approx(0.05)
     way = float(np.hypot(*np.diff(poses[:, 1:3], axis=0).T).sum())

@@ -27,8 +27,10 @@ def newcomer(home: Home, seed: int = 0) -> HeadlessMission:
 
 def share_cleaned(poses: NDArray[np.float64], home: Home) -> float:
     """Of the floor that can be cleaned, by the true map and the true poses."""
-    site = PlanningContext(home.map, home.station, RobotConfig(), MissionConfig(), DockingConfig())
-    truth = CoverageMap(site.frame, site.coverable(), site.tool_width)
+    context = PlanningContext(
+        home.map, home.station, RobotConfig(), MissionConfig(), DockingConfig()
+    )
+    truth = CoverageMap(context.frame, context.coverable(), context.tool_width)
     for x, y in poses[:, 1:3]:
         truth.sweep(float(x), float(y))
     return truth.fraction
@@ -40,7 +42,7 @@ def test_a_home_is_cleaned_while_it_is_mapped(home: Home) -> None:
     record = robot.clean()
     assert record.result.outcome is CleanOutcome.COMPLETED
     assert robot.mission.state.phase is Phase.DOCKED
-    assert not robot.mission.site.is_growing
+    assert not robot.mission.context.is_growing
     assert wrong_cells(record.occupancy, home) == (0, 0)
     assert share_cleaned(record.poses, home) > 0.985
     assert record.result.fraction > 0.99

@@ -35,7 +35,7 @@ def job() -> Job:
     """A clean that is under way for a minute."""
     job = Job(DirtMap(HOME.map), MissionConfig().energy, SENSES)
     job.begin_clean(begin(CleanRequest(passes=2)), Senses(40.0, SENSES.pose))
-    job.book.distance, job.book.energy, job.book.dirt = 12.0, 0.5, 2.0
+    job.ledger.distance, job.ledger.energy, job.ledger.dirt = 12.0, 0.5, 2.0
     return job
 
 
@@ -54,7 +54,7 @@ def test_all_that_matters_comes_back() -> None:
     assert again.cleaning.request == CleanRequest(passes=2)
     assert again.exploration is None
     assert again.outcome is CleanOutcome.COMPLETED
-    assert (again.book.distance, again.book.energy, again.book.dirt) == (12.0, 0.5, 2.0)
+    assert (again.ledger.distance, again.ledger.energy, again.ledger.dirt) == (12.0, 0.5, 2.0)
     # By a clock that began anew.
     assert again.duration(now) == pytest.approx(60.0)
 
@@ -73,8 +73,8 @@ def test_without_an_errand_there_is_nothing_to_remember(errand: Errand) -> None:
         {"cleaning": {}},
         {"errand": "EXPLORE"},
         {"exploration": 3},
-        {"book": [1.0, 2.0]},
-        {"book": [1.0, 2.0, float("nan")]},
+        {"ledger": [1.0, 2.0]},
+        {"ledger": [1.0, 2.0, float("nan")]},
         {"duration": "long"},
         {"outcome": "WONDERFUL"},
     ],

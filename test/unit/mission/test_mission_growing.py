@@ -145,14 +145,14 @@ def test_killed_it_goes_on_with_what_the_map_shows_by_then(later: OccupancyMap) 
 def test_a_look_that_is_cut_short_is_no_round_that_was_broken_off() -> None:
     rig = cleaning()
     assert rig.mission.cleaning is not None
-    rig.mission.cleaning._book.note_tried(rig.mission.cleaning.coverage.wanted)
+    rig.mission.cleaning._ledger.note_tried(rig.mission.cleaning.coverage.wanted)
     rig.grow(known_to(WALL_X + 0.3))
     rig.grow(WHOLE)
     assert rig.mission.driver is None
-    site = rig.mission.site
-    columns = np.nonzero(rig.mission.cleaning._book.untried)[1]
+    context = rig.mission.context
+    columns = np.nonzero(rig.mission.cleaning._ledger.untried)[1]
     # The hall was planned once.
-    assert site.frame.centre_of(0, int(columns.min()))[0] > WALL_X - 0.3
+    assert context.frame.centre_of(0, int(columns.min()))[0] > WALL_X - 0.3
 
 
 def test_shut_in_it_waits_and_does_not_take_the_map_for_whole() -> None:

@@ -63,7 +63,7 @@ def test_without_a_map_it_stands_until_its_first_scan() -> None:
         _ = robot.things
     robot.tick(first_scan())
     assert robot.is_ready
-    assert robot.mission.site.is_growing
+    assert robot.mission.context.is_growing
 
 
 @pytest.mark.parametrize("fan", [FanLevel.QUIET, FanLevel.STRONG])

@@ -13,7 +13,12 @@ from roomba.storage.checkpoint import (
     save_dirt,
 )
 
-VALUES = {"phase": "CLEANING", "book": [1.5, 0.25, 0.0], "cleaning": {"swept": "eJw="}, "by": None}
+VALUES = {
+    "phase": "CLEANING",
+    "ledger": [1.5, 0.25, 0.0],
+    "cleaning": {"swept": "eJw="},
+    "by": None,
+}
 
 
 def test_a_checkpoint_comes_back_in_its_own_run_only(tmp_path: Path) -> None:

@@ -88,7 +88,7 @@ def _shown_by(show: Show, scene: MapScene) -> RunObserver:
         if time.monotonic() - looked < _SHOWN:
             return
         looked = time.monotonic()
-        known = robot.mission.site.occupancy
+        known = robot.mission.context.occupancy
         area = float(np.count_nonzero(known.values == FREE)) * known.frame.resolution**2
         phase = robot.mission.state.phase.value
         show(min(area / all_of_it, 1.0), f"{area:.0f} m², {clock(robot.seen.time)}, {phase}")

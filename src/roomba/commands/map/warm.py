@@ -25,7 +25,7 @@ def warm_up() -> None:
     robot = HeadlessMission(home, known=MappingConfig(**_ALWAYS))
     made = robot.explore().occupancy
     # What it does where it got stuck between things that it did not see.
-    robot.mission.site.squeeze((0.6, 0.9), (1.0, 0.5), [(0.8, 0.7, 0.02)])
+    robot.mission.context.squeeze((0.6, 0.9), (1.0, 0.5), [(0.8, 0.7, 0.02)])
     seen = seen_floor(home.solid, home.frame, station, RobotConfig())
     map_error(made, home.frame, home.solid, seen)
     segment(made)

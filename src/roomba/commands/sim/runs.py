@@ -90,14 +90,14 @@ class TrialSetup:
             zones=_zones_of(trial),
             longest_burst=longest_burst,
         )
-        self.things = _things_of(trial, self.home, self.config, self.robot.site.staging)
+        self.things = _things_of(trial, self.home, self.config, self.robot.context.staging)
         for x, y, radius in self.things:
             self.robot.simulator.place_obstacle(x, y, radius)
         if trial.battery < 1.0:
             self.robot.simulator.set_charge(trial.battery)
             self.robot.look()
         self.coverable = coverable_floor(
-            self.home, self.robot.site, trial.request, self.things, self.config, mission, docking
+            self.home, self.robot.context, trial.request, self.things, self.config, mission, docking
         )
 
     def run(self, observers: Iterable[RunObserver] = ()) -> Run:
@@ -126,7 +126,7 @@ class TrialSetup:
             dirt_g=result.dirt,
             coverable_m2=float(np.count_nonzero(self.coverable)) * cell,
             covered_m2=float(np.count_nonzero(covered)) * cell,
-            tool_width_m=robot.site.tool_width,
+            tool_width_m=robot.context.tool_width,
             hits=record.hits,
             missed=tuple(
                 MissedShare(each.area, each.x, each.y, each.room, each.reason.value)
@@ -139,7 +139,7 @@ class TrialSetup:
             trajectory_of(record, first),
             self.home,
             self.config,
-            robot.site.reach,
+            robot.context.reach,
             tuple(self.things),
             self.coverable,
             record.truth,

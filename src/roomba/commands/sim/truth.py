@@ -33,19 +33,19 @@ def true_map(home: Home) -> OccupancyMap:
 
 def coverable_floor(
     home: Home,
-    site: PlanningContext,
+    context: PlanningContext,
     request: CleanRequest,
     things: Sequence[RoundObstacle],
     robot: RobotConfig,
     mission: MissionConfig,
     docking: DockingConfig,
 ) -> Mask:
-    """Return the floor of a request that the tool can truly reach, bool over ``site.frame``.
+    """Return the floor of a request that the tool can truly reach, bool over ``context.frame``.
 
-    ``site`` is the home as the robot knows it; what counts as an edge is what its map shows as one.
+    ``context`` is the home as the robot knows it; an edge is what its map shows as one.
     """
     truth = PlanningContext(
-        true_map(home), home.station, robot, mission, docking, site.rooms, site.zones
+        true_map(home), home.station, robot, mission, docking, context.rooms, context.zones
     )
     staging = (truth.staging.x, truth.staging.y)
     reachable: Mask = truth.coverage.floor.with_obstacles(list(things)).coverable(staging)
@@ -53,7 +53,7 @@ def coverable_floor(
         return reachable
     dirt = DirtMap(home.map)
     if request.mode is CleanMode.EDGES:
-        stages = stages_of(request, site, dirt, site.coverable(), home.station)
+        stages = stages_of(request, context, dirt, context.coverable(), home.station)
     else:
         stages = stages_of(request, truth, dirt, reachable, home.station)
     wanted = np.zeros(truth.frame.shape, np.bool_)

@@ -61,14 +61,14 @@ class Cleaning:
     def __init__(
         self,
         request: CleanRequest,
-        site: PlanningContext,
+        context: PlanningContext,
         dirt: DirtMap,
         config: CleaningConfig,
         here: Pose,
     ) -> None:
         """Find out what is wanted; raises CleanRefusedError when that is nothing."""
-        self._site, self._config, self._dirt = site, config, dirt
-        self._book = CoverageLedger(request, site, dirt, here)
+        self._context, self._config, self._dirt = context, config, dirt
+        self._ledger = CoverageLedger(request, context, dirt, here)
         if not (self.coverage.wanted_cells or self.explores):
             raise CleanRefusedError(
                 "expected floor that can be reached, got none: it is outside of the map, in "
@@ -88,37 +88,37 @@ class Cleaning:
     @property
     def request(self) -> CleanRequest:
         """What was asked for."""
-        return self._book.request
+        return self._ledger.request
 
     @property
     def coverage(self) -> CoverageMap:
         """What is wanted, and swept of the present pass."""
-        return self._book.coverage
+        return self._ledger.coverage
 
     @property
     def stages(self) -> list[Stage]:
         """The parts in their order."""
-        return self._book.stages
+        return self._ledger.stages
 
     @property
     def stage(self) -> Stage | None:
         """The one that it is at, or None at the end."""
-        return self._book.stage
+        return self._ledger.stage
 
     @property
     def stage_number(self) -> int:
         """Which of them that is, from 0."""
-        return self._book.stage_number
+        return self._ledger.stage_number
 
     @property
     def left(self) -> float:
         """Floor that is still to be cleaned, m2, stages and passes to come included."""
-        return self._book.left
+        return self._ledger.left
 
     @property
     def clean(self) -> Mask:
         """What was ever swept of what is wanted."""
-        return self._book.clean
+        return self._ledger.clean
 
     @property
     def clean_area(self) -> float:
@@ -128,15 +128,15 @@ class Cleaning:
     @property
     def explores(self) -> bool:
         """Whether it goes to see, for more floor, what the map does not show yet."""
-        return self._site.is_growing and self.request.mode in (CleanMode.WHOLE, CleanMode.EDGES)
+        return self._context.is_growing and self.request.mode in (CleanMode.WHOLE, CleanMode.EDGES)
 
     def next_path(self, here: Pose, obstacles: list[RoundObstacle]) -> Floats | None:
         """Return the next points to drive, float64 [n, 2], m, or None when all is done.
 
         Raises NoPathError while it is shut in, so that it has to get out first.
         """
-        obstacles = obstacles + closed_gaps(obstacles, self._site.reach)
-        if self._site.is_growing:
+        obstacles = obstacles + closed_gaps(obstacles, self._context.reach)
+        if self._context.is_growing:
             return self._next_of_known(here, obstacles)
         while (stage := self.stage) is not None:
             points = self._next_round(stage, here, obstacles)
@@ -153,12 +153,12 @@ class Cleaning:
         if self._looked_again or not self._unreachable or self.stage is not None:
             return False
         self._looked_again, self._unreachable = True, False
-        staging = (self._site.staging.x, self._site.staging.y)
+        staging = (self._context.staging.x, self._context.staging.y)
         left = self.coverage.wanted & ~self.clean & self._reachable(staging, lasting)
         large = _patches(left, self.coverage.frame, _LEAST_AREA_TO_RETRY)
         if not large.any():
             return False
-        self._book.add(Stage("what was out of reach", large))
+        self._ledger.add(Stage("what was out of reach", large))
         self._begin_stage()
         return True
 
@@ -193,24 +193,24 @@ class Cleaning:
     def _begin_anew(self) -> None:
         """Do not count the last plan as a round."""
         self._rounds, self._last_missed, self._is_anew = 1, np.inf, True
-        self._book.try_again()
+        self._ledger.try_again()
 
-    def use_site(self, site: PlanningContext, dirt: DirtMap) -> None:
+    def use_context(self, context: PlanningContext, dirt: DirtMap) -> None:
         """Go on with other zones or rooms, or with more of the map; what is swept stays so.
 
-        ``dirt`` is that of the site's map.
+        ``dirt`` is that of the planning context's map.
         """
-        if self._site.is_growing:
+        if self._context.is_growing:
             self._begin_stage()
             # With the whole map the first way through is done.
-            self._rounds = 0 if site.is_growing else 1
-        self._site, self._dirt = site, dirt
-        self._book.use_site(site, dirt)
+            self._rounds = 0 if context.is_growing else 1
+        self._context, self._dirt = context, dirt
+        self._ledger.use_context(context, dirt)
 
     def values(self) -> Values:
         """Return all that must be remembered to go on, as plain values."""
         return {
-            **self._book.values(),
+            **self._ledger.values(),
             "looked_again": self._looked_again,
             "unreachable": self._unreachable,
             "scrubbed": self._scrubbed,
@@ -221,7 +221,7 @@ class Cleaning:
 
         Raises CheckpointError, and others for junk.
         """
-        self._book.restore(values)
+        self._ledger.restore(values)
         self._looked_again = bool(values["looked_again"])
         self._unreachable, self._scrubbed = bool(values["unreachable"]), bool(values["scrubbed"])
 
@@ -236,19 +236,19 @@ class Cleaning:
         ``is_over``: it went on to the end; ``edges`` are ``obstacles`` where the floor ends.
         """
         left, least = self.coverage.wanted & ~self.clean, self._config.least_patch
-        return missed_floor(left, least, self._site, obstacles, edges, is_over=is_over)
+        return missed_floor(left, least, self._context, obstacles, edges, is_over=is_over)
 
     def _next_of_known(self, here: Pose, obstacles: list[RoundObstacle]) -> Floats | None:
         """Plan over what is large enough of the floor that is known; None if there is none."""
         at = (here.x, here.y)
-        todo = self._book.untried & self._reachable(at, obstacles)
+        todo = self._ledger.untried & self._reachable(at, obstacles)
         todo = _patches(todo, self.coverage.frame, self._config.least_while_growing)
         if not todo.any():
             return None
-        self._book.note_tried(todo)
+        self._ledger.note_tried(todo)
         edges_only = self.request.mode is CleanMode.EDGES
         try:
-            plan = self._site.coverage.plan(at, None, todo, obstacles, edges_only=edges_only)
+            plan = self._context.coverage.plan(at, None, todo, obstacles, edges_only=edges_only)
         except NoPathError:
             return None
         return plan.points if plan.length > 0.0 and len(plan.points) > 2 else None
@@ -276,7 +276,7 @@ class Cleaning:
         self._last_missed = missed
         edges_only = self.request.mode is CleanMode.EDGES
         try:
-            plan = self._site.plan_coverage(
+            plan = self._context.plan_coverage(
                 (here.x, here.y), todo, obstacles, edges_only=edges_only
             )
         except NoPathError:
@@ -284,7 +284,7 @@ class Cleaning:
             todo &= self._reachable((here.x, here.y), obstacles)
             if patches_of(todo, self.coverage.frame, _LEAST_AREA_TO_RETRY):
                 # The way home is shut, perhaps by a door: meanwhile it cleans where it is.
-                plan = self._site.coverage.plan(
+                plan = self._context.coverage.plan(
                     (here.x, here.y), None, todo, obstacles, edges_only=edges_only
                 )
             elif self._ways_out < _MOST_WAYS_OUT:
@@ -302,7 +302,7 @@ class Cleaning:
 
         Behind and below what stands in the way nothing can be done now.
         """
-        staging = (self._site.staging.x, self._site.staging.y)
+        staging = (self._context.staging.x, self._context.staging.y)
         reachable = self._reachable(staging, obstacles)
         if not reachable[self.coverage.frame.cell_of(here.x, here.y)]:
             # Wherever it is shut in, there it can clean, and from there it has to get out.
@@ -317,12 +317,12 @@ class Cleaning:
     def _note_out_of_reach(self, floor: Mask, obstacles: list[RoundObstacle]) -> None:
         """Remember floor that a person may open later: it is tried again before the end."""
         patches = patches_of(floor, self.coverage.frame, _LEAST_AREA_TO_RETRY)
-        if not all(is_hidden(patch, self._site, obstacles) for patch in patches):
+        if not all(is_hidden(patch, self._context, obstacles) for patch in patches):
             self._unreachable = True
 
     def _reachable(self, here: Point, obstacles: list[RoundObstacle]) -> Mask:
         """Return what can be cleaned from a place among what the map does not show."""
-        return self._site.floor.with_obstacles(obstacles).coverable(here)
+        return self._context.floor.with_obstacles(obstacles).coverable(here)
 
     def _dirty_again(self, stage: Stage) -> Mask:
         """Return what was so dirty that it gets another pass, once a stage."""
@@ -330,12 +330,12 @@ class Cleaning:
         dirty = self._dirt.dirty_now(self.coverage.frame, self._config.dirty_times)
         again = dirty & stage.floor & self.coverage.swept
         if again.any():
-            self._book.sweep_anew(again)
+            self._ledger.sweep_anew(again)
             self._last_missed = np.inf
         return again
 
     def _next_stage(self) -> None:
-        self._book.next_stage()
+        self._ledger.next_stage()
         self._begin_stage()
 
     def _begin_stage(self) -> None:

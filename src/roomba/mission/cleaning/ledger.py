@@ -36,14 +36,14 @@ class CoverageLedger:
     """
 
     def __init__(
-        self, request: CleanRequest, site: PlanningContext, dirt: DirtMap, here: Pose
+        self, request: CleanRequest, context: PlanningContext, dirt: DirtMap, here: Pose
     ) -> None:
         """Find out what is wanted; raises CleanRefusedError for rooms that are not there."""
-        self.request, self._site, self._dirt = request, site, dirt
+        self.request, self._context, self._dirt = request, context, dirt
         self._began_at = here
-        self.stages = self._asked(site)
-        self.coverage = CoverageMap(site.frame, self._union(), site.tool_width)
-        self._ever = np.zeros(site.frame.shape, np.bool_)
+        self.stages = self._asked(context)
+        self.coverage = CoverageMap(context.frame, self._union(), context.tool_width)
+        self._ever = np.zeros(context.frame.shape, np.bool_)
         self.stage_number = 0
 
     @property
@@ -100,32 +100,32 @@ class CoverageLedger:
         self.coverage.cells[floor] &= np.uint8(_ALL ^ SWEPT)
         self.coverage.count_again()
 
-    # ---------------------------------------------------------------- other sites
+    # ---------------------------------------------------------------- other contexts
 
-    def use_site(self, site: PlanningContext, dirt: DirtMap) -> None:
+    def use_context(self, context: PlanningContext, dirt: DirtMap) -> None:
         """Go on with other zones or rooms, or with more of the map; what is swept stays so."""
         self._dirt = dirt
-        if self._site.is_growing:
-            self._use_more_map(site)
+        if self._context.is_growing:
+            self._use_more_map(context)
         else:
-            self._use_edits(site)
-        self._site = site
+            self._use_edits(context)
+        self._context = context
 
-    def _use_edits(self, site: PlanningContext) -> None:
-        coverable, wanted = site.coverable(), self._floor_of(self._asked(site), site)
+    def _use_edits(self, context: PlanningContext) -> None:
+        coverable, wanted = context.coverable(), self._floor_of(self._asked(context), context)
         freed = wanted & ~self.coverage.wanted
         self.stages = [Stage(s.name, s.floor & coverable, s.again) for s in self.stages]
         if freed.any():
             self.stages.append(Stage("what was a zone before", freed))
         self._want((self.coverage.wanted & coverable & wanted) | freed)
 
-    def _use_more_map(self, site: PlanningContext) -> None:
+    def _use_more_map(self, context: PlanningContext) -> None:
         """Bring what is swept to the new map, and want all that this one shows."""
-        moved = site.station.compose(self._site.station.inverse())
-        self._carry(self._site.frame, site.frame, moved)
+        moved = context.station.compose(self._context.station.inverse())
+        self._carry(self._context.frame, context.frame, moved)
         self._began_at = moved.compose(self._began_at)
-        self.stages, self.stage_number = self._asked(site), 0
-        self._want(self._floor_of(self.stages, site))
+        self.stages, self.stage_number = self._asked(context), 0
+        self._want(self._floor_of(self.stages, context))
 
     def _carry(self, before: GridFrame, after: GridFrame, moved: Pose) -> None:
         self._ever = carried(self._ever.view(np.uint8), before, after, moved).view(np.bool_)
@@ -141,7 +141,7 @@ class CoverageLedger:
 
     def values(self) -> Values:
         """Return all that must be remembered to go on, as plain values."""
-        frame, station, began = self._site.frame, self._site.station, self._began_at
+        frame, station, began = self._context.frame, self._context.station, self._began_at
         return {
             "request": request_values(self.request),
             "stages": [[s.name, packed(s.floor), s.again] for s in self.stages],
@@ -149,7 +149,7 @@ class CoverageLedger:
             "wanted": packed(self.coverage.wanted),
             "swept": packed(self.coverage.swept),
             "ever": packed(self._ever),
-            "is_growing": self._site.is_growing,
+            "is_growing": self._context.is_growing,
             "grid": [frame.origin_x, frame.origin_y, frame.rows, frame.columns],
             "station": [station.x, station.y, station.theta],
             "began_at": [began.x, began.y, began.theta],
@@ -161,19 +161,19 @@ class CoverageLedger:
         Raises CheckpointError, and others for junk.
         """
         frame, station = self._place_of(values)
-        moved = self._site.station.compose(station.inverse())
+        moved = self._context.station.compose(station.inverse())
         self._began_at = moved.compose(_pose(values["began_at"]))
         swept, ever = unpacked(values["swept"], frame.shape), unpacked(values["ever"], frame.shape)
         if values["is_growing"]:
-            self.coverage = CoverageMap(frame, np.zeros_like(swept), self._site.tool_width)
+            self.coverage = CoverageMap(frame, np.zeros_like(swept), self._context.tool_width)
             self.coverage.cells[swept] = np.uint8(SWEPT)
             self._ever = ever
-            self._carry(frame, self._site.frame, moved)
-            self.stages = self._asked(self._site)
+            self._carry(frame, self._context.frame, moved)
+            self.stages = self._asked(self._context)
             self._want(self._union())
             return
-        if frame.shape != self._site.frame.shape:
-            raise CheckpointError(f"expected a grid of {self._site.frame}, got {frame}")
+        if frame.shape != self._context.frame.shape:
+            raise CheckpointError(f"expected a grid of {self._context.frame}, got {frame}")
         wanted = unpacked(values["wanted"], frame.shape)
         stages = [
             Stage(str(n), unpacked(f, frame.shape), bool(again)) for n, f, again in values["stages"]
@@ -188,7 +188,7 @@ class CoverageLedger:
     def _place_of(self, values: Values) -> tuple[GridFrame, Pose]:
         """Return the grid that values are of, and where the station was on that map."""
         x, y, rows, columns = values["grid"]
-        resolution = self._site.frame.resolution
+        resolution = self._context.frame.resolution
         frame = GridFrame(resolution, float(x), float(y), int(rows), int(columns))
         if not Pose(frame.origin_x, frame.origin_y).is_finite:
             raise CheckpointError("expected finite numbers")
@@ -196,17 +196,17 @@ class CoverageLedger:
 
     # ---------------------------------------------------------------- parts
 
-    def _asked(self, site: PlanningContext) -> list[Stage]:
-        coverable = site.coverable()
-        stages = stages_of(self.request, site, self._dirt, coverable, self._began_at)
-        return stages[:1] if site.is_growing else stages
+    def _asked(self, context: PlanningContext) -> list[Stage]:
+        coverable = context.coverable()
+        stages = stages_of(self.request, context, self._dirt, coverable, self._began_at)
+        return stages[:1] if context.is_growing else stages
 
     def _union(self) -> Mask:
-        return self._floor_of(self.stages, self._site)
+        return self._floor_of(self.stages, self._context)
 
     @staticmethod
-    def _floor_of(stages: list[Stage], site: PlanningContext) -> Mask:
-        floor = np.zeros(site.frame.shape, np.bool_)
+    def _floor_of(stages: list[Stage], context: PlanningContext) -> Mask:
+        floor = np.zeros(context.frame.shape, np.bool_)
         for stage in stages:
             floor |= stage.floor
         return floor

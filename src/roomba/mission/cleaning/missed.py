@@ -32,7 +32,7 @@ _IN_THE_WAY: Final = {
 def missed_floor(
     left: Mask,
     least: float,
-    site: PlanningContext,
+    context: PlanningContext,
     obstacles: Sequence[RoundObstacle],
     edges: Sequence[RoundObstacle],
     *,
@@ -40,32 +40,32 @@ def missed_floor(
 ) -> tuple[Missed, ...]:
     """Return the patches of ``least`` m2 or more of what is ``left``, the largest first.
 
-    ``left`` is bool over the site's frame. ``edges`` are those of the ``obstacles`` where the floor
-    ends. ``is_over``: the clean went on to its end.
+    ``left`` is bool over the context's frame. ``edges`` are those of the ``obstacles`` where the
+    floor ends. ``is_over``: the clean went on to its end.
     """
-    patches = patches_of(left, site.frame, least)
-    reachable = _reachable(site, obstacles)
-    before_edges = _reachable(site, edges) if edges else None
+    patches = patches_of(left, context.frame, least)
+    reachable = _reachable(context, obstacles)
+    before_edges = _reachable(context, edges) if edges else None
 
     def reason(patch: Patch) -> MissReason:
         if _is_mostly_in(patch, reachable):
             return MissReason.LEFT_OVER if is_over else MissReason.STOPPED
         if before_edges is not None and not _is_mostly_in(patch, before_edges):
             return MissReason.EDGE
-        return MissReason.THING if is_hidden(patch, site, obstacles) else MissReason.SHUT
+        return MissReason.THING if is_hidden(patch, context, obstacles) else MissReason.SHUT
 
     return tuple(
-        Missed(patch.area, patch.x, patch.y, site.room_at(patch.x, patch.y), reason(patch))
+        Missed(patch.area, patch.x, patch.y, context.room_at(patch.x, patch.y), reason(patch))
         for patch in patches
     )
 
 
-def is_hidden(patch: Patch, site: PlanningContext, things: Sequence[RoundObstacle]) -> bool:
+def is_hidden(patch: Patch, context: PlanningContext, things: Sequence[RoundObstacle]) -> bool:
     """Whether a patch is what things stand on and hide, and not a room behind them."""
     rows, columns = np.nonzero(patch.cells)
-    frame: GridFrame = site.frame
+    frame: GridFrame = context.frame
     x, y = frame.centres(rows, columns)
-    near = site.reach + 2.0 * site.tool_width
+    near = context.reach + 2.0 * context.tool_width
     is_near = np.zeros(len(x), np.bool_)
     for thing_x, thing_y, radius in things:
         is_near |= np.hypot(x - thing_x, y - thing_y) < near + radius
@@ -83,10 +83,10 @@ def why_hardly_any(wanted: float, covered: float, missed: Sequence[Missed]) -> s
     return f"{share} is clean: {reason.value}"
 
 
-def _reachable(site: PlanningContext, obstacles: Sequence[RoundObstacle]) -> Mask:
+def _reachable(context: PlanningContext, obstacles: Sequence[RoundObstacle]) -> Mask:
     """Return what can be cleaned from the station among what the map does not show."""
-    things = [*obstacles, *closed_gaps(obstacles, site.reach)]
-    return site.floor.with_obstacles(things).coverable((site.staging.x, site.staging.y))
+    things = [*obstacles, *closed_gaps(obstacles, context.reach)]
+    return context.floor.with_obstacles(things).coverable((context.staging.x, context.staging.y))
 
 
 def _is_mostly_in(patch: Patch, floor: Mask) -> bool:

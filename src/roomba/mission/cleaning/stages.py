@@ -27,10 +27,10 @@ class Stage:
 
 
 def stages_of(
-    request: CleanRequest, site: PlanningContext, dirt: DirtMap, coverable: Mask, here: Pose
+    request: CleanRequest, context: PlanningContext, dirt: DirtMap, coverable: Mask, here: Pose
 ) -> list[Stage]:
     """Return the parts of a clean in their order, all passes; raises CleanRefusedError."""
-    once = _parts(request, site, dirt, coverable, here)
+    once = _parts(request, context, dirt, coverable, here)
     return [
         Stage(part.name, part.floor, again=number > 0)
         for number in range(request.passes)
@@ -39,25 +39,25 @@ def stages_of(
 
 
 def _parts(
-    request: CleanRequest, site: PlanningContext, dirt: DirtMap, coverable: Mask, here: Pose
+    request: CleanRequest, context: PlanningContext, dirt: DirtMap, coverable: Mask, here: Pose
 ) -> list[Stage]:
     if request.mode in (CleanMode.WHOLE, CleanMode.EDGES):
         floor = coverable
         if request.mode is CleanMode.EDGES:
-            off_edge = distance_to_nearest(~coverable) * site.frame.resolution
-            floor = coverable & (off_edge <= site.tool_width)
+            off_edge = distance_to_nearest(~coverable) * context.frame.resolution
+            floor = coverable & (off_edge <= context.tool_width)
         return [Stage("", floor)]
     if request.mode is CleanMode.ZONES:
-        return [Stage("", coverable & _inside(site, request.zones))]
+        return [Stage("", coverable & _inside(context, request.zones))]
     if request.mode is CleanMode.SPOT:
         x, y = request.spot or (here.x, here.y)
         half = 0.5 * SPOT_SIZE
         square = (x - half, y - half, x + half, y + half)
-        return [Stage("", coverable & _inside(site, (square,)))]
-    if site.rooms is None or not site.rooms.names:
+        return [Stage("", coverable & _inside(context, (square,)))]
+    if context.rooms is None or not context.rooms.names:
         raise CleanRefusedError("expected a map with rooms, got one without; clean the whole home")
-    names = _room_names(request, site, dirt)
-    masks = {name: coverable & site.in_room(name) for name in names}
+    names = _room_names(request, context, dirt)
+    masks = {name: coverable & context.in_room(name) for name in names}
     stages = [Stage(name, masks[name]) for name in names if masks[name].any()]
     if request.mode is CleanMode.DIRTIEST:
         rest = coverable & ~np.logical_or.reduce(list(masks.values()))
@@ -65,14 +65,14 @@ def _parts(
     return [stage for stage in stages if stage.floor.any()]
 
 
-def _room_names(request: CleanRequest, site: PlanningContext, dirt: DirtMap) -> list[str]:
+def _room_names(request: CleanRequest, context: PlanningContext, dirt: DirtMap) -> list[str]:
     """Return the rooms in the order in which they are cleaned."""
-    assert site.rooms is not None
-    known = site.rooms.names
+    assert context.rooms is not None
+    known = context.rooms.names
     if request.mode is CleanMode.DIRTIEST:
         dirtiest = {
             name: dirt.density(
-                site.fine(site.rooms.labels == site.rooms.label_of(name)), site.frame
+                context.fine(context.rooms.labels == context.rooms.label_of(name)), context.frame
             )
             for name in known
         }
@@ -83,34 +83,34 @@ def _room_names(request: CleanRequest, site: PlanningContext, dirt: DirtMap) -> 
                 f"expected the name of a room, got {name!r}; there are: {', '.join(known)}"
             )
     names = list(dict.fromkeys(request.rooms))
-    return names if request.in_order else _nearest_first(names, site)
+    return names if request.in_order else _nearest_first(names, context)
 
 
-def _nearest_first(names: list[str], site: PlanningContext) -> list[str]:
+def _nearest_first(names: list[str], context: PlanningContext) -> list[str]:
     """Return rooms so that each is the nearest one to that before it, from the station on."""
-    assert site.rooms is not None
-    anchors = {name: site.rooms.anchor(site.rooms.label_of(name)) for name in names}
-    x, y = site.staging.x, site.staging.y
+    assert context.rooms is not None
+    anchors = {name: context.rooms.anchor(context.rooms.label_of(name)) for name in names}
+    x, y = context.staging.x, context.staging.y
     ordered: list[str] = []
     while len(ordered) < len(names):
         left = [name for name in names if name not in ordered]
-        ordered.append(min(left, key=lambda name: _way(site, (x, y), anchors[name])))
+        ordered.append(min(left, key=lambda name: _way(context, (x, y), anchors[name])))
         x, y = anchors[ordered[-1]]
     return ordered
 
 
-def _way(site: PlanningContext, start: tuple[float, float], end: tuple[float, float]) -> float:
+def _way(context: PlanningContext, start: tuple[float, float], end: tuple[float, float]) -> float:
     try:
-        return site.paths.plan(start, end).length
+        return context.paths.plan(start, end).length
     except NoPathError:
         return float("inf")
 
 
 def _inside(
-    site: PlanningContext, rectangles: tuple[tuple[float, float, float, float], ...]
+    context: PlanningContext, rectangles: tuple[tuple[float, float, float, float], ...]
 ) -> Mask:
     """Return the cells whose middles lie in one of the rectangles."""
-    frame = site.frame
+    frame = context.frame
     x, y = frame.centres()
     inside = np.zeros(frame.shape, np.bool_)
     for left, bottom, right, top in rectangles:

@@ -22,25 +22,29 @@ Floats = NDArray[np.float64]
 
 
 class Drives:
-    """``driver`` is on the present path, if there is one; ``site`` is where it plans.
+    """``driver`` is on the present path, if there is one; ``context`` is where it plans.
 
     ``is_round``: the path is one over the floor that a clean planned.
     """
 
     def __init__(
-        self, site: PlanningContext, robot: RobotConfig, config: DrivingConfig, obstacles: Obstacles
+        self,
+        context: PlanningContext,
+        robot: RobotConfig,
+        config: DrivingConfig,
+        obstacles: Obstacles,
     ) -> None:
         """Begin without a path."""
         self._robot, self._config = robot, config
         self.obstacles, self.trail = obstacles, Trail()
         self.driver: PathDriver | None = None
         self.is_round = False
-        self.use_site(site)
+        self.use_context(context)
 
-    def use_site(self, site: PlanningContext) -> None:
+    def use_context(self, context: PlanningContext) -> None:
         """Plan there from now on; the present path is driven on."""
-        self.site = site
-        self._rejoin = Rejoin(site, self._robot.body.radius, self._config)
+        self.context = context
+        self._rejoin = Rejoin(context, self._robot.body.radius, self._config)
 
     def begin(
         self,
@@ -74,10 +78,10 @@ class Drives:
     def leaves_zone(self, senses: Senses) -> bool:
         """Begin to drive out of a no-go zone, should the robot be in one; tell whether it is."""
         here = (senses.pose.x, senses.pose.y)
-        if not self.site.is_in_zone(here):
+        if not self.context.is_in_zone(here):
             return False
         try:
-            points = self.site.way_out_of_zone(here, self.obstacles.standing(senses.now))
+            points = self.context.way_out_of_zone(here, self.obstacles.standing(senses.now))
         except NoPathError:
             return False
         self.begin(points, senses)
@@ -93,7 +97,7 @@ class Drives:
 
     def make_room(self, senses: Senses) -> None:
         """Begin to drive aside, so that a person beside the robot can pass; if there is room."""
-        points = way_aside(self.site.paths, senses, self.obstacles, self.trail)
+        points = way_aside(self.context.paths, senses, self.obstacles, self.trail)
         if points is not None:
             self.begin(points, senses)
 
@@ -105,15 +109,15 @@ class Drives:
         """Return how far it is home, m; what cannot be told is as far as the map is wide."""
         length = self._length_home(senses)
         if length is None:
-            left, right, low, high = self.site.known.frame.extent
+            left, right, low, high = self.context.known.frame.extent
             return right - left + high - low
         return length
 
     def _length_home(self, senses: Senses) -> float | None:
-        here, staging = (senses.pose.x, senses.pose.y), self.site.staging
+        here, staging = (senses.pose.x, senses.pose.y), self.context.staging
         obstacles = self.obstacles.standing(senses.now)
         try:
-            return self.site.paths.plan(here, (staging.x, staging.y), obstacles).length
+            return self.context.paths.plan(here, (staging.x, staging.y), obstacles).length
         except NoPathError:
             return None
 

@@ -38,9 +38,9 @@ _MOST_TRIES: Final = 8
 class Rejoin:
     """Plans from where the robot is to what is left of a path; ``trouble`` says why it cannot."""
 
-    def __init__(self, site: PlanningContext, body_radius: float, config: DrivingConfig) -> None:
-        """Take the site's planners, which must allow what paths keep from walls."""
-        self._site, self._planner = site, site.paths
+    def __init__(self, context: PlanningContext, body_radius: float, config: DrivingConfig) -> None:
+        """Take the context's planners, which must allow what paths keep from walls."""
+        self._context, self._planner = context, context.paths
         self._body_radius, self._away = body_radius, config.thing_clearance
         self.trouble = ""
 
@@ -69,13 +69,13 @@ class Rejoin:
         Raises NoPathError when there is none.
         """
         here = (senses.pose.x, senses.pose.y)
-        staging = (self._site.staging.x, self._site.staging.y)
+        staging = (self._context.staging.x, self._context.staging.y)
         try:
             return self._planner.plan(here, staging, obstacles.standing(senses.now)).points
         except NoPathError as error:
             at_least = obstacles.at_least(senses.now)
             with contextlib.suppress(NoPathError):
-                return self._site.squeeze(here, staging, at_least)
+                return self._context.squeeze(here, staging, at_least)
             points, _ = trail.back_and_on(lambda place: self._way_to(place, staging, at_least))
             if points is None:
                 raise error
@@ -101,7 +101,7 @@ class Rejoin:
     def nudged(self, senses: Senses, tracker: PathTracker, obstacles: Obstacles) -> Floats | None:
         """Return the rest of a path moved aside a little, or None if that does not help."""
         standing = obstacles.standing(senses.now)
-        return nudged(tracker, self._site.floor, standing, self._body_radius + self._away)
+        return nudged(tracker, self._context.floor, standing, self._body_radius + self._away)
 
     def _around(
         self, here: Point, tracker: PathTracker, obstacles: Sequence[RoundObstacle]
@@ -141,7 +141,7 @@ class Rejoin:
         for number in {len(samples) - 1 if index is None else index: 0, len(samples) - 1: 0}:
             target = (float(samples[number, 0]), float(samples[number, 1]))
             try:
-                points = self._site.squeeze((senses.pose.x, senses.pose.y), target, obstacles)
+                points = self._context.squeeze((senses.pose.x, senses.pose.y), target, obstacles)
             except NoPathError as error:
                 self.trouble = error.reason.value
                 continue

@@ -71,7 +71,7 @@ class Exploration:
     def next_path(
         self,
         here: Pose,
-        site: PlanningContext,
+        context: PlanningContext,
         obstacles: list[RoundObstacle],
         farthest: float = math.inf,
     ) -> NDArray[np.float64] | None:
@@ -81,16 +81,16 @@ class Exploration:
         Those that are ``farthest`` m of way off and more are left out. A frontier to which no way
         leads is given up.
         """
-        self._leave_behind(here, site)
+        self._leave_behind(here, context)
         at = (here.x, here.y)
         try:
-            fits = site.paths.reachable(at, obstacles)
+            fits = context.paths.reachable(at, obstacles)
         except NoPathError:
             return None
-        found = frontiers(site.known, fits, at, self.unseen, _BESIDE)
+        found = frontiers(context.known, fits, at, self.unseen, _BESIDE)
         for frontier in [each for each in found if each.way < farthest][:_MOST_TRIES]:
             try:
-                path = site.paths.plan(at, frontier.viewpoint, obstacles)
+                path = context.paths.plan(at, frontier.viewpoint, obstacles)
             except NoPathError:
                 self.unseen.append(frontier.middle)
                 continue
@@ -118,10 +118,10 @@ class Exploration:
             self.unseen.append(self.goal.middle)
         self.goal = None
 
-    def _leave_behind(self, here: Pose, site: PlanningContext) -> None:
+    def _leave_behind(self, here: Pose, context: PlanningContext) -> None:
         """Give the last frontier up if it was looked at from its viewpoint, and is still one."""
         goal, self.goal = self.goal, None
         if goal is None or math.dist(goal.viewpoint, (here.x, here.y)) > _ARRIVED:
             return
-        if is_frontier(site.known, goal.middle, _STILL_THERE):
+        if is_frontier(context.known, goal.middle, _STILL_THERE):
             self.unseen.append(goal.middle)

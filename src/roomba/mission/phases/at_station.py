@@ -62,7 +62,7 @@ class AtStation:
         """Stand until there is enough for the rest of the job."""
         if self._needed is None:
             self._needed = job.needed_energy(tool_width)
-        is_charged = job.book.is_charged(senses, self._needed)
+        is_charged = job.ledger.is_charged(senses, self._needed)
         return PhaseStep(event=Event.CHARGED if is_charged else None)
 
 

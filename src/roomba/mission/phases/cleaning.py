@@ -33,10 +33,10 @@ class CleanPhase:
     """Drives over the floor that is left of the job's clean."""
 
     def __init__(
-        self, job: Job, drives: Drives, patience: RetryPolicy, config: ExploringConfig
+        self, job: Job, drives: Drives, retries: RetryPolicy, config: ExploringConfig
     ) -> None:
         """Begin with no path."""
-        self._job, self._drives, self._patience, self._config = job, drives, patience, config
+        self._job, self._drives, self._retries, self._config = job, drives, retries, config
         self._seen_all_of: PlanningContext | None = None
         self._seen_all_at = 0.0
 
@@ -44,9 +44,9 @@ class CleanPhase:
         """Return what is wanted now; ``limit`` is the speed wanted, m/s."""
         cleaning, drives = self._job.cleaning, self._drives
         assert cleaning is not None
-        if self._job.book.must_go_home(senses, drives.distance_home):
+        if self._job.ledger.must_go_home(senses, drives.distance_home):
             return PhaseStep(event=Event.LOW)
-        waiting = phases.wait_on(drives, self._patience, senses, limit)
+        waiting = phases.wait_on(drives, self._retries, senses, limit)
         if waiting is not None:
             return waiting
         if drives.driver is not None:
@@ -58,13 +58,13 @@ class CleanPhase:
 
     def _begin_path(self, cleaning: Cleaning, senses: Senses) -> PhaseStep | None:
         """Begin the next path, or return what is to be done where there is none."""
-        drives, patience = self._drives, self._patience
-        if drives.site is self._seen_all_of and cleaning.explores:
+        drives, retries = self._drives, self._retries
+        if drives.context is self._seen_all_of and cleaning.explores:
             return self._wait_for_whole_map(senses)
         points = None
-        if patience.gets_out:
+        if retries.gets_out:
             # By the middle of gaps: along their sides, as it cleans, it may have been shut in.
-            patience.gets_out = False
+            retries.gets_out = False
             points = drives.way_out(senses)
         if points is None and self._begin_look(senses, self._config.look_first):
             return None
@@ -74,7 +74,7 @@ class CleanPhase:
         except NoPathError:
             points = drives.way_out(senses)
             if points is None:
-                return phases.wait("no way leads out of where it is", drives, patience, senses)
+                return phases.wait("no way leads out of where it is", drives, retries, senses)
         if points is not None:
             drives.begin(points, senses, cleaning.plans_anew)
             return None
@@ -94,7 +94,7 @@ class CleanPhase:
         if exploration is None:
             return False
         obstacles = drives.obstacles.standing(senses.now)
-        points = exploration.next_path(senses.pose, drives.site, obstacles, farthest)
+        points = exploration.next_path(senses.pose, drives.context, obstacles, farthest)
         if points is not None:
             drives.begin(points, senses)
         return points is not None
@@ -112,8 +112,8 @@ class CleanPhase:
         if not drives.may_go_home(senses):
             # Shut in it has not seen all.
             reason = "no way leads out of where it is"
-            return phases.try_home_again(reason, drives, self._patience, senses)
-        self._seen_all_of, self._seen_all_at = drives.site, senses.now
+            return phases.try_home_again(reason, drives, self._retries, senses)
+        self._seen_all_of, self._seen_all_at = drives.context, senses.now
         return PhaseStep(message=_WAITS, wants_whole_map=True)
 
     def _wait_for_whole_map(self, senses: Senses) -> PhaseStep:

@@ -36,26 +36,26 @@ class Job:
         self.cleaning: Cleaning | None = None
         self.exploration: Exploration | None = None
         self.outcome: CleanOutcome | None = None
-        self.book = EnergyLedger(config, senses)
+        self.ledger = EnergyLedger(config, senses)
         self._started = senses.now
         self._is_told = False
         self._cleaned: CleanResult | None = None
         self._explored: ExploreResult | None = None
 
     def begin_clean(self, cleaning: Cleaning, senses: Senses) -> None:
-        """Begin a clean, with new books; if it explores, it does so on the way."""
+        """Begin a clean, with new ledgers; if it explores, it does so on the way."""
         self.cleaning = cleaning
         self.exploration = Exploration() if cleaning.explores else None
         self._begin(senses)
 
     def begin_exploration(self, senses: Senses) -> None:
-        """Begin an exploration, with new books."""
+        """Begin an exploration, with new ledgers."""
         self.exploration, self._explored = Exploration(), None
         self._begin(senses)
 
     def _begin(self, senses: Senses) -> None:
         self.outcome, self._is_told = None, False
-        self.book.begin(senses)
+        self.ledger.begin(senses)
         self._started = senses.now
 
     def take_up(self) -> None:
@@ -69,12 +69,12 @@ class Job:
     def goes_on_after(self, duration: float, senses: Senses) -> None:
         """Go on with a job that has been under way for so long already, s."""
         self._is_told = False
-        self.book.begin(senses)
+        self.ledger.begin(senses)
         self._started = senses.now - duration
 
     def account(self, senses: Senses, last: Senses, *, sweeps: bool) -> None:
-        """Keep the books: energy, way, floor swept, dirt met."""
-        self.book.note(senses)
+        """Keep the ledgers: energy, way, floor swept, dirt met."""
+        self.ledger.note(senses)
         passed = senses.now - last.now
         if not 0.0 <= passed <= _LONGEST_TICK:
             self._started += passed
@@ -97,13 +97,13 @@ class Job:
             return 0.0
         # Behind a few patches that are still missed there may be a long way.
         way = max(self.cleaning.left / tool_width, self.cleaning.broken_off)
-        return self.book.per_metre * _DETOURS * way
+        return self.ledger.per_metre * _DETOURS * way
 
     def end(
         self,
         outcome: CleanOutcome,
         message: str,
-        site: PlanningContext,
+        context: PlanningContext,
         obstacles: Obstacles,
         senses: Senses,
         *,
@@ -118,10 +118,10 @@ class Job:
             self._explored = ExploreResult(
                 outcome,
                 message,
-                site.occupancy.free_area,
-                self.book.distance,
+                context.occupancy.free_area,
+                self.ledger.distance,
                 self.duration(senses.now),
-                self.exploration.still_unseen(site.known),
+                self.exploration.still_unseen(context.known),
             )
         self._is_told = True
         if not can_go_on:
@@ -146,10 +146,10 @@ class Job:
             message,
             wanted,
             covered,
-            dirt=self.book.dirt,
-            distance=self.book.distance,
+            dirt=self.ledger.dirt,
+            distance=self.ledger.distance,
             duration=self.duration(senses.now),
-            energy=self.book.energy,
+            energy=self.ledger.energy,
             missed=missed,
         )
 

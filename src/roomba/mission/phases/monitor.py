@@ -21,10 +21,10 @@ class Monitor:
     """Looks at every tick; ``was_docked`` is whether the station's contact was there before."""
 
     def __init__(
-        self, config: WalkConfig, drives: Drives, book: EnergyLedger, senses: Senses
+        self, config: WalkConfig, drives: Drives, ledger: EnergyLedger, senses: Senses
     ) -> None:
         """Begin where the robot stands, knowing its place."""
-        self._config, self._drives, self._book = config, drives, book
+        self._config, self._drives, self._ledger = config, drives, ledger
         self.was_docked = senses.battery.is_docked
         self._astray_since: float | None = None
         self._known_at = (senses.pose.x, senses.pose.y)
@@ -50,7 +50,7 @@ class Monitor:
         if senses.lifted:
             reason = "a wheel hangs in the air: set it down and resume"
             return Failure(CleanOutcome.FAULT, reason)
-        if self._book.is_empty(senses):
+        if self._ledger.is_empty(senses):
             reason = "the battery is empty: carry it to its station"
             return Failure(CleanOutcome.BATTERY, reason)
         # Docking finds its way by the station's beams.

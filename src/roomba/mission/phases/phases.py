@@ -24,13 +24,13 @@ def explore(job: Job, drives: Drives, senses: Senses, limit: float, most_stuck: 
     """Go to the nearest place from where more can be seen; stuck too often it fails."""
     exploration = job.exploration
     assert exploration is not None
-    if job.book.must_go_home(senses, drives.distance_home):
+    if job.ledger.must_go_home(senses, drives.distance_home):
         return PhaseStep(event=Event.LOW)
     if drives.driver is not None:
         return look_on(exploration, drives, senses, limit, most_stuck)
     obstacles = drives.obstacles.standing(senses.now)
     given_up = len(exploration.unseen)
-    points = exploration.next_path(senses.pose, drives.site, obstacles)
+    points = exploration.next_path(senses.pose, drives.context, obstacles)
     if points is None:
         # It may have given up before it tried all.
         is_done = len(exploration.unseen) == given_up and not looks_again(exploration, drives)
@@ -64,29 +64,29 @@ def look_on(
     return PhaseStep(step.twist)
 
 
-def go_home(drives: Drives, patience: RetryPolicy, senses: Senses, limit: float) -> PhaseStep:
+def go_home(drives: Drives, retries: RetryPolicy, senses: Senses, limit: float) -> PhaseStep:
     """Drive to the place before the station; where no way leads there it waits for one."""
-    staging = drives.site.staging
+    staging = drives.context.staging
     if senses.battery.is_docked:
         return PhaseStep(event=Event.CONTACT)
     if senses.pose.distance_to(staging.x, staging.y) < NEAR_STAGING:
         return PhaseStep(event=Event.ARRIVED)
-    waiting = wait_on(drives, patience, senses, limit)
+    waiting = wait_on(drives, retries, senses, limit)
     if waiting is not None:
         return waiting
     if drives.driver is not None:
-        return _go_home_on(drives, patience, senses, limit)
+        return _go_home_on(drives, retries, senses, limit)
     if not drives.leaves_zone(senses):
         try:
             points = drives.way_home(senses)
         except NoPathError as error:
-            return try_home_again(f"no way home: {error}", drives, patience, senses)
+            return try_home_again(f"no way home: {error}", drives, retries, senses)
         drives.begin(points, senses)
-    step = _go_home_on(drives, patience, senses, limit)
+    step = _go_home_on(drives, retries, senses, limit)
     return step if step.message else replace(step, message="")
 
 
-def _go_home_on(drives: Drives, patience: RetryPolicy, senses: Senses, limit: float) -> PhaseStep:
+def _go_home_on(drives: Drives, retries: RetryPolicy, senses: Senses, limit: float) -> PhaseStep:
     assert drives.driver is not None
     step = drives.driver.tick(senses, limit)
     if step.state is DriveState.STUCK:
@@ -94,45 +94,43 @@ def _go_home_on(drives: Drives, patience: RetryPolicy, senses: Senses, limit: fl
     if step.state.is_over:
         drives.driver = None
     if step.state is DriveState.CUT_OFF:
-        return try_home_again(step.reason, drives, patience, senses)
+        return try_home_again(step.reason, drives, retries, senses)
     return PhaseStep(step.twist)
 
 
-def try_home_again(reason: str, drives: Drives, patience: RetryPolicy, senses: Senses) -> PhaseStep:
+def try_home_again(reason: str, drives: Drives, retries: RetryPolicy, senses: Senses) -> PhaseStep:
     """Once more without what was remembered; a door may open; then it says there is no way."""
-    patience.found_no_way_home()
-    if patience.is_over:
+    retries.found_no_way_home()
+    if retries.is_over:
         return PhaseStep(failure=Failure(CleanOutcome.NOT_DOCKED, reason))
-    if patience.must_wait:
-        return wait(reason, drives, patience, senses)
+    if retries.must_wait:
+        return wait(reason, drives, retries, senses)
     drives.obstacles.forget()
     return PhaseStep()
 
 
-def wait(reason: str, drives: Drives, patience: RetryPolicy, senses: Senses) -> PhaseStep:
+def wait(reason: str, drives: Drives, retries: RetryPolicy, senses: Senses) -> PhaseStep:
     """Wait for a while, and then look anew: a door that is shut is opened again.
 
     A person before the robot may be waiting for it to go: it makes room.
     """
-    patience.wait(senses.now)
+    retries.wait(senses.now)
     drives.make_room(senses)
     drives.obstacles.forget()
     return PhaseStep(message=f"{reason}; it waits for a way to open")
 
 
-def wait_on(
-    drives: Drives, patience: RetryPolicy, senses: Senses, limit: float
-) -> PhaseStep | None:
+def wait_on(drives: Drives, retries: RetryPolicy, senses: Senses, limit: float) -> PhaseStep | None:
     """While it waits: stand, or drive on to where others can pass; None when it does not wait.
 
     As soon as there is a way it waits no longer.
     """
-    stands = drives.driver is None and patience.is_waiting(senses.now)
-    if stands and patience.looks_again(senses.now) and drives.may_go_home(senses):
-        patience.end()
-    if patience.has_ended(senses.now):
+    stands = drives.driver is None and retries.is_waiting(senses.now)
+    if stands and retries.looks_again(senses.now) and drives.may_go_home(senses):
+        retries.end()
+    if retries.has_ended(senses.now):
         drives.driver = None
-    if not patience.is_waiting(senses.now):
+    if not retries.is_waiting(senses.now):
         return None
     if drives.driver is None:
         return PhaseStep()

@@ -127,7 +127,7 @@ def test_what_is_solid_in_truth_is_not_coverable(room: Path) -> None:
     )
     assert len(things.things) == 1
     (x, y, _) = things.things[0]
-    frame = things.robot.site.frame
+    frame = things.robot.context.frame
     assert not things.coverable[frame.cell_of(x, y)]
     assert np.count_nonzero(things.coverable) < np.count_nonzero(bare.coverable)
     row, column = frame.cell_of(2.0, 0.8)
@@ -139,7 +139,7 @@ def test_a_part_of_the_floor_is_wanted(room: Path) -> None:
     spot = CleanRequest(CleanMode.ZONES, zones=((1.0, 0.1, 1.4, 1.7),))
     setup = TrialSetup(Trial(home=str(room), station=Pose(0.3, 0.8, math.pi), request=spot))
     rows, columns = np.nonzero(setup.coverable)
-    frame = setup.robot.site.frame
+    frame = setup.robot.context.frame
     assert frame.centre_of(0, int(columns.min()))[0] >= 1.0
     assert frame.centre_of(0, int(columns.max()))[0] <= 1.4
     assert rows.size > 1000
@@ -166,7 +166,7 @@ def test_sensors_and_configuration_are_obeyed(room: Path, tmp_path: Path) -> Non
     trial = Trial(home=str(room), station=Pose(0.3, 0.8, math.pi), sensors="ideal", config=config)
     setup = TrialSetup(trial)
     assert setup.config.simulation.sensors == "ideal"
-    assert setup.robot.site.tool_width == 0.18
+    assert setup.robot.context.tool_width == 0.18
 
 
 # ---------------------------------------------------------------- the command itself

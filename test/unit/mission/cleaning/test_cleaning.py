@@ -34,7 +34,7 @@ FENCE: list[RoundObstacle] = [(WALL_X + 0.05, float(y), 0.05) for y in np.arange
 """In the door of TWO_ROOMS."""
 
 
-def site(home: Home = HOME, zones: Zones | None = None) -> PlanningContext:
+def context(home: Home = HOME, zones: Zones | None = None) -> PlanningContext:
     rooms = two_rooms() if home is TWO_ROOMS else None
     return PlanningContext(
         home.map, home.station, RobotConfig(), MissionConfig(), DockingConfig(), rooms, zones
@@ -46,7 +46,7 @@ def cleaning(
     place: PlanningContext | None = None,
     dirt: DirtMap | None = None,
 ) -> Cleaning:
-    place = place or site()
+    place = place or context()
     return Cleaning(
         request or CleanRequest(),
         place,
@@ -122,7 +122,7 @@ def test_rounds_that_gain_nothing_come_to_an_end() -> None:
 
 
 def test_what_is_behind_a_shut_door_is_told_and_looked_for_once_more() -> None:
-    clean = cleaning(place=site(TWO_ROOMS))
+    clean = cleaning(place=context(TWO_ROOMS))
     finish(clean, FENCE)
     behind = clean.missed(FENCE, True)[0]
     assert behind.reason is MissReason.SHUT
@@ -136,7 +136,7 @@ def test_what_is_behind_a_shut_door_is_told_and_looked_for_once_more() -> None:
 
 
 def test_a_door_that_stays_shut_is_looked_for_only_once() -> None:
-    clean = cleaning(place=site(TWO_ROOMS))
+    clean = cleaning(place=context(TWO_ROOMS))
     finish(clean, FENCE)
     assert clean.wants_another_look([])
     finish(clean, FENCE)
@@ -152,7 +152,7 @@ def test_with_all_reached_nothing_is_looked_for_again() -> None:
 
 
 def test_behind_stairs_it_is_not_looked_for_again() -> None:
-    clean = cleaning(place=site(TWO_ROOMS))
+    clean = cleaning(place=context(TWO_ROOMS))
     finish(clean, FENCE)
     assert not clean.wants_another_look(FENCE)
 
@@ -229,14 +229,14 @@ def test_planned_anew_at_the_end_it_comes_to_an_end() -> None:
 
 
 def test_with_no_way_home_it_cleans_where_it_is() -> None:
-    clean = cleaning(place=site(TWO_ROOMS))
+    clean = cleaning(place=context(TWO_ROOMS))
     # The door shut behind it.
     here = Pose(2.8, 1.2, 0.0)
     points = clean.next_path(here, FENCE)
     assert points is not None
     assert points[:, 0].min() > WALL_X
     drive(clean, points)
-    den = clean.coverage.wanted & site(TWO_ROOMS).in_room(DEN)
+    den = clean.coverage.wanted & context(TWO_ROOMS).in_room(DEN)
     assert np.count_nonzero(clean.clean & den) > 0.9 * np.count_nonzero(den)
 
 
@@ -261,13 +261,13 @@ def test_shut_in_it_says_so_a_few_times_before_it_gives_up() -> None:
 
 
 def test_let_out_again_it_goes_on_where_it_was() -> None:
-    clean = cleaning(place=site(TWO_ROOMS))
+    clean = cleaning(place=context(TWO_ROOMS))
     points = clean.next_path(HERE, [])
     assert points is not None
     drive(clean, points, 0.3)
     assert clean.plans_anew(100.0, 20.0)
     # In the den, which is clean, when the door shuts behind it.
-    den = clean.coverage.wanted & site(TWO_ROOMS).in_room(DEN)
+    den = clean.coverage.wanted & context(TWO_ROOMS).in_room(DEN)
     clean.coverage.cells[den] |= np.uint8(SWEPT)
     clean.coverage.count_again()
     here = Pose(2.8, 1.2, 0.0)
@@ -291,7 +291,7 @@ def test_a_path_that_was_given_up_is_no_round() -> None:
 
 
 def test_rooms_are_its_stages() -> None:
-    place = site(TWO_ROOMS)
+    place = context(TWO_ROOMS)
     request = CleanRequest(CleanMode.ROOMS, rooms=(DEN, HALL, DEN), in_order=True)
     clean = cleaning(request, place)
     assert [stage.name for stage in clean.stages] == [DEN, HALL]
@@ -322,7 +322,7 @@ def test_passes_are_stages_and_each_sweeps_all_anew() -> None:
 
 
 def test_the_dirtiest_room_comes_first_and_all_are_cleaned() -> None:
-    place = site(TWO_ROOMS)
+    place = context(TWO_ROOMS)
     for dirty, x in ((DEN, 3.0), (HALL, 0.5)):
         dirt = DirtMap(place.occupancy)
         dirt.note(x, 1.0, 500.0, 0.3)
@@ -334,7 +334,7 @@ def test_the_dirtiest_room_comes_first_and_all_are_cleaned() -> None:
 
 
 def test_where_it_was_very_dirty_it_cleans_once_more() -> None:
-    place = site()
+    place = context()
     dirt = DirtMap(place.occupancy)
     clean = cleaning(place=place, dirt=dirt)
     for y in np.arange(0.1, 2.4, 0.2):
@@ -366,7 +366,7 @@ def test_zones_are_cut_to_the_floor_that_there_is() -> None:
     clean = cleaning(CleanRequest(CleanMode.ZONES, zones=((-5.0, -5.0, 1.0, 5.0),)))
     x = HOME.map.frame.origin_x + (np.nonzero(clean.coverage.wanted)[1] + 0.5) * 0.01
     assert x.max() < 1.0
-    assert not (clean.coverage.wanted & ~site().coverable()).any()
+    assert not (clean.coverage.wanted & ~context().coverable()).any()
 
 
 @pytest.mark.parametrize(
@@ -382,15 +382,15 @@ def test_nothing_to_clean_is_refused(request_: CleanRequest) -> None:
         cleaning(request_)
 
 
-def test_with_another_site_it_goes_on_and_wants_less() -> None:
+def test_with_another_context_it_goes_on_and_wants_less() -> None:
     clean = cleaning()
     points = clean.next_path(HERE, [])
     assert points is not None
     drive(clean, points, 0.3)
     swept = clean.coverage.swept.copy()
     wall = Zone("wall", ZoneKind.WALL, ((1.5, 0.0), (1.5, 2.5)))
-    walled = site(zones=Zones((wall,)))
-    clean.use_site(walled, DirtMap(walled.occupancy))
+    walled = context(zones=Zones((wall,)))
+    clean.use_context(walled, DirtMap(walled.occupancy))
     clean.interrupted(1.0)
     assert (clean.coverage.swept == swept).all()
     assert not (clean.coverage.wanted & ~walled.coverable()).any()

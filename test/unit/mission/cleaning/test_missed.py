@@ -100,6 +100,8 @@ def test_nothing_done_it_says_so_and_why(why: MissReason, message: str) -> None:
 
 
 def test_of_a_home_without_rooms_patches_have_no_room() -> None:
-    site = PlanningContext(HOME.map, HOME.station, RobotConfig(), MissionConfig(), DockingConfig())
-    (missed,) = missed_floor(site.coverable(), 0.01, site, [], [], is_over=True)
+    context = PlanningContext(
+        HOME.map, HOME.station, RobotConfig(), MissionConfig(), DockingConfig()
+    )
+    (missed,) = missed_floor(context.coverable(), 0.01, context, [], [], is_over=True)
     assert missed.room == ""

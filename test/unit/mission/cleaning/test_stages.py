@@ -24,7 +24,7 @@ from roomba.world.home.home import Home
 HERE = Pose(0.85, 1.2, 0.0)
 
 
-def site(home: Home = TWO_ROOMS) -> PlanningContext:
+def context(home: Home = TWO_ROOMS) -> PlanningContext:
     rooms = two_rooms() if home is TWO_ROOMS else None
     return PlanningContext(
         home.map, home.station, RobotConfig(), MissionConfig(), DockingConfig(), rooms
@@ -47,14 +47,14 @@ def assert_floor_is(stage: Stage, place: PlanningContext, *areas: tuple[float, .
 
 
 def test_a_whole_clean_is_all_that_can_be_covered_once_for_each_pass() -> None:
-    place = site()
+    place = context()
     found = stages(CleanRequest(passes=3), place)
     assert [stage.again for stage in found] == [False, True, True]
     assert all(np.array_equal(stage.floor, place.coverable()) for stage in found)
 
 
 def test_edges_are_the_floor_within_a_tool_s_width_of_where_it_ends() -> None:
-    place = site(HOME)
+    place = context(HOME)
     (stage,) = stages(CleanRequest(mode=CleanMode.EDGES), place)
     coverable = place.coverable()
     outside = np.argwhere(~np.pad(coverable, 1)) - 1
@@ -67,7 +67,7 @@ def test_edges_are_the_floor_within_a_tool_s_width_of_where_it_ends() -> None:
 
 
 def test_zones_and_spots_are_what_of_them_can_be_covered() -> None:
-    place = site()
+    place = context()
     areas = ((0.4, 0.4, 1.0, 0.9), (0.8, 0.7, 1.5, 2.0))
     (zones,) = stages(CleanRequest(mode=CleanMode.ZONES, zones=areas), place)
     assert_floor_is(zones, place, *areas)
@@ -91,7 +91,7 @@ def test_rooms_come_nearest_first_or_in_the_order_asked_for(
     rooms: tuple[str, ...], in_order: bool, expected: list[str]
 ) -> None:
     """The station stands in the hall."""
-    place = site()
+    place = context()
     found = stages(CleanRequest(mode=CleanMode.ROOMS, rooms=rooms, in_order=in_order), place)
     assert [stage.name for stage in found] == expected
     middle = WALL_X + 0.05
@@ -101,7 +101,7 @@ def test_rooms_come_nearest_first_or_in_the_order_asked_for(
 
 
 def test_the_dirtiest_room_comes_first_and_all_floor_comes() -> None:
-    place = site()
+    place = context()
     dirt = DirtMap(place.occupancy)
     request = CleanRequest(mode=CleanMode.DIRTIEST)
     coverable = place.coverable()
@@ -115,6 +115,6 @@ def test_the_dirtiest_room_comes_first_and_all_floor_comes() -> None:
 
 def test_rooms_that_are_not_there_are_refused() -> None:
     with pytest.raises(CleanRefusedError, match="there are: "):
-        stages(CleanRequest(mode=CleanMode.ROOMS, rooms=("attic",)), site())
+        stages(CleanRequest(mode=CleanMode.ROOMS, rooms=("attic",)), context())
     with pytest.raises(CleanRefusedError, match="without"):
-        stages(CleanRequest(mode=CleanMode.ROOMS, rooms=(DEN,)), site(HOME))
+        stages(CleanRequest(mode=CleanMode.ROOMS, rooms=(DEN,)), context(HOME))

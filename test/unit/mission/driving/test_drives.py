@@ -30,7 +30,7 @@ AWAY = Senses(0.0, HERE)
 IN_ZONE = replace(AWAY, pose=Pose(2.6, 0.5, 0.0))
 
 
-def site(*zones: Zone) -> PlanningContext:
+def context(*zones: Zone) -> PlanningContext:
     return PlanningContext(
         HOME.map, HOME.station, ROBOT, CONFIG, DockingConfig(), zones=Zones(zones)
     )
@@ -50,7 +50,7 @@ class Ringed(Obstacles):
 def drives(*zones: Zone, kind: type[Obstacles] = Obstacles) -> Drives:
     things = ThingLayer(SurfaceField.of(HOME.map))
     obstacles = kind(things, ROBOT.walk, ROBOT.body, CONFIG.driving)
-    return Drives(site(*zones), ROBOT, CONFIG.driving, obstacles)
+    return Drives(context(*zones), ROBOT, CONFIG.driving, obstacles)
 
 
 def test_in_a_zone_it_begins_to_leave_it() -> None:
@@ -58,17 +58,17 @@ def test_in_a_zone_it_begins_to_leave_it() -> None:
     assert inside.leaves_zone(IN_ZONE)
     assert inside.driver is not None
     end = inside.driver.tracker.rest[-1]
-    assert not inside.site.is_in_zone((float(end[0]), float(end[1])))
+    assert not inside.context.is_in_zone((float(end[0]), float(end[1])))
     outside = drives(ZONE)
     assert not outside.leaves_zone(AWAY)
     assert outside.driver is None
 
 
-def test_another_site_counts_from_then_on_and_the_path_is_driven_on() -> None:
+def test_another_context_counts_from_then_on_and_the_path_is_driven_on() -> None:
     at_work = drives()
     at_work.begin(np.array([[1.0, 0.6], [1.5, 0.6]]), AWAY)
     driver = at_work.driver
-    at_work.use_site(site(ZONE))
+    at_work.use_context(context(ZONE))
     assert at_work.driver is driver
     assert at_work.leaves_zone(IN_ZONE)
 
@@ -78,7 +78,7 @@ def test_it_is_as_far_home_as_the_way_is_long() -> None:
     way = here.way_home(AWAY)
     length = float(np.hypot(*np.diff(way, axis=0).T).sum())
     assert here.distance_home(AWAY) == pytest.approx(length)
-    assert length >= HERE.distance_to(here.site.staging.x, here.site.staging.y)
+    assert length >= HERE.distance_to(here.context.staging.x, here.context.staging.y)
 
 
 def test_shut_in_it_is_as_far_home_as_the_map_is_wide() -> None:

@@ -35,15 +35,15 @@ def known_to(x: float, *patches: tuple[float, float]) -> OccupancyMap:
     return OccupancyMap(whole.frame, values)
 
 
-def site_of(occupancy: OccupancyMap) -> PlanningContext:
+def context_of(occupancy: OccupancyMap) -> PlanningContext:
     return PlanningContext(
         occupancy, TWO_ROOMS.station, ROBOT, MissionConfig(), DockingConfig(), is_growing=True
     )
 
 
 HALL = known_to(DOORWAY[0] + 0.06)
-HALL_SITE = site_of(HALL)
-ALL_SITE = site_of(TWO_ROOMS.map)
+HALL_SITE = context_of(HALL)
+ALL_SITE = context_of(TWO_ROOMS.map)
 
 
 def begun() -> Exploration:
@@ -152,9 +152,9 @@ def test_cut_off_it_gives_up_where_it_was_going(is_stuck: bool) -> None:
 def test_one_to_which_no_way_leads_is_given_up_for_the_next(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    site = site_of(known_to(DOORWAY[0] + 0.06, (1.0, 2.0)))
+    context = context_of(known_to(DOORWAY[0] + 0.06, (1.0, 2.0)))
     near = Exploration()
-    near.next_path(Pose(0.8, 1.4, 0.0), site, [])
+    near.next_path(Pose(0.8, 1.4, 0.0), context, [])
     assert near.goal is not None
     shut, plan = near.goal, PathPlanner.plan
 
@@ -165,7 +165,7 @@ def test_one_to_which_no_way_leads_is_given_up_for_the_next(
 
     monkeypatch.setattr(PathPlanner, "plan", refuse)
     exploration = Exploration()
-    path = exploration.next_path(Pose(0.8, 1.4, 0.0), site, [])
+    path = exploration.next_path(Pose(0.8, 1.4, 0.0), context, [])
     assert path is not None
     assert exploration.unseen == [shut.middle]
     assert exploration.goal is not None

@@ -19,7 +19,7 @@ from roomba.world.home.home import Home
 ROBOT = RobotConfig()
 
 
-def site(home: Home = HOME, zones: Zones | None = None) -> PlanningContext:
+def context(home: Home = HOME, zones: Zones | None = None) -> PlanningContext:
     rooms = two_rooms() if home is TWO_ROOMS else None
     return PlanningContext(
         home.map, home.station, ROBOT, MissionConfig(), DockingConfig(), rooms, zones
@@ -31,13 +31,13 @@ def wall(x: float) -> Zones:
 
 
 def test_the_staging_place_is_in_front_of_the_station() -> None:
-    staging = site().staging
+    staging = context().staging
     assert staging.x == pytest.approx(STATION.x + DockingConfig().staging_distance)
     assert staging.y == pytest.approx(STATION.y)
 
 
 def test_what_zones_keep_from_it_cannot_be_cleaned_nor_reached() -> None:
-    bare, walled = site(), site(zones=wall(1.5))
+    bare, walled = context(), context(zones=wall(1.5))
     column = bare.frame.cell_of(1.5, 1.0)[1]
     assert bare.coverable()[:, column:].any()
     assert not walled.coverable()[:, column:].any()
@@ -48,7 +48,7 @@ def test_what_zones_keep_from_it_cannot_be_cleaned_nor_reached() -> None:
 
 
 def test_a_plan_of_coverage_begins_here_and_is_counted() -> None:
-    home = site()
+    home = context()
     todo = home.coverable()
     plan = home.plan_coverage((1.0, 0.5), todo, [], edges_only=False)
     assert plan.points[0] == pytest.approx((1.0, 0.5))
@@ -62,7 +62,7 @@ def test_a_plan_of_coverage_begins_here_and_is_counted() -> None:
 
 
 def test_a_plan_that_fails_is_counted_too() -> None:
-    home = site()
+    home = context()
     around = [(1.0 + 0.2 * x, 0.5 + 0.2 * y, 0.1) for x in (-1, 0, 1) for y in (-1, 0, 1)]
     with pytest.raises(NoPathError):
         home.plan_coverage((1.0, 0.5), home.coverable(), around, edges_only=False)
@@ -70,7 +70,7 @@ def test_a_plan_that_fails_is_counted_too() -> None:
 
 
 def test_it_squeezes_through_where_paths_keep_away() -> None:
-    home = site()
+    home = context()
     # A fence with a gap that is a little wider than the body and its clearance.
     half = home.reach + 0.007
     away = np.arange(half + 0.05, 1.4, 0.06)
@@ -85,11 +85,11 @@ def test_it_squeezes_through_where_paths_keep_away() -> None:
 
 
 def test_rooms_are_known_by_name_and_by_place() -> None:
-    home = site(TWO_ROOMS)
+    home = context(TWO_ROOMS)
     assert home.room_at(0.5, 0.5) == HALL
     assert home.room_at(3.0, 0.5) == DEN
     assert home.room_at(-5.0, 0.5) == ""
-    assert site().room_at(0.5, 0.5) == ""
+    assert context().room_at(0.5, 0.5) == ""
     den, hall = home.in_room(DEN), home.in_room(HALL)
     assert den.shape == hall.shape == home.frame.shape
     assert not (den & hall).any()
@@ -103,7 +103,7 @@ def test_rooms_are_known_by_name_and_by_place() -> None:
 
 
 def test_a_mask_of_the_map_is_laid_over_the_fine_grid() -> None:
-    home = site()
+    home = context()
     coarse = np.zeros(HOME.map.frame.shape, np.bool_)
     coarse[3, 7] = True
     fine = home.fine(coarse)
@@ -121,10 +121,10 @@ def test_in_a_map_that_grows_paths_keep_farther_away() -> None:
     grows = PlanningContext(
         HOME.map, STATION, ROBOT, MissionConfig(), DockingConfig(), is_growing=True
     )
-    assert (grows.is_growing, site().is_growing) == (True, False)
+    assert (grows.is_growing, context().is_growing) == (True, False)
     table = shapely.box(*TABLE)
     gaps = []
-    for home in (site(), grows):
+    for home in (context(), grows):
         points = home.paths.plan((1.2, 1.25), (2.65, 1.3)).points
         gaps.append(shapely.LineString(points).distance(table) - ROBOT.body.radius)
     assert gaps[0] == pytest.approx(driving.way_clearance, abs=0.03)
@@ -134,6 +134,6 @@ def test_in_a_map_that_grows_paths_keep_farther_away() -> None:
     half = ROBOT.body.radius + 0.036
     away = np.arange(half + 0.05, 1.4, 0.06)
     fence = [(1.2, 1.25 + side, 0.05) for side in (*away.tolist(), *(-away).tolist())]
-    assert len(site().paths.plan(*ends, fence).points)
+    assert len(context().paths.plan(*ends, fence).points)
     with pytest.raises(NoPathError):
         grows.paths.plan(*ends, fence)

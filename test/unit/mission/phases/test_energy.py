@@ -1,4 +1,4 @@
-"""The books of an errand, and when they say that it is time to go home."""
+"""The ledgers of an errand, and when they say that it is time to go home."""
 
 from __future__ import annotations
 
@@ -28,54 +28,54 @@ def no_way_home(senses: Senses) -> float:
 
 
 def driven(metres: float, energy: float, level: float = 0.9) -> EnergyLedger:
-    """A book after so much way, m, and energy, Wh, at such a level."""
-    book = EnergyLedger(CONFIG, senses(level=level + energy / CAPACITY))
+    """A ledger after so much way, m, and energy, Wh, at such a level."""
+    ledger = EnergyLedger(CONFIG, senses(level=level + energy / CAPACITY))
     count = math.ceil(metres / 0.1)
     for step in range(1, count + 1):
         left = energy * (1.0 - step / count)
-        book.note(senses(0.1 * step, metres * step / count, level + left / CAPACITY))
-    return book
+        ledger.note(senses(0.1 * step, metres * step / count, level + left / CAPACITY))
+    return ledger
 
 
 def test_way_energy_and_dirt_are_counted() -> None:
-    book = EnergyLedger(CONFIG, senses(in_bin=5.0))
-    book.note(senses(1.0, 0.2, 0.99, 5.5))
-    book.note(senses(2.0, 0.2, 0.98, 5.5, y=0.1))
-    assert book.distance == pytest.approx(0.3)
-    assert book.energy == pytest.approx(0.02 * CAPACITY)
-    assert book.dirt == pytest.approx(0.5)
+    ledger = EnergyLedger(CONFIG, senses(in_bin=5.0))
+    ledger.note(senses(1.0, 0.2, 0.99, 5.5))
+    ledger.note(senses(2.0, 0.2, 0.98, 5.5, y=0.1))
+    assert ledger.distance == pytest.approx(0.3)
+    assert ledger.energy == pytest.approx(0.02 * CAPACITY)
+    assert ledger.dirt == pytest.approx(0.5)
 
 
 def test_charging_and_an_emptied_bin_take_nothing_away() -> None:
-    book = EnergyLedger(CONFIG, senses(in_bin=5.0, level=0.5))
-    book.note(senses(1.0, level=0.4, in_bin=6.0))
-    book.note(senses(2.0, level=0.9, in_bin=0.0))
-    book.note(senses(3.0, level=0.8, in_bin=0.5))
-    assert book.energy == pytest.approx(0.2 * CAPACITY)
-    assert book.dirt == pytest.approx(1.5)
+    ledger = EnergyLedger(CONFIG, senses(in_bin=5.0, level=0.5))
+    ledger.note(senses(1.0, level=0.4, in_bin=6.0))
+    ledger.note(senses(2.0, level=0.9, in_bin=0.0))
+    ledger.note(senses(3.0, level=0.8, in_bin=0.5))
+    assert ledger.energy == pytest.approx(0.2 * CAPACITY)
+    assert ledger.dirt == pytest.approx(1.5)
 
 
 def test_carried_it_did_not_drive() -> None:
-    book = EnergyLedger(CONFIG, senses())
-    book.note(senses(1.0, 3.0))
-    assert book.distance == 0.0
-    book.note(senses(1.1, 3.1))
-    assert book.distance == pytest.approx(0.1)
+    ledger = EnergyLedger(CONFIG, senses())
+    ledger.note(senses(1.0, 3.0))
+    assert ledger.distance == 0.0
+    ledger.note(senses(1.1, 3.1))
+    assert ledger.distance == pytest.approx(0.1)
 
 
 def test_a_way_that_is_told_counts_whatever_the_straight_one_is() -> None:
-    book = EnergyLedger(CONFIG, senses())
-    book.note(senses(3.0, 0.8), 0.9)
-    book.note(senses(6.0, 0.8), 0.5)
-    assert book.distance == pytest.approx(1.4)
+    ledger = EnergyLedger(CONFIG, senses())
+    ledger.note(senses(3.0, 0.8), 0.9)
+    ledger.note(senses(6.0, 0.8), 0.5)
+    assert ledger.distance == pytest.approx(1.4)
 
 
 def test_begun_again_it_counts_from_there() -> None:
-    book = driven(20.0, 1.0)
-    book.begin(senses(100.0, 20.0, 0.9, 7.0))
-    assert (book.distance, book.energy, book.dirt) == (0.0, 0.0, 0.0)
-    book.note(senses(100.1, 20.1, 0.9, 7.25))
-    assert (book.distance, book.dirt) == (pytest.approx(0.1), pytest.approx(0.25))
+    ledger = driven(20.0, 1.0)
+    ledger.begin(senses(100.0, 20.0, 0.9, 7.0))
+    assert (ledger.distance, ledger.energy, ledger.dirt) == (0.0, 0.0, 0.0)
+    ledger.note(senses(100.1, 20.1, 0.9, 7.25))
+    assert (ledger.distance, ledger.dirt) == (pytest.approx(0.1), pytest.approx(0.25))
 
 
 def test_what_a_metre_takes_is_learned() -> None:
@@ -87,21 +87,21 @@ def test_what_a_metre_takes_is_learned() -> None:
 
 @given(st.floats(0.02, 1.0), st.floats(0.0, 200.0))
 def test_it_goes_home_when_what_is_left_just_suffices(level: float, way: float) -> None:
-    book = EnergyLedger(CONFIG, senses(level=level))
+    ledger = EnergyLedger(CONFIG, senses(level=level))
     spare = (level - CONFIG.reserve) * CAPACITY
     need = CONFIG.margin * CONFIG.per_metre * way
-    must = book.must_go_home(senses(10.0, level=level), lambda senses: way)
+    must = ledger.must_go_home(senses(10.0, level=level), lambda senses: way)
     if abs(spare - need) > 1e-6:
         assert must == (spare < need)
 
 
 def test_with_much_left_the_way_home_is_not_planned() -> None:
-    book = EnergyLedger(CONFIG, senses())
-    assert not book.must_go_home(senses(10.0, level=0.8), no_way_home)
+    ledger = EnergyLedger(CONFIG, senses())
+    assert not ledger.must_go_home(senses(10.0, level=0.8), no_way_home)
 
 
 def test_it_looks_every_few_seconds_whatever_the_clock_does() -> None:
-    book = EnergyLedger(CONFIG, senses(level=0.1))
+    ledger = EnergyLedger(CONFIG, senses(level=0.1))
     low = 0.081
 
     def asks(now: float) -> bool:
@@ -111,7 +111,7 @@ def test_it_looks_every_few_seconds_whatever_the_clock_does() -> None:
             asked.append(senses.now)
             return 0.0
 
-        assert not book.must_go_home(senses(now, level=low), way_home)
+        assert not ledger.must_go_home(senses(now, level=low), way_home)
         return bool(asked)
 
     assert [asks(now) for now in (1.0, 4.9, 5.1, 6.0, 10.0, 10.2)] == [
@@ -122,18 +122,18 @@ def test_it_looks_every_few_seconds_whatever_the_clock_does() -> None:
 
 
 def test_empty_is_when_the_drive_would_stop() -> None:
-    book = EnergyLedger(CONFIG, senses())
-    assert book.is_empty(senses(level=0.004))
-    assert not book.is_empty(senses(level=0.006))
+    ledger = EnergyLedger(CONFIG, senses())
+    assert ledger.is_empty(senses(level=0.004))
+    assert not ledger.is_empty(senses(level=0.006))
 
 
 def test_it_is_charged_for_what_is_left_or_nearly_full() -> None:
-    book = EnergyLedger(CONFIG, senses())
-    assert book.is_charged(senses(level=CONFIG.full_enough), 1e9)
-    assert not book.is_charged(senses(level=CONFIG.full_enough - 0.01), 1e9)
+    ledger = EnergyLedger(CONFIG, senses())
+    assert ledger.is_charged(senses(level=CONFIG.full_enough), 1e9)
+    assert not ledger.is_charged(senses(level=CONFIG.full_enough - 0.01), 1e9)
     needed = 5.0
     enough = (CONFIG.margin * needed) / CAPACITY + 2.0 * CONFIG.reserve
-    assert book.is_charged(senses(level=enough + 0.01), needed)
-    assert not book.is_charged(senses(level=enough - 0.01), needed)
+    assert ledger.is_charged(senses(level=enough + 0.01), needed)
+    assert not ledger.is_charged(senses(level=enough - 0.01), needed)
     # Charged, it does not have to go home again at once.
-    assert not book.must_go_home(senses(10.0, level=enough), lambda senses: 30.0)
+    assert not ledger.must_go_home(senses(10.0, level=enough), lambda senses: 30.0)

@@ -38,8 +38,8 @@ class Rig:
         things = ThingLayer(SurfaceField.of(HOME.map))
         obstacles = Obstacles(things, ROBOT.walk, ROBOT.body, CONFIG.driving)
         self.drives = Drives(SITE, ROBOT, CONFIG.driving, obstacles)
-        book = EnergyLedger(CONFIG.energy, senses)
-        self.monitor = Monitor(ROBOT.walk, self.drives, book, senses)
+        ledger = EnergyLedger(CONFIG.energy, senses)
+        self.monitor = Monitor(ROBOT.walk, self.drives, ledger, senses)
 
     def failure(self, senses: Senses, state: MissionState = CLEANING) -> Failure | None:
         return self.monitor.failure(state, senses, (HERE.x, HERE.y))

@@ -40,10 +40,10 @@ class Rig:
     def __init__(self) -> None:
         self.obstacles = Standing(FENCE)
         self.drives = Drives(SITE, ROBOT, CONFIG.driving, self.obstacles)
-        self.patience = RetryPolicy()
+        self.retries = RetryPolicy()
 
     def go_home(self, senses: Senses = IN_THE_DEN) -> PhaseStep:
-        return go_home(self.drives, self.patience, senses, SPEED)
+        return go_home(self.drives, self.retries, senses, SPEED)
 
     @property
     def makes_room(self) -> bool:
@@ -121,7 +121,7 @@ def test_with_nothing_left_the_clean_is_finished_after_another_look() -> None:
     coverage.count_again()
     # The den was found to be out of reach: perhaps its door is open by now.
     job.cleaning.cut_off()
-    phase = CleanPhase(job, rig.drives, rig.patience, CONFIG.exploring)
+    phase = CleanPhase(job, rig.drives, rig.retries, CONFIG.exploring)
     steps = [phase.tick(here, SPEED)]
     while steps[-1] == PhaseStep():
         steps.append(phase.tick(here, SPEED))
