@@ -7,7 +7,7 @@ from roomba.geometry import Pose
 from roomba.mission.inputs.senses import Battery, StationBeams
 from roomba.perception.matching.scan_view import LidarModel
 from roomba.robot.command import Command
-from roomba.robot.readings import Cliff, Readings, Scan
+from roomba.robot.readings import CliffReading, Readings, ScanReading
 from roomba.world.engine.state.arrays import Infrared
 from roomba.world.home.home import Home
 from roomba.world.simulator import Observation, Simulator
@@ -45,9 +45,9 @@ class SimulatedBody:
             scan = self.newest_scan()
         return readings_of(seen, scan)
 
-    def newest_scan(self) -> Scan:
+    def newest_scan(self) -> ScanReading:
         """Return the newest scan, as if it were taken now."""
-        return Scan(self.seen.time, self.simulator.ranges, self.lidar)
+        return ScanReading(self.seen.time, self.simulator.ranges, self.lidar)
 
     def act(self, command: Command) -> None:
         """Do what is wanted for a tick."""
@@ -66,7 +66,7 @@ class SimulatedBody:
         )
 
 
-def readings_of(seen: Observation, scan: Scan | None) -> Readings:
+def readings_of(seen: Observation, scan: ScanReading | None) -> Readings:
     """Return what the sensors tell, without the truth."""
     cliff, wheels, infrared, battery = seen.cliff, seen.wheels, seen.infrared, seen.battery
     return Readings(
@@ -77,7 +77,7 @@ def readings_of(seen: Observation, scan: Scan | None) -> Readings:
         scan,
         seen.bumper.left,
         seen.bumper.right,
-        Cliff(cliff.left, cliff.front_left, cliff.front_right, cliff.right),
+        CliffReading(cliff.left, cliff.front_left, cliff.front_right, cliff.right),
         wheels.dropped_left,
         wheels.dropped_right,
         StationBeams(

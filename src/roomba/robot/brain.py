@@ -33,7 +33,7 @@ from roomba.perception.things.layer import ThingLayer
 from roomba.robot.command import Command
 from roomba.robot.growing_map import GrowingMap
 from roomba.robot.place import PlaceKeeper
-from roomba.robot.readings import Readings, Scan, senses_of
+from roomba.robot.readings import Readings, ScanReading, senses_of
 from roomba.robot.safe_drive import SafeDrive
 
 _BESIDE_SURFACES: Final = 0.3
@@ -115,7 +115,7 @@ class Brain:
         twist = self._drive.command(self.readings, self._looking_around(step, senses))
         return Command(twist, self._fan())
 
-    def look(self, scan: Scan | None) -> None:
+    def look(self, scan: ScanReading | None) -> None:
         """Look in a scan, if there is one, for things that the map does not show."""
         if scan is None or self._things is None:
             return

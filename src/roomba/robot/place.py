@@ -12,7 +12,7 @@ from roomba.configuration.robot import TimingConfig
 from roomba.geometry import Pose
 from roomba.perception.localization.estimate import Estimate
 from roomba.perception.matching.scan_view import LidarModel
-from roomba.robot.readings import Readings, Scan
+from roomba.robot.readings import Readings, ScanReading
 
 
 class Place(Protocol):
@@ -51,7 +51,7 @@ class PlaceKeeper:
         self.apart = least_apart(timing)
         self.seen_at = -math.inf
 
-    def follow(self, readings: Readings) -> Scan | None:
+    def follow(self, readings: Readings) -> ScanReading | None:
         """Go on to where the robot is now; return the scan that was looked at, if there was one."""
         self.place.lift(readings.is_lifted)
         self.place.move(readings.time, readings.odometry, readings.turning)

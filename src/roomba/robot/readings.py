@@ -14,7 +14,7 @@ from roomba.perception.matching.scan_view import LidarModel
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Scan:
+class ScanReading:
     """A scan of a lidar: ``ranges`` is float32 [beams], m, taken at ``stamp``, s."""
 
     stamp: float
@@ -23,7 +23,7 @@ class Scan:
 
 
 @dataclass(frozen=True, slots=True)
-class Cliff:
+class CliffReading:
     """Which of the cliff sensors see no floor."""
 
     left: bool = False
@@ -37,7 +37,7 @@ class Cliff:
         return self.left or self.front_left or self.front_right or self.right
 
 
-_NO_CLIFF = Cliff()
+_NO_CLIFF = CliffReading()
 _FULL = Battery()
 _NO_BEAMS = StationBeams()
 
@@ -55,10 +55,10 @@ class Readings:
     odometry: Pose
     twist: Twist = STANDSTILL
     turning: float | None = None
-    scan: Scan | None = None
+    scan: ScanReading | None = None
     bumper_left: bool = False
     bumper_right: bool = False
-    cliff: Cliff = _NO_CLIFF
+    cliff: CliffReading = _NO_CLIFF
     dropped_left: bool = False
     dropped_right: bool = False
     beams: StationBeams = _NO_BEAMS

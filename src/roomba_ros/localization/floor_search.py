@@ -5,7 +5,12 @@ from __future__ import annotations
 from typing import Final
 
 from roomba.configuration.robot import RobotConfig
-from roomba.perception.floors.recognition import FloorRecognition, FloorRecord, FloorVerdict, Place
+from roomba.perception.floors.recognition import (
+    FloorPlace,
+    FloorRecognition,
+    FloorRecord,
+    FloorVerdict,
+)
 from roomba.storage.map_store import StoredMap
 from roomba_ros.localization.topics import LocalizationTopics
 
@@ -29,7 +34,7 @@ class FloorSearch:
         known = {name: FloorRecord(each.occupancy, each.station) for name, each in floors.items()}
         self._recognition = FloorRecognition(known, config.localization, config.body.radius)
 
-    def tick(self) -> Place | None:
+    def tick(self) -> FloorPlace | None:
         """Look a little further; return the floor, and the place on it, once it is clear."""
         seen, localizer = self._place.seen, self._place.localizer
         if seen is not None and localizer is not None:

@@ -17,7 +17,7 @@ from roomba.perception.localization.estimate import Estimate, Knowledge
 from roomba.perception.matching.scan_view import LidarModel
 from roomba.robot.command import Command
 from roomba.robot.place import PlaceKeeper
-from roomba.robot.readings import Readings, Scan, senses_of
+from roomba.robot.readings import Readings, ScanReading, senses_of
 from roomba.robot.safe_drive import SafeDrive
 from roomba.world.engine.state.arrays import Fault
 
@@ -106,8 +106,8 @@ def test_its_top_speed_may_change() -> None:
     assert drive.command(readings, Twist(0.2, 0.4)) == Twist(0.1, 0.2)
 
 
-def scan_at(stamp: float) -> Scan:
-    return Scan(stamp, np.ones(8, np.float32), LIDAR)
+def scan_at(stamp: float) -> ScanReading:
+    return ScanReading(stamp, np.ones(8, np.float32), LIDAR)
 
 
 @pytest.mark.parametrize(("rate", "looked_at"), [(10.0, 5), (20.0, 5), (5.0, 5), (2.0, 2)])

@@ -54,7 +54,7 @@ class FloorRecord:
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class FloorPlace:
     """Where the robot may be: a floor by name, the pose in its map at the newest scan that counted.
 
     ``evidence`` compares places and floors, by all scans so far; ``fit`` is that of the newest.
@@ -128,15 +128,15 @@ class FloorRecognition:
         return FloorVerdict.KNOWN if likeliest[0] - next_best > needed else FloorVerdict.UNSURE
 
     @property
-    def place(self) -> Place | None:
+    def place(self) -> FloorPlace | None:
         """Where the robot is, when that is known."""
         return self.places[0] if self.verdict is FloorVerdict.KNOWN else None
 
     @property
-    def places(self) -> tuple[Place, ...]:
+    def places(self) -> tuple[FloorPlace, ...]:
         """Where it may be on all floors, likeliest first; none while places are searched for."""
         found = [
-            Place(name, each.frame.compose(self._reckoned), each.evidence, each.fit)
+            FloorPlace(name, each.frame.compose(self._reckoned), each.evidence, each.fit)
             for name, search in self._searches.items()
             for each in search.hypotheses
         ]

@@ -21,7 +21,12 @@ from fixtures.located import (
 
 from roomba.files.shipped import HOMES
 from roomba.geometry import Pose, Twist, wrap_angle
-from roomba.perception.floors.recognition import FloorRecognition, FloorRecord, FloorVerdict, Place
+from roomba.perception.floors.recognition import (
+    FloorPlace,
+    FloorRecognition,
+    FloorRecord,
+    FloorVerdict,
+)
 from roomba.world.home.home import Home
 from roomba.world.layers.layer import load_home
 from roomba.world.simulator import Simulator
@@ -74,7 +79,7 @@ def recognised(
     return recognition
 
 
-def is_at(place: Place | None, floor: str, pose: Pose, turn: float = 0.0) -> bool:
+def is_at(place: FloorPlace | None, floor: str, pose: Pose, turn: float = 0.0) -> bool:
     if place is None or place.floor != floor:
         return False
     off = abs(wrap_angle(place.pose.theta - pose.theta - turn))
