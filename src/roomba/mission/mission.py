@@ -186,6 +186,9 @@ class Mission:
         if self.driver is None:
             # By its station it goes by beams, and a new map would make it late.
             return self.state.phase not in (Phase.UNDOCKING, Phase.DOCKING)
+        if self.state.phase is Phase.RETURNING:
+            # Its way leads over known floor; a path planned anew each time begins with a turn.
+            return False
         return self.exploration is not None and self.exploration.wants_another(occupancy)
 
     def _goes_on_looking(self) -> bool:

@@ -105,9 +105,12 @@ def test_with_a_low_battery_it_goes_home_charges_and_goes_on() -> None:
     mission = robot.mission
     mission.explore(robot.senses())
     until(robot, in_phase(robot, Phase.EXPLORING))
-    until(robot, lambda: robot.mapper.pose.x > 1.2)
     robot.simulator.set_charge(robot.config.energy.reserve + 0.0001)
+    until(robot, in_phase(robot, Phase.RETURNING))
+    began = robot.seen.time
     until(robot, in_phase(robot, Phase.CHARGING))
+    # It turned and drove home at once, whatever the map gained meanwhile.
+    assert robot.seen.time - began < 40.0
     assert robot.seen.battery.is_docked
     assert mission.take_exploration() is None
     robot.simulator.set_charge(robot.config.energy.full_enough)
