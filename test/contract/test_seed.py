@@ -106,6 +106,8 @@ def test_every_topic_has_one_writer(shared_robot: RosGraph) -> None:
     assert sorted(shared.pop("/tf")) == ["/home_sim_node", "/position_pub_node"]
     # Each tells what it drives; only one of them drives at a time.
     assert sorted(shared.pop("/plan")) == ["/mission_node", "/walk_to_point_action_server_node"]
+    # By REP 107 each part tells its own state there.
+    assert sorted(shared.pop("/diagnostics")) == sorted(f"/{node}" for node in LAUNCHED)
     assert shared == {}
 
 
