@@ -74,7 +74,7 @@ def test_apt_is_not_called_and_the_library_has_what_it_imports(checkout: Checkou
 
 def test_the_environment_knows_no_package_of_the_distribution(checkout: Checkout) -> None:
     text = (checkout.folder / ".venv/pyvenv.cfg").read_text(encoding="utf-8")
-    assert "include-system-context-packages = false" in text
+    assert "include-system-site-packages = false" in text
 
 
 def test_it_is_complete_for_the_library_and_not_for_the_robot(checkout: Checkout) -> None:

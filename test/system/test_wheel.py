@@ -136,7 +136,7 @@ def test_the_environment_for_agents_works_and_loads_no_ros(installed: Installati
     done = installed.python(AGENT)
     assert done.returncode == 0, done.stderr
     where, loaded = done.stdout.splitlines()
-    assert "context-packages" in where
+    assert "site-packages" in where
     assert set(loaded.split()) & set(ROS_MODULES) == set()
 
 
