@@ -181,11 +181,11 @@ def test_who_owns_no_clock_goes_by_that_of_another(follower: RosGraph) -> None:
     )
     now = 100.0
     while now < 106.0:
-        # Four ticks at once, and twice as fast as real time.
-        now += 0.2
+        # Two ticks at once, and twice as fast as real time; a command counts for 0.15 s.
+        now += 0.1
         probe.send("/cmd_vel_out", twist(-0.2))
         probe.send("/clock", Clock(rospy.Time.from_sec(now)), receivers=2)
-        time.sleep(0.1)
+        time.sleep(0.05)
     wait_until(lambda: track[-1][0] == pytest.approx(now), 30.0, "it is as far as the clock")
     steady = [row for row in track if row[0] > 102.0]
     (begin, from_x), (end, to_x) = steady[0], steady[-1]

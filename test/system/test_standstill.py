@@ -111,7 +111,7 @@ class Walking(Drive):
         goal = max(ENDS, key=lambda end: math.dist(end, (x, y)))
         self.walker.send(*goal)
         try:
-            self.wait(lambda: self.rest.moves(0.48))
+            self.wait(lambda: self.rest.moves(0.45))
         except AssertionError as error:
             fastest = max(abs(each.linear) for each in self.rest.motions)
             told = f"goal status {self.walker.status}: {self.walker.text!r}"
