@@ -16,6 +16,7 @@ import rosbag
 from fixtures.located import FURNISHED
 from tf2_msgs.msg import TFMessage
 
+from roomba.commands.map.drive.command import main
 from roomba.commands.map.map_error import map_error
 from roomba.commands.map.seen_floor import seen_floor
 from roomba.configuration.robot import RobotConfig
@@ -24,7 +25,6 @@ from roomba.geometry import Pose
 from roomba.grid import FREE
 from roomba.headless.walker import HeadlessRobot
 from roomba.world.simulator import Observation
-from roomba_ros.bags.map_bag import main
 from roomba_ros.convert.common import mount_message, odometry_message, pose_message
 from roomba_ros.convert.sensors import imu_message, scan_message
 
@@ -208,7 +208,7 @@ def test_broken_scans_make_no_map_and_say_why(
     ("words", "status", "said"),
     [
         ("--bag nowhere.bag", 1, "nowhere.bag: no such file; expected a bag"),
-        ("--bag", 2, "expected one argument"),
+        ("--bag", 2, "expected at least one argument"),
         ("--out nowhere/at/all --bag some.bag", 2, "expected a folder, or a new one"),
         ("--bag some.png --plot some.png", 2, "is the file of --bag already"),
         ("--bag some.bag --home flat", 2, "unrecognized arguments: --home flat"),

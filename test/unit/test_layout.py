@@ -30,6 +30,7 @@ TESTED_BY: dict[str, tuple[str, str]] = {
     "roomba/client/protocol": ("unit/client/fake/test_robot.py", "an interface"),
     "roomba/commands/draw_homes": ("unit/world/layers/test_homes.py", COMMAND),
     "roomba/commands/map/": ("unit/commands/map/test_command.py", COMMAND),
+    "roomba/commands/map/drive/": ("unit/commands/map/drive/test_command.py", COMMAND),
     "roomba/commands/pictures/": ("unit/commands/pictures/test_pictures.py", PICTURES),
     "roomba/commands/progress": ("unit/commands/map/test_command.py", COMMAND),
     "roomba/commands/sim/": ("unit/commands/sim/test_command.py", COMMAND),
@@ -75,6 +76,7 @@ TESTED_BY: dict[str, tuple[str, str]] = {
         PART,
     ),
     "roomba/perception/matching/beams": ("unit/perception/matching/test_match_kernels.py", VALUES),
+    "roomba/perception/matching/mounts": ("ros/convert/test_scan.py", "made of messages there"),
     "roomba/perception/slam/follow_kernels": ("unit/perception/slam/test_mapper.py", PART),
     "roomba/perception/slam/mapper_state": (
         "unit/perception/slam/test_mapper_taken_up.py",
@@ -92,6 +94,7 @@ TESTED_BY: dict[str, tuple[str, str]] = {
     ),
     "roomba/perception/things/kernels": ("unit/perception/things/test_layer.py", PART),
     "roomba/plots/": ("unit/plots/test_home.py", "a drawing of a home is made of them"),
+    "roomba/recordings/": ("unit/recordings/test_drive.py", "read with all others as one drive"),
     "roomba/robot/": ("unit/robot/test_parts.py", "the parts of one robot"),
     "roomba/storage/map_bound": ("unit/storage/test_rooms.py", "a base of what it stores"),
     "roomba/ui/errand_progress": ("unit/ui/test_cleaning.py", "shown by the menu for cleaning"),

@@ -21,6 +21,8 @@ _COMMANDS: Final = {
     "doctor": __name__,
 }
 """The module whose ``main`` is the command; each is loaded when it is asked for."""
+_OF_RECORDINGS: Final = {"map": "roomba.commands.map.drive.command"}
+"""The same of a command with ``--bag``."""
 _NEED_ROS: Final = ("run", "control", "camera", "exec", "localize")
 _NEED_CHECKOUT: Final = ("test", "bench")
 _USAGE: Final = """\
@@ -29,7 +31,8 @@ usage: roomba COMMAND ...
   sim [ARGS]       clean a home with the whole robot: --home NAME --seed N, --map FILE.yaml,
                    --homes N, --plot FILE.png, --json FILE (see --help)
   map [ARGS]       explore a home without a map, and tell how good the map becomes: --home NAME
-                   --seed N, --map FILE.yaml, --out FOLDER, --plot FILE.png (see --help)
+                   --seed N, --map FILE.yaml, --out FOLDER, --plot FILE.png; --bag FILE ...: map a
+                   recorded drive (see --help)
   pictures [ARGS]  make the pictures of the documents: [FOLDER] [--only NAME ...]
   doctor [--json]  what is missing, and how to mend it
   help             this text
@@ -38,8 +41,8 @@ The commands run, control, camera, exec and localize need ROS, test and bench th
 it is ./roomba COMMAND.
 """
 _MODULES: Final = (
-    "cv2", "matplotlib", "numba", "numpy", "PIL", "pydantic", "rich", "scipy", "shapely", "typer",
-    "yaml",
+    "cv2", "matplotlib", "numba", "numpy", "PIL", "pydantic", "rich", "rosbags", "scipy", "shapely",
+    "typer", "yaml",
 )  # fmt: skip
 _EXTRAS: Final = {"gymnasium": "gym"}
 
@@ -56,7 +59,9 @@ def program() -> int:
         return _refused(f"{command}: needs the sources; in a checkout: ./roomba {command}")
     if command not in _COMMANDS:
         return _refused(f"expected a command of `roomba help`, got {command!r}")
-    return int(importlib.import_module(_COMMANDS[command]).main(arguments))
+    has_recording = any(word.split("=")[0] == "--bag" for word in arguments)
+    modules = {**_COMMANDS, **(_OF_RECORDINGS if has_recording else {})}
+    return int(importlib.import_module(modules[command]).main(arguments))
 
 
 def main(arguments: list[str] | None = None) -> int:

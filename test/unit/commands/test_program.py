@@ -45,8 +45,16 @@ def test_a_command_that_is_not_here_is_refused_in_one_line(
 def test_arguments_are_handed_to_the_command(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert call(monkeypatch, "map", "--bag", "drive.bag") == 2
-    assert "--bag: expected a Python with ROS" in capsys.readouterr().err
+    assert call(monkeypatch, "map", "--bog") == 2
+    assert "unrecognized arguments: --bog" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("words", [("--bag", "no.bag"), ("--quiet", "--bag=no.bag")])
+def test_a_recorded_drive_is_mapped_without_ros(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], words: tuple[str, ...]
+) -> None:
+    assert call(monkeypatch, "map", *words) == 1
+    assert "no.bag: no such file; expected a bag or a log" in capsys.readouterr().err
 
 
 def test_the_doctor_tells_of_each_module(

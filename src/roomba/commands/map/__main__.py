@@ -1,4 +1,4 @@
-"""``python3 -m roomba.commands.map``: the command without ROS, and so without ``--bag``."""
+"""``python3 -m roomba.commands.map``: the command without ``--bag``."""
 
 import sys
 

@@ -62,6 +62,11 @@ class BlindMap:
         """Where it takes the robot to be, map frame."""
         return self._start.compose(self._reckoning.pose)
 
+    def at(self, stamp: float) -> Pose:
+        """Return where it takes the robot to have been at a time, s, map frame."""
+        reckoned = self._reckoning.at(stamp)
+        return self.pose if reckoned is None else self._start.compose(reckoned)
+
     def occupancy(self) -> OccupancyMap:
         """Return the map as it is now; raises ValueError before the first scan."""
         return self._sheet.occupancy(self._config.occupied_share, self._config.occupied_beams)

@@ -24,7 +24,7 @@ _SHOWN: Final = 0.25
 
 def main(arguments: list[str] | None = None) -> int:
     """Do what a command line asks for; returns the exit status."""
-    return guarded(lambda: _explore(options_of(_without_ros(arguments))), USAGE)
+    return guarded(lambda: _explore(options_of(_without_bag(arguments))), USAGE)
 
 
 def guarded(work: Callable[[], int], refused: int = ENDED_OTHERWISE) -> int:
@@ -48,11 +48,13 @@ def guarded(work: Callable[[], int], refused: int = ENDED_OTHERWISE) -> int:
         return _complain("stopped on the way", INTERRUPTED)
 
 
-def _without_ros(arguments: list[str] | None) -> list[str] | None:
-    """Refuse what needs ROS; raises UsageError."""
+def _without_bag(arguments: list[str] | None) -> list[str] | None:
+    """Refuse a recording, which has a command of its own; raises UsageError."""
     words = sys.argv[1:] if arguments is None else arguments
     if any(word == "--bag" or word.startswith("--bag=") for word in words):
-        raise UsageError(f"--bag: expected a Python with ROS, got none; call {PROGRAM} --bag")
+        raise UsageError(
+            f"--bag: expected a home to explore, got a recording; call {PROGRAM} --bag"
+        )
     return arguments
 
 

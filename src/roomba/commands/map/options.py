@@ -118,7 +118,7 @@ def _parser() -> Parser:
     parser = Parser(
         "Let a robot without a map explore a home, without ROS, as fast as it goes, and tell how "
         "far its map is off the truth.",
-        "A recorded drive is mapped with --bag FILE.bag: see ./roomba map --bag --help. Exit "
+        "A recorded drive is mapped with --bag FILE: see ./roomba map --bag --help. Exit "
         "status: 0 all was seen and it docked, 1 ended otherwise, 2 wrong usage. Lengths in m, "
         "angles in rad, map frame.",
     )

@@ -218,6 +218,16 @@ class Mapper:
         return Estimate(self.pose, _UNSURE, Knowledge.ROUGH, agreement, _NO_MATCH)
 
     @property
+    def range_noise(self) -> float:
+        """Standard deviation of the lidar's ranges, m, as measured so far."""
+        return self._noise.deviation
+
+    @property
+    def latency(self) -> float:
+        """How late scans are against odometry, s, as learned so far."""
+        return self._latency.seconds
+
+    @property
     def map_to_odometry(self) -> Pose:
         """Where the frame of the wheels' odometry lies in the map."""
         return self.pose.compose(self._reckoning.odometry.inverse())

@@ -144,8 +144,8 @@ def test_quiet_is_quiet(capsys: pytest.CaptureFixture[str]) -> None:
     ("words", "said"),
     [
         ("--nonsense", "unrecognized arguments"),
-        ("--bag a.bag", "--bag: expected a Python with ROS"),
-        ("--bag=a.bag", "--bag: expected a Python with ROS"),
+        ("--bag a.bag", "--bag: expected a home to explore"),
+        ("--bag=a.bag", "--bag: expected a home to explore"),
     ],
 )
 def test_wrong_usage_is_told_in_a_line(

@@ -72,4 +72,4 @@ def test_help_tells_of_bags(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit) as ended:
         options_of(["--help"])
     assert ended.value.code == 0
-    assert "--bag FILE.bag" in " ".join(capsys.readouterr().out.split())
+    assert "--bag FILE:" in " ".join(capsys.readouterr().out.split())

@@ -11,12 +11,12 @@ from fixtures.located import LIDAR, steps
 from fixtures.mapped import AROUND, CIRCLE, START, Floats, Mapped
 from fixtures.worlds import DT
 
-from roomba.commands.map.drive_log import DriveLog, write_trajectory
+from roomba.commands.map.drive.trajectory import Trajectory, write_trajectory
 
 
-def logged(seconds: float) -> tuple[DriveLog, Mapped, Floats]:
+def logged(seconds: float) -> tuple[Trajectory, Mapped, Floats]:
     """Return the log of a drive, the robot, and rows of t, x, y, theta of its true poses."""
-    robot, log, truth, scans = Mapped(seed=1), DriveLog(), [], 0
+    robot, log, truth, scans = Mapped(seed=1), Trajectory(), [], 0
     for _ in steps(seconds):
         seen = robot.world.step(CIRCLE, DT)
         robot.mapper.move(seen.time, seen.odometry, seen.angular_velocity)
@@ -39,7 +39,7 @@ def test_both_ways_are_told_for_each_scan() -> None:
 
 
 def test_before_the_first_keyframe_nothing_is_told() -> None:
-    log, robot = DriveLog(), Mapped()
+    log, robot = Trajectory(), Mapped()
     log.add(0.0, robot.mapper)
     assert log.online.shape == log.at_the_end(robot.mapper).shape == (0, 4)
     with pytest.raises(ValueError, match="a keyframe or more"):

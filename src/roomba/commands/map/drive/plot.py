@@ -7,6 +7,7 @@ from typing import Final
 
 from matplotlib.figure import Figure
 
+from roomba.commands.map.drive.mapped import MappedDrive
 from roomba.commands.map.plot import (
     area_of_maps,
     draw_map,
@@ -16,19 +17,18 @@ from roomba.commands.map.plot import (
     write_picture,
 )
 from roomba.plots.style import drawn, empty_figure
-from roomba_ros.bags.map_bag_report import BagMap
 
 _WIDTH: Final = 1200
 _REST: Final = 130
 
 
-def write_plot(path: Path, done: BagMap) -> None:
+def write_plot(path: Path, done: MappedDrive) -> None:
     """Draw a drive into a PNG file; raises OSError."""
     write_picture(path, _picture(done))
 
 
 @drawn
-def _picture(done: BagMap) -> Figure:
+def _picture(done: MappedDrive) -> Figure:
     blind = done.replay.blind.occupancy()
     area = area_of_maps([done.occupancy, blind])
     figure = empty_figure(_WIDTH, height_for(area, 0.46 * _WIDTH) + _REST)
@@ -38,12 +38,12 @@ def _picture(done: BagMap) -> Figure:
     draw_station(ours, done.begin)
     ours.set_title("its map, the way, and where it began")
     draw_map(theirs, blind)
-    draw_way(theirs, done.replay.poses[:, 4:6])
+    draw_way(theirs, done.replay.by_odometry[:, 1:3])
     theirs.set_title("by odometry alone")
     for axes in (ours, theirs):
         axes.set(xlim=(area[0], area[2]), ylim=(area[1], area[3]))
     figure.suptitle(
-        f"{Path(done.bag).name}: {done.replay.elapsed:.0f} s, {done.replay.way:.0f} m",
+        f"{done.name}: {done.replay.elapsed:.0f} s, {done.replay.way:.0f} m",
         fontsize=12.5,
     )
     return figure

@@ -14,7 +14,7 @@ from roomba.perception.slam.mapper import Mapper
 Floats = NDArray[np.float64]
 
 
-class DriveLog:
+class Trajectory:
     """Keeps for each scan its place beside the newest keyframe, which may move afterwards."""
 
     def __init__(self) -> None:

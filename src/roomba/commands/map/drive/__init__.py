@@ -1,0 +1,1 @@
+"""``./roomba map --bag``: maps of recorded drives."""

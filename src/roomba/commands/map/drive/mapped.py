@@ -1,0 +1,117 @@
+"""A recorded drive, mapped: what went into the map, and what came of it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.commands.map.drive.replay import MapReplay
+from roomba.commands.progress import Show
+from roomba.configuration.mapping import load_mapping_config
+from roomba.configuration.robot import load_robot_config
+from roomba.files.shipped import CONFIGURATION
+from roomba.geometry import Pose
+from roomba.grid import OccupancyMap
+from roomba.recordings.choice import Wanted
+from roomba.recordings.drive import LoggedDrive
+from roomba.recordings.readings import Kind, LogError, TruePose
+from roomba.recordings.stamps import StampCounts
+
+Floats = NDArray[np.float64]
+
+_SHOWN: Final = 64
+"""Readings between two updates of the progress."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class MappedDrive:
+    """A map that was made of logs, and the replay that made it.
+
+    ``true`` is float64 [n, 3] of t (s), x, y (m), empty where unknown; ``begin`` where the drive
+    began on the map; ``stamps`` what was wrong with the times of how many messages;
+    ``refused_scans`` of how many scans why they were not used.
+    """
+
+    logs: tuple[Path, ...]
+    occupancy: OccupancyMap
+    replay: MapReplay
+    true: Floats
+    begin: Pose
+    stamps: StampCounts
+    refused_scans: dict[str, int]
+    notes: tuple[str, ...]
+
+    @property
+    def trajectory(self) -> Floats:
+        """Rows of t (s), x, y (m), theta (rad) at each scan, as known at the end."""
+        return self.replay.trajectory.at_the_end(self.replay.mapper)
+
+    @property
+    def online(self) -> Floats:
+        """The same, as known when it drove there."""
+        return self.replay.trajectory.online
+
+    @property
+    def name(self) -> str:
+        """The names of the logs."""
+        return " + ".join(path.name for path in self.logs)
+
+
+def mapped_drive(logs: Sequence[Path], wanted: Wanted, show: Show) -> MappedDrive:
+    """Make the map of a drive, and ``show`` how far it is.
+
+    Raises LogError for logs that cannot be read, or that show too little.
+    """
+    with LoggedDrive(logs, wanted) as drive:
+        start = _first_truth(drive)
+        replay, true = _replayed(drive, start or Pose(), show)
+        notes = (*drive.notes, *replay.notes)
+        if not replay.scans:
+            reasons = "; ".join(notes) or "it has none beside odometry"
+            raise LogError(f"{_names(logs)}: no scan could be used: {reasons}")
+        if not replay.mapper.version:
+            raise LogError(
+                f"{_names(logs)}: expected scans that show walls, got {replay.scans} with hardly "
+                "anything in sight; look at them, or record near walls"
+            )
+        show(1.0, "finishing the map")
+        occupancy = replay.finish()
+        begin = Pose(*replay.mapper.trajectory[0].tolist())
+        refused = {**drive.refused_scans, **replay.left_out}
+        return MappedDrive(
+            tuple(logs), occupancy, replay, true, begin, drive.counts, refused, notes
+        )
+
+
+def _replayed(drive: LoggedDrive, start: Pose, show: Show) -> tuple[MapReplay, Floats]:
+    """Return the replay of a drive from a start, map frame, and its true poses, [n, 3]."""
+    config = load_robot_config(CONFIGURATION / "robot.yaml")
+    mapping = load_mapping_config(CONFIGURATION / "mapping.yaml")
+    replay = MapReplay(config, mapping, start)
+    true = []
+    for number, (stamp, value) in enumerate(drive.readings()):
+        if isinstance(value, TruePose):
+            true.append((stamp, value.pose.x, value.pose.y))
+        else:
+            replay.hear(stamp, value)
+        if number % _SHOWN == 0:
+            show(number / len(drive), f"{replay.elapsed:.0f} s, {replay.scans} scans")
+    replay.end()
+    return replay, np.array(true).reshape(-1, 3)
+
+
+def _first_truth(drive: LoggedDrive) -> Pose | None:
+    """Return where the drive truly began, so that the map lies as the true one does."""
+    if all(channel.kind is not Kind.TRUTH for channel in drive.chosen.channels):
+        return None
+    values = (reading.value for reading in drive.readings())
+    return next((value.pose for value in values if isinstance(value, TruePose)), None)
+
+
+def _names(logs: Sequence[Path]) -> str:
+    return ", ".join(map(str, logs))

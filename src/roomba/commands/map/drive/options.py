@@ -1,0 +1,108 @@
+"""The command line of a recorded drive, parsed before anything heavy is loaded."""
+
+from __future__ import annotations
+
+import argparse
+import math
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+from roomba.commands.map.options import Output, Parser, output_of
+from roomba.commands.sim.trial import UsageError
+from roomba.geometry import Pose
+
+_MOUNT: Final = 3
+"""Numbers of --laser."""
+
+
+@dataclass(frozen=True, slots=True)
+class DriveOptions:
+    """Logs that are one drive, what is read of them, and what is told."""
+
+    logs: tuple[Path, ...]
+    scan: str | None
+    odometry: str | None
+    gyro: str | None
+    laser: Pose | None
+    trajectory: Path | None
+    online: Path | None
+    output: Output
+
+
+def options_of(arguments: list[str] | None) -> DriveOptions:
+    """Return what a command line asks for; raises UsageError, and SystemExit for ``--help``."""
+    given = _parser().parse_args(arguments)
+    output = output_of(given, [("--bag", path) for path in given.bag])
+    for option, path in (("--trajectory", given.trajectory), ("--online", given.online)):
+        if path is not None and not path.absolute().parent.is_dir():
+            raise UsageError(f"{option}: expected a file in a folder that is there, got {path}")
+    return DriveOptions(
+        tuple(given.bag),
+        given.scan,
+        given.odom,
+        given.imu,
+        given.laser,
+        given.trajectory,
+        given.online,
+        output,
+    )
+
+
+def _parser() -> Parser:
+    parser = Parser(
+        "Make a map of a recorded drive of any robot with a planar lidar and odometry: bags of "
+        "ROS 1 (.bag), bags of ROS 2 (a folder with metadata.yaml, .db3, .mcap), CARMEN logs "
+        "(.log, .clf); each also packed by gzip or xz. Needs no ROS.",
+        "A home without a recording: see ./roomba map --help. Lengths in m, angles in rad.",
+    )
+    what = parser.add_argument_group("what is read")
+    what.add_argument(
+        "--bag",
+        type=Path,
+        nargs="+",
+        action="extend",
+        required=True,
+        metavar="FILE",
+        help="one or more that are one drive",
+    )
+    for name, meaning in (
+        ("scan", "the lidar's scans; a topic of a bag, FLASER or the like of a log"),
+        ("odom", "the odometry; /tf if it is only told there"),
+        ("imu", "the gyro; without it the wheels' turns count alone"),
+    ):
+        what.add_argument(
+            f"--{name}",
+            f"--{name}-topic",
+            metavar="NAME",
+            help=f"{meaning} (default: /{name}, or what there is)",
+        )
+    what.add_argument(
+        "--laser",
+        type=_mount,
+        metavar="X,Y,YAW",
+        help="where the lidar is on the robot (default: as the transforms or the log tell)",
+    )
+    parser.add_output()
+    parser.add_argument(
+        "--trajectory",
+        type=Path,
+        metavar="FILE",
+        help="write where the robot was at each scan, as known at the end: lines 't x y theta'",
+    )
+    parser.add_argument(
+        "--online", type=Path, metavar="FILE", help="the same, as known when it drove there"
+    )
+    return parser
+
+
+def _mount(text: str) -> Pose:
+    try:
+        numbers = [float(word) for word in text.split(",")]
+    except ValueError:
+        numbers = []
+    if len(numbers) != _MOUNT or not all(map(math.isfinite, numbers)):
+        raise argparse.ArgumentTypeError(
+            f"expected three finite numbers X,Y,YAW (m, m, rad), got {text!r}"
+        )
+    return Pose(*numbers)

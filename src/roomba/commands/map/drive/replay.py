@@ -1,0 +1,132 @@
+"""Replay of a recorded drive through the mapper."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections import Counter
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.commands.map.blind_map import BlindMap
+from roomba.commands.map.drive.trajectory import Trajectory
+from roomba.configuration.mapping import MappingConfig
+from roomba.configuration.robot import RobotConfig
+from roomba.geometry import Pose
+from roomba.grid import OccupancyMap
+from roomba.perception.localization.estimate import Knowledge
+from roomba.perception.matching.scan_view import LidarModel
+from roomba.perception.slam.mapper import Mapper
+from roomba.recordings.readings import LidarScan, Odometry, Turning, Value
+
+_LATEST: Final = 1.0
+"""s; a scan that odometry is so far behind is of a time that it knows nothing of."""
+_SAME_TIME: Final = 0.06
+"""s; a gyro's sample so near to an odometry's time is of the same motion."""
+
+
+class MapReplay:
+    """Feeds a mapper, and a map by odometry alone; ``notes`` says what was left out, and why."""
+
+    def __init__(self, config: RobotConfig, mapping: MappingConfig, start: Pose) -> None:
+        """Begin at ``start``, map frame."""
+        self.mapper = Mapper(mapping, config.localization, config.gyro, start)
+        self.blind = BlindMap(mapping, config.localization, config.gyro, start)
+        self.trajectory = Trajectory()
+        self.scans = 0
+        """Scans that were taken in."""
+        self.unconfirmed = 0
+        """Of these, the ones that fitted nothing of what was seen before."""
+        self.way = self.elapsed = 0.0
+        self.seconds = 0.0
+        """s of one core that the mapper took."""
+        self.left_out: Counter[str] = Counter()
+        self.lidar: LidarModel | None = None
+        """That of the newest scan."""
+        self._blind_rows: list[tuple[float, float, float, float]] = []
+        self._stamp = -math.inf
+        self._at: Pose | None = None
+        self._turning: tuple[float, float] | None = None
+        self._scan: tuple[float, LidarScan] | None = None
+
+    @property
+    def by_odometry(self) -> NDArray[np.float64]:
+        """Rows of t (s), x, y (m), theta (rad) at each scan by odometry alone."""
+        return np.array(self._blind_rows).reshape(-1, 4)
+
+    @property
+    def notes(self) -> list[str]:
+        """What was left out."""
+        return [f"{count} {what}: left out" for what, count in self.left_out.items()]
+
+    def hear(self, stamp: float, value: Value) -> None:
+        """Take in a reading, in the order of time; true poses say nothing."""
+        if isinstance(value, Odometry):
+            self._hear_odometry(stamp, value.pose)
+        elif isinstance(value, Turning):
+            self._turning = (stamp, value.speed)
+        elif isinstance(value, LidarScan):
+            self._hear_scan(stamp, value)
+
+    def end(self) -> None:
+        """Take in what waits for more odometry: there is none."""
+        self._see()
+
+    def finish(self) -> OccupancyMap:
+        """Return the finished map; raises ValueError if nothing was seen."""
+        began = time.process_time()
+        occupancy = self.mapper.finish()
+        self.seconds += time.process_time() - began
+        return occupancy
+
+    def _hear_odometry(self, stamp: float, pose: Pose) -> None:
+        if math.isfinite(self._stamp):
+            self.elapsed += max(0.0, stamp - self._stamp)
+        self._stamp = stamp
+        turning = self._turning_at(stamp)
+        began = time.process_time()
+        self.mapper.move(stamp, pose, turning)
+        self.seconds += time.process_time() - began
+        self.blind.move(stamp, pose, turning)
+        here = self.blind.pose
+        if self._at is not None:
+            self.way += here.distance_to(self._at.x, self._at.y)
+        self._at = here
+        if self._scan is not None and self._scan[0] <= stamp:
+            self._see()
+
+    def _turning_at(self, stamp: float) -> float | None:
+        """Return the gyro's newest sample, rad/s, if it is of about that time."""
+        if self._turning is None or abs(self._turning[0] - stamp) > _SAME_TIME:
+            return None
+        return self._turning[1]
+
+    def _hear_scan(self, stamp: float, scan: LidarScan) -> None:
+        """Keep a scan until odometry has reached its time, or the next scan comes."""
+        if not math.isfinite(self._stamp):
+            self.left_out["scans before the first odometry"] += 1
+            return
+        self._see()
+        self._scan = (stamp, scan)
+        if stamp <= self._stamp:
+            self._see()
+
+    def _see(self) -> None:
+        if self._scan is None:
+            return
+        (stamp, scan), self._scan = self._scan, None
+        if stamp > self._stamp + _LATEST:
+            self.left_out["scans of times without odometry"] += 1
+            return
+        began = time.process_time()
+        self.mapper.see(stamp, scan.ranges, scan.lidar)
+        self.seconds += time.process_time() - began
+        self.blind.see(stamp, scan.ranges, scan.lidar)
+        self.trajectory.add(stamp, self.mapper)
+        self.scans += 1
+        self.lidar = scan.lidar
+        self.unconfirmed += self.mapper.estimate.knowledge is not Knowledge.KNOWN
+        here = self.blind.at(stamp)
+        self._blind_rows.append((stamp, here.x, here.y, here.theta))

@@ -1,0 +1,107 @@
+"""Where sensors are on a robot, from transforms between frames that do not move."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.geometry import Pose
+
+_DEEPEST: Final = 50
+"""The most frames between a sensor and the root of its tree; more mean a cycle."""
+_SHORTEST_ROTATION: Final = 1e-6
+"""Length of a quaternion; a shorter one is no rotation."""
+
+
+class FrameTransform(NamedTuple):
+    """Where the frame ``child`` is in ``parent``: ``matrix`` is float64 [4, 4], m."""
+
+    parent: str
+    child: str
+    matrix: NDArray[np.float64]
+
+    @staticmethod
+    def of(
+        parent: str, child: str, shift: Sequence[float], turn: Sequence[float]
+    ) -> FrameTransform:
+        """Return one of a translation x, y, z, m, and a quaternion x, y, z, w.
+
+        Raises ValueError for numbers that are not finite, or a rotation of zeros.
+        """
+        parent, child = frame_name(parent), frame_name(child)
+        if not all(map(math.isfinite, (*shift, *turn))):
+            told = ", ".join(f"{number:g}" for number in (*turn, *shift))
+            raise ValueError(f"expected a transform of {child!r} of finite numbers, got ({told})")
+        length = math.sqrt(sum(number * number for number in turn))
+        if length < _SHORTEST_ROTATION:
+            raise ValueError(f"expected a rotation of {child!r}, got a quaternion of zeros")
+        x, y, z, w = (number / length for number in turn)
+        matrix = np.eye(4)
+        matrix[:3, :3] = (
+            (1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)),
+            (2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)),
+            (2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)),
+        )
+        matrix[:3, 3] = shift
+        return FrameTransform(parent, child, matrix)
+
+    @property
+    def pose(self) -> Pose:
+        """The planar part."""
+        heading = math.atan2(self.matrix[1, 0], self.matrix[0, 0])
+        return Pose(float(self.matrix[0, 3]), float(self.matrix[1, 3]), heading)
+
+
+@dataclass(frozen=True, slots=True)
+class Mount:
+    """Where a sensor is on the robot, as seen from above, and whether it hangs upside down."""
+
+    pose: Pose = field(default_factory=Pose)
+    is_upside_down: bool = False
+
+
+class Mounts:
+    """A tree of frames that do not move against each other."""
+
+    def __init__(self) -> None:
+        """Know nothing yet."""
+        self._parents: dict[str, tuple[str, NDArray[np.float64]]] = {}
+
+    def add(self, transforms: Iterable[FrameTransform]) -> None:
+        """Learn where frames are in others."""
+        for transform in transforms:
+            self._parents[transform.child] = (transform.parent, transform.matrix)
+
+    def knows(self, frame: str) -> bool:
+        """Whether it is known where a frame is."""
+        return frame_name(frame) in self._parents
+
+    def mount(self, base: str, frame: str) -> Mount | None:
+        """Return where ``frame`` is on the robot, whose frame is ``base``; None if not known."""
+        root, place = self._from_root(frame_name(frame))
+        base_root, base_place = self._from_root(frame_name(base))
+        if root != base_root:
+            return None
+        matrix = np.linalg.inv(base_place) @ place
+        upside_down = bool(matrix[2, 2] < 0.0)
+        return Mount(FrameTransform(base, frame, matrix).pose, upside_down)
+
+    def _from_root(self, frame: str) -> tuple[str, NDArray[np.float64]]:
+        """Return the root of a frame's tree, and where the frame is in it, float64 [4, 4]."""
+        place = np.eye(4)
+        for _ in range(_DEEPEST):
+            if frame not in self._parents:
+                break
+            frame, step = self._parents[frame]
+            place = step @ place
+        return frame, place
+
+
+def frame_name(frame: str) -> str:
+    """Return a frame's name without the slash that tf once began names with."""
+    return frame.lstrip("/")

@@ -1,0 +1,121 @@
+"""Messages of bags as values.
+
+The messages are those of rosbags, which have the fields of ROS 1 and 2; each is refused for what a
+node of this robot would refuse it for.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from typing import Any, Final
+
+import numpy as np
+
+from roomba.geometry import Pose
+from roomba.perception.matching.mounts import FrameTransform
+from roomba.perception.matching.scan_view import LidarModel
+from roomba.recordings.log import MountOf
+from roomba.recordings.readings import (
+    UNUSABLE_SCANS,
+    Kind,
+    LidarScan,
+    Odometry,
+    Refused,
+    TruePose,
+    Turning,
+    Value,
+)
+
+
+class LidarBook:
+    """The lidars whose scans came; one is made anew only when it changed."""
+
+    def __init__(self, mount_of: MountOf) -> None:
+        """``mount_of`` tells where the frame of a sensor is on the robot."""
+        self.mount_of = mount_of
+        self._known: dict[tuple[object, ...], LidarModel] = {}
+
+    def lidar_of(self, message: Any) -> LidarModel:
+        """Return the lidar of a scan."""
+        frame = str(message.header.frame_id)
+        first, step, beams = message.angle_min, message.angle_increment, len(message.ranges)
+        key = (frame, beams, first, step, message.range_min, message.range_max)
+        if key not in self._known:
+            mount = self.mount_of(frame, Kind.SCAN)
+            angles = first + step * np.arange(beams)
+            angles = -angles if mount.is_upside_down else angles
+            self._known[key] = LidarModel(angles, message.range_min, message.range_max, mount.pose)
+        return self._known[key]
+
+
+def decoded(kind: Kind, message: Any, lidars: LidarBook) -> Value | Refused:
+    """Return the value of a message, or the reason why there is none."""
+    return _DECODERS[kind](message, lidars)
+
+
+def transforms_in(message: Any) -> Iterator[tuple[float, FrameTransform]]:
+    """Yield the transforms of a message that are not broken, with their stamps, s; 0: none."""
+    for each in () if message is None else message.transforms:
+        shift, turn, stamp = each.transform.translation, each.transform.rotation, each.header.stamp
+        try:
+            transform = FrameTransform.of(
+                each.header.frame_id,
+                each.child_frame_id,
+                (shift.x, shift.y, shift.z),
+                (turn.x, turn.y, turn.z, turn.w),
+            )
+        except ValueError:
+            continue
+        yield stamp.sec + 1e-9 * stamp.nanosec, transform
+
+
+def _scan(message: Any, lidars: LidarBook) -> Value | Refused:
+    ranges = np.asarray(message.ranges, np.float32)
+    first, step = message.angle_min, message.angle_increment
+    if not (math.isfinite(first) and math.isfinite(step)):
+        return Refused(UNUSABLE_SCANS, f"its angles begin at {first:g} and go on by {step:g} rad")
+    if not len(ranges) or (step == 0.0 and len(ranges) > 1):
+        return Refused(UNUSABLE_SCANS, f"{len(ranges)} beams from {first:g} on by {step:g} rad")
+    nearest, farthest = message.range_min, message.range_max
+    if math.isnan(farthest) or not 0.0 <= nearest < farthest:
+        return Refused(UNUSABLE_SCANS, f"its ranges count from {nearest:g} to {farthest:g} m")
+    return LidarScan(ranges, lidars.lidar_of(message))
+
+
+def _odometry(message: Any, lidars: LidarBook) -> Value | Refused:
+    pose = message.pose if isinstance(message, FrameTransform) else _pose(message.pose.pose)
+    if not pose.is_finite:
+        return Refused("messages of odometry", "its numbers are not finite")
+    return Odometry(pose)
+
+
+def _true_pose(message: Any, lidars: LidarBook) -> Value | Refused:
+    pose = _pose(message.pose)
+    if not pose.is_finite:
+        return Refused("true poses", "its numbers are not finite")
+    return TruePose(pose)
+
+
+def _turning(message: Any, lidars: LidarBook) -> Value | Refused:
+    speed = float(message.angular_velocity.z)
+    if not math.isfinite(speed):
+        return Refused("messages of the gyro", f"it turns by {speed:g} rad/s")
+    is_upside_down = lidars.mount_of(str(message.header.frame_id), Kind.GYRO).is_upside_down
+    return Turning(-speed if is_upside_down else speed)
+
+
+def _pose(message: Any) -> Pose:
+    """Return the planar part of a pose."""
+    place, turn = message.position, message.orientation
+    x, y, z, w = turn.x, turn.y, turn.z, turn.w
+    theta = math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
+    return Pose(float(place.x), float(place.y), theta)
+
+
+_DECODERS: Final[dict[Kind, Callable[[Any, LidarBook], Value | Refused]]] = {
+    Kind.GYRO: _turning,
+    Kind.ODOMETRY: _odometry,
+    Kind.TRUTH: _true_pose,
+    Kind.SCAN: _scan,
+}

@@ -1,0 +1,306 @@
+"""CARMEN logs: a line of text for each reading, as of most of the older published drives.
+
+What is read of a line, of those that a drive needs; three words at its end are when it was
+measured, by which computer, and when it was recorded, s::
+
+    ODOM x y theta tv rv accel
+    FLASER readings [range ...] laser_x laser_y laser_theta odom_x odom_y odom_theta
+    ROBOTLASER1 type start_angle field_of_view step farthest accuracy remission_mode readings
+        [range ...] remissions [remission ...] laser_x laser_y laser_theta odom_x odom_y odom_theta
+        tv rv forward_safety_distance side_safety_distance turn_axis
+    RAWLASER1 type start_angle field_of_view step farthest accuracy remission_mode readings
+        [range ...] remissions [remission ...]
+    PARAM name value
+
+Lengths in m, angles in rad. A FLASER looks ahead over 180 degrees, from right to left; with 400
+beams or so over 100 degrees, as its maker sells it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Iterable, Iterator, Sequence
+from pathlib import Path
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.geometry import Pose, wrap_angle
+from roomba.perception.matching.mounts import FrameTransform
+from roomba.perception.matching.scan_view import LidarModel
+from roomba.recordings.log import Arrival, Channel, MountOf
+from roomba.recordings.packed import Unpacked
+from roomba.recordings.readings import (
+    UNUSABLE_SCANS,
+    Kind,
+    LidarScan,
+    LogError,
+    Odometry,
+    Refused,
+    Value,
+)
+
+BASE: Final = "base_link"
+WORDS: Final = ("FLASER", "ROBOTLASER1", "RAWLASER1", "ODOM", "PARAM")
+"""Lines that are read."""
+_NARROW: Final = (400, 401)
+"""Readings of a FLASER over 100 degrees."""
+_ECHO: Final = 0.998
+"""What is as far as this share of the largest range of a log met nothing: lidars say so by their
+largest numbers, of which a SICK has several.
+"""
+_NEAREST: Final = 0.02
+"""m; 0 is another way to say that nothing was met."""
+_SAME_PLACE, _SAME_TURN = 0.005, 0.005
+"""m, rad; poses of the laser and the robot that are so constant tell where it is mounted."""
+_MOUNT_PARAMETERS: Final = (
+    "robot_frontlaser_offset",
+    "robot_frontlaser_side_offset",
+    "robot_frontlaser_angular_offset",
+)
+
+
+class _Fan(NamedTuple):
+    """Beams: the first one's angle and the step to the next, rad, and what is the farthest, m."""
+
+    beams: int
+    first: float
+    step: float
+    farthest: float
+
+
+class _Line(NamedTuple):
+    """One line: ``word`` says of which kind; without an odometry or a scan those are None."""
+
+    word: str
+    stamp: float
+    arrival: float
+    odometry: Pose | None
+    laser: Pose | None
+    fan: _Fan | None
+    ranges: NDArray[np.float32] | None
+
+
+class CarmenLog:
+    """A log that is held in memory."""
+
+    def __init__(self, path: Path) -> None:
+        """Read all of it; raises LogError."""
+        self.path = path
+        self.notes: list[str] = []
+        self._parameters: dict[str, float] = {}
+        self._broken = 0
+        self._other: Counter[str] = Counter()
+        self._lines = self._read(path)
+        if not self._lines:
+            raise LogError(
+                f"{path}: expected lines {', '.join(WORDS[:-1])} of a CARMEN log, got none; it has "
+                f"{', '.join(self._other) or 'nothing'}"
+            )
+        if self._broken:
+            self.notes.append(f"{self._broken} lines of {path.name} cannot be read: left out")
+        largest = max((_largest(line.ranges) for line in self._lines), default=0.0)
+        self._farthest = _ECHO * largest
+        self.channels = self._count()
+
+    def base(self, odometry: Channel) -> str:
+        """Return the name of the body's frame: a log has none of its own."""
+        return BASE
+
+    def transforms(self) -> Iterable[FrameTransform]:
+        """Return where the lasers are: by the poses in the log if they tell, or its parameters."""
+        for channel in self.channels:
+            if channel.kind is Kind.SCAN:
+                mount = self._mount_by_poses(channel.name) or self._mount_by_parameters()
+                half = 0.5 * mount.theta
+                turn = (0.0, 0.0, math.sin(half), math.cos(half))
+                yield FrameTransform.of(BASE, channel.name, (mount.x, mount.y, 0.0), turn)
+
+    def entries(self, channels: Sequence[Channel]) -> Iterator[Arrival]:
+        """Yield what came on channels."""
+        for line in self._lines:
+            for number, channel in enumerate(channels):
+                if _tells(line, channel):
+                    yield Arrival(number, line.stamp, line.arrival)
+
+    def values(
+        self, channels: Sequence[Channel], wanted: NDArray[np.bool_], mount_of: MountOf
+    ) -> Iterator[Value | Refused | None]:
+        """Yield the values of channels."""
+        lidars: dict[tuple[str, _Fan], LidarModel] = {}
+        at = 0
+        for line in self._lines:
+            for channel in channels:
+                if _tells(line, channel):
+                    at += 1
+                    yield self._value(line, channel, lidars, mount_of) if wanted[at - 1] else None
+
+    def close(self) -> None:
+        """Do nothing: the file was closed when it was read."""
+
+    def _value(
+        self,
+        line: _Line,
+        channel: Channel,
+        lidars: dict[tuple[str, _Fan], LidarModel],
+        mount_of: MountOf,
+    ) -> Value | Refused:
+        if channel.kind is Kind.ODOMETRY and line.odometry is not None:
+            return Odometry(line.odometry)
+        if line.fan is None or line.ranges is None or not line.fan.beams:
+            return Refused(UNUSABLE_SCANS, "it has no beams")
+        key = (line.word, line.fan)
+        if key not in lidars:
+            fan = line.fan
+            angles = fan.first + fan.step * np.arange(fan.beams)
+            farthest = min(fan.farthest or math.inf, self._farthest)
+            mount = mount_of(channel.name, Kind.SCAN)
+            angles = -angles if mount.is_upside_down else angles
+            lidars[key] = LidarModel(angles, _NEAREST, max(farthest, 2 * _NEAREST), mount.pose)
+        return LidarScan(line.ranges, lidars[key])
+
+    def _read(self, path: Path) -> list[_Line]:
+        file = Unpacked(path)
+        try:
+            with file.path.open(encoding="utf-8", errors="replace") as text:
+                return [line for each in text if (line := self._parse(each.split())) is not None]
+        finally:
+            file.close()
+
+    def _parse(self, words: list[str]) -> _Line | None:
+        if not words or words[0].startswith("#"):
+            return None
+        word = words[0]
+        parse = _PARSERS.get(word)
+        if parse is None and word != "PARAM":
+            self._other[word] += 1
+            return None
+        try:
+            if parse is not None:
+                return parse(words)
+            if words[1] in _MOUNT_PARAMETERS:
+                self._parameters[words[1]] = _finite(words[2])
+        except (ValueError, IndexError):
+            self._broken += 1
+        return None
+
+    def _count(self) -> list[Channel]:
+        counts = Counter(line.word for line in self._lines)
+        channels = []
+        for word, count in counts.items():
+            has_odometry = any(line.odometry for line in self._lines if line.word == word)
+            if word != "ODOM":
+                channels.append(Channel(word, Kind.SCAN, "scans", count))
+            if has_odometry:
+                channels.append(Channel(word, Kind.ODOMETRY, "odometry", count))
+        others = (Channel(word, None, "other lines", n) for word, n in self._other.items())
+        # By the odometry that scans bring along each one's own place is known.
+        return [*sorted(channels, key=lambda each: each.name == "ODOM"), *others]
+
+    def _mount_by_poses(self, word: str) -> Pose | None:
+        """Return where the laser is by the poses of scans; None if they are equal or differ."""
+        mounts = [
+            line.odometry.inverse().compose(line.laser)
+            for line in self._lines
+            if line.word == word and line.odometry is not None and line.laser is not None
+        ]
+        if not mounts:
+            return None
+        rows = np.array([(each.x, each.y, each.theta) for each in mounts])
+        middle = Pose(*np.median(rows, axis=0).tolist())
+        away = np.hypot(rows[:, 0] - middle.x, rows[:, 1] - middle.y).max()
+        turned = max(abs(wrap_angle(theta - middle.theta)) for theta in rows[:, 2].tolist())
+        is_same = math.hypot(middle.x, middle.y) < _SAME_PLACE and abs(middle.theta) < _SAME_TURN
+        if is_same or away > _SAME_PLACE or turned > _SAME_TURN:
+            return None
+        return middle
+
+    def _mount_by_parameters(self) -> Pose:
+        return Pose(*(self._parameters.get(name, 0.0) for name in _MOUNT_PARAMETERS))
+
+
+def _tells(line: _Line, channel: Channel) -> bool:
+    if line.word != channel.name:
+        return False
+    return line.odometry is not None if channel.kind is Kind.ODOMETRY else line.fan is not None
+
+
+def _parse_odometry(words: list[str]) -> _Line:
+    stamp, arrival = _times(words[7:])
+    return _Line("ODOM", stamp, arrival, _pose(words[1:4]), None, None, None)
+
+
+def _parse_front_laser(words: list[str]) -> _Line:
+    beams = int(words[1])
+    ranges, rest = _ranges(words[2 : 2 + beams], beams), words[2 + beams :]
+    if beams in _NARROW:
+        fan = _Fan(beams, -math.radians(50.0), math.radians(0.25), 0.0)
+    else:
+        step = math.pi / max(beams - beams % 2, 1)
+        fan = _Fan(beams, -0.5 * math.pi, step, 0.0)
+    stamp, arrival = _times(rest[6:])
+    return _Line("FLASER", stamp, arrival, _pose(rest[3:6]), _pose(rest[:3]), fan, ranges)
+
+
+def _parse_robot_laser(words: list[str]) -> _Line:
+    fan, ranges, rest = _configured(words)
+    laser, odometry = _pose(rest[:3]), _pose(rest[3:6])
+    stamp, arrival = _times(rest[11:])
+    return _Line("ROBOTLASER1", stamp, arrival, odometry, laser, fan, ranges)
+
+
+def _parse_raw_laser(words: list[str]) -> _Line:
+    fan, ranges, rest = _configured(words)
+    stamp, arrival = _times(rest)
+    return _Line("RAWLASER1", stamp, arrival, None, None, fan, ranges)
+
+
+_PARSERS: Final = {
+    "ODOM": _parse_odometry,
+    "FLASER": _parse_front_laser,
+    "ROBOTLASER1": _parse_robot_laser,
+    "RAWLASER1": _parse_raw_laser,
+}
+
+
+def _configured(words: list[str]) -> tuple[_Fan, NDArray[np.float32], list[str]]:
+    """Return beams and ranges of a line that tells its lidar, and the words after them."""
+    first, step, farthest = _finite(words[2]), _finite(words[4]), _finite(words[5])
+    beams = int(words[8])
+    ranges = _ranges(words[9 : 9 + beams], beams)
+    remissions = int(words[9 + beams])
+    return _Fan(beams, first, step, farthest), ranges, words[10 + beams + remissions :]
+
+
+def _ranges(words: list[str], beams: int) -> NDArray[np.float32]:
+    if len(words) != beams or beams < 0:
+        raise ValueError(f"expected {beams} ranges, got {len(words)}")
+    return np.array(words, np.float64).astype(np.float32)
+
+
+def _pose(words: list[str]) -> Pose:
+    x, y, theta = map(_finite, words)
+    return Pose(x, y, wrap_angle(theta))
+
+
+def _times(words: list[str]) -> tuple[float, float]:
+    """Return stamp and arrival, s, of the words that end a line: 0 for a stamp that is missing."""
+    stamp = _finite(words[0]) if words else 0.0
+    return stamp, _finite(words[2]) if len(words) > 2 else stamp
+
+
+def _finite(word: str) -> float:
+    number = float(word)
+    if not math.isfinite(number):
+        raise ValueError(f"expected a finite number, got {word}")
+    return number
+
+
+def _largest(ranges: NDArray[np.float32] | None) -> float:
+    """Return the largest finite range, m; 0 of none."""
+    if ranges is None:
+        return 0.0
+    finite = ranges[np.isfinite(ranges)]
+    return float(finite.max()) if finite.size else 0.0

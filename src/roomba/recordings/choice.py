@@ -1,0 +1,141 @@
+"""Which channels of a recorded drive are read: those that were named, else what is likely."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+from roomba.geometry import Pose
+from roomba.recordings.log import Channel
+from roomba.recordings.readings import Kind, LogError
+
+_LISTED: Final = 30
+"""Channels that an error names at most."""
+_USUAL: Final = {Kind.SCAN: "/scan", Kind.ODOMETRY: "/odom", Kind.GYRO: "/imu"}
+_TYPES: Final = {
+    Kind.SCAN: "sensor_msgs/LaserScan",
+    Kind.ODOMETRY: "nav_msgs/Odometry",
+    Kind.GYRO: "sensor_msgs/Imu",
+}
+_OPTIONS: Final = {Kind.SCAN: "--scan", Kind.ODOMETRY: "--odom", Kind.GYRO: "--imu"}
+
+
+@dataclass(frozen=True, slots=True)
+class Wanted:
+    """What is to be read: names of channels, and where the lidar is on the robot; None: see."""
+
+    scan: str | None = None
+    odometry: str | None = None
+    gyro: str | None = None
+    laser: Pose | None = None
+
+    def name(self, kind: Kind) -> str | None:
+        """Return the name that was given for a kind."""
+        names = {Kind.SCAN: self.scan, Kind.ODOMETRY: self.odometry, Kind.GYRO: self.gyro}
+        return names.get(kind)
+
+
+@dataclass(frozen=True, slots=True)
+class Chosen:
+    """The channels that are read, scans first and then odometry; ``notes`` tells of doubts."""
+
+    channels: tuple[Channel, ...]
+    notes: tuple[str, ...]
+
+    @property
+    def odometry(self) -> Channel:
+        """The channel of odometry."""
+        return self.channels[1]
+
+
+def chosen(paths: Sequence[Path], channels: Sequence[Channel], wanted: Wanted) -> Chosen:
+    """Return what to read of the ``channels`` of all logs; raises LogError."""
+    notes: list[str] = []
+    scan = _required(paths, channels, Kind.SCAN, wanted, "", notes)
+    odometry = _required(paths, channels, Kind.ODOMETRY, wanted, scan.name, notes)
+    taken = [scan, odometry]
+    gyro = _gyro(paths, channels, wanted, odometry.name, notes)
+    truth = [channel for channel in channels if channel.kind is Kind.TRUTH]
+    return Chosen((*taken, *gyro, *truth[:1]), tuple(notes))
+
+
+def _required(
+    paths: Sequence[Path],
+    channels: Sequence[Channel],
+    kind: Kind,
+    wanted: Wanted,
+    beside: str,
+    notes: list[str],
+) -> Channel:
+    """Return a channel of a kind, of several the one most like that ``beside`` it."""
+    fitting = [channel for channel in channels if channel.kind is kind]
+    named = wanted.name(kind)
+    if named is not None or not fitting:
+        return _named(paths, channels, kind, named or _USUAL[kind])
+    best = max(fitting, key=lambda channel: _likeness(channel, beside, _USUAL[kind]))
+    others = [f"{each.name} ({each.messages})" for each in fitting if each is not best]
+    if others:
+        notes.append(
+            f"{_OPTIONS[kind]} {best.name} ({best.messages}) is taken; there is "
+            f"{' and '.join(others)} as well"
+        )
+    return best
+
+
+def _gyro(
+    paths: Sequence[Path],
+    channels: Sequence[Channel],
+    wanted: Wanted,
+    odometry: str,
+    notes: list[str],
+) -> list[Channel]:
+    """Return the gyro's channel: of those that were not named only a usual one is taken.
+
+    One of another name may be of a camera, and measure about an axis that is not the vertical.
+    """
+    if wanted.gyro is not None:
+        return [_named(paths, channels, Kind.GYRO, wanted.gyro)]
+    fitting = [channel for channel in channels if channel.kind is Kind.GYRO]
+    namespace = odometry.rpartition("/")[0]
+    for name in (f"{namespace}/imu", "/imu", f"{namespace}/imu/data", "/imu/data"):
+        for channel in fitting:
+            if channel.name == name:
+                return [channel]
+    if fitting:
+        names = " or ".join(channel.name for channel in fitting)
+        notes.append(f"no gyro is used: --imu {names} would be, if it lies flat on the robot")
+    return []
+
+
+def _named(paths: Sequence[Path], channels: Sequence[Channel], kind: Kind, name: str) -> Channel:
+    """Return the channel of a name; raises LogError if there is none of this kind."""
+    spellings = (name, f"/{name.strip('/')}")
+    for channel in channels:
+        if channel.kind is kind and channel.name in spellings:
+            return channel
+    there = [channel for channel in channels if channel.name in spellings]
+    got = f"it is {there[0].type}" if there else "there is none"
+    option = _OPTIONS[kind]
+    fitting = " or ".join(f"{option} {each.name}" for each in channels if each.kind is kind)
+    hint = f"try {fitting}" if fitting else f"no other one is {_TYPES[kind]} either"
+    is_topic = all(each.name.startswith("/") for each in channels)
+    raise LogError(
+        f"{', '.join(map(str, paths))}: expected {_TYPES[kind]} on "
+        f"{spellings[-1] if is_topic else name}, {got}; {hint}. There is {_listed(channels)}"
+    )
+
+
+def _listed(channels: Sequence[Channel]) -> str:
+    names = [f"{each.name} ({each.type}, {each.messages})" for each in channels]
+    if len(names) > _LISTED:
+        names = [*names[:_LISTED], f"and {len(names) - _LISTED} more"]
+    return ", ".join(names)
+
+
+def _likeness(channel: Channel, beside: str, usual: str) -> tuple[bool, bool, bool, int]:
+    """Return how likely a channel is the one: by the name of another one, the usual one, size."""
+    name = channel.name
+    is_same_robot = bool(beside) and name.rpartition("/")[0] == beside.rpartition("/")[0]
+    return name == beside, is_same_robot, name.endswith(usual), channel.messages

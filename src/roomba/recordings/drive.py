@@ -1,0 +1,258 @@
+"""A recorded drive: any number of logs, read as one, in the order of time."""
+
+from __future__ import annotations
+
+import contextlib
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+from pathlib import Path
+from types import TracebackType
+from typing import Final
+
+import numpy as np
+
+from roomba.perception.matching.mounts import Mount, Mounts
+from roomba.recordings.choice import Chosen, Wanted, chosen
+from roomba.recordings.log import Channel, Log
+from roomba.recordings.opening import open_log
+from roomba.recordings.readings import UNUSABLE_SCANS, Kind, Reading, Refused, Value
+from roomba.recordings.stamps import (
+    CLOCKS,
+    Floats,
+    Ints,
+    StampCounts,
+    delay_of,
+    in_order,
+    mended,
+)
+
+_GAP: Final = 1.0
+"""s between two logs from which it is told."""
+_BODIES: Final = ("base_link", "base_footprint", "base")
+"""Frames of a robot's body that lie on each other as seen from above."""
+
+
+class LoggedDrive:
+    """Logs that are open for reading; a context.
+
+    All messages are looked at twice: first for their times alone, of which some twenty bytes each
+    are kept, then in the order of these times.
+    """
+
+    def __init__(self, paths: Sequence[Path], wanted: Wanted | None = None) -> None:
+        """Open; raises LogError."""
+        wanted = wanted or Wanted()
+        self.counts = StampCounts()
+        self.refused: Counter[str] = Counter()
+        """How many messages of what could not be used."""
+        self._reasons: dict[str, str] = {}
+        self._remarks: list[str] = []
+        self._laser = wanted.laser
+        with contextlib.ExitStack() as stack:
+            self._logs = [_entered(stack, path) for path in paths]
+            self._chosen = chosen(paths, _together(self._logs), wanted)
+            self._base = self._body()
+            self._mounts = self._known_mounts()
+            self._found: dict[str, Mount] = {}
+            self._times, self._owners, self._order = self._timed()
+            self._stack = stack.pop_all()
+
+    def __enter__(self) -> LoggedDrive:
+        """Return itself."""
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        """Close all logs."""
+        self._stack.close()
+
+    @property
+    def chosen(self) -> Chosen:
+        """The channels that are read."""
+        return self._chosen
+
+    @property
+    def notes(self) -> list[str]:
+        """What is worth knowing of what was read so far."""
+        left_out = [
+            f"{count} {what}: left out (the first: {self._reasons[what]})"
+            for what, count in self.refused.items()
+        ]
+        of_logs = [note for log in self._logs for note in log.notes]
+        return [*self._chosen.notes, *self._remarks, *of_logs, *left_out]
+
+    @property
+    def refused_scans(self) -> dict[str, int]:
+        """How many scans could not be used, by the first reason."""
+        return {
+            f"{what} ({self._reasons[what]})": count
+            for what, count in self.refused.items()
+            if what == UNUSABLE_SCANS
+        }
+
+    def __len__(self) -> int:
+        """How many readings there are at most: some may be refused."""
+        return len(self._order)
+
+    def readings(self) -> Iterator[Reading]:
+        """Yield what was measured, in the order of time; of a time odometry before scans."""
+        wanted = np.zeros(len(self._times), np.bool_)
+        wanted[self._order] = True
+        first = np.searchsorted(self._owners, np.arange(len(self._logs) + 1))
+        streams = [
+            log.values(self._channels_of(log), wanted[begin:end], self._mount_of)
+            for log, (begin, end) in zip(self._logs, pairwise(first.tolist()), strict=True)
+        ]
+        positions = first[:-1].tolist()
+        held: dict[int, Value | Refused] = {}
+        for number in self._order.tolist():
+            owner = int(self._owners[number])
+            while positions[owner] <= number:
+                value = next(streams[owner])
+                if value is not None:
+                    held[positions[owner]] = value
+                positions[owner] += 1
+            reading = held.pop(number)
+            if isinstance(reading, Refused):
+                self.refused[reading.what] += 1
+                self._reasons.setdefault(reading.what, reading.reason)
+            else:
+                yield Reading(float(self._times[number]), reading)
+
+    def _channels_of(self, log: Log) -> list[Channel]:
+        """Return the chosen channels that a log has."""
+        return [
+            own
+            for channel in self._chosen.channels
+            for own in log.channels
+            if (own.name, own.kind) == (channel.name, channel.kind)
+        ]
+
+    def _body(self) -> str:
+        """Return the frame of the robot's body."""
+        odometry = self._chosen.odometry
+        told = (log.base(odometry) for log in self._logs if odometry in self._channels_of(log))
+        of_all = (log.base(each) for log in self._logs for each in self._channels_of(log)
+                  if each.kind is Kind.ODOMETRY)  # fmt: skip
+        return next((name for name in (*told, *of_all) if name), _BODIES[0])
+
+    def _known_mounts(self) -> Mounts:
+        mounts = Mounts()
+        for log in self._logs:
+            mounts.add(log.transforms())
+        return mounts
+
+    def _mount_of(self, frame: str, kind: Kind) -> Mount:
+        """Return where a sensor is: in the middle, and looking ahead, if nothing tells."""
+        if frame not in self._found:
+            self._found[frame] = self._searched(frame, kind)
+        mount = self._found[frame]
+        if kind is Kind.SCAN and self._laser is not None:
+            return Mount(self._laser, mount.is_upside_down)
+        return mount
+
+    def _searched(self, frame: str, kind: Kind) -> Mount:
+        mount = self._mounts.mount(self._base, frame)
+        if mount is not None:
+            return mount
+        for body in _BODIES if self._base in _BODIES else ():
+            mount = self._mounts.mount(body, frame)
+            if mount is not None:
+                self._remark(f"{frame!r} is where it is on {body!r}, not on {self._base!r}", kind)
+                return mount
+        self._remark(
+            f"no transform from {self._base!r} to {frame!r} was recorded: the lidar is taken to be "
+            "in the middle of the robot, and to look ahead; --laser X,Y,YAW says where it is",
+            kind,
+        )
+        return Mount()
+
+    def _remark(self, remark: str, kind: Kind) -> None:
+        if kind is Kind.SCAN and self._laser is None:
+            self._remarks.append(remark)
+
+    def _timed(self) -> tuple[Floats, Ints, Ints]:
+        """Return times, s, and numbers of the logs of all messages, and the order to read them."""
+        parts = [self._timed_log(log) for log in self._logs]
+        sizes = [len(times) for times, _ in parts]
+        times = np.concatenate([times for times, _ in parts])
+        channels = np.concatenate([numbers for _, numbers in parts])
+        owners = np.repeat(np.arange(len(parts)), sizes)
+        self._tell_gaps([times for times, _ in parts])
+        ranks = np.array([int(each.kind or 0) for each in self._chosen.channels])[channels]
+        return times, owners, in_order(times, channels, ranks, self.counts)
+
+    def _timed_log(self, log: Log) -> tuple[Floats, Ints]:
+        """Return times and numbers of channels, among the chosen ones, of what a log has."""
+        channels = self._channels_of(log)
+        entries = list(log.entries(channels))
+        own = np.array([entry.channel for entry in entries], np.int64)
+        stamps = np.array([entry.stamp for entry in entries], np.float64)
+        arrivals = np.array([entry.arrival for entry in entries], np.float64)
+        delays = [delay_of(stamps[own == at], arrivals[own == at]) for at in range(len(channels))]
+        reference = self._reference(channels, delays)
+        times = np.empty(len(entries))
+        numbers = np.empty(len(entries), np.int64)
+        for at, channel in enumerate(channels):
+            mask, delay = own == at, delays[at]
+            times[mask] = mended(stamps[mask], arrivals[mask], reference, self.counts)
+            numbers[mask] = self._number(channel)
+            if delay is not None and abs(delay - reference) > CLOCKS:
+                self._remarks.append(
+                    f"the clock of {channel.name} is {reference - delay:+.1f} s off that of the "
+                    "odometry: its times are shifted"
+                )
+        return times, numbers
+
+    def _number(self, channel: Channel) -> int:
+        """Return the number of a log's channel among the chosen ones."""
+        keys = [(each.name, each.kind) for each in self._chosen.channels]
+        return keys.index((channel.name, channel.kind))
+
+    def _reference(self, channels: Sequence[Channel], delays: Sequence[float | None]) -> float:
+        """Return the delay of the odometry, or else of what has one."""
+        of_odometry = [
+            delay
+            for channel, delay in zip(channels, delays, strict=True)
+            if channel.kind is Kind.ODOMETRY
+        ]
+        known = [delay for delay in (*of_odometry, *delays) if delay is not None]
+        return known[0] if known else 0.0
+
+    def _tell_gaps(self, times: Sequence[Floats]) -> None:
+        """Note where logs overlap, and where time is missing between them."""
+        spans = sorted(
+            (float(each.min()), float(each.max()), log.path.name)
+            for each, log in zip(times, self._logs, strict=True)
+            if len(each)
+        )
+        for (_, end, name), (begin, _, later) in pairwise(spans):
+            if begin > end + _GAP:
+                self._remarks.append(f"{later} begins {begin - end:.1f} s after the end of {name}")
+            elif begin < end:
+                self._remarks.append(
+                    f"{later} begins {end - begin:.1f} s before the end of {name}: what both have "
+                    "counts once"
+                )
+
+
+def _entered(stack: contextlib.ExitStack, path: Path) -> Log:
+    log = open_log(path)
+    stack.callback(log.close)
+    return log
+
+
+def _together(logs: Sequence[Log]) -> list[Channel]:
+    """Return the channels of all logs, each with its messages in all of them."""
+    found: dict[tuple[str, Kind | None], Channel] = {}
+    for log in logs:
+        for channel in log.channels:
+            known = found.get((channel.name, channel.kind))
+            count = channel.messages + (0 if known is None else known.messages)
+            found[channel.name, channel.kind] = channel._replace(messages=count)
+    return list(found.values())

@@ -1,0 +1,89 @@
+"""Files that are packed by gzip or xz."""
+
+from __future__ import annotations
+
+import gzip
+import lzma
+import shutil
+import tempfile
+import zlib
+from collections.abc import Callable
+from pathlib import Path
+from typing import BinaryIO, Final, TypeAlias, cast
+
+from roomba.recordings.readings import LogError
+
+_GZIP, _XZ = b"\x1f\x8b", b"\xfd7zXZ\x00"
+_SUFFIXES: Final = (".gz", ".xz")
+_Opener: TypeAlias = Callable[[Path], BinaryIO]
+_BROKEN: Final = (EOFError, OSError, lzma.LZMAError, zlib.error)
+
+
+class Unpacked:
+    """A file as it is when it is not packed; ``path`` is valid until it is closed."""
+
+    def __init__(self, given: Path) -> None:
+        """Unpack into a temporary folder what is packed; raises LogError."""
+        self.path = given
+        self._folder: tempfile.TemporaryDirectory[str] | None = None
+        opener = _opener(given)
+        if opener is None:
+            return
+        self._folder = tempfile.TemporaryDirectory(prefix="roomba_log_")
+        self.path = Path(self._folder.name) / plain_name(given)
+        try:
+            with opener(given) as packed, self.path.open("wb") as plain:
+                shutil.copyfileobj(packed, plain, 1 << 20)
+        except _BROKEN as error:
+            self.close()
+            raise LogError(
+                f"{given}: expected a whole packed file, it cannot be unpacked: {error}; copy it "
+                "again"
+            ) from None
+
+    def close(self) -> None:
+        """Remove what was unpacked."""
+        if self._folder is not None:
+            self._folder.cleanup()
+
+
+def head_of(path: Path, size: int) -> bytes:
+    """Return the first bytes of what a file holds, packed or not; raises LogError."""
+    try:
+        with (_opener(path) or _open_plain)(path) as file:
+            return file.read(size)
+    except _BROKEN as error:
+        raise LogError(f"{path}: cannot be read: {error}") from None
+
+
+def plain_name(path: Path) -> str:
+    """Return a file's name without the suffix of a packer."""
+    return path.stem if path.suffix.lower() in _SUFFIXES else path.name
+
+
+def _opener(path: Path) -> _Opener | None:
+    """Return what opens a packed file; None for others. Raises LogError."""
+    if path.is_dir():
+        return None
+    try:
+        with path.open("rb") as file:
+            head = file.read(len(_XZ))
+    except FileNotFoundError:
+        raise LogError(f"{path}: no such file; expected a bag or a log") from None
+    except OSError as error:
+        raise LogError(f"{path}: cannot be read: {error.strerror}") from None
+    if head.startswith(_GZIP):
+        return _open_gzip
+    return _open_xz if head.startswith(_XZ) else None
+
+
+def _open_gzip(path: Path) -> BinaryIO:
+    return cast(BinaryIO, gzip.open(path, "rb"))
+
+
+def _open_xz(path: Path) -> BinaryIO:
+    return cast(BinaryIO, lzma.open(path, "rb"))
+
+
+def _open_plain(path: Path) -> BinaryIO:
+    return path.open("rb")

@@ -1,0 +1,166 @@
+"""Times of a recorded drive: what its stamps say, mended where they cannot be true.
+
+A message has a stamp, when it was measured by the clock of its driver, and an arrival, when it was
+recorded by the clock of the recorder. Stamps are better as long as they go on as arrivals do.
+"""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass, fields
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Mask = NDArray[np.bool_]
+
+CLOCKS: Final = 1.0
+"""s; delays between stamp and arrival that differ by more are of two clocks."""
+JUMP: Final = 0.4
+"""s; a step between stamps that differs more from that between arrivals is a jump of the clock."""
+_COARSE: Final = 0.2
+"""Share of stamps equal to the one before, from which a clock is too coarse to go by."""
+_SHORT: Final = 12
+"""Messages; so few stamps of a clock that jumps may each be wrong by something else."""
+_HOLE: Final = (0.5, 2.5)
+"""Usual steps; so far from the next ones are the stamps of messages that came late."""
+_INFORMATIVE: Final = 0.5
+"""Arrivals tell something if there are so many different ones, as a share of the stamps."""
+
+
+@dataclass(slots=True)
+class StampCounts:
+    """How many messages of how many had what wrong with their stamps."""
+
+    messages: int = 0
+    without: int = 0
+    """Without a stamp: the time of recording counts."""
+    jumped: int = 0
+    """Of a clock that had jumped: shifted to where arrivals say."""
+    coarse: int = 0
+    """Of a clock so coarse that many stamps are equal: the time of recording counts."""
+    out_of_order: int = 0
+    """Recorded after a later one of their channel: sorted."""
+    equal: int = 0
+    """Of the same time as another one of their channel: left out."""
+
+    def add(self, other: StampCounts) -> None:
+        """Count what another one did, too."""
+        for field in fields(self):
+            setattr(self, field.name, getattr(self, field.name) + getattr(other, field.name))
+
+    @property
+    def words(self) -> str:
+        """All counts that are not zero, in a line."""
+        told = (
+            (self.without, "without a stamp (by the time of recording)"),
+            (self.jumped, "of a clock that had jumped (shifted back)"),
+            (self.coarse, "of a coarse clock (by the time of recording)"),
+            (self.out_of_order, "out of order (sorted)"),
+            (self.equal, "of a time that another one has (left out)"),
+        )
+        wrong = ", ".join(f"{count} {what}" for count, what in told if count)
+        return f"{self.messages} messages: {wrong or 'all in order'}"
+
+
+def delay_of(stamps: Floats, arrivals: Floats) -> float | None:
+    """Return how long after its stamp a message is recorded, s, the median; None without stamps."""
+    valid = _valid(stamps)
+    return float(np.median(arrivals[valid] - stamps[valid])) if valid.any() else None
+
+
+def mended(stamps: Floats, arrivals: Floats, delay: float, counts: StampCounts) -> Floats:
+    """Return when the messages of a channel were measured, s, in the order of recording.
+
+    ``delay`` is that of the channel whose clock counts; what was wrong is added to ``counts``.
+    """
+    counts.messages += len(stamps)
+    valid = _valid(stamps)
+    own = delay_of(stamps, arrivals)
+    if own is None:
+        counts.without += len(stamps)
+        return arrivals - delay
+    shift = own - delay if abs(own - delay) > CLOCKS else 0.0
+    times, expected = stamps + shift, arrivals - (own - shift)
+    if _is_coarse(stamps[valid], arrivals[valid]):
+        counts.coarse += len(stamps)
+        return expected
+    counts.without += int(np.count_nonzero(~valid))
+    times[~valid] = expected[~valid]
+    if len(np.unique(arrivals)) > _INFORMATIVE * len(np.unique(stamps[valid])):
+        counts.jumped += _unjumped(times, expected)
+    before = np.maximum.accumulate(times)
+    counts.out_of_order += int(np.count_nonzero(times < before))
+    return times
+
+
+def in_order(times: Floats, channels: Ints, ranks: Ints, counts: StampCounts) -> Ints:
+    """Return the numbers of messages in the order of ``times``, s, without doubles.
+
+    ``channels`` tells of each message the channel; of a time those of the lowest of ``ranks``
+    come first.
+    """
+    by_channel = np.lexsort((times, channels))
+    same = (np.diff(times[by_channel]) == 0.0) & (np.diff(channels[by_channel]) == 0)
+    is_kept = np.ones(len(times), np.bool_)
+    is_kept[by_channel[1:][same]] = False
+    counts.equal += int(np.count_nonzero(same))
+    order = np.lexsort((ranks, times))
+    return np.asarray(order[is_kept[order]], np.int64)
+
+
+def _valid(stamps: Floats) -> Mask:
+    return np.asarray(np.isfinite(stamps) & (stamps > 0.0))
+
+
+def _is_coarse(stamps: Floats, arrivals: Floats) -> bool:
+    """Whether many stamps are equal to the one before, and came as far apart as others."""
+    if len(stamps) < 2:
+        return False
+    is_equal, arrived = np.diff(stamps) == 0.0, np.diff(arrivals)
+    if float(np.mean(is_equal)) <= _COARSE:
+        return False
+    # What is recorded twice comes at nearly the same time.
+    return float(np.median(arrived[is_equal])) > 0.5 * float(np.mean(arrived))
+
+
+def _unjumped(times: Floats, expected: Floats) -> int:
+    """Shift the pieces of ``times`` in which a clock was wrong; return of how many messages.
+
+    A piece begins where the step from one to the next differs from that of what was ``expected``
+    by arrivals, and is the less usual one of both: messages that were held up and then came all at
+    once have usual stamps. Late ones have stamps where the others leave a hole.
+    """
+    if len(times) < 3:
+        return 0
+    step, arrived = np.diff(times), np.diff(expected)
+    ordered = np.sort(times)
+    usual = float(np.median(np.diff(ordered)))
+    is_jump = np.abs(step - arrived) > JUMP
+    is_jump &= np.abs(step - usual) > np.abs(arrived - usual)
+    borders = [0, *(1 + np.flatnonzero(is_jump)).tolist(), len(times)]
+    shifted = 0
+    for first, end in itertools.pairwise(borders):
+        off = float(np.median(times[first:end] - expected[first:end]))
+        if abs(off) <= JUMP:
+            continue
+        if off > 0.0 or not _fills_hole(times[first:end], ordered, usual):
+            is_short = end - first <= _SHORT
+            times[first:end] = expected[first:end] if is_short else times[first:end] - off
+            shifted += end - first
+    return shifted
+
+
+def _fills_hole(piece: Floats, ordered: Floats, usual: float) -> bool:
+    """Whether a piece of the stamps ``ordered`` lies where the others leave room for just it."""
+    low, high = float(piece.min()), float(piece.max())
+    first = int(np.searchsorted(ordered, low, "left"))
+    end = int(np.searchsorted(ordered, high, "right"))
+    if end - first != len(piece) or first == 0 or end == len(ordered):
+        return False
+    least, most = (share * usual for share in _HOLE)
+    before, after = low - float(ordered[first - 1]), float(ordered[end]) - high
+    return least < before < most and least < after < most

@@ -1,0 +1,176 @@
+"""Bags of ROS 1 and 2, whole and damaged."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from fixtures.made_logs import (
+    BEGAN,
+    LASER,
+    PERIOD,
+    Item,
+    changed,
+    drive,
+    write_bag,
+    write_bag_2,
+)
+from rosbags.rosbag2 import StoragePlugin
+
+from roomba.geometry import Pose
+from roomba.perception.matching.mounts import Mount, Mounts
+from roomba.recordings.bag import BagLog
+from roomba.recordings.log import Channel
+from roomba.recordings.readings import (
+    Kind,
+    LidarScan,
+    LogError,
+    Odometry,
+    Refused,
+    Turning,
+    Value,
+)
+
+SECONDS = 6.0
+SCANS = int(SECONDS / PERIOD)
+
+
+def written(path: Path, form: str, items: list[Item]) -> Path:
+    """Write a bag of a form, and return what a person would name."""
+    if form == "bag":
+        return write_bag(path / "made.bag", items)
+    storage = StoragePlugin.MCAP if form == "mcap" else StoragePlugin.SQLITE3
+    folder = write_bag_2(path / "made", items, storage)
+    return next(folder.glob(f"*.{form}")) if form != "folder" else folder
+
+
+def read(log: BagLog, *channels: Channel) -> list[tuple[float, Value | Refused | None]]:
+    entries = list(log.entries(channels))
+    values = log.values(channels, np.ones(len(entries), np.bool_), lambda *_: Mount(LASER))
+    return [(entry.stamp, value) for entry, value in zip(entries, values, strict=True)]
+
+
+@pytest.mark.parametrize("form", ["bag", "folder", "db3", "mcap"])
+def test_each_form_of_a_bag_says_the_same(tmp_path: Path, form: str) -> None:
+    items = drive(SECONDS)
+    log = BagLog(written(tmp_path, form, items))
+    channels = {each.name: each for each in log.channels}
+    assert {name: (each.kind, each.type, each.messages) for name, each in channels.items()} == {
+        "/scan": (Kind.SCAN, "sensor_msgs/LaserScan", SCANS),
+        "/odom": (Kind.ODOMETRY, "nav_msgs/Odometry", 2 * SCANS),
+        "/tf_static": (None, "tf2_msgs/TFMessage", 1),
+    }
+    assert log.base(channels["/odom"]) == "base_link"
+    mounts = Mounts()
+    mounts.add(log.transforms())
+    mount = mounts.mount("base_link", "laser")
+    assert mount is not None
+    assert mount.pose.x == pytest.approx(LASER.x)
+    found = read(log, channels["/scan"], channels["/odom"])
+    assert [stamp for stamp, _ in found] == pytest.approx(
+        sorted(item.stamp for item in items), abs=1e-6
+    )
+    scans = [value for _, value in found if isinstance(value, LidarScan)]
+    odometry = [value for _, value in found if isinstance(value, Odometry)]
+    ranges = [item.value for item in items if isinstance(item.value, np.ndarray)]
+    assert len(scans) == SCANS
+    for scan, expected in zip(scans, ranges, strict=True):
+        assert scan.ranges == pytest.approx(expected, abs=1e-6)
+        assert scan.lidar is scans[0].lidar
+        assert scan.lidar.mount.tolist() == [LASER.x, LASER.y, LASER.theta]
+    poses = [item.value for item in items if isinstance(item.value, Pose)]
+    assert [each.pose.x for each in odometry] == pytest.approx([pose.x for pose in poses])
+    log.close()
+
+
+def test_what_is_not_wanted_is_not_decoded(tmp_path: Path) -> None:
+    log = BagLog(write_bag(tmp_path / "made.bag", drive(2.0)))
+    [scan] = [each for each in log.channels if each.kind is Kind.SCAN]
+    wanted = np.array([True, False] * 5)
+    values = list(log.values([scan], wanted, lambda *_: Mount()))
+    assert [value is not None for value in values] == wanted.tolist()
+    log.close()
+
+
+def test_odometry_that_is_only_in_the_transforms_is_found_there(tmp_path: Path) -> None:
+    items = [
+        replace(item, topic="/tf") if item.topic == "/odom" else item for item in drive(SECONDS)
+    ]
+    log = BagLog(write_bag(tmp_path / "made.bag", items))
+    [odometry] = [each for each in log.channels if each.kind is Kind.ODOMETRY]
+    assert odometry.name == "/tf"
+    assert log.base(odometry) == "base_link"
+    found = read(log, odometry)
+    assert [stamp for stamp, _ in found] == pytest.approx(
+        [item.stamp for item in items if item.topic == "/tf"], abs=1e-6
+    )
+    assert all(isinstance(value, Odometry) for _, value in found)
+    assert {each.child for each in log.transforms()} == {"laser"}
+    log.close()
+
+
+def test_a_gyro_that_hangs_upside_down_turns_the_other_way(tmp_path: Path) -> None:
+    items = [*drive(2.0), Item("/imu", 0.25, BEGAN + 0.01, BEGAN + 0.01, "imu_link")]
+    log = BagLog(write_bag(tmp_path / "made.bag", items))
+    [gyro] = [each for each in log.channels if each.kind is Kind.GYRO]
+    for upside_down, expected in ((False, 0.25), (True, -0.25)):
+        mount = Mount(is_upside_down=upside_down)
+        [value] = log.values([gyro], np.ones(1, np.bool_), lambda *_, mount=mount: mount)
+        assert value == Turning(expected)
+    log.close()
+
+
+def test_messages_that_make_no_sense_are_refused_with_the_reason(tmp_path: Path) -> None:
+    def spoil(number: int, item: Item) -> Item:
+        return replace(item, value=np.empty(0)) if number == 1 else item
+
+    items = changed(drive(2.0), "/scan", spoil)
+    items = changed(
+        items, "/odom", lambda at, item: item if at else replace(item, value=Pose(np.nan, 0.0, 0.0))
+    )
+    log = BagLog(write_bag(tmp_path / "made.bag", items))
+    refused = [value for _, value in read(log, *log.channels[1:3]) if isinstance(value, Refused)]
+    refused += [value for _, value in read(log, *log.channels[:1]) if isinstance(value, Refused)]
+    assert {each.what for each in refused} == {"scans that cannot be used", "messages of odometry"}
+    log.close()
+
+
+def test_a_damaged_piece_costs_that_piece_alone(tmp_path: Path) -> None:
+    path = write_bag(tmp_path / "made.bag", drive(60.0))
+    data = bytearray(path.read_bytes())
+    # A chunk of 60 s is 220 kB: what is written over are the lengths of some records in it.
+    middle = len(data) // 2
+    data[middle : middle + 3000] = b"\xff" * 3000
+    path.write_bytes(data)
+    log = BagLog(path)
+    [scan] = [each for each in log.channels if each.kind is Kind.SCAN]
+    found = read(log, scan)
+    assert 250 < len(found) < 300
+    assert found[-1][0] > BEGAN + 59.0
+    assert any("/scan: the bag is damaged" in note for note in log.notes)
+    log.close()
+
+
+@pytest.mark.parametrize("kept", [0.3, 0.9])
+def test_a_bag_that_was_cut_short_is_refused_with_what_to_do(tmp_path: Path, kept: float) -> None:
+    path = write_bag(tmp_path / "made.bag", drive(4.0))
+    data = path.read_bytes()
+    path.write_bytes(data[: int(kept * len(data))])
+    with pytest.raises(LogError, match="expected a whole bag, it cannot be opened"):
+        BagLog(path)
+
+
+def test_a_bag_without_an_index_is_refused_with_how_to_mend_it(tmp_path: Path) -> None:
+    path = write_bag(tmp_path / "made.bag", drive(2.0))
+    data = path.read_bytes()
+    at = data.index(b"index_pos=") + len(b"index_pos=")
+    path.write_bytes(data[:at] + bytes(8) + data[at + 8 :])
+    with pytest.raises(LogError, match="rosbag reindex"):
+        BagLog(path)
+
+
+def test_an_empty_bag_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(LogError, match="the bag is empty"):
+        BagLog(write_bag(tmp_path / "made.bag", [], with_mount=False))

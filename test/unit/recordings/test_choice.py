@@ -1,0 +1,95 @@
+"""Which channels are read when none is named, and errors for those that are not there."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from roomba.recordings.choice import Wanted, chosen
+from roomba.recordings.log import Channel
+from roomba.recordings.readings import Kind, LogError
+
+PATHS = [Path("a.bag"), Path("b.bag")]
+SCAN = Channel("/scan", Kind.SCAN, "sensor_msgs/LaserScan", 50)
+REAR = Channel("/rear_scan", Kind.SCAN, "sensor_msgs/LaserScan", 90)
+OTHER_SCAN = Channel("/two/scan", Kind.SCAN, "sensor_msgs/LaserScan", 99)
+ODOM = Channel("/odom", Kind.ODOMETRY, "nav_msgs/Odometry", 100)
+OTHER_ODOM = Channel("/two/odom", Kind.ODOMETRY, "nav_msgs/Odometry", 70)
+FUSED = Channel("/odometry/filtered", Kind.ODOMETRY, "nav_msgs/Odometry", 200)
+IMU = Channel("/imu", Kind.GYRO, "sensor_msgs/Imu", 300)
+CAMERA_IMU = Channel("/camera/imu", Kind.GYRO, "sensor_msgs/Imu", 900)
+IMAGE = Channel("/image", None, "sensor_msgs/Image", 7)
+TRUTH = Channel("/ground_truth/pose", Kind.TRUTH, "geometry_msgs/PoseStamped", 5)
+
+
+def names(channels: list[Channel], wanted: Wanted | None = None) -> list[str]:
+    return [each.name for each in chosen(PATHS, channels, wanted or Wanted()).channels]
+
+
+def test_the_usual_ones_are_taken_whatever_else_there_is() -> None:
+    channels = [IMAGE, REAR, SCAN, FUSED, ODOM, CAMERA_IMU, IMU, TRUTH]
+    assert names(channels) == ["/scan", "/odom", "/imu", "/ground_truth/pose"]
+    told = chosen(PATHS, channels, Wanted()).notes
+    assert told == (
+        "--scan /scan (50) is taken; there is /rear_scan (90) as well",
+        "--odom /odom (100) is taken; there is /odometry/filtered (200) as well",
+    )
+
+
+def test_of_unusual_ones_the_one_with_most_messages_is_taken() -> None:
+    assert names([REAR, FUSED]) == ["/rear_scan", "/odometry/filtered"]
+    assert names([REAR, REAR._replace(name="/front", messages=10), FUSED])[0] == "/rear_scan"
+
+
+def test_odometry_is_that_of_the_robot_whose_scans_are_read() -> None:
+    channels = [SCAN, OTHER_SCAN, ODOM, OTHER_ODOM]
+    assert names(channels, Wanted(scan="/two/scan")) == ["/two/scan", "/two/odom"]
+    assert names(channels, Wanted(scan="two/scan"))[0] == "/two/scan"
+    assert names(channels, Wanted(scan="scan")) == ["/scan", "/odom"]
+
+
+def test_of_a_log_odometry_is_what_comes_with_the_scans() -> None:
+    laser = Channel("FLASER", Kind.SCAN, "scans", 50)
+    channels = [
+        Channel("ODOM", Kind.ODOMETRY, "odometry", 500),
+        laser,
+        laser._replace(kind=Kind.ODOMETRY, type="odometry"),
+    ]
+    assert names(channels) == ["FLASER", "FLASER"]
+    assert names(channels, Wanted(odometry="ODOM")) == ["FLASER", "ODOM"]
+
+
+def test_a_gyro_of_an_unusual_name_is_only_told() -> None:
+    channels = [SCAN, ODOM, CAMERA_IMU]
+    assert names(channels) == ["/scan", "/odom"]
+    assert "--imu /camera/imu would be" in chosen(PATHS, channels, Wanted()).notes[0]
+    assert names(channels, Wanted(gyro="/camera/imu"))[2] == "/camera/imu"
+
+
+@pytest.mark.parametrize(
+    ("channels", "wanted", "said"),
+    [
+        ([ODOM, IMAGE], Wanted(), "expected sensor_msgs/LaserScan on /scan, there is none; no"),
+        ([SCAN, IMAGE], Wanted(), "expected nav_msgs/Odometry on /odom, there is none; no other"),
+        ([SCAN, ODOM, IMAGE], Wanted(scan="/image"), "on /image, it is sensor_msgs/Image; try"),
+        ([SCAN, ODOM, REAR], Wanted(scan="/none"), "try --scan /scan or --scan /rear_scan"),
+        ([SCAN, ODOM], Wanted(gyro="/imu"), "expected sensor_msgs/Imu on /imu, there is none"),
+    ],
+)
+def test_what_is_missing_is_told_with_what_there_is(
+    channels: list[Channel], wanted: Wanted, said: str
+) -> None:
+    with pytest.raises(LogError) as refusal:
+        chosen(PATHS, channels, wanted)
+    told = str(refusal.value)
+    assert told.startswith("a.bag, b.bag: expected ")
+    assert said in told
+    for channel in channels:
+        assert f"{channel.name} ({channel.type}, {channel.messages})" in told
+
+
+def test_of_very_many_channels_only_some_are_listed() -> None:
+    many = [IMAGE._replace(name=f"/image{number}") for number in range(100)]
+    with pytest.raises(LogError, match=r"/image29 .*and 70 more$"):
+        chosen(PATHS, many, Wanted())

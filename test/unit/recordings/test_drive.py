@@ -1,0 +1,202 @@
+"""Any number of logs as one drive: in the order of time, whatever order they have."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from fixtures.made_logs import (
+    BEGAN,
+    LASER,
+    PERIOD,
+    Item,
+    at,
+    changed,
+    drive,
+    write_bag,
+    write_bag_2,
+    write_carmen,
+)
+
+from roomba.geometry import Pose
+from roomba.recordings.choice import Wanted
+from roomba.recordings.drive import LoggedDrive
+from roomba.recordings.readings import LidarScan, Odometry, Reading
+
+SECONDS = 6.0
+
+
+def read(paths: Sequence[Path], wanted: Wanted | None = None) -> tuple[list[Reading], LoggedDrive]:
+    with LoggedDrive(paths, wanted) as recorded:
+        return list(recorded.readings()), recorded
+
+
+def mount_of(readings: Sequence[Reading]) -> list[float]:
+    [mount] = {
+        tuple(value.lidar.mount.tolist()) for _, value in readings if isinstance(value, LidarScan)
+    }
+    return list(mount)
+
+
+def assert_whole(readings: Sequence[Reading], items: Sequence[Item], within: float = 1e-6) -> None:
+    """All items are there, in the order of time, at the times at which they were measured."""
+    assert [stamp for stamp, _ in readings] == sorted(stamp for stamp, _ in readings)
+    for type_, topic in ((Odometry, "/odom"), (LidarScan, "/scan")):
+        stamps = [stamp for stamp, value in readings if isinstance(value, type_)]
+        expected = [item.stamp for item in items if item.topic == topic]
+        assert stamps == pytest.approx(expected, abs=within)
+
+
+def test_odometry_comes_before_the_scan_of_its_time(tmp_path: Path) -> None:
+    items = drive(SECONDS)
+    readings, recorded = read([write_bag(tmp_path / "made.bag", items)])
+    assert_whole(readings, items)
+    assert [type(value) for _, value in readings[:3]] == [Odometry, LidarScan, Odometry]
+    assert recorded.counts.words == f"{len(items)} messages: all in order"
+    assert recorded.notes == []
+    assert mount_of(readings) == [LASER.x, LASER.y, LASER.theta]
+
+
+def later(by: float) -> Callable[[int, Item], Item]:
+    return lambda _, item: at(item, item.stamp + by)
+
+
+@pytest.mark.parametrize(
+    ("change", "told", "within"),
+    [
+        (lambda n, item: at(item, item.stamp if n % 7 else 0.0), "5 without a stamp", 0.03),
+        (lambda n, item: at(item, item.stamp + (n % 6 == 3)), "5 of a clock that had jumped", 0.03),
+        (lambda n, item: at(item, 0.0), "30 without a stamp", 0.03),
+        (later(37.0), "all in order", 0.03),
+    ],
+)
+def test_stamps_of_scans_that_cannot_be_true_are_mended(
+    tmp_path: Path, change: Callable[[int, Item], Item], told: str, within: float
+) -> None:
+    items = drive(SECONDS)
+    path = write_bag(tmp_path / "made.bag", changed(items, "/scan", change))
+    readings, recorded = read([path])
+    assert_whole(readings, items, within)
+    assert told in recorded.counts.words
+
+
+def test_another_clock_is_told_with_its_difference(tmp_path: Path) -> None:
+    items = changed(drive(SECONDS), "/scan", later(-37.0))
+    _, recorded = read([write_bag(tmp_path / "made.bag", items)])
+    assert any("clock of /scan is -37.0 s off that of the odometry" in n for n in recorded.notes)
+
+
+def test_messages_that_overtook_each_other_are_sorted(tmp_path: Path) -> None:
+    items = drive(SECONDS)
+    held_up = changed(
+        items,
+        "/scan",
+        lambda n, item: replace(item, arrival=item.arrival + (1.7 * PERIOD if n % 5 == 2 else 0.0)),
+    )
+    readings, recorded = read([write_bag(tmp_path / "made.bag", held_up)])
+    assert_whole(readings, items)
+    assert "6 out of order (sorted)" in recorded.counts.words
+
+
+def test_what_was_recorded_twice_counts_once(tmp_path: Path) -> None:
+    items = drive(SECONDS)
+    twice = [each for item in items for each in (item, replace(item, arrival=item.arrival + 0.01))]
+    readings, recorded = read([write_bag(tmp_path / "made.bag", twice)])
+    assert_whole(readings, items)
+    assert f"{len(items)} of a time that another one has" in recorded.counts.words
+
+
+def test_a_bag_that_was_written_topic_by_topic_is_in_order(tmp_path: Path) -> None:
+    items = drive(SECONDS)
+    readings, _ = read([write_bag(tmp_path / "a.bag", sorted(items, key=lambda i: i.topic))])
+    assert_whole(readings, items)
+
+
+def test_several_logs_are_one_drive_in_whatever_order_they_are_named(tmp_path: Path) -> None:
+    items = drive(SECONDS)
+    parts = [items[:30], items[30:60], items[60:]]
+    paths = [
+        write_bag(tmp_path / "one.bag", parts[0]),
+        write_bag_2(tmp_path / "two", parts[1]),
+        write_bag(tmp_path / "three.bag", parts[2], with_mount=False),
+    ]
+    readings, recorded = read([paths[2], paths[0], paths[1]])
+    assert_whole(readings, items)
+    assert mount_of(readings) == [LASER.x, LASER.y, LASER.theta]
+    assert recorded.notes == []
+
+
+def test_odometry_and_scans_may_be_in_logs_of_their_own(tmp_path: Path) -> None:
+    items = drive(SECONDS)
+    paths = [
+        write_bag(tmp_path / f"{name}.bag", [item for item in items if item.topic == f"/{name}"])
+        for name in ("scan", "odom")
+    ]
+    readings, _ = read(paths)
+    assert_whole(readings, items)
+
+
+def test_logs_that_overlap_and_gaps_between_them_are_told(tmp_path: Path) -> None:
+    items = drive(12.0)
+    paths = [
+        write_bag(tmp_path / "a.bag", [i for i in items if i.stamp < BEGAN + 4.0]),
+        write_bag(tmp_path / "b.bag", [i for i in items if BEGAN + 3.0 <= i.stamp < BEGAN + 6.0]),
+        write_bag(tmp_path / "c.bag", [i for i in items if i.stamp >= BEGAN + 8.95]),
+    ]
+    readings, recorded = read(paths)
+    assert_whole(readings, [i for i in items if not 6.0 <= i.stamp - BEGAN < 8.95])
+    assert recorded.notes == [
+        "b.bag begins 0.9 s before the end of a.bag: what both have counts once",
+        "c.bag begins 3.1 s after the end of b.bag",
+    ]
+
+
+def test_where_the_lidar_is_can_be_told(tmp_path: Path) -> None:
+    path = write_bag(tmp_path / "made.bag", drive(1.0))
+    readings, _ = read([path], Wanted(laser=Pose(-0.04, 0.1, 1.5)))
+    assert mount_of(readings) == [-0.04, 0.1, 1.5]
+
+
+def test_without_transforms_the_lidar_is_in_the_middle_and_that_is_told(tmp_path: Path) -> None:
+    path = write_bag(tmp_path / "made.bag", drive(1.0), with_mount=False)
+    readings, recorded = read([path])
+    assert mount_of(readings) == [0.0, 0.0, 0.0]
+    assert any("taken to be in the middle" in note for note in recorded.notes)
+    told, recorded = read([path], Wanted(laser=Pose(0.2)))
+    assert mount_of(told) == [0.2, 0.0, 0.0]
+    assert recorded.notes == []
+
+
+def test_a_log_and_a_bag_of_the_same_drive_say_the_same(tmp_path: Path) -> None:
+    items = drive(SECONDS)
+    readings, recorded = read([write_carmen(tmp_path / "made.log", items)])
+    scans = [item.stamp for item in items if item.topic == "/scan"]
+    assert [stamp for stamp, value in readings if isinstance(value, LidarScan)] == pytest.approx(
+        scans
+    )
+    assert [stamp for stamp, value in readings if isinstance(value, Odometry)] == pytest.approx(
+        scans
+    )
+    assert mount_of(readings) == pytest.approx([LASER.x, LASER.y, LASER.theta], abs=1e-5)
+    assert any(
+        "--odom FLASER (30) is taken; there is ODOM (60) as well" in n for n in recorded.notes
+    )
+    readings, _ = read([write_carmen(tmp_path / "made.log", items)], Wanted(odometry="ODOM"))
+    assert_whole(readings, items, 1e-5)
+
+
+def test_what_is_refused_is_counted_with_its_first_reason(tmp_path: Path) -> None:
+    items = changed(
+        drive(SECONDS),
+        "/scan",
+        lambda n, item: replace(item, value=np.empty(0)) if n % 3 == 0 else item,
+    )
+    readings, recorded = read([write_bag(tmp_path / "made.bag", items)])
+    [(what, count)] = recorded.refused_scans.items()
+    assert (count, "0 beams" in what) == (10, True)
+    assert sum(isinstance(value, LidarScan) for _, value in readings) == 20
+    assert math.isclose(readings[-1].stamp, BEGAN + SECONDS - 0.5 * PERIOD, abs_tol=1e-6)

@@ -1,0 +1,189 @@
+"""Stamps that are missing, late, equal, out of order, of another clock, or that jump."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from roomba.recordings.stamps import StampCounts, delay_of, in_order, mended
+
+Floats = NDArray[np.float64]
+
+BEGAN, PERIOD, DELAY = 1.6e9, 0.1, 0.03
+
+
+def clean(count: int = 200) -> tuple[Floats, Floats]:
+    """Return stamps, s, and arrivals that tremble by some ms."""
+    stamps = BEGAN + PERIOD * np.arange(count)
+    return stamps, stamps + DELAY + np.random.default_rng(count).uniform(0.0, 0.02, count)
+
+
+def mend(stamps: Floats, arrivals: Floats) -> tuple[Floats, StampCounts]:
+    counts = StampCounts()
+    delay = delay_of(stamps, arrivals)
+    assert delay is not None
+    return mended(stamps, arrivals, delay, counts), counts
+
+
+def test_good_stamps_stay_as_they_are() -> None:
+    stamps, arrivals = clean()
+    times, counts = mend(stamps, arrivals)
+    assert np.array_equal(times, stamps)
+    assert counts == StampCounts(messages=200)
+    assert counts.words == "200 messages: all in order"
+
+
+@given(
+    st.lists(
+        st.tuples(st.integers(0, 199), st.sampled_from((1.0, 0.7, 5.0))),
+        max_size=12,
+        unique_by=lambda jump: jump[0],
+    )
+)
+@settings(max_examples=60, deadline=None)
+def test_stamps_that_jump_ahead_come_back(jumps: list[tuple[int, float]]) -> None:
+    stamps, arrivals = clean()
+    wrong = stamps.copy()
+    for at, by in jumps:
+        wrong[at] += by
+    times, counts = mend(wrong, arrivals)
+    assert np.abs(times - stamps).max() < 0.05
+    assert counts.jumped == len(jumps)
+
+
+@given(st.integers(0, 199), st.sampled_from((-0.6, -1.0, -3.0)))
+@settings(max_examples=40, deadline=None)
+def test_a_stamp_that_jumps_back_comes_back(at: int, by: float) -> None:
+    stamps, arrivals = clean()
+    wrong = stamps.copy()
+    wrong[at] += by
+    times, counts = mend(wrong, arrivals)
+    assert np.abs(times - stamps).max() < 0.05
+    assert counts.jumped == 1
+
+
+@given(st.integers(1, 150), st.integers(5, 40))
+@settings(max_examples=40, deadline=None)
+def test_a_message_that_comes_late_keeps_its_stamp(at: int, later: int) -> None:
+    stamps, arrivals = clean()
+    order = [*range(at), *range(at + 1, at + later), at, *range(at + later, 200)]
+    times, counts = mend(stamps[order], arrivals)
+    assert np.array_equal(times, stamps[order])
+    assert counts == StampCounts(messages=200, out_of_order=1)
+
+
+@given(st.integers(5, 80), st.integers(5, 80), st.sampled_from((-2.0, 1.0, 3600.0)))
+@settings(max_examples=40, deadline=None)
+def test_a_clock_that_is_set_on_the_way_comes_back(first: int, length: int, by: float) -> None:
+    stamps, arrivals = clean()
+    wrong = stamps.copy()
+    wrong[first : first + length] += by
+    times, counts = mend(wrong, arrivals)
+    assert np.abs(times - stamps).max() < 0.05
+    assert counts.jumped == length
+
+
+def test_messages_that_are_held_up_and_come_at_once_keep_their_stamps() -> None:
+    stamps, arrivals = clean()
+    arrivals[50:90] = np.maximum(arrivals[50:90], arrivals[90])
+    times, counts = mend(stamps, arrivals)
+    assert np.array_equal(times, stamps)
+    assert counts.jumped == 0
+
+
+def test_arrivals_that_all_are_the_same_say_nothing() -> None:
+    stamps, _ = clean()
+    times, counts = mend(stamps, np.full(200, 7.0))
+    assert np.array_equal(times, stamps)
+    assert counts.jumped == 0
+
+
+def test_a_pause_of_the_recording_is_no_jump() -> None:
+    stamps, arrivals = clean()
+    stamps[100:] += 60.0
+    arrivals[100:] += 60.0
+    times, counts = mend(stamps, arrivals)
+    assert np.array_equal(times, stamps)
+    assert counts.jumped == 0
+
+
+@pytest.mark.parametrize("missing", [0.0, np.nan, -1.0])
+def test_messages_without_stamps_go_by_the_time_of_recording(missing: float) -> None:
+    stamps, arrivals = clean()
+    wrong = stamps.copy()
+    wrong[::7] = missing
+    times, counts = mend(wrong, arrivals)
+    assert np.abs(times - stamps).max() < 0.02
+    assert counts.without == len(wrong[::7])
+    assert delay_of(np.full(5, missing), arrivals[:5]) is None
+
+
+def test_a_channel_without_any_stamp_goes_by_the_delay_of_the_odometry() -> None:
+    stamps, arrivals = clean()
+    counts = StampCounts()
+    times = mended(np.zeros(200), arrivals, DELAY, counts)
+    assert np.abs(times - stamps).max() < 0.02
+    assert counts.without == 200
+
+
+def test_stamps_of_another_clock_are_shifted_and_keep_their_steps() -> None:
+    stamps, arrivals = clean()
+    counts = StampCounts()
+    times = mended(stamps - 37.0, arrivals, DELAY, counts)
+    assert np.abs(times - stamps).max() < 0.02
+    assert np.diff(times) == pytest.approx(np.diff(stamps), abs=1e-6)
+    assert counts == StampCounts(messages=200)
+
+
+def test_a_clock_that_counts_whole_seconds_is_not_gone_by() -> None:
+    stamps, arrivals = clean()
+    times, counts = mend(np.floor(stamps), arrivals)
+    assert np.diff(times).min() > 0.05
+    assert counts.coarse == 200
+
+
+@given(st.permutations(range(60)))
+@settings(max_examples=40, deadline=None)
+def test_what_is_out_of_order_is_sorted_and_counted(order: list[int]) -> None:
+    # Within a few messages, as packets overtake each other.
+    stamps = BEGAN + PERIOD * np.array(sorted(range(60), key=lambda at: at + order[at] / 20.0))
+    arrivals = BEGAN + DELAY + PERIOD * np.arange(60)
+    times, counts = mend(stamps, arrivals)
+    places = in_order(times, np.zeros(60, np.int64), np.zeros(60, np.int64), counts)
+    late = sum(stamp < max(stamps[: at + 1]) for at, stamp in enumerate(stamps))
+    assert counts.out_of_order == late
+    assert (np.diff(times[places]) > 0.0).all()
+    assert len(places) == 60
+
+
+@given(
+    st.lists(st.tuples(st.integers(0, 30), st.integers(0, 2)), min_size=1, max_size=80),
+)
+@settings(max_examples=80, deadline=None)
+def test_of_a_time_each_channel_counts_once_and_the_lowest_rank_first(
+    messages: list[tuple[int, int]],
+) -> None:
+    times = np.array([0.1 * time for time, _ in messages])
+    channels = np.array([channel for _, channel in messages])
+    ranks = 2 - channels
+    counts = StampCounts()
+    order = in_order(times, channels, ranks, counts)
+    rows = [(times[at], ranks[at]) for at in order]
+    assert rows == sorted(set(zip(times.tolist(), ranks.tolist(), strict=True)))
+    assert counts.equal == len(messages) - len(rows)
+    # Of equal ones the first that was recorded is the one that counts.
+    firsts = {pair: at for at, pair in reversed(list(enumerate(messages)))}
+    assert {messages[at]: at for at in order} == firsts
+
+
+def test_counts_are_told_in_a_line() -> None:
+    counts = StampCounts(10, without=1, jumped=2, coarse=3, out_of_order=4, equal=5)
+    counts.add(StampCounts(5, equal=1))
+    assert counts.words == (
+        "15 messages: 1 without a stamp (by the time of recording), 2 of a clock that had jumped "
+        "(shifted back), 3 of a coarse clock (by the time of recording), 4 out of order (sorted), "
+        "6 of a time that another one has (left out)"
+    )
