@@ -34,6 +34,11 @@ _MOST_POINTS: Final = 250
 _FULL: Final = 255
 
 
+def is_in_reach(points: Floats) -> bool:
+    """Whether some of the points of a place, [n, 2 or more], are near enough to be found."""
+    return bool((np.hypot(points[:, 0], points[:, 1]) < _REACH).any())
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class CorrelativeMatch:
     """The best pose of a window, float64 [3], and the mean likelihood of the points there, 0..1."""

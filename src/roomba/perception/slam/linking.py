@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from roomba.configuration.mapping import MappingConfig
 from roomba.perception.matching.match_kernels import invert
-from roomba.perception.slam.correlative import CorrelativeMatcher
+from roomba.perception.slam.correlative import CorrelativeMatcher, is_in_reach
 from roomba.perception.slam.follow_kernels import in_plane, last_scale
 from roomba.perception.slam.pose_graph import Link, relative_to
 from roomba.perception.slam.submap import Submap
@@ -105,6 +105,8 @@ class Linker:
         self, parent: int, there: Floats, cloud: Floats, thought: Floats, window: float
     ) -> Floats | None:
         """Return about where points lie in a submap, [3], by a search of a wide window."""
+        if not is_in_reach(there):
+            return None
         matcher = self._matchers.pop(parent, None) or CorrelativeMatcher(there)
         self._matchers[parent] = matcher
         if len(self._matchers) > _KEPT:

@@ -22,7 +22,7 @@ from roomba.perception.localization.dead_reckoning import DeadReckoning
 from roomba.perception.localization.estimate import Estimate, Knowledge
 from roomba.perception.matching.range_noise import RangeNoise
 from roomba.perception.matching.scan_view import LidarModel
-from roomba.perception.slam.correlative import CorrelativeMatcher
+from roomba.perception.slam.finding_back import FindingBack
 from roomba.perception.slam.follow_kernels import LEAST_POINTS, beyond, is_apart
 from roomba.perception.slam.latency import Latency
 from roomba.perception.slam.mapper_state import KeptSubmap, LidarNumbers, MapperState
@@ -40,17 +40,6 @@ _SPARE: Final = 4.0
 """m; the farthest that a robot gets from the beginning of a submap."""
 _REDRAWN_TURN: Final = 0.002
 """rad; a submap that turned more is drawn anew."""
-_SEARCHED_AFTER: Final = 3
-"""Scans that confirm nothing; then it is looked farther around."""
-_SEARCHED_WAY: Final = 0.5
-_SEARCHED_TURN: Final = 0.8
-"""m, rad; so far to each side,"""
-_SEARCHED_SHARE: Final = 0.2
-"""and by this share of what was driven and turned since a scan confirmed the pose."""
-_SEARCHED_LIKELIHOOD: Final = 0.5
-"""Mean likelihood of points, 0..1, from which a pose is looked at closely."""
-_SEARCHED_STRIDE: Final = 2
-"""Each such point of the keyframes is looked at: neighbours say the same."""
 _GIVEN_UP_AFTER: Final = 7
 """Scans that show enough and confirm nothing, searched for twice."""
 _PIECE_WAY: Final = 0.6
@@ -92,7 +81,7 @@ class Mapper:
         self.at_scan = start
         self._noise = RangeNoise()
         self._latency = Latency()
-        self._misses = 0
+        self._finding_back = FindingBack()
         self._finished = -1
         self._lidar: LidarModel | None = None
         self._phase = (0.0, 0.0)
@@ -155,9 +144,7 @@ class Mapper:
             self._begin_piece()
         before = self._follower.here if self._follower.is_sure else None
         self._follower.follow(reckoned, points, self._surfels)
-        self._count_misses(len(points))
-        if self._misses and self._misses % _SEARCHED_AFTER == 0:
-            self._search_around(points)
+        self._find_back(stamp, points)
         self._learn_latency(stamp, before)
         if self._is_keyframe(len(points)):
             self._keep(points)
@@ -258,10 +245,12 @@ class Mapper:
 
     def occupancy(self) -> OccupancyMap:
         """Return the map as it is now; raises ValueError before the first scan."""
+        self._redraw_moved()
         return self._sheet.occupancy(self._config.occupied_share, self._config.occupied_beams)
 
     def occupancy_around(self, x: float, y: float, reach: float) -> OccupancyMap:
         """Return what lies up to ``reach`` m off a place of the map as it is now."""
+        self._redraw_moved()
         config = self._config
         return self._sheet.around(x, y, reach, config.occupied_share, config.occupied_beams)
 
@@ -281,26 +270,14 @@ class Mapper:
         self._finished = self.version
         return self.occupancy()
 
-    def _count_misses(self, points: int) -> None:
-        """Count the scans in a row that show enough and confirm nothing."""
-        if self._follower.is_sure:
-            self._misses = 0
-        elif points >= LEAST_POINTS and self.version:
-            self._misses += 1
-
-    def _search_around(self, points: Floats) -> None:
-        """Look for where a scan fits in a wide window around where it was thought to be."""
+    def _find_back(self, stamp: float, points: Floats) -> None:
+        """Look farther around where scans do not fit."""
+        self._finding_back.saw(stamp, self._follower, len(points))
+        if not self._finding_back.is_due or not self.version:
+            return
         frames = self._graph.keyframes_beside([*self._beside, len(self._graph.submaps) - 1])
         clouds = [moved(frame.points, pose) for frame, pose in frames]
-        if not clouds or len(points) < LEAST_POINTS:
-            return
-        around = CorrelativeMatcher(np.concatenate(clouds)[::_SEARCHED_STRIDE])
-        follower = self._follower
-        window = _SEARCHED_WAY + _SEARCHED_SHARE * follower.unsure_way
-        turn = min(_SEARCHED_TURN + _SEARCHED_SHARE * follower.unsure_turn, math.pi)
-        found = around.best(points, follower.here, window, turn, _SEARCHED_LIKELIHOOD)
-        if found is not None:
-            self._follower.try_at(found.pose, points, self._surfels)
+        self._finding_back.search(self._follower, points, clouds, self._surfels)
 
     def _learn_latency(self, stamp: float, before: Floats | None) -> None:
         """Learn how late scans are from where this one and the one ``before`` were taken."""
@@ -314,7 +291,7 @@ class Mapper:
     def _is_without_hold(self, points: int) -> bool:
         """Whether it has gone on for so long unconfirmed that the map must come to where it is."""
         follower = self._follower
-        if self._misses < _GIVEN_UP_AFTER or points < LEAST_POINTS:
+        if self._finding_back.misses < _GIVEN_UP_AFTER or points < LEAST_POINTS:
             return False
         return follower.unsure_way > _PIECE_WAY or follower.unsure_turn > _PIECE_TURN
 
@@ -324,7 +301,7 @@ class Mapper:
         self._graph.begin_piece(self._follower.here, self._follower.way)
         self._enter_newest([])
         self._follower.jump()
-        self._misses = 0
+        self._finding_back.begin_again()
 
     def _is_keyframe(self, points: int) -> bool:
         keyframes = self._graph.newest.keyframes
@@ -365,27 +342,34 @@ class Mapper:
             self._surfels.add(np.asarray(frame.points, np.float64), pose)
 
     def _close_submap(self) -> None:
-        """Link the newest submap, and draw those elsewhere that moved thereby."""
+        """Link the newest submap: others may move thereby, and the map with them."""
         self._graph.close()
-        shift = np.abs(relative_to(self._drawn, self._graph.poses))
-        far = shift[:, :2].max(axis=1) > self._config.redrawn_shift
-        self._redraw_some(np.flatnonzero(far | (shift[:, 2] > _REDRAWN_TURN)).tolist())
+        self.version += bool(self._moved())
 
     # ---------------------------------------------------------------- drawing
 
     def _draw(self, frame: Keyframe, pose: Floats) -> None:
         self._sheet.draw(frame.points, self._beams.mount[:2], pose, self._beams.farthest)
 
-    def _redraw_some(self, numbers: list[int]) -> None:
-        """Draw the keyframes of some submaps where they are thought to be now."""
-        for number in numbers:
+    def _moved(self) -> list[int]:
+        """Return the numbers of the submaps that lie elsewhere than they are drawn."""
+        shift = np.abs(relative_to(self._drawn, self._graph.poses))
+        far = shift[:, :2].max(axis=1) > self._config.redrawn_shift
+        numbers: list[int] = np.flatnonzero(far | (shift[:, 2] > _REDRAWN_TURN)).tolist()
+        return numbers
+
+    def _redraw_moved(self) -> None:
+        """Draw the keyframes of submaps that moved where they are thought to be now.
+
+        Only when the map is asked for: on a long drive most of them move again and again.
+        """
+        for number in self._moved():
             submap, pose = self._graph.submaps[number], self._graph.poses[number]
             before, after = submap.poses(self._drawn[number]), submap.poses(pose)
             for frame, there, here in zip(submap.keyframes, before, after, strict=True):
                 self._sheet.erase(frame.points, self._beams.mount[:2], there)
                 self._draw(frame, here)
             self._drawn[number] = pose
-        self.version += bool(numbers)
 
     def _redraw(self) -> None:
         """Draw all keyframes into new occupancy counts, where they are thought to be now."""

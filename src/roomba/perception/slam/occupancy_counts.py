@@ -16,7 +16,9 @@ Floats = NDArray[np.float64]
 Offsets = NDArray[np.float32]
 
 _STEP: Final = 5.0
-"""m; it grows by so much at a time."""
+_SHARE: Final = 0.25
+"""m; it grows by so much at a time, and by this share of its size if that is more: copying a large
+one takes long."""
 _NONE: Final = 2**40
 """The first row and column with counts, as long as there are none."""
 _MARGIN: Final = 1
@@ -108,7 +110,7 @@ class OccupancyCounts:
         rows, columns = hits.shape
         if rows == 0:
             self._row, self._column = row, column
-        step = int(_STEP / size)
+        step = max(int(_STEP / size), int(_SHARE * max(rows, columns)))
         below = -(-max(self._row - row, 0) // step) * step
         left = -(-max(self._column - column, 0) // step) * step
         above = -(-max(last_row + 1 - self._row - rows, 0) // step) * step

@@ -82,12 +82,13 @@ def inverse(pose: Floats) -> Floats:
     return undone
 
 
-def optimised(poses: Floats, links: list[Link]) -> Floats:
+def optimised(poses: Floats, links: list[Link], known: int = 0) -> Floats:
     """Return ``poses``, float64 [n, 3], moved so that they agree best with the links.
 
-    Raises ValueError for a link between poses that do not exist.
+    With the first ``known`` ones they agree as well as they can already. Raises ValueError for a
+    link between poses that do not exist.
     """
-    if not links:
+    if len(links) <= known:
         return poses.copy()
     parents = np.array([link.parent for link in links])
     children = np.array([link.child for link in links])
@@ -101,7 +102,7 @@ def optimised(poses: Floats, links: list[Link]) -> Floats:
     for _ in range(_ROUNDS):
         error, predicted = _errors(result, parents, children, measured)
         square = (error[:, None] @ information @ error[:, :, None])[:, 0, 0]
-        worst = float(square[doubted].max()) if doubted.any() else 0.0
+        worst = float(square[known:][doubted[known:]].max(initial=0.0))
         tolerance = max(_DOUBTED, min(_STRICTER * tolerance, worst))
         weight = np.where(doubted, (tolerance / (tolerance + square)) ** 2, 1.0)
         weighted = information * weight[:, None, None]

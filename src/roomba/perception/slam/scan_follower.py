@@ -107,13 +107,19 @@ class ScanFollower:
         """Scans since one confirmed the pose."""
         return int(self._row["misses"])
 
-    def try_at(self, pose: Floats, points: Floats, surfels: SurfelGrid) -> None:
-        """Be at ``pose`` [3] if a scan, points [n, 4], confirms it; else stay where it was."""
+    def try_at(
+        self, pose: Floats, points: Floats, surfels: SurfelGrid, better: float = 1.0
+    ) -> None:
+        """Be at ``pose`` [3] if a scan, points [n, 4], confirms it; else stay where it was.
+
+        Where a scan confirms both, it must agree ``better`` times as well with ``pose``.
+        """
         before = self.state.copy()
+        least = better * self.met * self.close if self.is_sure else 0.0
         self._row["here"], self._row["spread"] = pose, _FOUND_SPREAD
         reckoned = self._row["reckoned"].copy()
         follow(self.state, self._reckoning.belief, reckoned, surfels.arrays, points, len(points))
-        if not self.is_sure:
+        if not self.is_sure or self.met * self.close < least:
             self.state[:] = before
 
     def _go_on_from(self, here: Floats) -> None:

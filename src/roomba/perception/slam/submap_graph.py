@@ -99,8 +99,9 @@ class SubmapGraph:
         """Link the newest submap to all that show the same walls, and let all agree."""
         child = len(self.submaps) - 1
         self.newest.close(_CLOUD)
+        known = len(self.links)
         self.links += self._links_of(child, self.links)
-        self.poses = optimised(self.poses, self.links)
+        self.poses = optimised(self.poses, self.links, known)
 
     def refine(self) -> None:
         """Look for all links anew, near where submaps lie by the present ones."""
