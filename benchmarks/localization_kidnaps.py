@@ -108,7 +108,7 @@ def _carry(
 
 def _watch(robot: LocalizedRobot, manner: Manner, wander: Wander) -> Try:
     """Let it look around as it wants to, or go about, until it has known its pose for a while."""
-    search = SearchDrive(robot.config.body)
+    search = SearchDrive(robot.config.body, robot.config.looking_around)
     start = robot.simulator.time
     found = noticed = math.inf
     is_wrong = False

@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from typing import Final
 
+LONGEST_TICK: Final = 2.0
+"""s; a clock that shows more between two ticks of the robot was set."""
 _ROUNDING: Final = 1e-6
 """s; two times since 1970, as floating-point numbers, differ by as much from what they should."""
 

@@ -68,6 +68,36 @@ class DockingConfig(Frozen):
     """From the station; a robot that is farther away is undocked already."""
     undock_time_limit: Positive = 10.0
 
+    place_tolerance: Positive = 0.08
+    """Arriving at the staging place, or at one from which it looks for beams."""
+    turn_in_place_angle: Annotated[float, Field(gt=0.0, lt=1.6)] = 0.5
+    """rad; when its heading is wrong by more, it turns on the spot."""
+    shortest_reach: Positive = 0.15
+    """Look-ahead for aiming at the middle of the beams; it is longer while the robot is far."""
+    most_aside: Annotated[float, Field(gt=0.0, lt=1.6)] = 0.5
+    """rad; the largest angle to the straight way at which it aims; smaller when it is near."""
+    least_aside: Positive = 0.09
+    """rad; the same angle at the end: within what the contacts tolerate."""
+    narrow: Ratio = 0.3
+    """Share of the way left that it may be aside; beyond it drives to the staging place first."""
+    shortest_way: Positive = 0.2
+    """With less way left it cannot get straight any more."""
+    side_step: Positive = 0.15
+    """So far it backs off from what it meets while it looks for beams."""
+    standstill_way: Positive = 0.02
+    """A robot that moved less stands still."""
+    standstill_turn: Positive = 0.1
+    """rad; the same of turning."""
+    longest_step: Positive = 0.3
+    """A larger change of the believed place in a tick is a new belief."""
+    farthest_off: Positive = 0.5
+    """Beams that say that the belief is wrong by more are of another place, or another time."""
+    heading_doubt: Positive = 0.1
+    """rad; possible error of the heading: a robot that long sees one beam alone is farther
+    aside."""
+    late_beams: Positive = 0.3
+    """s; after a new belief, beams may still be those that were seen before it."""
+
 
 def load_docking_config(path: Path) -> DockingConfig:
     """Read ``configuration/docking.yaml`` or a file like it; raises ConfigError with the reason."""

@@ -7,9 +7,67 @@ from typing import Annotated
 
 from pydantic import Field
 
-from roomba.configuration.frozen import Frozen, Positive, Ratio, load_config
+from roomba.configuration.frozen import Frozen, NotNegative, Positive, Ratio, load_config
 from roomba.configuration.robot import BodyConfig
 from roomba.errors import ConfigError
+
+Share = Annotated[float, Field(ge=-1.0, le=1.0, allow_inf_nan=False)]
+Count = Annotated[int, Field(ge=1)]
+Move = tuple[Share, Share, Positive]
+"""Speed and turning speed as shares of those of a recovery, and for how many s."""
+Moves = Annotated[tuple[Move, ...], Field(min_length=1)]
+
+
+class RecoveryConfig(Frozen):
+    """Getting free: motions that are tried one after the other while there is no progress."""
+
+    turning_speed: Positive = 1.5
+    """rad/s."""
+    moves: Annotated[tuple[Moves, ...], Field(min_length=1)] = (
+        ((-1.0, 0.0, 1.0), (0.0, 1.0, 0.8)),
+        ((-1.0, 0.0, 1.0), (0.0, -1.0, 1.6)),
+        ((1.0, 0.0, 0.6), (-1.0, 0.6, 1.2), (-1.0, -0.6, 1.2)),
+        ((0.0, 1.0, 2.1), (1.0, 0.0, 1.0)),
+        ((0.0, -1.0, 4.2), (1.0, 0.0, 1.0)),
+    )
+    """For each attempt its moves: shares of ``driving.backing_speed`` and of ``turning_speed``, -1
+    to 1, and s."""
+    freed_way: Positive = 0.03
+    """m; a robot that moved farther in an attempt is free."""
+    freed_turn: Positive = 0.3
+    """rad; the same of turning."""
+
+
+class GivingWayConfig(Frozen):
+    """Making room for a person who waits for the robot to go: m."""
+
+    beside: Positive = 1.2
+    """What stands nearer to the robot may want to pass."""
+    room: Positive = 1.2
+    """The distance to it at which the robot goes no farther aside."""
+    least_room: Positive = 0.5
+    """The least distance that lets others pass; with less the robot stays."""
+    per_way: NotNegative = 0.25
+    """m of room that a metre of way is worth: it does not squeeze past what it makes room for."""
+    farthest: Positive = 3.0
+    """The longest way aside."""
+
+
+class WaitingConfig(Frozen):
+    """Waiting where no way leads on, until one opens: s."""
+
+    most_ways_home: Annotated[int, Field(ge=0)] = 5
+    """Attempts to find a way home before it begins to wait."""
+    first_waits: Annotated[int, Field(ge=0)] = 2
+    """The first so many waits are short: people pass sooner than doors are opened."""
+    first_wait: Positive = 10.0
+    """The length of each of them."""
+    wait: Positive = 30.0
+    """The length of the others."""
+    look_period: Positive = 2.0
+    """From one look whether the way is clear to the next."""
+    most_waits: Count = 41
+    """After so many it gives up: twenty minutes in all."""
 
 
 class DrivingConfig(Frozen):
@@ -26,6 +84,31 @@ class DrivingConfig(Frozen):
     progress_timeout: Positive = 5.0
     most_recoveries: Annotated[int, Field(ge=1)] = 6
     felt_memory: Positive = 180.0
+    mean_speed: Annotated[float, Field(gt=0.0, le=1.0)] = 0.65
+    """Mean speed of a clean as a share of ``speed``, by which the time to go is told."""
+    least_progress: Positive = 0.02
+    """m along the path; less is no progress."""
+    leaves_trouble: Positive = 0.5
+    """m of progress after which earlier recoveries count no more."""
+    most_futile: Count = 3
+    """New paths from one place; after these it tries recoveries."""
+    touch_radius: Positive = 0.10
+    """m; touches from places nearer to each other are of the same thing."""
+    most_touches: Count = 4
+    """Consecutive touches of the same thing, after which a path is given up."""
+    lasting_radius: Positive = 0.06
+    """m; what is felt again from a place nearer than this is a lasting obstacle."""
+    lasting_memory: Positive = 1800.0
+    """s; how long a lasting obstacle is remembered."""
+    gap_spare: NotNegative = 0.06
+    """m; more room than the body needs that a gap between two things must have."""
+    most_nudge: Positive = 0.08
+    """m; a path along a thing is moved aside by this at most; more is left to the planner."""
+    out_of_pocket: Positive = 1.0
+    """m of the way home, after which the robot is out of where it was shut in."""
+    recovery: RecoveryConfig = RecoveryConfig()
+    giving_way: GivingWayConfig = GivingWayConfig()
+    waiting: WaitingConfig = WaitingConfig()
 
 
 class CleaningConfig(Frozen):
@@ -36,6 +119,28 @@ class CleaningConfig(Frozen):
     least_while_growing: Positive = 0.5
     most_rounds: Annotated[int, Field(ge=0)] = 4
     dirty_times: Positive = 6.0
+    least_dirt: Positive = 500.0
+    """Grains/m2; floor with fewer of them is not dirty."""
+    little_gain: Ratio = 0.05
+    """Share of what was missed; a round that gains less of it ends the retries."""
+    least_area_to_retry: Positive = 0.5
+    """m2; smaller floor out of reach is not tried again."""
+    least_for_round: Positive = 0.02
+    """m2; a patch as large as this is worth another round, though ``enough`` is clean."""
+    most_ways_out: Annotated[int, Field(ge=0)] = 40
+    """Times, in a clean, that it leaves a place where it is shut in, or waits."""
+    most_cut_offs: Annotated[int, Field(ge=0)] = 12
+    """Paths that were given up and do not count as rounds, in a clean."""
+    replan_period: Positive = 20.0
+    """s; the least time between two new plans because of things on the path."""
+    most_replans: Annotated[int, Field(ge=0)] = 40
+    """Such plans in a clean."""
+    least_way_to_replan: Positive = 8.0
+    """m; with less of it left a path is driven to its end."""
+    spot_size: Positive = 1.5
+    """m; side of the square around a spot."""
+    detours: Annotated[float, Field(ge=1.0, allow_inf_nan=False)] = 1.2
+    """Length of a clean's way as a multiple of floor by width of the tool, for its energy."""
 
 
 class ExploringConfig(Frozen):
@@ -46,6 +151,14 @@ class ExploringConfig(Frozen):
     tight_clearance: Positive = 0.02
     look_first: Positive = 10.0
     most_stuck: Annotated[int, Field(ge=0)] = 3
+    viewpoint_tolerance: Positive = 0.12
+    """m; as near to a viewpoint it has seen all that is to be seen from there."""
+    frontier_radius: Positive = 0.25
+    """m; around the middle of a frontier: whether something of it is left is looked up there."""
+    same_frontier: Positive = 0.3
+    """m; frontiers nearer to one that was given up are the same."""
+    map_wait: Positive = 120.0
+    """s; how long a clean waits for the whole map when all is seen."""
 
 
 class EnergyConfig(Frozen):
@@ -56,6 +169,12 @@ class EnergyConfig(Frozen):
     per_metre: Positive = 0.02
     full_enough: Ratio = 0.90
     least_to_start: Ratio = 0.15
+    measured_after: Positive = 10.0
+    """m of way, after which the robot goes by its own consumption, not by ``per_metre``."""
+    empty: Ratio = 0.005
+    """With less than this share of the capacity the drive stops by itself."""
+    check_period: Positive = 5.0
+    """s; from one look at how far it is home to the next."""
 
 
 class MissionConfig(Frozen):

@@ -29,6 +29,9 @@ UNKNOWN: Final = "unknown; what is true of the simulated robot alone stands unde
 """What is said of a key that the robot's file does not have."""
 STANDSTILL_WITHIN: Final = 0.5
 """s; the robot stands so soon after its commands end, for whatever reason."""
+Angles = Annotated[
+    tuple[Annotated[float, Field(ge=-math.pi, le=math.pi)], ...], Field(min_length=1)
+]
 
 
 class BodyConfig(Frozen):
@@ -44,6 +47,17 @@ class BodyConfig(Frozen):
     max_deceleration: Positive = 2.0
     max_angular_acceleration: Positive = 7.7
     command_timeout: Positive = 0.15
+    backing_speed: Positive = 0.1
+    """m/s; away from a cliff, and from what the bumper met."""
+    cliff_backing_time: Positive = 2.5
+    """s; then it stands: no sensor looks behind, and a cliff sensor may be dirty."""
+    bumper_backing_time: Positive = 0.6
+    """s; the longest time that it backs off from what the bumper met."""
+    bumper_side: Angles = (0.35, 0.95)
+    """rad; where on the left half of the rim a press of that half may come from; the right half is
+    its mirror image."""
+    bumper_middle: Angles = (-0.45, 0.0, 0.45)
+    """rad; the same of a press of both halves."""
 
     @property
     def radius(self) -> float:
@@ -209,6 +223,52 @@ class WalkConfig(Frozen):
     max_replans: Annotated[int, Field(ge=0)] = 12
     max_ways_around: Annotated[int, Field(ge=0)] = 60
     blocked_wait: Positive = 10.0
+    look_period: Positive = 1.0
+    """s; from one look for a way around, while it waits, to the next."""
+    off_path: Positive = 0.35
+    """m; farther off its path the robot was carried or pushed, and plans anew."""
+    carried: Positive = 1.0
+    """m; a robot that finds itself farther from its last known place was carried: what it
+    remembers of things is of another place. Of cleans as well."""
+    least_progress: Positive = 0.05
+    """m; coming nearer to the goal by less is no progress."""
+    standstill: Positive = 0.03
+    """m/s; slower than this the robot stands."""
+    sharp_corner: Annotated[float, Field(gt=0.0, lt=math.pi / 2)] = 0.3
+    """rad; at a sharper corner the setpoint waits for the robot; softer ones are cut."""
+    corner_reached: Positive = 0.04
+    """m; the setpoint goes on when the robot is as near to a sharp corner."""
+    braking: Positive = 0.4
+    """m/s2; before corners."""
+    slowest: Positive = 0.08
+    """m/s; never slower than this before the goal."""
+
+
+class LookingAroundConfig(Frozen):
+    """Driving by what is in sight while the place is not known: m, m/s, rad, rad/s, s."""
+
+    speed: Positive = 0.25
+    turning_speed: Positive = 1.5
+    backing_speed: Positive = 0.1
+    """Away from what it touched."""
+    backing_time: Positive = 0.8
+    clearance: Positive = 0.06
+    """Between the body and all that is in sight."""
+    tight_clearance: Positive = 0.02
+    """The same where there is no other way to go."""
+    longest_leg: Positive = 1.5
+    shortest_leg: Positive = 0.15
+    """Shorter legs are driven only where there is no longer one."""
+    arrival_tolerance: Positive = 0.02
+    """So near to where it goes, or to what is in its way, a leg has ended."""
+    aimed: Positive = 0.08
+    """Tolerance of the heading before it drives."""
+
+    @model_validator(mode="after")
+    def _legs_in_order(self) -> LookingAroundConfig:
+        if self.shortest_leg > self.longest_leg:
+            raise ValueError(f"expected shortest_leg of at most longest_leg ({self.longest_leg})")
+        return self
 
 
 class TrackingConfig(Frozen):
@@ -223,8 +283,18 @@ class TrackingConfig(Frozen):
     corner_turning: Positive = 2.0
     corner_acceleration: Positive = 5.0
     slowest_corner: Positive = 0.06
+    longest_blend: Positive = 0.10
+    """m; so far before and after a soft corner the heading changes at most."""
     aimed: Positive = 0.01
     arrival_tolerance: Positive = 0.003
+    turn_in_place_angle: Annotated[float, Field(gt=0.0, lt=math.pi / 2)] = 0.6
+    """rad; with a larger error of the heading it turns on the spot first."""
+    turning_delay: NotNegative = 0.06
+    """s; until the drive has the turning speed that it is told."""
+    late_ticks: NotNegative = 2.0
+    """Ticks; by so much the drive is expected to brake late."""
+    slowest: Positive = 0.015
+    """m/s and rad/s; slower than this drives do not turn reliably."""
 
 
 class TimingConfig(Frozen):
@@ -272,6 +342,7 @@ class RobotConfig(Frozen):
     localization: LocalizationConfig = LocalizationConfig()
     control: ControlConfig = ControlConfig()
     walk: WalkConfig = WalkConfig()
+    looking_around: LookingAroundConfig = LookingAroundConfig()
     tracking: TrackingConfig = TrackingConfig()
     timing: TimingConfig = TimingConfig()
 

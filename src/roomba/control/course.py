@@ -16,8 +16,6 @@ Floats = NDArray[np.float64]
 
 SHORTEST_LEG: Final = 1e-4
 """m; points nearer to the one before are left out."""
-_LONGEST_BLEND: Final = 0.10
-"""m; so far before and after a corner the heading changes at most."""
 _STRAIGHT: Final = 1e-6
 """rad."""
 
@@ -40,16 +38,16 @@ def course_of(points: Floats, config: TrackingConfig) -> Course:
     through, halves = np.zeros(len(points)), np.zeros(len(points))
     if len(corners):
         is_soft = np.abs(corners) <= config.sharp_corner
-        halves[1:-1] = np.where(is_soft, _halves(corners, lengths, config.off_corner), 0.0)
+        halves[1:-1] = np.where(is_soft, _halves(corners, lengths, config), 0.0)
         through[1:-1] = np.where(is_soft, _speeds(corners, lengths, halves, config), 0.0)
     return Course(points, headings, stations, through, halves)
 
 
-def _halves(corners: Floats, lengths: Floats, off: float) -> Floats:
+def _halves(corners: Floats, lengths: Floats, config: TrackingConfig) -> Floats:
     """Return how far before and after each corner the heading changes, m."""
-    wanted = 4.0 * off / np.maximum(np.abs(corners), _STRAIGHT)
+    wanted = 4.0 * config.off_corner / np.maximum(np.abs(corners), _STRAIGHT)
     room = 0.5 * np.minimum(lengths[:-1], lengths[1:])
-    halves: Floats = np.minimum(np.minimum(wanted, _LONGEST_BLEND), room)
+    halves: Floats = np.minimum(np.minimum(wanted, config.longest_blend), room)
     return halves
 
 

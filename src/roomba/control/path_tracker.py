@@ -36,6 +36,8 @@ class PathTracker:
         state.turning_braking = 0.6 * body.max_angular_acceleration
         state.aimed = config.aimed
         state.there, state.period = config.arrival_tolerance, period
+        state.askew, state.slowest = config.turn_in_place_angle, config.slowest
+        state.turning_delay, state.late = config.turning_delay, config.late_ticks
 
     def tick(self, pose: Pose, limit: float) -> Twist:
         """Return the wanted twist; ``limit`` is the speed wanted, m/s."""

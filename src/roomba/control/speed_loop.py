@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from enum import Enum
 
 from roomba.clock import is_recent
+from roomba.configuration.robot import BodyConfig
 from roomba.geometry import Twist
 
 
@@ -25,7 +26,7 @@ class Hold(Enum):
     BUMPER = "the bumper is pressed"
     """It backs off a little, so that it can turn away; then it only does not push."""
     CLIFF = "there is no floor ahead"
-    """It backs away until there is, whatever the command, for BACKING_TIME at most."""
+    """It backs away until there is, whatever the command, for ``cliff_backing_time`` at most."""
     WHEEL_DROP = "a wheel hangs in the air"
     EMERGENCY = "emergency stop"
     """It stands, whatever the command, until it is released."""
@@ -40,14 +41,6 @@ class Source(Enum):
     """Cleaning and docking."""
 
 
-BACKING_SPEED = 0.1
-"""m/s; how fast it backs away from a cliff."""
-BACKING_TIME = 2.5
-"""s; then it stands: no sensor looks behind, and a cliff sensor may be dirty."""
-BACKING_OFF_TIME = 0.6
-"""s; the longest time that it backs off from what the bumper met."""
-
-
 @dataclass(frozen=True, slots=True)
 class _Command:
     twist: Twist
@@ -60,11 +53,12 @@ class SpeedLoop:
     Speeds in m/s and rad/s, times in s of the robot's clock.
     """
 
-    def __init__(self, command_timeout: float, max_speed: float, max_angular_speed: float) -> None:
-        """A command of ``command_timeout`` s or older counts no more."""
-        self._max_angular_speed = max_angular_speed
-        self._command_timeout = command_timeout
-        self._max_speed = max_speed
+    def __init__(self, body: BodyConfig, max_speed: float) -> None:
+        """Keep to ``max_speed``, m/s; a command of the body's ``command_timeout`` counts no more.
+
+        The body's own top speed is the drive's business.
+        """
+        self._body, self._max_speed = body, max_speed
         self._cruise_speed = math.inf
         self._commands: dict[Source, _Command] = {}
         self._bumper_pressed = False
@@ -127,17 +121,17 @@ class SpeedLoop:
             return Twist(), Hold.WHEEL_DROP
         if self._sees_cliff:
             self._backs_since = _began(self._backs_since, now)
-            is_over = now - self._backs_since > BACKING_TIME
+            is_over = now - self._backs_since > self._body.cliff_backing_time
             return Twist() if is_over else self._backwards(), Hold.CLIFF
         limited = self._within_limit(command)
         if self._bumper_pressed and limited.linear > 0.0:
             self._pressed_since = _began(self._pressed_since, now)
-            is_over = now - self._pressed_since > BACKING_OFF_TIME
+            is_over = now - self._pressed_since > self._body.bumper_backing_time
             return Twist(0.0, limited.angular) if is_over else self._backwards(), Hold.BUMPER
         return limited, Hold.NONE
 
     def _backwards(self) -> Twist:
-        return Twist(-min(BACKING_SPEED, self.speed_limit), 0.0)
+        return Twist(-min(self._body.backing_speed, self.speed_limit), 0.0)
 
     def _fresh_command(self, now: float) -> Twist | None:
         for source in Source:
@@ -147,7 +141,7 @@ class SpeedLoop:
             if now < command.given:
                 # The clock was set back (a bag played again): the command's age starts anew.
                 self._commands[source] = command = _Command(command.twist, now)
-            if is_recent(now, command.given, self._command_timeout):
+            if is_recent(now, command.given, self._body.command_timeout):
                 return command.twist
             del self._commands[source]
         return None
@@ -157,8 +151,8 @@ class SpeedLoop:
         share = 1.0
         if abs(twist.linear) > self.speed_limit:
             share = self.speed_limit / abs(twist.linear)
-        if abs(twist.angular) * share > self._max_angular_speed:
-            share = self._max_angular_speed / abs(twist.angular)
+        if abs(twist.angular) * share > self._body.max_angular_speed:
+            share = self._body.max_angular_speed / abs(twist.angular)
         return Twist(twist.linear * share, twist.angular * share)
 
 

@@ -33,6 +33,10 @@ TRACK: Final = np.dtype(
         ("aimed", "f8"),  # rad; so well it aims before it drives
         ("there", "f8"),  # m; so near to a corner it is there
         ("period", "f8"),  # s; between two ticks
+        ("askew", "f8"),  # rad; with a larger error of the heading it turns on the spot first
+        ("turning_delay", "f8"),  # s; until the drive has the turning speed that it is told
+        ("late", "f8"),  # ticks; by so much the drive is expected to brake late
+        ("slowest", "f8"),  # m/s and rad/s; slower than this drives do not turn reliably
     ]
 )
 """State and numbers of a tracker, one row; a row in a kernel is a pointer."""
@@ -52,16 +56,6 @@ class Course(NamedTuple):
     stations: Floats
     through: Floats
     halves: Floats
-
-
-_ASKEW: Final = 0.6
-"""rad; with a larger error of the heading it turns on the spot first."""
-_LEAD: Final = 0.06
-"""s; delay until the drive has the turning speed that it is told: a tick, and its ramp."""
-_LATE: Final = 2.0
-"""Ticks; delay that is expected at corners: one of its own, one of messages."""
-_SLOWEST: Final = 0.015
-"""m/s and rad/s; slower than this drives do not turn reliably."""
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -105,7 +99,7 @@ def turn_speed(state: Row, error: float) -> float:
     size = abs(error)
     speed = min(state.turning_speed, math.sqrt(2.0 * state.turning_braking * size))
     # The rest at the end takes a few ticks more: the drive is a tick or two late.
-    speed = max(min(speed, size / (1.7 * state.period)), 4.0 * _SLOWEST)
+    speed = max(min(speed, size / (1.7 * state.period)), 4.0 * state.slowest)
     return math.copysign(min(speed, size / state.period), error)
 
 
@@ -116,12 +110,12 @@ def drive(
     """Return the twist along the leg: as fast as the corners ahead allow, back to the line."""
     speed = min(limit, corner_limit(state, course, left, limit))
     bend, _ = blended(state, course, left, 0.0)
-    if abs(error + bend) > _ASKEW:
+    if abs(error + bend) > state.askew:
         # Pushed aside: it aims first.
         state.turning = 1.0
         return 0.0, turn_speed(state, error)
     # Drives answer late: what it has to turn by then.
-    _, curvature = blended(state, course, left, _LEAD * speed)
+    _, curvature = blended(state, course, left, state.turning_delay * speed)
     back = -math.atan(state.aside / state.reach)
     turn = speed * curvature + state.gain * wrapped(error + bend + back)
     return speed, min(max(turn, -state.turning_speed), state.turning_speed)
@@ -136,12 +130,13 @@ def corner_limit(state: Row, course: Course, left: float, limit: float) -> float
     leg, ahead = state.leg, left
     if state.leg > 0 and state.along < course.halves[leg]:
         # Still in the corner behind.
-        speed = min(speed, max(course.through[leg], 4.0 * _SLOWEST))
+        speed = min(speed, max(course.through[leg], 4.0 * state.slowest))
     while ahead <= horizon:
         through = course.through[leg + 1]
         if through == 0.0:
             nearly: float = max(ahead, 0.0) / (2.2 * state.period)
-            return max(min(speed, stopping_speed(state, ahead), nearly), _SLOWEST)
+            stopping: float = max(min(speed, stopping_speed(state, ahead), nearly), state.slowest)
+            return stopping
         way = max(ahead - course.halves[leg + 1] - speed * state.period, 0.0)
         speed = min(speed, math.sqrt(through * through + 2.0 * state.braking * way))
         leg += 1
@@ -157,7 +152,7 @@ def stopping_speed(state: Row, way: float) -> float:
 
     The drive obeys with a delay T, for which it goes on: v T + v^2 / (2 b) = way.
     """
-    late, braking = _LATE * state.period, state.braking
+    late, braking = state.late * state.period, state.braking
     speed: float = braking * (math.sqrt(late * late + 2.0 * max(way, 0.0) / braking) - late)
     return speed
 

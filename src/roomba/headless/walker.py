@@ -91,10 +91,10 @@ class HeadlessRobot:
         self._lidar = LidarModel.all_around(lidar.beams, lidar.min_range, lidar.max_range)
         self._beams = self._lidar.arrays()
         self._scans = 0
-        self._search = SearchDrive(body)
+        self._search = SearchDrive(body, self.config.looking_around)
         self._max_speed = max_speed
         self._position_loop = PositionLoop(self.config.control, body)
-        self._speed_loop = SpeedLoop(body.command_timeout, max_speed, body.max_angular_speed)
+        self._speed_loop = SpeedLoop(body, max_speed)
 
     def walk(self, x: float, y: float) -> WalkRecord:
         """Walk to a point of the map frame; raises NoPathError when there is no way."""

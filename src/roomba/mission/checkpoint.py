@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
+from roomba.configuration.mission import ExploringConfig
 from roomba.errors import RoombaError
 from roomba.mission.cleaning.checkpoint import VERSION, CheckpointError, Values, request_of
 from roomba.mission.cleaning.cleaning import Cleaning
@@ -47,20 +48,24 @@ def checkpoint_of(state: MissionState, message: str, job: Job, now: float) -> Va
     }
 
 
-def remembered(values: Values, begin: Callable[[CleanRequest], Cleaning]) -> Remembered:
+def remembered(
+    values: Values, begin: Callable[[CleanRequest], Cleaning], config: ExploringConfig
+) -> Remembered:
     """Return what such values tell; ``begin`` makes the clean of a request in the present map.
 
     Raises CheckpointError for values that are none, or of another map.
     """
     try:
-        return _remembered(values, begin)
+        return _remembered(values, begin, config)
     except (LookupError, ArithmeticError, AttributeError, TypeError, ValueError) as error:
         raise CheckpointError(f"expected a checkpoint of this map: {error!r}") from error
     except RoombaError as error:
         raise CheckpointError(f"expected a checkpoint of this map: {error!r}") from error
 
 
-def _remembered(values: Values, begin: Callable[[CleanRequest], Cleaning]) -> Remembered:
+def _remembered(
+    values: Values, begin: Callable[[CleanRequest], Cleaning], config: ExploringConfig
+) -> Remembered:
     if values["version"] != VERSION:
         raise CheckpointError(f"expected version {VERSION}, got {values['version']}")
     resumes, outcome = values["resumes"], values["outcome"]
@@ -73,7 +78,7 @@ def _remembered(values: Values, begin: Callable[[CleanRequest], Cleaning]) -> Re
     elif errand is Errand.CLEAN:
         raise CheckpointError("expected the clean that it was on, got none")
     unseen = values["exploration"]
-    exploration = None if unseen is None else Exploration.of(unseen)
+    exploration = None if unseen is None else Exploration.of(unseen, config)
     if errand is Errand.EXPLORE and exploration is None:
         raise CheckpointError("expected the exploration that it was on, got none")
     distance, energy, dirt = (float(value) for value in values["ledger"])

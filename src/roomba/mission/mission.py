@@ -9,7 +9,6 @@ twist. :mod:`.phases.machine` is the state machine, :mod:`.phases.phases` and
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,15 +36,11 @@ from roomba.mission.phases.cleaning import CleanPhase
 from roomba.mission.phases.job import Job
 from roomba.mission.phases.machine import Errand, Event, MissionState, Phase, next_state
 from roomba.mission.phases.monitor import Monitor
-from roomba.mission.phases.phases import NEAR_STAGING
 from roomba.mission.phases.step import PhaseStep
 from roomba.mission.steady import Steady
 from roomba.perception.localization.estimate import Knowledge
 from roomba.perception.swept.dirt_map import DirtMap
 from roomba.perception.things.layer import ThingLayer
-
-_SHARE_OF_SPEED: Final = 0.65
-"""Mean speed as a share of the speed limit: a clean turns a lot."""
 
 
 class CommandRefusedError(RoombaError):
@@ -89,11 +84,11 @@ class Mission:
         self.obstacles = Obstacles(things, robot.walk, robot.body, config.driving)
         self.state = MissionState(Phase.DOCKED if senses.battery.is_docked else Phase.IDLE)
         self.message = ""
-        self._job = Job(dirt, config.energy, senses)
+        self._job = Job(dirt, config, senses)
         self.ledger = self._job.ledger
         self._drives = Drives(context, robot, config.driving, self.obstacles)
         self.trail = self._drives.trail
-        self._retries = RetryPolicy()
+        self._retries = RetryPolicy(config.driving.waiting)
         self._clean_phase = CleanPhase(self._job, self._drives, self._retries, config.exploring)
         self._at_station = AtStation(docking, robot)
         self._monitor = Monitor(robot.walk, self._drives, self.ledger, senses)
@@ -217,7 +212,8 @@ class Mission:
 
         A robot that was under way goes on at once.
         """
-        found = remembered(values, lambda request: self._cleaning_of(request, senses))
+        exploring = self._config.exploring
+        found = remembered(values, lambda request: self._cleaning_of(request, senses), exploring)
         take_up(found, self._job, senses)
         self._look_no_more()
         self.message = found.message
@@ -275,7 +271,8 @@ class Mission:
         if phase is Phase.RETURNING:
             staging = self.context.staging
             goal = (staging.x, staging.y)
-            return Steady(driver, limit, least_level=empty, goal=goal, near=NEAR_STAGING)
+            near = self.context.staging_tolerance
+            return Steady(driver, limit, least_level=empty, goal=goal, near=near)
         return Steady(driver, limit, self.ledger.next_check, empty)
 
     @property
@@ -311,7 +308,7 @@ class Mission:
         if self.state.phase is Phase.CLEANING:
             driving = max(driving, self.cleaning.left / self.context.tool_width)
         speed = min(self._config.driving.speed, self.max_speed)
-        return driving / (_SHARE_OF_SPEED * speed)
+        return driving / (self._config.driving.mean_speed * speed)
 
     # ---------------------------------------------------------------- ticks
 

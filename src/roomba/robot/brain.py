@@ -85,7 +85,7 @@ class Brain:
             )
             self.keeper = PlaceKeeper(localizer, robot.timing)
         self._known = known
-        self._search = SearchDrive(robot.body)
+        self._search = SearchDrive(robot.body, robot.looking_around)
         self._drive = SafeDrive(robot.body, self._max_speed)
         self._mission: Mission | None = None
         self._things: ThingLayer | None = None

@@ -13,7 +13,7 @@ class SafeDrive:
 
     def __init__(self, body: BodyConfig, max_speed: float) -> None:
         """Begin standing; ``max_speed`` in m/s."""
-        self._loop = SpeedLoop(body.command_timeout, max_speed, body.max_angular_speed)
+        self._loop = SpeedLoop(body, max_speed)
 
     def limit(self, max_speed: float) -> None:
         """Set the robot's top speed, m/s."""

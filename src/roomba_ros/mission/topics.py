@@ -110,9 +110,9 @@ class MissionTopics:
             cells, frame = coverage.cells.copy(), coverage.frame
             self._show(self._coverage, lambda: coverage_message(now, cells, frame, rows, "map"))
         if has_ended or self._dirt.get_num_connections():
-            dirt, times = mission.dirt, self._config.cleaning.dirty_times
+            dirt, config = mission.dirt, self._config.cleaning
             density = dirt.known()
-            dirty = dirty_from(density, times)
+            dirty = dirty_from(density, config.dirty_times, config.least_dirt)
             self._show(self._dirt, lambda: dirt_message(now, density, dirt.frame, dirty, "map"))
 
     def _show(self, publisher: rospy.Publisher, message: Callable[[], OccupancyGrid]) -> None:

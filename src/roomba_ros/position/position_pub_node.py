@@ -62,7 +62,7 @@ class PositionPubNode:
         self.period = self._config.timing.tick
         self._loop = PositionLoop(self._config.control, self._config.body)
         self._setpoint = Setpoint(self._config.control.stream_timeout)
-        self._search = SearchDrive(self._config.body)
+        self._search = SearchDrive(self._config.body, self._config.looking_around)
         self._may_look_around = _look_around_parameter()
         self._lock = threading.Lock()
         self._bumps = self._sees_cliff = False

@@ -61,11 +61,7 @@ class SpeedPubNode:
         self._reason = ""
         config = read_robot_config()
         body, self.period = config.body, config.timing.tick
-        self._loop = SpeedLoop(
-            body.command_timeout,
-            self._parameters.values.robot_max_speed,
-            body.max_angular_speed,
-        )
+        self._loop = SpeedLoop(body, self._parameters.values.robot_max_speed)
         self._speed: float | None = None
         self._speed_told = -math.inf
         self._hold = Hold.NO_COMMAND

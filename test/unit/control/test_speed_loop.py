@@ -4,12 +4,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from roomba.control.speed_loop import BACKING_OFF_TIME, BACKING_SPEED, Hold, Source, SpeedLoop
+from roomba.configuration.robot import BodyConfig
+from roomba.control.speed_loop import Hold, Source, SpeedLoop
 from roomba.geometry import Twist
+
+BODY = BodyConfig(command_timeout=0.5)
 
 
 def loop() -> SpeedLoop:
-    return SpeedLoop(command_timeout=0.5, max_speed=0.5, max_angular_speed=4.25)
+    return SpeedLoop(BODY, 0.5)
 
 
 def test_nothing_asked_for_nothing_driven() -> None:
@@ -105,12 +108,12 @@ def test_a_pressed_bumper_makes_it_back_off_a_little_and_never_push() -> None:
     for tenth in range(20):
         now = 0.1 * tenth
         speed_loop.command(now, Twist(0.3, 1.0))
-        backs_off = now <= BACKING_OFF_TIME
-        expected = Twist(-BACKING_SPEED, 0.0) if backs_off else Twist(0.0, 1.0)
+        backs_off = now <= BODY.bumper_backing_time
+        expected = Twist(-BODY.backing_speed, 0.0) if backs_off else Twist(0.0, 1.0)
         assert speed_loop.tick(now) == (expected, Hold.BUMPER)
     speed_loop.set_bumper(False)
     speed_loop.set_bumper(True)
-    assert speed_loop.tick(2.0) == (Twist(-BACKING_SPEED, 0.0), Hold.BUMPER)
+    assert speed_loop.tick(2.0) == (Twist(-BODY.backing_speed, 0.0), Hold.BUMPER)
 
 
 def test_a_pressed_bumper_lets_it_turn_and_drive_backwards() -> None:
@@ -129,7 +132,7 @@ def test_it_backs_away_from_a_cliff_whatever_was_asked_for() -> None:
     speed_loop.set_cliff(True)
     for wanted in (Twist(0.5, 0.0), Twist(0.0, 2.0), Twist(-0.5, 1.0)):
         speed_loop.command(0.0, wanted)
-        assert speed_loop.tick(0.1) == (Twist(-BACKING_SPEED, 0.0), Hold.CLIFF)
+        assert speed_loop.tick(0.1) == (Twist(-BODY.backing_speed, 0.0), Hold.CLIFF)
     speed_loop.set_cruise_speed(0.02)
     assert speed_loop.tick(0.1) == (Twist(-0.02, 0.0), Hold.CLIFF)
     speed_loop.set_cliff(False)

@@ -33,7 +33,7 @@ def begin(request: CleanRequest) -> Cleaning:
 
 def job() -> Job:
     """A clean that is under way for a minute."""
-    job = Job(DirtMap(HOME.map), MissionConfig().energy, SENSES)
+    job = Job(DirtMap(HOME.map), MissionConfig(), SENSES)
     job.begin_clean(begin(CleanRequest(passes=2)), Senses(40.0, SENSES.pose))
     job.ledger.distance, job.ledger.energy, job.ledger.dirt = 12.0, 0.5, 2.0
     return job
@@ -46,9 +46,9 @@ def values(**changes: Any) -> Values:
 
 
 def test_all_that_matters_comes_back() -> None:
-    found = remembered(values(outcome="COMPLETED"), begin)
+    found = remembered(values(outcome="COMPLETED"), begin, MissionConfig().exploring)
     assert (found.state, found.message) == (CLEANING, "a message")
-    again, now = Job(DirtMap(HOME.map), MissionConfig().energy, SENSES), 7.0
+    again, now = Job(DirtMap(HOME.map), MissionConfig(), SENSES), 7.0
     take_up(found, again, Senses(now, SENSES.pose))
     assert again.cleaning is not None
     assert again.cleaning.request == CleanRequest(passes=2)
@@ -81,7 +81,7 @@ def test_without_an_errand_there_is_nothing_to_remember(errand: Errand) -> None:
 )
 def test_junk_is_refused(changes: Values) -> None:
     with pytest.raises(CheckpointError, match="expected"):
-        remembered(values(**changes), begin)
+        remembered(values(**changes), begin, MissionConfig().exploring)
 
 
 @pytest.mark.parametrize("errand", [Errand.CLEAN, Errand.EXPLORE])

@@ -74,8 +74,7 @@ def picture_of_edge(home: Home, seconds: float = 8.0) -> Figure:
 def _with_speed_loop(home: Home, seconds: float) -> DriveRecording:
     recording = DriveRecording(Simulator(home, start=_START))
     world = recording.simulator
-    body = world.config.body
-    loop = SpeedLoop(body.command_timeout, world.max_speed, body.max_angular_speed)
+    loop = SpeedLoop(world.config.body, world.max_speed)
     while world.time < seconds:
         seen = world.observe()
         loop.set_cliff(seen.cliff.any)

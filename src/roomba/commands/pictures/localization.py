@@ -66,7 +66,7 @@ def picture_of_relocation(home: Home, set_down: Pose = _SET_DOWN) -> Figure:
         config.lidar.beams, config.lidar.min_range, config.lidar.max_range
     )
     reckoning = DeadReckoning(config.localization, config.gyro)
-    looks = LookAround(config.body)
+    looks = LookAround(config.body, config.looking_around)
     seen = world.step(Twist(), 2.0 * _TICK)
     reckoning.move(seen.time, seen.odometry, seen.angular_velocity)
     view = lidar.view(world.ranges)

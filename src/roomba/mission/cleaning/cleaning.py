@@ -8,7 +8,6 @@ While the map is being made, large patches of what is known are planned, each on
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,23 +35,6 @@ from roomba.raster.regions import numbered_regions
 
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
-
-_LITTLE_GAIN: Final = 0.05
-"""Share of what was missed; a round that gains less of it than this ends the retries."""
-_LEAST_AREA_TO_RETRY: Final = 0.5
-"""m2; the least floor out of reach that is tried again, as behind a door; less is below a chair."""
-_WORTH_A_ROUND: Final = 0.02
-"""m2; one patch as large as this is worth another round, though enough is clean."""
-_MOST_WAYS_OUT: Final = 40
-"""Times, in a clean, that it leaves a place where it is shut in, or waits; then that part ends."""
-_MOST_CUT_OFFS: Final = 12
-"""Paths that were given up and do not count as rounds, in a clean."""
-_PLANNED_ANEW: Final = 20.0
-"""s; the least time between two new plans because of things on the path."""
-_MOST_ANEW: Final = 40
-"""Such plans in one clean."""
-_LEAST_WAY_TO_REPLAN: Final = 8.0
-"""m; with less than this left of it a path is driven to its end, not planned anew."""
 
 
 class Cleaning:
@@ -135,7 +117,7 @@ class Cleaning:
 
         Raises NoPathError while it is shut in, so that it has to get out first.
         """
-        obstacles = obstacles + closed_gaps(obstacles, self._context.reach)
+        obstacles = obstacles + closed_gaps(obstacles, self._context.reach, self._context.gap_spare)
         if self._context.is_growing:
             return self._next_of_known(here, obstacles)
         while (stage := self.stage) is not None:
@@ -155,7 +137,7 @@ class Cleaning:
         self._looked_again, self._unreachable = True, False
         staging = (self._context.staging.x, self._context.staging.y)
         left = self.coverage.wanted & ~self.clean & self._reachable(staging, lasting)
-        large = _patches(left, self.coverage.frame, _LEAST_AREA_TO_RETRY)
+        large = _patches(left, self.coverage.frame, self._config.least_area_to_retry)
         if not large.any():
             return False
         self._ledger.add(Stage("what was out of reach", large))
@@ -166,7 +148,7 @@ class Cleaning:
         """Tell that no way led to some of what was planned."""
         self._unreachable, self._last_missed = True, np.inf
         self._cut_offs += 1
-        if self._cut_offs <= _MOST_CUT_OFFS:
+        if self._cut_offs <= self._config.most_cut_offs:
             self._rounds = min(self._rounds, 1)
 
     def interrupted(self, left: float) -> None:
@@ -184,7 +166,10 @@ class Cleaning:
         what is next to it.
         """
         since = now - self._planned_anew_at
-        if left < _LEAST_WAY_TO_REPLAN or self._anew >= _MOST_ANEW or 0.0 <= since < _PLANNED_ANEW:
+        config = self._config
+        if left < config.least_way_to_replan or self._anew >= config.most_replans:
+            return False
+        if 0.0 <= since < config.replan_period:
             return False
         self._anew, self._planned_anew_at = self._anew + 1, now
         self._begin_anew()
@@ -258,15 +243,16 @@ class Cleaning:
     ) -> Floats | None:
         """Plan what is missed of a stage, if that is worth it."""
         todo = stage.floor & self.coverage.missed
-        missed = float(np.count_nonzero(todo)) * self.coverage.cell_area
+        missed, config = float(np.count_nonzero(todo)) * self.coverage.cell_area, self._config
         is_anew, self._is_anew = self._is_anew, False
-        large = _patches(todo, self.coverage.frame, _WORTH_A_ROUND) if is_anew else todo
+        large = _patches(todo, self.coverage.frame, config.least_for_round) if is_anew else todo
         if is_anew and large.any():
             todo = large
         elif self._rounds > 0:
             todo = self._worth_it(stage, todo, here, obstacles)
             gained = self._last_missed - missed
-            if self._rounds > self._config.most_rounds or gained < _LITTLE_GAIN * self._last_missed:
+            is_little = gained < config.little_gain * self._last_missed
+            if self._rounds > config.most_rounds or is_little:
                 todo[:] = False
         if self._rounds > 0 and not todo.any() and not self._scrubbed:
             todo = self._dirty_again(stage)
@@ -282,12 +268,12 @@ class Cleaning:
         except NoPathError:
             self._unreachable = True
             todo &= self._reachable((here.x, here.y), obstacles)
-            if patches_of(todo, self.coverage.frame, _LEAST_AREA_TO_RETRY):
+            if patches_of(todo, self.coverage.frame, self._config.least_area_to_retry):
                 # The way home is shut, perhaps by a door: meanwhile it cleans where it is.
                 plan = self._context.coverage.plan(
                     (here.x, here.y), None, todo, obstacles, edges_only=edges_only
                 )
-            elif self._ways_out < _MOST_WAYS_OUT:
+            elif self._ways_out < config.most_ways_out:
                 self._ways_out += 1
                 self._rounds, self._last_missed = self._rounds - 1, np.inf
                 raise
@@ -311,12 +297,13 @@ class Cleaning:
         todo &= reachable
         wanted = max(int(np.count_nonzero(stage.floor & reachable)), 1)
         share = 1.0 - np.count_nonzero(todo) / wanted
-        least = _WORTH_A_ROUND if share >= self._config.enough else self._config.least_patch
+        config = self._config
+        least = config.least_for_round if share >= config.enough else config.least_patch
         return _patches(todo, self.coverage.frame, least)
 
     def _note_out_of_reach(self, floor: Mask, obstacles: list[RoundObstacle]) -> None:
         """Remember floor that a person may open later: it is tried again before the end."""
-        patches = patches_of(floor, self.coverage.frame, _LEAST_AREA_TO_RETRY)
+        patches = patches_of(floor, self.coverage.frame, self._config.least_area_to_retry)
         if not all(is_hidden(patch, self._context, obstacles) for patch in patches):
             self._unreachable = True
 
@@ -327,7 +314,8 @@ class Cleaning:
     def _dirty_again(self, stage: Stage) -> Mask:
         """Return what was so dirty that it gets another pass, once a stage."""
         self._scrubbed = True
-        dirty = self._dirt.dirty_now(self.coverage.frame, self._config.dirty_times)
+        config = self._config
+        dirty = self._dirt.dirty_now(self.coverage.frame, config.dirty_times, config.least_dirt)
         again = dirty & stage.floor & self.coverage.swept
         if again.any():
             self._ledger.sweep_anew(again)

@@ -85,7 +85,7 @@ def why_hardly_any(wanted: float, covered: float, missed: Sequence[Missed]) -> s
 
 def _reachable(context: PlanningContext, obstacles: Sequence[RoundObstacle]) -> Mask:
     """Return what can be cleaned from the station among what the map does not show."""
-    things = [*obstacles, *closed_gaps(obstacles, context.reach)]
+    things = [*obstacles, *closed_gaps(obstacles, context.reach, context.gap_spare)]
     return context.floor.with_obstacles(things).coverable((context.staging.x, context.staging.y))
 
 

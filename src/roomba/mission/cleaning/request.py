@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from enum import Enum
+from typing import Final
 
 from roomba.errors import RoombaError
 
@@ -40,9 +41,8 @@ class FanLevel(Enum):
 Rectangle = tuple[float, float, float, float]
 """Lowest x, lowest y, highest x, highest y, m."""
 
-SPOT_SIZE = 1.5
-"""m; side of the square that SPOT cleans."""
-MOST_PASSES = 5
+MOST_PASSES: Final = 5
+"""Of a request; more over the same floor are a slip of the finger."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.geometry import Pose
-from roomba.mission.cleaning.request import SPOT_SIZE, CleanMode, CleanRefusedError, CleanRequest
+from roomba.mission.cleaning.request import CleanMode, CleanRefusedError, CleanRequest
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.perception.swept.dirt_map import DirtMap
 from roomba.planning.path.planner import NoPathError
@@ -51,7 +51,7 @@ def _parts(
         return [Stage("", coverable & _inside(context, request.zones))]
     if request.mode is CleanMode.SPOT:
         x, y = request.spot or (here.x, here.y)
-        half = 0.5 * SPOT_SIZE
+        half = 0.5 * context.spot_size
         square = (x - half, y - half, x + half, y + half)
         return [Stage("", coverable & _inside(context, (square,)))]
     if context.rooms is None or not context.rooms.names:

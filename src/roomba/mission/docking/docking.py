@@ -17,23 +17,7 @@ from roomba.mission.docking.track import StationTrack
 
 __all__ = ["DockSenses", "DockState", "DockStep", "Docking", "Trouble", "staging_pose"]
 
-_SHORTEST_REACH: Final = 0.15
-"""m; look-ahead for aiming at the middle of the beams; it is longer while the robot is far away."""
-_MOST_ASIDE: Final = 0.5
-"""rad; the largest angle to the straight way at which it aims; smaller when it is near."""
-_LEAST_ASIDE: Final = 0.09
-"""rad; the same angle at the end: within what the contacts tolerate."""
-_NARROW: Final = 0.3
-"""Share of the way left that it may be aside; beyond it drives to the staging place first."""
-_SHORTEST_WAY: Final = 0.2
-"""m; with less way left it cannot get straight any more."""
 _DOCKED_BLIND: Final = "docked without its beams: wipe the robot's infrared receiver"
-_SIDE_STEP: Final = 0.15
-"""m; how far it backs off from what it meets while it looks for beams."""
-_MOVED: Final = 0.02
-"""m; less than this is standing still."""
-_TURNED: Final = 0.1
-"""rad; the same of turning."""
 
 
 def staging_pose(station: Pose, config: DockingConfig) -> Pose:
@@ -59,7 +43,7 @@ class Docking:
         if not station.is_finite:
             raise ValueError(f"expected a finite pose of the station, got {station}")
         self._config = config
-        self._track = StationTrack(body, beams, config.plate_gap, station)
+        self._track = StationTrack(body, beams, config, station)
         self._time = RobotTime(senses.now)
         self._state = DockState.SEARCHING
         self._trouble: Trouble | None = None
@@ -101,9 +85,9 @@ class Docking:
         self._follow_motion(is_known)
 
     def _follow_motion(self, is_known: bool) -> None:
-        pose, before = self._track.pose, self._moved_at
-        moved = pose.distance_to(before.x, before.y) > _MOVED
-        moved |= abs(wrap_angle(pose.theta - before.theta)) > _TURNED
+        pose, before, config = self._track.pose, self._moved_at, self._config
+        moved = pose.distance_to(before.x, before.y) > config.standstill_way
+        moved |= abs(wrap_angle(pose.theta - before.theta)) > config.standstill_turn
         if moved or not is_known:
             self._moved, self._moved_at = self._time.elapsed, pose
 
@@ -159,7 +143,8 @@ class Docking:
 
     def _begin_attempt(self, *, is_blind: bool) -> Twist:
         """Drive at the station; blind, by the believed place alone, only to find out what is."""
-        if self._attempts >= self._config.max_attempts:
+        config = self._config
+        if self._attempts >= config.max_attempts:
             self._fail(self._trouble or Trouble.BEAMS_LOST)
             return Twist()
         self._attempts += 1
@@ -168,16 +153,17 @@ class Docking:
         if is_blind:
             self._track.forget_beams()
         left, aside = self._track.left, abs(self._track.pose.y)
-        self._lines_up = left < _SHORTEST_WAY or aside > _NARROW * left
+        shortest = config.shortest_way
+        self._lines_up = left < shortest or aside > config.narrow * left
         self._led = self._time.elapsed
-        if abs(left) < _SHORTEST_WAY and aside < _SHORTEST_WAY and self._looks_at_station:
+        if abs(left) < shortest and aside < shortest and self._looks_at_station:
             return self._give_up_attempt(None)
         self._enter(DockState.APPROACHING)
         return Twist()
 
     @property
     def _looks_at_station(self) -> bool:
-        return abs(self._track.pose.theta) < _MOST_ASIDE
+        return abs(self._track.pose.theta) < self._config.most_aside
 
     def _approach(self, senses: DockSenses) -> Twist:
         config, track = self._config, self._track
@@ -210,8 +196,9 @@ class Docking:
         config, left = self._config, max(self._track.left, 0.0)
         speed = config.creep_speed + config.braking * (left - config.creep_distance)
         speed = min(max(speed, config.creep_speed), config.speed)
-        reach = max(_SHORTEST_REACH, 0.6 * left)
-        wrong = self._track.steering(reach, min(_MOST_ASIDE, _LEAST_ASIDE + 1.2 * left))
+        reach = max(config.shortest_reach, 0.6 * left)
+        aside = min(config.most_aside, config.least_aside + 1.2 * left)
+        wrong = self._track.steering(reach, aside)
         return steered(config, speed, wrong)
 
     def _wait_for_current(self, senses: DockSenses) -> Twist:
@@ -235,7 +222,7 @@ class Docking:
     def _back_off(self, senses: DockSenses) -> Twist:
         config, search = self._config, self._search
         gone = self._track.pose.distance_to(self._entered_at.x, self._entered_at.y)
-        if gone < (_SIDE_STEP if search else config.back_distance) and not self._is_stuck:
+        if gone < (config.side_step if search else config.back_distance) and not self._is_stuck:
             is_near = self._trouble in (Trouble.NO_CURRENT, Trouble.NO_POWER)
             if is_near and gone < config.nudge:
                 return Twist(-config.creep_speed, 0.0)

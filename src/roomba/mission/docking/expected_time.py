@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Final
-
-_LONGEST_TICK: Final = 2.0
-"""s; more between two ticks than this is a clock that was set."""
+from roomba.clock import LONGEST_TICK
 
 
 class RobotTime:
@@ -19,7 +16,7 @@ class RobotTime:
 
     def tick(self, now: float) -> float:
         """Return the time since the last tick, s, from 0 to the longest that a tick may take."""
-        step = min(max(now - self._last, 0.0), _LONGEST_TICK)
+        step = min(max(now - self._last, 0.0), LONGEST_TICK)
         self._last = now
         self.elapsed += step
         return step

@@ -3,16 +3,10 @@
 from __future__ import annotations
 
 import math
-from typing import Final
 
 from roomba.configuration.docking import DockingConfig
 from roomba.geometry import TWO_PI, Twist
 from roomba.mission.docking.track import StationTrack
-
-_THERE: Final = 0.08
-"""m; tolerance of arriving at a place."""
-_AIMED: Final = 0.5
-"""rad; when its heading is wrong by more, it turns on the spot."""
 
 
 class BeamSearch:
@@ -40,7 +34,7 @@ class BeamSearch:
         """Return the wanted twist; None when it has been everywhere. ``dt``: s since the last."""
         while self._places:
             place = self._places[0]
-            if place is not None and track.pose.distance_to(*place) > _THERE:
+            if place is not None and track.pose.distance_to(*place) > self._config.place_tolerance:
                 return drive_to(track, self._config, *place)
             if place is None and self._turned < TWO_PI:
                 self._turned += self._config.turning_speed * dt
@@ -51,7 +45,7 @@ class BeamSearch:
 
 def is_at_staging(track: StationTrack, config: DockingConfig) -> bool:
     """Tell whether the robot is where it begins to drive at the station."""
-    return track.pose.distance_to(-config.staging_distance, 0.0) <= _THERE
+    return track.pose.distance_to(-config.staging_distance, 0.0) <= config.place_tolerance
 
 
 def drive_to(track: StationTrack, config: DockingConfig, x: float, y: float) -> Twist:
@@ -65,4 +59,5 @@ def steered(config: DockingConfig, speed: float, wrong: float) -> Twist:
     """Return a twist whose heading is put right by ``wrong``, rad; on the spot if that is much."""
     most = config.turning_speed
     angular = min(max(config.steering_gain * wrong, -most), most)
-    return Twist(speed * max(0.0, 1.0 - math.fabs(wrong) / _AIMED), angular)
+    share = max(0.0, 1.0 - math.fabs(wrong) / config.turn_in_place_angle)
+    return Twist(speed * share, angular)

@@ -8,19 +8,10 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Final
 
+from roomba.configuration.docking import DockingConfig
 from roomba.configuration.robot import BodyConfig, StationConfig
 from roomba.geometry import Pose, Twist, wrap_angle
-
-_LONGEST_STEP: Final = 0.3
-"""m; a larger change of the believed place in a tick is a new belief."""
-_FARTHEST_OFF: Final = 0.5
-"""m; beams that say that the belief is wrong by more are of another place, or another time."""
-_DOUBT: Final = 0.1
-"""rad; possible error of the heading: a robot that long sees one beam alone is farther aside."""
-_LATE_BEAMS: Final = 0.3
-"""s; after a new belief, beams may still be those that were seen before it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,10 +39,12 @@ class StationTrack:
     where the robot can be, and it is taken to be at the nearest such place.
     """
 
-    def __init__(self, body: BodyConfig, beams: StationConfig, plate_gap: float, docked: Pose):
+    def __init__(
+        self, body: BodyConfig, beams: StationConfig, config: DockingConfig, docked: Pose
+    ) -> None:
         """``docked`` is where the docked robot stands, map frame."""
-        self._docked = docked
-        self._front = body.radius + plate_gap
+        self._docked, self._config = docked, config
+        self._front = body.radius + config.plate_gap
         self._halo = beams.halo
         self._slope = math.tan(math.radians(0.5 * beams.overlap))
         self._wide = math.tan(math.radians(beams.beam_angle))
@@ -84,13 +77,14 @@ class StationTrack:
         believed = self._docked.inverse().compose(pose)
         before, self._believed = self._believed, believed
         self._waits = max(0.0, self._waits - dt)
-        if before is not None and before.distance_to(believed.x, believed.y) <= _LONGEST_STEP:
+        config = self._config
+        if before is not None and before.distance_to(believed.x, believed.y) <= config.longest_step:
             self._go(before.inverse().compose(believed))
-            if self.pose.distance_to(believed.x, believed.y) > _FARTHEST_OFF:
+            if self.pose.distance_to(believed.x, believed.y) > config.farthest_off:
                 self.forget_beams()
         else:
             self.forget_beams()
-            self._waits = _LATE_BEAMS if self.is_known else 0.0
+            self._waits = config.late_beams if self.is_known else 0.0
         self.is_known = True
 
     def _go(self, step: Pose) -> None:
@@ -127,7 +121,7 @@ class StationTrack:
             return min(max(y, -inner), inner)
         if beams.leads:
             side = 1.0 if beams.green else -1.0
-            inner = min(inner + _DOUBT * self._way_aside, outer)
+            inner = min(inner + self._config.heading_doubt * self._way_aside, outer)
             return side * min(max(side * y, inner), outer)
         if before.red != before.green:
             # Had it left to the middle, both would be seen.

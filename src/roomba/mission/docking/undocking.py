@@ -7,15 +7,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
-from typing import Final
 
 from roomba.configuration.docking import DockingConfig
 from roomba.geometry import Pose, Twist
 from roomba.mission.docking.expected_time import RobotTime
 from roomba.mission.docking.step import DockSenses
-
-_MOVED: Final = 0.02
-"""m; less than this is standing still."""
 
 
 class UndockState(Enum):
@@ -82,7 +78,7 @@ class Undocking:
         else:
             self._way -= before.inverse().compose(pose).x
         self._last_pose = pose
-        if self._way > self._moved[1] + _MOVED:
+        if self._way > self._moved[1] + self._config.standstill_way:
             self._moved = self._time.elapsed, self._way
 
     def _judge(self, senses: DockSenses) -> tuple[UndockState, str]:

@@ -97,7 +97,8 @@ class Drives:
 
     def make_room(self, senses: Senses) -> None:
         """Begin to drive aside, so that a person beside the robot can pass; if there is room."""
-        points = way_aside(self.context.paths, senses, self.obstacles, self.trail)
+        config = self._config.giving_way
+        points = way_aside(self.context.paths, senses, self.obstacles, self.trail, config)
         if points is not None:
             self.begin(points, senses)
 

@@ -14,18 +14,17 @@ from numpy.typing import NDArray
 
 from roomba.planning.path.costmap import RoundObstacle
 
-SPARE: Final = 0.06
-"""m; more room than the body needs that a gap must have."""
 _SIZE: Final = 0.01
 """m; radius of what is put into a gap to close it."""
 _ALONE: Final = 0.9
 """Of half a gap: so far from all things its middle must be, else it is a corner of one thing."""
 
 
-def closed_gaps(things: Sequence[RoundObstacle], reach: float) -> list[RoundObstacle]:
+def closed_gaps(things: Sequence[RoundObstacle], reach: float, spare: float) -> list[RoundObstacle]:
     """Return round things, m, that close the gaps between ``things`` which are hardly wide enough.
 
-    ``reach`` is what the body's middle keeps away from things, m.
+    ``reach`` is what the body's middle keeps away from things, m; ``spare``, m, is how much
+    more than that a gap must be wide.
     """
     if len(things) < 2:
         return []
@@ -33,7 +32,7 @@ def closed_gaps(things: Sequence[RoundObstacle], reach: float) -> list[RoundObst
     first, second = np.triu_indices(len(array), 1)
     away = np.hypot(*(array[first, :2] - array[second, :2]).T)
     gap = away - array[first, 2] - array[second, 2]
-    is_narrow = (gap >= 2.0 * reach) & (gap < 2.0 * reach + SPARE)
+    is_narrow = (gap >= 2.0 * reach) & (gap < 2.0 * reach + spare)
     first, second, away = first[is_narrow], second[is_narrow], away[is_narrow]
     middles = 0.5 * (array[first, :2] + array[second, :2])
     if not len(middles):

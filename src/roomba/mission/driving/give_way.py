@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.configuration.mission import GivingWayConfig
 from roomba.mission.driving.obstacles import Obstacles
 from roomba.mission.driving.trail import Trail
 from roomba.mission.inputs.senses import Senses
@@ -18,19 +18,13 @@ from roomba.planning.path.planner import NoPathError, PathPlanner
 
 Floats = NDArray[np.float64]
 
-_BESIDE: Final = 1.2
-"""m; a person who stands nearer may want to pass."""
-_ROOM: Final = 1.2
-_LEAST_ROOM: Final = 0.5
-"""m; the distance at which it goes no farther aside, and the least that lets others pass."""
-_PER_WAY: Final = 0.25
-"""m of room that a metre of way is worth: it does not squeeze past what it makes room for."""
-_FARTHEST: Final = 3.0
-"""m; the longest way aside."""
-
 
 def way_aside(
-    planner: PathPlanner, senses: Senses, obstacles: Obstacles, trail: Trail
+    planner: PathPlanner,
+    senses: Senses,
+    obstacles: Obstacles,
+    trail: Trail,
+    config: GivingWayConfig,
 ) -> Floats | None:
     """Return a way, float64 [n, 2], m, to where there is room between the robot and what stands.
 
@@ -39,18 +33,23 @@ def way_aside(
     """
     here = (senses.pose.x, senses.pose.y)
     standing, at_least = obstacles.standing(senses.now), obstacles.at_least(senses.now)
-    around = [(x, y) for x, y, _ in standing if math.dist(here, (x, y)) < _FARTHEST]
-    beside = [place for place in around if math.dist(here, place) < _BESIDE] or [here, *around]
+    around = [(x, y) for x, y, _ in standing if math.dist(here, (x, y)) < config.farthest]
+    near = [place for place in around if math.dist(here, place) < config.beside]
+    beside = near or [here, *around]
     for things in (standing, at_least):
-        points = _way_from(here, planner, things, beside)
+        points = _way_from(here, planner, things, beside, config)
         if points is not None:
             return points
-    points, _ = trail.back_and_on(lambda place: _way_from(place, planner, at_least, beside))
+    points, _ = trail.back_and_on(lambda place: _way_from(place, planner, at_least, beside, config))
     return points
 
 
 def _way_from(
-    start: Point, planner: PathPlanner, things: Sequence[RoundObstacle], beside: list[Point]
+    start: Point,
+    planner: PathPlanner,
+    things: Sequence[RoundObstacle],
+    beside: list[Point],
+    config: GivingWayConfig,
 ) -> Floats | None:
     frame = planner.frame
     try:
@@ -59,12 +58,12 @@ def _way_from(
         return None
     ways = np.empty(frame.shape)
     ways_from(fits, *frame.cell_of(*start), ways)
-    rows, columns = np.nonzero(ways * frame.resolution < _FARTHEST)
+    rows, columns = np.nonzero(ways * frame.resolution < config.farthest)
     x, y = frame.centres(rows, columns)
     off = np.min([np.hypot(x - at_x, y - at_y) for at_x, at_y in beside], axis=0)
-    room = np.minimum(off, _ROOM)
-    best = int(np.argmax(room - _PER_WAY * frame.resolution * ways[rows, columns]))
-    if room[best] < _LEAST_ROOM:
+    room = np.minimum(off, config.room)
+    best = int(np.argmax(room - config.per_way * frame.resolution * ways[rows, columns]))
+    if room[best] < config.least_room:
         return None
     try:
         return planner.plan(start, (float(x[best]), float(y[best])), things).points

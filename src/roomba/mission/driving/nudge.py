@@ -21,19 +21,22 @@ Floats = NDArray[np.float64]
 _STEP: Final = 0.02
 _AHEAD: Final = 1.0
 """m; the length of path that is moved, and its steps."""
-_MOST: Final = 0.08
-"""m; farther aside it is another way, which the planner has to find."""
 _ROUNDS: Final = 8
 _NEARLY: Final = 0.003
 """m; tolerance of the wanted distance."""
 
 
 def nudged(
-    tracker: PathTracker, floor: CoverageFloor, obstacles: Sequence[RoundObstacle], keep: float
+    tracker: PathTracker,
+    floor: CoverageFloor,
+    obstacles: Sequence[RoundObstacle],
+    keep: float,
+    most: float,
 ) -> Floats | None:
     """Return the rest of a path, float64 [n, 2], m, that keeps ``keep`` m from round things.
 
-    ``floor`` tells where walls leave room. None when that takes more than moving it a little.
+    ``floor`` tells where walls leave room. None when some of it would have to be moved by more than
+    ``most`` m.
     """
     along, length = tracker.along, tracker.length
     last = min(along + _AHEAD, length)
@@ -50,7 +53,7 @@ def nudged(
     is_moved = moved > 1e-6
     has_room = _fits(floor, points) | ~is_moved
     # Where it joins what comes then, it must be where it was.
-    if moved.max() > _MOST or not has_room.all() or (last < length and is_moved[-1]):
+    if moved.max() > most or not has_room.all() or (last < length and is_moved[-1]):
         return None
     if (_too_near(points, things, keep)[0] > _NEARLY).any():
         return None

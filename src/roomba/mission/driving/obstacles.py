@@ -20,10 +20,6 @@ from roomba.perception.things.layer import ThingLayer
 from roomba.planning.path.costmap import RoundObstacle
 
 _FOREVER: Final = math.inf
-_LASTING: Final = 1800.0
-"""s; how long an obstacle that was felt more than once is remembered."""
-_SAME_PLACE: Final = 0.06
-"""m; touches from places nearer to each other are of the same thing."""
 _TOUCHES: Final = 20
 """The last ones, which are compared."""
 _SPARED: Final = 0.010
@@ -60,10 +56,11 @@ class Obstacles:
         self._seen = seen
         self._felt = UnknownThings(walk, body, config.felt_memory)
         # What is felt at a place again and again is no wall that it met being late.
-        self._lasting = UnknownThings(walk, body, _LASTING)
+        self._lasting = UnknownThings(walk, body, config.lasting_memory)
         self._touched: deque[tuple[float, float]] = deque(maxlen=_TOUCHES)
         # Stairs do not go away.
         self._edges = UnknownThings(walk, body, _FOREVER)
+        self._same_place = config.lasting_radius
         self._felt_version = 0
         self._keep = body.radius - _SPARED
 
@@ -80,7 +77,7 @@ class Obstacles:
     def feel(self, senses: Senses) -> None:
         """Remember what bumper or cliff sensors found where the robot stands."""
         here = senses.pose
-        is_again = any(here.distance_to(x, y) < _SAME_PLACE for x, y in self._touched)
+        is_again = any(here.distance_to(x, y) < self._same_place for x, y in self._touched)
         self._touched.append((here.x, here.y))
         where = self._edges if senses.cliff else self._lasting if is_again else self._felt
         where.felt(senses.now, here, *senses.touches)

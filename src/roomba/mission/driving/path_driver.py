@@ -10,32 +10,22 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum
-from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.clock import ClockJumps
+from roomba.clock import LONGEST_TICK, ClockJumps
 from roomba.configuration.mission import DrivingConfig
 from roomba.configuration.robot import RobotConfig
 from roomba.control.path_tracker import PathTracker
 from roomba.geometry import STANDSTILL, Twist
 from roomba.mission.driving.obstacles import Obstacles
-from roomba.mission.driving.progress_kernels import LEAST, PROGRESS, mark_progress
+from roomba.mission.driving.progress_kernels import PROGRESS, mark_progress
 from roomba.mission.driving.recovery import Recovery
 from roomba.mission.driving.rejoin import Rejoin
 from roomba.mission.driving.trail import Trail
 from roomba.mission.driving.way_ahead import LEAVING, WayAhead
 from roomba.mission.inputs.senses import Senses
-
-_LONGEST_TICK: Final = 2.0
-"""s; more between two ticks than this is a clock that was set."""
-_MOST_FUTILE: Final = 3
-"""New paths from one place; after these it tries recoveries."""
-_SAME_PLACE: Final = 0.10
-"""m; touches from places nearer to each other are of the same thing."""
-_MOST_TOUCHES: Final = 4
-"""Consecutive touches of the same thing, after which this path is given up."""
 
 
 class DriveState(Enum):
@@ -107,15 +97,17 @@ class PathDriver:
         self._state = DriveState.DRIVING
         self._reason = ""
         self._was_touching = any(senses.touches)
-        self._jumps = ClockJumps(last=senses.now, longest=_LONGEST_TICK)
+        self._jumps = ClockJumps(last=senses.now, longest=LONGEST_TICK)
         self._backs_from: tuple[float, float, float] | None = None
         self._wriggle: Recovery | None = None
         self.progress = np.zeros(1, PROGRESS)
+        self.progress["least"] = config.least_progress
+        self.progress["leaves_trouble"] = config.leaves_trouble
         self._planned_at, self._futile = (math.inf, math.inf), 0
         self._nudged_at = (math.inf, math.inf)
         self._touched_at, self._touches = (math.inf, math.inf), 0
         self._begin(points, senses)
-        if self.tracker.off_path(senses.pose) > LEAST:
+        if self.tracker.off_path(senses.pose) > config.least_progress:
             self._go_around(senses)
 
     @property
@@ -177,7 +169,7 @@ class PathDriver:
         is_new, self._was_touching = touches and not self._was_touching, touches
         if is_new:
             self._obstacles.feel(senses)
-            is_here = senses.pose.distance_to(*self._touched_at) < _SAME_PLACE
+            is_here = senses.pose.distance_to(*self._touched_at) < self._config.touch_radius
             self._touches = self._touches + 1 if is_here else 1
             self._touched_at = senses.pose.x, senses.pose.y
             self._wriggle = None
@@ -197,7 +189,7 @@ class PathDriver:
         self.progress["recoveries"] += way < 0.25 * config.backing_way
         if any(senses.touches) and way < 0.25 * config.backing_way:
             self._begin_recovery(senses)
-        elif self._touches > _MOST_TOUCHES:
+        elif self._touches > self._config.most_touches:
             self._state = DriveState.CUT_OFF
             self._reason = f"something stands near {senses.where} that only the bumper feels"
         else:
@@ -217,7 +209,7 @@ class PathDriver:
             return
         moved = senses.pose.distance_to(*self._nudged_at)
         points = self._rejoin.nudged(senses, self.tracker, self._obstacles)
-        if points is not None and moved > LEAST:
+        if points is not None and moved > self._config.least_progress:
             self._nudged_at = senses.pose.x, senses.pose.y
             self._begin(points, senses)
         elif self._plans_anew(senses.now, self.left):
@@ -241,9 +233,9 @@ class PathDriver:
         """Plan to the next piece of the path that can be reached; a bump may have shortened it."""
         x, y = self._planned_at
         moved = senses.pose.distance_to(x, y)
-        self._futile = self._futile + 1 if moved < LEAST else 0
+        self._futile = self._futile + 1 if moved < self._config.least_progress else 0
         self._planned_at = senses.pose.x, senses.pose.y
-        if self._futile > _MOST_FUTILE:
+        if self._futile > self._config.most_futile:
             self._futile = 0
             self._begin_recovery(senses)
             return

@@ -10,16 +10,8 @@ from roomba.configuration.robot import WalkConfig
 from roomba.geometry import Pose
 from roomba.planning.path.planner import Path
 
-_SHARP = 0.3
-"""rad; a corner sharper than this is not cut: the setpoint waits there for the robot."""
-_CORNER_REACHED = 0.04
-"""m; the setpoint goes on when the robot is this near to a sharp corner."""
 _SEARCH_AHEAD = 0.6
 """m; window of the path, from the robot's last place on, in which its place is searched."""
-_SLOW_DOWN = 0.4
-"""m/s2; braking before corners."""
-_SLOWEST = 0.08
-"""m/s; never slower than this before it is there."""
 
 
 class PathFollower:
@@ -59,9 +51,9 @@ class PathFollower:
         for station, angle in zip(self._corners, self._angles, strict=True):
             if station > carrot:
                 break
-            if angle > _SHARP and station > self._along - 1e-9:
+            if angle > self._config.sharp_corner and station > self._along - 1e-9:
                 corner = self._path.point_at(float(station))
-                if pose.distance_to(*corner) > _CORNER_REACHED:
+                if pose.distance_to(*corner) > self._config.corner_reached:
                     return float(station)
         return carrot
 
@@ -72,5 +64,5 @@ class PathFollower:
         ahead = ahead[ahead >= 0.0]
         share = np.minimum(angles / (0.5 * math.pi), 1.0)
         through = max_speed - (max_speed - min(self._config.corner_speed, max_speed)) * share
-        allowed = np.sqrt(through**2 + 2.0 * _SLOW_DOWN * ahead)
-        return max(_SLOWEST, float(allowed.min(initial=max_speed)))
+        allowed = np.sqrt(through**2 + 2.0 * self._config.braking * ahead)
+        return max(self._config.slowest, float(allowed.min(initial=max_speed)))

@@ -21,14 +21,12 @@ PROGRESS: Final = np.dtype(
         ("along", "f8"),  # m; how far along its path it was then
         ("leg", "i8"),
         ("recoveries", "i8"),  # in vain, one after the other
+        # what does not change
+        ("least", "f8"),  # m along the path; less is no progress
+        ("leaves_trouble", "f8"),  # m of progress after which earlier recoveries count no more
     ]
 )
 """What a drive remembers of its progress, one row."""
-
-LEAST: Final = 0.02
-"""m; less than this along the path is no progress."""
-_LEAVES_TROUBLE: Final = 0.5
-"""m of progress after which earlier recoveries count no more."""
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -59,9 +57,9 @@ def off_path(track: Row, course: Course, x: float, y: float) -> float:
 def mark_progress(rows: Rows, along: float, leg: int, now: float) -> float:
     """Remember whether a drive came farther by a time, s; return for how long it has not."""
     progress = rows[0]
-    if along > progress.along + LEAST or leg > progress.leg:
+    if along > progress.along + progress.least or leg > progress.leg:
         progress.at, progress.leg = now, leg
-        if along > _LEAVES_TROUBLE:
+        if along > progress.leaves_trouble:
             progress.recoveries = 0
         progress.along = max(along, progress.along)
     return float(now - progress.at)

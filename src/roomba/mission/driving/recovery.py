@@ -2,25 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Final
-
 from roomba.configuration.mission import DrivingConfig
 from roomba.geometry import Twist, wrap_angle
 from roomba.mission.inputs.senses import Senses
-
-_TURNING: Final = 1.5
-"""rad/s."""
-_MOVES: Final = (
-    ((-1.0, 0.0, 1.0), (0.0, 1.0, 0.8)),
-    ((-1.0, 0.0, 1.0), (0.0, -1.0, 1.6)),
-    ((1.0, 0.0, 0.6), (-1.0, 0.6, 1.2), (-1.0, -0.6, 1.2)),
-    ((0.0, 1.0, 2.1), (1.0, 0.0, 1.0)),
-    ((0.0, -1.0, 4.2), (1.0, 0.0, 1.0)),
-)
-"""For each attempt: how fast (shares of backing speed and of turning), and how long, s."""
-_MOVED: Final = 0.03
-_TURNED: Final = 0.3
-"""m, rad; after this it is free."""
 
 
 class Recovery:
@@ -28,7 +12,8 @@ class Recovery:
 
     def __init__(self, number: int, config: DrivingConfig, senses: Senses) -> None:
         """Begin where the robot stands."""
-        self._moves = _MOVES[(number - 1) % len(_MOVES)]
+        self._config = config.recovery
+        self._moves = self._config.moves[(number - 1) % len(self._config.moves)]
         self._speed = config.backing_speed
         self._began, self._from = senses.now, senses.pose
 
@@ -39,7 +24,7 @@ class Recovery:
             return None
         for linear, angular, takes in self._moves:
             if time < takes:
-                return Twist(linear * self._speed, angular * _TURNING)
+                return Twist(linear * self._speed, angular * self._config.turning_speed)
             time -= takes
         return None
 
@@ -47,4 +32,4 @@ class Recovery:
         """Whether the robot is somewhere else now, or looks another way."""
         turned = wrap_angle(senses.pose.theta - self._from.theta)
         way = senses.pose.distance_to(self._from.x, self._from.y)
-        return way > _MOVED or abs(turned) > _TURNED
+        return way > self._config.freed_way or abs(turned) > self._config.freed_turn

@@ -29,8 +29,6 @@ _STRETCH: Final = 12
 """Steps ahead in which something stands that makes it leave the path."""
 _FREE_RUN: Final = 3
 """Steps that must be free one after the other to join there."""
-_OUT: Final = 1.0
-"""m; of the way home, after which it is out of where it was shut in."""
 _MOST_TRIES: Final = 8
 """The most places to join that are tried."""
 
@@ -42,6 +40,7 @@ class Rejoin:
         """Take the context's planners, which must allow what paths keep from walls."""
         self._context, self._planner = context, context.paths
         self._body_radius, self._away = body_radius, config.thing_clearance
+        self._out, self._most_nudge = config.out_of_pocket, config.most_nudge
         self.trouble = ""
 
     def way(
@@ -88,8 +87,8 @@ class Rejoin:
         except NoPathError:
             return None
         stations = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))))
-        end = [np.interp(_OUT, stations, points[:, axis]) for axis in (0, 1)]
-        first: Floats = np.concatenate((points[stations < _OUT], [end]))
+        end = [np.interp(self._out, stations, points[:, axis]) for axis in (0, 1)]
+        first: Floats = np.concatenate((points[stations < self._out], [end]))
         return first
 
     def _way_to(self, here: Point, there: Point, things: Sequence[RoundObstacle]) -> Floats | None:
@@ -101,7 +100,8 @@ class Rejoin:
     def nudged(self, senses: Senses, tracker: PathTracker, obstacles: Obstacles) -> Floats | None:
         """Return the rest of a path moved aside a little, or None if that does not help."""
         standing = obstacles.standing(senses.now)
-        return nudged(tracker, self._context.floor, standing, self._body_radius + self._away)
+        keep = self._body_radius + self._away
+        return nudged(tracker, self._context.floor, standing, keep, self._most_nudge)
 
     def _around(
         self, here: Point, tracker: PathTracker, obstacles: Sequence[RoundObstacle]

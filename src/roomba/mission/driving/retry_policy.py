@@ -3,19 +3,8 @@
 from __future__ import annotations
 
 import math
-from typing import Final
 
-_MOST_WAYS_HOME: Final = 5
-"""Attempts to find a way home before it begins to wait."""
-_FIRST_WAITS: Final = 2
-_FIRST_WAIT: Final = 10.0
-_WAIT: Final = 30.0
-"""s; so long it waits, where no way leads on, before it looks for one again: people pass sooner
-than doors are opened."""
-_LOOK: Final = 2.0
-"""s; period of looking whether the way is clear."""
-_MOST_WAITS: Final = 41
-"""The most waits, twenty minutes in all; then it gives up."""
+from roomba.configuration.mission import WaitingConfig
 
 
 class RetryPolicy:
@@ -24,8 +13,9 @@ class RetryPolicy:
     ``gets_out``: it has waited, and looks for a way out first.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, config: WaitingConfig) -> None:
         """Begin with nothing tried."""
+        self._config = config
         self._tries = self._waits = 0
         self._since = self._looked = -math.inf
         self.gets_out = self._has_begun = False
@@ -42,12 +32,13 @@ class RetryPolicy:
 
     def is_waiting(self, now: float) -> bool:
         """Whether it still waits; not if the clock was set back."""
-        wait = _FIRST_WAIT if self._waits <= _FIRST_WAITS else _WAIT
+        config = self._config
+        wait = config.first_wait if self._waits <= config.first_waits else config.wait
         return 0.0 <= now - self._since < wait
 
     def looks_again(self, now: float) -> bool:
         """Whether it is time, while it waits, to look whether there is a way by now."""
-        if 0.0 <= now - self._looked < _LOOK:
+        if 0.0 <= now - self._looked < self._config.look_period:
             return False
         self._looked = now
         return True
@@ -74,9 +65,9 @@ class RetryPolicy:
     @property
     def must_wait(self) -> bool:
         """Whether looking for a way home at once was tried often enough."""
-        return self._tries > _MOST_WAYS_HOME
+        return self._tries > self._config.most_ways_home
 
     @property
     def is_over(self) -> bool:
         """Whether it waited long enough."""
-        return self._tries > _MOST_WAYS_HOME + _MOST_WAITS
+        return self._tries > self._config.most_ways_home + self._config.most_waits

@@ -11,25 +11,22 @@ from roomba.geometry import Pose
 Obstacle = tuple[float, float, float]
 """x, y and radius of a round thing, m, map frame."""
 
-_LEFT_ANGLES = (0.35, 0.95)
-_BOTH_ANGLES = (-0.45, 0.0, 0.45)
-_RIGHT_ANGLES = (-0.35, -0.95)
-"""rad; where on the body's rim a press of the left half, of both, of the right may come from."""
-
 
 class UnknownThings:
     """Round obstacles felt by the bumper; each is forgotten after ``memory`` s, for things move."""
 
-    def __init__(self, walk: WalkConfig, body: BodyConfig, memory: float = 120.0) -> None:
+    def __init__(self, walk: WalkConfig, body: BodyConfig, memory: float) -> None:
         """Take the size given to a thing, and the body that feels it."""
         self._radius = walk.bump_radius
         self._reach = body.radius + walk.bump_radius
+        self._left, self._both = body.bumper_side, body.bumper_middle
+        self._right = tuple(-angle for angle in body.bumper_side)
         self._memory = memory
         self._felt: list[tuple[float, Obstacle]] = []
 
     def felt(self, now: float, pose: Pose, left: bool, right: bool) -> None:
         """Remember what is in the way of the front's halves while the body stands at ``pose``."""
-        angles = _BOTH_ANGLES if left and right else _LEFT_ANGLES if left else _RIGHT_ANGLES
+        angles = self._both if left and right else self._left if left else self._right
         for angle in angles:
             direction = pose.theta + angle
             x = pose.x + self._reach * math.cos(direction)

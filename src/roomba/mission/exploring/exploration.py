@@ -13,6 +13,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.configuration.mission import ExploringConfig
 from roomba.geometry import Pose
 from roomba.grid import OccupancyMap
 from roomba.mission.cleaning.request import CleanOutcome
@@ -21,12 +22,6 @@ from roomba.planning.frontiers.frontiers import Frontier, frontiers, is_frontier
 from roomba.planning.path.costmap import Point, RoundObstacle
 from roomba.planning.path.planner import NoPathError
 
-_STILL_THERE: Final = 0.25
-"""m; around the middle of a frontier, to see whether something of it is left."""
-_ARRIVED: Final = 0.12
-"""m; as near to a viewpoint it has seen all that is to be seen from there."""
-_BESIDE: Final = 0.3
-"""m; frontiers nearer to one that was given up are the same."""
 _MOST_TRIES: Final = 12
 """Frontiers to which a way is planned before the next tick has its turn."""
 
@@ -49,8 +44,9 @@ class ExploreResult:
 class Exploration:
     """Chooses where to go; ``unseen`` are the frontiers that it gave up, m, map frame."""
 
-    def __init__(self) -> None:
+    def __init__(self, config: ExploringConfig) -> None:
         """Begin with nothing given up."""
+        self._config = config
         self.goal: Frontier | None = None
         self.unseen: list[Point] = []
         self.times_stuck = 0
@@ -62,9 +58,9 @@ class Exploration:
         return [[x, y] for x, y in self.unseen]
 
     @staticmethod
-    def of(values: list[list[float]]) -> Exploration:
+    def of(values: list[list[float]], config: ExploringConfig) -> Exploration:
         """Return an exploration that goes on; raises ValueError or TypeError for other values."""
-        exploration = Exploration()
+        exploration = Exploration(config)
         exploration.unseen = [(float(x), float(y)) for x, y in values]
         return exploration
 
@@ -87,7 +83,7 @@ class Exploration:
             fits = context.paths.reachable(at, obstacles)
         except NoPathError:
             return None
-        found = frontiers(context.known, fits, at, self.unseen, _BESIDE)
+        found = frontiers(context.known, fits, at, self.unseen, self._config.same_frontier)
         for frontier in [each for each in found if each.way < farthest][:_MOST_TRIES]:
             try:
                 path = context.paths.plan(at, frontier.viewpoint, obstacles)
@@ -100,11 +96,11 @@ class Exploration:
 
     def still_unseen(self, occupancy: OccupancyMap) -> tuple[Point, ...]:
         """Return the frontiers that it gave up and that are some on this map, which is newer."""
-        return tuple(point for point in self.unseen if is_frontier(occupancy, point, _STILL_THERE))
+        return tuple(point for point in self.unseen if self._is_left(occupancy, point))
 
     def wants_another(self, occupancy: OccupancyMap) -> bool:
         """Whether nothing is left of the frontier that it is on its way to, as the map is now."""
-        return self.goal is not None and not is_frontier(occupancy, self.goal.middle, _STILL_THERE)
+        return self.goal is not None and not self._is_left(occupancy, self.goal.middle)
 
     @property
     def is_under_way(self) -> bool:
@@ -121,7 +117,12 @@ class Exploration:
     def _leave_behind(self, here: Pose, context: PlanningContext) -> None:
         """Give the last frontier up if it was looked at from its viewpoint, and is still one."""
         goal, self.goal = self.goal, None
-        if goal is None or math.dist(goal.viewpoint, (here.x, here.y)) > _ARRIVED:
+        if goal is None:
             return
-        if is_frontier(context.known, goal.middle, _STILL_THERE):
+        off = math.dist(goal.viewpoint, (here.x, here.y))
+        if off <= self._config.viewpoint_tolerance and self._is_left(context.known, goal.middle):
             self.unseen.append(goal.middle)
+
+    def _is_left(self, occupancy: OccupancyMap, middle: Point) -> bool:
+        """Whether something of a frontier is left on a map."""
+        return is_frontier(occupancy, middle, self._config.frontier_radius)

@@ -50,7 +50,9 @@ class PlanningContext:
         self.known = self.zones.kept_out(occupancy)
         self.staging = staging_pose(station, docking)
         driving, radius = mission.driving, robot.body.radius
-        self.reach = radius + driving.clearance
+        self.reach, self.gap_spare = radius + driving.clearance, driving.gap_spare
+        self.staging_tolerance = docking.place_tolerance
+        self.spot_size = mission.cleaning.spot_size
         self.tool_width = robot.brush.width
         self.plans, self.planning_time = 0, 0.0
         self.body_radius, self.is_growing = radius, is_growing

@@ -21,8 +21,6 @@ from roomba.mission.phases.step import Failure, PhaseStep
 from roomba.planning.path.planner import NoPathError
 
 _WAITS: Final = "all is seen; it waits for the map to be finished"
-_LONGEST_WAIT: Final = 120.0
-"""s; how long it waits for the whole map."""
 _NO_WHOLE_MAP: Final = (
     "the map is not finished: put the robot on its station once, so that the map knows where that "
     "is, or call map/finish; then resume"
@@ -117,7 +115,7 @@ class CleanPhase:
         return PhaseStep(message=_WAITS, wants_whole_map=True)
 
     def _wait_for_whole_map(self, senses: Senses) -> PhaseStep:
-        if 0.0 <= senses.now - self._seen_all_at < _LONGEST_WAIT:
+        if 0.0 <= senses.now - self._seen_all_at < self._config.map_wait:
             return PhaseStep(wants_whole_map=True)
         self._seen_all_of = None
         return PhaseStep(failure=Failure(CleanOutcome.FAULT, _NO_WHOLE_MAP))

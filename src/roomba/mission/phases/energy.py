@@ -3,19 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Final
 
 from roomba.configuration.mission import EnergyConfig
 from roomba.mission.inputs.senses import Battery, Senses
-
-_TRUSTED: Final = 10.0
-"""m; after so much way the consumption that was seen counts, before that the configured one."""
-_EMPTY: Final = 0.005
-"""Share of the capacity; with less the drive stops by itself."""
-_CHECK_EVERY: Final = 5.0
-"""s; between two looks at how far it is home."""
-_CARRIED: Final = 0.3
-"""m; between two ticks; farther it was carried."""
+from roomba.perception.swept.coverage_map import LONGEST_STEP
 
 
 class EnergyLedger:
@@ -37,7 +28,7 @@ class EnergyLedger:
         """Take what was sensed; ``way``, m, if it was more than the straight one."""
         last, self._last = self._last, senses
         straight = senses.pose.distance_to(last.pose.x, last.pose.y)
-        if way is not None or straight < _CARRIED:
+        if way is not None or straight < LONGEST_STEP:
             self.distance += straight if way is None else way
         self.energy += max(0.0, last.battery.energy - senses.battery.energy)
         self.dirt += max(0.0, senses.in_bin - last.in_bin)
@@ -45,23 +36,23 @@ class EnergyLedger:
     @property
     def per_metre(self) -> float:
         """What a metre of way takes, Wh, as seen on this errand."""
-        if self.distance < _TRUSTED:
+        if self.distance < self._config.measured_after:
             return self._config.per_metre
         return max(self.energy / self.distance, 0.2 * self._config.per_metre)
 
     @property
     def next_check(self) -> float:
         """When it is looked at again how far it is home, s."""
-        return self._checked + _CHECK_EVERY
+        return self._checked + self._config.check_period
 
     @property
     def empty(self) -> float:
         """A level with less than which the battery gives nothing any more, 0..1."""
-        return _EMPTY
+        return self._config.empty
 
     def must_go_home(self, senses: Senses, way_home: Callable[[Senses], float]) -> bool:
         """Whether what is left just suffices for the way home; ``way_home`` tells that way, m."""
-        if 0.0 <= senses.now - self._checked < _CHECK_EVERY:
+        if 0.0 <= senses.now - self._checked < self._config.check_period:
             return False
         self._checked = senses.now
         battery = senses.battery
@@ -73,7 +64,7 @@ class EnergyLedger:
 
     def is_empty(self, senses: Senses) -> bool:
         """Whether the battery is empty."""
-        return senses.battery.level < _EMPTY
+        return senses.battery.level < self._config.empty
 
     def is_charged(self, senses: Senses, needed: float) -> bool:
         """Whether it is charged enough to go on, with ``needed`` Wh still to be used."""

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from typing import Final
 
-from roomba.configuration.mission import EnergyConfig
+from roomba.clock import LONGEST_TICK
+from roomba.configuration.mission import MissionConfig
 from roomba.mission.cleaning.cleaning import Cleaning
 from roomba.mission.cleaning.missed import why_hardly_any
 from roomba.mission.cleaning.request import CleanOutcome, CleanResult
@@ -16,11 +16,6 @@ from roomba.mission.inputs.senses import Senses
 from roomba.mission.phases.energy import EnergyLedger
 from roomba.perception.swept.dirt_map import DirtMap
 
-_LONGEST_TICK: Final = 2.0
-"""s; more between two ticks than this is a clock that was set."""
-_DETOURS: Final = 1.2
-"""Length of a clean's way, as a multiple of the shortest that could sweep the floor."""
-
 
 class Job:
     """``cleaning`` or ``exploration`` is under way, or both on a map that is being made, or none.
@@ -30,13 +25,13 @@ class Job:
     Times are s of the robot's clock.
     """
 
-    def __init__(self, dirt: DirtMap, config: EnergyConfig, senses: Senses) -> None:
+    def __init__(self, dirt: DirtMap, config: MissionConfig, senses: Senses) -> None:
         """Begin with nothing to do."""
-        self.dirt = dirt
+        self.dirt, self._config = dirt, config
         self.cleaning: Cleaning | None = None
         self.exploration: Exploration | None = None
         self.outcome: CleanOutcome | None = None
-        self.ledger = EnergyLedger(config, senses)
+        self.ledger = EnergyLedger(config.energy, senses)
         self._started = senses.now
         self._is_told = False
         self._cleaned: CleanResult | None = None
@@ -45,12 +40,12 @@ class Job:
     def begin_clean(self, cleaning: Cleaning, senses: Senses) -> None:
         """Begin a clean, with new ledgers; if it explores, it does so on the way."""
         self.cleaning = cleaning
-        self.exploration = Exploration() if cleaning.explores else None
+        self.exploration = Exploration(self._config.exploring) if cleaning.explores else None
         self._begin(senses)
 
     def begin_exploration(self, senses: Senses) -> None:
         """Begin an exploration, with new ledgers."""
-        self.exploration, self._explored = Exploration(), None
+        self.exploration, self._explored = Exploration(self._config.exploring), None
         self._begin(senses)
 
     def _begin(self, senses: Senses) -> None:
@@ -76,7 +71,7 @@ class Job:
         """Keep the ledgers: energy, way, floor swept, dirt met."""
         self.ledger.note(senses)
         passed = senses.now - last.now
-        if not 0.0 <= passed <= _LONGEST_TICK:
+        if not 0.0 <= passed <= LONGEST_TICK:
             self._started += passed
         if self.cleaning is None:
             return
@@ -85,7 +80,7 @@ class Job:
             return
         pose = senses.pose
         way = pose.distance_to(last.pose.x, last.pose.y)
-        elapsed = min(max(passed, 0.0), _LONGEST_TICK)
+        elapsed = min(max(passed, 0.0), LONGEST_TICK)
         self.cleaning.coverage.sweep(pose.x, pose.y)
         self.dirt.note(pose.x, pose.y, senses.grains * elapsed, way)
 
@@ -97,7 +92,7 @@ class Job:
             return 0.0
         # Behind a few patches that are still missed there may be a long way.
         way = max(self.cleaning.left / tool_width, self.cleaning.broken_off)
-        return self.ledger.per_metre * _DETOURS * way
+        return self.ledger.per_metre * self._config.cleaning.detours * way
 
     def end(
         self,

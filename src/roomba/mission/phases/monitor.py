@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Final
-
 from roomba.configuration.robot import WalkConfig
 from roomba.mission.cleaning.request import CleanOutcome
 from roomba.mission.driving.drives import Drives
@@ -12,9 +10,6 @@ from roomba.mission.phases.energy import EnergyLedger
 from roomba.mission.phases.machine import MissionState, Phase
 from roomba.mission.phases.step import Failure
 from roomba.perception.localization.estimate import Knowledge
-
-_CARRIED: Final = 1.0
-"""m; a robot that is farther from its last known place than this was carried."""
 
 
 class Monitor:
@@ -72,6 +67,6 @@ class Monitor:
 
     def _found_again(self, senses: Senses) -> None:
         self._astray_since = None
-        if senses.pose.distance_to(*self._known_at) > _CARRIED:
+        if senses.pose.distance_to(*self._known_at) > self._config.carried:
             # It was carried, or wrong before.
             self._drives.forget_place()

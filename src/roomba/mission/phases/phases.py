@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Final
 
 from roomba.mission.cleaning.request import CleanOutcome
 from roomba.mission.driving.drives import Drives
@@ -15,9 +14,6 @@ from roomba.mission.phases.job import Job
 from roomba.mission.phases.machine import Event
 from roomba.mission.phases.step import Failure, PhaseStep
 from roomba.planning.path.planner import NoPathError
-
-NEAR_STAGING: Final = 0.08
-"""m; distance to the place before the station at which docking takes over."""
 
 
 def explore(job: Job, drives: Drives, senses: Senses, limit: float, most_stuck: int) -> PhaseStep:
@@ -69,7 +65,7 @@ def go_home(drives: Drives, retries: RetryPolicy, senses: Senses, limit: float) 
     staging = drives.context.staging
     if senses.battery.is_docked:
         return PhaseStep(event=Event.CONTACT)
-    if senses.pose.distance_to(staging.x, staging.y) < NEAR_STAGING:
+    if senses.pose.distance_to(staging.x, staging.y) < drives.context.staging_tolerance:
         return PhaseStep(event=Event.ARRIVED)
     waiting = wait_on(drives, retries, senses, limit)
     if waiting is not None:

@@ -11,7 +11,7 @@ import math
 from dataclasses import dataclass
 from enum import Enum
 
-from roomba.clock import ClockJumps
+from roomba.clock import LONGEST_TICK, ClockJumps
 from roomba.configuration.robot import WalkConfig
 from roomba.mission.driving.obstacles import Obstacles
 from roomba.mission.driving.path_follower import PathFollower
@@ -22,18 +22,6 @@ from roomba.planning.path.planner import NoPathError, NoPathReason, Path, PathPl
 
 Point = tuple[float, float]
 
-_PROGRESS = 0.05
-"""m; coming nearer to the goal by less than this is no progress."""
-_STANDSTILL = 0.03
-"""m/s; slower than this the robot stands."""
-_LONGEST_TICK = 2.0
-"""s; more between two ticks than this is a clock that was set."""
-_OFF_PATH = 0.35
-"""m; farther from its path than this the robot was carried or pushed, and plans anew."""
-_CARRIED = 1.0
-"""m; farther from where its place was known last the robot was carried."""
-_LOOK_AGAIN = 1.0
-"""s; period in which a robot that waits before something looks for a way around it."""
 _UNKNOWN = "something that the map does not show stands"
 
 
@@ -78,7 +66,7 @@ class Walk:
         self.goal = goal
         self._planner, self._config, self._obstacles = planner, config, obstacles
         self._started = senses.now
-        self._jumps = ClockJumps(last=senses.now, longest=_LONGEST_TICK)
+        self._jumps = ClockJumps(last=senses.now, longest=LONGEST_TICK)
         self._replans = self._ways_around = 0
         self._was_touching = any(senses.touches)
         self._went_astray, self._astray_since = False, senses.now
@@ -145,7 +133,7 @@ class Walk:
 
     def _has_arrived(self, senses: Senses) -> bool:
         near = senses.pose.distance_to(*self.goal) <= self._config.arrival_tolerance
-        return near and abs(senses.twist.linear) <= _STANDSTILL
+        return near and abs(senses.twist.linear) <= self._config.standstill
 
     def _go_around(self, senses: Senses) -> str:
         """Plan anew if need be; return why the walk is given up, or nothing."""
@@ -167,9 +155,10 @@ class Walk:
         if is_new:
             self._obstacles.feel(senses)
             return f"the floor ends {where}" if senses.cliff else f"{_UNKNOWN} in the way {where}"
-        if self._follower.distance_off(senses.pose) > _OFF_PATH:
+        if self._follower.distance_off(senses.pose) > self._config.off_path:
             return f"the robot was moved off its path {where}"
-        if self._follower.left < self._least_left - _PROGRESS or self._blocked_since is not None:
+        is_nearer = self._follower.left < self._least_left - self._config.least_progress
+        if is_nearer or self._blocked_since is not None:
             self._least_left = min(self._least_left, self._follower.left)
             self._progressed = senses.now
         if senses.now - self._progressed > self._config.progress_timeout:
@@ -179,7 +168,8 @@ class Walk:
     def _is_found_again(self, senses: Senses) -> bool:
         """Whether the place is known again; what is remembered of another place is forgotten."""
         went_astray, self._went_astray = self._went_astray, False
-        if went_astray and senses.pose.distance_to(*self._known_at) > _CARRIED:
+        moved = senses.pose.distance_to(*self._known_at)
+        if went_astray and moved > self._config.carried:
             self._obstacles.forget()
         self._known_at = (senses.pose.x, senses.pose.y)
         return went_astray
@@ -203,7 +193,7 @@ class Walk:
         if self._blocked_since is None:
             self._blocked_since = senses.now
             self._ways_around += 1
-        elif senses.now - self._looked < _LOOK_AGAIN:
+        elif senses.now - self._looked < self._config.look_period:
             return ""
         self._looked = senses.now
         x, y = self.path.point_at(self._ahead.blocked_at or 0.0)

@@ -18,8 +18,6 @@ Mask = NDArray[np.bool_]
 
 CELL: Final = 0.20
 """m; about the width of the tool, which limits the sensor's resolution."""
-_LEAST_DIRTY: Final = 500.0
-"""Grains/m2; with fewer, 25 mg/m2 of what was picked up, no floor is dirty."""
 _LEARNING: Final = 0.4
 """Share of the newest run in what a cell is taken for."""
 
@@ -75,10 +73,13 @@ class DirtMap:
         values = self._over(np.nan_to_num(self.learned), frame)[mask]
         return float(values.mean()) if values.size else 0.0
 
-    def dirty_now(self, frame: GridFrame, times: float) -> Mask:
-        """Return where the present run counted so many times the usual of it, on another grid."""
+    def dirty_now(self, frame: GridFrame, times: float, least: float) -> Mask:
+        """Return where the present run counted so many times the usual of it, on another grid.
+
+        Where it counted fewer than ``least`` grains/m2 no floor is dirty.
+        """
         density, seen = self._density_now(), self.way > 0.5 * CELL
-        dirty: Mask = self._over(density, frame) >= dirty_from(density[seen], times)
+        dirty: Mask = self._over(density, frame) >= dirty_from(density[seen], times, least)
         return dirty
 
     def known(self) -> Floats:
@@ -101,14 +102,14 @@ class DirtMap:
         return over
 
 
-def dirty_from(density: Floats, times: float) -> float:
+def dirty_from(density: Floats, times: float, least: float) -> float:
     """Return from how many grains/m2 on floor is dirty: so many times the usual, their median.
 
-    ``density`` is of any shape; NaN where nothing is known.
+    It is ``least`` grains/m2 or more. ``density`` is of any shape; NaN where nothing is known.
     """
     known = density[~np.isnan(density)]
     usual = float(np.median(known)) if known.size else 0.0
-    return max(times * usual, _LEAST_DIRTY)
+    return max(times * usual, least)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

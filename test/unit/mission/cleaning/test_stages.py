@@ -11,7 +11,6 @@ from roomba.configuration.mission import MissionConfig
 from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose
 from roomba.mission.cleaning.request import (
-    SPOT_SIZE,
     CleanMode,
     CleanRefusedError,
     CleanRequest,
@@ -71,7 +70,7 @@ def test_zones_and_spots_are_what_of_them_can_be_covered() -> None:
     areas = ((0.4, 0.4, 1.0, 0.9), (0.8, 0.7, 1.5, 2.0))
     (zones,) = stages(CleanRequest(mode=CleanMode.ZONES, zones=areas), place)
     assert_floor_is(zones, place, *areas)
-    half = 0.5 * SPOT_SIZE
+    half = 0.5 * MissionConfig().cleaning.spot_size
     (spot,) = stages(CleanRequest(mode=CleanMode.SPOT, spot=(1.2, 1.3)), place)
     assert_floor_is(spot, place, (1.2 - half, 1.3 - half, 1.2 + half, 1.3 + half))
     (here,) = stages(CleanRequest(mode=CleanMode.SPOT), place)

@@ -28,6 +28,8 @@ from roomba.world.engine.state.arrays import Fault, Infrared
 from roomba.world.simulator import Simulator
 
 ROBOT, CONFIG = SimulatedRobotConfig(), DockingConfig()
+PATIENT = ROBOT.body.model_copy(update={"command_timeout": 0.5})
+"""A body whose commands may be late: those of a test come with the robot's own senses."""
 RADIUS = ROBOT.body.radius
 STATION = Pose(RADIUS + 0.035, 2.0, math.pi)
 """The wall is what the robot touches when it goes 3.5 cm too far."""
@@ -55,7 +57,7 @@ class Rig:
         """Stand at ``start`` and believe to be ``wrong`` by so much; senses come ticks late."""
         self.world = Simulator(HOME, ROBOT, seed=seed, start=STATION.compose(start))
         self.wrong, self.is_known, self.clock = wrong, True, 0.0
-        self._loop = SpeedLoop(0.5, 0.5, ROBOT.body.max_angular_speed)
+        self._loop = SpeedLoop(PATIENT, 0.5)
         self.inject(*faults)
         self.world.advance(Twist(), DT, 2)
         self._senses = deque([self._sense()] * (delay + 1), maxlen=delay + 1)

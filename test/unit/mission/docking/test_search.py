@@ -19,7 +19,7 @@ DT = 0.05
 
 
 def track_at(x: float, y: float, theta: float = 0.0) -> StationTrack:
-    track = StationTrack(BodyConfig(), StationConfig(), CONFIG.plate_gap, Pose())
+    track = StationTrack(BodyConfig(), StationConfig(), CONFIG, Pose())
     track.move(Pose(x, y, theta), Twist(), DT)
     return track
 

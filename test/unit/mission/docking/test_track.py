@@ -8,13 +8,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from roomba.configuration.docking import DockingConfig
 from roomba.configuration.robot import BodyConfig, StationConfig
 from roomba.geometry import Pose, Twist
 from roomba.mission.docking.track import StationBeams, StationTrack
 
 BODY, STATION = BodyConfig(), StationConfig()
-GAP = 0.03
-FRONT = BODY.radius + GAP
+CONFIG = DockingConfig()
+FRONT = BODY.radius + CONFIG.plate_gap
 DOCKED = Pose(3.0, -2.0, 2.1)
 BOTH = StationBeams(green=True, red=True)
 STILL = Twist()
@@ -22,7 +23,7 @@ STILL = Twist()
 
 def track(at: Pose) -> StationTrack:
     """Believe to be at a pose of the docked robot's frame."""
-    made = StationTrack(BODY, STATION, GAP, DOCKED)
+    made = StationTrack(BODY, STATION, CONFIG, DOCKED)
     made.move(DOCKED.compose(at), STILL, 0.05)
     return made
 
@@ -154,7 +155,7 @@ def test_without_a_pose_it_goes_as_was_wanted() -> None:
     assert here.pose.x == pytest.approx(-0.6 + radius, abs=1e-3)
     assert here.pose.y == pytest.approx(radius, abs=1e-3)
     assert here.is_known
-    assert not StationTrack(BODY, STATION, GAP, DOCKED).is_known
+    assert not StationTrack(BODY, STATION, CONFIG, DOCKED).is_known
 
 
 def test_a_new_belief_takes_the_place_of_the_old_one_and_late_beams_do_not_count() -> None:

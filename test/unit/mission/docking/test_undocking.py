@@ -22,6 +22,8 @@ from roomba.world.engine.state.arrays import Fault
 from roomba.world.simulator import Simulator
 
 ROBOT, CONFIG = SimulatedRobotConfig(), DockingConfig()
+PATIENT = ROBOT.body.model_copy(update={"command_timeout": 0.5})
+"""A body whose commands may be late: those of a test come with the robot's own senses."""
 STATION = Pose(ROBOT.body.radius + 0.035, 2.0, math.pi)
 HOME = room_home(4.0, 4.0, station=STATION)
 TICK = 2 * DT
@@ -45,7 +47,7 @@ class Rig:
             self.world.inject(fault, 1.0)
         self.world.advance(Twist(), DT, 1)
         self.is_known, self.clock, self.ticks = is_known, 0.0, 0
-        self._loop = SpeedLoop(0.5, 0.5, ROBOT.body.max_angular_speed)
+        self._loop = SpeedLoop(PATIENT, 0.5)
         self._senses = deque([self._sense()] * (delay + 1), maxlen=delay + 1)
         self.undocking = Undocking(CONFIG, STATION, self._senses[0])
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from roomba.mission.driving.gaps import SPARE, closed_gaps
+from roomba.mission.driving.gaps import closed_gaps
 from roomba.planning.path.costmap import RoundObstacle
 
-REACH = 0.165
+REACH, SPARE = 0.165, 0.06
 
 
 def pair(gap: float) -> list[RoundObstacle]:
@@ -27,7 +27,7 @@ def pair(gap: float) -> list[RoundObstacle]:
     ids=["just wide enough", "hardly wide enough", "closed anyway", "wide"],
 )
 def test_a_gap_is_closed_that_is_hardly_wide_enough(gap: float, is_closed: bool) -> None:
-    closed = closed_gaps(pair(gap), REACH)
+    closed = closed_gaps(pair(gap), REACH, SPARE)
     if not is_closed:
         assert closed == []
         return
@@ -42,16 +42,16 @@ def test_a_gap_is_closed_that_is_hardly_wide_enough(gap: float, is_closed: bool)
 
 def test_a_chair_is_closed_on_all_sides() -> None:
     legs = [(x, y, 0.02) for x in (1.0, 1.4) for y in (1.0, 1.4)]
-    closed = {(round(x, 3), round(y, 3)) for x, y, _ in closed_gaps(legs, REACH)}
+    closed = {(round(x, 3), round(y, 3)) for x, y, _ in closed_gaps(legs, REACH, SPARE)}
     assert closed == {(1.2, 1.0), (1.2, 1.4), (1.0, 1.2), (1.4, 1.2)}
 
 
 def test_the_corner_of_one_thing_stays_open() -> None:
     walls = [(1.0 + 0.04 * step, 1.0, 0.02) for step in range(20)]
     walls += [(1.0, 1.0 + 0.04 * step, 0.02) for step in range(20)]
-    assert closed_gaps(walls, REACH) == []
+    assert closed_gaps(walls, REACH, SPARE) == []
 
 
 def test_what_is_alone_has_no_gaps() -> None:
-    assert closed_gaps([], REACH) == []
-    assert closed_gaps([(1.0, 1.0, 0.02)], REACH) == []
+    assert closed_gaps([], REACH, SPARE) == []
+    assert closed_gaps([(1.0, 1.0, 0.02)], REACH, SPARE) == []

@@ -9,6 +9,7 @@ from fixtures.missions import TWO_ROOMS, WALL_X
 from fixtures.obstacles import Standing
 from numpy.typing import NDArray
 
+from roomba.configuration.mission import GivingWayConfig
 from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose
 from roomba.mission.driving.give_way import way_aside
@@ -17,7 +18,7 @@ from roomba.mission.inputs.senses import Senses
 from roomba.planning.path.costmap import RoundObstacle
 from roomba.planning.path.planner import PathPlanner
 
-RADIUS = RobotConfig().body.radius
+RADIUS, CONFIG = RobotConfig().body.radius, GivingWayConfig()
 PLANNER = PathPlanner(TWO_ROOMS.map, RADIUS, 0.04, 0.0025)
 IN_THE_DOOR = Senses(0.0, Pose(WALL_X + 0.05, 1.2, math.pi))
 PERSON: list[RoundObstacle] = [(WALL_X - 0.45, 1.2 + 0.05 * step, 0.02) for step in range(-5, 6)]
@@ -30,7 +31,7 @@ def off(points: NDArray[np.float64], things: list[RoundObstacle]) -> float:
 
 
 def test_it_goes_back_from_a_person_that_wants_to_pass() -> None:
-    points = way_aside(PLANNER, IN_THE_DOOR, Standing(PERSON), Trail())
+    points = way_aside(PLANNER, IN_THE_DOOR, Standing(PERSON), Trail(), CONFIG)
     assert points is not None
     assert points[0].tolist() == [IN_THE_DOOR.pose.x, IN_THE_DOOR.pose.y]
     assert off(points, PERSON) > 1.1
@@ -40,14 +41,14 @@ def test_it_goes_back_from_a_person_that_wants_to_pass() -> None:
 
 def test_it_does_not_go_past_the_person() -> None:
     here = Senses(0.0, Pose(WALL_X + 0.6, 1.2, math.pi))
-    points = way_aside(PLANNER, here, Standing(PERSON), Trail())
+    points = way_aside(PLANNER, here, Standing(PERSON), Trail(), CONFIG)
     assert points is not None
     assert (points[:, 0] > WALL_X).all()
     assert off(points, PERSON) > 1.1
 
 
 def test_where_nobody_is_known_to_stand_it_leaves_the_place() -> None:
-    points = way_aside(PLANNER, IN_THE_DOOR, Standing([]), Trail())
+    points = way_aside(PLANNER, IN_THE_DOOR, Standing([]), Trail(), CONFIG)
     assert points is not None
     assert off(points, [(IN_THE_DOOR.pose.x, IN_THE_DOOR.pose.y, 0.0)]) > 1.0
 
@@ -59,10 +60,10 @@ def test_hemmed_in_it_drives_back_as_it_came() -> None:
     ]
     beside = [(IN_THE_DOOR.pose.x + 0.02, 1.2 + side, 0.03) for side in (-0.2, 0.2)]
     things = ring + beside
-    assert way_aside(PLANNER, IN_THE_DOOR, Standing(things), Trail()) is None
+    assert way_aside(PLANNER, IN_THE_DOOR, Standing(things), Trail(), CONFIG) is None
     trail = Trail()
     for step in range(20):
         trail.add(WALL_X + 1.05 - 0.05 * step, 1.2)
-    points = way_aside(PLANNER, IN_THE_DOOR, Standing(things), trail)
+    points = way_aside(PLANNER, IN_THE_DOOR, Standing(things), trail, CONFIG)
     assert points is not None
     assert off(points, things) > 1.1

@@ -25,7 +25,7 @@ KEEP = 0.165
 def nudge(*things: RoundObstacle, points: NDArray[np.float64] = PATH) -> NDArray[np.float64] | None:
     tracker = PathTracker(points, CONFIG.tracking, CONFIG.body, CONFIG.timing.tick)
     tracker.tick(Pose(0.9, float(points[0, 1]), 0.0), 0.3)
-    return nudged(tracker, FLOOR, things, KEEP)
+    return nudged(tracker, FLOOR, things, KEEP, most=0.08)
 
 
 def gaps(points: NDArray[np.float64], thing: RoundObstacle) -> NDArray[np.float64]:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from roomba.configuration.mission import WaitingConfig
 from roomba.mission.driving.retry_policy import RetryPolicy
 
 WAIT = 30.0
 
 
 def test_it_waits_a_while_then_half_a_minute_and_then_gets_out_first() -> None:
-    retries = RetryPolicy()
+    retries = RetryPolicy(WaitingConfig())
     assert not retries.is_waiting(0.0)
     assert not retries.gets_out
     for wait in (10.0, 10.0, WAIT, WAIT):
@@ -25,13 +26,13 @@ def test_it_waits_a_while_then_half_a_minute_and_then_gets_out_first() -> None:
 
 
 def test_a_clock_that_is_set_back_does_not_make_it_wait_for_ever() -> None:
-    retries = RetryPolicy()
+    retries = RetryPolicy(WaitingConfig())
     retries.wait(1e6)
     assert not retries.is_waiting(10.0)
 
 
 def test_it_looks_five_times_at_once_and_waits_forty_one_times() -> None:
-    retries = RetryPolicy()
+    retries = RetryPolicy(WaitingConfig())
     told = []
     while not retries.is_over:
         retries.found_no_way_home()
@@ -43,7 +44,7 @@ def test_it_looks_five_times_at_once_and_waits_forty_one_times() -> None:
 
 
 def test_told_to_go_on_it_counts_anew() -> None:
-    retries = RetryPolicy()
+    retries = RetryPolicy(WaitingConfig())
     for _ in range(50):
         retries.found_no_way_home()
     assert retries.is_over
@@ -53,7 +54,7 @@ def test_told_to_go_on_it_counts_anew() -> None:
 
 
 def test_while_it_waits_it_looks_now_and_then_and_may_wait_no_longer() -> None:
-    retries = RetryPolicy()
+    retries = RetryPolicy(WaitingConfig())
     retries.wait(100.0)
     assert [retries.looks_again(100.0 + 0.5 * count) for count in range(9)].count(True) == 2
     retries.end()

@@ -20,7 +20,7 @@ from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.planning.path.planner import NoPathError, NoPathReason, PathPlanner
 
 HERE = Pose(0.8, 1.0, 0.0)
-ROBOT = RobotConfig()
+ROBOT, CONFIG = RobotConfig(), MissionConfig().exploring
 DOORWAY = (WALL_X + 0.05, 0.5 * (DOOR[0] + DOOR[1]))
 
 
@@ -48,7 +48,7 @@ ALL_SITE = context_of(TWO_ROOMS.map)
 
 def begun() -> Exploration:
     """On its way to the doorway."""
-    exploration = Exploration()
+    exploration = Exploration(CONFIG)
     assert exploration.next_path(HERE, HALL_SITE, []) is not None
     return exploration
 
@@ -60,7 +60,7 @@ def at_goal(exploration: Exploration, aside: float = 0.0) -> Pose:
 
 
 def test_it_goes_to_where_it_sees_into_the_next_room() -> None:
-    exploration = Exploration()
+    exploration = Exploration(CONFIG)
     path = exploration.next_path(HERE, HALL_SITE, [])
     assert path is not None
     assert exploration.goal is not None
@@ -72,7 +72,7 @@ def test_it_goes_to_where_it_sees_into_the_next_room() -> None:
 
 
 def test_where_all_is_known_there_is_no_next() -> None:
-    exploration = Exploration()
+    exploration = Exploration(CONFIG)
     assert exploration.next_path(HERE, ALL_SITE, []) is None
     assert exploration.goal is None
     assert exploration.unseen == []
@@ -80,10 +80,10 @@ def test_where_all_is_known_there_is_no_next() -> None:
 
 def test_walled_in_there_is_no_next() -> None:
     around = [(HERE.x + 0.2 * x, HERE.y + 0.2 * y, 0.1) for x in (-1, 0, 1) for y in (-1, 0, 1)]
-    assert Exploration().next_path(HERE, HALL_SITE, around) is None
+    assert Exploration(CONFIG).next_path(HERE, HALL_SITE, around) is None
     beside = [(DOORWAY[0] - 0.1, y, 0.06) for y in np.arange(0.7, 1.8, 0.1).tolist()]
     # Something stands in the doorway: what is to be seen from this side is looked at from there.
-    exploration = Exploration()
+    exploration = Exploration(CONFIG)
     path = exploration.next_path(HERE, HALL_SITE, beside)
     assert path is None or path[:, 0].max() < DOORWAY[0] - 0.1 - 0.2
 
@@ -94,7 +94,7 @@ def test_when_the_map_shows_what_is_there_it_wants_another() -> None:
     assert exploration.wants_another(TWO_ROOMS.map)
     # Some of it is left.
     assert not exploration.wants_another(known_to(DOORWAY[0] + 0.15))
-    assert not Exploration().wants_another(TWO_ROOMS.map)
+    assert not Exploration(CONFIG).wants_another(TWO_ROOMS.map)
 
 
 def test_what_was_looked_at_and_is_still_unknown_is_given_up() -> None:
@@ -153,7 +153,7 @@ def test_one_to_which_no_way_leads_is_given_up_for_the_next(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     context = context_of(known_to(DOORWAY[0] + 0.06, (1.0, 2.0)))
-    near = Exploration()
+    near = Exploration(CONFIG)
     near.next_path(Pose(0.8, 1.4, 0.0), context, [])
     assert near.goal is not None
     shut, plan = near.goal, PathPlanner.plan
@@ -164,7 +164,7 @@ def test_one_to_which_no_way_leads_is_given_up_for_the_next(
         return plan(planner, start, goal, obstacles)
 
     monkeypatch.setattr(PathPlanner, "plan", refuse)
-    exploration = Exploration()
+    exploration = Exploration(CONFIG)
     path = exploration.next_path(Pose(0.8, 1.4, 0.0), context, [])
     assert path is not None
     assert exploration.unseen == [shut.middle]
@@ -182,7 +182,7 @@ def test_how_much_is_known_is_told() -> None:
 def test_it_comes_back_from_plain_values() -> None:
     exploration = begun()
     exploration.cut_off()
-    back = Exploration.of(json.loads(json.dumps(exploration.values())))
+    back = Exploration.of(json.loads(json.dumps(exploration.values())), CONFIG)
     assert back.unseen == exploration.unseen
     assert back.goal is None
     paths = [each.next_path(HERE, HALL_SITE, []) for each in (back, exploration)]
@@ -193,4 +193,4 @@ def test_it_comes_back_from_plain_values() -> None:
 @pytest.mark.parametrize("junk", [[[1.0]], [["a", 2.0]], 5, [[1.0, 2.0, 3.0]], [None]])
 def test_junk_is_refused(junk: Any) -> None:
     with pytest.raises((ValueError, TypeError)):
-        Exploration.of(junk)
+        Exploration.of(junk, CONFIG)

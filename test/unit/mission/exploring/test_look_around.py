@@ -14,12 +14,13 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from roomba.geometry import Pose, Twist
-from roomba.mission.exploring.look_around import SPEED, TURNING, LookAround, SearchDrive
+from roomba.mission.exploring.look_around import LookAround, SearchDrive
 from roomba.perception.localization.estimate import Knowledge
 from roomba.world.home.home import Home
 from roomba.world.simulator import Simulator
 
 RADIUS = CONFIG.body.radius
+SPEED, TURNING = CONFIG.looking_around.speed, CONFIG.looking_around.turning_speed
 NOTHING = np.zeros((0, 4))
 FAR_AWAY = np.array([[5.0, 0.0], [0.0, 5.0], [-5.0, 0.0], [0.0, -5.0]])
 """The ends of some beams, farther off than it ever goes at once."""
@@ -41,7 +42,7 @@ def test_it_never_wants_to_go_faster_than_it_says(
     seed: int, beams: int, ticks: list[tuple[bool, float]]
 ) -> None:
     random = np.random.default_rng(seed)
-    look_around = LookAround(CONFIG.body)
+    look_around = LookAround(CONFIG.body, CONFIG.looking_around)
     for step, (touches, jump) in enumerate(ticks):
         ends = random.uniform(-3.0, 3.0, (beams, 2))
         pose = Pose(*random.uniform(-3.0, 3.0, 3).tolist())
@@ -63,7 +64,7 @@ def test_it_goes_to_where_there_is_room() -> None:
             np.column_stack((np.full(60, -near), sides)),
         ]
     )
-    look_around = LookAround(CONFIG.body)
+    look_around = LookAround(CONFIG.body, CONFIG.looking_around)
     wanted = look_around.tick(0.0, Pose(), ends, False)
     assert wanted == Twist(0.0, -TURNING)
     turned = ends[:, ::-1] * (-1.0, 1.0)
@@ -84,7 +85,7 @@ def going_ahead() -> LookAround:
             np.column_stack((np.full(60, -aside), sides)),
         ]
     )
-    look_around = LookAround(CONFIG.body)
+    look_around = LookAround(CONFIG.body, CONFIG.looking_around)
     assert look_around.tick(0.0, Pose(), ends, False).linear == SPEED
     return look_around
 
@@ -132,12 +133,12 @@ def test_it_backs_from_what_it_touches_and_then_goes_elsewhere() -> None:
     look_around = going_ahead()
     backing = [look_around.tick(1.0, Pose(), NOTHING, True)]
     backing += [look_around.tick(1.0 + DT * step, Pose(), NOTHING, False) for step in range(1, 32)]
-    assert set(backing) == {Twist(-0.4 * SPEED, 0.0)}
+    assert set(backing) == {Twist(-CONFIG.looking_around.backing_speed, 0.0)}
     assert look_around.tick(1.85, Pose(), NOTHING, False).linear >= 0.0
 
 
 def test_a_clock_that_is_set_back_does_not_let_it_back_for_ever() -> None:
-    look_around = LookAround(CONFIG.body)
+    look_around = LookAround(CONFIG.body, CONFIG.looking_around)
     look_around.tick(5000.0, Pose(), NOTHING, True)
     assert look_around.tick(10.0, Pose(), NOTHING, False).linear >= 0.0
 
@@ -180,7 +181,7 @@ def test_it_gets_out_of_a_corner(theta: float) -> None:
 def test_it_gets_away_from_what_the_lidar_does_not_see() -> None:
     """Ahead is something that only the bumper feels, again and again."""
     world = Simulator(room_home(3.0, 3.0), CONFIG, start=Pose(1.5, 1.5, 0.0))
-    look_around = LookAround(CONFIG.body)
+    look_around = LookAround(CONFIG.body, CONFIG.looking_around)
     poses = []
     for step in steps(12.0):
         now = world.observe()
@@ -201,7 +202,7 @@ def test_where_there_is_no_other_way_it_goes_through_a_narrow_one() -> None:
             np.column_stack((np.full(60, -aside), np.linspace(-0.2, 0.2, 60))),
         ]
     )
-    look_around = LookAround(CONFIG.body)
+    look_around = LookAround(CONFIG.body, CONFIG.looking_around)
     wanted = [look_around.tick(DT * step, Pose(), ends, False) for step in range(3)]
     assert wanted[-1].linear > 0.2
 
@@ -209,7 +210,7 @@ def test_where_there_is_no_other_way_it_goes_through_a_narrow_one() -> None:
 def test_boxed_in_it_stands() -> None:
     angles = np.linspace(-math.pi, math.pi, 180)
     around = (RADIUS + 0.07) * np.column_stack((np.cos(angles), np.sin(angles)))
-    look_around = LookAround(CONFIG.body)
+    look_around = LookAround(CONFIG.body, CONFIG.looking_around)
     for step in range(20):
         assert look_around.tick(0.1 * step, Pose(), around, False) == Twist()
 
@@ -222,7 +223,10 @@ def searching(robot: Located, search: SearchDrive) -> Twist | None:
 
 
 def test_a_search_drives_only_while_more_must_be_seen() -> None:
-    robot, search = Located(TWO_ROOMS, Pose(1.0, 1.0, 0.3)), SearchDrive(CONFIG.body)
+    robot, search = (
+        Located(TWO_ROOMS, Pose(1.0, 1.0, 0.3)),
+        SearchDrive(CONFIG.body, CONFIG.looking_around),
+    )
     assert searching(robot, search) is None
     robot.stay(0.5)
     assert searching(robot, search) is None
@@ -248,7 +252,10 @@ def test_a_search_drives_only_while_more_must_be_seen() -> None:
 
 
 def test_a_robot_in_the_air_does_not_look_around() -> None:
-    robot, search = Located(TWO_ROOMS, Pose(1.0, 1.0, 0.3)), SearchDrive(CONFIG.body)
+    robot, search = (
+        Located(TWO_ROOMS, Pose(1.0, 1.0, 0.3)),
+        SearchDrive(CONFIG.body, CONFIG.looking_around),
+    )
     robot.stay(0.3)
     robot.localizer.forget("it was told so")
     robot.localizer.lift(True)
