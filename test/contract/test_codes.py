@@ -13,10 +13,11 @@ from roomba_robot.msg import (
     Zone,
 )
 
-from roomba.mission.cleaning.request import CleanMode, CleanOutcome, FanLevel, MissReason
+from roomba.mission.cleaning.request import CleanOutcome, MissReason
 from roomba.mission.phases.machine import VACUUM_STATES, Phase
 from roomba.perception.localization.estimate import Knowledge
 from roomba.perception.rooms.zones import ZoneKind
+from roomba.vocabulary import CleanMode, FanLevel
 from roomba_ros.convert.localization import STATES
 from roomba_ros.convert.mission import FANS, KINDS, MODES, OUTCOMES, REASONS
 

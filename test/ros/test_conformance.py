@@ -20,7 +20,8 @@ from roomba_robot.msg import (
 
 from roomba.files.shipped import HOMES
 from roomba.headless.cleaner import HeadlessMission
-from roomba.mission.cleaning.request import CleanMode, CleanOutcome, CleanRequest
+from roomba.mission.cleaning.request import CleanOutcome, CleanRequest
+from roomba.vocabulary import CleanMode
 from roomba.world.layers.layer import load_home
 from roomba.world.simulator import Simulator
 from roomba_ros.dirt.dirt_pub_node import DirtPubNode

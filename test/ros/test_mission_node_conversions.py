@@ -12,18 +12,18 @@ from sensor_msgs.msg import BatteryState
 from roomba.geometry import Pose, Twist
 from roomba.grid import FREE, GridFrame, OccupancyMap
 from roomba.mission.cleaning.request import (
-    CleanMode,
     CleanOutcome,
     CleanRefusedError,
     CleanResult,
-    FanLevel,
     Missed,
     MissReason,
 )
-from roomba.mission.inputs.senses import Battery, StationBeams
+from roomba.mission.docking.beams import StationBeams
+from roomba.mission.inputs.senses import Battery
 from roomba.perception.rooms.rooms import Rooms
 from roomba.perception.rooms.zones import Zone, ZoneKind, Zones, ZonesError
 from roomba.perception.swept.coverage_bits import SWEPT, WANTED
+from roomba.vocabulary import CleanMode, FanLevel
 from roomba_ros.convert.mission import (
     battery_of,
     beams_of,

@@ -29,13 +29,12 @@ from roomba_robot.msg import (
 from std_srvs.srv import Trigger, TriggerResponse
 
 from roomba.client.protocol import (
-    CleanMode,
     ErrandOutcome,
-    FanLevel,
     MissedFloor,
     RequestRefusedError,
     RobotUnavailableError,
 )
+from roomba.vocabulary import CleanMode, FanLevel
 from roomba_ros.client.roomba_client import RoombaClient
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "clean_home.py"

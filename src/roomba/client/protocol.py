@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.errors import RoombaError
+from roomba.vocabulary import CleanMode, FanLevel
 
 
 class RobotUnavailableError(RoombaError):
@@ -84,31 +85,6 @@ class WalkHandle(Protocol):
 
     def cancel(self) -> None:
         """Ask the robot to stop, without waiting; the report follows."""
-
-
-class CleanMode(Enum):
-    """What is to be cleaned."""
-
-    WHOLE = "whole"
-    """All floor that can be reached."""
-    ROOMS = "rooms"
-    """Rooms, by name."""
-    ZONES = "zones"
-    """Rectangles."""
-    SPOT = "spot"
-    """A square of 1.5 m around a point."""
-    EDGES = "edges"
-    """Along walls and furniture only."""
-    DIRTIEST = "dirtiest"
-    """All rooms, those first that were the dirtiest."""
-
-
-class FanLevel(Enum):
-    """The power of the fan."""
-
-    QUIET = "quiet"
-    STANDARD = "standard"
-    STRONG = "strong"
 
 
 class ErrandOutcome(Enum):

@@ -20,6 +20,7 @@ from roomba.configuration.frozen import (
     read_yaml,
     validated,
 )
+from roomba.vocabulary import FanLevel
 
 FASTEST_SPEED: Final = 3.0
 """m/s; a speed above this is a slip of the finger, not a robot for a home."""
@@ -87,9 +88,31 @@ class BrushConfig(Frozen):
 
 
 class FanConfig(Frozen):
-    """The fan's duty at the start, 0..1."""
+    """The fan's duty at the start and at each level of a clean, 0..1."""
 
     duty: Ratio = 0.60
+    quiet: Ratio = 0.30
+    standard: Ratio = 0.60
+    strong: Ratio = 1.0
+
+    @model_validator(mode="after")
+    def _levels_in_order(self) -> FanConfig:
+        if not self.quiet <= self.standard <= self.strong:
+            raise ValueError(
+                "expected quiet <= standard <= strong, got "
+                f"{self.quiet}, {self.standard}, {self.strong}"
+            )
+        return self
+
+    def duty_at(self, level: FanLevel) -> float:
+        """Return the duty at a level of a clean, 0..1."""
+        match level:
+            case FanLevel.QUIET:
+                return self.quiet
+            case FanLevel.STANDARD:
+                return self.standard
+            case FanLevel.STRONG:
+                return self.strong
 
 
 class BatteryConfig(Frozen):

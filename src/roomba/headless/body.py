@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.geometry import Pose
-from roomba.mission.inputs.senses import Battery, StationBeams
+from roomba.mission.docking.beams import StationBeams
+from roomba.mission.inputs.senses import Battery
 from roomba.perception.matching.scan_view import LidarModel
 from roomba.robot.command import Command
 from roomba.robot.readings import CliffReading, Readings, ScanReading

@@ -178,7 +178,7 @@ class Brain:
         cleaning = self.mission.cleaning
         if cleaning is None or self.mission.state.phase is Phase.ERROR:
             return None
-        return float(cleaning.request.fan.value)
+        return self.robot.fan.duty_at(cleaning.request.fan)
 
     # ---------------------------------------------------------------- what others may look at
 

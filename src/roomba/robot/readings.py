@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.geometry import STANDSTILL, Pose, Twist
-from roomba.mission.inputs.senses import Battery, Senses, StationBeams
+from roomba.mission.docking.beams import StationBeams
+from roomba.mission.inputs.senses import Battery, Senses
 from roomba.perception.localization.estimate import Estimate
 from roomba.perception.matching.scan_view import LidarModel
 

@@ -10,7 +10,6 @@ from collections.abc import Sequence
 
 from roomba.client.protocol import (
     CleanHandle,
-    CleanMode,
     CleanReport,
     ErrandOutcome,
     MissedFloor,
@@ -26,6 +25,7 @@ from roomba.ui.errand_progress import (
 )
 from roomba.ui.menu import Menu, Option, place
 from roomba.ui.progress import quantity
+from roomba.vocabulary import CleanMode
 
 MOST_MISSED = 10
 """Areas that a report names; the largest come first."""

@@ -9,17 +9,16 @@ import rosgraph
 import rospy
 
 from roomba.client.protocol import (
-    CleanMode,
     CleanProgress,
     CleanReport,
     DockReport,
     ExploreReport,
-    FanLevel,
     RobotClient,
     RobotUnavailableError,
     VacuumSnapshot,
     WalkReport,
 )
+from roomba.vocabulary import CleanMode, FanLevel
 from roomba_ros.client.ros_client import RosRobot
 from roomba_ros.runtime.node import wait_for_clock
 

@@ -27,14 +27,13 @@ from std_srvs.srv import Trigger
 
 from roomba.client.protocol import (
     CleanHandle,
-    CleanMode,
     DockingHandle,
     ExploringHandle,
-    FanLevel,
     RequestRefusedError,
     RobotUnavailableError,
     VacuumSnapshot,
 )
+from roomba.vocabulary import CleanMode, FanLevel
 from roomba_ros.client.ros_errands import RosClean, RosDocking, RosExploring, Server
 from roomba_ros.convert.client import room_names_of, vacuum_of
 from roomba_ros.runtime.calls import call_service

@@ -28,19 +28,19 @@ from visualization_msgs.msg import Marker, MarkerArray
 
 from roomba.grid import GridFrame, OccupancyMap
 from roomba.mission.cleaning.request import (
-    CleanMode,
     CleanOutcome,
     CleanRefusedError,
     CleanRequest,
     CleanResult,
-    FanLevel,
     Missed,
     MissReason,
 )
+from roomba.mission.docking.beams import StationBeams
 from roomba.mission.exploring.exploration import ExploreResult
-from roomba.mission.inputs.senses import Battery, StationBeams
+from roomba.mission.inputs.senses import Battery
 from roomba.perception.rooms.zones import WALL_WIDTH, Zone, ZoneKind, Zones, ZonesError
 from roomba.perception.swept.coverage_bits import SWEPT, WANTED
+from roomba.vocabulary import CleanMode, FanLevel
 from roomba_ros.convert.common import header, map_message, quaternion_of
 from roomba_ros.convert.errors import MessageError, require_finite
 

@@ -13,6 +13,7 @@ from std_msgs.msg import Bool, Float32
 from roomba.clock import ClockJumps
 from roomba.configuration.robot import RobotConfig
 from roomba.geometry import STANDSTILL, Twist
+from roomba.vocabulary import FanLevel
 from roomba_ros.convert.common import twist_message, twist_of
 from roomba_ros.runtime.subscriptions import subscribe
 
@@ -40,7 +41,7 @@ class MissionDrive:
         self._others_drove = -math.inf
         self._now = -math.inf
         self._jumps = ClockJumps()
-        self._fan: float | None = None
+        self._fan: FanLevel | None = None
 
     def start(self) -> None:
         """Connect."""
@@ -88,12 +89,12 @@ class MissionDrive:
             self._stops_left -= 1
             self._command.publish(TwistMessage())
 
-    def set_fan(self, duty: float | None) -> None:
+    def set_fan(self, level: FanLevel | None) -> None:
         """Set the fan's power; None: as it was before the mission."""
-        if duty == self._fan:
+        if level is self._fan:
             return
-        self._fan = duty
-        self._vacuum.publish(self._config.fan.duty if duty is None else duty)
+        self._fan, fan = level, self._config.fan
+        self._vacuum.publish(fan.duty if level is None else fan.duty_at(level))
         self._brush.publish(self._config.brush.duty)
 
     def stop(self) -> None:

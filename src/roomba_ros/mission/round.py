@@ -55,7 +55,7 @@ class MissionRound:
         self._drive.drive(step.twist if is_driving else None, looks_around=step.looks_around)
         cleaning = mission.cleaning
         sucks = cleaning is not None and mission.state.phase is not Phase.ERROR
-        self._drive.set_fan(cleaning.request.fan.value if cleaning and sucks else None)
+        self._drive.set_fan(cleaning.request.fan if cleaning and sucks else None)
 
     def _tell(self, now: float, mission: Mission, senses: Senses) -> None:
         """Publish the state if it is due, and the progress to the client of the errand."""

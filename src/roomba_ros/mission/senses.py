@@ -21,7 +21,8 @@ from tf2_msgs.msg import TFMessage
 from roomba.clock import ClockJumps, is_recent
 from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose, Twist
-from roomba.mission.inputs.senses import Battery, Senses, StationBeams
+from roomba.mission.docking.beams import StationBeams
+from roomba.mission.inputs.senses import Battery, Senses
 from roomba.perception.localization.estimate import Knowledge
 from roomba.perception.matching.beams import LidarBeams
 from roomba.perception.matching.scan_view import LidarModel

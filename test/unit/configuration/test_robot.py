@@ -3,9 +3,10 @@ from pathlib import Path
 
 import pytest
 
-from roomba.configuration.robot import BodyConfig, RobotConfig, load_robot_config
+from roomba.configuration.robot import BodyConfig, FanConfig, RobotConfig, load_robot_config
 from roomba.errors import ConfigError
 from roomba.files.shipped import CONFIGURATION
+from roomba.vocabulary import FanLevel
 
 SHIPPED = CONFIGURATION / "robot.yaml"
 
@@ -79,3 +80,12 @@ def test_silence_braking_and_two_ticks_are_half_a_second() -> None:
     config = RobotConfig()
     assert config.longest_silence + config.body.braking_time + 0.1 == pytest.approx(0.5)
     assert config.body.command_timeout <= config.longest_silence + 1e-9
+
+
+def test_each_level_of_the_fan_has_its_duty_in_order() -> None:
+    fan = RobotConfig().fan
+    duties = [fan.duty_at(level) for level in FanLevel]
+    assert duties == [fan.quiet, fan.standard, fan.strong]
+    assert FanConfig(quiet=0.1).duty_at(FanLevel.QUIET) == 0.1
+    with pytest.raises(ValueError, match=r"quiet <= standard <= strong, got 0\.7, 0\.6, 1\.0"):
+        FanConfig(quiet=0.7)

@@ -38,11 +38,9 @@ from roomba.headless.cleaner import HeadlessMission
 from roomba.headless.records import CleanRecord
 from roomba.mission.cleaning.checkpoint import CheckpointError
 from roomba.mission.cleaning.request import (
-    CleanMode,
     CleanOutcome,
     CleanRefusedError,
     CleanRequest,
-    FanLevel,
     MissReason,
 )
 from roomba.mission.inputs.planning_context import PlanningContext
@@ -50,6 +48,7 @@ from roomba.mission.mission import CommandRefusedError, Mission
 from roomba.mission.phases.machine import Errand, Event, Phase
 from roomba.perception.localization.estimate import Knowledge
 from roomba.perception.rooms.zones import Zone, ZoneKind, Zones
+from roomba.vocabulary import CleanMode, FanLevel
 from roomba.world.engine.state.arrays import Fault
 
 THING = (1.0, 0.75, 0.10)
@@ -226,9 +225,9 @@ def test_the_fan_runs_as_asked_for() -> None:
     request = CleanRequest(CleanMode.SPOT, spot=(1.0, 0.6), fan=FanLevel.QUIET)
     robot.mission.clean(request, robot.senses())
     until(robot, in_phase(robot, Phase.CLEANING))
-    assert robot.simulator.duty[1] == pytest.approx(FanLevel.QUIET.value)
+    assert robot.simulator.duty[1] == pytest.approx(robot.robot.fan.quiet)
     until(robot, in_phase(robot, Phase.RETURNING))
-    assert robot.simulator.duty[1] == pytest.approx(FanLevel.QUIET.value)
+    assert robot.simulator.duty[1] == pytest.approx(robot.robot.fan.quiet)
     robot.run()
     robot.tick()
     # As on ROS the next one who drives finds it as it was.

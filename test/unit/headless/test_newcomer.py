@@ -14,10 +14,11 @@ from roomba.configuration.mapping import MappingConfig
 from roomba.configuration.mission import MissionConfig
 from roomba.configuration.robot import RobotConfig
 from roomba.headless.cleaner import HeadlessMission
-from roomba.mission.cleaning.request import CleanMode, CleanOutcome, CleanRefusedError, CleanRequest
+from roomba.mission.cleaning.request import CleanOutcome, CleanRefusedError, CleanRequest
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.mission.phases.machine import Phase
 from roomba.perception.swept.coverage_map import CoverageMap
+from roomba.vocabulary import CleanMode
 from roomba.world.home.home import Home
 
 

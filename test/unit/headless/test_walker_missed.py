@@ -8,13 +8,8 @@ from fixtures.missions import DEN, HALL, TWO_ROOMS, shut_door, two_rooms
 from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.files.shipped import HOMES
 from roomba.headless.cleaner import HeadlessMission
-from roomba.mission.cleaning.request import (
-    CleanMode,
-    CleanOutcome,
-    CleanRequest,
-    CleanResult,
-    MissReason,
-)
+from roomba.mission.cleaning.request import CleanOutcome, CleanRequest, CleanResult, MissReason
+from roomba.vocabulary import CleanMode
 from roomba.world.layers.layer import load_home
 
 

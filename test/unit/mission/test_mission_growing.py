@@ -12,7 +12,6 @@ from fixtures.missions import TWO_ROOMS, WALL_X
 from roomba.geometry import Pose, Twist
 from roomba.grid import OccupancyMap
 from roomba.mission.cleaning.request import (
-    CleanMode,
     CleanOutcome,
     CleanRefusedError,
     CleanRequest,
@@ -21,6 +20,7 @@ from roomba.mission.cleaning.request import (
 from roomba.mission.mission import MissionStep
 from roomba.mission.phases.machine import Event, Phase
 from roomba.perception.swept.coverage_bits import SWEPT
+from roomba.vocabulary import CleanMode
 
 CORNER = CleanRequest(CleanMode.ZONES, zones=((0.6, 0.2, 1.4, 0.9),))
 

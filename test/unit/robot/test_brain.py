@@ -16,12 +16,13 @@ from roomba.errors import ConfigError, RoombaError
 from roomba.geometry import STANDSTILL, Pose
 from roomba.grid import OccupancyMap
 from roomba.headless.body import SimulatedBody
-from roomba.mission.cleaning.request import CleanRequest, FanLevel
+from roomba.mission.cleaning.request import CleanRequest
 from roomba.mission.inputs.senses import Battery
 from roomba.mission.phases.machine import Phase
 from roomba.robot.brain import Brain
 from roomba.robot.command import Command
 from roomba.robot.readings import Readings
+from roomba.vocabulary import FanLevel
 
 DOCKED = Readings(0.0, Pose(), battery=Battery(1.0, 26.0, is_docked=True))
 
@@ -73,7 +74,7 @@ def test_told_to_clean_it_drives_off_with_the_fan_that_is_asked_for(fan: FanLeve
     robot.mission.clean(CleanRequest(fan=fan), robot.senses())
     commands = [robot.tick(replace(DOCKED, time=0.05 * tick)) for tick in range(1, 4)]
     assert commands[-1].twist != STANDSTILL
-    assert commands[-1].fan == fan.value
+    assert commands[-1].fan == robot.robot.fan.duty_at(fan)
 
 
 def test_no_command_is_faster_than_the_robot() -> None:

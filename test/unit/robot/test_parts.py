@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from roomba.configuration.robot import TimingConfig
 from roomba.geometry import Pose, Twist
 from roomba.headless.body import SimulatedBody
-from roomba.mission.inputs.senses import StationBeams
+from roomba.mission.docking.beams import StationBeams
 from roomba.perception.localization.belief import unknown_belief
 from roomba.perception.localization.estimate import Estimate, Knowledge
 from roomba.perception.matching.scan_view import LidarModel

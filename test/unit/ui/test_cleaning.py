@@ -13,7 +13,7 @@ from rich.console import Console
 
 from roomba.client.fake.errands import ErrandScript
 from roomba.client.fake.robot import FakeRobot, SteppedClock
-from roomba.client.protocol import CleanMode, CleanProgress, ErrandOutcome, MissedFloor
+from roomba.client.protocol import CleanProgress, ErrandOutcome, MissedFloor
 from roomba.ui.cleaning import CLEANING, CLEANING_HEADING
 from roomba.ui.errand_progress import (
     ERRAND_SILENCE_LIMIT,
@@ -24,6 +24,7 @@ from roomba.ui.errand_progress import (
     time_text,
 )
 from roomba.ui.menu import Menu
+from roomba.vocabulary import CleanMode
 
 WHAT = " What to clean (Enter: the whole home): "
 ROOMS = " Rooms, by name or number, with commas between: "

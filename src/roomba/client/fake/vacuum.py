@@ -15,13 +15,12 @@ from roomba.client.fake.errands import (
     FakeExploring,
 )
 from roomba.client.protocol import (
-    CleanMode,
     ErrandOutcome,
-    FanLevel,
     RequestRefusedError,
     RobotUnavailableError,
     VacuumSnapshot,
 )
+from roomba.vocabulary import CleanMode, FanLevel
 
 if TYPE_CHECKING:
     from roomba.client.clock import Clock

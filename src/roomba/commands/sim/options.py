@@ -13,13 +13,8 @@ from typing import Any, Final, NoReturn
 from roomba.commands.sim.trial import MOST_THINGS, RANDOM, Trial, UsageError
 from roomba.commands.spelling import spelled
 from roomba.geometry import Pose
-from roomba.mission.cleaning.request import (
-    MOST_PASSES,
-    CleanMode,
-    CleanRefusedError,
-    CleanRequest,
-    FanLevel,
-)
+from roomba.mission.cleaning.request import MOST_PASSES, CleanRefusedError, CleanRequest
+from roomba.vocabulary import CleanMode, FanLevel
 
 PROGRAM: Final = spelled("sim")
 MOST_HOMES: Final = 100_000

@@ -15,7 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.errors import RoombaError
-from roomba.mission.cleaning.request import CleanMode, CleanRequest, FanLevel
+from roomba.mission.cleaning.request import CleanRequest
+from roomba.vocabulary import CleanMode, FanLevel
 
 VERSION: Final = 2
 Mask = NDArray[np.bool_]

@@ -18,12 +18,7 @@ from roomba.grid import GridFrame
 from roomba.mission.cleaning.checkpoint import Values
 from roomba.mission.cleaning.ledger import CoverageLedger
 from roomba.mission.cleaning.missed import is_hidden, missed_floor
-from roomba.mission.cleaning.request import (
-    CleanMode,
-    CleanRefusedError,
-    CleanRequest,
-    Missed,
-)
+from roomba.mission.cleaning.request import CleanRefusedError, CleanRequest, Missed
 from roomba.mission.cleaning.stages import Stage
 from roomba.mission.driving.gaps import closed_gaps
 from roomba.mission.inputs.planning_context import PlanningContext
@@ -32,6 +27,7 @@ from roomba.perception.swept.dirt_map import DirtMap
 from roomba.planning.path.costmap import Point, RoundObstacle
 from roomba.planning.path.planner import NoPathError
 from roomba.raster.regions import numbered_regions
+from roomba.vocabulary import CleanMode
 
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]

@@ -7,35 +7,11 @@ from enum import Enum
 from typing import Final
 
 from roomba.errors import RoombaError
+from roomba.vocabulary import CleanMode, FanLevel
 
 
 class CleanRefusedError(RoombaError):
     """A request that cannot be fulfilled; the message says what was expected, and came."""
-
-
-class CleanMode(Enum):
-    """What is to be cleaned."""
-
-    WHOLE = "whole"
-    """All floor that can be reached."""
-    ROOMS = "rooms"
-    """Rooms, by name."""
-    ZONES = "zones"
-    """Rectangles."""
-    SPOT = "spot"
-    """A square around a point."""
-    EDGES = "edges"
-    """Along walls and furniture only."""
-    DIRTIEST = "dirtiest"
-    """All rooms, those first that were the dirtiest."""
-
-
-class FanLevel(Enum):
-    """The power of the fan; the value is its duty, 0..1."""
-
-    QUIET = 0.3
-    STANDARD = 0.6
-    STRONG = 1.0
 
 
 Rectangle = tuple[float, float, float, float]

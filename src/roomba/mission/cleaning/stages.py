@@ -8,11 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.geometry import Pose
-from roomba.mission.cleaning.request import CleanMode, CleanRefusedError, CleanRequest
+from roomba.mission.cleaning.request import CleanRefusedError, CleanRequest
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.perception.swept.dirt_map import DirtMap
 from roomba.planning.path.planner import NoPathError
 from roomba.raster.distance import distance_to_nearest
+from roomba.vocabulary import CleanMode
 
 Mask = NDArray[np.bool_]
 

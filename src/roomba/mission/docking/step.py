@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from enum import Enum
 
 from roomba.geometry import Pose, Twist
-from roomba.mission.docking.track import StationBeams
+from roomba.mission.docking.beams import StationBeams
 
 
 class DockState(Enum):

@@ -7,29 +7,11 @@ negative x, and a heading of 0 looks straight at the station. Lengths in m, angl
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 from roomba.configuration.docking import DockingConfig
 from roomba.configuration.robot import BodyConfig, StationConfig
 from roomba.geometry import Pose, Twist, wrap_angle
-
-
-@dataclass(frozen=True, slots=True)
-class StationBeams:
-    """What the receiver sees of the station, which looks at the robot that comes.
-
-    ``red`` is the beam to the station's left as it looks out, so to the right of a robot that
-    looks at it; ``green`` is the other one. In the middle both are seen.
-    """
-
-    halo: bool = False
-    green: bool = False
-    red: bool = False
-
-    @property
-    def leads(self) -> bool:
-        """Whether they tell a way to the station: the halo alone does not."""
-        return self.green or self.red
+from roomba.mission.docking.beams import StationBeams
 
 
 class StationTrack:

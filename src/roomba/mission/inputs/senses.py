@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from roomba.geometry import STANDSTILL, Pose, Twist
+from roomba.mission.docking.beams import StationBeams
 from roomba.perception.localization.estimate import Knowledge
 
 
@@ -21,20 +22,6 @@ class Battery:
     def energy(self) -> float:
         """What is in it, Wh."""
         return self.level * self.capacity
-
-
-@dataclass(frozen=True, slots=True)
-class StationBeams:
-    """What of the station's infrared light is seen."""
-
-    halo: bool = False
-    green: bool = False
-    red: bool = False
-
-    @property
-    def any(self) -> bool:
-        """Whether the station is seen at all."""
-        return self.halo or self.green or self.red
 
 
 _FULL = Battery()

@@ -9,7 +9,8 @@ import pytest
 from roomba.commands.sim.options import options_of
 from roomba.commands.sim.trial import MOST_THINGS, RANDOM, Trial, UsageError
 from roomba.geometry import Pose
-from roomba.mission.cleaning.request import CleanMode, CleanRequest, FanLevel
+from roomba.mission.cleaning.request import CleanRequest
+from roomba.vocabulary import CleanMode, FanLevel
 from roomba.world.engine.state.arrays import MOST_DISCS
 
 

@@ -18,8 +18,9 @@ from roomba.commands.sim.trial import Trial, UsageError
 from roomba.files.occupancy_map import save_map
 from roomba.geometry import Pose
 from roomba.grid import FREE, OCCUPIED, GridFrame, OccupancyMap
-from roomba.mission.cleaning.request import CleanMode, CleanRequest
+from roomba.mission.cleaning.request import CleanRequest
 from roomba.perception.swept.coverage_map import GRANTED
+from roomba.vocabulary import CleanMode
 
 KEYS = {
     "outcome", "message", "duration_s", "wall_s", "planning_s", "distance_m", "turning_rad",

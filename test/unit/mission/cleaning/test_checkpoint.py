@@ -22,7 +22,8 @@ from roomba.mission.cleaning.checkpoint import (
     request_values,
     unpacked,
 )
-from roomba.mission.cleaning.request import MOST_PASSES, CleanMode, CleanRequest, FanLevel
+from roomba.mission.cleaning.request import MOST_PASSES, CleanRequest
+from roomba.vocabulary import CleanMode, FanLevel
 
 sizes = st.tuples(st.integers(1, 40), st.integers(1, 40))
 numbers = st.floats(-50.0, 50.0)

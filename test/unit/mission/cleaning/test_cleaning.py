@@ -15,18 +15,14 @@ from roomba.configuration.mission import MissionConfig
 from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose
 from roomba.mission.cleaning.cleaning import Cleaning
-from roomba.mission.cleaning.request import (
-    CleanMode,
-    CleanRefusedError,
-    CleanRequest,
-    MissReason,
-)
+from roomba.mission.cleaning.request import CleanRefusedError, CleanRequest, MissReason
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.perception.rooms.zones import Zone, ZoneKind, Zones
 from roomba.perception.swept.coverage_bits import SWEPT
 from roomba.perception.swept.dirt_map import DirtMap
 from roomba.planning.path.costmap import RoundObstacle
 from roomba.planning.path.planner import NoPathError
+from roomba.vocabulary import CleanMode
 from roomba.world.home.home import Home
 
 HERE = Pose(0.85, 1.2, 0.0)

@@ -13,10 +13,11 @@ from roomba.geometry import Pose
 from roomba.grid import GridFrame, OccupancyMap
 from roomba.mission.cleaning.checkpoint import CheckpointError
 from roomba.mission.cleaning.ledger import CoverageLedger
-from roomba.mission.cleaning.request import CleanMode, CleanRefusedError, CleanRequest
+from roomba.mission.cleaning.request import CleanRefusedError, CleanRequest
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.perception.swept.coverage_bits import SWEPT
 from roomba.perception.swept.dirt_map import DirtMap
+from roomba.vocabulary import CleanMode
 
 
 def begun(context: PlanningContext, request: CleanRequest | None = None) -> CoverageLedger:

@@ -9,14 +9,13 @@ import pytest
 from roomba.errors import RoombaError
 from roomba.mission.cleaning.request import (
     MOST_PASSES,
-    CleanMode,
     CleanOutcome,
     CleanRefusedError,
     CleanRequest,
     CleanResult,
-    FanLevel,
     Rectangle,
 )
+from roomba.vocabulary import CleanMode, FanLevel
 
 
 def test_without_more_words_all_is_cleaned_once() -> None:
@@ -60,12 +59,6 @@ def test_zones_that_are_none_are_refused(zone: Rectangle) -> None:
     with pytest.raises(CleanRefusedError, match="lowest x") as refused:
         CleanRequest(CleanMode.ZONES, zones=((0.0, 0.0, 1.0, 1.0), zone))
     assert isinstance(refused.value, RoombaError)
-
-
-def test_fans_are_duties() -> None:
-    duties = [level.value for level in FanLevel]
-    assert duties == sorted(duties)
-    assert 0.0 < duties[0] < duties[-1] <= 1.0
 
 
 def test_a_result_tells_its_share() -> None:

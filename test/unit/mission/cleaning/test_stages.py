@@ -10,14 +10,11 @@ from roomba.configuration.docking import DockingConfig
 from roomba.configuration.mission import MissionConfig
 from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose
-from roomba.mission.cleaning.request import (
-    CleanMode,
-    CleanRefusedError,
-    CleanRequest,
-)
+from roomba.mission.cleaning.request import CleanRefusedError, CleanRequest
 from roomba.mission.cleaning.stages import Stage, stages_of
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.perception.swept.dirt_map import DirtMap
+from roomba.vocabulary import CleanMode
 from roomba.world.home.home import Home
 
 HERE = Pose(0.85, 1.2, 0.0)

@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 from roomba.configuration.docking import DockingConfig
 from roomba.configuration.robot import BodyConfig, StationConfig
 from roomba.geometry import Pose, Twist
-from roomba.mission.docking.track import StationBeams, StationTrack
+from roomba.mission.docking.beams import StationBeams
+from roomba.mission.docking.track import StationTrack
 
 BODY, STATION = BodyConfig(), StationConfig()
 CONFIG = DockingConfig()
