@@ -30,6 +30,8 @@ def main(arguments: list[str] | None = None) -> int:
     unknown = [topic for topic in options.topics if topic not in TOPICS]
     if unknown:
         parser.error(f"expected topics out of {', '.join(TOPICS)}; came {', '.join(unknown)}")
+    if options.logs is not None and not options.logs.is_dir():
+        parser.error(f"--logs: expected a folder of recorded drives; came {options.logs}")
     topics = list(dict.fromkeys(options.topics)) or list(TOPICS)
     pace = QUICK if options.quick else THOROUGH
     machine = Machine.this()
@@ -37,7 +39,7 @@ def main(arguments: list[str] | None = None) -> int:
     records: list[Record] = []
     for topic in topics:
         with tempfile.TemporaryDirectory() as folder:
-            records += _measure(topic, Bench(pace, Path(folder), options.maps))
+            records += _measure(topic, Bench(pace, Path(folder), options.maps, options.logs))
     _tell(records, preface)
     write_plot(options.plot or RESULTS / f"{'-'.join(topics)}.png", records, " ".join(preface))
     if options.json:
@@ -69,6 +71,12 @@ def _parser() -> argparse.ArgumentParser:
         type=Path,
         metavar="FOLDER",
         help="measure lidar, localization, rooms, coverage, mapping on the map_server maps in it",
+    )
+    parser.add_argument(
+        "--logs",
+        type=Path,
+        metavar="FOLDER",
+        help="measure slam on the recorded drives in it, with the truth of their .relations",
     )
     return parser
 

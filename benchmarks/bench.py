@@ -18,12 +18,14 @@ from benchmarks.rounds import QUICK, Outcome, Pace, compete
 class Bench:
     """One run of the benchmarks; ``folder`` is for files that peers read, and is empty at first.
 
-    ``maps`` is a folder of map_server maps to measure on as well, if the user named one.
+    ``maps`` is a folder of map_server maps, and ``logs`` one of recorded drives, to measure on as
+    well, if the user named one.
     """
 
     pace: Pace
     folder: Path
     maps: Path | None = None
+    logs: Path | None = None
 
     @property
     def is_quick(self) -> bool:

@@ -21,6 +21,7 @@ TOPICS: MappingProxyType[str, str] = MappingProxyType(
         "rooms": "floors cut into rooms, as people cut them",
         "coverage": "whole homes cleaned: how much of the floor, by how long a way, how fast",
         "mapping": "homes explored without a map: how true the map becomes, and what that takes",
+        "slam": "recorded drives of real robots, of --logs FOLDER: errors, speed, pictures",
         "ros": "round trips, and the speed of the whole graph",
     }
 )

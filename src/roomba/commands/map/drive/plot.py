@@ -24,11 +24,12 @@ _REST: Final = 130
 
 def write_plot(path: Path, done: MappedDrive) -> None:
     """Draw a drive into a PNG file; raises OSError."""
-    write_picture(path, _picture(done))
+    write_picture(path, picture_of(done))
 
 
 @drawn
-def _picture(done: MappedDrive) -> Figure:
+def picture_of(done: MappedDrive) -> Figure:
+    """Return the picture of a drive: its map, and beside it the one by odometry alone."""
     blind = done.replay.blind.occupancy()
     area = area_of_maps([done.occupancy, blind])
     figure = empty_figure(_WIDTH, height_for(area, 0.46 * _WIDTH) + _REST)

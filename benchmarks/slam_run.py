@@ -1,0 +1,54 @@
+"""One recorded drive: mapped, timed, and judged by its relations if there are some."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+from benchmarks.relations import Errors, errors, load_relations, relations_beside
+from roomba.commands.map.drive.mapped import MappedDrive, mapped_drive
+from roomba.recordings.choice import Wanted
+from roomba.recordings.packed import plain_name
+
+_LOGS: Final = (".bag", ".db3", ".mcap", ".log", ".clf")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Judged:
+    """A drive that was mapped; without relations beside it there are no errors."""
+
+    name: str
+    drive: MappedDrive
+    ours: Errors | None
+    by_odometry: Errors | None
+
+    @property
+    def times_real_time(self) -> float:
+        """Time of the drive by what the mapper took of one core."""
+        return self.drive.replay.elapsed / max(self.drive.replay.seconds, 1e-9)
+
+
+def logs_in(folder: Path) -> Iterator[Path]:
+    """Yield the logs of a folder: bags, packed or not, folders that are bags, and CARMEN logs."""
+    for path in sorted(folder.iterdir()):
+        is_bag = (path / "metadata.yaml").is_file()
+        if is_bag or Path(plain_name(path)).suffix.lower() in _LOGS:
+            yield path
+
+
+def name_of(log: Path) -> str:
+    """Return the name of a log without suffixes."""
+    return log.name if log.is_dir() else Path(plain_name(log)).stem
+
+
+def judged(log: Path) -> Judged:
+    """Map a log; raises RoombaError for one that cannot be read, ValueError for its relations."""
+    relations = relations_beside(log)
+    true = None if relations is None else load_relations(relations)
+    drive = mapped_drive([log], Wanted(), lambda share, words: None)
+    if true is None:
+        return Judged(name_of(log), drive, None, None)
+    by_odometry = errors(drive.replay.by_odometry, true)
+    return Judged(name_of(log), drive, errors(drive.trajectory, true), by_odometry)
