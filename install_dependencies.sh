@@ -156,6 +156,8 @@ system_packages() { # runtime|dev|bench
   )
   if [[ $1 == dev ]]; then
     packages+=(catkin-lint git)
+    # Ubuntu's package only fetches a snap.
+    ! grep -qx 'ID=debian' /etc/os-release || packages+=(chromium)
   fi
   printf '%s\n' "${packages[@]}"
 }

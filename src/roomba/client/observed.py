@@ -1,0 +1,91 @@
+"""A robot as a page sees and commands it: the protocol that each kind of robot implements."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+from roomba.client.view import (
+    CleanOrder,
+    GridLayer,
+    HomeView,
+    LayerName,
+    PageLimits,
+    Point,
+    RobotView,
+    ZoneView,
+)
+
+
+class ObservedRobot(Protocol):
+    """One robot, observed ten times a second and commanded now and then.
+
+    Each method returns at once, or within 5 s of wall time; then it raises RobotUnavailableError.
+    Commands raise RequestRefusedError with the reason when the robot will not obey.
+    """
+
+    def limits(self) -> PageLimits:
+        """Return what may be asked for."""
+
+    def robot(self) -> RobotView:
+        """Return the newest state; raises RobotUnavailableError before the first one."""
+
+    def home(self) -> HomeView:
+        """Return what seldom changes."""
+
+    def layer(self, name: LayerName) -> GridLayer | None:
+        """Return a layer as it is now, or None while there is none."""
+
+    def clean(self, order: CleanOrder) -> None:
+        """Begin a clean."""
+
+    def explore(self) -> None:
+        """Begin to look at what the map does not show yet."""
+
+    def dock(self) -> None:
+        """Go to the charging station."""
+
+    def pause(self) -> None:
+        """Stand until told to go on."""
+
+    def resume(self) -> None:
+        """Go on."""
+
+    def stop(self) -> None:
+        """End the errand, and stay."""
+
+    def locate(self) -> None:
+        """Beep."""
+
+    def emergency_stop(self, reason: str) -> None:
+        """Hold the drive until it is released."""
+
+    def release(self) -> None:
+        """Release the emergency stop."""
+
+    def drive(self, linear: float, angular: float) -> None:
+        """Drive by hand, m/s and rad/s; without another call for 0.5 s the robot stands."""
+
+    def put_zone(self, zone: ZoneView) -> None:
+        """Add a zone, or replace the one of the same name."""
+
+    def remove_zone(self, name: str) -> None:
+        """Remove a zone."""
+
+    def rename_room(self, name: str, new_name: str) -> None:
+        """Give a room another name."""
+
+    def join_rooms(self, names: tuple[str, ...]) -> None:
+        """Make rooms that touch one, by the first one's name."""
+
+    def split_room(self, name: str, start: Point, end: Point) -> None:
+        """Cut a room along a line between two points."""
+
+
+class Playground(Protocol):
+    """What can be done to a simulated home and robot, for teaching."""
+
+    def spill_dirt(self, x: float, y: float) -> None:
+        """Spill a heap of dirt."""
+
+    def place_chair(self, x: float, y: float) -> None:
+        """Put a round thing where it stands in the way."""

@@ -1,0 +1,124 @@
+"""What a page may show of a robot and its home: immutable snapshots, in the map frame, SI units."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.client.protocol import CleanReport, VacuumSnapshot
+
+Point = tuple[float, float]
+"""x and y, m."""
+
+
+class LayerName(Enum):
+    """A grid that can be drawn over the floor."""
+
+    MAP = "map"
+    """What the robot knows: 0 unknown, 1 free, 2 occupied."""
+    COVERAGE = "coverage"
+    """How often the present errand, or the last one, swept a cell: 0, 1, 2, 3 or more."""
+    DIRT = "dirt"
+    """How dirty the robot found the floor: 0 not known, 1 clean, up to 255 the dirtiest."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class GridLayer:
+    """Cells of a layer, uint8 [rows, columns]; row 0 is the lowest y, column 0 the lowest x.
+
+    ``resolution`` is the side of a cell, m, and the origin the lower left corner, m. ``shape``
+    grows by one whenever the grid lies elsewhere than before, so that tiles of before are void.
+    """
+
+    shape: int
+    resolution: float
+    origin_x: float
+    origin_y: float
+    cells: NDArray[np.uint8]
+
+
+@dataclass(frozen=True, slots=True)
+class RoomView:
+    """A room: its free floor in m2, a point well inside, and its outline as closed rings."""
+
+    name: str
+    area: float
+    anchor: Point
+    rings: tuple[tuple[Point, ...], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class ZoneView:
+    """A zone that the robot must not enter: the corners of a ``no-go`` area, or of a ``wall``."""
+
+    name: str
+    kind: str
+    points: tuple[Point, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class HomeView:
+    """What seldom changes; ``version`` grows by one when it does.
+
+    ``station`` is x, y and heading of the docked robot; ``furniture`` are outlines of what the
+    map shows as such. ``radius`` is the robot's and ``tool`` the width of its brush, m.
+    """
+
+    version: int
+    name: str
+    station: tuple[float, float, float]
+    rooms: tuple[RoomView, ...]
+    zones: tuple[ZoneView, ...]
+    furniture: tuple[tuple[Point, ...], ...]
+    radius: float
+    tool: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RobotView:
+    """The robot now; ``time`` is in s of its clock and ``pose`` is x, y and heading.
+
+    ``doubt`` says why its place is not known well; ``speed`` is in m/s, ``dirt`` what it picked up
+    since its bin was emptied, g; ``held`` is why the emergency stop holds the drive, empty if it
+    does not. ``scan`` is float32 [n, 2], where the lidar's beams met something; ``path`` float32
+    [n, 2], what is left of its way. ``last`` is how the last errand ended.
+    """
+
+    time: float
+    pose: tuple[float, float, float]
+    doubt: str
+    speed: float
+    dirt: float
+    held: str
+    vacuum: VacuumSnapshot
+    scan: NDArray[np.float32]
+    path: NDArray[np.float32]
+    last: CleanReport | None
+
+
+@dataclass(frozen=True, slots=True)
+class PageLimits:
+    """What may be asked for, so that no interface hard-codes it: m, m/s, rad/s, numbers."""
+
+    max_speed: float
+    max_angular_speed: float
+    most_passes: int
+    most_zones: int
+    most_corners: int
+    longest_name: int
+
+
+@dataclass(frozen=True, slots=True)
+class CleanOrder:
+    """What is to be cleaned, as in :meth:`roomba.client.protocol.RobotClient.clean`."""
+
+    mode: str = "whole"
+    rooms: tuple[str, ...] = ()
+    in_order: bool = True
+    zones: tuple[tuple[float, float, float, float], ...] = ()
+    spot: Point | None = None
+    passes: int = 1
+    fan: str = "standard"

@@ -1,0 +1,113 @@
+"""``roomba play``: the page over a robot that lives in a simulated home, without ROS."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import webbrowser
+from typing import Final
+
+from roomba.commands.sim.homes import home_of, rooms_of
+from roomba.commands.sim.runs import mission_config, robot_config_of
+from roomba.commands.sim.trial import Trial
+from roomba.commands.spelling import spelled
+from roomba.configuration.docking import load_docking_config
+from roomba.configuration.mapping import load_mapping_config
+from roomba.errors import RoombaError
+from roomba.files.shipped import CONFIGURATION
+from roomba.headless.cleaner import HeadlessMission
+from roomba.headless.live.client import LiveClient
+from roomba.headless.live.robot import SPEEDS
+from roomba.ui.web.app import create_app
+from roomba.ui.web.guard import Guard, new_token
+from roomba.ui.web.server import DEFAULT_PORT, PageServer, listen
+
+PROGRAM: Final = spelled("play")
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Let a robot live until Ctrl-C; returns 0, or 2 for wrong usage."""
+    wanted = _parser().parse_args(arguments)
+    try:
+        client = live_client(wanted.home, wanted.seed, wanted.speed, knows_map=wanted.map == "home")
+        bound = listen("127.0.0.1", wanted.port or DEFAULT_PORT, is_fixed=wanted.port is not None)
+    except RoombaError as error:
+        print(f"{PROGRAM}: {error}", file=sys.stderr)
+        return 2
+    guard = Guard(new_token())
+    server = PageServer(create_app(client, guard), bound)
+    address = f"{server.address}#token={guard.token}"
+    print(f"The robot lives in {wanted.home!r}. Its page:\n\n    {address}\n\nCtrl-C ends it.")
+    sys.stdout.flush()
+    client.start()
+    if wanted.open:
+        webbrowser.open(address)
+    try:
+        server.serve()
+    except KeyboardInterrupt:
+        pass
+    finally:
+        client.end()
+    return 0
+
+
+def live_client(name: str, seed: int, speed: float, *, knows_map: bool) -> LiveClient:
+    """Return a robot in a home; raises RoombaError."""
+    trial = Trial(home=name, seed=seed)
+    robot = robot_config_of(trial)
+    home = home_of(trial, robot.body)
+    docking = load_docking_config(CONFIGURATION / "docking.yaml")
+    rooms = rooms_of(home) if knows_map else None
+    mission = HeadlessMission(
+        home,
+        robot,
+        mission_config(robot),
+        docking,
+        seed=seed,
+        known=None if knows_map else load_mapping_config(CONFIGURATION / "mapping.yaml"),
+        rooms=rooms,
+        longest_burst=int(speed) if speed >= 2.0 else 0,
+    )
+    return LiveClient(home, mission, docking, rooms, speed)
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog=PROGRAM, description="A robot in a simulated home, seen and commanded on a page."
+    )
+    parser.add_argument(
+        "--home", default="flat", metavar="NAME|FOLDER", help="the home (default: flat)"
+    )
+    parser.add_argument("--seed", type=int, default=0, metavar="N")
+    parser.add_argument(
+        "--speed",
+        type=_speed,
+        default=1.0,
+        metavar="N",
+        help=f"the robot's seconds per second, {SPEEDS[0]:g} to {SPEEDS[1]:g} (default: 1)",
+    )
+    parser.add_argument(
+        "--map",
+        choices=("home", "none"),
+        default="home",
+        help="whether the robot knows the home, or makes a map of it (default: home)",
+    )
+    parser.add_argument(
+        "--port", type=int, metavar="N", help=f"default: {DEFAULT_PORT}, or the next that is free"
+    )
+    parser.add_argument(
+        "--no-open", dest="open", action="store_false", help="open no browser on the page"
+    )
+    return parser
+
+
+def _speed(text: str) -> float:
+    try:
+        speed = float(text)
+    except ValueError:
+        speed = 0.0
+    if not SPEEDS[0] <= speed <= SPEEDS[1]:
+        raise argparse.ArgumentTypeError(
+            f"expected a number from {SPEEDS[0]:g} to {SPEEDS[1]:g}, got {text!r}"
+        )
+    return speed

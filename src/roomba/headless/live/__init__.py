@@ -1,0 +1,1 @@
+"""The headless robot living in real time, or faster, as a page sees and commands it."""

@@ -1,0 +1,142 @@
+"""A headless robot whose time passes by itself: a thread ticks it as fast as was asked for.
+
+All that touches the robot happens in that thread. Others read immutable snapshots, and let
+commands be carried out there.
+"""
+
+from __future__ import annotations
+
+import math
+import threading
+import time
+from collections.abc import Callable
+from concurrent.futures import Future
+from concurrent.futures import TimeoutError as FutureTimeoutError
+from queue import Empty, SimpleQueue
+from typing import Any, Final, TypeVar
+
+from roomba.client.protocol import RobotUnavailableError
+from roomba.geometry import STANDSTILL, Twist
+from roomba.headless.cleaner import HeadlessMission
+from roomba.robot.command import Command
+from roomba.robot.safe_drive import SafeDrive
+
+_FRAME: Final = 0.05
+"""s of wall time between two frames: at real time, a tick of the robot."""
+_ANSWER: Final = 5.0
+"""s of wall time within which a command is answered."""
+_SILENCE: Final = 0.5
+"""s of wall time; a drive by hand without news for so long ends."""
+SPEEDS: Final = (0.1, 100.0)
+"""The robot's seconds per second of the wall clock: the least and the most."""
+
+_Answer = TypeVar("_Answer")
+Observer = Callable[[HeadlessMission], None]
+"""Is shown the robot after each frame in which its time passed, in the robot's thread."""
+
+
+class LiveRobot:
+    """Lets a robot's time pass at ``speed`` times that of the wall clock, or as fast as it can."""
+
+    def __init__(self, robot: HeadlessMission, speed: float, observe: Observer) -> None:
+        """Start nothing yet; ``observe`` is called after each frame."""
+        self.speed = speed
+        self._robot, self._observe = robot, observe
+        self._commands: SimpleQueue[tuple[Callable[[HeadlessMission], Any], Future[Any]]]
+        self._commands = SimpleQueue()
+        self._thread = threading.Thread(target=self._live, name="live robot", daemon=True)
+        self._ends = threading.Event()
+        self._failure: BaseException | None = None
+        body = robot.robot.body
+        self._hand = SafeDrive(body, body.max_speed)
+        self._by_hand = STANDSTILL
+        self._hand_heard = -math.inf
+
+    def start(self) -> None:
+        """Begin to live."""
+        self._observe(self._robot)
+        self._thread.start()
+
+    def stop(self) -> None:
+        """End; returns when the last frame has passed."""
+        self._ends.set()
+        self._thread.join(_ANSWER)
+
+    def carry_out(self, command: Callable[[HeadlessMission], _Answer]) -> _Answer:
+        """Let the robot's thread call ``command`` between two frames, and return its answer.
+
+        Raises what it raises, and RobotUnavailableError when the robot ended or does not answer.
+        """
+        if self._failure is not None or not self._thread.is_alive():
+            raise RobotUnavailableError(f"the robot has ended{self._reason}; start it again")
+        answer: Future[_Answer] = Future()
+        self._commands.put((command, answer))
+        try:
+            return answer.result(_ANSWER)
+        except FutureTimeoutError:
+            raise RobotUnavailableError(
+                f"expected the robot's answer within {_ANSWER:g} s, got none{self._reason}"
+            ) from None
+
+    def drive(self, twist: Twist) -> None:
+        """Drive by hand for the next half second."""
+        self._by_hand, self._hand_heard = twist, time.monotonic()
+
+    @property
+    def _reason(self) -> str:
+        return "" if self._failure is None else f": {self._failure}"
+
+    # ---------------------------------------------------------------- the robot's thread
+
+    def _live(self) -> None:
+        try:
+            due = time.monotonic()
+            while not self._ends.is_set():
+                self._obey()
+                self._pass_frame()
+                self._observe(self._robot)
+                # A robot that cannot keep up with its clock is slower, and does not catch up.
+                due = max(due + _FRAME, time.monotonic() - _FRAME)
+                self._ends.wait(max(0.0, due - time.monotonic()))
+        except BaseException as failure:
+            self._failure = failure
+            raise
+        finally:
+            self._obey()
+
+    def _obey(self) -> None:
+        while True:
+            try:
+                command, answer = self._commands.get_nowait()
+            except Empty:
+                return
+            try:
+                answer.set_result(command(self._robot))
+            except Exception as refusal:
+                answer.set_exception(refusal)
+
+    def _pass_frame(self) -> None:
+        """Let the time of a frame pass."""
+        robot = self._robot
+        # A robot that lives on for days keeps only the ticks of its last frame.
+        robot.rows.clear()
+        until, began = robot.seen.time + _FRAME * self.speed, time.monotonic()
+        if self._is_driven_by_hand:
+            self._pass_by_hand(until)
+            return
+        half_tick = 0.5 * robot.robot.timing.tick
+        while robot.seen.time < until - half_tick and time.monotonic() - began < _FRAME:
+            robot.advance()
+
+    @property
+    def _is_driven_by_hand(self) -> bool:
+        return time.monotonic() - self._hand_heard < _SILENCE
+
+    def _pass_by_hand(self, until: float) -> None:
+        """Drive as the hand wants; the mission stands meanwhile."""
+        robot = self._robot
+        half_tick = 0.5 * robot.robot.timing.tick
+        while robot.seen.time < until - half_tick:
+            twist = self._hand.command(robot.brain.readings, self._by_hand)
+            robot.body.act(Command(twist))
+            robot.brain.sense(robot.readings())

@@ -1,0 +1,205 @@
+"""What a page shows of a headless robot: snapshots of mission, map and sensors."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Final
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from roomba.client.protocol import CleanReport, ErrandOutcome, MissedFloor, VacuumSnapshot
+from roomba.client.view import GridLayer, HomeView, LayerName, Point, RobotView, RoomView, ZoneView
+from roomba.grid import FREE, OCCUPIED, OccupancyMap
+from roomba.headless.cleaner import HeadlessMission
+from roomba.mission.cleaning.request import CleanResult
+from roomba.mission.exploring.exploration import ExploreResult
+from roomba.mission.phases.machine import VACUUM_STATES, Phase
+from roomba.perception.localization.estimate import Knowledge
+from roomba.perception.rooms.rooms import Rooms
+from roomba.perception.rooms.zones import Zones
+from roomba.perception.swept.dirt_map import DirtMap
+from roomba.world.home.home import Home
+
+_DIRTIEST: Final = 8000.0
+"""Grains/m2 that are drawn as the dirtiest floor there is: sixteen times where dirt begins."""
+_MOST_PATH: Final = 400
+"""Points of the path that are shown."""
+
+
+def robot_view(robot: HeadlessMission, last: CleanReport | None) -> RobotView:
+    """Return the robot as it is now, by what it believes."""
+    seen, estimate = robot.seen, robot.brain.keeper.place.estimate
+    pose, mission = estimate.pose, robot.mission
+    held = mission.message if mission.state.phase is Phase.EMERGENCY else ""
+    return RobotView(
+        time=seen.time,
+        pose=(pose.x, pose.y, pose.theta),
+        doubt="" if estimate.knowledge is Knowledge.KNOWN else estimate.reason,
+        speed=abs(seen.odometry_twist.linear),
+        dirt=seen.in_bin,
+        held=held or ("emergency stop" if mission.state.phase is Phase.EMERGENCY else ""),
+        vacuum=vacuum_snapshot(robot),
+        scan=_scan(robot),
+        path=_path(robot),
+        last=last,
+    )
+
+
+def vacuum_snapshot(robot: HeadlessMission) -> VacuumSnapshot:
+    """Return the state in the words of smart homes, and the progress of a clean."""
+    mission, cleaning = robot.mission, robot.mission.cleaning
+    covered = wanted = fraction = 0.0
+    if cleaning is not None:
+        covered = cleaning.clean_area
+        wanted = cleaning.coverage.wanted_area
+        fraction = covered / wanted if wanted else 1.0
+    pose = robot.brain.pose
+    phase = mission.state.phase
+    return VacuumSnapshot(
+        VACUUM_STATES[phase],
+        phase.value,
+        mission.message,
+        mission.context.room_at(pose.x, pose.y),
+        covered,
+        wanted,
+        fraction,
+        mission.seconds_to_go(),
+        robot.seen.battery.level,
+    )
+
+
+def _scan(robot: HeadlessMission) -> NDArray[np.float32]:
+    """Return where the beams of the newest scan met something, float32 [n, 2], m, map frame."""
+    view = robot.lidar.view(robot.simulator.ranges)
+    pose = robot.brain.pose
+    cosine, sine = math.cos(pose.theta), math.sin(pose.theta)
+    x, y = view.ends[:, 0], view.ends[:, 1]
+    return np.column_stack((pose.x + cosine * x - sine * y, pose.y + sine * x + cosine * y)).astype(
+        np.float32
+    )
+
+
+def _path(robot: HeadlessMission) -> NDArray[np.float32]:
+    """Return what is left of the path that it drives, float32 [n, 2], m."""
+    driver = robot.mission.driver
+    if driver is None:
+        return np.empty((0, 2), np.float32)
+    return driver.tracker.rest[:_MOST_PATH].astype(np.float32)
+
+
+# ---------------------------------------------------------------- layers
+
+
+def map_cells(occupancy: OccupancyMap) -> NDArray[np.uint8]:
+    """Return what is known: 0 unknown, 1 free, 2 occupied."""
+    cells = np.zeros(occupancy.frame.shape, np.uint8)
+    cells[occupancy.values == FREE] = 1
+    cells[occupancy.values >= OCCUPIED] = 2
+    return cells
+
+
+def dirt_cells(dirt: DirtMap) -> NDArray[np.uint8]:
+    """Return how dirty the floor was found: 0 not known, 1 clean to 255 the dirtiest."""
+    density = dirt.known()
+    known = ~np.isnan(density)
+    cells = np.zeros(dirt.frame.shape, np.uint8)
+    cells[known] = 1 + np.minimum(254.0 * density[known] / _DIRTIEST, 254.0).astype(np.uint8)
+    return cells
+
+
+def dirt_layer(dirt: DirtMap, shape: int) -> GridLayer:
+    """Return the dirt map to be drawn."""
+    frame = dirt.frame
+    return GridLayer(shape, frame.resolution, frame.origin_x, frame.origin_y, dirt_cells(dirt))
+
+
+LAYERS: Final = (LayerName.MAP, LayerName.COVERAGE, LayerName.DIRT)
+
+
+# ---------------------------------------------------------------- the home
+
+
+def home_view(
+    version: int, home: Home, robot: HeadlessMission, rooms: Rooms | None, zones: Zones
+) -> HomeView:
+    """Return what seldom changes."""
+    station = robot.mission.context.station
+    return HomeView(
+        version=version,
+        name=home.name,
+        station=(station.x, station.y, station.theta),
+        rooms=() if rooms is None else tuple(_room_views(rooms)),
+        zones=tuple(ZoneView(zone.name, zone.kind.value, zone.points) for zone in zones.all),
+        furniture=tuple(_outlines(home)) if robot.brain.mapper is None else (),
+        radius=robot.robot.body.radius,
+        tool=robot.robot.brush.width,
+    )
+
+
+def _room_views(rooms: Rooms) -> Iterator[RoomView]:
+    for label, name in enumerate(rooms.names, 1):
+        rings = tuple(_rings(rooms.outline(label)))
+        yield RoomView(name, rooms.area(label), rooms.anchor(label), rings)
+
+
+def _rings(outline: shapely.Polygon | shapely.MultiPolygon) -> Iterator[tuple[Point, ...]]:
+    parts = outline.geoms if isinstance(outline, shapely.MultiPolygon) else (outline,)
+    for part in parts:
+        for ring in (part.exterior, *part.interiors):
+            yield tuple((float(x), float(y)) for x, y in ring.coords)
+
+
+def _outlines(home: Home) -> Iterator[tuple[Point, ...]]:
+    """Yield the outlines of the boxes of all furniture that the map shows."""
+    for piece in home.furniture:
+        if not piece.on_map:
+            continue
+        for box in piece.boxes:
+            half = 0.5 * box.length, 0.5 * box.width
+            corners = ((-1, -1), (1, -1), (1, 1), (-1, 1))
+            cosine, sine = math.cos(box.theta), math.sin(box.theta)
+            yield tuple(
+                (
+                    box.x + cosine * sx * half[0] - sine * sy * half[1],
+                    box.y + sine * sx * half[0] + cosine * sy * half[1],
+                )
+                for sx, sy in corners
+            )
+
+
+# ---------------------------------------------------------------- results
+
+
+def clean_report(result: CleanResult) -> CleanReport:
+    """Return how a clean ended."""
+    return CleanReport(
+        ErrandOutcome(result.outcome.value),
+        result.message,
+        result.covered,
+        result.wanted,
+        result.dirt,
+        result.distance,
+        result.duration,
+        result.energy,
+        tuple(
+            MissedFloor(missed.area, missed.x, missed.y, missed.room, missed.reason.value)
+            for missed in result.missed
+        ),
+    )
+
+
+def exploration_report(result: ExploreResult) -> CleanReport:
+    """Return how an exploration ended, in the words of a clean: nothing was wanted or covered."""
+    return CleanReport(
+        ErrandOutcome(result.outcome.value),
+        result.message,
+        0.0,
+        0.0,
+        0.0,
+        result.distance,
+        result.duration,
+        math.nan,
+    )

@@ -1,0 +1,217 @@
+"""The HTTP API: what a program may read of a robot, and ask of it. OpenAPI describes it itself."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Annotated, Any, Literal, TypeVar
+
+from fastapi import APIRouter, HTTPException
+from pydantic import BaseModel, ConfigDict, Field
+
+from roomba.client.observed import ObservedRobot
+from roomba.client.protocol import RequestRefusedError, RobotUnavailableError
+from roomba.client.view import CleanOrder, ZoneView
+from roomba.ui.web.feed import home_of, state_of
+
+_LONGEST_NAME = 80
+_Value = TypeVar("_Value")
+Coordinate = Annotated[float, Field(ge=-1000.0, le=1000.0, allow_inf_nan=False)]
+Name = Annotated[str, Field(min_length=1, max_length=_LONGEST_NAME)]
+
+
+class Wish(BaseModel):
+    """A body of a request; unknown fields are refused."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class CleanWish(Wish):
+    """What is to be cleaned; zones are lowest x and y, highest x and y, m, map frame."""
+
+    mode: Literal["whole", "rooms", "zones", "spot", "edges", "dirtiest"] = "whole"
+    rooms: list[Name] = Field(default=[], max_length=100, examples=[["Kitchen", "Hall"]])
+    in_order: bool = True
+    zones: list[tuple[Coordinate, Coordinate, Coordinate, Coordinate]] = Field(
+        default=[], max_length=100
+    )
+    spot: tuple[Coordinate, Coordinate] | None = None
+    passes: int = Field(default=1, ge=1, le=5)
+    fan: Literal["quiet", "standard", "strong"] = "standard"
+
+
+class DriveWish(Wish):
+    """A twist, m/s and rad/s; without another one for 0.5 s the robot stands."""
+
+    linear: float = Field(ge=-2.0, le=2.0, allow_inf_nan=False)
+    angular: float = Field(ge=-math.tau, le=math.tau, allow_inf_nan=False)
+
+
+class StopWish(Wish):
+    """Why the drive is held."""
+
+    reason: str = Field(default="the button on the page", max_length=200)
+
+
+class ZoneWish(Wish):
+    """A zone that the robot must not enter."""
+
+    name: Name
+    kind: Literal["no-go", "wall"]
+    points: list[tuple[Coordinate, Coordinate]] = Field(min_length=2, max_length=200)
+
+
+class RoomName(Wish):
+    """Another name for a room."""
+
+    name: Name
+    new_name: Name
+
+
+class RoomNames(Wish):
+    """Rooms that become one."""
+
+    names: list[Name] = Field(min_length=2, max_length=20)
+
+
+class RoomCut(Wish):
+    """A line through a room."""
+
+    name: Name
+    start: tuple[Coordinate, Coordinate]
+    end: tuple[Coordinate, Coordinate]
+
+
+class PlaceWish(Wish):
+    """A place on the floor, m."""
+
+    x: Coordinate
+    y: Coordinate
+
+
+class Answer(BaseModel):
+    """The robot obeys."""
+
+    ok: Literal[True] = True
+
+
+def api_of(robot: ObservedRobot) -> APIRouter:
+    """Return the routes for one robot."""
+    api = APIRouter(prefix="/api/v1")
+    _add_views(api, robot)
+    _add_errands(api, robot)
+    _add_edits(api, robot)
+    _add_play(api, robot)
+    return api
+
+
+def _add_views(api: APIRouter, robot: ObservedRobot) -> None:
+    @api.get("/state", summary="The robot now")
+    def state() -> dict[str, Any]:
+        return _asked(lambda: state_of(robot.robot()))
+
+    @api.get("/home", summary="Rooms, zones, station")
+    def home() -> dict[str, Any]:
+        return _asked(lambda: home_of(robot.home()))
+
+    @api.get("/limits", summary="What may be asked for")
+    def limits() -> dict[str, Any]:
+        found = _asked(robot.limits)
+        return {name: getattr(found, name) for name in found.__slots__}
+
+
+def _add_errands(api: APIRouter, robot: ObservedRobot) -> None:
+    @api.post("/clean", summary="Begin a clean")
+    def clean(wish: CleanWish) -> Answer:
+        order = CleanOrder(
+            wish.mode,
+            tuple(wish.rooms),
+            wish.in_order,
+            tuple(wish.zones),
+            wish.spot,
+            wish.passes,
+            wish.fan,
+        )
+        return _obeyed(lambda: robot.clean(order))
+
+    plain: tuple[tuple[str, str, Callable[[], None]], ...] = (
+        ("explore", "Look at what the map does not show yet", robot.explore),
+        ("dock", "Go to the charging station", robot.dock),
+        ("pause", "Stand until told to go on", robot.pause),
+        ("resume", "Go on", robot.resume),
+        ("stop", "End the errand, and stay", robot.stop),
+        ("locate", "Beep", robot.locate),
+        ("release", "Release the emergency stop", robot.release),
+    )
+    for name, summary, command in plain:
+        api.add_api_route(
+            f"/{name}", _obeying(command), methods=["POST"], summary=summary, name=name
+        )
+
+    @api.post("/emergency_stop", summary="Hold the drive until it is released")
+    def emergency_stop(wish: StopWish) -> Answer:
+        return _obeyed(lambda: robot.emergency_stop(wish.reason))
+
+    @api.post("/drive", summary="Drive by hand")
+    def drive(wish: DriveWish) -> Answer:
+        return _obeyed(lambda: robot.drive(wish.linear, wish.angular))
+
+
+def _add_edits(api: APIRouter, robot: ObservedRobot) -> None:
+    @api.put("/zones", summary="Add a zone, or replace the one of the same name")
+    def put_zone(wish: ZoneWish) -> Answer:
+        zone = ZoneView(wish.name, wish.kind, tuple(wish.points))
+        return _obeyed(lambda: robot.put_zone(zone))
+
+    @api.delete("/zones/{name}", summary="Remove a zone")
+    def remove_zone(name: str) -> Answer:
+        return _obeyed(lambda: robot.remove_zone(name))
+
+    @api.post("/rooms/rename", summary="Give a room another name")
+    def rename_room(wish: RoomName) -> Answer:
+        return _obeyed(lambda: robot.rename_room(wish.name, wish.new_name))
+
+    @api.post("/rooms/join", summary="Make rooms that touch one")
+    def join_rooms(wish: RoomNames) -> Answer:
+        return _obeyed(lambda: robot.join_rooms(tuple(wish.names)))
+
+    @api.post("/rooms/split", summary="Cut a room along a line")
+    def split_room(wish: RoomCut) -> Answer:
+        return _obeyed(lambda: robot.split_room(wish.name, wish.start, wish.end))
+
+
+def _add_play(api: APIRouter, robot: ObservedRobot) -> None:
+    """Add what can be done to a simulated home, if it is one."""
+    spill, chair = getattr(robot, "spill_dirt", None), getattr(robot, "place_chair", None)
+    if spill is None or chair is None:
+        return
+
+    @api.post("/play/spill", summary="Spill a heap of dirt")
+    def spill_dirt(wish: PlaceWish) -> Answer:
+        return _obeyed(lambda: spill(wish.x, wish.y))
+
+    @api.post("/play/chair", summary="Put a chair in the way")
+    def place_chair(wish: PlaceWish) -> Answer:
+        return _obeyed(lambda: chair(wish.x, wish.y))
+
+
+def _obeying(command: Callable[[], None]) -> Callable[[], Answer]:
+    def obey() -> Answer:
+        return _obeyed(command)
+
+    return obey
+
+
+def _obeyed(command: Callable[[], None]) -> Answer:
+    _asked(command)
+    return Answer()
+
+
+def _asked(ask: Callable[[], _Value]) -> _Value:
+    """Return the robot's answer; its refusal is 409 with its sentence, its silence 503."""
+    try:
+        return ask()
+    except RequestRefusedError as refusal:
+        raise HTTPException(409, str(refusal)) from refusal
+    except RobotUnavailableError as reason:
+        raise HTTPException(503, str(reason)) from reason

@@ -1,0 +1,60 @@
+"""Who may do what: only pages of this server, and only with its token may anything be changed.
+
+The server listens on loopback. A page of another site that is open in the same browser reaches
+loopback as well, so Host and Origin are checked (DNS rebinding, cross-site requests), and each
+request that changes something must carry the token of the printed address.
+"""
+
+from __future__ import annotations
+
+import hmac
+import secrets
+from collections import deque
+from dataclasses import dataclass, field
+from typing import Final
+from urllib.parse import urlsplit
+
+_TOKEN_BYTES: Final = 24
+"""192 bits."""
+_MOST_GUESSES: Final = 10
+_GUESSING_PERIOD: Final = 60.0
+"""Wrong tokens that are answered in so many s; more are refused unseen."""
+_LOOPBACK: Final = ("127.0.0.1", "localhost", "::1")
+
+
+def new_token() -> str:
+    """Return a token that cannot be guessed."""
+    return secrets.token_urlsafe(_TOKEN_BYTES)
+
+
+@dataclass
+class Guard:
+    """Checks requests; ``hosts`` are names by which the server may be called."""
+
+    token: str
+    hosts: tuple[str, ...] = _LOOPBACK
+    _guesses: deque[float] = field(default_factory=deque)
+
+    def is_host(self, host: str | None) -> bool:
+        """Whether a request's Host header names this server."""
+        if not host:
+            return False
+        return urlsplit(f"//{host}").hostname in self.hosts
+
+    def is_origin(self, origin: str | None, host: str | None) -> bool:
+        """Whether a request's Origin header, if there is one, is a page of this server."""
+        if origin is None:
+            return True
+        asked = urlsplit(origin)
+        return asked.scheme in ("http", "https") and asked.netloc == host
+
+    def is_token(self, given: str, now: float) -> bool:
+        """Whether a token is the right one; after ten wrong ones in a minute none is at all."""
+        while self._guesses and now - self._guesses[0] > _GUESSING_PERIOD:
+            self._guesses.popleft()
+        if len(self._guesses) >= _MOST_GUESSES:
+            return False
+        if hmac.compare_digest(given.encode(), self.token.encode()):
+            return True
+        self._guesses.append(now)
+        return False

@@ -1,0 +1,92 @@
+"""Serving the page on a port of this machine, until it is told to end."""
+
+from __future__ import annotations
+
+import asyncio
+import socket
+import threading
+from typing import Final
+
+import uvicorn
+from fastapi import FastAPI
+
+from roomba.errors import RoombaError
+
+DEFAULT_PORT: Final = 8400
+_PORTS: Final = 20
+"""Ports that are tried, from the wanted one on."""
+_START: Final = 10.0
+"""s of wall time within which the server must be up."""
+
+
+class ServerError(RoombaError):
+    """The page cannot be served; the message says why."""
+
+
+def listen(host: str, port: int, *, is_fixed: bool) -> socket.socket:
+    """Return a bound socket: of ``port``, or of one of the next that is free.
+
+    Raises ServerError when there is none.
+    """
+    last = port if is_fixed or port == 0 else port + _PORTS - 1
+    for tried in range(port, last + 1):
+        bound = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
+        bound.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            bound.bind((host, tried))
+        except OSError as error:
+            bound.close()
+            reason = error
+        else:
+            return bound
+    wanted = f"port {port}" if port == last else f"one of the ports {port} to {last}"
+    raise ServerError(f"expected {wanted} of {host} to be free: {reason}; choose another by --port")
+
+
+class PageServer:
+    """Serves an application in a thread of its own, or in the caller's."""
+
+    def __init__(self, app: FastAPI, bound: socket.socket) -> None:
+        """Serve nothing yet."""
+        self._socket = bound
+        self._server = uvicorn.Server(
+            uvicorn.Config(
+                app,
+                log_level="warning",
+                access_log=False,
+                ws_max_size=65536,
+                timeout_graceful_shutdown=1,
+                lifespan="on",
+            )
+        )
+        self._thread: threading.Thread | None = None
+
+    @property
+    def address(self) -> str:
+        """Where it is reached."""
+        host, port = self._socket.getsockname()[:2]
+        return f"http://{host}:{port}/"
+
+    def serve(self) -> None:
+        """Serve until the process is told to end."""
+        self._server.run(sockets=[self._socket])
+
+    def start(self) -> None:
+        """Serve in a thread; returns when it answers. Raises ServerError when it does not."""
+        self._thread = threading.Thread(target=self._serve, name="page", daemon=True)
+        self._thread.start()
+        waiting = threading.Event()
+        for _ in range(int(_START / 0.02)):
+            if self._server.started:
+                return
+            waiting.wait(0.02)
+        raise ServerError(f"expected the page to be served within {_START:g} s; it was not")
+
+    def stop(self) -> None:
+        """End the thread that serves."""
+        self._server.should_exit = True
+        if self._thread is not None:
+            self._thread.join(_START)
+
+    def _serve(self) -> None:
+        asyncio.run(self._server.serve(sockets=[self._socket]))

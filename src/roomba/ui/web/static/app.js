@@ -1,0 +1,17 @@
+/** The page: its parts, begun one after the other. */
+import * as draw from "./map/draw.js";
+import * as gestures from "./map/gestures.js";
+import * as actions from "./panels/actions.js";
+import * as drive from "./panels/drive.js";
+import * as keys from "./panels/keys.js";
+import * as offer from "./panels/offer.js";
+import * as rooms from "./panels/rooms.js";
+import * as status from "./panels/status.js";
+import * as tools from "./panels/view.js";
+import * as zones from "./panels/zones.js";
+import { connect } from "./link.js";
+
+draw.begin();
+gestures.begin(offer.tapped, zones.drawn);
+for (const panel of [status, actions, rooms, zones, drive, tools, keys]) panel.begin();
+connect();

@@ -1,0 +1,96 @@
+/** The connection to the server: a stream of snapshots that comes back by itself, and wishes. */
+import { get, set } from "./store.js";
+import { takeTiles } from "./map/grids.js";
+
+const STALE = 1500; // ms without news after which what is shown is told to be old
+const RETRY = [300, 1000, 2000, 4000]; // ms before another attempt
+
+let socket = null;
+let attempts = 0;
+let heard = 0;
+
+/** The token of the printed address; it is kept for this tab alone. */
+function token() {
+  const given = new URLSearchParams(location.hash.slice(1)).get("token");
+  if (given) {
+    sessionStorage.setItem("token", given);
+    history.replaceState(null, "", location.pathname);
+  }
+  return sessionStorage.getItem("token") ?? "";
+}
+const TOKEN = token();
+
+/** Connect, and stay connected. */
+export function connect() {
+  const scheme = location.protocol === "https:" ? "wss" : "ws";
+  socket = new WebSocket(`${scheme}://${location.host}/live`);
+  socket.binaryType = "arraybuffer";
+  socket.onopen = () => {
+    attempts = 0;
+    socket.send(JSON.stringify({ type: "hello", token: TOKEN }));
+  };
+  socket.onmessage = (event) => {
+    heard = performance.now();
+    if (event.data instanceof ArrayBuffer) takeTiles(event.data);
+    else take(JSON.parse(event.data));
+  };
+  socket.onclose = () => {
+    set("link", "reconnecting");
+    setTimeout(connect, RETRY[Math.min(attempts++, RETRY.length - 1)]);
+  };
+}
+
+setInterval(() => {
+  const age = performance.now() - heard;
+  set("age", age);
+  if (get("link") === "live" && age > STALE) set("link", "stale");
+}, 500);
+
+function take(message) {
+  switch (message.type) {
+    case "state":
+      set("state", message.pose ? { ...message, at: performance.now() } : get("state"));
+      set("reason", message.reason ?? "");
+      set("link", message.link);
+      break;
+    case "home": set("home", message); break;
+    case "trail": {
+      const before = message.whole ? [] : get("trail");
+      set("trail", before.concat(message.points).slice(-20000));
+      break;
+    }
+    case "welcome": set("mayChange", message.may_change); break;
+    case "refused": refuse(message.reason); break;
+  }
+}
+
+/** Show the robot's sentence for a while. */
+export function refuse(reason) {
+  const place = document.getElementById("refusal");
+  place.textContent = reason;
+  place.hidden = false;
+  clearTimeout(refuse.timer);
+  refuse.timer = setTimeout(() => { place.hidden = true; }, 6000);
+}
+
+/** Ask the robot for something; what it refuses is shown. Returns whether it obeys. */
+export async function wish(path, body, method = "POST") {
+  try {
+    const answer = await fetch(`/api/v1/${path}`, {
+      method,
+      headers: { "Content-Type": "application/json", Authorization: `Bearer ${TOKEN}` },
+      body: JSON.stringify(body ?? {}),
+    });
+    if (answer.ok) return true;
+    const told = await answer.json();
+    refuse(typeof told.detail === "string" ? told.detail : told.detail.map((one) => one.msg).join("; "));
+  } catch {
+    refuse("The robot's program does not answer. The page connects again by itself.");
+  }
+  return false;
+}
+
+/** Send a twist, m/s and rad/s, at once. */
+export function drive(linear, angular) {
+  if (socket?.readyState === WebSocket.OPEN) socket.send(JSON.stringify({ type: "drive", linear, angular }));
+}

@@ -1,0 +1,21 @@
+/** Asks the viewer for a name, or for a yes. */
+
+const $ = (id) => document.getElementById(id);
+
+/** Return the text that was entered, or null. */
+export function askName(title, text) { return ask(title, text); }
+
+/** Return whether the answer was yes. */
+export async function askYes(title) { return (await ask(title, null)) !== null; }
+
+function ask(title, text) {
+  const dialog = $("ask");
+  $("ask-title").textContent = title;
+  $("ask-label").hidden = text === null;
+  $("ask-text").value = text ?? "";
+  dialog.returnValue = "";
+  dialog.showModal();
+  return new Promise((resolve) => {
+    dialog.onclose = () => resolve(dialog.returnValue === "yes" ? $("ask-text").value : null);
+  });
+}

@@ -1,0 +1,27 @@
+/** The newest snapshots of the robot, and what the viewer has chosen on this page. */
+
+/** @type {Record<string, any>} */
+const values = {
+  link: "connecting", age: 0, state: null, home: null, mayChange: false,
+  trail: [], chosen: [], drawing: null, selection: null,
+  layers: { coverage: true, trail: true, scan: false, dirt: false, furniture: true, rooms: true, zones: true, path: true },
+};
+const listeners = new Map();
+
+/** Return what is known by a name. */
+export function get(name) { return values[name]; }
+
+/** Replace what is known by a name, and tell those who listen. */
+export function set(name, value) {
+  values[name] = value;
+  for (const listener of listeners.get(name) ?? []) listener(value);
+}
+
+/** Call a function now and whenever one of the names changes. */
+export function on(names, listener) {
+  for (const name of names.split(" ")) {
+    if (!listeners.has(name)) listeners.set(name, []);
+    listeners.get(name).push(() => listener());
+  }
+  listener();
+}

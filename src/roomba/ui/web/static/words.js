@@ -1,0 +1,53 @@
+/** The robot's state in words that a person would say. */
+
+const SOON = 90; // s
+
+/** Return the headline for a state. */
+export function headline(link, state) {
+  if (link === "connecting") return "Connecting …";
+  if (!state) return link === "gone" ? "The robot does not answer" : "Connecting again …";
+  if (link === "gone") return "The robot does not answer";
+  if (link === "reconnecting") return "Connecting again …";
+  const { vacuum } = state, room = vacuum.room ? ` · ${vacuum.room}` : "";
+  const togo = vacuum.seconds_to_go > 0 && vacuum.state === "cleaning" ? ` · ${duration(vacuum.seconds_to_go)} to go` : "";
+  switch (vacuum.phase) {
+    case "docked": return "On its station, ready";
+    case "charging": return "Charging, then it goes on";
+    case "idle": return `Standing${room}`;
+    case "undocking": return "Leaving its station";
+    case "cleaning": return `Cleaning${room}${togo}`;
+    case "exploring": return "Looking at what it does not know yet";
+    case "returning": return "On its way home";
+    case "docking": return "Docking";
+    case "paused": return `Paused${room}`;
+    case "error": return "It needs help";
+    case "emergency stop": return "Stopped by the emergency stop";
+    default: return vacuum.phase;
+  }
+}
+
+/** Return why it does not do what was asked, and what helps; empty when all is well. */
+export function explanation(link, state, reason, age) {
+  if (link === "gone") return reason;
+  if (link === "stale") return `No news for ${Math.round(age / 1000)} s; what is shown is old.`;
+  if (link === "reconnecting") return "The page comes back by itself as soon as the robot's program answers.";
+  if (!state) return "";
+  if (state.held) return `The drive is held: ${state.held}. “Release” lets it go.`;
+  return state.vacuum.message || state.doubt;
+}
+
+/** Return a time, s, in words. */
+export function duration(seconds) {
+  if (seconds < SOON) return `${Math.round(seconds)} s`;
+  const minutes = Math.round(seconds / 60);
+  return minutes < 90 ? `${minutes} min` : `${Math.floor(minutes / 60)} h ${minutes % 60} min`;
+}
+
+/** Return how the last run ended. */
+export function lastRun(report) {
+  const parts = [report.outcome[0].toUpperCase() + report.outcome.slice(1)];
+  if (report.wanted) parts.push(`${report.covered.toFixed(1)} of ${report.wanted.toFixed(1)} m²`);
+  if (report.duration) parts.push(duration(report.duration));
+  if (report.dirt) parts.push(`${report.dirt.toFixed(1)} g of dirt`);
+  return parts.join(" · ") + (report.message ? `. ${report.message}` : "");
+}

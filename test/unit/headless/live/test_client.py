@@ -1,0 +1,160 @@
+"""A live robot, observed and commanded as a page does."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Iterator
+
+import numpy as np
+import pytest
+
+from roomba.client.protocol import RequestRefusedError, RobotUnavailableError
+from roomba.client.view import CleanOrder, LayerName, ZoneView
+from roomba.commands.play.command import live_client
+from roomba.headless.live.client import LiveClient
+
+DEADLINE = 60.0
+
+
+def wait_for(condition: Callable[[], bool], what: str) -> None:
+    ends = time.monotonic() + DEADLINE
+    while not condition():
+        assert time.monotonic() < ends, f"expected {what} within {DEADLINE:g} s"
+        time.sleep(0.02)
+
+
+@pytest.fixture
+def client() -> Iterator[LiveClient]:
+    client = live_client("studio", seed=1, speed=40.0, knows_map=True)
+    client.start()
+    wait_for(lambda: phase(client) == "docked", "the robot on its station")
+    yield client
+    client.end()
+
+
+def phase(client: LiveClient) -> str:
+    return client.robot().vacuum.phase
+
+
+def test_it_cleans_pauses_goes_on_stops_and_docks(client: LiveClient) -> None:
+    assert phase(client) == "docked"
+    client.clean(CleanOrder())
+    wait_for(lambda: client.robot().vacuum.covered > 0.5, "some clean floor")
+    client.pause()
+    assert phase(client) == "paused"
+    stood = client.robot()
+    wait_for(lambda: client.robot().time > stood.time + 2.0, "time to pass")
+    assert math.dist(client.robot().pose[:2], stood.pose[:2]) < 0.1
+    client.resume()
+    assert phase(client) != "paused"
+    client.stop()
+    assert phase(client) == "idle"
+    last = client.robot().last
+    assert last is not None
+    assert last.outcome.value == "stopped"
+    client.dock()
+    wait_for(lambda: phase(client) == "docked", "the robot on its station")
+
+
+def test_a_whole_clean_is_shown_and_told(client: LiveClient) -> None:
+    client.clean(CleanOrder())
+    wait_for(lambda: client.robot().last is not None, "the end of the clean")
+    last, layer = client.robot().last, client.layer(LayerName.COVERAGE)
+    assert last is not None
+    assert layer is not None
+    assert last.outcome.value == "completed"
+    swept = np.count_nonzero(layer.cells) * layer.resolution**2
+    assert swept >= 0.97 * last.covered
+
+
+def test_the_emergency_stop_holds_until_it_is_released(client: LiveClient) -> None:
+    client.clean(CleanOrder())
+    client.emergency_stop("a test")
+    assert client.robot().held == "a test"
+    with pytest.raises(RequestRefusedError, match="emergency"):
+        client.drive(0.1, 0.0)
+    with pytest.raises(RequestRefusedError):
+        client.resume()
+    client.release()
+    assert client.robot().held == ""
+
+
+def test_driving_by_hand_ends_with_silence(client: LiveClient) -> None:
+    client.clean(CleanOrder())
+    wait_for(lambda: phase(client) == "cleaning", "the clean")
+    with pytest.raises(RequestRefusedError, match="pause it"):
+        client.drive(0.1, 0.0)
+    client.pause()
+    before = client.robot()
+    client.drive(0.0, 1.0)
+    wait_for(lambda: abs(client.robot().pose[2] - before.pose[2]) > 0.2, "a turn")
+
+    def stands() -> bool:
+        one = client.robot()
+        wait_for(lambda: client.robot().time > one.time + 1.0, "time to pass")
+        return abs(client.robot().pose[2] - one.pose[2]) < 0.01
+
+    wait_for(stands, "the robot to stand")
+
+
+def test_rooms_and_zones_are_edited(client: LiveClient) -> None:
+    first = client.home()
+    assert first.rooms
+    name = first.rooms[0].name
+    client.rename_room(name, "Den")
+    assert client.home().rooms[0].name == "Den"
+    assert client.home().version > first.version
+    client.put_zone(ZoneView("rug", "no-go", ((0.5, 0.5), (1.0, 0.5), (1.0, 1.0), (0.5, 1.0))))
+    assert [zone.name for zone in client.home().zones] == ["rug"]
+    client.remove_zone("rug")
+    assert client.home().zones == ()
+
+
+@pytest.mark.parametrize(
+    "ask",
+    [
+        lambda client: client.clean(CleanOrder("rooms", ("no such room",))),
+        lambda client: client.clean(CleanOrder("nothing")),
+        lambda client: client.clean(CleanOrder(fan="hurricane")),
+        lambda client: client.resume(),
+        lambda client: client.explore(),
+        lambda client: client.remove_zone("none"),
+        lambda client: client.put_zone(ZoneView("x", "no-go", ((0.0, 0.0), (1.0, 1.0)))),
+        lambda client: client.put_zone(ZoneView("x", "lava", ((0.0, 0.0), (1.0, 1.0)))),
+        lambda client: client.spill_dirt(1e6, 1e6),
+    ],
+)
+def test_what_cannot_be_is_refused_with_a_reason(
+    client: LiveClient, ask: Callable[[LiveClient], None]
+) -> None:
+    before = client.home()
+    with pytest.raises(RequestRefusedError, match=r"\w"):
+        ask(client)
+    assert client.home().zones == before.zones
+    assert phase(client) == "docked"
+
+
+def test_a_robot_that_ended_says_so() -> None:
+    client = live_client("studio", seed=1, speed=5.0, knows_map=True)
+    client.start()
+    client.end()
+    with pytest.raises(RobotUnavailableError, match="start it again"):
+        client.dock()
+
+
+def test_without_a_map_it_explores_and_finds_rooms() -> None:
+    client = live_client("studio", seed=1, speed=100.0, knows_map=False)
+    client.start()
+    try:
+        assert client.home().rooms == ()
+        first = client.layer(LayerName.MAP)
+        assert first is not None
+        client.explore()
+        wait_for(lambda: client.robot().last is not None, "the end of the exploration")
+        assert client.home().rooms
+        layer = client.layer(LayerName.MAP)
+        assert layer is not None
+        assert np.count_nonzero(layer.cells == 1) > np.count_nonzero(first.cells == 1)
+    finally:
+        client.end()

@@ -1,0 +1,266 @@
+"""The application over a robot that only writes down what it is told."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from fastapi.routing import APIRoute
+from fastapi.testclient import TestClient
+
+from roomba.client.protocol import (
+    RequestRefusedError,
+    RobotUnavailableError,
+    VacuumSnapshot,
+)
+from roomba.client.view import GridLayer, HomeView, LayerName, PageLimits, RobotView
+from roomba.ui.web.app import STATIC, create_app
+from roomba.ui.web.guard import Guard
+
+TOKEN = "the-token"
+HOST = {"Host": "127.0.0.1:8400"}
+AUTHORISED = {"Authorization": f"Bearer {TOKEN}"}
+VIEW = RobotView(
+    time=1.0,
+    pose=(1.0, 2.0, 0.5),
+    doubt="",
+    speed=0.2,
+    dirt=3.0,
+    held="",
+    vacuum=VacuumSnapshot("cleaning", "cleaning", "", "hall", 1.0, 4.0, 0.25, 60.0, float("nan")),
+    scan=np.array([[0.5, 0.25]], np.float32),
+    path=np.empty((0, 2), np.float32),
+    last=None,
+)
+HOME = HomeView(1, "den", (0.0, 0.0, 0.0), (), (), (), 0.17, 0.2)
+
+
+class WrittenRobot:
+    """Writes down commands; ``refusal`` is raised by each of them, ``is_gone`` by all looks."""
+
+    def __init__(self) -> None:
+        self.told: list[tuple[str, tuple[Any, ...]]] = []
+        self.refusal = ""
+        self.is_gone = False
+        self.view = VIEW
+
+    def limits(self) -> PageLimits:
+        return PageLimits(0.5, 4.25, 5, 200, 200, 80)
+
+    def robot(self) -> RobotView:
+        if self.is_gone:
+            raise RobotUnavailableError("the robot's program has ended")
+        return self.view
+
+    def home(self) -> HomeView:
+        return HOME
+
+    def layer(self, name: LayerName) -> GridLayer | None:
+        if name is not LayerName.MAP:
+            return None
+        return GridLayer(1, 0.05, 0.0, 0.0, np.ones((3, 4), np.uint8))
+
+    def __getattr__(self, name: str) -> Any:
+        def command(*arguments: Any) -> None:
+            if self.refusal:
+                raise RequestRefusedError(self.refusal)
+            self.told.append((name, arguments))
+
+        return command
+
+
+@pytest.fixture
+def robot() -> WrittenRobot:
+    return WrittenRobot()
+
+
+@pytest.fixture
+def page(robot: WrittenRobot) -> Iterator[TestClient]:
+    app = create_app(robot, Guard(TOKEN))
+    with TestClient(app, base_url="http://127.0.0.1:8400") as client:
+        yield client
+
+
+def routes(page: TestClient) -> list[tuple[str, str]]:
+    """Return method and path of every route that changes something."""
+    paths = page.get("/openapi.json").json()["paths"]
+    return [
+        (method.upper(), path.replace("{name}", "x"))
+        for path, methods in paths.items()
+        for method in methods
+        if method != "get"
+    ]
+
+
+def test_every_change_needs_the_token(page: TestClient, robot: WrittenRobot) -> None:
+    changing = routes(page)
+    assert len(changing) >= 15
+    for method, path in changing:
+        for headers in ({}, {"Authorization": "Bearer wrong"}, {"Authorization": TOKEN}):
+            answer = page.request(method, path, json={}, headers=headers)
+            assert answer.status_code == 401, (method, path)
+            assert "token" in answer.json()["detail"]
+    assert robot.told == []
+
+
+@pytest.mark.parametrize(
+    ("headers", "status"),
+    [
+        ({"Host": "evil.example"}, 421),
+        ({"Origin": "http://evil.example"}, 403),
+        ({"Content-Type": "text/plain"}, 415),
+    ],
+)
+def test_requests_of_other_sites_are_refused(
+    page: TestClient, robot: WrittenRobot, headers: dict[str, str], status: int
+) -> None:
+    given = {**AUTHORISED, "Content-Type": "application/json", **headers}
+    answer = page.post("/api/v1/dock", content="{}", headers=given)
+    assert answer.status_code == status
+    assert robot.told == []
+
+
+def test_a_body_that_is_too_long_is_refused(page: TestClient, robot: WrittenRobot) -> None:
+    answer = page.post("/api/v1/stop", content=b" " * 70_000, headers=AUTHORISED)
+    assert answer.status_code == 413
+    assert robot.told == []
+
+
+def test_commands_reach_the_robot(page: TestClient, robot: WrittenRobot) -> None:
+    body = {"mode": "rooms", "rooms": ["hall", "den"], "passes": 2, "fan": "quiet"}
+    assert page.post("/api/v1/clean", json=body, headers=AUTHORISED).json() == {"ok": True}
+    assert page.post("/api/v1/pause", json={}, headers=AUTHORISED).status_code == 200
+    (name, (order,)), paused = robot.told
+    assert name == "clean"
+    assert (order.mode, order.rooms, order.passes, order.fan) == (
+        "rooms",
+        ("hall", "den"),
+        2,
+        "quiet",
+    )
+    assert paused == ("pause", ())
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        {"mode": "everything"},
+        {"passes": 0},
+        {"passes": 6},
+        {"rooms": ["x" * 81]},
+        {"zones": [[0, 0, 1]]},
+        {"spot": ["NaN", 0]},
+        {"spot": [1e9, 0]},
+        {"unknown": 1},
+    ],
+)
+def test_bad_wishes_are_refused(
+    page: TestClient, robot: WrittenRobot, body: dict[str, Any]
+) -> None:
+    answer = page.post("/api/v1/clean", json=body, headers=AUTHORISED)
+    assert answer.status_code == 422
+    assert robot.told == []
+
+
+def test_a_refusal_is_the_robots_sentence(page: TestClient, robot: WrittenRobot) -> None:
+    robot.refusal = "expected a battery of 20% or more to begin, got 3%"
+    answer = page.post("/api/v1/clean", json={}, headers=AUTHORISED)
+    assert (answer.status_code, answer.json()["detail"]) == (409, robot.refusal)
+
+
+def test_a_robot_that_is_gone_is_said(page: TestClient, robot: WrittenRobot) -> None:
+    robot.is_gone = True
+    answer = page.get("/api/v1/state")
+    assert answer.status_code == 503
+    assert "ended" in answer.json()["detail"]
+
+
+def test_what_is_not_known_is_null(page: TestClient) -> None:
+    assert page.get("/api/v1/state").json()["vacuum"]["battery"] is None
+
+
+def test_the_page_is_small_and_needs_nothing_from_outside(page: TestClient) -> None:
+    files = [file for file in STATIC.rglob("*") if file.is_file()]
+    assert sum(file.stat().st_size for file in files) <= 300_000
+    for file in files:
+        answer = page.get(f"/{file.relative_to(STATIC).as_posix()}")
+        assert answer.status_code == 200
+        text = file.read_text(encoding="utf-8").replace("http://www.w3.org/2000/svg", "")
+        assert "http://" not in text
+        assert "https://" not in text
+    policy = page.get("/").headers["content-security-policy"]
+    assert "default-src 'self'" in policy
+
+
+@pytest.mark.parametrize(
+    "path", ["/../app.py", "/%2e%2e/app.py", "/..%2fapp.py", "/static/../app.py"]
+)
+def test_no_file_beside_the_page_is_served(page: TestClient, path: str) -> None:
+    assert page.get(path).status_code == 404
+
+
+def test_a_viewer_gets_home_layers_and_state(page: TestClient) -> None:
+    with page.websocket_connect("/live", headers=HOST) as socket:
+        kinds: set[str] = set()
+        while kinds != {"home", "layer", "trail", "state"}:
+            message = socket.receive()
+            kinds.add("layer" if message.get("bytes") else json.loads(message["text"])["type"])
+
+
+def test_a_viewer_hears_that_the_robot_is_gone(page: TestClient, robot: WrittenRobot) -> None:
+    with page.websocket_connect("/live", headers=HOST) as socket:
+        robot.is_gone = True
+        while True:
+            message = socket.receive()
+            if message.get("text") and '"link":"gone"' in message["text"]:
+                break
+        assert "ended" in json.loads(message["text"])["reason"]
+        robot.is_gone = False
+        while '"link":"live"' not in (socket.receive().get("text") or ""):
+            pass
+
+
+def test_only_with_the_token_a_viewer_drives(page: TestClient, robot: WrittenRobot) -> None:
+    drive = json.dumps({"type": "drive", "linear": 0.1, "angular": 0.0})
+    with page.websocket_connect("/live", headers=HOST) as socket:
+        socket.send_text(drive)
+        socket.send_text(json.dumps({"type": "hello", "token": "wrong"}))
+        _await(socket, '"may_change":false')
+        socket.send_text(drive)
+        socket.send_text(json.dumps({"type": "hello", "token": TOKEN}))
+        _await(socket, '"may_change":true')
+        assert robot.told == []
+        socket.send_text(drive)
+        socket.send_text("garbage")
+        _await(socket, "refused")
+        assert robot.told == [("drive", (0.1, 0.0))]
+
+
+@pytest.mark.parametrize("told", ["garbage", "[]", '{"type": 3}', '{"type": "drive"}', "9" * 500])
+def test_garbage_ends_no_viewer(page: TestClient, robot: WrittenRobot, told: str) -> None:
+    with page.websocket_connect("/live", headers=HOST) as socket:
+        socket.send_text(json.dumps({"type": "hello", "token": TOKEN}))
+        _await(socket, "welcome")
+        for _ in range(20):
+            socket.send_text(told)
+        robot.view = replace(VIEW, time=99.0)
+        _await(socket, '"time":99.0')
+    assert robot.told == []
+
+
+def _await(socket: Any, text: str) -> None:
+    while text not in (socket.receive().get("text") or ""):
+        pass
+
+
+def test_routes_are_described(page: TestClient) -> None:
+    app: Any = page.app
+    for route in app.routes:
+        if isinstance(route, APIRoute):
+            assert route.summary, route.path
+    assert (Path(STATIC) / "index.html").is_file()

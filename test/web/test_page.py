@@ -1,0 +1,263 @@
+"""What a person does on the page, in a real browser, with what the robot then does."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable
+
+import pytest
+from web.conftest import Opened
+
+from roomba.ui.web.app import create_app
+from roomba.ui.web.server import PageServer, listen
+
+DEADLINE = 20.0
+
+COUNT_COLOURS = """() => {
+    const canvas = document.getElementById("floor"), seen = new Set();
+    const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+    for (let at = 0; at < data.length; at += 4)
+        seen.add(data[at] << 16 | data[at + 1] << 8 | data[at + 2]);
+    return seen.size;
+}"""
+CONTRASTS = """() => {
+    const part = (text) => text.match(/[\\d.]+/g).map(Number);
+    const linear = (value) => value <= 0.03928 ? value / 12.92 : ((value + 0.055) / 1.055) ** 2.4;
+    const weights = [0.2126, 0.7152, 0.0722];
+    const light = ([r, g, b]) => [r, g, b].map((value) => linear(value / 255))
+        .reduce((sum, value, index) => sum + value * weights[index], 0);
+    const behind = (element) => {
+        for (let at = element; at; at = at.parentElement) {
+            const colour = part(getComputedStyle(at).backgroundColor);
+            if (colour.length === 3 || colour[3] > 0) return colour;
+        }
+    };
+    const kinds = "h1, h2, p, dt, dd, button, label, summary, .area";
+    return [...document.querySelectorAll(kinds)]
+        .filter((element) => element.innerText && element.offsetParent && !element.disabled)
+        .map((element) => {
+            const one = light(part(getComputedStyle(element).color));
+            const other = light(behind(element));
+            const ratio = (Math.max(one, other) + 0.05) / (Math.min(one, other) + 0.05);
+            return [element.innerText, ratio];
+        });
+}"""
+CONTROLS = """() => [...document.querySelectorAll("button, select, summary, canvas")]
+    .filter((element) => element.offsetParent)
+    .map((element) => {
+        const { width, height } = element.getBoundingClientRect();
+        const label = element.labels?.[0]?.innerText;
+        const name = element.getAttribute("aria-label") || element.textContent || label;
+        return [element.id, name, width, height];
+    })"""
+
+
+def wait_for(condition: Callable[[], bool], what: str) -> None:
+    ends = time.monotonic() + DEADLINE
+    while not condition():
+        assert time.monotonic() < ends, f"expected {what} within {DEADLINE:g} s"
+        time.sleep(0.05)
+
+
+def pixels(opened: Opened, x: float, y: float) -> tuple[float, float]:
+    """Return where a place of the floor is on the window."""
+    place = opened.page.evaluate(
+        """async ([x, y]) => {
+            const { toScreen } = await import("/map/view.js");
+            const box = document.getElementById("floor").getBoundingClientRect();
+            const [px, py] = toScreen(x, y);
+            return [px + box.left, py + box.top];
+        }""",
+        [x, y],
+    )
+    return place[0], place[1]
+
+
+def colours(opened: Opened) -> int:
+    """Return how many different colours the map has."""
+    return int(opened.page.evaluate(COUNT_COLOURS))
+
+
+def test_the_map_is_drawn_and_the_state_is_said(opened: Opened) -> None:
+    page = opened.page
+    assert page.inner_text("#headline") == "On its station, ready"
+    assert "%" in page.inner_text("#battery")
+    names = [room.name for room in opened.robot.home().rooms]
+    assert page.locator("#rooms .name").all_inner_texts() == names
+    assert colours(opened) > 20
+
+
+def test_a_person_cleans_two_rooms_in_order(opened: Opened) -> None:
+    page = opened.page
+    kitchen = page.get_by_role("button", name="kitchen")
+    page.get_by_role("button", name="hallway").click()
+    kitchen.click()
+    assert kitchen.get_attribute("aria-pressed") == "true"
+    assert kitchen.locator(".order").inner_text() == "2"
+    page.get_by_role("button", name="Clean 2 rooms").click()
+    opened.wait_for_phase("cleaning")
+    area = {room.name: room.area for room in opened.robot.home().rooms}
+    wanted = opened.robot.robot().vacuum.wanted
+    assert wanted < area["hallway"] + area["kitchen"]
+    assert wanted > 0.5 * (area["hallway"] + area["kitchen"])
+    page.get_by_role("button", name="Pause").click()
+    opened.wait_for_phase("paused")
+    page.get_by_role("button", name="Go on").click()
+    opened.wait_for_phase("cleaning")
+    page.get_by_role("button", name="Stop", exact=True).click()
+    opened.wait_for_phase("idle")
+    assert "Stopped" in page.inner_text("#last-text")
+    page.get_by_role("button", name="Dock").click()
+    opened.wait_for_phase("docked")
+
+
+def test_tapping_the_map_chooses_a_room_or_cleans_a_spot(opened: Opened) -> None:
+    page = opened.page
+    room = opened.robot.home().rooms[0]
+    page.mouse.click(*pixels(opened, *room.anchor))
+    page.get_by_role("button", name=f"Choose {room.name}").click()
+    assert page.locator("#rooms [aria-pressed=true] .name").inner_text() == room.name
+    page.mouse.click(*pixels(opened, *room.anchor))
+    page.get_by_role("button", name="Clean here").click()
+    opened.wait_for_phase("cleaning")
+    assert opened.robot.robot().vacuum.wanted <= 1.5**2 + 0.1
+
+
+@pytest.mark.parametrize("kind", ["No-go zone", "Virtual wall"])
+def test_a_zone_is_drawn_and_removed(opened: Opened, kind: str) -> None:
+    page = opened.page
+    page.get_by_role("button", name=kind).click()
+    x, y = opened.robot.home().rooms[0].anchor
+    page.mouse.move(*pixels(opened, x - 0.5, y - 0.3))
+    page.mouse.down()
+    page.mouse.move(*pixels(opened, x, y))
+    page.mouse.move(*pixels(opened, x + 0.5, y + 0.4))
+    page.mouse.up()
+    wait_for(lambda: len(opened.robot.home().zones) == 1, "a zone")
+    (zone,) = opened.robot.home().zones
+    assert zone.points[0] == pytest.approx((x - 0.5, y - 0.3), abs=0.05)
+    assert len(zone.points) == (4 if kind == "No-go zone" else 2)
+    page.get_by_role("button", name=f"Remove {zone.name}").click()
+    wait_for(lambda: not opened.robot.home().zones, "no zone")
+
+
+def test_a_room_gets_another_name(opened: Opened) -> None:
+    page = opened.page
+    page.get_by_role("button", name="kitchen").click()
+    page.get_by_role("button", name="Rename").click()
+    page.get_by_role("textbox", name="Name").fill("Cook's den")
+    page.get_by_role("button", name="OK").click()
+    page.get_by_role("button", name="Cook's den").wait_for()
+    assert "Cook's den" in [room.name for room in opened.robot.home().rooms]
+
+
+def test_the_emergency_stop_is_a_button_and_a_key(opened: Opened) -> None:
+    page = opened.page
+    page.get_by_role("button", name="Clean all").click()
+    opened.wait_for_phase("cleaning")
+    page.keyboard.press("Escape")
+    opened.wait_for_phase("emergency stop")
+    assert "held" in page.inner_text("#explanation")
+    page.get_by_role("button", name="Release").click()
+    opened.wait_for_phase("idle")
+    page.get_by_role("button", name="Stop now").click()
+    opened.wait_for_phase("emergency stop")
+
+
+def test_what_the_robot_refuses_is_said(opened: Opened) -> None:
+    page = opened.page
+    page.get_by_role("button", name="Virtual wall").click()
+    page.keyboard.press("2")
+    x, y = opened.robot.home().rooms[0].anchor
+    page.mouse.move(*pixels(opened, x, y))
+    page.mouse.down()
+    page.mouse.move(*pixels(opened, x + 0.4, y))
+    page.mouse.up()
+    page.get_by_role("button", name="Split").click()
+    page.mouse.move(*pixels(opened, x, y))
+    page.mouse.down()
+    page.mouse.move(*pixels(opened, x + 0.2, y))
+    page.mouse.up()
+    page.wait_for_selector("#refusal:not([hidden])")
+    assert page.inner_text("#refusal")
+
+
+def test_driving_by_hand_lasts_as_long_as_a_key_is_held(opened: Opened) -> None:
+    page = opened.page
+    page.get_by_role("button", name="Clean all").click()
+    opened.wait_for_phase("cleaning")
+    page.get_by_role("button", name="Pause").click()
+    opened.wait_for_phase("paused")
+    page.get_by_text("Drive by hand", exact=True).click()
+    before = opened.robot.robot().pose
+    page.keyboard.down("ArrowLeft")
+    wait_for(lambda: abs(opened.robot.robot().pose[2] - before[2]) > 0.3, "a turn to the left")
+    page.keyboard.up("ArrowLeft")
+
+    def stands() -> bool:
+        one = opened.robot.robot()
+        wait_for(lambda: opened.robot.robot().time > one.time + 5.0, "time to pass")
+        return math.isclose(opened.robot.robot().pose[2], one.pose[2], abs_tol=0.02)
+
+    wait_for(stands, "the robot to stand")
+
+
+def test_the_page_comes_back_after_its_server_was_gone(opened: Opened) -> None:
+    page = opened.page
+    port = int(opened.server.address.rsplit(":", 1)[1].strip("/"))
+    opened.server.stop()
+    page.wait_for_selector("body[data-link='reconnecting']")
+    assert "Connecting again" in page.inner_text("#headline")
+    again = PageServer(
+        create_app(opened.robot, opened.guard), listen("127.0.0.1", port, is_fixed=True)
+    )
+    again.start()
+    try:
+        page.wait_for_selector("body[data-link='live']")
+        page.get_by_role("button", name="Clean all").click()
+        opened.wait_for_phase("cleaning")
+    finally:
+        again.stop()
+
+
+def test_without_the_token_nothing_is_changed(opened: Opened) -> None:
+    other = opened.page.context.new_page()
+    other.goto(opened.server.address)
+    other.wait_for_selector("body[data-link='live']")
+    other.get_by_role("button", name="Clean all").click()
+    other.wait_for_selector("#refusal:not([hidden])")
+    assert "token" in other.inner_text("#refusal")
+    assert opened.phase() == "docked"
+
+
+def test_keys_alone_do(opened: Opened) -> None:
+    page = opened.page
+    page.keyboard.press("1")
+    page.keyboard.press("3")
+    assert page.locator("#rooms [aria-pressed=true]").count() == 2
+    page.keyboard.press("?")
+    assert page.locator("dialog#keys").is_visible()
+    page.get_by_role("button", name="Close").press("Enter")
+    page.locator("#clean").press("Enter")
+    opened.wait_for_phase("cleaning")
+    page.locator("#floor").focus()
+    page.keyboard.press(" ")
+    opened.wait_for_phase("paused")
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_texts_have_contrast(opened: Opened, scheme: str) -> None:
+    page = opened.page
+    page.emulate_media(color_scheme="dark" if scheme == "dark" else "light")
+    ratios = page.evaluate(CONTRASTS)
+    assert len(ratios) > 15
+    assert [(text, ratio) for text, ratio in ratios if ratio < 4.5] == []
+
+
+def test_every_control_has_a_name_and_is_large_enough_to_touch(opened: Opened) -> None:
+    controls = opened.page.evaluate(CONTROLS)
+    assert len(controls) > 12
+    for identity, name, width, height in controls:
+        assert name, identity
+        assert min(width, height) >= 24, (identity, name)
