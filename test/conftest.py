@@ -8,7 +8,8 @@ from pathlib import Path
 
 import pytest
 from fixtures.forked import run_forked
-from fixtures.graph import RosGraph
+from fixtures.graph import START_DEADLINE, RosGraph
+from fixtures.waiting import wait_until
 from hypothesis import HealthCheck, settings
 
 # The same examples in every run, and no deadline on slow machines.
@@ -84,6 +85,15 @@ def robot(tmp_path: Path) -> Iterator[RosGraph]:
     """The whole robot, launched for one test; it may be broken."""
     with RosGraph(tmp_path) as own:
         own.launch()
+        yield own
+
+
+@pytest.fixture(scope="module")
+def robot_with_page(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RosGraph]:
+    """The whole robot with its web page, launched once for a module."""
+    with RosGraph(tmp_path_factory.mktemp("robot")) as own:
+        own.launch("page:=true", "page_port:=0")
+        wait_until(lambda: "The page: " in own.programs[-1].output, START_DEADLINE, "the page")
         yield own
 
 

@@ -4,7 +4,7 @@ import contextlib
 import re
 from pathlib import Path
 
-from fixtures.graph import LAUNCHED, RosGraph
+from fixtures.graph import WITH_PAGE, RosGraph
 from fixtures.probe import Probe
 from fixtures.waiting import wait_until
 
@@ -43,46 +43,46 @@ def differences(graph: RosGraph) -> list[tuple[str, set[str]]]:
     return found
 
 
-def test_nodes_do_what_the_table_says(shared_robot: RosGraph) -> None:
+def test_nodes_do_what_the_table_says(robot_with_page: RosGraph) -> None:
     rows = table("Nodes of `roomba_robot.launch`")
-    assert {name for row in rows for name in names(row[0])} == set(LAUNCHED)
+    assert {name for row in rows for name in names(row[0])} == set(WITH_PAGE)
     with contextlib.suppress(AssertionError):
         # Nodes register their topics one after the other.
-        wait_until(lambda: not differences(shared_robot), 5.0)
-    assert differences(shared_robot) == []
+        wait_until(lambda: not differences(robot_with_page), 5.0)
+    assert differences(robot_with_page) == []
 
 
-def test_topics_have_the_types_that_the_table_says(shared_robot: RosGraph) -> None:
+def test_topics_have_the_types_that_the_table_says(robot_with_page: RosGraph) -> None:
     listed = {next(iter(names(row[0]))): next(iter(names(row[1]))) for row in table("Topics")}
-    types = shared_robot.topic_types()
+    types = robot_with_page.topic_types()
     running = {topic: kind for topic, kind in types.items() if not topic.startswith("/rosout")}
     assert listed == running
 
 
-def test_services_have_the_types_that_the_table_says(shared_robot: RosGraph) -> None:
+def test_services_have_the_types_that_the_table_says(robot_with_page: RosGraph) -> None:
     import rosservice
 
-    Probe(shared_robot)
+    Probe(robot_with_page)
     listed = {
         next(iter(names(row[0]))): next(iter(names(row[1])))
         for row in table("Services and actions")
     }
     actions = {name: kind for name, kind in listed.items() if kind.endswith("Action")}
-    types = shared_robot.topic_types()
+    types = robot_with_page.topic_types()
     goals = {name for name, kind in types.items() if kind.endswith("ActionGoal")}
     assert {f"{name}/goal" for name in actions} == goals
     for name, kind in actions.items():
         assert types[f"{name}/goal"] == f"{kind}Goal"
         del listed[name]
-    _, _, services = shared_robot.system_state()
+    _, _, services = robot_with_page.system_state()
     own = {name for name in services if name.count("/") == 1 or "logger" not in name}
     assert own == set(listed)
     for name, kind in listed.items():
         assert rosservice.get_service_type(name) == kind
 
 
-def test_parameters_are_those_of_the_table(shared_robot: RosGraph) -> None:
+def test_parameters_are_those_of_the_table(robot_with_page: RosGraph) -> None:
     rows = table("Parameters")
     for cells in rows:
         (name,), (default,) = names(cells[0]), names(cells[1])
-        assert str(shared_robot.param(name)) == default
+        assert str(robot_with_page.param(name)) == default

@@ -1,0 +1,60 @@
+"""The node that serves the web page."""
+
+from __future__ import annotations
+
+import rospy
+
+from roomba.errors import ConfigError
+from roomba.ui.web.app import create_app
+from roomba.ui.web.guard import Guard, new_token
+from roomba.ui.web.server import DEFAULT_PORT, PageServer, listen
+from roomba_ros.dashboard.graph_robot import GraphRobot
+from roomba_ros.runtime.node import run_node
+from roomba_ros.runtime.parameters import read_robot_config
+
+_PERIOD = 0.05
+"""s of the ROS clock between two commands while the robot is driven by hand."""
+_ANY = -1
+"""The port that stands for the first one that is free."""
+
+
+class DashboardNode:
+    """Serves the page on loopback, and prints its address with the token that commands need.
+
+    Publishes, subscribes and calls what :class:`GraphRobot` does.
+    Parameters: ``~port`` (by default -1: 8400, or the next that is free; 0: any).
+    """
+
+    period = _PERIOD
+
+    def start(self) -> None:
+        """Connect and serve; raises ServerError when no port is free."""
+        self._robot = GraphRobot(read_robot_config())
+        self._robot.start()
+        guard = Guard(new_token())
+        port = _port()
+        bound = listen("127.0.0.1", DEFAULT_PORT if port == _ANY else port, is_fixed=port != _ANY)
+        self._server = PageServer(create_app(self._robot, guard), bound)
+        self._server.start()
+        # Not to the log, which every program on the graph can read.
+        print(f"The page: {self._server.address}#token={guard.token}", flush=True)
+
+    def tick(self, _: float) -> None:
+        """Drive as the hand on the page wants."""
+        self._robot.tick()
+
+    def stop(self) -> None:
+        """Stop what it drives."""
+        self._robot.stop_hand()
+
+
+def _port() -> int:
+    port = rospy.get_param("~port", _ANY)
+    if not isinstance(port, int) or isinstance(port, bool) or not _ANY <= port <= 65535:
+        raise ConfigError(f"parameter ~port: expected -1, or a port up to 65535, got {port!r}")
+    return port
+
+
+def main() -> None:
+    """Run the node."""
+    run_node("dashboard_node", DashboardNode)

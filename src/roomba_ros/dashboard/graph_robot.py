@@ -1,0 +1,289 @@
+"""The robot of the running graph as a page observes and commands it."""
+
+from __future__ import annotations
+
+import math
+import threading
+import time
+from typing import Any, Final
+
+import rospy
+from geometry_msgs.msg import Point as PointMessage
+from geometry_msgs.msg import Twist as TwistMessage
+from roomba_robot.srv import (
+    EmergencyStop,
+    InjectFault,
+    JoinRooms,
+    RemoveZone,
+    RenameRoom,
+    SetZone,
+    SpillDirt,
+    SplitRoom,
+)
+
+from roomba.client.protocol import (
+    CleanHandle,
+    CleanMode,
+    CleanReport,
+    ErrandOutcome,
+    ExploringHandle,
+    FanLevel,
+    RequestRefusedError,
+)
+from roomba.client.view import (
+    CleanOrder,
+    GridLayer,
+    HomeView,
+    LayerName,
+    PageLimits,
+    Point,
+    RobotView,
+    ZoneView,
+)
+from roomba.configuration.robot import RobotConfig
+from roomba.geometry import STANDSTILL, Twist
+from roomba_ros.client.ros_clean import RosVacuum
+from roomba_ros.convert.common import twist_message
+from roomba_ros.convert.page import zone_message_of
+from roomba_ros.dashboard.page_topics import PageTopics
+from roomba_ros.runtime.calls import call_service
+from roomba_ros.runtime.parameters import LiveSeedParameters
+
+_SILENCE: Final = 0.5
+"""s of wall time; a drive by hand without news for so long ends."""
+_REFUSED_WITHIN: Final = 1.0
+"""s of wall time within which an action server refuses a goal that it will not take."""
+_SPILL: Final = (0.25, 6.0)
+"""m and g of a heap of dirt."""
+_STOPS: Final = 3
+"""Times that a stop is sent before the drive is left to others."""
+_MOST_PASSES: Final = 5
+_MOST_ZONES: Final = 200
+_MOST_CORNERS: Final = 200
+_LONGEST_NAME: Final = 80
+
+
+class GraphRobot:
+    """Observes topics; commands by actions, services and ``cmd_vel``.
+
+    Publishes: ``cmd_vel`` (Twist, while it is driven by hand), and what :class:`RosVacuum` does.
+    Calls: ``emergency_stop``, ``set_zone``, ``remove_zone``, ``rooms/rename``, ``rooms/join``,
+    ``rooms/split``, ``sim/spill``, ``sim/inject_fault``, and what :class:`RosVacuum` does.
+    """
+
+    def __init__(self, config: RobotConfig) -> None:
+        """Connect nothing yet."""
+        self._config = config
+        self._topics = PageTopics(config)
+        self._vacuum = RosVacuum()
+        self._errand: CleanHandle | ExploringHandle | None = None
+        self._last: CleanReport | None = None
+        self._hand_lock = threading.Lock()
+        self._by_hand, self._hand_heard, self._stops_left = STANDSTILL, -math.inf, 0
+        self._drive: rospy.Publisher | None = None
+
+    def start(self) -> None:
+        """Connect."""
+        self._parameters = LiveSeedParameters()
+        self._topics.start()
+        self._vacuum.start()
+        kinds = {
+            "emergency_stop": EmergencyStop,
+            "set_zone": SetZone,
+            "remove_zone": RemoveZone,
+            "rooms/rename": RenameRoom,
+            "rooms/join": JoinRooms,
+            "rooms/split": SplitRoom,
+            "sim/spill": SpillDirt,
+            "sim/inject_fault": InjectFault,
+        }
+        self._services = {name: rospy.ServiceProxy(name, kind) for name, kind in kinds.items()}
+
+    def tick(self) -> None:
+        """Keep on driving as the hand wants, or stop when it let go."""
+        self._parameters.refresh()
+        with self._hand_lock:
+            if time.monotonic() - self._hand_heard < _SILENCE:
+                self._stops_left = _STOPS
+                twist = self._by_hand
+            elif self._stops_left:
+                self._stops_left -= 1
+                twist = STANDSTILL
+            else:
+                return
+        self._publish(twist)
+
+    def stop_hand(self) -> None:
+        """Let go."""
+        with self._hand_lock:
+            self._hand_heard = -math.inf
+            if self._drive is not None:
+                self._drive.publish(TwistMessage())
+
+    def _publish(self, twist: Twist) -> None:
+        """Be a writer of ``cmd_vel`` as long as a hand drives: it has one writer else."""
+        if self._drive is None:
+            self._drive = rospy.Publisher("cmd_vel", TwistMessage, queue_size=1, tcp_nodelay=True)
+        self._drive.publish(twist_message(twist))
+        if self._stops_left == 0:
+            self._drive.unregister()
+            self._drive = None
+
+    # ---------------------------------------------------------------- what a page reads
+
+    def limits(self) -> PageLimits:
+        """Return what may be asked for."""
+        body = self._config.body
+        return PageLimits(
+            min(self._parameters.values.robot_max_speed, body.max_speed),
+            body.max_angular_speed,
+            _MOST_PASSES,
+            _MOST_ZONES,
+            _MOST_CORNERS,
+            _LONGEST_NAME,
+        )
+
+    def robot(self) -> RobotView:
+        """Return the newest state."""
+        pose = self._topics.pose()
+        self._take_report()
+        return RobotView(
+            time=rospy.get_time(),
+            pose=(pose.x, pose.y, pose.theta),
+            doubt=self._topics.doubt,
+            speed=self._topics.speed,
+            dirt=self._topics.in_bin,
+            held=self._topics.held,
+            vacuum=self._vacuum.vacuum(0.0),
+            scan=self._topics.scan_at(pose),
+            path=self._topics.path(),
+            last=self._last,
+        )
+
+    def home(self) -> HomeView:
+        """Return what seldom changes."""
+        return self._topics.home()
+
+    def layer(self, name: LayerName) -> GridLayer | None:
+        """Return the newest grid of a layer."""
+        return self._topics.layer(name)
+
+    # ---------------------------------------------------------------- commands
+
+    def clean(self, order: CleanOrder) -> None:
+        """Begin a clean."""
+        errand = self._vacuum.clean(
+            CleanMode(order.mode),
+            rooms=order.rooms,
+            in_order=order.in_order,
+            zones=order.zones,
+            spot=order.spot,
+            passes=order.passes,
+            fan=FanLevel(order.fan),
+        )
+        self._begin(errand)
+
+    def explore(self) -> None:
+        """Begin to look at what the map does not show yet."""
+        self._begin(self._vacuum.explore())
+
+    def dock(self) -> None:
+        """Go to the charging station."""
+        _require_taken(self._vacuum.dock())
+
+    def pause(self) -> None:
+        """Stand until told to go on."""
+        self._vacuum.pause()
+
+    def resume(self) -> None:
+        """Go on."""
+        self._vacuum.resume()
+
+    def stop(self) -> None:
+        """End the errand, and stay."""
+        self._vacuum.stop()
+
+    def locate(self) -> None:
+        """Beep."""
+        self._vacuum.locate()
+
+    def emergency_stop(self, reason: str) -> None:
+        """Hold the drive until it is released."""
+        self._call("emergency_stop", True, reason)
+
+    def release(self) -> None:
+        """Release the emergency stop."""
+        self._call("emergency_stop", False, "")
+
+    def drive(self, linear: float, angular: float) -> None:
+        """Drive by hand; the mission pauses for it by itself."""
+        if self._topics.held:
+            raise RequestRefusedError("the emergency stop holds the drive; release it first")
+        with self._hand_lock:
+            self._by_hand, self._hand_heard = Twist(linear, angular), time.monotonic()
+
+    # ---------------------------------------------------------------- rooms and zones
+
+    def put_zone(self, zone: ZoneView) -> None:
+        """Add a zone, or replace the one of the same name."""
+        zones = self.home().zones
+        if len(zones) >= _MOST_ZONES and all(zone.name != other.name for other in zones):
+            raise RequestRefusedError(f"expected at most {_MOST_ZONES} zones; remove one first")
+        self._call("set_zone", zone_message_of(zone))
+
+    def remove_zone(self, name: str) -> None:
+        """Remove a zone."""
+        self._call("remove_zone", name)
+
+    def rename_room(self, name: str, new_name: str) -> None:
+        """Give a room another name."""
+        self._call("rooms/rename", name, new_name)
+
+    def join_rooms(self, names: tuple[str, ...]) -> None:
+        """Make rooms that touch one."""
+        self._call("rooms/join", list(names))
+
+    def split_room(self, name: str, start: Point, end: Point) -> None:
+        """Cut a room along a line."""
+        self._call("rooms/split", name, PointMessage(*start, 0.0), PointMessage(*end, 0.0))
+
+    # ---------------------------------------------------------------- to play with
+
+    def spill_dirt(self, x: float, y: float) -> None:
+        """Spill a heap of dirt; a simulated home only."""
+        self._call("sim/spill", x, y, *_SPILL)
+
+    def place_chair(self, x: float, y: float) -> None:
+        """Put a chair in the way; a simulated home only."""
+        self._call("sim/inject_fault", "moved_chair", 1.0, x, y, 0.0)
+
+    # ---------------------------------------------------------------- inside
+
+    def _call(self, name: str, *arguments: Any) -> None:
+        answer = call_service(self._services[name], *arguments)
+        if not answer.success:
+            raise RequestRefusedError(answer.message)
+
+    def _begin(self, errand: CleanHandle | ExploringHandle) -> None:
+        _require_taken(errand)
+        self._errand = errand
+
+    def _take_report(self) -> None:
+        """Keep how the last errand ended."""
+        report = None if self._errand is None else self._errand.report()
+        if report is None:
+            return
+        self._errand = None
+        if isinstance(report, CleanReport):
+            self._last = report
+        else:
+            nothing = (0.0, 0.0, 0.0, report.distance, report.duration, math.nan)
+            self._last = CleanReport(report.outcome, report.message, *nothing)
+
+
+def _require_taken(errand: Any) -> None:
+    """Wait until a goal is under way; raises RequestRefusedError when its server refuses it."""
+    errand.next_feedback(_REFUSED_WITHIN)
+    report = errand.report()
+    if report is not None and report.outcome is ErrandOutcome.REFUSED:
+        raise RequestRefusedError(report.message)

@@ -1,0 +1,180 @@
+"""What the graph tells that a page shows, and how much of it is new."""
+
+from __future__ import annotations
+
+import math
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+from typing import Any, Final
+
+import numpy as np
+from geometry_msgs.msg import PoseStamped
+from nav_msgs.msg import OccupancyGrid, Path
+from numpy.typing import NDArray
+from roomba_robot.msg import Localization, RoomArray, ZoneArray
+from sensor_msgs.msg import LaserScan
+from std_msgs.msg import Float32, String
+from tf2_msgs.msg import TFMessage
+
+from roomba.client.protocol import RobotUnavailableError
+from roomba.client.view import GridLayer, HomeView, LayerName, RoomView, ZoneView
+from roomba.configuration.robot import RobotConfig
+from roomba.geometry import Pose
+from roomba.grid import OccupancyMap
+from roomba_ros.convert.client import doubt_of
+from roomba_ros.convert.common import pose_in_map
+from roomba_ros.convert.mounts import Mounts, transforms_of
+from roomba_ros.convert.page import (
+    covered_cells_of,
+    dirt_cells_of,
+    known_cells_of,
+    room_views_of,
+    shown_path_of,
+    zone_views_of,
+)
+from roomba_ros.convert.scan import Scan, ScanDecoder
+from roomba_ros.convert.values import data_of, number_of
+from roomba_ros.runtime.node import frame_id
+from roomba_ros.runtime.subscriptions import subscribe
+
+_OLDEST_POSE: Final = 2.0
+"""s of wall time; the pose comes 20 times a second."""
+_NO_POINTS: Final[NDArray[np.float32]] = np.empty((0, 2), np.float32)
+
+
+class PageTopics:
+    """The newest of each topic.
+
+    Subscribes: ``pose``, ``localization``, ``speed``, ``bin_level``, ``emergency_stop``, ``scan``,
+    ``plan``, ``map``, ``coverage_map``, ``dirt_map``, ``rooms``, ``zones``, ``station_pose``,
+    ``/tf_static``.
+    """
+
+    def __init__(self, config: RobotConfig) -> None:
+        """Connect nothing yet."""
+        self._config = config
+        self._lock = threading.Lock()
+        self._pose: Pose | None = None
+        self._pose_heard = -math.inf
+        self._scan: Scan | None = None
+        self._path = _NO_POINTS
+        self._home = HomeView(
+            0, "home", (0.0, 0.0, 0.0), (), (), (), config.body.radius, config.brush.width
+        )
+        self._layers: dict[LayerName, GridLayer] = {}
+        self.doubt, self.held = "", ""
+        self.speed, self.in_bin = 0.0, 0.0
+        self._mounts = Mounts()
+        self._decoder = ScanDecoder.on_robot(self._mounts, frame_id("base_link"))
+
+    def start(self) -> None:
+        """Connect."""
+        subscribe("/tf_static", TFMessage, transforms_of, self._mounts.add, queue_size=10)
+        subscribe("pose", PoseStamped, pose_in_map, self._on_pose)
+        subscribe("localization", Localization, doubt_of, partial(self._set, "doubt"))
+        subscribe("speed", Float32, number_of, partial(self._set, "speed"))
+        subscribe("bin_level", Float32, number_of, self._on_bin_level)
+        subscribe("emergency_stop", String, data_of, partial(self._set, "held"))
+        subscribe("scan", LaserScan, self._decoder.decode, self._on_scan)
+        subscribe("plan", Path, shown_path_of, self._on_path)
+        subscribe("station_pose", PoseStamped, pose_in_map, self._on_station)
+        subscribe("rooms", RoomArray, room_views_of, self._on_rooms)
+        subscribe("zones", ZoneArray, zone_views_of, self._on_zones)
+        layers: tuple[tuple[str, LayerName, Callable[[Any], OccupancyMap]], ...] = (
+            ("map", LayerName.MAP, known_cells_of),
+            ("coverage_map", LayerName.COVERAGE, covered_cells_of),
+            ("dirt_map", LayerName.DIRT, dirt_cells_of),
+        )
+        for topic, name, convert in layers:
+            subscribe(topic, OccupancyGrid, convert, partial(self._on_layer, name))
+
+    def pose(self) -> Pose:
+        """Return where the robot is; raises RobotUnavailableError when it does not tell."""
+        silent = time.monotonic() - self._pose_heard
+        if self._pose is None:
+            raise RobotUnavailableError("nothing came on /pose yet: the robot is starting")
+        if silent > _OLDEST_POSE:
+            raise RobotUnavailableError(
+                f"nothing came on /pose for {silent:.0f} s; is the robot running (`./roomba run`)?"
+            )
+        return self._pose
+
+    def home(self) -> HomeView:
+        """Return rooms, zones and station."""
+        with self._lock:
+            return self._home
+
+    def layer(self, name: LayerName) -> GridLayer | None:
+        """Return the newest grid of a layer."""
+        with self._lock:
+            return self._layers.get(name)
+
+    def path(self) -> NDArray[np.float32]:
+        """Return the present plan, float32 [n, 2], m."""
+        return self._path
+
+    def scan_at(self, pose: Pose) -> NDArray[np.float32]:
+        """Return where beams of the newest scan end, float32 [n, 2], m, as seen from a pose."""
+        scan = self._scan
+        if scan is None:
+            return _NO_POINTS
+        ends = scan.lidar.view(scan.ranges).ends
+        cosine, sine = math.cos(pose.theta), math.sin(pose.theta)
+        x = pose.x + cosine * ends[:, 0] - sine * ends[:, 1]
+        y = pose.y + sine * ends[:, 0] + cosine * ends[:, 1]
+        return np.column_stack((x, y)).astype(np.float32)
+
+    # ---------------------------------------------------------------- callbacks
+
+    def _set(self, name: str, value: object) -> None:
+        setattr(self, name, value)
+
+    def _on_pose(self, pose: Pose) -> None:
+        self._pose, self._pose_heard = pose, time.monotonic()
+
+    def _on_bin_level(self, level: float) -> None:
+        self.in_bin = level * self._config.brush.bin_capacity
+
+    def _on_scan(self, scan: Scan) -> None:
+        self._scan = scan
+
+    def _on_path(self, path: NDArray[np.float32]) -> None:
+        self._path = path
+
+    def _on_station(self, pose: Pose) -> None:
+        self._change(station=(pose.x, pose.y, pose.theta))
+
+    def _on_rooms(self, rooms: tuple[RoomView, ...]) -> None:
+        self._change(rooms=rooms)
+
+    def _on_zones(self, zones: tuple[ZoneView, ...]) -> None:
+        self._change(zones=zones)
+
+    def _change(self, **changes: Any) -> None:
+        with self._lock:
+            before = self._home
+            self._home = replace(before, version=before.version + 1, **changes)
+
+    def _on_layer(self, name: LayerName, grid: OccupancyMap) -> None:
+        frame = grid.frame
+        cells = grid.values.astype(np.uint8)
+        with self._lock:
+            before = self._layers.get(name)
+            shape = 1 if before is None else before.shape
+            if before is not None and not _lies_as(before, grid):
+                shape += 1
+            self._layers[name] = GridLayer(
+                shape, frame.resolution, frame.origin_x, frame.origin_y, cells
+            )
+
+
+def _lies_as(before: GridLayer, grid: OccupancyMap) -> bool:
+    frame = grid.frame
+    return before.cells.shape == frame.shape and (
+        before.resolution,
+        before.origin_x,
+        before.origin_y,
+    ) == (frame.resolution, frame.origin_x, frame.origin_y)

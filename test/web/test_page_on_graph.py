@@ -1,0 +1,91 @@
+"""The page over the whole running graph, in a real browser."""
+
+from __future__ import annotations
+
+import re
+import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from fixtures.graph import RosGraph
+from fixtures.waiting import wait_until
+from playwright.sync_api import Page, sync_playwright
+
+WORKS_WITHIN = 60_000
+"""ms of wall time for what the robot does by its own clock."""
+
+
+def address(graph: RosGraph) -> str:
+    found = re.search(r"The page: (\S+)", graph.programs[-1].output)
+    assert found
+    return found[1]
+
+
+@contextmanager
+def open_page(graph: RosGraph) -> Iterator[Page]:
+    """Open the page by the printed address, in a browser that belongs to this process."""
+    program = shutil.which("chromium")
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=program, args=["--no-sandbox"])
+        page = browser.new_page()
+        errors: list[str] = []
+        page.on("pageerror", lambda error: errors.append(str(error)))
+        page.goto(address(graph))
+        page.wait_for_selector("body[data-link='live']", timeout=WORKS_WITHIN)
+        yield page
+        browser.close()
+        assert errors == []
+
+
+def wait_for_phase(page: Page, phase: str) -> None:
+    page.wait_for_selector(f"body[data-phase='{phase}']", timeout=WORKS_WITHIN)
+
+
+def test_it_is_served_on_loopback_alone_and_the_log_has_no_token(
+    robot_with_page: RosGraph,
+) -> None:
+    shown = address(robot_with_page)
+    assert shown.startswith("http://127.0.0.1:")
+    token = shown.split("token=")[1]
+    logs = [file for file in (robot_with_page.folder / "log").rglob("*.log") if file.is_file()]
+    rosout = [file for file in logs if "rosout" in file.name]
+    assert rosout
+    assert not any(token in file.read_text(errors="replace") for file in rosout)
+
+
+def test_a_person_cleans_pauses_edits_and_stops(robot_with_page: RosGraph) -> None:
+    with open_page(robot_with_page) as page:
+        wait_for_phase(page, "docked")
+        page.locator("#rooms button").first.wait_for(timeout=WORKS_WITHIN)
+        page.locator("#rooms button").first.click()
+        page.get_by_role("button", name="Clean 1 room").click()
+        wait_for_phase(page, "cleaning")
+        page.get_by_role("button", name="Pause").click()
+        wait_for_phase(page, "paused")
+        page.get_by_text("Drive by hand", exact=True).click()
+        before = page.evaluate("async () => (await import('/store.js')).get('state').pose[2]")
+        page.keyboard.down("ArrowLeft")
+        page.wait_for_function(
+            """async (before) => {
+                const { get } = await import("/store.js");
+                return Math.abs(get("state").pose[2] - before) > 0.3;
+            }""",
+            arg=before,
+            timeout=WORKS_WITHIN,
+        )
+        page.keyboard.up("ArrowLeft")
+        page.keyboard.press("Escape")
+        wait_for_phase(page, "emergency stop")
+        page.get_by_role("button", name="Release").click()
+        wait_for_phase(page, "idle")
+        assert "emergency" in page.inner_text("#last-text").lower()
+        page.locator("#rooms button").first.click()
+        page.get_by_role("button", name="Rename").click()
+        page.get_by_role("textbox", name="Name").fill("Den")
+        page.get_by_role("button", name="OK").click()
+        page.get_by_role("button", name="Den").wait_for(timeout=WORKS_WITHIN)
+    # With no hand on it the page leaves the drive to others.
+    wait_until(
+        lambda: "/dashboard_node" not in robot_with_page.system_state()[0].get("/cmd_vel", []),
+        10.0,
+    )
