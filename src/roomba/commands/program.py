@@ -32,14 +32,10 @@ usage: roomba COMMAND ...
   sim [ARGS]       clean a home with the whole robot: --home NAME --seed N, --map FILE.yaml,
                    --homes N, --plot FILE.png, --json FILE (see --help)
   map [ARGS]       explore a home without a map, and tell how good the map becomes: --home NAME
-<<<<<<< HEAD
                    --seed N, --map FILE.yaml, --out FOLDER, --plot FILE.png; --bag FILE ...: map a
                    recorded drive (see --help)
-=======
-                   --seed N, --map FILE.yaml, --out FOLDER, --plot FILE.png (see --help)
   play [ARGS]      a robot that lives in a home, on a web page: --home NAME, --speed N,
                    --map none (see --help)
->>>>>>> 89bc3e1 (page: a headless robot is seen and commanded on a web page)
   pictures [ARGS]  make the pictures of the documents: [FOLDER] [--only NAME ...]
   doctor [--json]  what is missing, and how to mend it
   help             this text
@@ -48,13 +44,8 @@ The commands run, control, camera, exec and localize need ROS, test and bench th
 it is ./roomba COMMAND.
 """
 _MODULES: Final = (
-<<<<<<< HEAD
-    "cv2", "matplotlib", "numba", "numpy", "PIL", "pydantic", "rich", "rosbags", "scipy", "shapely",
-    "typer", "yaml",
-=======
-    "cv2", "fastapi", "matplotlib", "numba", "numpy", "PIL", "pydantic", "rich", "scipy", "shapely",
-    "typer", "uvicorn", "websockets", "yaml",
->>>>>>> 89bc3e1 (page: a headless robot is seen and commanded on a web page)
+    "cv2", "fastapi", "matplotlib", "numba", "numpy", "PIL", "pydantic", "rich", "rosbags", "scipy",
+    "shapely", "typer", "uvicorn", "websockets", "yaml",
 )  # fmt: skip
 _EXTRAS: Final = {"gymnasium": "gym"}
 

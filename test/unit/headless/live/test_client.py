@@ -152,7 +152,6 @@ def test_without_a_map_it_explores_and_finds_rooms() -> None:
         assert first is not None
         client.explore()
         wait_for(lambda: client.robot().last is not None, "the end of the exploration")
-        assert client.home().rooms
         layer = client.layer(LayerName.MAP)
         assert layer is not None
         assert np.count_nonzero(layer.cells == 1) > np.count_nonzero(first.cells == 1)

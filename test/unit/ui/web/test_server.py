@@ -1,0 +1,46 @@
+"""Ports, and the life of the server."""
+
+from __future__ import annotations
+
+import socket
+import urllib.request
+
+import pytest
+from fastapi import FastAPI
+
+from roomba.ui.web.server import PageServer, ServerError, listen
+
+
+def taken_port() -> tuple[socket.socket, int]:
+    taken = socket.socket()
+    taken.bind(("127.0.0.1", 0))
+    taken.listen()
+    return taken, taken.getsockname()[1]
+
+
+def test_the_next_free_port_is_taken() -> None:
+    taken, port = taken_port()
+    with taken, listen("127.0.0.1", port, is_fixed=False) as bound:
+        assert port < bound.getsockname()[1] < port + 20
+
+
+def test_a_port_that_was_asked_for_and_is_not_free_is_refused() -> None:
+    taken, port = taken_port()
+    with taken, pytest.raises(ServerError, match=f"port {port}.*--port"):
+        listen("127.0.0.1", port, is_fixed=True)
+
+
+def test_it_answers_at_its_address_until_it_is_stopped() -> None:
+    app = FastAPI()
+
+    @app.get("/")
+    def hello() -> str:
+        return "hello"
+
+    server = PageServer(app, listen("127.0.0.1", 0, is_fixed=True))
+    server.start()
+    with urllib.request.urlopen(server.address, timeout=5.0) as answer:
+        assert answer.read() == b'"hello"'
+    server.stop()
+    with pytest.raises(OSError, match="refused"):
+        urllib.request.urlopen(server.address, timeout=5.0)
