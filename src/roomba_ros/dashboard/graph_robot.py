@@ -23,11 +23,9 @@ from roomba_robot.srv import (
 
 from roomba.client.protocol import (
     CleanHandle,
-    CleanMode,
     CleanReport,
     ErrandOutcome,
     ExploringHandle,
-    FanLevel,
     RequestRefusedError,
 )
 from roomba.client.view import (
@@ -42,6 +40,7 @@ from roomba.client.view import (
 )
 from roomba.configuration.robot import RobotConfig
 from roomba.geometry import STANDSTILL, Twist
+from roomba.vocabulary import CleanMode, FanLevel
 from roomba_ros.client.ros_clean import RosVacuum
 from roomba_ros.convert.common import twist_message
 from roomba_ros.convert.page import zone_message_of

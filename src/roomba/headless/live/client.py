@@ -34,14 +34,13 @@ from roomba.headless.live.views import (
 from roomba.headless.live.visits import Visits
 from roomba.mission.cleaning.request import (
     MOST_PASSES,
-    CleanMode,
     CleanRequest,
-    FanLevel,
 )
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.mission.phases.machine import Event, Phase
 from roomba.perception.rooms.rooms import Rooms, segment
 from roomba.perception.rooms.zones import Zone, ZoneKind, Zones
+from roomba.vocabulary import CleanMode, FanLevel
 from roomba.world.home.home import Home
 
 _VIEW_PERIOD: Final = 0.1

@@ -49,6 +49,9 @@ class PageServer:
     def __init__(self, app: FastAPI, bound: socket.socket) -> None:
         """Serve nothing yet."""
         self._socket = bound
+        host, port = bound.getsockname()[:2]
+        self.address = f"http://{host}:{port}/"
+        """Where it is reached."""
         self._server = uvicorn.Server(
             uvicorn.Config(
                 app,
@@ -60,12 +63,6 @@ class PageServer:
             )
         )
         self._thread: threading.Thread | None = None
-
-    @property
-    def address(self) -> str:
-        """Where it is reached."""
-        host, port = self._socket.getsockname()[:2]
-        return f"http://{host}:{port}/"
 
     def serve(self) -> None:
         """Serve until the process is told to end."""
