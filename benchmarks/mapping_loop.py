@@ -130,12 +130,12 @@ def loop(seed: int) -> Looped:
 
 def _steered(true: Pose) -> Twist:
     """Return how to go on along the corridor's middle."""
-    at_x, at_y = _middle(_along(true) + _AHEAD)
+    at_x, at_y = middle(along_of(true) + _AHEAD)
     turn = wrap_angle(math.atan2(at_y - true.y, at_x - true.x) - true.theta)
     return Twist(_SPEED * max(0.2, math.cos(turn)), max(-1.5, min(1.5, 3.0 * turn)))
 
 
-def _along(true: Pose) -> float:
+def along_of(true: Pose) -> float:
     """Return how far along the ring the nearest point of its middle is, m."""
     best, found, start = math.inf, 0.0, 0.0
     for low, high in itertools.pairwise(_CORNERS):
@@ -150,7 +150,7 @@ def _along(true: Pose) -> float:
     return found
 
 
-def _middle(along: float) -> tuple[float, float]:
+def middle(along: float) -> tuple[float, float]:
     """Return the point of the corridor's middle that is so far along it, m."""
     along %= WAY
     for low, high in itertools.pairwise(_CORNERS):

@@ -91,7 +91,7 @@ def measured(bench: Bench, extent: Extent) -> list[Record]:
     What is timed comes first, while nothing else runs; then all else, on all cores.
     """
     warm_up()
-    places = _places(bench, extent)
+    places = places_of(bench, extent)
     for place in places:
         bench.say(f"{place.case.title}, ideal sensors, and peers")
         try:
@@ -104,7 +104,7 @@ def measured(bench: Bench, extent: Extent) -> list[Record]:
         return _rest(bench, pool, places, extent)
 
 
-def _places(bench: Bench, extent: Extent) -> list[_Place]:
+def places_of(bench: Bench, extent: Extent) -> list[_Place]:
     places = [_Place(Case(home, home, aims_of(home)), "") for home in extent.homes]
     if bench.maps is not None:
         folder = str(bench.maps.resolve())

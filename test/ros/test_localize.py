@@ -58,16 +58,17 @@ class RecordedRobot(HeadlessRobot):
     """Notes down what its sensors say, as the simulator's node would tell it."""
 
     drive: Drive
+    noted_scans = 0
 
-    def _localize(self, seen: Observation) -> None:
-        scans = self._scans
-        super()._localize(seen)
+    def localize(self, seen: Observation) -> None:
+        super().localize(seen)
         now = BEGAN + seen.time
         self._note("/imu", imu_message(now, seen, self.config.simulation.gyro, "imu_link"), now)
         odometry = odometry_message(now, seen.odometry, seen.odometry_twist, "odom", "base_link")
         self._note("/odom", odometry, now)
         self._note("/wheel_drop", wheel_drop_message(now, seen.wheels, "base_link"), now)
-        if seen.scans != scans:
+        if seen.scans != self.noted_scans:
+            self.noted_scans = seen.scans
             scan = scan_message(now, self.simulator.ranges, self.config.lidar, "laser")
             self._note("/scan", scan, now)
         beside = Pose(seen.pose.x + OFFSET, seen.pose.y, seen.pose.theta)

@@ -41,16 +41,17 @@ class RecordedRobot(HeadlessRobot):
     """Notes down what its sensors say."""
 
     records: list[Record]
+    noted_scans = 0
 
-    def _localize(self, seen: Observation) -> None:
-        scans = self._scans
-        super()._localize(seen)
+    def localize(self, seen: Observation) -> None:
+        super().localize(seen)
         now = BEGAN + seen.time
         self._note("/imu", imu_message(now, seen, self.config.simulation.gyro, "imu_link"), now)
         odometry = odometry_message(now, seen.odometry, seen.odometry_twist, "odom", "base_link")
         self._note("/odom", odometry, now)
         self._note("/ground_truth/pose", pose_message(now, seen.pose, "map"), now)
-        if seen.scans != scans:
+        if seen.scans != self.noted_scans:
+            self.noted_scans = seen.scans
             scan = scan_message(now, self.simulator.ranges, self.config.lidar, "laser")
             self._note("/scan", scan, now)
 

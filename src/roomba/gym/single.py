@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from roomba.gym.cleaning import CleaningTask, Outcome
 from roomba.gym.task import Task
+from roomba.world.fleet import Fleet
 
 Observation = NDArray[np.float32]
 Action = NDArray[np.float32]
@@ -55,6 +56,14 @@ class RoombaClean(gymnasium.Env[NDArray[Any], NDArray[Any]]):
         self._cleaning = CleaningTask(self.task, robots=1, threads=1)
         self.action_space = action_space()
         self.observation_space = self._cleaning.senses.space
+
+    @property
+    def fleet(self) -> Fleet:
+        """The simulated world with its one robot, number 0: the truth, which no policy is given.
+
+        A program may let faults happen there, or look at the floor.
+        """
+        return self._cleaning.fleet
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None

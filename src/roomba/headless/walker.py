@@ -114,7 +114,7 @@ class HeadlessRobot:
                 seen = self.simulator.step(command, timing.world_step)
                 bumps += seen.bumper.pressed and not was_bumped
                 was_bumped = seen.bumper.pressed
-            self._localize(seen)
+            self.localize(seen)
             poses.append(_row(seen.time, seen.pose))
             believed.append(_row(seen.time, self._pose))
         else:
@@ -134,7 +134,8 @@ class HeadlessRobot:
     def _pose(self) -> Pose:
         return self.localizer.estimate.pose
 
-    def _localize(self, seen: Observation) -> None:
+    def localize(self, seen: Observation) -> None:
+        """Take what the sensors tell at a tick: the place, and what stands in the way."""
         self.localizer.lift(seen.wheels.dropped_left and seen.wheels.dropped_right)
         self.localizer.move(seen.time, seen.odometry, seen.angular_velocity)
         if seen.scans != self._scans:

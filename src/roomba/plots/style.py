@@ -37,7 +37,7 @@ Area = tuple[float, float, float, float]
 """x_min, y_min, x_max, y_max, m, map frame."""
 
 _DOTS_PER_INCH = 100
-_PLAN_PIXELS = 620.0
+PLAN_PIXELS = 620.0
 """px; the longer side of a plan under a plot: a little more than is shown."""
 _PAPER = (255, 255, 255)
 _PLAN_STRENGTH = 0.55
@@ -103,7 +103,7 @@ def stacked(figure: Any, panels: int, heights: list[float] | None = None) -> lis
 def show_floor_plan(axes: Axes, home: Home, area: Area) -> None:
     """Lay a pale plan of a part of a home under what is drawn; the axes are in m, map frame."""
     x_min, y_min, x_max, y_max = area
-    canvas = Canvas.over(area, _PLAN_PIXELS / max(x_max - x_min, y_max - y_min), _PAPER)
+    canvas = Canvas.over(area, PLAN_PIXELS / max(x_max - x_min, y_max - y_min), _PAPER)
     draw_floor(canvas, home)
     draw_carpets(canvas, home)
     draw_stairs(canvas, home)

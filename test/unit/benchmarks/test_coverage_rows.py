@@ -145,7 +145,7 @@ def test_rows_over_time_and_broken_ones() -> None:
 def test_maps_of_the_folder_follow_the_homes(tmp_path: Path) -> None:
     for name in ("apartment", "small_house"):
         (tmp_path / f"{name}.yaml").touch()
-    places = coverage._places(Bench(QUICK, tmp_path, tmp_path), coverage.QUICK)
+    places = coverage.places_of(Bench(QUICK, tmp_path, tmp_path), coverage.QUICK)
     assert [place.case.title for place in places] == [*coverage.QUICK.homes, "map small_house"]
     assert places[-1].case.aims.ratio == 1.17
     assert places[-1].folder == str(tmp_path)

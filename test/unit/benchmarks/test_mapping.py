@@ -129,7 +129,7 @@ def test_the_ring_is_a_corridor_of_a_hundred_metres() -> None:
     free = home.map.values == FREE
     frame = home.frame
     for along in np.arange(0.0, WAY, 0.5):
-        assert free[frame.cell_of(*mapping_loop._middle(float(along)))]
+        assert free[frame.cell_of(*mapping_loop.middle(float(along)))]
     # Its middle is not free, and it is as wide as it should be, doorways apart.
     assert not free[frame.cell_of(LONG / 2.0, SHORT / 2.0)]
     area = np.count_nonzero(free) * frame.resolution**2
@@ -139,9 +139,9 @@ def test_the_ring_is_a_corridor_of_a_hundred_metres() -> None:
 
 def test_the_way_along_the_ring_is_found_from_any_pose() -> None:
     for along in (0.5, 29.0, 35.0, 62.0, 99.0):
-        x, y = mapping_loop._middle(along)
-        assert mapping_loop._along(Pose(x + 0.1, y - 0.1)) == pytest.approx(along, abs=0.15)
-    assert mapping_loop._middle(WAY + 3.0) == pytest.approx(mapping_loop._middle(3.0))
+        x, y = mapping_loop.middle(along)
+        assert mapping_loop.along_of(Pose(x + 0.1, y - 0.1)) == pytest.approx(along, abs=0.15)
+    assert mapping_loop.middle(WAY + 3.0) == pytest.approx(mapping_loop.middle(3.0))
 
 
 def test_a_short_ring_closes(monkeypatch: pytest.MonkeyPatch) -> None:

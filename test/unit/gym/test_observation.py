@@ -83,7 +83,7 @@ def test_bumps_are_felt() -> None:
 def test_drops_are_seen() -> None:
     robot = environment()
     robot.reset(seed=0, options={"start": (2.0, 2.0, 0.0)})
-    robot._cleaning.fleet.inject(0, Fault.CLIFF_DIRTY, 1.0)
+    robot.fleet.inject(0, Fault.CLIFF_DIRTY, 1.0)
     assert robot.step(np.zeros(2, np.float32))[0][CLIFF].tolist() == [1.0] * 4
 
 

@@ -96,7 +96,7 @@ def test_what_cannot_be_meant_is_refused_with_the_reason() -> None:
 def test_rewards_add_up_to_dirt_less_energy_and_time() -> None:
     environment = RoombaClean(home=dirty_room(), energy_weight=2.0, time_weight=0.01)
     environment.reset(seed=1, options=EAST_WARD)
-    world = environment._cleaning.fleet
+    world = environment.fleet
     charge, floor = world.robots["charge"][0], world.dirt(0).total
     total = 0.0
     for _ in range(35):

@@ -19,7 +19,7 @@ from roomba.mission.cleaning.request import (
 )
 from roomba.mission.mission import MissionStep
 from roomba.mission.phases.machine import Event, Phase
-from roomba.perception.swept.coverage_bits import SWEPT
+from roomba.perception.swept.coverage_bits import SWEPT, TRIED
 from roomba.vocabulary import CleanMode
 
 CORNER = CleanRequest(CleanMode.ZONES, zones=((0.6, 0.2, 1.4, 0.9),))
@@ -145,12 +145,14 @@ def test_killed_it_goes_on_with_what_the_map_shows_by_then(later: OccupancyMap) 
 def test_a_look_that_is_cut_short_is_no_round_that_was_broken_off() -> None:
     rig = cleaning()
     assert rig.mission.cleaning is not None
-    rig.mission.cleaning._ledger.note_tried(rig.mission.cleaning.coverage.wanted)
+    coverage = rig.mission.cleaning.coverage
+    coverage.cells[coverage.wanted] |= np.uint8(TRIED)
     rig.grow(known_to(WALL_X + 0.3))
     rig.grow(WHOLE)
     assert rig.mission.driver is None
     context = rig.mission.context
-    columns = np.nonzero(rig.mission.cleaning._ledger.untried)[1]
+    coverage = rig.mission.cleaning.coverage
+    columns = np.nonzero(coverage.wanted & (coverage.cells & TRIED == 0))[1]
     # The hall was planned once.
     assert context.frame.centre_of(0, int(columns.min()))[0] > WALL_X - 0.3
 

@@ -11,6 +11,7 @@ import sys
 import time
 from collections.abc import Iterable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -251,21 +252,27 @@ def test_a_real_window_shows_is_closed_and_opens_again(
     monkeypatch.setenv("QT_QPA_PLATFORM", "offscreen")
     # A busy machine may take long to end a process.
     monkeypatch.setattr("roomba.ui.pictures.CLOSE_DEADLINE", 20.0)
+    windows: list[subprocess.Popen[bytes]] = []
+
+    class Noted(subprocess.Popen[bytes]):
+        """A process of a window, which is noted down."""
+
+        def __init__(self, *command: Any, **how: Any) -> None:
+            super().__init__(*command, **how)
+            windows.append(self)
+
+    monkeypatch.setattr(subprocess, "Popen", Noted)
     window = ProcessWindow(deadline=60.0)
     try:
         window.show(picture_file)
-        first = window._process
         window.show(picture_file)
-        assert first is not None
-        assert window._process is first
+        (first,) = windows
         assert first.poll() is None
         first.kill()  # as its user closes it
         window.show(picture_file)
-        second = window._process
-        assert second is not None
     finally:
         window.close()
-    assert second is not first
+    _, second = windows
     assert second.poll() == 0  # it left by itself, at the end of its input
 
 

@@ -26,12 +26,12 @@ from roomba.world.home.home import Home
 
 _EVERY: Final = 20
 """Ticks between two looks."""
-_SHARES: Final = (0.02, 0.2, 0.45, 1.0)
+SHARES: Final = (0.02, 0.2, 0.45, 1.0)
 """Of the whole time: what is shown."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _Look:
+class Look:
     """The map at a time, s, where the robot takes itself to be, and what it goes to look at."""
 
     time: float
@@ -43,11 +43,11 @@ class _Look:
 @drawn
 def picture_of_mapping(home: Home, seed: int = 1) -> Figure:
     """Draw the map of a home as it is at some times, and at the end."""
-    looks, way = _explored(home, seed)
+    looks, way = explored(home, seed)
     area = area_of_maps([looks[-1].occupancy])
     figure = empty_figure(1180, 350)
-    panels = figure.subplots(1, len(_SHARES), sharey=True)
-    for axes, share in zip(panels, _SHARES, strict=True):
+    panels = figure.subplots(1, len(SHARES), sharey=True)
+    for axes, share in zip(panels, SHARES, strict=True):
         look = looks[round(share * (len(looks) - 1))]
         _draw(axes, look, way, area, is_last=look is looks[-1])
         axes.label_outer()
@@ -69,12 +69,12 @@ def picture_of_map_errors(home: Home, seed: int = 1) -> Picture:
     return picture_of(run_trial(Trial(home=home.name, seed=seed)))
 
 
-def _explored(home: Home, seed: int) -> tuple[list[_Look], NDArray[np.float64]]:
+def explored(home: Home, seed: int) -> tuple[list[Look], NDArray[np.float64]]:
     """Explore; return looks at the map, and rows of t (s), x, y (m), where it took itself to be."""
     robot = _Observed(home, seed=seed)
     record = robot.explore()
     end = robot.looks[-1]
-    robot.looks.append(_Look(end.time, record.occupancy, robot.mapper.pose, None))
+    robot.looks.append(Look(end.time, record.occupancy, robot.mapper.pose, None))
     return robot.looks, record.believed
 
 
@@ -83,7 +83,7 @@ class _Observed(HeadlessMission):
 
     def __init__(self, home: Home, *, seed: int) -> None:
         super().__init__(home, seed=seed, known=MappingConfig(), longest_burst=0)
-        self.looks: list[_Look] = []
+        self.looks: list[Look] = []
         self._ticks = 0
 
     def tick(self) -> None:
@@ -92,12 +92,12 @@ class _Observed(HeadlessMission):
             exploration = self.mission.exploration
             goal = exploration.goal if exploration is not None else None
             middle = goal.middle if goal is not None else None
-            look = _Look(self.seen.time, self.mapper.occupancy(), self.mapper.pose, middle)
+            look = Look(self.seen.time, self.mapper.occupancy(), self.mapper.pose, middle)
             self.looks.append(look)
         self._ticks += 1
 
 
-def _draw(axes: Axes, look: _Look, way: NDArray[np.float64], area: Area, *, is_last: bool) -> None:
+def _draw(axes: Axes, look: Look, way: NDArray[np.float64], area: Area, *, is_last: bool) -> None:
     draw_map(axes, look.occupancy)
     draw_way(axes, way[way[:, 0] <= look.time, 1:3])
     draw_station(axes, Pose(*way[0, 1:4].tolist()))

@@ -50,8 +50,8 @@ class _ObservedRobot(HeadlessRobot):
         self.rows: list[tuple[float, ...]] = []
         self._reckoning = DeadReckoning(self.config.localization, self.config.gyro)
 
-    def _localize(self, seen: Observation) -> None:
-        super()._localize(seen)
+    def localize(self, seen: Observation) -> None:
+        super().localize(seen)
         self._reckoning.move(seen.time, seen.odometry, seen.angular_velocity)
         start = self.simulator.start
         by_wheels, by_gyro = start.compose(seen.odometry), start.compose(self._reckoning.pose)

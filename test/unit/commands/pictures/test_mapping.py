@@ -13,7 +13,7 @@ from roomba.grid import UNKNOWN
 
 
 def test_a_strip_shows_a_map_that_grows() -> None:
-    looks, way = mapping._explored(closet(), seed=1)
+    looks, way = mapping.explored(closet(), seed=1)
     known = [np.count_nonzero(look.occupancy.values != UNKNOWN) for look in looks]
     assert known[-1] > known[0]
     assert looks[-1].goal is None
@@ -30,7 +30,7 @@ def test_the_strip_is_a_picture_of_a_page_s_width() -> None:
     assert 300 <= height <= 1000
     # Each of the four panels has walls in it, and around them the unknown.
     plans = picture[height // 8 : height * 3 // 4]
-    for panel in np.array_split(plans, len(mapping._SHARES), axis=1):
+    for panel in np.array_split(plans, len(mapping.SHARES), axis=1):
         assert (panel < 80).all(axis=2).sum() > 100
         assert (panel == round(0.86 * 255)).all(axis=2).sum() > 1000
 

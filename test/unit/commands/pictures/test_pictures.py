@@ -41,7 +41,7 @@ PLOTS = sorted(set(PICTURES) - SLOW - {"home", "kitchen"})
 
 @pytest.fixture(autouse=True)
 def _coarse_plans(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("roomba.plots.style._PLAN_PIXELS", 60.0)
+    monkeypatch.setattr("roomba.plots.style.PLAN_PIXELS", 60.0)
 
 
 @lru_cache

@@ -48,10 +48,10 @@ class Rig:
         self.world.advance(Twist(), DT, 1)
         self.is_known, self.clock, self.ticks = is_known, 0.0, 0
         self._loop = SpeedLoop(PATIENT, 0.5)
-        self._senses = deque([self._sense()] * (delay + 1), maxlen=delay + 1)
-        self.undocking = Undocking(CONFIG, STATION, self._senses[0])
+        self.late_senses = deque([self.sense()] * (delay + 1), maxlen=delay + 1)
+        self.undocking = Undocking(CONFIG, STATION, self.late_senses[0])
 
-    def _sense(self) -> DockSenses:
+    def sense(self) -> DockSenses:
         seen = self.world.observe()
         return DockSenses(
             seen.time + self.clock,
@@ -65,8 +65,8 @@ class Rig:
 
     def tick(self) -> UndockStep:
         self.ticks += 1
-        self._senses.append(self._sense())
-        step = self.undocking.tick(self._senses[0])
+        self.late_senses.append(self.sense())
+        step = self.undocking.tick(self.late_senses[0])
         seen = self.world.observe()
         self._loop.set_bumper(seen.bumper.pressed)
         self._loop.set_cliff(seen.cliff.any)
@@ -168,9 +168,9 @@ def test_leaning_on_its_station_is_no_reason_to_stay() -> None:
     rig = Rig(Pose(0.03, 0.0, 0.0))
     rig.world.advance(Twist(0.1, 0.0), DT, 20)
     assert rig.world.observe().bumper.pressed
-    rig.undocking = Undocking(CONFIG, STATION, rig._sense())
+    rig.undocking = Undocking(CONFIG, STATION, rig.sense())
     for _ in range(3):
-        rig._senses.append(rig._sense())
+        rig.late_senses.append(rig.sense())
     assert rig.run().state is UndockState.OUT
 
 
