@@ -76,8 +76,10 @@ class World(Probe):
         wait_until(lambda: self.state.phase == phase, deadline, f"{phase}, not {self.state}")
 
     def leaves_the_drive(self) -> bool:
+        """Whether no command comes from one telling of the state to the next, a second later."""
+        self.next("/vacuum/state", VacuumState)
         before = self.counts["/cmd_vel_mission"]
-        time.sleep(0.3)
+        self.next("/vacuum/state", VacuumState)
         return self.counts["/cmd_vel_mission"] == before
 
     def wants(self, linear: float) -> bool:

@@ -104,7 +104,7 @@ def test_on_a_fast_clock_it_takes_no_more_than_one_a_second(
         probe.send("/clock", Clock(rospy.Time(now)))
         time.sleep(0.1)
     assert now > 30.0
-    assert 5 < len(asked) <= 5 + 4
+    assert 5 < len(asked) <= 5 + (time.monotonic() - began)
 
 
 def test_what_is_no_angle_is_an_error_of_the_service(graph: RosGraph, tmp_path: Path) -> None:
