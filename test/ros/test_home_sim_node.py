@@ -16,6 +16,7 @@ from roomba_robot.msg import Bumper
 from roomba_robot.srv import SpillDirt, TurnCamera
 from rosgraph_msgs.msg import Clock
 from std_msgs.msg import Float32, Time
+from std_srvs.srv import Trigger
 
 from roomba.geometry import Pose
 from roomba_ros.simulation.home_sim_node import main
@@ -145,6 +146,25 @@ def test_crumbs_can_be_spilled_and_are_felt(shared_robot: RosGraph) -> None:
     refused = spill(1000.0, 0.0, 0.05, 7.0)
     assert not refused.success
     assert "no floor" in refused.message
+
+
+def test_a_bin_can_be_emptied_and_its_level_tells(shared_robot: RosGraph) -> None:
+    body = Body(shared_robot, STATION)
+    body.probe.hear("/bin_level", Float32)
+
+    def level() -> float:
+        return float(body.probe.newest.get("/bin_level", Float32(-1.0)).data)
+
+    spill = rospy.ServiceProxy("/sim/spill", SpillDirt)
+    spill.wait_for_service(10.0)
+    assert spill(STATION.x, STATION.y, 0.3, 7.0).success
+    body.drive(-0.2, 0.0, lambda: level() > 0.0, "it picks up crumbs")
+    empty = rospy.ServiceProxy("/sim/empty_bin", Trigger)
+    answer = empty()
+    assert answer.success
+    assert answer.message.endswith("g were in the bin")
+    # It still rolls over some crumbs.
+    wait_until(lambda: empty().success and level() == 0.0, 15.0)
 
 
 def test_pictures_are_taken_at_any_angle_that_the_camera_can_turn_to(

@@ -25,7 +25,7 @@ from roomba_robot.msg import (
 )
 from roomba_robot.srv import SetZone
 from sensor_msgs.msg import BatteryState
-from std_msgs.msg import String
+from std_msgs.msg import Float32, String
 from std_srvs.srv import Trigger
 
 from roomba_ros.runtime.action_client import ActionClient
@@ -42,7 +42,7 @@ class World(Probe):
     def __init__(self, graph: RosGraph) -> None:
         super().__init__(graph)
         self.x, self.is_docked = 1.0, True
-        self.is_silent = False
+        self.is_silent, self.bin_level = False, 0.0
         for topic, message in (("/map", room()), ("/station_pose", stamped(1.0, 0.0))):
             publisher = rospy.Publisher(topic, type(message), queue_size=1, latch=True)
             publisher.publish(message)
@@ -51,6 +51,7 @@ class World(Probe):
         self.hear("/zones", ZoneArray)
         kinds = {"pose": PoseStamped, "odom": Odometry}
         kinds |= {"battery_state": BatteryState, "dock_status": DockStatus}
+        kinds |= {"bin_level": Float32}
         self._topics = {name: self.publisher(f"/{name}", kind) for name, kind in kinds.items()}
         threading.Thread(target=self._run, daemon=True).start()
 
@@ -65,6 +66,7 @@ class World(Probe):
                 self._topics["odom"].publish(odometry)
                 self._topics["pose"].publish(pose)
                 self._topics["battery_state"].publish(BatteryState(percentage=0.8, capacity=1.8))
+                self._topics["bin_level"].publish(self.bin_level)
                 self._topics["dock_status"].publish(DockStatus(is_docked=self.is_docked))
             time.sleep(0.05)
 
@@ -168,6 +170,30 @@ def test_orders_are_obeyed_or_refused_with_the_reason(graph: RosGraph) -> None:
     assert ends(undock, 30.0) == GoalStatus.ABORTED
     world.send("/emergency_stop", String(""))
     wait_until(lambda: world.state.state != "error", 30.0)
+
+
+def test_a_full_bin_is_told_and_waited_for(graph: RosGraph) -> None:
+    world, _ = start(graph)
+    world.x, world.is_docked = 0.0, False
+    world.does("idle", 30.0)
+    clean = client("clean", CleanAction)
+    clean.send_goal(CleanGoal())
+    world.does("cleaning", 30.0)
+    world.bin_level = 1.0
+    world.does("returning", 30.0)
+    assert world.state.message.startswith("bin full")
+    world.x, world.is_docked = 1.0, True
+    world.does("bin full", 30.0)
+    assert (world.state.state, world.state.message[:8]) == ("error", "bin full")
+    assert order("resume")[0] is False
+    assert order("empty_bin") == (
+        False,
+        "expected an empty dust bin, got one that is 100% full by its level sensor",
+    )
+    world.bin_level = 0.0
+    world.does("undocking", 30.0)
+    assert world.state.message == ""
+    assert order("empty_bin") == (True, "it goes by an empty bin")
 
 
 def test_a_killed_node_goes_on_with_its_clean_and_keeps_its_zones(graph: RosGraph) -> None:

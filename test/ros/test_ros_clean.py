@@ -71,7 +71,7 @@ class FakeMission:
         self.undocks = Server("undock", UndockAction)
         self.orders: list[str] = []
         self.refusal = ""
-        for name in ("pause", "resume", "stop", "locate"):
+        for name in ("pause", "resume", "stop", "locate", "empty_bin"):
             rospy.Service(name, Trigger, lambda _, name=name: self._on_order(name))
         self.state = rospy.Publisher("vacuum/state", VacuumState, queue_size=1, latch=True)
         self.rooms = rospy.Publisher("rooms", RoomArray, queue_size=1, latch=True)
@@ -139,9 +139,9 @@ def test_a_clean_from_its_goal_to_its_report(graph: RosGraph) -> None:
     mission.rooms.publish(rooms=[Room(name=name) for name in rooms])
     assert (roomba.state.phase, roomba.state.battery) == ("charging", 0.75)
     assert roomba.robot.rooms() == rooms
-    for name in ("pause", "resume", "stop", "locate"):
+    for name in ("pause", "resume", "stop", "locate", "empty_bin"):
         getattr(roomba.robot, name)()
-    assert mission.orders == ["pause", "resume", "stop", "locate"]
+    assert mission.orders == ["pause", "resume", "stop", "locate", "empty_bin"]
     mission.refusal = "cannot pause now"
     with pytest.raises(RequestRefusedError, match="cannot pause now"):
         roomba.robot.pause()

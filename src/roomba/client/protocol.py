@@ -313,6 +313,12 @@ class RobotClient(Protocol):
     def locate(self) -> None:
         """Let the robot beep, so that a person finds it."""
 
+    def empty_bin(self) -> None:
+        """Tell the robot that its dust bin was emptied; RequestRefusedError with the reason.
+
+        A simulated bin is emptied by that.
+        """
+
     def vacuum(self, timeout: float = 5.0) -> VacuumSnapshot:
         """Return what it does now; RobotUnavailableError when it does not tell in ``timeout`` s."""
 

@@ -177,6 +177,22 @@ class EnergyConfig(Frozen):
     """s; from one look at how far it is home to the next."""
 
 
+class BinConfig(Frozen):
+    """When the dust bin is full: shares of its capacity 0..1, m2."""
+
+    full: Ratio = 0.98
+    nearly_full: Ratio = 0.80
+    silent: Positive = 2.0
+    least_grains: Positive = 1.0
+    """Grains/s; with fewer none comes in."""
+    fading_way: Positive = 0.6
+    """m; driven while the dirt sensor's rate fades away after the last grain."""
+    dusty: Positive = 500.0
+    """Grains/m2; where less is usual floor without a grain tells nothing."""
+    emptied: Ratio = 0.5
+    """Times the level at which it was full; below that it was emptied."""
+
+
 class MissionConfig(Frozen):
     """All of ``configuration/mission.yaml``; the defaults are the shipped file's values."""
 
@@ -184,6 +200,7 @@ class MissionConfig(Frozen):
     cleaning: CleaningConfig = CleaningConfig()
     exploring: ExploringConfig = ExploringConfig()
     energy: EnergyConfig = EnergyConfig()
+    bin: BinConfig = BinConfig()
 
     @property
     def top_speed(self) -> float:

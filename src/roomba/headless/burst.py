@@ -28,6 +28,7 @@ from roomba.perception.slam.follow_kernels import FOLLOWER
 from roomba.perception.swept.coverage_map import CoverageMap
 from roomba.robot.brain import Brain
 from roomba.robot.place import least_apart
+from roomba.world.home.dirt import MICROGRAMS_PER_GRAM
 
 Floats = NDArray[np.float64]
 
@@ -36,7 +37,7 @@ LONGEST_BURST: Final = 100
 _EARLY: Final = 1e-6
 """s; so much before a time the classes have their turn: to the last bit both tell time alike."""
 _HARDLY_LESS: Final = 1.0 - 1e-9
-"""Times the energy at which the battery is looked at, for the same reason."""
+"""Times the energy, and the dust, at which battery and bin are looked at, for the same reason."""
 
 
 class Burst:
@@ -52,6 +53,7 @@ class Burst:
         row["step"], row["steps"] = timing.world_step, timing.steps_per_tick
         row["apart"] = least_apart(timing)
         row["stride"], row["is_mapping"] = brain.robot.scan_stride, brain.mapper is not None
+        row["bin_capacity"] = brain.robot.brush.bin_capacity * MICROGRAMS_PER_GRAM
         self._has_ended = False
         self._nowhere = _nowhere(brain)
 
@@ -106,6 +108,13 @@ class Burst:
         row["least_charge"] = steady.least_level * capacity / _HARDLY_LESS
         row["most_charge"] = steady.most_energy * _HARDLY_LESS
         row["goal"], row["near"] = steady.goal, steady.near
+        row["most_in_bin"] = steady.most_in_bin * MICROGRAMS_PER_GRAM * _HARDLY_LESS
+        row["most_silent"] = steady.most_silent
+        row["cell_area"] = (
+            self._truth.cell_area
+            if mission.cleaning is None
+            else (mission.cleaning.coverage.cell_area)
+        )
         if steady.driver is not None:
             row["clear_to"] = steady.driver.clear_to
             row["off_path"] = brain.config.driving.off_path
@@ -158,6 +167,7 @@ class Burst:
             dirt.grains,
             dirt.way,
             dirt.place,
+            mission.dust,
         )
 
     # ---------------------------------------------------------------- handing back

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from roomba.control.tracking_kernels import Course, track
 from roomba.headless.rows import GYRO, RECKONED, TIME
 from roomba.mission.driving.progress_kernels import along_of, mark_progress, off_path
+from roomba.mission.phases.dust_bin_kernels import note_dust
 from roomba.perception.localization.belief_correct_kernels import correct, is_calm
 from roomba.perception.localization.belief_reckon_kernels import reckon
 from roomba.perception.localization.recent_sight_kernels import Sights, note_sight
@@ -41,6 +42,7 @@ BURST: Final = np.dtype(
         ("steps", "i8"),  # of the world in a tick
         ("apart", "f8"),  # s; at least, between two scans that are looked at
         ("stride", "i8"),  # scans that such a one stands for
+        ("bin_capacity", "f8"),  # micrograms
         ("is_mapping", "?"),  # whether the place is a mapper's
         # what ends it
         ("drives", "?"),  # along a path; else it stands on its station
@@ -50,6 +52,9 @@ BURST: Final = np.dtype(
         ("most_charge", "f8"),
         ("goal", "f8", (2,)),  # m
         ("near", "f8"),  # m
+        ("most_in_bin", "f8"),  # micrograms
+        ("most_silent", "f8"),  # m2 that became clean without a grain
+        ("cell_area", "f8"),  # m2
         ("clear_to", "f8"),  # m along the path
         ("off_path", "f8"),  # m
         ("progress_timeout", "f8"),  # s without progress
@@ -110,7 +115,7 @@ class Drive(NamedTuple):
 
 
 class Floor(NamedTuple):
-    """What is cleaned as the robot believes and in truth, and how dirty it was."""
+    """What is cleaned as the robot believes and in truth, how dirty it was, and what came in."""
 
     cells: NDArray[np.uint8]
     place: Floats
@@ -120,6 +125,7 @@ class Floor(NamedTuple):
     grains: NDArray[np.float32]
     way: NDArray[np.float32]
     dirt_place: Floats
+    dust: Rows
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -139,7 +145,9 @@ def run(
     ticks = 0
     while ticks < rows.shape[0]:
         now = world.state.worlds[0].time + burst.clock
-        if comes_up(burst, robot, drive, sight.things, x, y, now):
+        if comes_up(burst, robot, drive, sight.things, x, y, now) or may_be_full(
+            burst, robot, floor
+        ):
             break
         linear, angular, is_done = wanted(burst, drive, x, y, theta)
         if is_done:
@@ -189,6 +197,13 @@ def comes_up(
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
+def may_be_full(burst: Any, robot: Any, floor: Floor) -> bool:
+    """Tell whether the dust bin may have become full, by its level or as no grain comes in."""
+    silent = floor.dust[0].silent_cells * burst.cell_area
+    return bool(robot.in_bin >= burst.most_in_bin or silent >= burst.most_silent)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
 def is_in_danger(robot: Any) -> bool:
     """Tell whether there is no floor below a part of the robot."""
     return bool(
@@ -230,8 +245,10 @@ def account(burst: Any, robot: Any, floor: Floor, now: float, x: float, y: float
     burst.way += way
     if burst.sweeps:
         at_x, at_y = from_where(burst.swept_at, x, y)
-        burst.swept += sweep(floor.cells, floor.place, at_x, at_y, x, y, floor.radius)
+        cells = sweep(floor.cells, floor.place, at_x, at_y, x, y, floor.radius)
+        burst.swept += cells
         burst.swept_at[0], burst.swept_at[1] = x, y
+        note_dust(floor.dust, robot.grains, way, cells)
         grains = robot.grains * (now - burst.last[0])
         note_dirt(floor.grains, floor.way, floor.dirt_place, x, y, grains, way)
     burst.last[0], burst.last[1], burst.last[2] = now, x, y
@@ -239,7 +256,10 @@ def account(burst: Any, robot: Any, floor: Floor, now: float, x: float, y: float
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def sweep_truth(burst: Any, robot: Any, floor: Floor) -> None:
-    """Note what floor the tool really passed over."""
+    """Note what floor the tool really passed over, with room for its dust."""
+    if robot.in_bin >= burst.bin_capacity:
+        burst.true_at[0] = burst.true_at[1] = math.nan
+        return
     at_x, at_y = from_where(burst.true_at, robot.x, robot.y)
     burst.truth_swept += sweep(
         floor.true_cells, floor.true_place, at_x, at_y, robot.x, robot.y, floor.radius

@@ -44,8 +44,9 @@ from roomba.world.simulator import Observation, Simulator
 class HeadlessMission:
     """One robot with its mission in one home.
 
-    ``truth`` is the floor that its tool really passed over; ``rows`` are the ticks that passed, as
-    of :mod:`roomba.headless.rows`, in pieces; ``context`` is the home as it planned in it at first.
+    ``truth`` is the floor that its tool really passed over, with room in its bin; ``rows`` are the
+    ticks that passed, as of :mod:`roomba.headless.rows`, in pieces; ``context`` is the home as it
+    planned in it at first; ``emptied`` is what was taken out of the dust bin each time, g.
     """
 
     def __init__(
@@ -62,12 +63,15 @@ class HeadlessMission:
         start: Pose | None = None,
         max_speed: float | None = None,
         longest_burst: int = LONGEST_BURST,
+        empties_bin_after: float = 120.0,
     ) -> None:
         """Put the robot on its station, or at ``start``.
 
         ``known`` is the map that it goes by, in the home's frame, or how it makes one from its
         station; the home's own one by default. ``max_speed``, m/s, is its top speed, by default its
         body's. ``longest_burst`` is how many ticks pass at once at most, while nothing comes up.
+        So long after the robot said that its dust bin is full, ``empties_bin_after``, s, it is
+        emptied.
         """
         self.robot, self.config = robot or SimulatedRobotConfig(), mission or MissionConfig()
         known = known or home.map
@@ -85,6 +89,9 @@ class HeadlessMission:
         )
         self.rows: list[NDArray[np.float64]] = []
         self.whole_at: float | None = None
+        self.emptied: list[float] = []
+        self._empties_bin_after = empties_bin_after
+        self._full_since: float | None = None
         self._longest = longest_errand(home)
         self._stand_until_ready()
         self.context = self.mission.context
@@ -156,10 +163,14 @@ class HeadlessMission:
         """Let one tick pass, by the ordinary classes."""
         growing = self.brain.growing
         was_whole = growing is None or growing.is_whole
+        self._empty_bin_in_time()
         self.body.act(self.brain.decide())
         self.brain.sense(self.readings())
         pose = self.seen.pose
-        self.truth.sweep(pose.x, pose.y)
+        if self.seen.in_bin < self.robot.brush.bin_capacity:
+            self.truth.sweep(pose.x, pose.y)
+        else:
+            self.truth.lift()
         self.rows.append(self.row())
         if growing is not None and growing.is_whole and not was_whole:
             self.whole_at = self.seen.time
@@ -171,6 +182,17 @@ class HeadlessMission:
     def look(self) -> None:
         """Let the brain know how the world is now, after it was changed while no time passed."""
         self.brain.told(self.readings())
+
+    def _empty_bin_in_time(self) -> None:
+        """Empty the dust bin, as a person does some time after the robot said that it is full."""
+        if self.mission.state.phase is not Phase.BIN_FULL:
+            self._full_since = None
+            return
+        if self._full_since is None:
+            self._full_since = self.seen.time
+        if self.seen.time - self._full_since >= self._empties_bin_after:
+            self.emptied.append(self.simulator.empty_bin())
+            self.look()
 
     def _stand_until_ready(self) -> None:
         """Stand until the first scan came: without a map there is nothing to do."""

@@ -28,6 +28,7 @@ class Remembered:
     exploration: Exploration | None
     ledger: tuple[float, float, float]
     duration: float
+    is_bin_full: bool
 
 
 def checkpoint_of(state: MissionState, message: str, job: Job, now: float) -> Values | None:
@@ -45,6 +46,7 @@ def checkpoint_of(state: MissionState, message: str, job: Job, now: float) -> Va
         "exploration": None if job.exploration is None else job.exploration.values(),
         "ledger": [job.ledger.distance, job.ledger.energy, job.ledger.dirt],
         "duration": job.duration(now),
+        "bin_full": job.bin.is_full,
     }
 
 
@@ -93,6 +95,7 @@ def _remembered(
         exploration,
         (distance, energy, dirt),
         duration,
+        bool(values["bin_full"]),
     )
 
 
@@ -101,6 +104,8 @@ def take_up(found: Remembered, job: Job, senses: Senses) -> None:
     job.cleaning, job.exploration, job.outcome = found.cleaning, found.exploration, found.outcome
     job.goes_on_after(found.duration, senses)
     job.ledger.distance, job.ledger.energy, job.ledger.dirt = found.ledger
+    if found.is_bin_full:
+        job.bin.fill(senses.in_bin)
 
 
 def state_after(state: MissionState, *, is_docked: bool) -> MissionState:

@@ -8,7 +8,9 @@ twist. :mod:`.phases.machine` is the state machine, :mod:`.phases.phases` and
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, replace
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,6 +43,8 @@ from roomba.mission.steady import Steady
 from roomba.perception.localization.estimate import Knowledge
 from roomba.perception.swept.dirt_map import DirtMap
 from roomba.perception.things.layer import ThingLayer
+
+_BIN_FULL: Final = "bin full: empty the dust bin, and tell the robot (empty_bin)"
 
 
 class CommandRefusedError(RoombaError):
@@ -83,8 +87,8 @@ class Mission:
         self.max_speed = robot.body.max_speed if max_speed is None else max_speed
         self.obstacles = Obstacles(things, robot.walk, robot.body, config.driving)
         self.state = MissionState(Phase.DOCKED if senses.battery.is_docked else Phase.IDLE)
-        self.message = ""
-        self._job = Job(dirt, config, senses)
+        self._message = ""
+        self._job = Job(dirt, config, robot.brush.bin_capacity, senses)
         self.ledger = self._job.ledger
         self._drives = Drives(context, robot, config.driving, self.obstacles)
         self.trail = self._drives.trail
@@ -99,6 +103,7 @@ class Mission:
     def clean(self, request: CleanRequest, senses: Senses) -> None:
         """Begin a clean; raises CleanRefusedError or CommandRefusedError with the reason."""
         self._require_start(Event.CLEAN, senses)
+        self._require_room_in_bin(senses)
         cleaning = self._cleaning_of(request, senses)
         self._end_job(CleanOutcome.STOPPED, "a newer clean took over", senses)
         self._job.forget()
@@ -135,8 +140,8 @@ class Mission:
             self._retries.renew()
             self._job.take_up()
         self._go(event, senses)
-        self.message = reason if event is Event.EMERGENCY else ""
-        if event is Event.RELEASE and senses.battery.is_docked:
+        self._message = reason if event is Event.EMERGENCY else ""
+        if event in (Event.RELEASE, Event.STOP) and senses.battery.is_docked:
             self._go(Event.CONTACT, senses)
 
     def _require_start(self, event: Event, senses: Senses) -> None:
@@ -148,6 +153,21 @@ class Mission:
                 f"expected a battery of {least:.0%} or more to begin, got "
                 f"{senses.battery.level:.0%}; bring the robot to its station"
             )
+
+    def _require_room_in_bin(self, senses: Senses) -> None:
+        self._job.look_at_bin(senses)
+        if self._job.bin.is_full:
+            raise CommandRefusedError(f"expected room in the dust bin, got none: {_BIN_FULL}")
+
+    def empty_bin(self, senses: Senses) -> None:
+        """Go by an emptied dust bin; raises CommandRefusedError if its level sensor says no."""
+        level = senses.in_bin / self._robot.brush.bin_capacity
+        if level >= self._config.bin.full:
+            raise CommandRefusedError(
+                f"expected an empty dust bin, got one that is {level:.0%} full by its level sensor"
+            )
+        self._job.bin.emptied()
+        self._go(Event.EMPTIED, senses)
 
     def _cleaning_of(self, request: CleanRequest, senses: Senses) -> Cleaning:
         return Cleaning(request, self.context, self.dirt, self._config.cleaning, senses.pose)
@@ -174,6 +194,7 @@ class Mission:
         dirt.carry_on(self.dirt, context.station.compose(self.context.station.inverse()))
         self.obstacles.use(things)
         self._job.dirt = dirt
+        self._job.bin.forget_places()
         self.use_context(context)
 
     def wants_map(self, occupancy: OccupancyMap) -> bool:
@@ -205,7 +226,7 @@ class Mission:
 
     def checkpoint(self, senses: Senses) -> Values | None:
         """Return all that must be remembered to go on, as plain values; None without an errand."""
-        return checkpoint_of(self.state, self.message, self._job, senses.now)
+        return checkpoint_of(self.state, self._message, self._job, senses.now)
 
     def restore(self, values: Values, senses: Senses) -> None:
         """Go on where a checkpoint was made, in the same map or more of it; raises CheckpointError.
@@ -216,7 +237,7 @@ class Mission:
         found = remembered(values, lambda request: self._cleaning_of(request, senses), exploring)
         take_up(found, self._job, senses)
         self._look_no_more()
-        self.message = found.message
+        self._message = found.message
         self._last = senses
         is_docked = self._monitor.was_docked = senses.battery.is_docked
         self.state = state_after(found.state, is_docked=is_docked)
@@ -224,6 +245,20 @@ class Mission:
             self._end_job(self._job.outcome or CleanOutcome.STOPPED, "", senses)
 
     # ---------------------------------------------------------------- what others may look at
+
+    @property
+    def message(self) -> str:
+        """Why it does not do what was asked, and what helps; empty when all is well."""
+        return self._message or (_BIN_FULL if self._job.bin.is_full else "")
+
+    @message.setter
+    def message(self, message: str) -> None:
+        self._message = message
+
+    @property
+    def dust(self) -> NDArray[np.void]:
+        """What the dirt sensor tells of the bin: one row of :data:`DUST`."""
+        return self._job.bin.rows
 
     @property
     def context(self) -> PlanningContext:
@@ -272,8 +307,18 @@ class Mission:
             staging = self.context.staging
             goal = (staging.x, staging.y)
             near = self.context.staging_tolerance
-            return Steady(driver, limit, least_level=empty, goal=goal, near=near)
-        return Steady(driver, limit, self.ledger.next_check, empty)
+            steady = Steady(driver, limit, least_level=empty, goal=goal, near=near)
+        else:
+            steady = Steady(driver, limit, self.ledger.next_check, empty)
+        return self._until_bin_full(steady, senses)
+
+    def _until_bin_full(self, steady: Steady, senses: Senses) -> Steady:
+        """Let steady ticks end when the bin may have become full."""
+        dust_bin = self._job.bin
+        if not self.sweeps:
+            return steady
+        most_silent = dust_bin.most_silent if dust_bin.heeds_silence(senses.in_bin) else math.inf
+        return replace(steady, most_in_bin=dust_bin.full_from, most_silent=most_silent)
 
     @property
     def last(self) -> Senses:
@@ -288,7 +333,7 @@ class Mission:
     @property
     def sweeps(self) -> bool:
         """Whether what it drives over counts as cleaned."""
-        return self.cleaning is not None and self.state.drives
+        return self.cleaning is not None and self.state.drives and not self._job.bin.is_full
 
     def speed_limit(self, senses: Senses) -> float:
         """Return how fast it goes now, m/s."""
@@ -327,6 +372,8 @@ class Mission:
         first of them to the last.
         """
         self._drives.caught_up(senses, places)
+        if self.sweeps:
+            self._job.bin.passed(places)
         self.ledger.note(senses, way)
         self._last = senses
 
@@ -345,7 +392,7 @@ class Mission:
             return MissionStep(STANDSTILL, looks_around=self.state.drives)
         step = self._step(senses)
         if step.message is not None:
-            self.message = step.message
+            self._message = step.message
         if step.event is Event.CONTACT:
             self._monitor.was_docked = True
         if step.event is not None:
@@ -371,6 +418,8 @@ class Mission:
                 return self._at_station.dock(senses, self.context.station)
             case Phase.CHARGING:
                 return self._at_station.charge(senses, job, self.context.tool_width)
+            case Phase.BIN_FULL:
+                return PhaseStep(event=None if job.bin.is_full else Event.EMPTIED)
         return PhaseStep()
 
     # ---------------------------------------------------------------- transitions
@@ -384,7 +433,7 @@ class Mission:
         self._drop_driver()
         self._at_station.forget()
         if event is not Event.FAILED:
-            self.message = ""
+            self._message = ""
         if event is Event.FINISHED:
             self._job.outcome = CleanOutcome.COMPLETED
         if after.phase is Phase.DOCKED:
@@ -400,7 +449,7 @@ class Mission:
 
     def _fail(self, outcome: CleanOutcome, reason: str, senses: Senses) -> None:
         self._go(Event.FAILED, senses)
-        self.message = reason
+        self._message = reason
         self._end_job(outcome, reason, senses)
 
     def _end_job(self, outcome: CleanOutcome, message: str, senses: Senses) -> None:

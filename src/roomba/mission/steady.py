@@ -21,6 +21,8 @@ class Steady:
         s of the robot's clock; from then on it looks at something.
     ``least_level``, ``most_energy``
         0..1 and Wh; with less, or with as much, in the battery.
+    ``most_in_bin``, ``most_silent``
+        g in the dust bin, and m2 of floor that became clean without a grain that came in.
     ``goal``, ``near``
         m; where it wants to get, and so near it is there.
     """
@@ -30,5 +32,7 @@ class Steady:
     until: float = math.inf
     least_level: float = 0.0
     most_energy: float = math.inf
+    most_in_bin: float = math.inf
+    most_silent: float = math.inf
     goal: tuple[float, float] = (0.0, 0.0)
     near: float = -1.0

@@ -98,6 +98,12 @@ def dock(menu: Menu) -> None:
     say_end(menu, end, report.outcome, report.message)
 
 
+def empty_bin(menu: Menu) -> None:
+    """Tell the robot that its dust bin was emptied."""
+    menu.robot.empty_bin()
+    menu.say("The robot knows that its dust bin is empty.")
+
+
 def tell_state(menu: Menu) -> None:
     """Tell in one line what the robot does."""
     state = menu.robot.vacuum()

@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 
 from roomba.client.protocol import ErrandOutcome, ExploreReport
-from roomba.ui.cleaning import CLEANING, leave_alone, say_end
+from roomba.ui.cleaning import CLEANING, empty_bin, leave_alone, say_end
 from roomba.ui.errand_progress import follow_errand, time_text
 from roomba.ui.menu import Menu, Option
 from roomba.ui.progress import quantity
@@ -61,5 +61,6 @@ def _tell_numbers(menu: Menu, report: ExploreReport) -> None:
 TASKS: tuple[Option, ...] = (
     *CLEANING,
     Option("Explore: make a map of a home that it does not know", explore),
+    Option("The dust bin was emptied", empty_bin),
 )
 """What a robot that cleans and makes maps adds to the menu."""

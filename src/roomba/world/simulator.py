@@ -274,6 +274,12 @@ class Simulator:
             raise ValueError(f"expected a charge from 0 to 1, got {level}")
         self._fleet.robots["charge"] = level * self.config.battery.capacity
 
+    def empty_bin(self) -> float:
+        """Take all out of the bin; return how much it was, g."""
+        taken = self.in_bin
+        self._fleet.robots["in_bin"] = 0
+        return taken / MICROGRAMS_PER_GRAM
+
     @property
     def duty(self) -> tuple[float, float]:
         """Duty of brush and fan, 0..1."""

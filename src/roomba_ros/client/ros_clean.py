@@ -41,6 +41,8 @@ from roomba_ros.runtime.subscriptions import subscribe
 
 OLDEST_VACUUM_STATE: Final = 6.0
 """s of wall time; it is told every second, but a long plan may hold it up for some."""
+_SIMULATION_DEADLINE: Final = 1.0
+"""s of wall time in which a simulation's service is found; a real robot has none."""
 _HELD: Final = ("paused", "error")
 _AT_REST: Final = ("idle", "docked")
 _IS_OBEYED: Final[dict[str, Callable[[str], bool]]] = {
@@ -57,7 +59,7 @@ class RosVacuum:
     Subscribes: ``vacuum/state``, ``rooms``, ``clean/{feedback,result,status}``, ``dock/…``,
     ``undock/…``, ``explore/…``. Publishes: ``clean/{goal,cancel}``, ``dock/…``, ``undock/…``,
     ``explore/…``.
-    Calls: ``pause``, ``resume``, ``stop``, ``locate``.
+    Calls: ``pause``, ``resume``, ``stop``, ``locate``, ``empty_bin``, ``sim/empty_bin``.
     """
 
     def __init__(self) -> None:
@@ -75,7 +77,7 @@ class RosVacuum:
         self._explores = Server("explore", ExploreAction)
         self._orders = {
             name: rospy.ServiceProxy(name, Trigger)
-            for name in ("pause", "resume", "stop", "locate")
+            for name in ("pause", "resume", "stop", "locate", "empty_bin", "sim/empty_bin")
         }
         subscribe("vacuum/state", VacuumState, vacuum_of, self._on_vacuum_state)
         subscribe("rooms", RoomArray, room_names_of, self._on_rooms)
@@ -133,6 +135,15 @@ class RosVacuum:
     def locate(self) -> None:
         """Let it beep."""
         self._order("locate")
+
+    def empty_bin(self) -> None:
+        """Tell that the dust bin was emptied; in a simulation empty it: its level sensor tells."""
+        try:
+            rospy.wait_for_service("sim/empty_bin", timeout=_SIMULATION_DEADLINE)
+        except rospy.ROSException:
+            self._order("empty_bin")
+        else:
+            self._order("sim/empty_bin")
 
     def vacuum(self, timeout: float = 5.0) -> VacuumSnapshot:
         """Return the newest state; waits up to ``timeout`` s of wall time for one that is new."""

@@ -29,7 +29,12 @@ SENSES_DEADLINE: Final = 6.0
 _ANSWER_DEADLINE: Final = 5.0
 """s of wall time that a service waits for a tick; a long plan may hold one up."""
 _OVERTAKEN: Final = "a newer goal took over"
-_DONE: Final = {Event.PAUSE: "paused", Event.RESUME: "going on", Event.STOP: "stopped"}
+_DONE: Final = {
+    Event.PAUSE: "paused",
+    Event.RESUME: "going on",
+    Event.STOP: "stopped",
+    Event.EMPTIED: "it goes by an empty bin",
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,7 +62,7 @@ class MissionOrders:
     ``beep`` (Empty: here the robot is).
     Subscribes: ``clean/{goal,cancel}``, ``dock/…``, ``undock/…``, ``explore/…``,
     ``emergency_stop`` (String).
-    Services: ``pause``, ``resume``, ``stop``, ``locate`` (Trigger).
+    Services: ``pause``, ``resume``, ``stop``, ``empty_bin``, ``locate`` (Trigger).
     """
 
     def __init__(self, takes_drive: Callable[[], None]) -> None:
@@ -81,6 +86,7 @@ class MissionOrders:
             ("pause", Event.PAUSE),
             ("resume", Event.RESUME),
             ("stop", Event.STOP),
+            ("empty_bin", Event.EMPTIED),
         ):
             rospy.Service(name, Trigger, lambda _, event=event: self._on_order(event))
         rospy.Service("locate", Trigger, self._on_locate)
@@ -166,7 +172,10 @@ class MissionOrders:
 
     def _command(self, event: Event, mission: Mission, senses: Senses) -> tuple[bool, str]:
         try:
-            mission.command(event, senses)
+            if event is Event.EMPTIED:
+                mission.empty_bin(senses)
+            else:
+                mission.command(event, senses)
         except RoombaError as error:
             return False, str(error)
         if event is Event.STOP:

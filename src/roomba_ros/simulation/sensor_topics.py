@@ -60,10 +60,11 @@ class SensorTopics:
 
     Publishes: ``scan``, ``dirt_raw`` (Float32, g under the body), ``dirt_detect`` (UInt16, grains
     per second), ``brush_current`` (Float32, A), all 10 Hz; ``imu`` and ``joint_states``, 20 Hz;
-    ``bin_level`` (Float32, 0..1), 1 Hz; and at each change, but also 5 times a second, ``bumper``,
-    ``cliff``, ``wheel_drop`` and ``ir_omni`` (UInt16, the station's beams as Create 2 codes them),
-    or once a second ``hazard_detection``, ``battery_state`` and ``dock_status``. ``/diagnostics``
-    (health of the parts) and ``noise_level`` (Float32, dB(A) at 1 m), 1 Hz.
+    ``bin_level`` (Float32, 0..1), 1 Hz and when it is emptied; and at each change, but also 5 times
+    a second, ``bumper``, ``cliff``, ``wheel_drop`` and ``ir_omni`` (UInt16, the station's beams as
+    Create 2 codes them), or once a second ``hazard_detection``, ``battery_state`` and
+    ``dock_status``. ``/diagnostics`` (health of the parts) and ``noise_level`` (Float32, dB(A) at
+    1 m), 1 Hz.
     """
 
     def __init__(self, config: SimulatedRobotConfig, simulator: Simulator, robot: str) -> None:
@@ -136,7 +137,13 @@ class SensorTopics:
             _topic("dirt_raw", Float32, 2, lambda _, seen: Float32(seen.dirt_under)),
             _topic("dirt_detect", UInt16, 2, lambda _, seen: UInt16(round(seen.grains))),
             _topic("brush_current", Float32, 2, lambda _, seen: Float32(seen.brush_current)),
-            _topic("bin_level", Float32, 20, lambda _, seen: Float32(seen.in_bin / capacity)),
+            _topic(
+                "bin_level",
+                Float32,
+                20,
+                lambda _, seen: Float32(seen.in_bin / capacity),
+                lambda seen: seen.in_bin == 0.0,
+            ),
             _topic("noise_level", Float32, 20, lambda _, __: Float32(simulator.noise_level)),
             _topic(
                 "/diagnostics",

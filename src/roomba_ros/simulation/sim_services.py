@@ -14,6 +14,7 @@ from roomba_robot.srv import (
     SpillDirtRequest,
     SpillDirtResponse,
 )
+from std_srvs.srv import Trigger, TriggerRequest, TriggerResponse
 
 from roomba.errors import HomeError
 from roomba.geometry import Pose
@@ -31,7 +32,7 @@ robot elsewhere."""
 
 class SimServices:
     """Services: ``sim/spill`` (SpillDirt), ``sim/inject_fault`` (InjectFault: what goes wrong by
-    name; ``charge`` sets what is in the battery, ``value`` of 0..1).
+    name; ``charge`` sets what is in the battery, ``value`` of 0..1), ``sim/empty_bin`` (Trigger).
     """
 
     def __init__(self, simulator: Simulator, lock: threading.Lock) -> None:
@@ -39,6 +40,7 @@ class SimServices:
         self._simulator, self._lock = simulator, lock
         rospy.Service("sim/spill", SpillDirt, self._on_spill)
         rospy.Service("sim/inject_fault", InjectFault, self._on_fault)
+        rospy.Service("sim/empty_bin", Trigger, self._on_empty_bin)
 
     def _on_spill(self, request: SpillDirtRequest) -> SpillDirtResponse:
         try:
@@ -49,6 +51,11 @@ class SimServices:
         return SpillDirtResponse(
             True, f"{request.amount:g} g lie around ({request.x:.2f}, {request.y:.2f})"
         )
+
+    def _on_empty_bin(self, _: TriggerRequest) -> TriggerResponse:
+        with self._lock:
+            taken = self._simulator.empty_bin()
+        return TriggerResponse(True, f"{taken:.1f} g were in the bin")
 
     def _on_fault(self, request: InjectFaultRequest) -> InjectFaultResponse:
         others: dict[str, Callable[[InjectFaultRequest], str]] = {

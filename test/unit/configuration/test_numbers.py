@@ -47,6 +47,7 @@ STAYS: dict[str, dict[str, str]] = {
         "_NEARLY": ROUNDING,
         "_TOUCHES": MEMORY,
         "_LENGTH": MEMORY,
+        "_REMEMBERED": MEMORY,
         **dict.fromkeys(
             (
                 *("_AHEAD", "_DIRECTIONS", "_EVERY", "_FREE_RUN", "_HORIZON", "_MOST_TRIES"),

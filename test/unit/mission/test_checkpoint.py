@@ -33,7 +33,7 @@ def begin(request: CleanRequest) -> Cleaning:
 
 def job() -> Job:
     """A clean that is under way for a minute."""
-    job = Job(DirtMap(HOME.map), MissionConfig(), SENSES)
+    job = Job(DirtMap(HOME.map), MissionConfig(), 100.0, SENSES)
     job.begin_clean(begin(CleanRequest(passes=2)), Senses(40.0, SENSES.pose))
     job.ledger.distance, job.ledger.energy, job.ledger.dirt = 12.0, 0.5, 2.0
     return job
@@ -48,7 +48,7 @@ def values(**changes: Any) -> Values:
 def test_all_that_matters_comes_back() -> None:
     found = remembered(values(outcome="COMPLETED"), begin, MissionConfig().exploring)
     assert (found.state, found.message) == (CLEANING, "a message")
-    again, now = Job(DirtMap(HOME.map), MissionConfig(), SENSES), 7.0
+    again, now = Job(DirtMap(HOME.map), MissionConfig(), 100.0, SENSES), 7.0
     take_up(found, again, Senses(now, SENSES.pose))
     assert again.cleaning is not None
     assert again.cleaning.request == CleanRequest(passes=2)

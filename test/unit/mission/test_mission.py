@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
+from itertools import pairwise
 
 import pytest
 from fixtures.missions import HOME, STATION
@@ -267,3 +269,125 @@ def test_stopped_on_its_station_it_stays_there() -> None:
     rig.command(Event.DOCK)
     assert rig.phase is Phase.DOCKED
     assert rig.mission.take_result() is None
+
+
+FULL = CONFIG.brush.bin_capacity
+
+
+def waiting_for_an_empty_bin() -> Rig:
+    rig = cleaning()
+    rig.tick(in_bin=FULL)
+    rig.tick(3, battery=DOCKED.battery, pose=STATION)
+    assert rig.phase is Phase.BIN_FULL
+    return rig
+
+
+def test_with_a_full_bin_it_returns_and_sweeps_nothing() -> None:
+    rig = cleaning()
+    cleaning_under_way = rig.mission.cleaning
+    assert cleaning_under_way is not None
+    rig.tick(in_bin=FULL)
+    assert (rig.phase, rig.mission.state.errand) == (Phase.RETURNING, Errand.CLEAN)
+    assert not rig.mission.sweeps
+    assert rig.mission.message.startswith("bin full: ")
+    swept = cleaning_under_way.coverage.swept.copy()
+    dirt = rig.mission.dirt.way.copy()
+    rig.tick(20, pose=Pose(1.6, 0.6, 0.0), grains=5.0)
+    assert (cleaning_under_way.coverage.swept == swept).all()
+    assert (rig.mission.dirt.way == dirt).all()
+
+
+def test_on_its_station_it_waits_for_an_empty_bin_and_says_so() -> None:
+    rig = waiting_for_an_empty_bin()
+    rig.tick(round(60.0 / TICK))
+    assert (rig.phase, rig.mission.state.errand) == (Phase.BIN_FULL, Errand.CLEAN)
+    assert rig.mission.message.startswith("bin full: ")
+    assert rig.mission.take_result() is None
+    rig.tick(2, in_bin=0.0)
+    assert rig.phase is Phase.UNDOCKING
+    assert rig.mission.message == ""
+
+
+def test_told_that_the_bin_is_empty_it_goes_by_its_level_sensor() -> None:
+    rig = waiting_for_an_empty_bin()
+    with pytest.raises(CommandRefusedError, match="100% full by its level sensor"):
+        rig.mission.empty_bin(rig.senses)
+    rig.tick()
+    assert rig.phase is Phase.BIN_FULL
+    # One that sticks somewhere in the middle is not worth more than the operator's word.
+    rig.senses = replace(rig.senses, in_bin=0.6 * FULL)
+    rig.tick()
+    assert rig.phase is Phase.BIN_FULL
+    rig.mission.empty_bin(rig.senses)
+    rig.tick(2)
+    assert rig.phase is Phase.UNDOCKING
+
+
+def test_carried_off_while_its_bin_is_emptied_it_goes_home_to_charge() -> None:
+    rig = waiting_for_an_empty_bin()
+    rig.tick(20, battery=AWAY.battery, pose=HERE)
+    assert rig.phase is Phase.BIN_FULL
+    rig.tick(3, in_bin=0.0)
+    assert (rig.phase, rig.mission.state.errand) == (Phase.RETURNING, Errand.CLEAN)
+
+
+def test_a_clean_with_a_full_bin_is_refused() -> None:
+    rig = Rig(replace(DOCKED, in_bin=FULL))
+    with pytest.raises(CommandRefusedError, match="room in the dust bin"):
+        rig.clean()
+    assert rig.phase is Phase.DOCKED
+    rig.tick(in_bin=0.0)
+    assert rig.clean().phase is Phase.UNDOCKING
+
+
+@pytest.mark.parametrize(
+    ("event", "phase"), [(Event.STOP, Phase.DOCKED), (Event.DOCK, Phase.DOCKED)]
+)
+def test_waiting_for_an_empty_bin_it_can_be_stopped(event: Event, phase: Phase) -> None:
+    rig = waiting_for_an_empty_bin()
+    rig.command(event)
+    rig.tick()
+    assert rig.phase is phase
+    result = rig.mission.take_result()
+    assert result is not None
+    assert result.outcome is CleanOutcome.STOPPED
+
+
+def test_killed_while_its_bin_is_full_it_still_knows() -> None:
+    """Also where the grains told, and no level sensor tells it anew."""
+    rig = waiting_for_an_empty_bin()
+    values = rig.mission.checkpoint(rig.senses)
+    assert values is not None
+    again = Rig(replace(rig.senses, in_bin=0.0))
+    again.mission.restore(values, again.senses)
+    again.tick(5)
+    assert again.phase is Phase.BIN_FULL
+    again.mission.empty_bin(again.senses)
+    again.tick(2)
+    assert again.phase is Phase.UNDOCKING
+
+
+def test_floor_that_was_swept_without_a_grain_by_an_almost_full_bin_is_not_clean() -> None:
+    rig = cleaning()
+    under_way = rig.mission.cleaning
+    assert under_way is not None
+    lanes = [(x, 0.2 + 0.1 * (row // 2)) for row, x in enumerate((0.2, 2.8, 2.8, 0.2) * 5)]
+    drive(rig, lanes, grains=900.0, in_bin=0.9 * FULL)
+    swept = under_way.coverage.swept_area
+    assert swept > 2.0
+    drive(rig, [(x, y + 1.1) for x, y in lanes], grains=0.0)
+    assert rig.phase is Phase.RETURNING
+    # But for the last metre of it.
+    assert 0.85 * swept < under_way.coverage.swept_area < 1.1 * swept
+
+
+def drive(rig: Rig, points: list[tuple[float, float]], **changes: object) -> None:
+    """Let it be at one place after the other, 5 cm apart, until it returns."""
+    rig.tick(1, **changes)
+    for (x, y), (to_x, to_y) in pairwise(points):
+        count = max(round(math.dist((x, y), (to_x, to_y)) / 0.05), 1)
+        for step in range(1, count + 1):
+            share = step / count
+            pose = Pose(x + share * (to_x - x), y + share * (to_y - y), 0.0)
+            if rig.phase is Phase.CLEANING:
+                rig.tick(pose=pose)

@@ -31,10 +31,10 @@ def use(robot: FakeRobot, lines: Iterable[str]) -> list[str]:
     return output.getvalue().splitlines()
 
 
-def test_it_is_the_last_option_and_the_others_keep_their_numbers() -> None:
+def test_it_comes_after_cleaning_and_the_others_keep_their_numbers() -> None:
     lines = use(FakeRobot(), [])
     assert lines[6:12] == [
-        "Or press 5-10 to clean:",
+        "Or press 5-11 to clean:",
         "  5. Clean",
         "  6. Pause, or go on",
         "  7. Stop, and stay",
@@ -42,6 +42,15 @@ def test_it_is_the_last_option_and_the_others_keep_their_numbers() -> None:
         "  9. What the robot does",
     ]
     assert lines[12] == "  10. Explore: make a map of a home that it does not know"
+
+
+def test_a_robot_whose_bin_is_full_is_told_that_it_was_emptied() -> None:
+    robot = FakeRobot()
+    robot.is_bin_full = True
+    lines = use(robot, ["9", "11", "9"])
+    states = [line for line in lines if line.startswith("State: ")]
+    assert ["bin full" in state for state in states] == [True, False]
+    assert "The robot knows that its dust bin is empty." in lines
 
 
 def test_an_exploration_is_told_during_and_after() -> None:

@@ -53,6 +53,8 @@ class FakeVacuum:
         self.asked: list[tuple[CleanMode, tuple[str, ...]]] = []
         """What was to be cleaned, and the rooms of it."""
         self.beeps = 0
+        self.is_bin_full = False
+        """May be set: then :meth:`vacuum` says so until the bin is emptied."""
         self._room_names = tuple(room_names)
         self._scripts = list(errands)
         self._battery = battery
@@ -123,6 +125,11 @@ class FakeVacuum:
         self._answering_errand()
         self.beeps += 1
 
+    def empty_bin(self) -> None:
+        """Go by an emptied bin."""
+        self._require_answers(5.0)
+        self.is_bin_full = False
+
     def vacuum(self, timeout: float = 5.0) -> VacuumSnapshot:
         """Return what it does now; a silent robot uses up the ``timeout`` and raises."""
         self._require_answers(timeout)
@@ -132,7 +139,7 @@ class FakeVacuum:
         return VacuumSnapshot(
             state="cleaning" if phase == "undocking" else phase,
             phase=phase,
-            message="",
+            message="bin full: empty the dust bin" if self.is_bin_full else "",
             room="" if progress is None else progress.room,
             covered=0.0 if progress is None else progress.covered,
             wanted=0.0 if progress is None else progress.wanted,

@@ -180,6 +180,10 @@ def _again(trial: Trial) -> str:
         words.append("--shut-doors")
     if trial.battery != usual.battery:
         words += ["--battery", f"{trial.battery:g}"]
+    if trial.bin is not None:
+        words += ["--bin", f"{trial.bin:g}"]
+    if trial.empties_bin_after != usual.empties_bin_after:
+        words += ["--empty-after", f"{trial.empties_bin_after:g}"]
     if trial.config is not None:
         words += ["--config", str(trial.config)]
     request = trial.request

@@ -37,6 +37,7 @@ class Figures:
     tool_width_m: float
     hits: int
     missed: tuple[MissedShare, ...]
+    bins_emptied: int = 0
 
     @property
     def is_completed(self) -> bool:
@@ -74,6 +75,7 @@ class Figures:
             "turning_rad": round(self.turning_rad, 4),
             "energy_wh": round(self.energy_wh, 4),
             "dirt_g": round(self.dirt_g, 4),
+            "bins_emptied": self.bins_emptied,
             "coverable_m2": round(self.coverable_m2, 4),
             "covered_m2": round(self.covered_m2, 4),
             "fraction": round(self.fraction, 6),

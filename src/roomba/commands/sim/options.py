@@ -19,6 +19,8 @@ from roomba.vocabulary import CleanMode, FanLevel
 PROGRAM: Final = spelled("sim")
 MOST_HOMES: Final = 100_000
 _MOST_SEED: Final = 2**63 - 1
+_LONGEST_WAIT: Final = 3600.0
+"""s"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,6 +51,8 @@ def options_of(arguments: list[str] | None) -> SimOptions:
         battery=given.battery,
         station=None if given.station is None else Pose(*given.station),
         config=given.config,
+        bin=given.bin,
+        empties_bin_after=given.empty_after,
     )
     return SimOptions(trial, given.homes, given.json, given.plot, given.bag, given.quiet)
 
@@ -156,6 +160,19 @@ def _add_circumstances(parser: argparse.ArgumentParser) -> None:
     how.add_argument(
         "--battery", type=_share, default=1.0, metavar="SHARE", help="charge at the start, 0..1"
     )
+    how.add_argument(
+        "--bin",
+        type=_amount,
+        metavar="GRAMS",
+        help="what the dust bin takes (default: as the configuration says)",
+    )
+    how.add_argument(
+        "--empty-after",
+        type=_time,
+        default=120.0,
+        metavar="S",
+        help="how long a full dust bin waits on the station to be emptied (default: 120 s)",
+    )
     how.add_argument("--config", type=Path, metavar="FILE", help="default: the shipped robot.yaml")
 
 
@@ -218,6 +235,22 @@ def _share(text: str) -> float:
     number = _number(text)
     if not 0.0 <= number <= 1.0:
         raise argparse.ArgumentTypeError(f"expected a share from 0 to 1, got {text!r}")
+    return number
+
+
+def _amount(text: str) -> float:
+    number = _number(text)
+    if not 0.0 < number < math.inf:
+        raise argparse.ArgumentTypeError(f"expected more than 0 g, got {text!r}")
+    return number
+
+
+def _time(text: str) -> float:
+    number = _number(text)
+    if not 0.0 <= number <= _LONGEST_WAIT:
+        raise argparse.ArgumentTypeError(
+            f"expected a time from 0 to {_LONGEST_WAIT:g} s, got {text!r}"
+        )
     return number
 
 

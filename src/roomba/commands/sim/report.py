@@ -28,7 +28,7 @@ def lines_of(figures: Figures) -> list[tuple[str, str]]:
         ("turning", f"{figures.turning_rad:.0f} rad"),
         ("robot time", f"{clock(figures.duration_s)}"),
         ("energy", f"{figures.energy_wh:.2f} Wh"),
-        ("dirt", f"{figures.dirt_g:.1f} g picked up"),
+        ("dirt", _dirt(figures)),
         ("hits", f"{figures.hits}"),
         ("planning", f"{figures.planning_s:.2f} s in {_count(figures.plans, 'plan')}"),
         (
@@ -101,6 +101,13 @@ def _outcome(figures: Figures) -> str:
     where = "docked" if figures.docked else "not docked"
     outcome = f"{figures.outcome}, {where}"
     return f"{outcome}: {figures.message}" if figures.message else outcome
+
+
+def _dirt(figures: Figures) -> str:
+    picked_up = f"{figures.dirt_g:.1f} g picked up"
+    if not figures.bins_emptied:
+        return picked_up
+    return f"{picked_up}, the full bin emptied {_count(figures.bins_emptied, 'time')}"
 
 
 def _coverage(figures: Figures) -> str:

@@ -89,6 +89,7 @@ class TrialSetup:
             rooms=rooms_of(self.home),
             zones=_zones_of(trial),
             longest_burst=longest_burst,
+            empties_bin_after=trial.empties_bin_after,
         )
         self.things = _things_of(trial, self.home, self.config, self.robot.context.staging)
         for x, y, radius in self.things:
@@ -124,6 +125,7 @@ class TrialSetup:
             turning_rad=record.turning,
             energy_wh=result.energy,
             dirt_g=result.dirt,
+            bins_emptied=len(robot.emptied),
             coverable_m2=float(np.count_nonzero(self.coverable)) * cell,
             covered_m2=float(np.count_nonzero(covered)) * cell,
             tool_width_m=robot.context.tool_width,
@@ -167,6 +169,9 @@ def robot_config_of(trial: Trial) -> SimulatedRobotConfig:
     config = load_simulated_config(
         trial.config or CONFIGURATION / "robot.yaml", CONFIGURATION / "simulation.yaml"
     )
+    if trial.bin is not None:
+        brush = config.brush.model_copy(update={"bin_capacity": trial.bin})
+        config = config.model_copy(update={"brush": brush})
     if trial.sensors is None:
         return config
     return config.with_sensors(trial.sensors)

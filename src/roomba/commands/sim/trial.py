@@ -29,7 +29,9 @@ class Trial:
     ``home`` is a name or a path as :func:`roomba.world.layers.layer.load_home` takes it, or RANDOM.
     ``seed`` decides about noise, where ``things`` stand, and a random home. ``sensors`` replaces
     what the configuration file ``config`` says. ``station`` is the pose of the docked robot
-    in place of the home's own. ``battery`` is its charge at the start, 0..1.
+    in place of the home's own. ``battery`` is its charge at the start, 0..1. ``bin`` is how much
+    its dust bin takes, g, in place of what the configuration says; ``empties_bin_after`` s of
+    standing with a full one it is emptied.
     """
 
     home: str = "flat"
@@ -42,6 +44,8 @@ class Trial:
     battery: float = 1.0
     station: Pose | None = None
     config: Path | None = None
+    bin: float | None = None
+    empties_bin_after: float = 120.0
 
     def with_seed(self, seed: int) -> Trial:
         """Return the same with another seed."""

@@ -18,7 +18,7 @@ from roomba.errors import RoombaError
 from roomba.mission.cleaning.request import CleanRequest
 from roomba.vocabulary import CleanMode, FanLevel
 
-VERSION: Final = 2
+VERSION: Final = 3
 Mask = NDArray[np.bool_]
 Values = dict[str, Any]
 

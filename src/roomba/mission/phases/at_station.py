@@ -59,7 +59,11 @@ class AtStation:
         return self._needed
 
     def charge(self, senses: Senses, job: Job, tool_width: float) -> PhaseStep:
-        """Stand until there is enough for the rest of the job."""
+        """Stand until there is enough for the rest of the job, and room in the dust bin."""
+        if not senses.battery.is_docked:
+            return PhaseStep(event=Event.CONTACT_LOST)
+        if job.bin.is_full:
+            return PhaseStep(event=Event.BIN_FULL)
         if self._needed is None:
             self._needed = job.needed_energy(tool_width)
         is_charged = job.ledger.is_charged(senses, self._needed)

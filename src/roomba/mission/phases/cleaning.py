@@ -44,6 +44,8 @@ class CleanPhase:
         assert cleaning is not None
         if self._job.ledger.must_go_home(senses, drives.distance_home):
             return PhaseStep(event=Event.LOW)
+        if self._job.bin.is_full:
+            return PhaseStep(event=Event.BIN_FULL)
         waiting = phases.wait_on(drives, self._retries, senses, limit)
         if waiting is not None:
             return waiting

@@ -13,6 +13,7 @@ from roomba.mission.driving.obstacles import Obstacles
 from roomba.mission.exploring.exploration import Exploration, ExploreResult
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.mission.inputs.senses import Senses
+from roomba.mission.phases.dust_bin import DustBin
 from roomba.mission.phases.energy import EnergyLedger
 from roomba.perception.swept.dirt_map import DirtMap
 
@@ -20,18 +21,21 @@ from roomba.perception.swept.dirt_map import DirtMap
 class Job:
     """``cleaning`` or ``exploration`` is under way, or both on a map that is being made, or none.
 
-    ``outcome`` is how it will be told.
+    ``outcome`` is how it will be told. ``bin`` is the dust bin, which it fills.
 
     Times are s of the robot's clock.
     """
 
-    def __init__(self, dirt: DirtMap, config: MissionConfig, senses: Senses) -> None:
-        """Begin with nothing to do."""
+    def __init__(
+        self, dirt: DirtMap, config: MissionConfig, bin_capacity: float, senses: Senses
+    ) -> None:
+        """Begin with nothing to do, and with a dust bin that takes ``bin_capacity`` g."""
         self.dirt, self._config = dirt, config
         self.cleaning: Cleaning | None = None
         self.exploration: Exploration | None = None
         self.outcome: CleanOutcome | None = None
         self.ledger = EnergyLedger(config.energy, senses)
+        self.bin = DustBin(config.bin, bin_capacity)
         self._started = senses.now
         self._is_told = False
         self._cleaned: CleanResult | None = None
@@ -73,16 +77,28 @@ class Job:
         passed = senses.now - last.now
         if not 0.0 <= passed <= LONGEST_TICK:
             self._started += passed
+        self.look_at_bin(senses)
         if self.cleaning is None:
             return
+        # A full bin takes nothing up.
+        sweeps = sweeps and not self.bin.is_full
         if not (sweeps and senses.knowledge.is_usable):
             self.cleaning.coverage.lift()
             return
         pose = senses.pose
         way = pose.distance_to(last.pose.x, last.pose.y)
         elapsed = min(max(passed, 0.0), LONGEST_TICK)
-        self.cleaning.coverage.sweep(pose.x, pose.y)
+        coverage = self.cleaning.coverage
+        swept = coverage.swept_cells
+        coverage.sweep(pose.x, pose.y)
+        self.bin.note(pose.x, pose.y, senses.grains, way, coverage.swept_cells - swept)
         self.dirt.note(pose.x, pose.y, senses.grains * elapsed, way)
+
+    def look_at_bin(self, senses: Senses) -> None:
+        """Find out whether the bin is full; what was swept in vain is not clean."""
+        cell = 0.0 if self.cleaning is None else self.cleaning.coverage.cell_area
+        if self.bin.look(senses.in_bin, cell, self.dirt.usual) and self.cleaning is not None:
+            self.cleaning.coverage.take_back(self.bin.swept_in_vain())
 
     def needed_energy(self, tool_width: float) -> float:
         """Return what the rest of it takes, Wh; of an exploration this is not known."""

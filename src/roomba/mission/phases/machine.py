@@ -29,6 +29,8 @@ class Phase(Enum):
     """Into the station, by its beams."""
     CHARGING = "charging"
     """On its station, to go on with its errand afterwards."""
+    BIN_FULL = "bin full"
+    """Stands, to go on with its errand when its dust bin was emptied."""
     PAUSED = "paused"
     """Stands until it is told to go on."""
     ERROR = "error"
@@ -68,6 +70,8 @@ class Event(Enum):
     CONTACT = "charging current"
     CONTACT_LOST = "no charging current any more"
     LOW = "the battery is just enough for the way home"
+    BIN_FULL = "the dust bin is full"
+    EMPTIED = "the dust bin was emptied"
     CHARGED = "charged enough to go on"
     FAILED = "it cannot go on by itself"
 
@@ -165,6 +169,8 @@ def _driving(state: MissionState, event: Event) -> MissionState | None:
         return MissionState(Phase.RETURNING, Errand.HOME)
     if event is Event.LOW and (phase in _WORKING or phase is Phase.UNDOCKING):
         return replace(state, phase=Phase.RETURNING)
+    if event is Event.BIN_FULL and phase in _WORKING:
+        return replace(state, phase=Phase.RETURNING)
     if event is Event.ARRIVED and phase is Phase.RETURNING:
         return replace(state, phase=Phase.DOCKING)
     if event is Event.CONTACT and phase in (Phase.RETURNING, Phase.DOCKING):
@@ -190,6 +196,10 @@ def _standing(state: MissionState, event: Event) -> MissionState | None:
             return replace(state, phase=Phase.RETURNING)
     if event is Event.CHARGED and phase is Phase.CHARGING:
         return replace(state, phase=Phase.UNDOCKING)
+    if event is Event.BIN_FULL and phase is Phase.CHARGING:
+        return replace(state, phase=Phase.BIN_FULL)
+    if event is Event.EMPTIED and phase is Phase.BIN_FULL:
+        return replace(state, phase=Phase.CHARGING)
     if event is Event.FAILED and phase is Phase.CHARGING:
         return replace(state, phase=Phase.ERROR, resumes=Phase.UNDOCKING)
     return None
@@ -225,6 +235,7 @@ VACUUM_STATES: Final[dict[Phase, str]] = {
     Phase.RETURNING: "returning",
     Phase.DOCKING: "returning",
     Phase.CHARGING: "docked",
+    Phase.BIN_FULL: "error",
     Phase.PAUSED: "paused",
     Phase.ERROR: "error",
     Phase.EMERGENCY: "error",

@@ -61,6 +61,14 @@ class CoverageMap:
         self.swept_cells += sweep(self.cells, self.place, from_x, from_y, x, y, self.radius)
         self.at = (x, y)
 
+    def take_back(self, points: NDArray[np.float64]) -> None:
+        """Let floor along a way, float64 [n, 2], m, be as if the tool had not passed over it."""
+        touched = np.zeros_like(self.cells)
+        for (x, y), (to_x, to_y) in zip(points[:-1].tolist(), points[1:].tolist(), strict=True):
+            sweep(touched, self.place, x, y, to_x, to_y, self.radius)
+        self.cells &= ~touched
+        self.count_again()
+
     def lift(self) -> None:
         """Interrupt the path: the next pose does not continue the last one."""
         self.at = None

@@ -68,6 +68,11 @@ class DirtMap:
         self.grains[:] = 0.0
         self.way[:] = 0.0
 
+    def usual(self) -> float:
+        """Return the median of what the present run counted, grains/m2; 0 before it did."""
+        seen = self.way > 0.5 * CELL
+        return float(np.median(self._density_now()[seen])) if seen.any() else 0.0
+
     def density(self, mask: Mask, frame: GridFrame) -> float:
         """Return the mean of what was learned over a mask on another grid, grains/m2; 0 if none."""
         values = self._over(np.nan_to_num(self.learned), frame)[mask]

@@ -89,7 +89,7 @@ def test_it_goes_on_docking_until_that_is_forgotten(monkeypatch: pytest.MonkeyPa
 
 
 def test_it_charges_until_there_is_enough_for_the_rest() -> None:
-    job = Job(DirtMap(HOME.map), MissionConfig(), DOCKED)
+    job = Job(DirtMap(HOME.map), MissionConfig(), 100.0, DOCKED)
     job.begin_exploration(DOCKED)
     station = at_the_station()
     full = replace(DOCKED, battery=Battery(1.0, 26.0, is_docked=True))

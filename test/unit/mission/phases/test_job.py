@@ -34,7 +34,7 @@ def obstacles() -> Obstacles:
 
 
 def cleaning_job() -> Job:
-    job = Job(DirtMap(HOME.map), CONFIG, AWAY)
+    job = Job(DirtMap(HOME.map), CONFIG, 100.0, AWAY)
     clean = Cleaning(CleanRequest(), SITE, job.dirt, CONFIG.cleaning, AWAY.pose)
     job.begin_clean(clean, AWAY)
     return job
@@ -124,7 +124,7 @@ def test_the_rest_takes_energy_by_its_floor_and_that_of_an_exploration_is_unknow
 
 
 def test_an_exploration_tells_what_is_known() -> None:
-    job = Job(DirtMap(HOME.map), CONFIG, AWAY)
+    job = Job(DirtMap(HOME.map), CONFIG, 100.0, AWAY)
     job.begin_exploration(AWAY)
     end(job, CleanOutcome.COMPLETED)
     result = job.take_exploration()

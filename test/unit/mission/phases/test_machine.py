@@ -146,6 +146,26 @@ def _as_exploration(state: MissionState | None, event: Event) -> MissionState | 
             MissionState(Phase.RETURNING, Errand.CLEAN),
         ),
         (MissionState(Phase.CHARGING, Errand.CLEAN), Event.STOP, MissionState(Phase.DOCKED)),
+        (
+            MissionState(Phase.CLEANING, Errand.CLEAN),
+            Event.BIN_FULL,
+            MissionState(Phase.RETURNING, Errand.CLEAN),
+        ),
+        (
+            MissionState(Phase.CHARGING, Errand.CLEAN),
+            Event.BIN_FULL,
+            MissionState(Phase.BIN_FULL, Errand.CLEAN),
+        ),
+        (
+            MissionState(Phase.BIN_FULL, Errand.CLEAN),
+            Event.EMPTIED,
+            MissionState(Phase.CHARGING, Errand.CLEAN),
+        ),
+        (
+            MissionState(Phase.BIN_FULL, Errand.CLEAN),
+            Event.DOCK,
+            MissionState(Phase.RETURNING, Errand.DOCK),
+        ),
         (MissionState(Phase.DOCKED), Event.DOCK, MissionState(Phase.DOCKED)),
         (MissionState(Phase.DOCKED), Event.CONTACT_LOST, MissionState(Phase.IDLE)),
         (MissionState(Phase.IDLE), Event.CONTACT, MissionState(Phase.DOCKED)),

@@ -111,7 +111,7 @@ def test_it_waits_no_longer_than_there_is_no_way() -> None:
 
 def test_with_nothing_left_the_clean_is_finished_after_another_look() -> None:
     rig = Rig()
-    job = Job(DirtMap(TWO_ROOMS.map), CONFIG, IN_THE_DEN)
+    job = Job(DirtMap(TWO_ROOMS.map), CONFIG, 100.0, IN_THE_DEN)
     here = replace(IN_THE_DEN, pose=Pose(0.8, 1.2, 0.0))
     job.begin_clean(Cleaning(CleanRequest(), SITE, job.dirt, CONFIG.cleaning, here.pose), here)
     assert job.cleaning is not None

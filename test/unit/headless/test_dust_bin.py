@@ -1,0 +1,89 @@
+"""Cleans with a dust bin that fills: what is told, and what is really so."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from fixtures.missions import FLOOR_TOO_LITTLE, STATION, TABLE, floor_clean, in_phase, until
+from fixtures.rooms import room_home
+from fixtures.worlds import NOISY
+
+from roomba.configuration.simulation import SimulatedRobotConfig
+from roomba.headless.cleaner import HeadlessMission
+from roomba.mission.cleaning.request import CleanOutcome, CleanRequest
+from roomba.mission.phases.machine import Phase
+from roomba.robot.readings import Readings
+from roomba.world.home.home import DirtSource
+
+DUST = DirtSource("dust", 1.5, 1.25, 2.2, 4.0, 0.0)
+HOME = room_home(3.0, 2.5, (TABLE,), station=STATION, sources=(DUST,))
+"""One room with dust everywhere."""
+FEW_GRAMS = 1.0
+"""What the small bin takes."""
+
+
+def with_bin(grams: float) -> SimulatedRobotConfig:
+    brush = NOISY.brush.model_copy(update={"bin_capacity": grams})
+    return NOISY.model_copy(update={"brush": brush})
+
+
+class Unmeasured(HeadlessMission):
+    """Its bin has no level sensor."""
+
+    def readings(self) -> Readings:
+        return replace(super().readings(), in_bin=0.0)
+
+
+def test_a_full_bin_is_emptied_and_the_rest_is_cleaned() -> None:
+    plain = HeadlessMission(HOME, NOISY, seed=1).clean()
+    robot = HeadlessMission(HOME, with_bin(FEW_GRAMS), seed=1)
+    record = robot.clean()
+    result = record.result
+    assert (result.outcome, result.message) == (CleanOutcome.COMPLETED, "")
+    assert robot.is_home
+    assert len(robot.emptied) >= 2
+    assert min(robot.emptied) >= 0.97 * FEW_GRAMS
+    # What it tells is what was really picked up.
+    really = sum(robot.emptied) + robot.seen.in_bin
+    assert result.dirt == pytest.approx(really, rel=1e-6)
+    assert result.dirt == pytest.approx(plain.result.dirt, rel=0.1)
+    assert floor_clean(robot) >= FLOOR_TOO_LITTLE
+    ways_home = len(robot.emptied) * 6.0
+    assert result.distance < 1.15 * plain.result.distance + ways_home
+
+
+def test_what_is_told_as_clean_was_swept_with_room_in_the_bin() -> None:
+    robot = HeadlessMission(HOME, with_bin(FEW_GRAMS), seed=2, empties_bin_after=1e6)
+    robot.mission.clean(CleanRequest(), robot.senses())
+    until(robot, in_phase(robot, Phase.BIN_FULL), 1200.0)
+    cleaning = robot.mission.cleaning
+    assert cleaning is not None
+    told = cleaning.coverage.swept & cleaning.coverage.wanted
+    assert 0.05 < cleaning.coverage.fraction < 0.95
+    assert np.count_nonzero(told & ~robot.truth.swept) < 0.01 * np.count_nonzero(told)
+    robot.simulator.empty_bin()
+    robot.look()
+    until(robot, in_phase(robot, Phase.CLEANING), 60.0)
+
+
+def test_it_is_the_same_with_and_without_bursts() -> None:
+    runs = []
+    for longest in (0, 100):
+        robot = HeadlessMission(HOME, with_bin(FEW_GRAMS), seed=3, longest_burst=longest)
+        record = robot.clean()
+        told = round(record.result.dirt, 6), record.result.covered, record.result.missed
+        runs.append((told, robot.seen.pose, robot.seen.time, robot.emptied))
+    assert runs[0] == runs[1]
+
+
+def test_without_a_level_sensor_the_grains_tell_and_what_was_swept_in_vain_is_swept_again() -> None:
+    robot = Unmeasured(HOME, with_bin(1.9), seed=1, longest_burst=0)
+    robot.mission.clean(CleanRequest(), robot.senses())
+    until(robot, in_phase(robot, Phase.BIN_FULL), 1200.0)
+    assert robot.seen.in_bin == pytest.approx(1.9, rel=1e-3)
+    cleaning = robot.mission.cleaning
+    assert cleaning is not None
+    told = cleaning.coverage.swept & cleaning.coverage.wanted
+    assert np.count_nonzero(told & ~robot.truth.swept) < 0.02 * np.count_nonzero(told)
