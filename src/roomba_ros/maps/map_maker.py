@@ -28,7 +28,8 @@ class MapMaker:
     """Begins a map where the robot stands, lets it grow, and makes it whole.
 
     ``station`` is where the robot stood on its station, map frame, once it did; ``is_docked`` is
-    whether it does now, as the last :meth:`note_station` said.
+    whether it does now, as the last :meth:`note_station` said. ``has_dock`` is whether the robot
+    ever told of a dock: the station of one that does not is where its map began.
     """
 
     def __init__(
@@ -48,6 +49,7 @@ class MapMaker:
         self._whole: OccupancyMap | None = None
         self._finishes = False
         self.is_docked = False
+        self.has_dock = False
         self.station: Pose | None = None
         self._station_from_start: Pose | None = None
 
@@ -126,6 +128,8 @@ class MapMaker:
         if mapper is None or self._finishes:
             return
         self._finishes = True
+        if self.station is None and not self.has_dock:
+            self.station, self._station_from_start = mapper.start, Pose()
         # Its place is told on, by the wheels, but nothing is added any more.
         self._place.is_mapping_held = True
         self._background.do("the map does not become whole", lambda: self._finish(mapper))

@@ -79,7 +79,7 @@ class MapServices:
         with self._own.lock:
             if not self._maker.is_growing:
                 raise MapStoreError("expected a map that is being made, got none")
-            if self._maker.station is None:
+            if self._maker.station is None and self._maker.has_dock:
                 raise MapStoreError(NO_STATION)
             self._maker.finish()
         return "the map becomes whole"

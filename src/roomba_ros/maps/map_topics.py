@@ -161,4 +161,4 @@ class MapTopics:
         maker.keep(now)
 
     def _on_dock(self, is_docked: bool) -> None:
-        self._is_docked = is_docked
+        self._is_docked, self._maker.has_dock = is_docked, True

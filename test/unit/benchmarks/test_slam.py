@@ -7,7 +7,7 @@ import math
 from pathlib import Path
 
 import pytest
-from fixtures.made_logs import BEGAN, drive, pose_at, write_bag, write_bag_2, write_carmen
+from fixtures.made_logs import BEGAN, drive, poor, pose_at, write_bag, write_bag_2, write_carmen
 from PIL import Image
 
 from benchmarks import __main__ as command
@@ -24,7 +24,7 @@ SECONDS = 12.0
 def logs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with a packed bag that has relations, a log without, a broken one, other files."""
     folder = tmp_path_factory.mktemp("logs")
-    items = drive(SECONDS)
+    items = poor(drive(SECONDS))
     plain = write_bag(folder / "intel_made.bag", items)
     (folder / "intel_made.bag.xz").write_bytes(lzma.compress(plain.read_bytes(), preset=0))
     plain.unlink()
@@ -78,8 +78,8 @@ def test_errors_are_those_of_the_relations_beside_published_ones(
     assert mean.aim == 0.023
     peers = {peer.name: peer.value for peer in mean.peers}
     assert peers["Cartographer 2016"] == 0.0229
-    # The odometry of the made drive is exact.
-    assert peers["odometry alone"] == pytest.approx(0.0, abs=1e-3)
+    assert peers["odometry alone"] is not None
+    assert peers["odometry alone"] > 3.0 * mean.value
     deviation = rows["translation error, deviation, of 3 relations"]
     assert [peer.name for peer in deviation.peers][1:] == [
         "gmapping, 30 particles",

@@ -12,9 +12,9 @@ import pytest
 from fixtures.made_logs import (
     BEGAN,
     LASER,
-    Item,
     changed,
     drive,
+    poor,
     pose_at,
     write_bag,
     write_bag_2,
@@ -23,7 +23,6 @@ from fixtures.made_logs import (
 
 from roomba.commands.map.drive.command import main
 from roomba.files.occupancy_map import load_map
-from roomba.geometry import Pose
 
 SECONDS = 20.0
 
@@ -33,17 +32,6 @@ def off(rows: np.ndarray[tuple[int, int], np.dtype[np.float64]]) -> float:
     begin = pose_at(0.0).inverse()
     true = [begin.compose(pose_at(stamp - BEGAN)) for stamp in rows[:, 0].tolist()]
     return float(max(np.hypot(rows[:, 1] - [p.x for p in true], rows[:, 2] - [p.y for p in true])))
-
-
-def poor(items: list[Item]) -> list[Item]:
-    """Return a drive whose odometry tells 5 % too much of each way and turns too little."""
-
-    def scaled(number: int, item: Item) -> Item:
-        assert isinstance(item.value, Pose)
-        pose = item.value
-        return replace(item, value=Pose(1.05 * pose.x, 1.05 * pose.y, 0.97 * pose.theta))
-
-    return changed(items, "/odom", scaled)
 
 
 def test_all_that_is_asked_for_is_written(
