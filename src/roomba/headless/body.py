@@ -1,4 +1,4 @@
-"""The simulated body of a headless robot: it tells what sensors say, and does what is wanted."""
+"""The simulated body of a headless robot: its sensors and its drive."""
 
 from __future__ import annotations
 
@@ -15,9 +15,10 @@ from roomba.world.simulator import Observation, Simulator
 
 
 class SimulatedBody:
-    """One robot's body in one home; ``seen`` is what is so, true and sensed, after the last tick.
+    """One robot's body in one home.
 
-    ``scans`` is how many scans there were by then.
+    ``seen`` is the observation after the last tick, with the truth and what the sensors measured;
+    ``scans`` is the number of scans by then.
     """
 
     def __init__(
@@ -51,13 +52,13 @@ class SimulatedBody:
         return ScanReading(self.seen.time, self.simulator.ranges, self.lidar)
 
     def act(self, command: Command) -> None:
-        """Do what is wanted for a tick."""
+        """Carry out a command for one tick."""
         self._set_power(command.brush, command.fan)
         timing = self._timing
         self.simulator.advance(command.twist, timing.world_step, timing.steps_per_tick)
 
     def _set_power(self, brush: float | None, fan: float | None) -> None:
-        """Set the duty of brush and fan when another one is wanted; None: their usual one."""
+        """Set the duties of brush and fan, 0..1, where they change; None: the configured one."""
         if (brush, fan) == self._wanted:
             return
         self._wanted = brush, fan

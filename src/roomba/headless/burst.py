@@ -1,4 +1,4 @@
-"""Letting steady ticks pass at once: a compiled burst with the arrays of body, brain and truth."""
+"""Bursts: steady ticks computed at once by compiled code, on arrays of body, brain and truth."""
 
 from __future__ import annotations
 
@@ -33,18 +33,18 @@ from roomba.world.home.dirt import MICROGRAMS_PER_GRAM
 Floats = NDArray[np.float64]
 
 LONGEST_BURST: Final = 100
-"""Ticks: five seconds; about as often the mission looks at its battery anyway."""
+"""Ticks, five seconds: about the period in which the mission checks its battery."""
 _EARLY: Final = 1e-6
-"""s; so much before a time the classes have their turn: to the last bit both tell time alike."""
+"""s; a burst ends so much before a time that the classes decide by: rounding changes nothing."""
 _HARDLY_LESS: Final = 1.0 - 1e-9
-"""Times the energy, and the dust, at which battery and bin are looked at, for the same reason."""
+"""Factor on the energy, and on the dust, that the classes decide by, for the same reason."""
 
 
 class Burst:
-    """Lets a robot's ticks pass, as long as it is known what they do; ``longest`` at once."""
+    """Computes a robot's ticks for as long as they are steady, at most ``longest`` in one burst."""
 
     def __init__(self, body: SimulatedBody, brain: Brain, truth: CoverageMap, longest: int) -> None:
-        """Take the parts whose arrays it works on, and those that never change place."""
+        """Take the robot's parts; the arrays that are never replaced are taken once."""
         self._body, self._brain, self._truth = body, brain, truth
         self._world = World(*body.simulator.compiled)
         self._rows = np.empty((longest, PASSED))
@@ -58,7 +58,7 @@ class Burst:
         self._nowhere = _nowhere(brain)
 
     def run(self) -> Floats:
-        """Let ticks pass until something comes up; return their rows, float64 [ticks, PASSED]."""
+        """Compute ticks until one is not steady; return their rows, float64 [ticks, PASSED]."""
         brain = self._brain
         if self._has_ended or not self._may_run:
             # What ended the last one is most likely there still.
@@ -96,7 +96,7 @@ class Burst:
     # ---------------------------------------------------------------- taking over
 
     def _begin(self, steady: Steady) -> None:
-        """Take over from the classes."""
+        """Copy the state of the classes into the burst."""
         brain, row = self._brain, self._burst[0]
         mission, last = brain.mission, brain.mission.last
         until = (
@@ -173,7 +173,7 @@ class Burst:
     # ---------------------------------------------------------------- handing back
 
     def _end(self, rows: Floats, places: Floats) -> None:
-        """Let the classes go on; ticks began at ``places``, float64 [n, 2], m."""
+        """Hand the state back to the classes; ticks began at ``places``, float64 [n, 2], m."""
         brain, row = self._brain, self._burst[0]
         mission = brain.mission
         self._tell_floor()
@@ -189,7 +189,7 @@ class Burst:
         brain.use_newer_map()
 
     def _tell_floor(self) -> None:
-        """Tell what was swept."""
+        """Hand back what was swept."""
         row, cleaning = self._burst[0], self._brain.mission.cleaning
         if row["sweeps"] and cleaning is not None:
             x, y = row["swept_at"].tolist()
@@ -200,7 +200,7 @@ class Burst:
         self._truth.at = x, y
 
     def _finish_scan(self, now: float, rows: Floats) -> None:
-        """Do what is left of the newest scan; ``rows`` are the ticks that passed."""
+        """Process the rest of the newest scan; ``rows`` are the ticks that passed."""
         brain, scan = self._brain, None
         if self._burst[0]["is_left"]:
             scan = replace(self._body.newest_scan(), stamp=now)

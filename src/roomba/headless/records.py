@@ -1,4 +1,4 @@
-"""What headless robots did."""
+"""Records of headless runs: cleans and explorations."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is kept of each tick that passed, a row for each."""
+"""The record of a headless run: a row of numbers for each tick."""
 
 from __future__ import annotations
 

@@ -41,7 +41,7 @@ _BESIDE_SURFACES: Final = 0.3
 
 
 class Brain:
-    """One robot's. It goes by the map that is given to it, or by one that it makes.
+    """The brain of one robot, on a map that it is given or on one that it makes.
 
     Tick it 20 times a second (``robot.timing.tick``). Errands are given to its ``mission``, with
     :meth:`senses`; there is one as soon as there is a map: with the first scan at the latest.
@@ -191,7 +191,7 @@ class Brain:
 
     @mission.setter
     def mission(self, mission: Mission) -> None:
-        """Go on with another one, that has the same map and sees the same things."""
+        """Replace the mission by another one with the same map and the same layer of things."""
         self._mission = mission
 
     @property
@@ -230,10 +230,10 @@ class Brain:
             self._mission.max_speed = max_speed
 
     def told(self, readings: Readings) -> None:
-        """Take what the body tells now, when nothing else is to be done for it.
+        """Take readings without acting on them.
 
-        As after steady ticks that compiled code did with the parts' own arrays, or when no time
-        passed.
+        This is for steady ticks that compiled code computed on the parts' own arrays, and for
+        readings after which no time passed.
         """
         self._readings = readings
 

@@ -1,4 +1,4 @@
-"""What a brain wants of its body."""
+"""The command of a brain to its body."""
 
 from __future__ import annotations
 

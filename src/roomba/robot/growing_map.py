@@ -33,7 +33,7 @@ class GrowingMap:
         return self._looked_at + self._period if is_news else math.inf
 
     def newer(self, now: float, mission: Mission) -> OccupancyMap | None:
-        """Return the map as it is now, if that makes a difference to the mission; s."""
+        """Return the map at ``now``, s, if it makes a difference to the mission, else None."""
         version = self._mapper.version
         if self.is_whole:
             return None
@@ -55,7 +55,7 @@ class GrowingMap:
         return self._mapper.finish()
 
     def _around_goal(self, mission: Mission) -> OccupancyMap:
-        """Return the map around the frontier that it is on its way to: all that it asks for."""
+        """Return the map around the mission's frontier, which is all that it asks for."""
         exploration = mission.exploration
         goal = None if exploration is None else exploration.goal
         x, y = mission.last_place if goal is None else goal.middle

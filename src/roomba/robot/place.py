@@ -1,4 +1,4 @@
-"""Keeping the robot's place, on a map that is known or one that grows."""
+"""Where the robot is: a localizer on a known map, or a mapper on the one that it makes."""
 
 from __future__ import annotations
 
@@ -40,9 +40,9 @@ class Place(Protocol):
 
 
 class PlaceKeeper:
-    """Tells a place what the body tells: all motion, and of the scans one each ``scan_period``.
+    """Passes readings on: all motion, and a scan in each ``scan_period``.
 
-    ``seen_at`` is when the last one was that was looked at, s.
+    ``seen_at`` is the stamp of the last scan that was passed on, s.
     """
 
     def __init__(self, place: Place, timing: TimingConfig) -> None:
@@ -52,7 +52,7 @@ class PlaceKeeper:
         self.seen_at = -math.inf
 
     def follow(self, readings: Readings) -> ScanReading | None:
-        """Go on to where the robot is now; return the scan that was looked at, if there was one."""
+        """Take the readings of a tick; return the scan that was passed on, if there was one."""
         self.place.lift(readings.is_lifted)
         self.place.move(readings.time, readings.odometry, readings.turning)
         scan = readings.scan

@@ -1,4 +1,4 @@
-"""The last word on what the drive is told: limits, and hazards before each command."""
+"""The last stage before the drive: speed limits and hazards."""
 
 from __future__ import annotations
 

@@ -11,13 +11,13 @@ Floats = NDArray[np.float64]
 
 
 class LidarBeams(NamedTuple):
-    """A lidar as kernels know it, and room for the ends of its beams.
+    """A lidar as kernels know it, with work arrays for the ends of its beams.
 
     ``directions`` is float64 [beams, 2], cosine and sine in its own frame; ``mount`` [3] its x, y,
     theta in the robot's frame; ``first_angle`` that of beam 0 in the lidar's and ``step`` from one
     beam to the next, rad; ranges count from ``nearest`` to ``farthest``, m. ``ends`` is
-    [beams, 4], as of :class:`roomba.perception.matching.scan_view.ScanView`; in ``lanes``
-    [JUDGE_LANES, beams] kernels work.
+    [beams, 4], as of :class:`roomba.perception.matching.scan_view.ScanView`; ``lanes``
+    [JUDGE_LANES, beams] is a work array.
     """
 
     directions: Floats

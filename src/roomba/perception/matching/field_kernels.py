@@ -1,4 +1,4 @@
-"""Compiled looks into a surface field: distances, their slopes, and how far a ray goes."""
+"""Compiled lookups in a surface field: distance, gradient, and the length of a ray."""
 
 from __future__ import annotations
 
@@ -26,7 +26,10 @@ _LEAST_STEP: Final = 0.02
 
 @njit(cache=True, nogil=True, error_model="numpy", inline="always")
 def look(field: Field, place: Place, x: float, y: float) -> tuple[float, float, float]:
-    """Return the distance to the nearest surface at a point, m, and its slopes along x and y."""
+    """Return the distance to the nearest surface at a point, m, and its gradient along x and y.
+
+    Outside of the map that is OFF_MAP, 0, 0.
+    """
     inverse = 1.0 / place[2]
     u, v = (x - place[0]) * inverse, (y - place[1]) * inverse
     rows, columns = field.shape
@@ -48,7 +51,7 @@ def expected_range(
 ) -> float:
     """Return how far a beam from a point goes before it meets a surface, m, at most ``most``.
 
-    It strides by the distance to the nearest surface (sphere tracing, Hart 1996).
+    The beam advances by the distance to the nearest surface (sphere tracing, Hart 1996).
     """
     way = 0.0
     while way < most:

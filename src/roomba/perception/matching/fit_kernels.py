@@ -18,7 +18,7 @@ AGREEING: Final = 1
 SHORT: Final = 2
 THROUGH: Final = 3
 EVIDENCE: Final = 4
-"""Places in the ``fit`` that :func:`judge` fills."""
+"""Indices into the ``fit`` that :func:`judge` fills."""
 
 _SLACK: Final = 0.06
 _SLACK_SHARE: Final = 0.01
@@ -30,17 +30,18 @@ _CHANCE: Final = 0.03
 _BEHIND: Final = 0.01
 """The same of a beam that goes through what the map says is solid."""
 JUDGE_LANES: Final = 8
-"""Rows of what :func:`judge` works in, a ray beside the other."""
+"""Rows of the work array of :func:`judge`; each column is a ray."""
 _ALONG: Final = 0
 _ACROSS: Final = 1
 _MOST: Final = 2
 _WAY: Final = 3
 _DISTANCE: Final = 4
 _NUMBER: Final = 5
-"""Of rays under way: direction, length, way so far, m, distance to surfaces there, m, number."""
+"""Rows of rays that are traced: direction, length, way so far, m, distance to surfaces there, m,
+and the number of the beam."""
 _SLACK_THERE: Final = 6
 _IS_THROUGH: Final = 7
-"""By that number: how far off the beam may end, m, and whether it met a surface too early."""
+"""Rows of beams, by number: how far off the beam may end, m, and whether it met a surface early."""
 _TOUCH: Final = 0.005
 """m; a ray that is this near to a surface has met it."""
 _LEAST_STEP: Final = 0.02
@@ -61,12 +62,12 @@ def judge(
     fit: Floats,
     lanes: Floats,
 ) -> None:
-    """Fill ``fit`` [5] with what each ``stride``-th beam, measured at ``pose`` [3], says of it.
+    """Fill ``fit`` [5] with how well each ``stride``-th beam fits ``pose`` [3].
 
-    How many were looked at; how many of these end where the map has a surface; how many before
-    (something that the map does not know) and how many behind (through something that it knows);
-    and the logarithm of their likelihood, as evidence to compare poses by. It works in ``lanes``
-    [JUDGE_LANES, n], one for each such beam.
+    The numbers are: the beams that were looked at; those of them that end where the map has a
+    surface; those that end before one (at something that the map does not show) and those that end
+    behind one (through something that it shows); and the logarithm of their likelihood, as evidence
+    to compare poses by. ``lanes`` [JUDGE_LANES, n] is the work array, a column for each such beam.
     """
     cosine, sine = math.cos(pose[2]), math.sin(pose[2])
     x = pose[0] + cosine * mount[0] - sine * mount[1]
@@ -104,10 +105,10 @@ def judge(
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _trace(field: Field, place: Place, x: float, y: float, lanes: Floats, rays: int) -> None:
-    """Mark those of the rays from a point that meet a surface before their end.
+    """Mark the rays from a point, m, that meet a surface before their end.
 
-    They stride by the distance to the nearest surface (sphere tracing, Hart 1996), all rays at
-    once, until each has met one or is at its end.
+    All rays advance together by the distance to the nearest surface (sphere tracing, Hart 1996),
+    until each has met one or is at its end.
     """
     rows, columns = field.shape
     if rows < 2 or columns < 2:
@@ -141,7 +142,7 @@ def _stride(
     lanes: Floats,
     rays: int,
 ) -> None:
-    """Let each ray go on by the distance that it is away from surfaces, and keep that."""
+    """Advance each ray by its distance to the nearest surface, m, and keep that distance."""
     row_size, last_column, last_row = np.int32(columns), columns - 1.0, rows - 1.0
     per_metre = 1.0 / place[2]
     from_column, from_row = (x - place[0]) * per_metre, (y - place[1]) * per_metre

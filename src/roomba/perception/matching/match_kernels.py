@@ -1,8 +1,8 @@
-"""Compiled matching of a scan to a surface field, and how well a scan fits a pose.
+"""Compiled matching of a scan to a surface field.
 
-A pose is found by Gauss and Newton's method: the ends of the beams should lie on surfaces. Ends
-that lie off by much more than a scale lose weight (Geman and McClure), so that things that the map
-does not show hardly matter.
+The pose is found by the Gauss-Newton method: the ends of the beams should lie on surfaces. Ends
+that are farther off than a scale lose weight (the robust kernel of Geman and McClure), so that
+things that the map does not show hardly matter.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ _SETTLED: Final = 1e-4
 _MORE_ROUNDS: Final = 4
 """Rounds after those with scales of their own, at most."""
 MATCH_WORK: Final = 10
-"""Rows of what :func:`match_in` works in."""
+"""Rows of the work array of :func:`match_in`."""
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -72,8 +72,8 @@ def add_beams(
     """Add what the beams say to the upper half of ``information`` [3, 3] and ``gradient`` [3].
 
     ``lanes`` [2 or more, n] has x and y of their ends. A beam whose end lies on a surface weighs
-    ``certainty``, 1/m2, one that is ``scale`` m off a quarter of that. Does what
-    :func:`roomba.perception.matching.field_kernels.look` does, for many beams at a time.
+    ``certainty``, 1/m2, one that is ``scale`` m off a quarter of that. The field is looked up
+    as by :func:`roomba.perception.matching.field_kernels.look`, for many beams at a time.
     """
     rows, columns = field.shape
     if rows < 2 or columns < 2:
@@ -125,9 +125,10 @@ def add_beams(
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def invert(matrix: Floats, out: Floats) -> bool:
-    """Fill ``out`` with the inverse of a symmetric positive matrix; tell if there is one.
+    """Fill ``out`` with the inverse of a symmetric positive definite matrix.
 
-    Both are [3, 3]; of ``matrix`` the upper half is read.
+    Both are [3, 3]; of ``matrix`` the upper half is read. Return False for a matrix that is not
+    positive definite; ``out`` is left as it was.
     """
     a, b, c = matrix[0, 0], matrix[0, 1], matrix[0, 2]
     d, e, f = matrix[1, 1], matrix[1, 2], matrix[2, 2]
@@ -184,7 +185,10 @@ def match_in(
     work: Floats,
     lanes: Floats,
 ) -> int:
-    """Do the same as :func:`match` in the caller's room, [MATCH_WORK, 3] and [2 or more, n]."""
+    """Do the same as :func:`match`, in the caller's ``work`` [MATCH_WORK, 3] and ``lanes`` [2, n].
+
+    ``lanes`` may have more rows. Nothing is allocated.
+    """
     of_prior, information, solved = work[0:3], work[3:6], work[6:9]
     gradient = work[9]
     if not invert(covariance, of_prior):

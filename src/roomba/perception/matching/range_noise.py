@@ -35,7 +35,7 @@ _LEAST: Final = 0.001
 
 
 class RangeNoise:
-    """Keeps what the differences between neighbouring beams were."""
+    """The standard deviation of a lidar's ranges, from the differences of neighbouring beams."""
 
     def __init__(self) -> None:
         """Begin without a sample."""

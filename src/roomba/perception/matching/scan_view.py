@@ -63,7 +63,7 @@ class LidarModel:
         return LidarModel(np.arange(beams) * (2.0 * np.pi / beams), nearest, farthest)
 
     def arrays(self) -> LidarBeams:
-        """Return it as kernels know it, with room of its own for the ends of beams."""
+        """Return the lidar as kernels know it, with work arrays of its own."""
         ends, lanes = np.empty((self.beams, 4)), np.empty((JUDGE_LANES, self.beams))
         return LidarBeams(
             self._directions,
@@ -97,7 +97,7 @@ class ScanView:
         return len(self.ends)
 
     def fit(self, field: SurfaceField, pose: NDArray[np.float64], stride: int = 1) -> Fit:
-        """Return how well it fits a pose, float64 [3]; with a stride only some beams are asked."""
+        """Return how well the scan fits a pose, float64 [3], by each ``stride``-th of its beams."""
         counts, lanes = np.empty(5), np.empty((JUDGE_LANES, len(self.ends)))
         judge(
             field.values,

@@ -1,4 +1,4 @@
-"""Links between submaps: where one lies beside another that was seen before, by matching them."""
+"""Links between submaps: the pose of one in the frame of an earlier one, found by matching."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ _TURN_PER_METRE: Final = 0.15
 _LIKELY: Final = 0.45
 """Mean likelihood of points, 0..1, from which a pose of a wide window is looked at closely."""
 _HARDLY: Final = 0.3
-"""m; standard deviation of a link over which no scan led."""
+"""m; a link with a larger standard deviation was made without a scan that confirmed it."""
 _KEPT: Final = 40
 """Submaps whose grids of likelihoods are kept: some 2 MB each."""
 
@@ -60,7 +60,7 @@ class Linker:
         self._in_plane = in_plane(deviation)
 
     def forget(self, submap: int) -> None:
-        """The submap of this number is another one from now on."""
+        """Drop what is kept of a submap whose points changed."""
         self._matchers.pop(submap, None)
 
     def links_to(
@@ -81,7 +81,10 @@ class Linker:
     def _link(
         self, parent: int, child: int, submaps: list[Submap], poses: Floats, way: float
     ) -> Link | None:
-        """Return the link between two submaps that links of ``way`` m in all join already."""
+        """Return the link between two submaps, or None where they do not match well enough.
+
+        ``way`` is the length of the shortest chain of links between them, m: over it they drifted.
+        """
         cloud = submaps[child].cloud
         if len(cloud) < self._config.link_points or not len(submaps[parent].cloud):
             return None
@@ -104,7 +107,7 @@ class Linker:
     def _found(
         self, parent: int, there: Floats, cloud: Floats, thought: Floats, window: float
     ) -> Floats | None:
-        """Return about where points lie in a submap, [3], by a search of a wide window."""
+        """Return roughly the pose [3] of points in a submap, found in a wide window, or None."""
         if not is_in_reach(there):
             return None
         matcher = self._matchers.pop(parent, None) or CorrelativeMatcher(there)
@@ -116,7 +119,7 @@ class Linker:
         return None if found is None else found.pose
 
     def _match(self, cloud: Floats, start: Floats) -> Match | None:
-        """Match from far off, then exactly."""
+        """Match coarsely, then finely; None where a pose cannot be told."""
         deviation = self._config.point_deviation
         loose = np.diag([1.0, 1.0, 0.3])
         coarse = self._grid.match(
@@ -135,7 +138,7 @@ class Linker:
         return enough and match.met >= config.link_met and match.close >= config.link_close
 
     def _information(self, match: Match) -> Floats:
-        """Return how sure a link is: no surer than points of neighbouring beams allow."""
+        """Return the information matrix of a link, limited since neighbouring beams err alike."""
         config = self._config
         least = np.diag([config.least_link_deviation] * 2 + [config.least_link_turn]) ** 2
         information = np.empty((3, 3))
@@ -160,9 +163,9 @@ def _ways(submap: int, poses: Floats, links: list[Link], drift: float) -> Floats
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _shorten(joined: NDArray[np.int64], lengths: Floats, ways: Floats) -> None:
-    """Make ``ways`` [n] as short as links between two of them, int64 [m, 2], allow.
+    """Shorten ``ways`` [n] along links, int64 [m, 2], until none is shorter (Bellman-Ford).
 
-    Link by link until nothing changes (Bellman and Ford): chains of links are short.
+    Chains of links are short, so that few rounds are needed.
     """
     has_changed = True
     while has_changed:

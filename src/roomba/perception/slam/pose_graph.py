@@ -1,6 +1,6 @@
 """The pose graph: the poses that agree best, in least squares, with measurements between them.
 
-Gauss and Newton's method on the sum of squared, weighted errors (Lu and Milios, "Globally
+The Gauss-Newton method on the sum of squared, weighted errors (Lu and Milios, "Globally
 consistent range scan alignment", 1997). The first pose stays where it is. Homes have some dozens
 of submaps: few normal equations are solved as a dense matrix, many as a sparse one.
 """
@@ -85,8 +85,8 @@ def inverse(pose: Floats) -> Floats:
 def optimised(poses: Floats, links: list[Link], known: int = 0) -> Floats:
     """Return ``poses``, float64 [n, 3], moved so that they agree best with the links.
 
-    With the first ``known`` ones they agree as well as they can already. Raises ValueError for a
-    link between poses that do not exist.
+    For the first ``known`` links they were optimised before. Raises ValueError for a link between
+    poses that do not exist.
     """
     if len(links) <= known:
         return poses.copy()

@@ -27,10 +27,10 @@ class Submap:
     way: float
     keyframes: list[Keyframe] = field(default_factory=list)
     cloud: Floats = field(default_factory=lambda: np.zeros((0, 4)))
-    """Points of all keyframes in the submap's frame, once it is whole."""
+    """float64 [n, 4]; points of all keyframes in the submap's frame, once it is closed."""
 
     def close(self, most: int) -> None:
-        """It is whole: gather ``most`` of its points with normals, or fewer."""
+        """Close the submap: keep at most ``most`` of its points with normals as its cloud."""
         clouds = [moved(frame.points, frame.pose) for frame in self.keyframes]
         points = np.concatenate(clouds) if clouds else np.zeros((0, 4))
         points = points[np.any(points[:, 2:] != 0.0, axis=1)]
@@ -44,7 +44,7 @@ class Submap:
 
 
 def moved(points: NDArray[np.float32] | Floats, pose: Floats) -> Floats:
-    """Return points with normals, [n, 4], seen from ``pose`` [3], in the frame of that pose."""
+    """Return points with normals, [n, 4], moved by ``pose`` [3] into the frame it is given in."""
     cosine, sine = np.cos(pose[2]), np.sin(pose[2])
     turn = np.array([[cosine, sine], [-sine, cosine]])
     wide = np.asarray(points, np.float64)
