@@ -20,11 +20,11 @@ from roomba.headless.burst_kernels import (
     World,
     run,
 )
-from roomba.headless.rows import BELIEVED, PASSED, RECKONED, TIME
+from roomba.headless.rows import BELIEVED, PASSED
 from roomba.mission.driving.progress_kernels import PROGRESS
 from roomba.mission.steady import Steady
 from roomba.perception.localization.recent_sight import RecentSight
-from roomba.perception.slam.follow_kernels import FOLLOWER
+from roomba.perception.slam.scan_follower import not_following
 from roomba.perception.swept.coverage_map import CoverageMap
 from roomba.robot.brain import Brain
 from roomba.robot.place import least_apart
@@ -56,6 +56,7 @@ class Burst:
         row["bin_capacity"] = brain.robot.brush.bin_capacity * MICROGRAMS_PER_GRAM
         self._has_ended = False
         self._nowhere = _nowhere(brain)
+        self._not_following = not_following(brain.beams_of(body.lidar))
 
     def run(self) -> Floats:
         """Compute ticks until one is not steady; return their rows, float64 [ticks, PASSED]."""
@@ -83,7 +84,7 @@ class Burst:
         is_left = bool(self._burst[0]["is_left"])
         self._has_ended = 0 < ticks < len(self._rows) and not is_left
         if ticks:
-            self._end(rows, np.vstack((start, rows[:-1, BELIEVED][:, :2])))
+            self._end(np.vstack((start, rows[:-1, BELIEVED][:, :2])))
             # A scan that was kept may have moved the map below it.
             believed = brain.pose
             rows[-1, BELIEVED] = believed.x, believed.y, believed.theta
@@ -125,23 +126,25 @@ class Burst:
         if brain.mapper is not None:
             at = brain.mapper.at_scan
             row["at_scan"] = at.x, at.y, at.theta
+            row["submap"] = brain.mapper.submap_pose
         row["last"], row["way"] = (last.now, last.pose.x, last.pose.y), 0.0
         row["sweeps"] = mission.sweeps
         cleaning = mission.cleaning
         row["swept_at"] = _place_of(None if cleaning is None else cleaning.coverage.at)
         row["true_at"] = _place_of(self._truth.at)
         row["swept"] = row["truth_swept"] = 0
-        row["is_left"] = False
+        row["is_left"] = row["is_followed"] = False
 
     def _place(self) -> PlaceParts:
         brain, beams = self._brain, self._brain.beams_of(self._body.lidar)
+        sights, following = _NO_SIGHTS, self._not_following
         if brain.localizer is not None:
-            at = brain.localizer
-            sights = at.sights(self._body.lidar.beams)
-            return PlaceParts(at.belief, at.numbers, beams, sights, _NO_FOLLOWER)
-        assert brain.mapper is not None
-        mapper = brain.mapper
-        return PlaceParts(mapper.belief, mapper.numbers, beams, _NO_SIGHTS, mapper.follower)
+            sights = brain.localizer.sights(self._body.lidar.beams)
+        if brain.mapper is not None:
+            following = brain.mapper.following
+        place = brain.localizer or brain.mapper
+        assert place is not None
+        return PlaceParts(place.belief, place.numbers, place.path, beams, sights, following)
 
     def _sight(self) -> Sight:
         things = self._brain.things
@@ -172,7 +175,7 @@ class Burst:
 
     # ---------------------------------------------------------------- handing back
 
-    def _end(self, rows: Floats, places: Floats) -> None:
+    def _end(self, places: Floats) -> None:
         """Hand the state back to the classes; ticks began at ``places``, float64 [n, 2], m."""
         brain, row = self._brain, self._burst[0]
         mission = brain.mission
@@ -182,7 +185,7 @@ class Burst:
         readings = self._body.read()
         readings = replace(readings, time=readings.time + float(row["clock"]))
         brain.told(readings)
-        self._finish_scan(readings.time, rows)
+        self._finish_scan(readings.time)
         time, x, y = row["last"].tolist()
         last = replace(brain.senses(), now=time, pose=Pose(x, y, 0.0))
         mission.caught_up(last, places, float(row["way"]))
@@ -199,8 +202,8 @@ class Burst:
         self._truth.swept_cells += int(row["truth_swept"])
         self._truth.at = x, y
 
-    def _finish_scan(self, now: float, rows: Floats) -> None:
-        """Process the rest of the newest scan; ``rows`` are the ticks that passed."""
+    def _finish_scan(self, now: float) -> None:
+        """Process the rest of the newest scan."""
         brain, scan = self._brain, None
         if self._burst[0]["is_left"]:
             scan = replace(self._body.newest_scan(), stamp=now)
@@ -209,9 +212,10 @@ class Burst:
             if scan is not None:
                 brain.localizer.reconsider(scan.stamp, scan.ranges, scan.lidar)
         elif brain.mapper is not None:
-            stamps = rows[:, TIME] + float(self._burst[0]["clock"])
-            brain.mapper.resumed(np.column_stack((stamps, rows[:, RECKONED])))
-            if scan is not None:
+            brain.mapper.resumed()
+            if scan is not None and self._burst[0]["is_followed"]:
+                brain.mapper.finish_scan(scan.stamp)
+            elif scan is not None:
                 brain.mapper.see(scan.stamp, scan.ranges, scan.lidar)
         brain.look(scan)
 
@@ -230,5 +234,3 @@ def _nowhere(brain: Brain) -> Drive:
 
 _NO_SIGHTS: Final = RecentSight().arrays
 """A mapper doubts nothing."""
-_NO_FOLLOWER: Final = np.zeros(1, FOLLOWER)
-"""A localizer needs none."""

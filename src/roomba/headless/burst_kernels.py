@@ -15,14 +15,17 @@ from numba import njit
 from numpy.typing import NDArray
 
 from roomba.control.tracking_kernels import Course, track
-from roomba.headless.rows import GYRO, RECKONED, TIME
+from roomba.headless.rows import GYRO, TIME
 from roomba.mission.driving.progress_kernels import along_of, mark_progress, off_path
 from roomba.mission.phases.dust_bin_kernels import note_dust
 from roomba.perception.localization.belief_correct_kernels import correct, is_calm
-from roomba.perception.localization.belief_reckon_kernels import reckon
+from roomba.perception.localization.belief_reckon_kernels import reckon_on
 from roomba.perception.localization.recent_sight_kernels import Sights, note_sight
 from roomba.perception.matching.beams import LidarBeams
-from roomba.perception.slam.follow_kernels import moved_since
+from roomba.perception.matching.match_kernels import beam_ends
+from roomba.perception.matching.reckoned_path import ReckonedPath
+from roomba.perception.slam.follow_kernels import beyond, moved_since
+from roomba.perception.slam.scan_kernels import IS_DONE, IS_LEFT, Following, take_scan
 from roomba.perception.swept.coverage_kernels import sweep
 from roomba.perception.swept.coverage_map import LONGEST_STEP
 from roomba.perception.swept.dirt_map import note_dirt
@@ -34,7 +37,6 @@ from roomba.world.engine.step_kernels import advance
 Floats = NDArray[np.float64]
 Rows = NDArray[np.void]
 
-RECKONED_AT: Final = RECKONED.start
 BURST: Final = np.dtype(
     [
         # what does not change
@@ -63,7 +65,9 @@ BURST: Final = np.dtype(
         ("clock", "f8"),  # s; of the robot, beside the world's
         ("scans", "i8"),  # that came so far
         ("seen_at", "f8"),  # s; when the last one that was looked at came
+        ("submap", "f8", (3,)),  # m, rad; where a mapper follows it
         ("at_scan", "f8", (3,)),  # a mapper's place at that one
+        ("seen_from", "f8", (3,)),  # and by now
         ("last", "f8", (3,)),  # time, s, and place, m, as believed, when the last tick began
         ("way", "f8"),  # m; driven between these, as believed
         ("sweeps", "?"),  # whether what is driven over counts
@@ -72,7 +76,8 @@ BURST: Final = np.dtype(
         ("swept", "i8"),  # wanted cells that became clean
         ("truth_swept", "i8"),
         # what the classes have to finish
-        ("is_left", "?"),  # the newest scan: a mapper's, or one that does not confirm the place
+        ("is_left", "?"),  # the newest scan
+        ("is_followed", "?"),  # though a mapper's place was followed by it
     ],
     align=True,
 )
@@ -89,13 +94,14 @@ class World(NamedTuple):
 
 
 class PlaceParts(NamedTuple):
-    """What knows the place: ``sights`` counts for a localizer, ``follower`` for a mapper."""
+    """What knows the place: ``sights`` counts for a localizer, ``following`` for a mapper."""
 
     belief: Rows
     numbers: Rows
+    path: ReckonedPath
     beams: LidarBeams
     sights: Sights
-    follower: Rows
+    following: Following
 
 
 class Sight(NamedTuple):
@@ -162,7 +168,7 @@ def run(
         is_settled = follow(burst, world, place, sight, now)
         x, y, theta = believed(burst, place)
         sweep_truth(burst, robot, floor)
-        write_down(rows[ticks], now - burst.clock, robot, place.belief[0], x, y, theta)
+        write_down(rows[ticks], now - burst.clock, robot, x, y, theta)
         ticks += 1
         if not is_settled:
             break
@@ -277,17 +283,13 @@ def from_where(last: Floats, x: float, y: float) -> tuple[float, float]:
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def write_down(
-    row: Floats, now: float, robot: Any, belief: Any, x: float, y: float, theta: float
-) -> None:
+def write_down(row: Floats, now: float, robot: Any, x: float, y: float, theta: float) -> None:
     """Fill a row with what is so after a tick."""
     row[TIME] = now
     row[1], row[2], row[3] = robot.x, robot.y, robot.theta
     row[4], row[5], row[6] = x, y, theta
     row[7], row[8], row[9] = robot.odometry_x, robot.odometry_y, robot.odometry_theta
     row[GYRO] = robot.gyro
-    for axis in range(3):
-        row[RECKONED_AT + axis] = belief.reckoned[axis]
 
 
 # ---------------------------------------------------------------- knowing the place
@@ -298,7 +300,7 @@ def believed(burst: Any, place: PlaceParts) -> tuple[float, float, float]:
     """Return where the robot takes itself to be, x, y, theta, map."""
     if burst.is_mapping:
         at = burst.at_scan
-        return moved_since(place.follower, place.belief, at[0], at[1], at[2])
+        return moved_since(place.following.follower, place.belief, at[0], at[1], at[2])
     pose: Any = place.belief[0].pose
     return pose[0], pose[1], pose[2]
 
@@ -307,9 +309,10 @@ def believed(burst: Any, place: PlaceParts) -> tuple[float, float, float]:
 def follow(burst: Any, world: World, place: PlaceParts, sight: Sight, now: float) -> bool:
     """Go on by wheels, gyro and scans; tell whether the place is known and all of it is done."""
     robot: Any = world.state.solid.robots[0]
-    reckon(
+    reckon_on(
         place.belief,
         place.numbers,
+        place.path,
         now,
         robot.odometry_x,
         robot.odometry_y,
@@ -322,8 +325,7 @@ def follow(burst: Any, world: World, place: PlaceParts, sight: Sight, now: float
         burst.seen_at = now
         ranges = world.state.ranges[0]
         if burst.is_mapping:
-            burst.is_left = True
-            return False
+            return map_on(burst, place, sight, ranges, now)
         return localize(burst, place, sight, ranges, now)
     if burst.is_mapping:
         return True
@@ -343,4 +345,26 @@ def localize(
     note_sight(place.sights, now, belief[0].reckoned, beams.ends, count)
     pose = belief[0].pose
     note(sight.things, sight.field, sight.place, beams, ranges, count, pose, burst.stride)
+    return True
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def map_on(
+    burst: Any, place: PlaceParts, sight: Sight, ranges: NDArray[np.float32], now: float
+) -> bool:
+    """Follow a mapper's place by a scan; tell whether that is all that is to be done with it."""
+    following = place.following
+    left = take_scan(following, now, ranges)
+    if left != IS_DONE:
+        burst.is_left, burst.is_followed = True, left != IS_LEFT
+        return False
+    submap, here, at = burst.submap, following.follower[0].here, burst.at_scan
+    at[0], at[1], at[2] = beyond(submap[0], submap[1], submap[2], here[0], here[1], here[2])
+    seen_from = burst.seen_from
+    seen_from[0], seen_from[1], seen_from[2] = believed(burst, place)
+    beams = place.beams
+    count = beam_ends(
+        ranges, beams.directions, beams.mount, beams.nearest, beams.farthest, beams.ends
+    )
+    note(sight.things, sight.field, sight.place, beams, ranges, count, seen_from, burst.stride)
     return True

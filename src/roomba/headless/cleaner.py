@@ -269,9 +269,7 @@ class HeadlessMission:
         """Return what is so now, as a tick that passed: float64 [1, PASSED]."""
         seen, believed = self.seen, self.brain.pose
         poses = [(each.x, each.y, each.theta) for each in (seen.pose, believed, seen.odometry)]
-        reckoned = self.brain.keeper.place.belief[0]["reckoned"].tolist()
-        turning = seen.angular_velocity
-        return np.array([[seen.time, *poses[0], *poses[1], *poses[2], turning, *reckoned]])
+        return np.array([[seen.time, *poses[0], *poses[1], *poses[2], seen.angular_velocity]])
 
     @property
     def _hits(self) -> int:

@@ -9,9 +9,8 @@ TRUE: Final = slice(1, 4)
 BELIEVED: Final = slice(4, 7)
 ODOMETRY: Final = slice(7, 10)
 GYRO: Final = 10
-RECKONED: Final = slice(11, 14)
-PASSED: Final = 14
+PASSED: Final = 11
 """Columns of a tick that passed: t, s; x, y (m) and theta (rad), true, as believed, and by the
-wheels; the gyro's turning speed, rad/s; the pose by dead reckoning."""
+wheels; the gyro's turning speed, rad/s."""
 POSES: Final = slice(0, 4)
 """Of these, the time and the true pose."""

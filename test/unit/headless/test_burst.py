@@ -81,8 +81,7 @@ def test_what_passed_is_told_tick_by_tick(is_mapped: bool) -> None:
     robot = under_way(is_mapped=is_mapped)
     rows = burst_of(robot).run()
     assert rows.shape == (len(rows), PASSED)
-    # A mapper takes each scan that is looked at by itself.
-    assert len(rows) > (2 if is_mapped else 1)
+    assert len(rows) > 2
     assert np.diff(rows[:, TIME]) == pytest.approx(TICK)
     seen, believed = robot.seen, robot.brain.pose
     assert rows[-1, TIME] == seen.time
@@ -131,6 +130,14 @@ def test_who_is_told_to_stand_has_no_bursts(is_mapped: bool) -> None:
     assert len(burst_of(robot).run()) == 0
     docked = HeadlessMission(HOME)
     assert len(burst_of(docked).run()) == 0
+
+
+def test_scans_that_only_confirm_where_a_mapper_is_do_not_end_it() -> None:
+    robot = under_way(is_mapped=False)
+    until(robot, lambda: robot.mission.state.phase is not Phase.EXPLORING)
+    lengths = [len(rows) for rows in robot.rows if len(rows) > 1]
+    # One scan in 0.2 s is looked at: four ticks.
+    assert np.median(lengths) > 4.0
 
 
 def test_a_scan_worth_keeping_ends_it_and_is_on_the_map() -> None:

@@ -10,6 +10,7 @@ from numba import njit
 from roomba.angles import wrapped
 from roomba.configuration.robot import FASTEST_SPEED
 from roomba.perception.localization.belief import Row, Rows
+from roomba.perception.matching.reckoned_path import ReckonedPath, forget_path, remember
 
 LEFT_OUT: Final = 0
 WENT_ON: Final = 1
@@ -65,6 +66,26 @@ def reckon(
     belief.odometry[2], belief.stamp = odometry_theta, stamp
     _go(belief, known, ahead, aside, turn, turning, elapsed)
     return WENT_ON if since > 0.0 else WAS_SET_BACK
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def reckon_on(
+    beliefs: Rows,
+    numbers: Rows,
+    path: ReckonedPath,
+    stamp: float,
+    odometry_x: float,
+    odometry_y: float,
+    odometry_theta: float,
+    turning: float,
+) -> None:
+    """Do what :func:`reckon` does, and remember on ``path`` where the robot was."""
+    done = reckon(beliefs, numbers, stamp, odometry_x, odometry_y, odometry_theta, turning)
+    if done == LEFT_OUT:
+        return
+    if done == WAS_SET_BACK:
+        forget_path(path)
+    remember(path, stamp, beliefs[0].reckoned)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

@@ -55,9 +55,9 @@ _HELP: Final = (
 class Localizer:
     """Keeps the estimate; tell it what the sensors say in the order of time.
 
-    ``view`` is the newest scan. While it :attr:`is_calm`, kernels may do its work on ``belief``
-    and ``numbers`` (see :mod:`roomba.perception.localization.belief_correct_kernels`), and on
-    ``sights`` (see :mod:`roomba.perception.localization.recent_sight_kernels`), until it has
+    ``view`` is the newest scan. While it :attr:`is_calm`, kernels may do its work on ``belief``,
+    ``path`` and ``numbers`` (see :mod:`roomba.perception.localization.belief_correct_kernels`), and
+    on ``sights`` (see :mod:`roomba.perception.localization.recent_sight_kernels`), until it has
     :meth:`resumed`.
     """
 
@@ -84,6 +84,7 @@ class Localizer:
         self._row, self.numbers = self.belief[0], numbers_of(config, gyro, stride)
         self._doubt = Doubt(config, body_radius)
         self._reckoning = DeadReckoning(config, gyro, self.belief)
+        self.path = self._reckoning.path
         self._is_lifted = self._is_blind = False
         self._now = -math.inf
         self._stamps, self._times = (ClockJumps(tolerance=SET_BACK) for _ in range(2))
@@ -149,7 +150,6 @@ class Localizer:
         self._stamps.last = float(self._row["stamp"])
         self._times.last = max(self._times.last or now, now)
         self._now = max(self._now, now)
-        self._reckoning.begin_history()
 
     def reconsider(self, stamp: float, ranges: NDArray[np.float32], lidar: LidarModel) -> None:
         """Finish what kernels left of a scan that they corrected the pose by: it is not calm now.

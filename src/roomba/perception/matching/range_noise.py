@@ -14,6 +14,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+Rows = NDArray[np.void]
+
 _BINS: Final = 160
 _FIRST, _LAST = 1e-4, 1.0
 """m; deviations between which samples are told apart, in steps of 6 %."""
@@ -34,45 +36,71 @@ _LEAST: Final = 0.001
 """m; ranges that are rounded may seem to have no noise."""
 
 
-class RangeNoise:
-    """The standard deviation of a lidar's ranges, from the differences of neighbouring beams."""
+NOISE: Final = np.dtype(
+    [
+        ("counts", "i8", (_BINS,)),  # of differences between neighbouring beams, by size
+        ("total", "i8"),  # of all these
+        ("deviation", "f8"),  # m; standard deviation of a range
+    ],
+    align=True,
+)
+"""What is known of a lidar's noise, one row."""
 
-    def __init__(self) -> None:
-        """Begin without a sample."""
-        self._counts = np.zeros(_BINS, np.int64)
-        self.deviation = _TYPICAL
-        """Standard deviation of a range, m."""
 
-    def add(self, ranges: NDArray[np.float32], nearest: float, farthest: float) -> None:
-        """Take a scan, float32 [beams], m; ranges count from ``nearest`` to ``farthest``, m."""
-        _count(ranges, nearest, min(farthest, _FARTHEST), self._counts)
-        total = int(self._counts.sum())
-        if total >= _LEAST_SAMPLES:
-            middle = int(np.searchsorted(np.cumsum(self._counts), 0.5 * total))
-            median = _FIRST * math.exp((middle + 0.5) * _STEP)
-            self.deviation = max(_LEAST, _PER_MEDIAN * median)
-        if total > _MOST_SAMPLES:
-            self._counts //= 2
+def unknown_noise() -> Rows:
+    """Return what is taken for a lidar's noise before a scan came, NOISE [1]."""
+    noise = np.zeros(1, NOISE)
+    noise["deviation"] = _TYPICAL
+    return noise
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def measure_noise(
+    noises: Rows, ranges: NDArray[np.float32], nearest: float, farthest: float
+) -> None:
+    """Take a scan, float32 [beams], m; ranges count from ``nearest`` to ``farthest``, m."""
+    noise = noises[0]
+    counts = noise.counts
+    noise.total += _count(ranges, nearest, min(farthest, _FARTHEST), counts)
+    if noise.total >= _LEAST_SAMPLES:
+        sum_so_far, middle = 0, 0
+        while sum_so_far + counts[middle] < 0.5 * noise.total:
+            sum_so_far += counts[middle]
+            middle += 1
+        median = _FIRST * math.exp((middle + 0.5) * _STEP)
+        noise.deviation = max(_LEAST, _PER_MEDIAN * median)
+    if noise.total > _MOST_SAMPLES:
+        noise.total = 0
+        for place in range(_BINS):
+            counts[place] //= 2
+            noise.total += counts[place]
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _count(
     ranges: NDArray[np.float32], nearest: float, farthest: float, counts: NDArray[np.int64]
-) -> None:
-    """Add to ``counts`` [_BINS] the deviations that each five neighbouring beams show."""
-    inverse = np.zeros(5)
-    for last in range(4, ranges.size):
-        is_whole = True
-        for index in range(5):
-            length = ranges[last - 4 + index]
-            is_whole &= nearest <= length <= farthest
-            inverse[index] = 1.0 / length if length > 0.0 else 0.0
-        if not is_whole:
+) -> int:
+    """Add to ``counts`` [_BINS] the deviations that each five neighbouring beams show.
+
+    Returns how many there are.
+    """
+    samples = whole = 0
+    # 1/r of the last five beams, the newest one last.
+    a = b = c = d = e = 0.0
+    for last in range(ranges.size):
+        length = ranges[last]
+        a, b, c, d = b, c, d, e
+        if not nearest <= length <= farthest or length <= 0.0:
+            whole = 0
             continue
-        difference = (
-            inverse[0] - 4.0 * inverse[1] + 6.0 * inverse[2] - 4.0 * inverse[3] + inverse[4]
-        )
+        e = 1.0 / length
+        whole += 1
+        if whole < 5:
+            continue
+        difference = a - 4.0 * b + 6.0 * c - 4.0 * d + e
         length = ranges[last - 2]
         off = abs(difference) * length * length / _OF_FIVE
         place = math.log(max(off, _FIRST) / _FIRST) / _STEP
         counts[min(int(place), _BINS - 1)] += 1
+        samples += 1
+    return samples

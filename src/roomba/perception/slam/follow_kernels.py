@@ -12,7 +12,14 @@ from numpy.typing import NDArray
 from roomba.angles import wrapped
 from roomba.perception.localization.belief import Row, Rows
 from roomba.perception.localization.belief_reckon_kernels import compose
-from roomba.perception.slam.surfel_kernels import ASKED, CLOSE, COUNTS, MATCHED, Surfels, align
+from roomba.perception.slam.surfel_kernels import (
+    ALIGN_WORK,
+    ASKED,
+    CLOSE,
+    MATCHED,
+    Surfels,
+    align_in,
+)
 
 Floats = NDArray[np.float64]
 
@@ -30,10 +37,17 @@ FOLLOWER: Final = np.dtype(
         ("unsure_turn", "f8"),  # rad; turned since one did
         ("odometry_scale", "f8", (3,)),  # how many times its variances dead reckoning is off by
         ("range_deviation", "f8"),  # m; of a range, as measured
+        ("scanned_at", "f8", (3,)),  # by dead reckoning, where the newest scan was taken
+        ("points", "i8"),  # that it shows
+        ("heading_before", "f8"),  # rad; at the scan before, nan if that did not confirm it
+        ("keyframe", "f8", (3,)),  # where the newest one was kept, in its submap
         # what does not change
         ("variance", "f8"),  # m2; of a point
         ("least_met", "f8"),
         ("least_close", "f8"),
+        ("keyframe_way", "f8"),  # m; a scan is kept that is so far from the newest keyframe,
+        ("keyframe_turn", "f8"),  # rad; or turned by so much
+        ("work", "f8", (10 + ALIGN_WORK, 3)),  # what the kernel works in; means nothing between
     ],
     align=True,
 )
@@ -77,19 +91,20 @@ def follow(
     """Move on to ``reckoned`` [3], and correct that by a scan, points [n, 4] seen from there."""
     follower = followers[0]
     _move_on(follower, beliefs[0], reckoned)
-    prior, pose, covariance = np.empty(3), np.empty(3), np.empty((3, 3))
+    work = follower.work
+    prior, pose, scales, counts = work[0], work[1], work[2], work[3]
+    covariance, information = work[4:7], work[7:10]
     for row in range(3):
         prior[row] = pose[row] = follower.here[row]
         for column in range(3):
             covariance[row, column] = follower.spread[row, column]
         covariance[row, row] += _LEAST_SPREAD[row]
     reach = _FAR_REACH if follower.misses >= _MANY else 1
-    information, counts = np.zeros((3, 3)), np.zeros(COUNTS)
     noise = follower.range_deviation
-    scales = np.array([_FIRST_SCALES[0], _FIRST_SCALES[1], last_scale(noise)])
-    is_solved = align(
+    scales[0], scales[1], scales[2] = _FIRST_SCALES[0], _FIRST_SCALES[1], last_scale(noise)
+    is_solved = align_in(
         surfels, points, count, _STRIDE, reach, prior, covariance, scales, follower.variance,
-        in_plane(noise), _ROUNDS, pose, information, counts,
+        in_plane(noise), _ROUNDS, pose, information, counts, work[10:],
     )  # fmt: skip
     is_solved = is_solved and math.isfinite(pose[0] + pose[1] + pose[2])
     follower.met = follower.close = 0.0

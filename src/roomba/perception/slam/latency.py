@@ -6,12 +6,15 @@ believed by which dead reckoning tells best how far matched scans turned.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
 from typing import Final
 
 import numpy as np
+from numba import njit
 
-from roomba.geometry import Pose, wrap_angle
+from roomba.angles import wrapped
+from roomba.perception.localization.belief import Row, Rows
+from roomba.perception.matching.reckoned_path import ReckonedPath, pose_at
 
 _STEP: Final = 0.05
 _COUNT: Final = 9
@@ -24,42 +27,57 @@ _BETTER: Final = 0.7
 """A latency is believed whose squared errors are so much smaller than without any."""
 
 
-class Latency:
-    """Keeps the errors of each latency; ``seconds`` is the one to go by."""
+LATENCY: Final = np.dtype(
+    [
+        ("seconds", "f8"),  # to go by
+        ("errors", "f8", (_COUNT,)),  # rad2; sum of squares for each of them
+        ("turned", "f8"),  # rad2; sum of squared turns
+        ("before", "f8", (_COUNT,)),  # rad; reckoned headings at the scan before; nan: not known
+        ("now", "f8", (_COUNT,)),
+        ("pose", "f8", (3,)),  # what the kernel works in; means nothing between two calls
+    ],
+    align=True,
+)
+"""What was learned, one row."""
 
-    def __init__(self) -> None:
-        """Begin without any."""
-        self.seconds = 0.0
-        self._errors = np.zeros(_COUNT)
-        self._turned = 0.0
-        self._before: list[float | None] = [None] * _COUNT
 
-    def interrupted(self) -> None:
-        """The next scan is not compared to the one before it."""
-        self._before = [None] * _COUNT
+def no_latency() -> Rows:
+    """Return that of scans that come in time, LATENCY [1]."""
+    latency = np.zeros(1, LATENCY)
+    latency["before"] = np.nan
+    return latency
 
-    def learn(self, turn: float | None, stamp: float, at: Callable[[float], Pose | None]) -> None:
-        """Take by how much a scan was turned against the one before it, rad, None if not known.
 
-        ``stamp``, s, is the scan's; ``at`` returns the dead-reckoned pose at a time, if known.
-        """
-        now: list[float | None] = []
-        for index in range(_COUNT):
-            pose = at(stamp - index * _STEP)
-            now.append(None if pose is None else pose.theta)
-        before, self._before = self._before, now
-        if turn is None:
-            return
-        reckoned = [
-            wrap_angle(later - earlier)
-            for later, earlier in zip(now, before, strict=True)
-            if later is not None and earlier is not None
-        ]
-        if len(reckoned) < _COUNT:
-            return
-        self._errors = _KEPT * self._errors + (np.array(reckoned) - turn) ** 2
-        self._turned = _KEPT * self._turned + turn * turn
-        if self._turned > _LEAST_TURNED:
-            best = int(np.argmin(self._errors))
-            is_better = self._errors[best] < _BETTER * self._errors[0]
-            self.seconds = best * _STEP if is_better else 0.0
+@njit(cache=True, nogil=True, error_model="numpy")
+def learn_latency(latencies: Rows, turn: float, stamp: float, path: ReckonedPath) -> None:
+    """Take by how much a scan was turned against the one before it, rad, nan if not known.
+
+    ``stamp``, s, is the scan's; ``path`` tells where dead reckoning had the robot.
+    """
+    latency = latencies[0]
+    is_known = not math.isnan(turn)
+    for index in range(_COUNT):
+        heading = math.nan
+        if pose_at(path, stamp - index * _STEP, latency.pose):
+            heading = latency.pose[2]
+        latency.now[index] = heading
+        is_known = is_known and not math.isnan(heading + latency.before[index])
+    if is_known:
+        _add_errors(latency, turn)
+    for index in range(_COUNT):
+        latency.before[index] = latency.now[index]
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _add_errors(latency: Row, turn: float) -> None:
+    """Compare a turn to what was reckoned for each latency, and say which one to go by."""
+    best = 0
+    for index in range(_COUNT):
+        off = wrapped(latency.now[index] - latency.before[index]) - turn
+        latency.errors[index] = _KEPT * latency.errors[index] + off * off
+        if latency.errors[index] < latency.errors[best]:
+            best = index
+    latency.turned = _KEPT * latency.turned + turn * turn
+    if latency.turned > _LEAST_TURNED:
+        is_better = latency.errors[best] < _BETTER * latency.errors[0]
+        latency.seconds = best * _STEP if is_better else 0.0

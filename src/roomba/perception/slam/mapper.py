@@ -16,22 +16,20 @@ from numpy.typing import NDArray
 
 from roomba.configuration.mapping import MappingConfig
 from roomba.configuration.robot import GyroConfig, LocalizationConfig
-from roomba.geometry import Pose, wrap_angle
+from roomba.geometry import Pose
 from roomba.grid import OccupancyMap
 from roomba.perception.localization.dead_reckoning import DeadReckoning
 from roomba.perception.localization.estimate import Estimate, Knowledge
-from roomba.perception.matching.range_noise import RangeNoise
 from roomba.perception.matching.scan_view import LidarModel
 from roomba.perception.slam.finding_back import FindingBack
 from roomba.perception.slam.follow_kernels import LEAST_POINTS, beyond, is_apart
-from roomba.perception.slam.latency import Latency
 from roomba.perception.slam.mapper_state import KeptSubmap, LidarNumbers, MapperState
 from roomba.perception.slam.occupancy_counts import OccupancyCounts
 from roomba.perception.slam.pose_graph import relative_to
 from roomba.perception.slam.scan_follower import ScanFollower
+from roomba.perception.slam.scan_kernels import Following
 from roomba.perception.slam.submap import Keyframe, moved
 from roomba.perception.slam.submap_graph import SubmapGraph
-from roomba.perception.slam.surface_kernels import POINT, surface_points
 from roomba.perception.slam.surfels import SurfelGrid
 
 Floats = NDArray[np.float64]
@@ -76,12 +74,11 @@ class Mapper:
         self._config = config
         self._reckoning = DeadReckoning(localization, gyro)
         self.belief, self.numbers = self._reckoning.belief, self._reckoning.numbers
-        self._follower = ScanFollower(config, self._reckoning)
+        self.path = self._reckoning.path
+        self._finding_back = FindingBack()
+        self._follower = ScanFollower(config, self._reckoning, self._finding_back.state)
         self._graph = SubmapGraph(config, localization, _row_of(start))
         self.at_scan = start
-        self._noise = RangeNoise()
-        self._latency = Latency()
-        self._finding_back = FindingBack()
         self._finished = -1
         self._lidar: LidarModel | None = None
         self._phase = (0.0, 0.0)
@@ -136,16 +133,25 @@ class Mapper:
 
         Raises ValueError for another number of beams than the lidar has.
         """
-        reckoned = self._reckoning.at(stamp - self._latency.seconds)
-        if reckoned is None or self._is_lifted or self._is_lost:
+        follower = self._follower
+        if self._is_lifted or self._is_lost or not follower.find_reckoned(stamp):
             return
-        points = self._points_of(ranges, lidar)
+        if ranges.shape != (lidar.beams,):
+            raise ValueError(f"expected a scan of {lidar.beams} ranges, got shape {ranges.shape}")
+        if lidar is not self._lidar:
+            self._use(lidar)
+        points = follower.see(ranges)
+        self._graph.use_noise(follower.range_noise)
         if self._is_without_hold(len(points)):
             self._begin_piece()
-        before = self._follower.here if self._follower.is_sure else None
-        self._follower.follow(reckoned, points, self._surfels)
-        self._find_back(stamp, points)
-        self._learn_latency(stamp, before)
+        follower.follow(stamp)
+        self.finish_scan(stamp)
+
+    def finish_scan(self, stamp: float) -> None:
+        """Do what comes after the newest scan was followed: kernels left that, or :meth:`see`."""
+        self._find_back()
+        self._follower.compare_turns(stamp)
+        points = self._follower.points
         if self._is_keyframe(len(points)):
             self._keep(points)
         self.at_scan = self._place()
@@ -153,18 +159,26 @@ class Mapper:
     @property
     def is_calm(self) -> bool:
         """Whether scans follow each other: kernels may take them, until it has :meth:`resumed`."""
-        is_held = self._is_lifted or self._is_lost or self._latency.seconds > 0.0
+        is_held = self._is_lifted or self._is_lost
         keyframes = self._graph.newest.keyframes
         return self.version > 0 and self._follower.is_sure and not is_held and bool(keyframes)
 
     @property
-    def follower(self) -> NDArray[np.void]:
-        """Where the robot was at the newest scan, FOLLOWER [1], for kernels."""
-        return self._follower.state
+    def following(self) -> Following:
+        """What kernels follow scans with, while it :attr:`is_calm`."""
+        self._follower.state["keyframe"] = self._graph.newest.keyframes[-1].pose
+        return self._follower.following
 
-    def resumed(self, reckoned: Floats) -> None:
-        """Go on after kernels that reckoned rows [n, 4]: stamp, s, and pose by dead reckoning."""
-        self._reckoning.went_on(reckoned)
+    @property
+    def submap_pose(self) -> Floats:
+        """Where the submap lies in which the robot is followed, [3], map frame."""
+        pose: Floats = self._graph.poses[-1].copy()
+        return pose
+
+    def resumed(self) -> None:
+        """Go on after kernels that followed scans."""
+        self._graph.use_noise(self._follower.range_noise)
+        self.at_scan = self._place()
 
     def lift(self, is_lifted: bool) -> None:
         """Tell whether the wheels hang in the air: set down elsewhere, it must be :meth:`told`."""
@@ -207,12 +221,12 @@ class Mapper:
     @property
     def range_noise(self) -> float:
         """Standard deviation of the lidar's ranges, m, as measured so far."""
-        return self._noise.deviation
+        return self._follower.range_noise
 
     @property
     def latency(self) -> float:
         """How late scans are against odometry, s, as learned so far."""
-        return self._latency.seconds
+        return self._follower.latency
 
     @property
     def map_to_odometry(self) -> Pose:
@@ -270,21 +284,13 @@ class Mapper:
         self._finished = self.version
         return self.occupancy()
 
-    def _find_back(self, stamp: float, points: Floats) -> None:
+    def _find_back(self) -> None:
         """Look farther around where scans do not fit."""
-        self._finding_back.saw(stamp, self._follower, len(points))
         if not self._finding_back.is_due or not self.version:
             return
         frames = self._graph.keyframes_beside([*self._beside, len(self._graph.submaps) - 1])
         clouds = [moved(frame.points, pose) for frame, pose in frames]
-        self._finding_back.search(self._follower, points, clouds, self._surfels)
-
-    def _learn_latency(self, stamp: float, before: Floats | None) -> None:
-        """Learn how late scans are from where this one and the one ``before`` were taken."""
-        turn = None
-        if before is not None and self._follower.is_sure:
-            turn = wrap_angle(float(self._follower.here[2] - before[2]))
-        self._latency.learn(turn, stamp, self._reckoning.at)
+        self._finding_back.search(self._follower, clouds)
 
     # ---------------------------------------------------------------- keeping what was seen
 
@@ -396,38 +402,14 @@ class Mapper:
         """Return where the robot was at the newest scan."""
         return Pose(*beyond(*self._graph.poses[-1].tolist(), *self._follower.here.tolist()))
 
-    def _points_of(self, ranges: NDArray[np.float32], lidar: LidarModel) -> Floats:
-        """Return what the beams met, float64 [n, 4]."""
-        if ranges.shape != (lidar.beams,):
-            raise ValueError(f"expected a scan of {lidar.beams} ranges, got shape {ranges.shape}")
-        if lidar is not self._lidar:
-            self._use(lidar)
-        beams, points = self._beams, self._points
-        self._noise.add(ranges, beams.nearest, beams.farthest)
-        self._use_noise()
-        count = surface_points(
-            ranges,
-            beams.directions,
-            beams.mount,
-            beams.nearest,
-            beams.farthest,
-            self._noise.deviation,
-            points,
-        )
-        return points[:count]
-
-    def _use_noise(self) -> None:
-        self._follower.use_noise(self._noise.deviation)
-        self._graph.use_noise(self._noise.deviation)
-
     def _use(self, lidar: LidarModel) -> None:
         """Make what depends on the lidar."""
         self._lidar, self._beams = lidar, lidar.arrays()
-        self._points = np.empty((lidar.beams, POINT))
         reach = min(self._beams.farthest, _FARTHEST) + _SPARE
         self._graph.use_reach(reach)
-        self._use_noise()
+        self._graph.use_noise(self._follower.range_noise)
         self._surfels = SurfelGrid(reach)
+        self._follower.use(self._beams, self._surfels)
         newest = len(self._graph.submaps) - 1
         self._fill_surfels(sorted({*self._beside, newest}))
 

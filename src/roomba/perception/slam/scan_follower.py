@@ -9,9 +9,22 @@ from numpy.typing import NDArray
 
 from roomba.configuration.mapping import MappingConfig
 from roomba.geometry import Pose
+from roomba.perception.localization.belief import Rows, unknown_belief
 from roomba.perception.localization.dead_reckoning import DeadReckoning
+from roomba.perception.matching.beams import LidarBeams
+from roomba.perception.matching.range_noise import unknown_noise
+from roomba.perception.matching.reckoned_path import ReckonedPath, pose_at
+from roomba.perception.slam.finding_back_kernels import FINDING
 from roomba.perception.slam.follow_kernels import FOLLOWER, follow, moved_since
-from roomba.perception.slam.surfels import SurfelGrid
+from roomba.perception.slam.latency import no_latency
+from roomba.perception.slam.scan_kernels import (
+    Following,
+    compare_turns,
+    follow_points,
+    see_points,
+)
+from roomba.perception.slam.surface_kernels import POINT, room_for_sums
+from roomba.perception.slam.surfels import CELL, SurfelGrid
 
 Floats = NDArray[np.float64]
 
@@ -26,18 +39,73 @@ class ScanFollower:
 
     Of that scan ``met`` is the share of points that met a known surface, ``close`` the share of
     those that lie in it. While it ``is_sure`` they confirm the pose, else it goes by the wheels.
-    All of it is in ``state``, FOLLOWER [1], that kernels go on with.
+    All of it is in ``state``, FOLLOWER [1], that kernels go on with. Scans can be followed as soon
+    as their lidar is known: see :meth:`use`.
     """
 
-    def __init__(self, config: MappingConfig, reckoning: DeadReckoning) -> None:
-        """Begin at the origin of the first submap."""
-        self._reckoning = reckoning
-        self.state = np.zeros(1, FOLLOWER)
+    def __init__(self, config: MappingConfig, reckoning: DeadReckoning, finding: Rows) -> None:
+        """Begin at the origin of the first submap; ``finding``, FINDING [1], is told of scans."""
+        self._reckoning, self._finding = reckoning, finding
+        self.state, self._noise, self._latency = (
+            np.zeros(1, FOLLOWER),
+            unknown_noise(),
+            no_latency(),
+        )
         self._row = row = self.state[0]
         row["variance"] = config.point_deviation**2
         row["least_met"], row["least_close"] = config.least_met, config.least_close
+        row["keyframe_way"], row["keyframe_turn"] = config.keyframe_way, config.keyframe_turn
         row["odometry_scale"] = 1.0
+        row["range_deviation"] = self.range_noise
         self._go_on_from(np.zeros(3))
+
+    def use(self, beams: LidarBeams, surfels: SurfelGrid) -> None:
+        """Follow the scans of a lidar, by what ``surfels`` shows."""
+        count = len(beams.directions)
+        self.following = Following(
+            self.state,
+            self._reckoning.belief,
+            self._reckoning.path,
+            self._noise,
+            self._latency,
+            self._finding,
+            surfels.arrays,
+            beams,
+            np.empty((count, POINT)),
+            room_for_sums(count),
+        )
+
+    def find_reckoned(self, stamp: float) -> bool:
+        """Look up where dead reckoning had the robot at a scan, and tell whether that is known."""
+        return pose_at(self._reckoning.path, stamp - self.latency, self._row["scanned_at"])
+
+    def see(self, ranges: NDArray[np.float32]) -> Floats:
+        """Find the points, float64 [n, 4], that a scan shows, float32 [beams], m."""
+        see_points(self.following, ranges)
+        return self.points
+
+    @property
+    def points(self) -> Floats:
+        """What the newest scan shows, float64 [n, 4], robot's frame."""
+        return self.following.points[: int(self._row["points"])]
+
+    def follow(self, stamp: float) -> None:
+        """Move on to where dead reckoning had the robot at a scan, and correct that by it."""
+        follow_points(self.following, stamp)
+
+    def compare_turns(self, stamp: float) -> None:
+        """Learn how late scans are, if the newest two confirmed where the robot was."""
+        compare_turns(self.following, stamp)
+
+    @property
+    def range_noise(self) -> float:
+        """Standard deviation of the lidar's ranges, m, as measured so far."""
+        return float(self._noise[0]["deviation"])
+
+    @property
+    def latency(self) -> float:
+        """How late scans are against odometry, s, as learned so far."""
+        return float(self._latency[0]["seconds"])
 
     @property
     def here(self) -> Floats:
@@ -70,10 +138,6 @@ class ScanFollower:
         """What was turned since then, rad."""
         return float(self._row["unsure_turn"])
 
-    def use_noise(self, deviation: float) -> None:
-        """Go by the standard deviation of a range, m."""
-        self._row["range_deviation"] = deviation
-
     @property
     def is_sure(self) -> bool:
         """Whether the newest scan confirmed the pose."""
@@ -97,28 +161,21 @@ class ScanFollower:
         self._go_on_from(here)
         self._row["way"], self._row["spread"] = way, _TAKEN_UP_SPREAD
 
-    def follow(self, reckoned: Pose, points: Floats, surfels: SurfelGrid) -> None:
-        """Move on to ``reckoned``, and correct that by a scan, points [n, 4] seen from there."""
-        at = np.array([reckoned.x, reckoned.y, reckoned.theta])
-        follow(self.state, self._reckoning.belief, at, surfels.arrays, points, len(points))
-
     @property
     def misses(self) -> int:
         """Scans since one confirmed the pose."""
         return int(self._row["misses"])
 
-    def try_at(
-        self, pose: Floats, points: Floats, surfels: SurfelGrid, better: float = 1.0
-    ) -> None:
-        """Be at ``pose`` [3] if a scan, points [n, 4], confirms it; else stay where it was.
+    def try_at(self, pose: Floats, better: float = 1.0) -> None:
+        """Be at ``pose`` [3] if the newest scan confirms it; else stay where it was.
 
-        Where a scan confirms both, it must agree ``better`` times as well with ``pose``.
+        Where the scan confirms both, it must agree ``better`` times as well with ``pose``.
         """
-        before = self.state.copy()
+        before, parts = self.state.copy(), self.following
         least = better * self.met * self.close if self.is_sure else 0.0
         self._row["here"], self._row["spread"] = pose, _FOUND_SPREAD
-        reckoned = self._row["reckoned"].copy()
-        follow(self.state, self._reckoning.belief, reckoned, surfels.arrays, points, len(points))
+        reckoned, points = self._row["reckoned"].copy(), self._row["points"]
+        follow(self.state, parts.belief, reckoned, parts.surfels, parts.points, points)
         if not self.is_sure or self.met * self.close < least:
             self.state[:] = before
 
@@ -127,3 +184,19 @@ class ScanFollower:
         self._row["unsure_way"] = self._row["unsure_turn"] = 0.0
         reckoned = self._reckoning.pose
         self._row["reckoned"] = reckoned.x, reckoned.y, reckoned.theta
+
+
+def not_following(beams: LidarBeams) -> Following:
+    """Return what kernels get that follow no scans: a localizer needs none."""
+    return Following(
+        np.zeros(1, FOLLOWER),
+        unknown_belief(),
+        ReckonedPath.empty(),
+        unknown_noise(),
+        no_latency(),
+        np.zeros(1, FINDING),
+        SurfelGrid(CELL).arrays,
+        beams,
+        np.empty((0, POINT)),
+        room_for_sums(0),
+    )

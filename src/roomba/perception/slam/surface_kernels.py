@@ -52,12 +52,33 @@ def surface_points(
     spaced all around or over an arc; ``mount`` x, y, theta of the lidar in the robot's frame;
     ``deviation`` the standard deviation of a range, m.
     """
+    sums = room_for_sums(ranges.size)
+    return surface_points_in(ranges, directions, mount, nearest, farthest, deviation, points, sums)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def room_for_sums(beams: int) -> Floats:
+    """Return the room that :func:`surface_points_in` works in."""
+    return np.empty((beams + 2 * _MOST_BESIDE + 1, _SUMS))
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def surface_points_in(
+    ranges: NDArray[np.float32],
+    directions: Floats,
+    mount: Floats,
+    nearest: float,
+    farthest: float,
+    deviation: float,
+    points: Floats,
+    sums: Floats,
+) -> int:
+    """Do the same as :func:`surface_points` in the caller's room."""
     beams = ranges.size
     half_span = max(_HALF_SPAN, _SPAN_IN_DEVIATIONS * deviation)
     straight = max(_STRAIGHT, _STRAIGHT_IN_DEVIATIONS * deviation)
     turn_cosine, turn_sine = math.cos(mount[2]), math.sin(mount[2])
     step = _angle_between(directions, beams)
-    sums = np.empty((beams + 2 * _MOST_BESIDE + 1, _SUMS))
     _add_up(ranges, directions, nearest, farthest, sums)
     count = 0
     for beam in range(beams):

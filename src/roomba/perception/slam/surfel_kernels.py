@@ -29,6 +29,8 @@ CLOSE: Final = 1
 ASKED: Final = 2
 COUNTS: Final = 3
 """Of a match: points that met a surfel, those that lie in its plane, those with a normal."""
+ALIGN_WORK: Final = 10
+"""Rows of what :func:`align_in` works in."""
 
 _SAME_WAY: Final = 0.8
 """Cosine; surfaces that face farther apart are not the same."""
@@ -116,8 +118,32 @@ def align(
     ``scales``, m, are those of the first rounds, the last one that of the rest. Returns whether
     there was anything to solve.
     """
-    of_prior, solved, total = np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 3))
-    gradient = np.empty(3)
+    return align_in(
+        surfels, points, count, stride, reach, prior, covariance, scales, variance, close, rounds,
+        pose, information, counts, np.empty((ALIGN_WORK, 3)),
+    )  # fmt: skip
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def align_in(
+    surfels: Surfels,
+    points: Floats,
+    count: int,
+    stride: int,
+    reach: int,
+    prior: Floats,
+    covariance: Floats,
+    scales: Floats,
+    variance: float,
+    close: float,
+    rounds: int,
+    pose: Floats,
+    information: Floats,
+    counts: Floats,
+    work: Floats,
+) -> bool:
+    """Do the same as :func:`align` in the caller's room, [ALIGN_WORK, 3]."""
+    of_prior, solved, total, gradient = work[0:3], work[3:6], work[6:9], work[9]
     if not invert(covariance, of_prior):
         return False
     for each in range(rounds):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from roomba.perception.matching.range_noise import RangeNoise
+from roomba.perception.matching.range_noise import measure_noise, unknown_noise
 
 NEAREST, FARTHEST = 0.1, 30.0
 
@@ -24,38 +24,49 @@ def walls(angles: NDArray[np.float64], half: float = 2.0) -> NDArray[np.float64]
 @pytest.mark.parametrize("deviation", [0.003, 0.01, 0.03])
 @pytest.mark.parametrize(("beams", "fan"), [(180, np.pi), (360, 2 * np.pi), (682, 4.19)])
 def test_it_finds_what_was_added(deviation: float, beams: int, fan: float) -> None:
-    generator, noise = np.random.default_rng(1), RangeNoise()
+    generator, noise = np.random.default_rng(1), unknown_noise()
     clean = walls(np.linspace(-fan / 2, fan / 2, beams))
     for _ in range(20):
         ranges = clean + generator.normal(0.0, deviation, beams)
-        noise.add(ranges.astype(np.float32), NEAREST, FARTHEST)
-    assert noise.deviation == pytest.approx(deviation, rel=0.2)
+        measure_noise(noise, ranges.astype(np.float32), NEAREST, FARTHEST)
+    assert noise[0]["deviation"] == pytest.approx(deviation, rel=0.2)
 
 
 def test_what_stands_around_hardly_changes_it() -> None:
     """A leg each 60 beams, and a tenth without echo in each of its spellings."""
-    generator, noise = np.random.default_rng(2), RangeNoise()
+    generator, noise = np.random.default_rng(2), unknown_noise()
     clean = walls(np.linspace(-np.pi, np.pi, 720))
     for _ in range(20):
         ranges = clean + generator.normal(0.0, 0.01, 720)
         ranges[::60] *= 0.5
         for value in (0.0, np.inf, np.nan, 81.83):
             ranges[generator.integers(0, 720, 18)] = value
-        noise.add(ranges.astype(np.float32), NEAREST, FARTHEST)
-    assert noise.deviation == pytest.approx(0.01, rel=0.3)
+        measure_noise(noise, ranges.astype(np.float32), NEAREST, FARTHEST)
+    assert noise[0]["deviation"] == pytest.approx(0.01, rel=0.3)
+
+
+def test_neighbours_count_only_where_all_five_met_something() -> None:
+    """Each fifth beam has no echo: no five in a row have one."""
+    noise, ranges = unknown_noise(), np.full(720, 2.0, np.float32)
+    ranges[::5] = np.inf
+    measure_noise(noise, ranges, NEAREST, FARTHEST)
+    assert noise[0]["total"] == 0
+    ranges[::5] = 2.0
+    measure_noise(noise, ranges, NEAREST, FARTHEST)
+    assert noise[0]["total"] == noise[0]["counts"].sum() == 716
 
 
 def test_before_enough_was_seen_it_is_that_of_a_usual_lidar() -> None:
-    noise = RangeNoise()
-    noise.add(np.full(100, 2.0, np.float32), NEAREST, FARTHEST)
-    assert noise.deviation == 0.005
+    noise = unknown_noise()
+    measure_noise(noise, np.full(100, 2.0, np.float32), NEAREST, FARTHEST)
+    assert noise[0]["deviation"] == 0.005
 
 
 def test_a_lidar_that_becomes_worse_is_noticed() -> None:
-    generator, noise = np.random.default_rng(3), RangeNoise()
+    generator, noise = np.random.default_rng(3), unknown_noise()
     clean = walls(np.linspace(-np.pi, np.pi, 720))
     for deviation in (0.002, 0.02):
         for _ in range(600):
             ranges = clean + generator.normal(0.0, deviation, 720)
-            noise.add(ranges.astype(np.float32), NEAREST, FARTHEST)
-    assert noise.deviation == pytest.approx(0.02, rel=0.3)
+            measure_noise(noise, ranges.astype(np.float32), NEAREST, FARTHEST)
+    assert noise[0]["deviation"] == pytest.approx(0.02, rel=0.3)

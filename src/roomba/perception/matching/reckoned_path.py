@@ -1,0 +1,87 @@
+"""Where dead reckoning had the robot in the last seconds: what kernels keep and look up."""
+
+from __future__ import annotations
+
+from typing import Final, NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from roomba.angles import wrapped
+
+Floats = NDArray[np.float64]
+
+_REMEMBERED: Final = 2.0
+"""s; how late a scan may come."""
+_MOST: Final = 1024
+"""Poses that are remembered at most: with more than 500 a second it is less than that time."""
+_NEWEST: Final = 0
+_COUNT: Final = 1
+"""Places in ``ends``."""
+
+
+class ReckonedPath(NamedTuple):
+    """The newest poses, in the frame of dead reckoning.
+
+    ``rows`` is float64 [n, 4], a ring of stamp, s, x, y, m, and theta, rad; ``ends`` is int64 [2],
+    the row of the newest one, and how many there are.
+    """
+
+    rows: Floats
+    ends: NDArray[np.int64]
+
+    @staticmethod
+    def empty() -> ReckonedPath:
+        """Return one without a pose."""
+        return ReckonedPath(np.zeros((_MOST, 4)), np.zeros(2, np.int64))
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def forget_path(path: ReckonedPath) -> None:
+    """Forget all poses."""
+    path.ends[_COUNT] = 0
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def remember(path: ReckonedPath, stamp: float, pose: Floats) -> None:
+    """Add a pose [3] that is newer than all others, and forget those of long ago."""
+    rows, ends = path.rows, path.ends
+    size = rows.shape[0]
+    newest = (ends[_NEWEST] + 1) % size
+    rows[newest, 0] = stamp
+    for axis in range(3):
+        rows[newest, 1 + axis] = pose[axis]
+    ends[_NEWEST] = newest
+    count = min(ends[_COUNT] + 1, size)
+    while rows[(newest + 1 - count) % size, 0] < stamp - _REMEMBERED:
+        count -= 1
+    ends[_COUNT] = count
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def pose_at(path: ReckonedPath, stamp: float, pose: Floats) -> bool:
+    """Fill ``pose`` [3] with that at a time, between those that are known; the newest ones after.
+
+    Returns whether it is known: not of a time before all of them.
+    """
+    rows, ends = path.rows, path.ends
+    size, newest = rows.shape[0], ends[_NEWEST]
+    later = newest
+    for back in range(ends[_COUNT]):
+        earlier = (newest - back) % size
+        if rows[earlier, 0] > stamp:
+            later = earlier
+            continue
+        if back == 0:
+            for axis in range(3):
+                pose[axis] = rows[newest, 1 + axis]
+            return True
+        share = (stamp - rows[earlier, 0]) / (rows[later, 0] - rows[earlier, 0])
+        for axis in range(1, 3):
+            begin = rows[earlier, axis]
+            pose[axis - 1] = begin + share * (rows[later, axis] - begin)
+        turn = wrapped(rows[later, 3] - rows[earlier, 3])
+        pose[2] = wrapped(rows[earlier, 3] + share * turn)
+        return True
+    return False
