@@ -174,3 +174,31 @@ def test_a_bag_without_an_index_is_refused_with_how_to_mend_it(tmp_path: Path) -
 def test_an_empty_bag_is_refused(tmp_path: Path) -> None:
     with pytest.raises(LogError, match="the bag is empty"):
         BagLog(write_bag(tmp_path / "made.bag", [], with_mount=False))
+
+
+@pytest.mark.parametrize("rounds", [2, 3])
+def test_a_clock_that_was_set_back_goes_on_in_the_order_of_recording(
+    tmp_path: Path, rounds: int
+) -> None:
+    # As while a bag is played in a loop: stamps and the recorder's clock begin anew.
+    items = drive(SECONDS) * rounds
+    log = BagLog(write_bag(tmp_path / "made.bag", items))
+    [odometry] = [each for each in log.channels if each.kind is Kind.ODOMETRY]
+    [scan] = [each for each in log.channels if each.kind is Kind.SCAN]
+    entries = list(log.entries([odometry, scan]))
+    arrivals = [entry.arrival for entry in entries]
+    assert arrivals == sorted(arrivals)
+    assert [entry.stamp for entry in entries] == pytest.approx([item.stamp for item in items])
+    expected = [item.value.x for item in items if isinstance(item.value, Pose)]
+    found = [value.pose.x for _, value in read(log, odometry) if isinstance(value, Odometry)]
+    assert found == pytest.approx(expected)
+    assert log.notes == ["the recorder's clock was set back on the way: the time goes on there"]
+    log.close()
+
+
+def test_single_messages_of_long_ago_set_no_clock_back(tmp_path: Path) -> None:
+    items = drive(SECONDS)
+    late = [replace(item, arrival=item.arrival - 3.0 * (n == 40)) for n, item in enumerate(items)]
+    log = BagLog(write_bag(tmp_path / "made.bag", late))
+    assert log.notes == []
+    log.close()

@@ -116,6 +116,21 @@ def test_a_bag_that_was_written_topic_by_topic_is_in_order(tmp_path: Path) -> No
     assert_whole(readings, items)
 
 
+def test_a_clock_that_was_set_back_on_the_way_goes_on(tmp_path: Path) -> None:
+    items = drive(SECONDS)
+    half = len(items) // 2
+    again = [
+        replace(item, stamp=item.stamp - 30.0, arrival=item.arrival - 30.0) for item in items[half:]
+    ]
+    readings, recorded = read([write_bag(tmp_path / "made.bag", items[:half] + again)])
+    stamps = [stamp for stamp, _ in readings]
+    assert stamps == sorted(stamps)
+    assert stamps[-1] - stamps[0] == pytest.approx(SECONDS - 0.5 * PERIOD, abs=0.2)
+    poses = [value.pose.x for _, value in readings if isinstance(value, Odometry)]
+    assert poses == pytest.approx([item.value.x for item in items if isinstance(item.value, Pose)])
+    assert any("clock was set back" in note for note in recorded.notes)
+
+
 def test_several_logs_are_one_drive_in_whatever_order_they_are_named(tmp_path: Path) -> None:
     items = drive(SECONDS)
     parts = [items[:30], items[30:60], items[60:]]
@@ -159,6 +174,13 @@ def test_where_the_lidar_is_can_be_told(tmp_path: Path) -> None:
     path = write_bag(tmp_path / "made.bag", drive(1.0))
     readings, _ = read([path], Wanted(laser=Pose(-0.04, 0.1, 1.5)))
     assert mount_of(readings) == [-0.04, 0.1, 1.5]
+
+
+def test_a_lidar_that_is_known_on_the_robots_footprint_is_there(tmp_path: Path) -> None:
+    path = write_bag(tmp_path / "made.bag", drive(1.0), body="base_footprint")
+    readings, recorded = read([path])
+    assert mount_of(readings) == [LASER.x, LASER.y, LASER.theta]
+    assert recorded.notes == ["'laser' is where it is on 'base_footprint', not on 'base_link'"]
 
 
 def test_without_transforms_the_lidar_is_in_the_middle_and_that_is_told(tmp_path: Path) -> None:

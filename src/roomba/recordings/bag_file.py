@@ -1,0 +1,193 @@
+"""The raw messages of a bag, whole or damaged, in the order of their recording."""
+
+from __future__ import annotations
+
+import bisect
+import heapq
+import operator
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+from pathlib import Path
+from typing import Any, Final, NamedTuple
+
+from rosbags.rosbag1 import Reader as Reader1
+from rosbags.rosbag2 import Reader as Reader2
+
+from roomba.recordings.packed import Unpacked
+from roomba.recordings.readings import LogError
+
+_SKIPPED: Final = 10**9
+"""ns; after what cannot be read it goes on so much later."""
+_MOST_SKIPS: Final = 1000
+_SET_BACK: Final = 10**9
+"""ns; a recorder's clock that is set back by more begins another run."""
+_LASTING: Final = 10
+"""Messages; if all of so many are earlier than what was recorded before, the clock was set back."""
+
+_Place = tuple[int, int]
+"""Where a message is in a bag: its chunk, and the place in that."""
+
+
+class Raw(NamedTuple):
+    """A message: when it was recorded, ns, the number of its topic, and its bytes."""
+
+    recorded: int
+    number: int
+    data: bytes
+
+
+class _Run(NamedTuple):
+    """A part of a bag in which the clock went on: its borders, and what to add to times, ns."""
+
+    begin: _Place
+    end: _Place
+    shift: int
+
+
+_WHOLE: Final = _Run((-1, -1), (2**63, 0), 0)
+
+
+class BagFile:
+    """A bag that is open for reading, and unpacked if it was packed."""
+
+    def __init__(self, path: Path) -> None:
+        """Open; raises LogError."""
+        self.path = path
+        self.notes: list[str] = []
+        self._file = Unpacked(path)
+        self._readers: list[Any] = []
+        self.is_of_ros_1 = path.is_file() and self._file.path.suffix == ".bag"
+        try:
+            self._first = self._opened()
+        except LogError:
+            self.close()
+            raise
+        self.topics: dict[str, tuple[str, int]] = {
+            name: (str(info.msgtype).replace("/msg/", "/"), info.msgcount)
+            for name, info in self._first.topics.items()
+            if info.msgcount
+        }
+        """Type and number of the messages of each topic."""
+        if not self.topics:
+            self.close()
+            raise LogError(f"{path}: the bag is empty: it has no messages")
+        self._runs = self._found_runs()
+
+    def messages(self, topic: str) -> Iterator[bytes]:
+        """Yield the messages of a topic."""
+        return (raw.data for raw in self._of_topic(self._first, topic, 0))
+
+    def merged(self, topics: Sequence[str]) -> Iterator[Raw]:
+        """Yield the messages of topics, numbered as these are, in the order of their recording.
+
+        Each topic has a reader of its own, for a reader keeps one chunk of a bag at a time, and
+        some programs write bags topic by topic.
+        """
+        readers = [self._opened() for _ in topics]
+        streams = [
+            self._of_topic(reader, topic, number)
+            for number, (reader, topic) in enumerate(zip(readers, topics, strict=True))
+        ]
+        try:
+            yield from heapq.merge(*streams, key=operator.itemgetter(0, 1))
+        finally:
+            for reader in readers:
+                reader.close()
+                self._readers.remove(reader)
+
+    def close(self) -> None:
+        """Close the bag, and remove what was unpacked of it."""
+        for reader in self._readers:
+            reader.close()
+        self._readers.clear()
+        self._file.close()
+
+    def _of_topic(self, reader: Any, topic: str, number: int) -> Iterator[Raw]:
+        """Yield the messages of a topic, run by run: a reader goes by times, of any run."""
+        connections = [each for each in reader.connections if each.topic == topic]
+        if len(self._runs) == 1:
+            for recorded, data in self._whole(reader, connections):
+                yield Raw(recorded, number, data)
+            return
+        index = _index(reader, connections)
+        times = [time for time, _ in index]
+        for run in self._runs:
+            taken: dict[int, int] = {}
+            for recorded, data in self._whole(reader, connections):
+                nth = taken[recorded] = taken.get(recorded, -1) + 1
+                place = index[bisect.bisect_left(times, recorded) + nth][1]
+                if run.begin <= place < run.end:
+                    yield Raw(recorded + run.shift, number, data)
+
+    def _whole(self, reader: Any, connections: Sequence[Any]) -> Iterator[tuple[int, bytes]]:
+        """Yield times, ns, and messages; goes on a second later after what cannot be read."""
+        start: int | None = None
+        skips, reason = 0, ""
+        while True:
+            try:
+                for _, recorded, data in reader.messages(connections=connections, start=start):
+                    start = recorded + 1
+                    yield recorded, bytes(data)
+                break
+            except Exception as error:  # whatever rosbags raises of a damaged bag
+                start = (start or reader.start_time) + _SKIPPED
+                skips += 1
+                reason = str(error) or type(error).__name__
+                if start > reader.end_time or skips > _MOST_SKIPS:
+                    break
+        if skips:
+            topic = connections[0].topic
+            self._note(f"{topic}: the bag is damaged, {skips} s are missing: {reason}")
+
+    def _found_runs(self) -> list[_Run]:
+        """Return the runs of a bag: another one begins where the recorder's clock was set back."""
+        if not self.is_of_ros_1:
+            return [_WHOLE]
+        most = max(self._first.connections, key=lambda each: len(self._first.indexes[each.id]))
+        rows = sorted((place, time) for time, place in _index(self._first, [most]))
+        steps = sorted(later - time for (_, time), (_, later) in pairwise(rows))
+        usual = steps[len(steps) // 2] if steps else 0
+        runs, newest = [_WHOLE], rows[0][1]
+        for number, (place, time) in enumerate(rows):
+            shift = runs[-1].shift
+            following = [later + shift for _, later in rows[number : number + _LASTING]]
+            if max(following) < newest - _SET_BACK:
+                runs[-1] = runs[-1]._replace(end=place)
+                shift = newest + usual - time
+                runs.append(_Run(place, _WHOLE.end, shift))
+                self._note("the recorder's clock was set back on the way: the time goes on there")
+            newest = max(newest, time + shift)
+        return runs
+
+    def _opened(self) -> Any:
+        """Return a new reader that is open; raises LogError."""
+        try:
+            reader = (Reader1 if self.is_of_ros_1 else Reader2)(self._file.path)
+            reader.open()
+        except Exception as error:  # whatever rosbags raises of what is no bag
+            raise LogError(_told(self.path, error)) from None
+        self._readers.append(reader)
+        return reader
+
+    def _note(self, note: str) -> None:
+        if note not in self.notes:
+            self.notes.append(note)
+
+
+def _index(reader: Any, connections: Sequence[Any]) -> list[tuple[int, _Place]]:
+    """Return times, ns, and places of messages, as a reader of ROS 1 yields them."""
+    entries = heapq.merge(*(reader.indexes[each.id] for each in connections))
+    return [(entry.time, (entry.chunk_pos, entry.offset)) for entry in entries]
+
+
+def _told(path: Path, error: Exception) -> str:
+    """Return why a bag cannot be opened, and what to do about it."""
+    reason = str(error) or type(error).__name__
+    if "reindex" in reason:
+        return (
+            f"{path}: the bag has no index: its recording or copying was cut short; mend it by "
+            f"`./roomba exec rosbag reindex {path}`, which keeps the old one as .orig.bag"
+        )
+    if isinstance(error, PermissionError):
+        return f"{path}: cannot be read: {error.strerror}"
+    return f"{path}: expected a whole bag, it cannot be opened: {reason}"
