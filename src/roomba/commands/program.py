@@ -18,6 +18,8 @@ _COMMANDS: Final = {
     "sim": "roomba.commands.sim.command",
     "map": "roomba.commands.map.command",
     "play": "roomba.commands.play.command",
+    "import": "roomba.commands.valetudo.import_command",
+    "export": "roomba.commands.valetudo.export_command",
     "pictures": "roomba.commands.pictures.__main__",
     "doctor": __name__,
 }
@@ -36,6 +38,10 @@ usage: roomba COMMAND ...
                    recorded drive (see --help)
   play [ARGS]      a robot that lives in a home, on a web page: --home NAME, --speed N,
                    --map none (see --help)
+  import valetudo FILE.json [--out FOLDER]
+                   a home of a map of Valetudo: rooms, station, zones
+  export valetudo HOME [--out FILE.json]
+                   the other way round
   pictures [ARGS]  make the pictures of the documents: [FOLDER] [--only NAME ...]
   doctor [--json]  what is missing, and how to mend it
   help             this text

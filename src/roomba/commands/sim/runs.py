@@ -15,6 +15,7 @@ from roomba.commands.sim.homes import home_of, rooms_of
 from roomba.commands.sim.things import Disc, seeded_things
 from roomba.commands.sim.trial import Trial
 from roomba.commands.sim.truth import coverable_floor, true_map
+from roomba.commands.sim.zones import zones_of
 from roomba.configuration.docking import load_docking_config
 from roomba.configuration.mission import MissionConfig, load_mission_config
 from roomba.configuration.robot import RobotConfig
@@ -25,7 +26,6 @@ from roomba.grid import FREE
 from roomba.headless.burst import LONGEST_BURST
 from roomba.headless.cleaner import HeadlessMission
 from roomba.headless.records import CleanRecord
-from roomba.perception.rooms.zones import Zone, ZoneKind, Zones
 from roomba.perception.swept.coverage_map import CoverageMap
 from roomba.planning.path.costmap import RoundObstacle
 from roomba.world.home.home import Home
@@ -87,7 +87,7 @@ class TrialSetup:
             docking,
             seed=trial.seed,
             rooms=rooms_of(self.home),
-            zones=_zones_of(trial),
+            zones=zones_of(trial),
             longest_burst=longest_burst,
             empties_bin_after=trial.empties_bin_after,
         )
@@ -180,19 +180,6 @@ def robot_config_of(trial: Trial) -> SimulatedRobotConfig:
 def mission_config(robot: RobotConfig) -> MissionConfig:
     """Return the shipped configuration of the mission; raises ConfigError for slower robots."""
     return load_mission_config(CONFIGURATION / "mission.yaml", robot.body)
-
-
-def _zones_of(trial: Trial) -> Zones:
-    return Zones(
-        tuple(
-            Zone(
-                f"no-go {number + 1}",
-                ZoneKind.NO_GO,
-                ((left, bottom), (right, bottom), (right, top), (left, top)),
-            )
-            for number, (left, bottom, right, top) in enumerate(trial.no_go)
-        )
-    )
 
 
 def _things_of(trial: Trial, home: Home, config: RobotConfig, staging: Pose) -> list[RoundObstacle]:

@@ -1,0 +1,38 @@
+"""The zones of a run: those of the home's folder, and those of the command line."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Final
+
+from roomba.commands.sim.trial import RANDOM, Trial
+from roomba.files.home_layer import MAP_NAME
+from roomba.files.occupancy_map import load_map
+from roomba.files.shipped import HOMES
+from roomba.perception.rooms.zones import Zone, ZoneKind, Zones
+from roomba.storage.zones import load_zones
+
+ZONES_NAME: Final = "zones.yaml"
+"""The file of a home's zones in its folder."""
+
+
+def zones_of(trial: Trial) -> Zones:
+    """Return the zones of a trial in its home; raises ZonesError."""
+    of_home = Zones() if trial.home == RANDOM else zones_of_home(trial.home)
+    asked = (
+        Zone(
+            f"no-go {number + 1} of --no-go",
+            ZoneKind.NO_GO,
+            ((left, bottom), (right, bottom), (right, top), (left, top)),
+        )
+        for number, (left, bottom, right, top) in enumerate(trial.no_go)
+    )
+    return Zones((*of_home.all, *asked))
+
+
+def zones_of_home(name_or_path: str) -> Zones:
+    """Return the zones beside a home's map, none without such a file; raises ZonesError."""
+    path = Path(name_or_path).expanduser()
+    folder = path if path.is_dir() else HOMES / name_or_path
+    file = folder / ZONES_NAME
+    return load_zones(file, load_map(folder / MAP_NAME)) if file.is_file() else Zones()

@@ -1,0 +1,1 @@
+"""``./roomba import valetudo`` and ``./roomba export valetudo``."""

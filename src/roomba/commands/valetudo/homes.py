@@ -1,0 +1,87 @@
+"""A home's folder from a map of Valetudo, and such a map from a home."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import shapely
+import yaml
+
+from roomba.commands.sim.homes import rooms_of
+from roomba.commands.sim.zones import ZONES_NAME, zones_of_home
+from roomba.configuration.robot import BodyConfig
+from roomba.files.atomic import write_whole
+from roomba.files.home_layer import LAYER_NAME, MAP_NAME
+from roomba.files.occupancy_map import save_map
+from roomba.files.shipped import HOMES
+from roomba.files.valetudo import ValetudoHome
+from roomba.perception.rooms.outlines import outline_of
+from roomba.perception.rooms.zones import Zone, ZoneKind, Zones
+from roomba.storage.zones import save_zones
+from roomba.world.home.home import Home
+from roomba.world.layers.layer import load_home
+
+_COMMENT = "# Imported from a map of Valetudo. Lengths in m, map frame, directions in rad.\n"
+
+
+def write_home(found: ValetudoHome, folder: Path) -> Home:
+    """Write a home's folder, and return the home.
+
+    Raises OSError when the disk refuses, HomeError where no robot can stand on the station, and
+    ZonesError for a zone that is none.
+    """
+    zones = _zones_of(found)
+    folder.mkdir(parents=True, exist_ok=True)
+    save_map(found.occupancy, folder / MAP_NAME)
+    layer = yaml.safe_dump(
+        _layer_of(found), sort_keys=False, allow_unicode=True, default_flow_style=None, width=110
+    )
+    write_whole(folder / LAYER_NAME, f"{_COMMENT}{layer}".encode())
+    save_zones(zones, found.occupancy, folder / ZONES_NAME)
+    return load_home(str(folder), HOMES, BodyConfig())
+
+
+def read_home(name: str) -> ValetudoHome:
+    """Return a home of files, by name or path; raises HomeError and ZonesError."""
+    home = load_home(name, HOMES, BodyConfig())
+    rooms = rooms_of(home)
+    zones = zones_of_home(name).all
+    return ValetudoHome(
+        home.map,
+        tuple((name, rooms.labels == rooms.label_of(name)) for name in rooms.names),
+        home.station,
+        tuple(zone.points for zone in zones if zone.kind is ZoneKind.NO_GO),
+        tuple(zone.points for zone in zones if zone.kind is ZoneKind.WALL),
+    )
+
+
+def _layer_of(found: ValetudoHome) -> dict[str, Any]:
+    layer: dict[str, Any] = {}
+    if found.station is not None and found.has_own_frame:
+        at = found.station
+        layer["station"] = {"x": round(at.x, 4), "y": round(at.y, 4), "facing": round(at.theta, 6)}
+    rooms = []
+    for name, mask in found.rooms:
+        outline = outline_of(mask, found.occupancy.frame)
+        if outline.is_empty:
+            continue
+        largest = max(shapely.get_parts(outline), key=shapely.area)
+        corners = np.round(shapely.get_coordinates(largest.exterior)[:-1], 4)
+        rooms.append({"name": name, "outline": corners.tolist()})
+    if rooms:
+        layer["rooms"] = rooms
+    return layer
+
+
+def _zones_of(found: ValetudoHome) -> Zones:
+    areas = [
+        Zone(f"no-go {number}", ZoneKind.NO_GO, points)
+        for number, points in enumerate(found.no_go, start=1)
+    ]
+    walls = [
+        Zone(f"wall {number}", ZoneKind.WALL, points)
+        for number, points in enumerate(found.walls, start=1)
+    ]
+    return Zones((*areas, *walls))

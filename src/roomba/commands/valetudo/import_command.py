@@ -1,0 +1,41 @@
+"""``./roomba import valetudo FILE.json``: a home's folder from a map of Valetudo."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Final
+
+from roomba.commands.spelling import spelled
+from roomba.commands.valetudo.homes import write_home
+from roomba.commands.valetudo.options import parser_of, reason_of
+from roomba.errors import RoombaError
+from roomba.files.valetudo import parse
+
+PROGRAM: Final = spelled("import")
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Write the folder; returns 0, or 2 with the reason on standard error."""
+    parser = parser_of(PROGRAM, "Make a home's folder of a map of Valetudo.")
+    parser.add_argument("file", type=Path, metavar="FILE.json")
+    parser.add_argument("--out", type=Path, metavar="FOLDER", help="default: the file's name")
+    given = parser.parse_args(arguments)
+    folder = given.out or Path(given.file.stem)
+    try:
+        found = parse(given.file.read_text(encoding="utf-8"))
+        home = write_home(found, folder)
+    except (RoombaError, OSError, UnicodeDecodeError) as error:
+        print(f"{PROGRAM}: {given.file}: {reason_of(error)}", file=sys.stderr)
+        return 2
+    zones = len(found.no_go) + len(found.walls)
+    print(
+        f"{folder}: {home.map.free_area:.1f} m² of floor, {len(home.rooms)} rooms, {zones} zones, "
+        f"station at ({home.station.x:.2f}, {home.station.y:.2f})\n"
+        f"to clean it: {spelled('sim')} --home {folder}"
+    )
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

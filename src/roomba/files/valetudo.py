@@ -1,0 +1,351 @@
+"""Valetudo's map format (``ValetudoMap``, version 2; version 1 is read as well): a home in JSON.
+
+Its pixels are counted from the upper left corner, ``y`` downwards; a layer has them as runs, x, y
+and count. Entities have whole cm from that corner; their angles are degrees, 0 up, clockwise. The
+source is Valetudo's ``backend/lib/entities/map``, with the schemas in its folder ``doc``.
+
+Files that were written here name the map's own corner (``metaData.origin``, m), so that they come
+back in the same frame. Other maps are cut to what they show, and begin at their station.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import uuid
+from dataclasses import dataclass
+from typing import Annotated, Any, Final, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from roomba.errors import RoombaError
+from roomba.geometry import Pose
+from roomba.grid import FREE, OCCUPIED, UNKNOWN, GridFrame, OccupancyMap
+
+Mask = NDArray[np.bool_]
+Points = tuple[tuple[float, float], ...]
+
+VERSION: Final = 2
+_CM: Final = 0.01
+_MARGIN: Final = 2
+"""Cells around what a map shows."""
+_MOST_CELLS: Final = 20_000_000
+_NAMES: Final = uuid.UUID("6f1c1a3e-2f0a-4f57-9d52-6a1f5d0b7c11")
+
+
+class ValetudoError(RoombaError):
+    """A file that is no such map, or a home that cannot be written as one."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ValetudoHome:
+    """A home as such a map tells it: m and rad, map frame.
+
+    ``rooms`` are names with masks, bool over the map; ``no_go`` are corners of areas, ``walls``
+    those of virtual walls. ``station`` is the docked robot; ``has_own_frame`` whether the file said
+    where its corner lies. Without that only the station's place is to be relied on, at (0, 0), not
+    its heading: that means something else with each vendor.
+    """
+
+    occupancy: OccupancyMap
+    rooms: tuple[tuple[str, Mask], ...] = ()
+    station: Pose | None = None
+    no_go: tuple[Points, ...] = ()
+    walls: tuple[Points, ...] = ()
+    has_own_frame: bool = True
+
+
+# ---------------------------------------------------------------- reading
+
+
+class _Part(BaseModel):
+    model_config = ConfigDict(extra="ignore", frozen=True, strict=True)
+
+
+class _Size(_Part):
+    x: Annotated[int, Field(gt=0, le=1_000_000)]
+    y: Annotated[int, Field(gt=0, le=1_000_000)]
+
+
+class _LayerMeta(_Part):
+    segmentId: str | int | None = None  # noqa: N815
+    name: str | None = None
+
+
+class _Layer(_Part):
+    type: Literal["floor", "wall", "segment"]
+    pixels: list[int] = []
+    compressedPixels: list[int] = []  # noqa: N815
+    metaData: _LayerMeta = _LayerMeta()  # noqa: N815
+
+
+class _EntityMeta(_Part):
+    angle: float | None = None
+
+
+class _Entity(_Part):
+    type: str
+    points: list[float] = []
+    metaData: _EntityMeta = _EntityMeta()  # noqa: N815
+
+
+class _Meta(_Part):
+    version: int
+    origin: Annotated[list[float], Field(min_length=2, max_length=2)] | None = None
+
+
+class _Map(_Part):
+    size: _Size
+    pixelSize: Annotated[int, Field(gt=0, le=100)]  # noqa: N815
+    layers: list[_Layer]
+    entities: list[_Entity] = []
+    metaData: _Meta  # noqa: N815
+
+
+def parse(text: str) -> ValetudoHome:
+    """Return the home of a map; raises ValetudoError with what was expected, and came."""
+    found = _validated(text)
+    columns, rows = found.size.x // found.pixelSize, found.size.y // found.pixelSize
+    if not 0 < rows * columns <= _MOST_CELLS:
+        raise ValetudoError(
+            f"size: expected 1 to {_MOST_CELLS} pixels of {found.pixelSize} cm, got "
+            f"{found.size.x} x {found.size.y} cm"
+        )
+    layers = [_mask(layer, number, rows, columns) for number, layer in enumerate(found.layers)]
+    values = np.full((rows, columns), UNKNOWN, np.int8)
+    # Walls last: some robots tell floor below them.
+    for kind in ("floor", "segment", "wall"):
+        for layer, mask in zip(found.layers, layers, strict=True):
+            if layer.type == kind:
+                values[mask] = OCCUPIED if kind == "wall" else FREE
+    if not (values == FREE).any():
+        raise ValetudoError("layers: expected floor or segments, got none; map the home first")
+    rooms = [
+        (name, mask & (values == FREE))
+        for name, mask in _named(list(zip(found.layers, layers, strict=True)))
+    ]
+    return _placed(found, values, rooms)
+
+
+def _validated(text: str) -> _Map:
+    try:
+        raw = json.loads(text)
+    except (ValueError, RecursionError) as error:
+        raise ValetudoError(f"expected a map of Valetudo in JSON: {error}") from error
+    if not isinstance(raw, dict) or "layers" not in raw or "pixelSize" not in raw:
+        got = ", ".join(list(raw)[:6]) if isinstance(raw, dict) else type(raw).__name__
+        raise ValetudoError(
+            "expected a map of Valetudo with size, pixelSize, layers, entities and metaData, got "
+            f"{got}; it is what Valetudo gives at api/v2/robot/state/map"
+        )
+    try:
+        found = _Map.model_validate(raw)
+    except ValidationError as error:
+        first = error.errors()[0]
+        where = ".".join(str(part) for part in first["loc"])
+        raise ValetudoError(f"{where}: {first['msg']}, got {str(first['input'])[:60]!r}") from error
+    if found.metaData.version not in (1, VERSION):
+        raise ValetudoError(
+            f"metaData.version: expected 1 or {VERSION}, got {found.metaData.version}"
+        )
+    return found
+
+
+def _mask(layer: _Layer, number: int, rows: int, columns: int) -> Mask:
+    """Return the pixels of a layer, row 0 below."""
+    try:
+        x, y, count = _runs(layer)
+        if (count < 1).any() or min(x.min(initial=0), y.min(initial=0)) < 0:
+            raise ValueError("counts from 1 on, and no pixel left of or above the map")
+        if (x + count).max(initial=0) > columns or y.max(initial=-1) >= rows:
+            raise ValueError(f"pixels within {columns} x {rows}")
+    except ValueError as error:
+        raise ValetudoError(f"layers.{number}: expected {error}") from error
+    mask = np.zeros((rows, columns), np.bool_)
+    for first, row, length in zip(x.tolist(), y.tolist(), count.tolist(), strict=True):
+        mask[rows - 1 - row, first : first + length] = True
+    return mask
+
+
+def _runs(layer: _Layer) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
+    """Return x, y and count of runs."""
+    if layer.compressedPixels:
+        if len(layer.compressedPixels) % 3:
+            raise ValueError("compressedPixels of three numbers each: x, y, count")
+        x, y, count = np.array(layer.compressedPixels, np.int64).reshape(-1, 3).T
+        return x, y, count
+    if len(layer.pixels) % 2:
+        raise ValueError("pixels of two numbers each: x, y")
+    x, y = np.array(layer.pixels, np.int64).reshape(-1, 2).T
+    return x, y, np.ones_like(x)
+
+
+def _named(layers: list[tuple[_Layer, Mask]]) -> list[tuple[str, Mask]]:
+    """Return rooms by names that differ; those without one are numbered."""
+    rooms: list[tuple[str, Mask]] = []
+    for number, (layer, mask) in enumerate(
+        ((layer, mask) for layer, mask in layers if layer.type == "segment"), start=1
+    ):
+        given = (layer.metaData.name or "").strip()
+        segment = number if layer.metaData.segmentId is None else layer.metaData.segmentId
+        name, again = given or f"Room {segment}", 2
+        while name in [other for other, _ in rooms]:
+            name, again = f"{given or f'Room {segment}'} {again}", again + 1
+        rooms.append((name, mask))
+    return rooms
+
+
+def _placed(found: _Map, values: NDArray[np.int8], rooms: list[tuple[str, Mask]]) -> ValetudoHome:
+    """Return all in the map's frame."""
+    cell = found.pixelSize * _CM
+    rows, columns = values.shape
+    cut = (slice(0, rows), slice(0, columns))
+    charger = next((e for e in found.entities if e.type == "charger_location"), None)
+    origin = found.metaData.origin
+    if origin is None:
+        cut = _around(values != UNKNOWN)
+        x, y = (0.0, 0.0) if charger is None else _point(charger.points, rows, cell)
+        origin = [cut[1].start * cell - x, cut[0].start * cell - y]
+    frame = GridFrame(cell, origin[0], origin[1], *values[cut].shape)
+    corner = origin[0] - cut[1].start * cell, origin[1] - cut[0].start * cell
+
+    def points_of(entity: _Entity) -> Points:
+        if len(entity.points) % 2:
+            raise ValetudoError(
+                f"entities: expected points of two numbers each, got {entity.points}"
+            )
+        pairs = zip(entity.points[::2], entity.points[1::2], strict=True)
+        placed = (_point(list(pair), rows, cell) for pair in pairs)
+        return tuple((x + corner[0], y + corner[1]) for x, y in placed)
+
+    station = None
+    if charger is not None:
+        ((x, y),) = points_of(charger)
+        angle = charger.metaData.angle or 0.0
+        station = Pose(x, y, _wrapped(math.radians(90.0 - angle)))
+    return ValetudoHome(
+        OccupancyMap(frame, np.ascontiguousarray(values[cut])),
+        tuple((name, np.ascontiguousarray(mask[cut])) for name, mask in rooms),
+        station,
+        tuple(points_of(each) for each in found.entities if each.type == "no_go_area"),
+        tuple(points_of(each) for each in found.entities if each.type == "virtual_wall"),
+        found.metaData.origin is not None,
+    )
+
+
+def _around(mask: Mask) -> tuple[slice, slice]:
+    """Return the rows and columns around a mask, with a margin."""
+    bounds = []
+    for axis, size in ((1, mask.shape[0]), (0, mask.shape[1])):
+        cells = np.flatnonzero(mask.any(axis=axis))
+        bounds.append(
+            slice(max(int(cells[0]) - _MARGIN, 0), min(int(cells[-1]) + 1 + _MARGIN, size))
+        )
+    return bounds[0], bounds[1]
+
+
+def _point(points: list[float], rows: int, cell: float) -> tuple[float, float]:
+    """Return a point, m from the lower left corner."""
+    if len(points) != 2:
+        raise ValetudoError(f"entities: expected points of two numbers each, got {points}")
+    return points[0] * _CM, rows * cell - points[1] * _CM
+
+
+def _wrapped(angle: float) -> float:
+    return math.remainder(angle, 2.0 * math.pi)
+
+
+# ---------------------------------------------------------------- writing
+
+
+def compose(home: ValetudoHome) -> dict[str, Any]:
+    """Return a home as plain values of the format; raises ValetudoError for cells of half a cm.
+
+    Places are rounded to whole cm, the station's heading to whole degrees.
+    """
+    frame, values = home.occupancy.frame, home.occupancy.values
+    pixel = round(frame.resolution / _CM)
+    if pixel < 1 or abs(pixel * _CM - frame.resolution) > 1e-9:
+        raise ValetudoError(
+            f"expected a map with cells of whole cm, got {frame.resolution} m; map it again with "
+            "cells of 0.05 m"
+        )
+    free, in_rooms = values == FREE, np.zeros(values.shape, np.bool_)
+    layers = []
+    for number, (name, mask) in enumerate(home.rooms, start=1):
+        mask = mask & free & ~in_rooms
+        in_rooms |= mask
+        meta = {"segmentId": str(number), "name": name, "active": False}
+        layers.append(_layer("segment", mask, pixel, meta))
+    layers.insert(0, _layer("floor", free & ~in_rooms, pixel, {}))
+    layers.append(_layer("wall", values == OCCUPIED, pixel, {}))
+    told = [layer for layer in layers if layer["dimensions"]["pixelCount"]]
+    entities = _entities(home)
+    content = json.dumps([told, entities], sort_keys=True)
+    return {
+        "__class": "ValetudoMap",
+        "metaData": {
+            "version": VERSION,
+            "nonce": str(uuid.uuid5(_NAMES, content)),
+            "origin": [frame.origin_x, frame.origin_y],
+        },
+        "size": {"x": frame.columns * pixel, "y": frame.rows * pixel},
+        "pixelSize": pixel,
+        "layers": told,
+        "entities": entities,
+    }
+
+
+def _layer(kind: str, mask: Mask, pixel: int, meta: dict[str, Any]) -> dict[str, Any]:
+    above = mask[::-1]
+    edges = np.diff(np.pad(above, ((0, 0), (1, 1))).astype(np.int8), axis=1)
+    y, x = np.nonzero(edges == 1)
+    count = np.nonzero(edges == -1)[1] - x
+    rows, columns = np.nonzero(above)
+    return {
+        "__class": "MapLayer",
+        "metaData": {**meta, "area": len(rows) * pixel * pixel},
+        "type": kind,
+        "pixels": [],
+        "compressedPixels": np.column_stack((x, y, count)).ravel().tolist(),
+        "dimensions": {
+            "x": _dimension(columns),
+            "y": _dimension(rows),
+            "pixelCount": len(rows),
+        },
+    }
+
+
+def _dimension(cells: NDArray[np.int64]) -> dict[str, int]:
+    if not cells.size:
+        return {"min": 0, "max": 0, "mid": 0, "avg": 0}
+    least, most = int(cells.min()), int(cells.max())
+    middle, mean = math.floor((least + most) / 2.0 + 0.5), math.floor(float(cells.mean()) + 0.5)
+    return {"min": least, "max": most, "mid": middle, "avg": mean}
+
+
+def _entities(home: ValetudoHome) -> list[dict[str, Any]]:
+    entities = []
+    if home.station is not None:
+        degrees = round(90.0 - math.degrees(home.station.theta)) % 360
+        place = _points(home, ((home.station.x, home.station.y),))
+        for kind in ("robot_position", "charger_location"):
+            entities.append(_entity("PointMapEntity", kind, place, {"angle": degrees}))
+    for kind, name, shapes in (
+        ("PolygonMapEntity", "no_go_area", home.no_go),
+        ("LineMapEntity", "virtual_wall", home.walls),
+    ):
+        entities += [_entity(kind, name, _points(home, shape), {}) for shape in shapes]
+    return entities
+
+
+def _entity(kind: str, name: str, points: list[int], meta: dict[str, Any]) -> dict[str, Any]:
+    return {"__class": kind, "metaData": meta, "points": points, "type": name}
+
+
+def _points(home: ValetudoHome, points: Points) -> list[int]:
+    frame = home.occupancy.frame
+    top = frame.origin_y + frame.rows * frame.resolution
+    return [round(value / _CM) for x, y in points for value in (x - frame.origin_x, top - y)]

@@ -1,0 +1,140 @@
+"""``./roomba import valetudo`` and ``export valetudo``: homes to clean, and back."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from roomba.commands.sim.runs import TrialSetup
+from roomba.commands.sim.trial import Trial
+from roomba.commands.valetudo.export_command import main as export
+from roomba.commands.valetudo.homes import read_home, write_home
+from roomba.commands.valetudo.import_command import main as bring
+from roomba.files.valetudo import ValetudoHome, parse
+from roomba.geometry import Pose
+from roomba.grid import FREE
+
+ROOM = 400
+"""cm; the side of a room, walls included."""
+
+
+def foreign(file: Path) -> Path:
+    """Write a map of two rooms with a door, as another program does."""
+    side = ROOM // 5
+    floor = [[x, y] for y in range(1, side - 1) for x in range(1, 2 * side - 1)]
+    wall_x = side
+    rooms = [
+        [x, y, kind]
+        for x, y in floor
+        if x != wall_x or side // 2 - 8 < y < side // 2 + 8
+        for kind in (x > wall_x,)
+    ]
+    inside = {(x, y) for x, y, _ in rooms}
+    walls = [(x, y) for y in range(side) for x in range(2 * side) if (x, y) not in inside]
+    layers = [
+        {
+            "type": "segment",
+            "metaData": {"segmentId": str(number), "name": name},
+            "pixels": [value for x, y, kind in rooms if kind == number for value in (x, y)],
+        }
+        for number, name in ((0, "Büro"), (1, "Bad"))
+    ]
+    layers.append({"type": "wall", "pixels": [value for wall in walls for value in wall]})
+    entities = [
+        {"type": "charger_location", "points": [25, 200], "metaData": {"angle": 12}},
+        {"type": "no_go_area", "points": [600, 20, 780, 20, 780, 100, 600, 100]},
+    ]
+    values = {
+        "size": {"x": 2 * ROOM, "y": ROOM},
+        "pixelSize": 5,
+        "layers": layers,
+        "entities": entities,
+        "metaData": {"version": 2},
+    }
+    file.write_text(json.dumps(values), encoding="utf-8")
+    return file
+
+
+def test_a_foreign_home_is_cleaned_in_simulation(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file, folder = foreign(tmp_path / "map.json"), tmp_path / "home"
+    assert bring(["valetudo", str(file), "--out", str(folder)]) == 0
+    assert "2 rooms, 1 zones" in capsys.readouterr().out
+    setup = TrialSetup(Trial(home=str(folder), seed=1))
+    assert [room.name for room in setup.home.rooms] == ["Büro", "Bad"]
+    # It stands by the wall next to which the charger is.
+    assert setup.home.station.distance_to(0.0, 0.0) < 0.5
+    run = setup.run()
+    assert run.figures.is_completed
+    assert run.figures.hits == 0
+    assert run.figures.fraction > 0.99
+    # Its zone was obeyed: the tool was never in the middle of it.
+    x, y = 6.9 - 0.25, 2.0 - 0.6
+    away = np.hypot(run.trajectory[:, 1] - x, run.trajectory[:, 2] - y)
+    assert away.min() > 0.4 + run.robot.body.radius - 0.05
+
+
+def test_a_home_comes_back_as_it_was_exported(tmp_path: Path) -> None:
+    file, folder = tmp_path / "flat.json", tmp_path / "flat"
+    assert export(["valetudo", "flat", "--out", str(file)]) == 0
+    assert bring(["valetudo", str(file), "--out", str(folder)]) == 0
+    before, after = read_home("flat"), read_home(str(folder))
+    assert_same(before, after)
+
+
+def test_a_home_with_zones_comes_back_with_them(tmp_path: Path) -> None:
+    found = parse(foreign(tmp_path / "map.json").read_text(encoding="utf-8"))
+    home = write_home(found, tmp_path / "one")
+    file = tmp_path / "again.json"
+    assert export(["valetudo", str(tmp_path / "one"), "--out", str(file)]) == 0
+    again = parse(file.read_text(encoding="utf-8"))
+    assert again.has_own_frame
+    assert np.allclose(again.no_go, found.no_go)
+    assert again.station is not None
+    assert again.station.distance_to(home.station.x, home.station.y) < 0.01
+    write_home(again, tmp_path / "two")
+    assert_same(read_home(str(tmp_path / "one")), read_home(str(tmp_path / "two")))
+
+
+def assert_same(before: ValetudoHome, after: ValetudoHome) -> None:
+    # The station itself is solid in the home's map, and so part of the exported one.
+    assert after.occupancy.frame == before.occupancy.frame
+    assert ((after.occupancy.values == FREE) == (before.occupancy.values == FREE)).all()
+    assert isinstance(before.station, Pose)
+    assert isinstance(after.station, Pose)
+    assert after.station.distance_to(before.station.x, before.station.y) < 0.0101
+    turned = math.remainder(after.station.theta - before.station.theta, 2.0 * math.pi)
+    assert abs(turned) < 0.01
+    assert [name for name, _ in after.rooms] == [name for name, _ in before.rooms]
+    for (_, one), (_, two) in zip(before.rooms, after.rooms, strict=True):
+        assert np.count_nonzero(one ^ two) < 0.005 * np.count_nonzero(one)
+    assert np.allclose(np.ravel(before.no_go), np.ravel(after.no_go), atol=0.0101)
+
+
+@pytest.mark.parametrize(
+    ("content", "reason"),
+    [(b"{}", "expected a map of Valetudo"), (b"\xff\xfe", "UTF-8"), (None, "No such file")],
+)
+def test_what_is_no_map_is_refused_in_a_line(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], content: bytes | None, reason: str
+) -> None:
+    file = tmp_path / "map.json"
+    if content is not None:
+        file.write_bytes(content)
+    assert bring(["valetudo", str(file), "--out", str(tmp_path / "home")]) == 2
+    told = capsys.readouterr().err
+    assert reason in told
+    assert told.count("\n") == 1
+    assert not (tmp_path / "home").exists()
+
+
+def test_a_home_that_is_not_there_is_refused(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert export(["valetudo", "castle", "--out", str(tmp_path / "x.json")]) == 2
+    assert "castle" in capsys.readouterr().err
