@@ -32,6 +32,10 @@ _TURN_STEP: Final = 0.012
 _MOST_POINTS: Final = 250
 """More make the search no surer."""
 _FULL: Final = 255
+_ANOTHER: Final = 0.8
+"""m; a pose that is farther from a match is of another place."""
+_NEARLY: Final = 0.8
+"""Share of a match's score with which another place is not to be told from it."""
 
 
 def is_in_reach(points: Floats) -> bool:
@@ -76,12 +80,34 @@ class CorrelativeMatcher:
         few = np.ascontiguousarray(points[::stride, :2])
         if not len(few):
             return None
-        found = np.empty(4)
+        found, nothing = np.empty(4), np.zeros(3)
         if not _search(
-            self._levels, self._corner, _CELL, few, around, window, turn, _TURN_STEP, least, found
-        ):
+            self._levels, self._corner, _CELL, few, around, window, turn, _TURN_STEP, least,
+            nothing, found,
+        ):  # fmt: skip
             return None
         return CorrelativeMatch(found[:3].copy(), float(found[3]))
+
+    def is_unique(
+        self,
+        points: Floats,
+        match: CorrelativeMatch,
+        around: Floats,
+        window: float,
+        turn: float,
+    ) -> bool:
+        """Whether no other place in a window, as in :meth:`best`, fits nearly as well as a match.
+
+        In a corridor that looks alike all along one does.
+        """
+        stride = max(1, -(-len(points) // _MOST_POINTS))
+        few = np.ascontiguousarray(points[::stride, :2])
+        found = np.empty(4)
+        beside = np.array([*(match.pose[:2] - around[:2]), _ANOTHER])
+        return not _search(
+            self._levels, self._corner, _CELL, few, around, window, turn, _TURN_STEP,
+            _NEARLY * match.score, beside, found,
+        )  # fmt: skip
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -145,10 +171,15 @@ def _search(
     turn: float,
     turn_step: float,
     least: float,
+    beside: Floats,
     found: Floats,
 ) -> bool:
-    """Fill ``found`` [4] with the best pose and its score; tell if one is better than ``least``."""
+    """Fill ``found`` [4] with the best pose and its score; tell if one is better than ``least``.
+
+    Shifts that are less than ``beside[2]``, m, off ``beside[:2]`` do not count.
+    """
     top = levels.shape[0] - 1
+    beside_x, beside_y, beside_square = beside[0] / cell, beside[1] / cell, (beside[2] / cell) ** 2
     turns, reach = math.ceil(turn / turn_step), math.ceil(window / cell)
     count, angles = points.shape[0], 2 * turns + 1
     columns = np.empty((angles, count), np.int32)
@@ -189,6 +220,12 @@ def _search(
                 continue
             level, angle = pending[waiting, 0], pending[waiting, 1]
             right, up = pending[waiting, 2], pending[waiting, 3]
+            # The corner of the block that is farthest from what does not count.
+            size = (1 << level) - 1
+            far_x = max(abs(right - beside_x), abs(right + size - beside_x))
+            far_y = max(abs(up - beside_y), abs(up + size - beside_y))
+            if far_x * far_x + far_y * far_y < beside_square:
+                continue
             if level == 0:
                 best, best_angle, best_right, best_up = bounds[waiting], angle, right, up
                 continue

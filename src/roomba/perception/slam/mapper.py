@@ -304,7 +304,10 @@ class Mapper:
     def _begin_piece(self) -> None:
         """Begin a submap that scans are matched to, though none tells where it lies."""
         self._close_submap()
-        self._graph.begin_piece(self._follower.here, self._follower.way)
+        follower = self._follower
+        self._graph.begin_piece(
+            follower.here, follower.way, follower.unsure_way, follower.unsure_turn
+        )
         self._enter_newest([])
         self._follower.jump()
         self._finding_back.begin_again()

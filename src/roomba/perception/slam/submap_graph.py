@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from roomba.configuration.mapping import MappingConfig
 from roomba.configuration.robot import LocalizationConfig
+from roomba.perception.slam.agreement import NEIGHBOURS, is_backed, is_far
 from roomba.perception.slam.axis_alignment import phase_of_walls, turn_of_walls
 from roomba.perception.slam.linking import Linker
 from roomba.perception.slam.mapper_state import KeptSubmap
@@ -24,8 +25,12 @@ _CLOUD: Final = 1500
 """Points of a submap that are matched to others."""
 _OF_PEOPLE: Final = np.diag([0.05**-2, 0.05**-2, 0.05**-2])
 """1/m2, 1/rad2; information of a link to a reported pose."""
-_OF_A_PIECE: Final = np.diag([1.0**-2, 1.0**-2, 0.5**-2])
-"""1/m2, 1/rad2; of a link over which no scan led."""
+_OF_A_PIECE: Final = (0.5, 0.1)
+_SHARE_OF_PIECE: Final = 0.1
+"""m, rad: how unsure a link is over which no scan led, and by this share of what was driven and
+turned there."""
+_RECENT: Final = 40
+"""Links that may back a new one."""
 _REFINEMENTS: Final = 2
 """Times that all links are looked for anew when the map is finished."""
 
@@ -43,6 +48,7 @@ class SubmapGraph:
         self.submaps = [Submap(0.0)]
         self.poses = start[None].copy()
         self.links: list[Link] = []
+        self._waiting: list[Link] = []
 
     def take_over(
         self, submaps: tuple[KeptSubmap, ...], poses: Floats, links: tuple[Link, ...]
@@ -82,10 +88,18 @@ class SubmapGraph:
         self.links.append(Link(count - 1, count, relative.copy(), information, False))
         self._add(self.placed(relative), way)
 
-    def begin_piece(self, relative: Floats, way: float) -> None:
-        """Begin a submap at a pose of the newest one, [3], that no scan confirmed."""
+    def begin_piece(
+        self, relative: Floats, way: float, unsure_way: float, unsure_turn: float
+    ) -> None:
+        """Begin a submap at a pose of the newest one, [3].
+
+        No scan confirmed what was driven, m, and turned, rad, before it.
+        """
         count = len(self.submaps)
-        self.links.append(Link(count - 1, count, relative.copy(), _OF_A_PIECE, False))
+        away = _OF_A_PIECE[0] + _SHARE_OF_PIECE * unsure_way
+        turn = _OF_A_PIECE[1] + _SHARE_OF_PIECE * unsure_turn
+        information = np.diag([away**-2, away**-2, turn**-2])
+        self.links.append(Link(count - 1, count, relative.copy(), information, False))
         self._add(self.placed(relative), way)
 
     def begin_at(self, pose: Floats, way: float) -> None:
@@ -100,7 +114,7 @@ class SubmapGraph:
         child = len(self.submaps) - 1
         self.newest.close(_CLOUD)
         known = len(self.links)
-        self.links += self._links_of(child, self.links)
+        self.links += self._agreeing(self._links_of(child, self.links), child)
         self.poses = optimised(self.poses, self.links, known)
 
     def refine(self) -> None:
@@ -108,8 +122,13 @@ class SubmapGraph:
         for _ in range(_REFINEMENTS):
             known = self.links
             self.links = [link for link in known if not link.may_be_wrong]
-            for child in range(1, len(self.submaps)):
-                self.links += self._links_of(child, known)
+            children = range(1, len(self.submaps))
+            found = [link for child in children for link in self._links_of(child, known)]
+            self.links += [
+                link
+                for link in found
+                if not is_far(link, self.poses) or is_backed(link, found, self.poses)
+            ]
             self.poses = optimised(self.poses, self.links)
 
     def refine_keyframes(self) -> None:
@@ -189,6 +208,20 @@ class SubmapGraph:
         if self._linker is None:
             return []
         return self._linker.links_to(child, child, self.submaps, self.poses, known)
+
+    def _agreeing(self, found: list[Link], child: int) -> list[Link]:
+        """Return those links that others back, if they must, and older ones that these back."""
+        agreeing = [link for link in found if not is_far(link, self.poses)]
+        waiting = self._waiting + [link for link in found if is_far(link, self.poses)]
+        loops = [link for link in self.links[-_RECENT:] if link.may_be_wrong]
+        backed = [is_backed(link, waiting + loops + agreeing, self.poses) for link in waiting]
+        agreeing += [link for link, yes in zip(waiting, backed, strict=True) if yes]
+        self._waiting = [
+            link
+            for link, yes in zip(waiting, backed, strict=True)
+            if not yes and link.child > child - NEIGHBOURS
+        ]
+        return agreeing
 
     def _driven(self, way: float) -> Floats:
         """Return the information of a link that follows from having driven so far, m."""

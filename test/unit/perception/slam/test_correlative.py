@@ -67,3 +67,29 @@ def test_what_fits_nowhere_is_not_found() -> None:
 def test_a_place_without_points_is_refused() -> None:
     with pytest.raises(ValueError, match="points in reach"):
         CorrelativeMatcher(np.full((3, 2), 100.0))
+
+
+def corridor(doors: list[float]) -> Floats:
+    """Points of a corridor of 20 m along x, with recesses 0.9 m wide in one wall."""
+    along = np.arange(-10.0, 10.0, 0.04)
+    is_door = np.any([np.abs(along - door) < 0.45 for door in doors], axis=0)
+    left, right = np.where(is_door, 1.2, 1.0), np.full(len(along), -1.0)
+    return np.concatenate([np.column_stack((along, left)), np.column_stack((along, right))])
+
+
+def test_where_all_looks_alike_no_place_is_unique() -> None:
+    """Doors each 4 m: a place 4 m ahead fits nearly as well. A cross corridor is unlike it."""
+    doors = [-8.0, -4.0, 0.0, 4.0, 8.0]
+    around, around_window = np.zeros(3), 6.0
+    seen = corridor(doors)[::2]
+    seen = seen[np.abs(seen[:, 0]) < 4.0]
+    alike = CorrelativeMatcher(corridor(doors))
+    across = np.column_stack((np.full(300, 1.5), np.linspace(1.0, 7.0, 300)))
+    with_corner = np.concatenate((seen, across))
+    unlike = CorrelativeMatcher(np.concatenate((corridor(doors), across)))
+    for matcher, points, expected in ((alike, seen, False), (unlike, with_corner, True)):
+        found = matcher.best(points, around, around_window, 0.2, 0.3)
+        assert found is not None
+        unique = matcher.is_unique(points, found, around, around_window, 0.2)
+        assert unique == expected
+        assert not unique or np.abs(found.pose[:2]).max() < 0.06
