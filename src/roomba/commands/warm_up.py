@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from roomba.configuration.mapping import MapChangesConfig
 from roomba.configuration.robot import RobotConfig
 from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.geometry import Pose, Twist
@@ -61,7 +62,7 @@ def _look_for_changes(home: Home, config: RobotConfig, simulator: Simulator) -> 
     """Look from a few places for what stands otherwise than the map shows it."""
     lidar = config.lidar
     model = LidarModel.all_around(lidar.beams, lidar.min_range, lidar.max_range)
-    changes = MapChanges(home.map)
+    changes = MapChanges(home.map, MapChangesConfig())
     for _ in range(60):
         seen = simulator.step(Twist(0.1, 1.0), 0.1)
         changes.see(seen.time, simulator.ranges, model.arrays(), seen.pose)

@@ -10,6 +10,30 @@ from pydantic import Field
 from roomba.configuration.frozen import Frozen, Positive, Ratio, load_config
 
 
+class MapChangesConfig(Frozen):
+    """What is a lasting change of a map that the robot knows: m, m2, s."""
+
+    farthest: Positive = 5.0
+    """The longest range that counts: there a degree is two cells."""
+    look_way: Positive = 0.5
+    """A look at the home lasts until so much was driven,"""
+    look_time: Positive = 15.0
+    """and so much time has passed: people who stand about are no change."""
+    sure: Annotated[int, Field(ge=1, le=5)] = 4
+    """Looks that show a change of a cell, minus those that show none, for the change to count."""
+    blur: Positive = 0.12
+    """Nearer to what stands as mapped a cell tells no change."""
+    least_area: Positive = 0.06
+    """A change with less area, and with less extent than ``least_length``, is no furniture."""
+    least_length: Positive = 0.4
+    behind: Positive = 0.8
+    """Depth of unknown cells behind vanished furniture that become known."""
+    movable: Positive = 0.7
+    """What is no larger is moved about by people; a chair that was moved is no change."""
+    moved: Positive = 1.0
+    """So far a thing is moved at most; farther off another one appeared."""
+
+
 class MappingConfig(Frozen):
     """Keyframes, submaps and their links: m, rad; the drawing: shares 0..1."""
 
@@ -31,6 +55,7 @@ class MappingConfig(Frozen):
     occupied_share: Ratio = 0.3
     occupied_beams: Annotated[int, Field(ge=1)] = 2
     redrawn_shift: Positive = 0.01
+    changes: MapChangesConfig = MapChangesConfig()
 
 
 def load_mapping_config(path: Path) -> MappingConfig:

@@ -155,6 +155,15 @@ class ExploringConfig(Frozen):
     """m; as near to a viewpoint it has seen all that is to be seen from there."""
     frontier_radius: Positive = 0.25
     """m; around the middle of a frontier: whether something of it is left is looked up there."""
+    least_unknown: Positive = 0.03
+    """m2; smaller patches of the unknown are not driven to."""
+    look_from: Positive = 1.2
+    """m; the farthest viewpoint from its frontier."""
+    nearer_worth: NotNegative = 2.0
+    """m of way that one metre nearer to the frontier is worth."""
+    small_frontier: NotNegative = 0.4
+    """m; a shorter frontier comes later: it costs ``small_cost``, m of way, more."""
+    small_cost: NotNegative = 1.0
     same_frontier: Positive = 0.3
     """m; frontiers nearer to one that was given up are the same."""
     map_wait: Positive = 120.0

@@ -7,6 +7,7 @@ from typing import Final
 import rospy
 from roomba_robot.msg import MapUpdate
 
+from roomba.configuration.mapping import MapChangesConfig
 from roomba.grid import OccupancyMap
 from roomba.perception.floors.map_changes import Change, MapChanges
 from roomba.perception.localization.estimate import Estimate, Knowledge
@@ -24,9 +25,9 @@ class ChangeTopics:
     Publishes: ``map/update`` (MapUpdate, latched).
     """
 
-    def __init__(self, place: LocalizationTopics) -> None:
+    def __init__(self, place: LocalizationTopics, config: MapChangesConfig) -> None:
         """Connect nothing yet."""
-        self._place = place
+        self._place, self._config = place, config
         self._changes: MapChanges | None = None
         self._seen = -1.0
         self._offered: tuple[Change, ...] = ()
@@ -37,7 +38,7 @@ class ChangeTopics:
 
     def begin(self, now: float, occupancy: OccupancyMap) -> None:
         """Go on with another map, of which nothing was seen yet."""
-        self._changes = MapChanges(occupancy)
+        self._changes = MapChanges(occupancy, self._config)
         self._offered = ()
         self._tell(now)
 

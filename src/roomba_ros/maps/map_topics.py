@@ -43,9 +43,10 @@ class MapTopics:
         self._config, self._place = config, place
         self._background = Background()
         self._memory = MapMemory(self._background)
-        self._maker = MapMaker(config, read_mapping_config(), place, self._background, self._memory)
+        mapping = read_mapping_config()
+        self._maker = MapMaker(config, mapping, place, self._background, self._memory)
         rooms.is_growing = lambda: self._maker.is_growing
-        self._shelf, self._changes = MapShelf(rooms), ChangeTopics(place)
+        self._shelf, self._changes = MapShelf(rooms), ChangeTopics(place, mapping.changes)
         self._own = OwnMap(place, rooms, self._shelf, self._changes, self._memory, self._background)
         self._services = MapServices(self._own, self._maker, self._shelf, self._changes, place)
         self._trouble = ""

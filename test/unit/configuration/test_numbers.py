@@ -23,15 +23,6 @@ CORRECTION = "makes up for how another part thickens or rounds what it gives"
 
 STAYS: dict[str, dict[str, str]] = {
     "control": {"SHORTEST_LEG": ROUNDING, "_STRAIGHT": ROUNDING},
-    "headless": {
-        "LONGEST_BURST": SEARCH,
-        "_EARLY": ROUNDING,
-        "_HARDLY_LESS": ROUNDING,
-        "_LONGEST_CLEAN": "ends a run that hangs; no run comes near to it",
-        "_LONGEST_PER_AREA": "the same",
-        "_LONGEST_WALK": "the same",
-        **dict.fromkeys(("TIME", "GYRO", "PASSED"), CODE),
-    },
     "mission": {
         "VERSION": CODE,
         "_ALL": CODE,

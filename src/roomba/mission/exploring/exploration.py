@@ -18,7 +18,7 @@ from roomba.geometry import Pose
 from roomba.grid import OccupancyMap
 from roomba.mission.cleaning.request import CleanOutcome
 from roomba.mission.inputs.planning_context import PlanningContext
-from roomba.planning.frontiers.frontiers import Frontier, frontiers, is_frontier
+from roomba.planning.frontiers.frontiers import Frontier, FrontierChoice, frontiers, is_frontier
 from roomba.planning.path.costmap import Point, RoundObstacle
 from roomba.planning.path.planner import NoPathError
 
@@ -47,6 +47,14 @@ class Exploration:
     def __init__(self, config: ExploringConfig) -> None:
         """Begin with nothing given up."""
         self._config = config
+        self._choice = FrontierChoice(
+            config.least_unknown,
+            config.same_frontier,
+            config.look_from,
+            config.nearer_worth,
+            config.small_frontier,
+            config.small_cost,
+        )
         self.goal: Frontier | None = None
         self.unseen: list[Point] = []
         self.times_stuck = 0
@@ -83,7 +91,7 @@ class Exploration:
             fits = context.paths.reachable(at, obstacles)
         except NoPathError:
             return None
-        found = frontiers(context.known, fits, at, self.unseen, self._config.same_frontier)
+        found = frontiers(context.known, fits, at, self.unseen, self._choice)
         for frontier in [each for each in found if each.way < farthest][:_MOST_TRIES]:
             try:
                 path = context.paths.plan(at, frontier.viewpoint, obstacles)

@@ -16,6 +16,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.configuration.mapping import MapChangesConfig
 from roomba.geometry import Pose, wrap_angle
 from roomba.grid import FREE, OCCUPIED, UNKNOWN, OccupancyMap
 from roomba.perception.floors.map_changes_kernels import NO_BOUNDS, count_scan, score_look
@@ -27,31 +28,11 @@ from roomba.raster.regions import dilated, numbered_regions
 
 Mask = NDArray[np.bool_]
 
-_FARTHEST: Final = 5.0
-"""m; the longest range that counts: there a degree is two cells."""
 _NEW_WAY: Final = 0.05
 _NEW_TURN: Final = 0.2
 """m, rad; a scan from nearer to the last one says nothing new."""
-_LOOK_WAY: Final = 0.5
-_LOOK_TIME: Final = 15.0
-"""m, s; a look lasts until both this way and this time have passed."""
-_SURE: Final = 4
-"""Looks that show a change of a cell, minus those that show none, for the change to count."""
-_BLUR: Final = 0.12
-"""m; nearer to what stands as mapped a cell tells no change: there noise of range and pose, and
-the edges of cells, let beams end and pass by turns, and things are moved a bit.
-"""
-_LEAST_AREA: Final = 0.06
-_LEAST_LENGTH: Final = 0.4
-"""m2, m; a change with less area and extent is no furniture: a bag, feet, a leg of a chair."""
-_BEHIND: Final = 0.8
-"""m; depth of unknown cells behind vanished furniture that become known."""
 _NEAR: Final = np.ones((5, 5), np.bool_)
 """Cells; changed cells as near to each other are one change."""
-_MOVABLE: Final = 0.7
-_MOVED: Final = 1.0
-"""m; up to this size, and within this distance, a thing that vanished and one that appeared are one
-that was moved."""
 
 
 class ChangeKind(Enum):
@@ -80,9 +61,9 @@ class Change:
     cells: NDArray[np.int64] = field(repr=False, compare=False)
 
     @property
-    def is_movable(self) -> bool:
-        """Whether it is so small that people move it about."""
-        return max(self.width, self.height) <= _MOVABLE
+    def size(self) -> float:
+        """How far it reaches along the map's axes at most, m."""
+        return max(self.width, self.height)
 
 
 class MapChanges:
@@ -92,16 +73,16 @@ class MapChanges:
     refuses is :meth:`dismissed`.
     """
 
-    def __init__(self, occupancy: OccupancyMap) -> None:
+    def __init__(self, occupancy: OccupancyMap, config: MapChangesConfig) -> None:
         """Begin with nothing seen of the map."""
-        self._map = occupancy
+        self._map, self._config = occupancy, config
         frame = occupancy.frame
         place = np.array([frame.origin_x, frame.origin_y, frame.resolution])
         hits, passes = np.zeros(frame.shape, np.uint16), np.zeros(frame.shape, np.uint16)
         self._sheet = CountArrays(hits, passes, place, NO_BOUNDS.copy())
         self._scores = np.zeros(frame.shape, np.int8)
         self._refused = {kind: np.zeros(frame.shape, np.bool_) for kind in ChangeKind}
-        self._is_mapped_near = distance_to_nearest(occupancy.solid) <= _BLUR / frame.resolution
+        self._is_mapped_near = self._is_blurred(occupancy.solid)
         self._points = np.empty((0, POINT), np.float32)
         self._last: Pose | None = None
         self._look_began = math.inf
@@ -122,7 +103,7 @@ class MapChanges:
         if len(self._points) < len(ranges):
             self._points = np.empty((len(ranges), POINT), np.float32)
         at = np.array([pose.x, pose.y, pose.theta])
-        farthest = min(lidar.farthest, _FARTHEST)
+        farthest = min(lidar.farthest, self._config.farthest)
         count_scan(
             self._sheet,
             ranges,
@@ -135,7 +116,8 @@ class MapChanges:
         )
         self._last = pose
         way = pose.distance_to(self._look_from.x, self._look_from.y)
-        if way >= _LOOK_WAY and now - self._look_began >= _LOOK_TIME:
+        time = now - self._look_began
+        if way >= self._config.look_way and time >= self._config.look_time:
             self._finish_look(now, pose)
 
     def changes(self) -> tuple[Change, ...]:
@@ -143,7 +125,10 @@ class MapChanges:
         if self._known is None:
             appeared = list(self._found(ChangeKind.APPEARED))
             vanished = list(self._found(ChangeKind.VANISHED))
-            found = [*_not_moved(appeared, vanished), *_not_moved(vanished, appeared)]
+            found = [
+                *_not_moved(appeared, vanished, self._config),
+                *_not_moved(vanished, appeared, self._config),
+            ]
             self._known = tuple(sorted(found, key=lambda change: (-change.area, change.x)))
         return self._known
 
@@ -190,16 +175,16 @@ class MapChanges:
 
     def _appeared(self) -> Mask:
         """Return the cells of floor where something stands now."""
-        candidates = (self._map.values == FREE) & (self._scores >= _SURE)
+        candidates = (self._map.values == FREE) & (self._scores >= self._config.sure)
         near_core = dilated(candidates & ~self._is_mapped_near, _NEAR)
         return np.asarray(candidates & near_core)
 
     def _vanished(self) -> Mask:
         """Return the cells of things that were seen through."""
         occupied = self._map.values == OCCUPIED
-        candidates = occupied & (self._scores <= -_SURE)
-        stands = (occupied & ~candidates) | (self._scores >= _SURE)
-        is_near = distance_to_nearest(stands) <= _BLUR / self._map.frame.resolution
+        sure = self._config.sure
+        candidates = occupied & (self._scores <= -sure)
+        is_near = self._is_blurred((occupied & ~candidates) | (self._scores >= sure))
         return np.asarray(candidates & dilated(candidates & ~is_near, _NEAR))
 
     def _is_furniture(self, cells: Mask) -> bool:
@@ -208,7 +193,16 @@ class MapChanges:
             return False
         size = self._map.frame.resolution
         length = math.hypot(np.ptp(rows), np.ptp(columns)) * size
-        return len(rows) * size**2 >= _LEAST_AREA or length >= _LEAST_LENGTH
+        config = self._config
+        return len(rows) * size**2 >= config.least_area or length >= config.least_length
+
+    def _is_blurred(self, stands: Mask) -> Mask:
+        """Return the cells too near to what stands to tell a change.
+
+        There noise of range and pose, and the edges of cells, let beams end and pass by turns.
+        """
+        cells = self._config.blur / self._map.frame.resolution
+        return np.asarray(distance_to_nearest(stands) <= cells)
 
     def _change(self, kind: ChangeKind, region: Mask) -> Change:
         cells = np.argwhere(region)
@@ -244,20 +238,24 @@ class MapChanges:
         gone = np.zeros(values.shape, np.bool_)
         gone[change.cells[:, 0], change.cells[:, 1]] = True
         values[gone] = FREE
-        reach = _BEHIND / self._map.frame.resolution
+        config = self._config
+        reach = config.behind / self._map.frame.resolution
         behind = (values == UNKNOWN) & (distance_to_nearest(gone) <= reach)
-        values[behind & (self._scores <= -_SURE)] = FREE
-        values[behind & (self._scores >= _SURE)] = OCCUPIED
+        values[behind & (self._scores <= -config.sure)] = FREE
+        values[behind & (self._scores >= config.sure)] = OCCUPIED
 
 
-def _not_moved(changes: list[Change], others: list[Change]) -> list[Change]:
+def _not_moved(
+    changes: list[Change], others: list[Change], config: MapChangesConfig
+) -> list[Change]:
     """Return changes without chairs and the like, which ``others`` show near by."""
     return [
         change
         for change in changes
-        if not change.is_movable
+        if change.size > config.movable
         or not any(
-            other.is_movable and math.hypot(other.x - change.x, other.y - change.y) <= _MOVED
+            other.size <= config.movable
+            and math.hypot(other.x - change.x, other.y - change.y) <= config.moved
             for other in others
         )
     ]

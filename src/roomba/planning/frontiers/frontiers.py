@@ -18,18 +18,28 @@ from roomba.grid import GridFrame, OccupancyMap
 from roomba.planning.frontiers.kernels import clusters, frontier_cells, seen_from, ways_from
 from roomba.planning.path.costmap import Point
 
-_LEAST_UNKNOWN: Final = 0.03
-"""m2; smaller patches of the unknown are not driven to."""
 _LEAST_CELLS: Final = 3
-_LOOK_FROM: Final = 1.2
-"""m; the farthest viewpoint from its frontier."""
-_NEARER: Final = 2.0
-"""m of way that one metre nearer to the frontier is worth."""
+"""Cells of the shortest frontier."""
 _STRIDE: Final = 0.3
 """m; about so far apart are the places of a frontier that are tried."""
-_SMALL: Final = 0.4
-_SMALL_COSTS: Final = 1.0
-"""m; a frontier shorter than the first costs the second more: large ones come first."""
+
+
+@dataclass(frozen=True, slots=True)
+class FrontierChoice:
+    """Which frontiers count, from where they are looked at, and which come first.
+
+    Patches of the unknown of less than ``least_unknown`` m2 are no frontiers, and neither are those
+    nearer than ``away`` m to one that is left out. A viewpoint is at most ``look_from`` m off its
+    frontier; one metre nearer to it is worth ``nearer_worth`` m of way. Frontiers shorter than
+    ``small`` m cost ``small_cost`` m of way more, so that large ones come first.
+    """
+
+    least_unknown: float
+    away: float
+    look_from: float
+    nearer_worth: float
+    small: float
+    small_cost: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,14 +58,14 @@ def frontiers(
     occupancy: OccupancyMap,
     fits: NDArray[np.bool_],
     here: Point,
-    left_out: Sequence[Point] = (),
-    away: float = 0.3,
+    left_out: Sequence[Point],
+    choice: FrontierChoice,
 ) -> list[Frontier]:
     """Return the frontiers that can be looked at, the best to go to first.
 
     ``fits``, bool over the map's grid, tells where the robot's middle may be; ``here`` is where it
-    is, m. Those nearer than ``away``, m, to a point ``left_out`` are left out. Raises ValueError
-    when ``here`` is not on the map.
+    is, m. Those near a point ``left_out``, m, are left out. Raises ValueError when ``here`` is not
+    on the map.
     """
     frame = occupancy.frame
     if not frame.contains(*here):
@@ -63,7 +73,7 @@ def frontiers(
     ways = np.empty(frame.shape)
     ways_from(fits, *frame.cell_of(*here), ways)
     frontier = np.empty(frame.shape, np.bool_)
-    least = max(1, round(_LEAST_UNKNOWN / frame.resolution**2))
+    least = max(1, round(choice.least_unknown / frame.resolution**2))
     frontier_cells(occupancy.values, least, frontier)
     labels = np.empty(frame.shape, np.int32)
     count = clusters(frontier, labels)
@@ -71,7 +81,8 @@ def frontiers(
     middles = _middles_of(cells, frame)
     apart = _from_middle(cells, ends)
     leave = np.array(left_out, np.float64).reshape(-1, 2)
-    radius, every = int(_LOOK_FROM / frame.resolution), max(1, round(_STRIDE / frame.resolution))
+    radius = int(choice.look_from / frame.resolution)
+    every, worth = max(1, round(_STRIDE / frame.resolution)), choice.nearer_worth
     found = []
     for first, last in pairwise(ends.tolist()):
         if last - first < _LEAST_CELLS:
@@ -79,14 +90,14 @@ def frontiers(
         # A place near its middle, if that can be.
         tried = first + np.argsort(apart[first:last])[::every]
         index, row, column = seen_from(
-            cells[tried], middles[tried], leave, away, occupancy.values, ways, radius, _NEARER
+            cells[tried], middles[tried], leave, choice.away, occupancy.values, ways, radius, worth
         )
         if index < 0:
             continue
         x, y = middles[tried[index]].tolist()
         length, way = (last - first) * frame.resolution, float(ways[row, column]) * frame.resolution
         found.append(Frontier((x, y), frame.centre_of(row, column), way, length))
-    return sorted(found, key=_cost)
+    return sorted(found, key=lambda frontier: _cost(frontier, choice))
 
 
 def is_frontier(occupancy: OccupancyMap, point: Point, radius: float) -> bool:
@@ -103,8 +114,8 @@ def is_frontier(occupancy: OccupancyMap, point: Point, radius: float) -> bool:
     return int(frontier.sum()) >= _LEAST_CELLS
 
 
-def _cost(frontier: Frontier) -> float:
-    return frontier.way + (_SMALL_COSTS if frontier.length < _SMALL else 0.0)
+def _cost(frontier: Frontier, choice: FrontierChoice) -> float:
+    return frontier.way + (choice.small_cost if frontier.length < choice.small else 0.0)
 
 
 def _by_number(

@@ -14,6 +14,7 @@ from fixtures.located import CONFIG, LIDAR, Eye
 from fixtures.rooms import Block, room_home
 from numpy.typing import NDArray
 
+from roomba.configuration.mapping import MapChangesConfig
 from roomba.files.shipped import HOMES
 from roomba.geometry import Pose, Twist
 from roomba.grid import FREE, OCCUPIED, UNKNOWN, OccupancyMap
@@ -83,7 +84,7 @@ def cleaned(
     """Go over the flat once: the sensors' usual noise, and poses that are 2 cm and 0.5° off."""
     poses, random = to_and_fro(home), np.random.default_rng(3)
     world = Simulator(home, CONFIG, seed=3, start=poses[0])
-    changes = MapChanges(occupancy or home.map)
+    changes = MapChanges(occupancy or home.map, MapChangesConfig())
     for number, pose in enumerate(poses):
         # Where the robot goes people step aside.
         world.remove_obstacles()
@@ -215,7 +216,7 @@ class Walker:
     """Walks around in a room, and shows what it sees."""
 
     def __init__(self, home: Home = ROOM) -> None:
-        self.changes = MapChanges(home.map)
+        self.changes = MapChanges(home.map, MapChangesConfig())
         self.now = 0.0
         self._random = np.random.default_rng(1)
 

@@ -9,10 +9,12 @@ import pytest
 from numpy.typing import NDArray
 
 from roomba.grid import FREE, OCCUPIED, UNKNOWN, GridFrame, OccupancyMap
-from roomba.planning.frontiers.frontiers import Frontier, frontiers, is_frontier
+from roomba.planning.frontiers.frontiers import Frontier, FrontierChoice, frontiers, is_frontier
 
 CELL = 0.05
 Point = tuple[float, float]
+
+CHOICE = FrontierChoice(0.03, 0.3, 1.2, 2.0, small=0.4, small_cost=1.0)
 
 
 def occupancy(values: NDArray[np.int8]) -> OccupancyMap:
@@ -48,7 +50,7 @@ def fits(made: OccupancyMap, cells: int = 3) -> NDArray[np.bool_]:
 
 
 def found_in(made: OccupancyMap, here: Point = (0.5, 0.5), *left_out: Point) -> list[Frontier]:
-    return frontiers(made, fits(made), here, left_out)
+    return frontiers(made, fits(made), here, left_out, CHOICE)
 
 
 def test_in_a_closed_room_there_is_none() -> None:
