@@ -26,10 +26,11 @@ from roomba.perception.slam.follow_kernels import LEAST_POINTS, beyond, is_apart
 from roomba.perception.slam.mapper_state import KeptSubmap, LidarNumbers, MapperState
 from roomba.perception.slam.occupancy_counts import OccupancyCounts
 from roomba.perception.slam.pose_graph import relative_to
+from roomba.perception.slam.relocation import Relocation
 from roomba.perception.slam.scan_follower import ScanFollower
 from roomba.perception.slam.scan_kernels import Following
 from roomba.perception.slam.submap import Keyframe, moved
-from roomba.perception.slam.submap_graph import SubmapGraph
+from roomba.perception.slam.submap_graph import CLOUD, SubmapGraph
 from roomba.perception.slam.surfels import SurfelGrid
 
 Floats = NDArray[np.float64]
@@ -51,8 +52,8 @@ _UNSURE: Final = np.diag([0.1**2, 0.1**2, 0.05**2])
 """m2, rad2; of the pose against what was seen in the last metres."""
 _NOWHERE: Final = np.diag([100.0**2, 100.0**2, math.pi**2])
 _WAS_LIFTED: Final = (
-    "the robot was lifted while it made its map: put it on its station, or tell where it is (in "
-    "RViz: 2D Pose Estimate)"
+    "the robot was lifted while it made its map: put it on its station, tell where it is (in RViz: "
+    "2D Pose Estimate), or drive it a little where the map shows enough"
 )
 _NO_MATCH: Final = "what is in sight does not fit what was seen just now; going by wheels and gyro"
 
@@ -85,6 +86,7 @@ class Mapper:
         self._sheet = OccupancyCounts(config.resolution)
         self._drawn = self._graph.poses.copy()
         self._is_lifted = self._is_lost = False
+        self._relocation = Relocation()
         self._beside: list[int] = []
         self.version = 0
 
@@ -134,7 +136,7 @@ class Mapper:
         Raises ValueError for another number of beams than the lidar has.
         """
         follower = self._follower
-        if self._is_lifted or self._is_lost or not follower.find_reckoned(stamp):
+        if self._is_lifted or not follower.find_reckoned(stamp):
             return
         if ranges.shape != (lidar.beams,):
             raise ValueError(f"expected a scan of {lidar.beams} ranges, got shape {ranges.shape}")
@@ -142,6 +144,9 @@ class Mapper:
             self._use(lidar)
         points = follower.see(ranges)
         self._graph.use_noise(follower.range_noise)
+        if self._is_lost:
+            self._relocate(stamp, points)
+            return
         if self._is_without_hold(len(points)):
             self._begin_piece()
         follower.follow(stamp)
@@ -181,8 +186,14 @@ class Mapper:
         self.at_scan = self._place()
 
     def lift(self, is_lifted: bool) -> None:
-        """Tell whether the wheels hang in the air: set down elsewhere, it must be :meth:`told`."""
-        self._is_lost |= self._is_lifted and not is_lifted
+        """Tell whether the wheels hang in the air.
+
+        Set down again, it is lost until it was :meth:`told`, or two scans from different places
+        show where on the map it is.
+        """
+        if self._is_lifted and not is_lifted:
+            self._is_lost = True
+            self._relocation.forget()
         self._is_lifted = is_lifted
 
     def told(self, pose: Pose) -> None:
@@ -217,6 +228,15 @@ class Mapper:
         if self._follower.is_sure:
             return Estimate(self.pose, _SURE, Knowledge.KNOWN, agreement, "")
         return Estimate(self.pose, _UNSURE, Knowledge.ROUGH, agreement, _NO_MATCH)
+
+    @property
+    def covariance_of_map(self) -> Floats:
+        """How sure the map is where the robot is: of that place against the start, [3, 3].
+
+        m2 and rad2, map frame, from the links between submaps: it grows along the way, and shrinks
+        where a loop closes.
+        """
+        return self._graph.covariance()
 
     @property
     def range_noise(self) -> float:
@@ -283,6 +303,17 @@ class Mapper:
         self.at_scan = self._place()
         self._finished = self.version
         return self.occupancy()
+
+    def _relocate(self, stamp: float, points: Floats) -> None:
+        """Go on where a scan of a robot that was carried is found on the map, if it is sure."""
+        reckoned = self._reckoning.at(stamp - self._follower.latency)
+        if reckoned is None or not self.version:
+            return
+        self._graph.newest.close(CLOUD)
+        graph = self._graph
+        found = self._relocation.find(points, _row_of(reckoned), graph.submaps, graph.poses)
+        if found is not None:
+            self.told(Pose(*found.tolist()))
 
     def _find_back(self) -> None:
         """Look farther around where scans do not fit."""

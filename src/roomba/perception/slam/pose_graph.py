@@ -116,6 +116,38 @@ def optimised(poses: Floats, links: list[Link], known: int = 0) -> Floats:
     return result
 
 
+def covariance_of(poses: Floats, links: list[Link], index: int) -> Floats:
+    """Return the covariance of one of ``poses``, float64 [n, 3], against the first one, [3, 3].
+
+    m2 and rad2, map frame, as the links tell it that the others do not contradict. Raises
+    ValueError if no link holds it.
+    """
+    if not index:
+        return np.zeros((3, 3))
+    if not links:
+        raise ValueError("expected links that hold the pose, got none")
+    parents = np.array([link.parent for link in links])
+    children = np.array([link.child for link in links])
+    measured = np.array([link.relative for link in links])
+    information = np.array([link.information for link in links])
+    doubted = np.array([link.may_be_wrong for link in links])
+    error, predicted = _errors(poses, parents, children, measured)
+    square = (error[:, None] @ information @ error[:, :, None])[:, 0, 0]
+    weight = np.where(doubted, (_DOUBTED / (_DOUBTED + square)) ** 2, 1.0)
+    places, values = _normal_equations(
+        poses, parents, children, predicted, information * weight[:, None, None]
+    )
+    columns = []
+    for axis in range(3):
+        unit = np.zeros(poses.size)
+        unit[3 * index + axis] = 1.0
+        columns.append(_solved(places, values, unit)[3 * index : 3 * index + 3])
+    covariance: Floats = np.array(columns)
+    if not covariance.max() < 0.1 / _HELD:
+        raise ValueError("expected links that hold the pose, got none")
+    return 0.5 * (covariance + covariance.T)
+
+
 def _errors(
     poses: Floats, parents: NDArray[np.int64], children: NDArray[np.int64], measured: Floats
 ) -> tuple[Floats, Floats]:
@@ -136,13 +168,27 @@ def _step(
 ) -> Floats:
     """Return the correction of all poses but the first, float64 [n - 1, 3]."""
     of_parent, of_child = _slopes(poses[parents], predicted)
-    count, axes = len(poses), np.arange(3)
-    gradient = np.zeros((count, 3))
-    rows, columns, values = [], [], []
+    gradient = np.zeros((len(poses), 3))
     for slopes, nodes in ((of_parent, parents), (of_child, children)):
         np.add.at(
             gradient, nodes, (slopes.transpose(0, 2, 1) @ (weighted @ error[:, :, None]))[:, :, 0]
         )
+    places, values = _normal_equations(poses, parents, children, predicted, weighted)
+    return _solved(places, values, -gradient.reshape(-1)).reshape(-1, 3)[1:]
+
+
+def _normal_equations(
+    poses: Floats,
+    parents: NDArray[np.int64],
+    children: NDArray[np.int64],
+    predicted: Floats,
+    weighted: Floats,
+) -> tuple[tuple[NDArray[np.int64], NDArray[np.int64]], Floats]:
+    """Return rows and columns, int64 [m] each, and values, [m], whose sums are the matrix."""
+    of_parent, of_child = _slopes(poses[parents], predicted)
+    axes = np.arange(3)
+    rows, columns, values = [], [], []
+    for slopes, nodes in ((of_parent, parents), (of_child, children)):
         for others, beside in ((of_parent, parents), (of_child, children)):
             block = slopes.transpose(0, 2, 1) @ (weighted @ others)
             row = (3 * nodes[:, None] + axes)[:, :, None]
@@ -150,9 +196,7 @@ def _step(
             rows.append(np.broadcast_to(row, block.shape).ravel())
             columns.append(np.broadcast_to(column, block.shape).ravel())
             values.append(block.ravel())
-    places = np.concatenate(rows), np.concatenate(columns)
-    solved = _solved(places, np.concatenate(values), -gradient.reshape(-1))
-    return solved.reshape(-1, 3)[1:]
+    return (np.concatenate(rows), np.concatenate(columns)), np.concatenate(values)
 
 
 def _solved(

@@ -15,13 +15,20 @@ from roomba.perception.slam.agreement import NEIGHBOURS, is_backed, is_far
 from roomba.perception.slam.axis_alignment import phase_of_walls, turn_of_walls
 from roomba.perception.slam.linking import Linker
 from roomba.perception.slam.mapper_state import KeptSubmap
-from roomba.perception.slam.pose_graph import Link, composed, inverse, optimised, relative_to
+from roomba.perception.slam.pose_graph import (
+    Link,
+    composed,
+    covariance_of,
+    inverse,
+    optimised,
+    relative_to,
+)
 from roomba.perception.slam.refinement import refined
 from roomba.perception.slam.submap import Keyframe, Submap, moved
 
 Floats = NDArray[np.float64]
 
-_CLOUD: Final = 1500
+CLOUD: Final = 1500
 """Points of a submap that are matched to others."""
 _OF_PEOPLE: Final = np.diag([0.05**-2, 0.05**-2, 0.05**-2])
 """1/m2, 1/rad2; information of a link to a reported pose."""
@@ -56,7 +63,7 @@ class SubmapGraph:
         """Go on with the submaps, one or more, of a graph that another process had."""
         self.submaps = [Submap(each.way, list(each.keyframes)) for each in submaps]
         for whole in self.submaps[:-1]:
-            whole.close(_CLOUD)
+            whole.close(CLOUD)
         self.poses, self.links = poses.copy(), list(links)
 
     def use_reach(self, reach: float) -> None:
@@ -109,10 +116,17 @@ class SubmapGraph:
         self.links.append(Link(parent, len(self.submaps), relative, _OF_PEOPLE, False))
         self._add(pose, way)
 
+    def covariance(self) -> Floats:
+        """Return that of the newest submap's pose against the first one, float64 [3, 3].
+
+        m2 and rad2, map frame.
+        """
+        return covariance_of(self.poses, self.links, len(self.poses) - 1)
+
     def close(self) -> None:
         """Link the newest submap to all that show the same walls, and let all agree."""
         child = len(self.submaps) - 1
-        self.newest.close(_CLOUD)
+        self.newest.close(CLOUD)
         known = len(self.links)
         self.links += self._agreeing(self._links_of(child, self.links), child)
         self.poses = optimised(self.poses, self.links, known)
@@ -160,7 +174,7 @@ class SubmapGraph:
             Keyframe(frame.points, pose)
             for frame, pose in zip(submap.keyframes, relative, strict=True)
         ]
-        submap.close(_CLOUD)
+        submap.close(CLOUD)
         if self._linker is not None:
             self._linker.forget(number)
 

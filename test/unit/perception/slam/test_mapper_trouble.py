@@ -238,6 +238,29 @@ def test_carried_elsewhere_it_is_lost_until_it_is_told() -> None:
     assert wrong_cells(made, FURNISHED) == (0, 0)
 
 
+@pytest.mark.parametrize("to", [Pose(1.2, 3.0, 2.0), Pose(4.2, 1.0, -2.5), Pose(0.8, 0.8, 0.3)])
+def test_carried_about_the_room_it_finds_itself_when_it_drives(to: Pose) -> None:
+    """Two scans from different places agree; the map goes on as if it had been told."""
+    robot = carried(driven_around(0, 8.0), to)
+    assert robot.knowledge is Knowledge.LOST
+    robot.drive(Twist(0.15, 0.5), 2.5)
+    assert robot.knowledge is Knowledge.KNOWN
+    assert robot.error < 0.06
+    robot.drive(Twist(0.1, 0.5), 4.0)
+    made = robot.mapper.finish()
+    assert robot.error < WORST
+    assert wrong_cells(made, FURNISHED) == (0, 0)
+
+
+def test_carried_into_a_room_that_it_has_not_seen_it_stays_lost_and_draws_nothing() -> None:
+    home = room_home(7.0, 2.4, ((3.5, 0.0, 3.6, 2.4), (5.0, 1.9, 5.6, 2.4)))
+    robot = Mapped(home, Pose(1.0, 1.0, 0.0)).drive(Twist(0.2, 0.0), 4.0).drive(Twist(0, 0.5), 3.0)
+    version = robot.mapper.version
+    carried(robot, Pose(4.4, 1.0, 0.5)).drive(Twist(0.15, 0.5), 4.0)
+    assert robot.knowledge is Knowledge.LOST
+    assert robot.mapper.version == version
+
+
 def test_told_where_it_is_before_it_saw_anything() -> None:
     robot = Mapped()
     robot.mapper.told(START)

@@ -6,14 +6,22 @@ import math
 
 import numpy as np
 import pytest
+import scipy.sparse.linalg
 from fixtures.mapped import Floats
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
+from scipy.sparse import csc_matrix
 
 from roomba.angles import wrap_angles
 from roomba.geometry import Pose
-from roomba.perception.slam.pose_graph import Link, composed, optimised, relative_to
+from roomba.perception.slam.pose_graph import (
+    Link,
+    composed,
+    covariance_of,
+    optimised,
+    relative_to,
+)
 
 SURE = np.diag([1e4, 1e4, 1e5])
 rows = arrays.arrays(np.float64, (4, 3), elements=st.floats(-3.0, 3.0))
@@ -136,3 +144,69 @@ def test_a_pose_that_nothing_holds_stays() -> None:
 def test_links_to_no_pose_are_refused(parent: int, child: int) -> None:
     with pytest.raises(ValueError, match="expected links between poses 0 to 3"):
         optimised(ring(4), [Link(parent, child, np.zeros(3), SURE)])
+
+
+def test_thousands_of_poses_take_few_sparse_rounds(monkeypatch: pytest.MonkeyPatch) -> None:
+    """5000 poses on rows to and fro, each linked to the row before: work grows with the links."""
+    solved: list[int] = []
+    solve = scipy.sparse.linalg.spsolve
+
+    def counted(matrix: csc_matrix, *args: object, **options: object) -> Floats:
+        solved.append(matrix.nnz)
+        result: Floats = solve(matrix, *args, **options)
+        return result
+
+    monkeypatch.setattr(scipy.sparse.linalg, "spsolve", counted)
+    per_pose = []
+    for rows in (10, 100):
+        truth = np.array(
+            [
+                (column if row % 2 == 0 else 49 - column, row, 0.0 if row % 2 == 0 else np.pi)
+                for row in range(rows)
+                for column in range(50)
+            ],
+            float,
+        )
+        loops = [
+            link(truth, 50 * row + at, 50 * row + 99 - at)
+            for row in range(rows - 1)
+            for at in range(0, 50, 5)
+        ]
+        links = [*chain(truth)[: len(truth) - 1], *loops]
+        bent = np.array([0.002, 0.001, 0.0005])
+        start = [truth[0]]
+        for at in links[: len(truth) - 1]:
+            start.append(composed(start[-1][None], (at.relative + bent)[None])[0])
+        solved.clear()
+        found = optimised(np.array(start), links)
+        assert away(found, truth) < 0.01
+        assert 0 < len(solved) <= 30
+        per_pose.append(max(solved) / len(truth))
+    # Numbers other than zero, for each pose: no more in the large graph than in the small one.
+    assert per_pose[1] < 1.1 * per_pose[0] < 100.0
+
+
+def test_how_sure_a_pose_is_grows_along_the_way_and_shrinks_where_a_loop_closes() -> None:
+    truth = np.column_stack((np.arange(11.0), np.zeros(11), np.zeros(11)))
+    deviation, turn = 0.02, 0.01
+    information = np.diag([deviation**-2, deviation**-2, turn**-2])
+    drive = [
+        Link(at.parent, at.child, at.relative, information, False)
+        for at in (link(truth, number, number + 1) for number in range(10))
+    ]
+    there = covariance_of(truth, drive, 10)
+    assert there[0, 0] == pytest.approx(10 * deviation**2, rel=0.01)
+    assert there[2, 2] == pytest.approx(10 * turn**2, rel=0.01)
+    # Each heading moves all that comes after it.
+    across = sum(deviation**2 + (turn * ahead) ** 2 for ahead in range(10))
+    assert there[1, 1] == pytest.approx(across, rel=0.01)
+    closed = covariance_of(truth, [*drive, link(truth, 0, 10)], 10)
+    assert np.trace(closed) < 0.1 * np.trace(there)
+    # A loop that all others contradict says nothing.
+    wrong = Link(0, 10, link(truth, 0, 10).relative + np.array([3.0, 0.0, 0.0]), SURE)
+    assert covariance_of(truth, [*drive, wrong], 10) == pytest.approx(there, rel=0.02)
+    assert (covariance_of(truth, drive, 0) == 0.0).all()
+    with pytest.raises(ValueError, match="links that hold"):
+        covariance_of(truth, [], 3)
+    with pytest.raises(ValueError, match="links that hold"):
+        covariance_of(truth, drive[:2], 9)
