@@ -7,6 +7,7 @@
 from __future__ import annotations
 
 import ast
+import re
 from functools import cache
 from pathlib import Path
 
@@ -233,6 +234,17 @@ def test_tests_stand_in_the_folders_of_what_they_are_about() -> None:
     for path in (TEST / "unit").rglob("test_*.py"):
         folder = path.parent.relative_to(TEST / "unit").as_posix()
         assert folder in folders or folder.partition("/")[0] not in tops, path
+
+
+def test_every_folder_of_tests_is_a_suite_of_the_command() -> None:
+    folders = {path.name for path in TEST.iterdir() if any(path.rglob("test_*.py"))}
+    command = (ROOT / "roomba").read_text(encoding="utf-8")
+    accepted = re.search(r"\^\(([a-z|]+)\)\$ \]\]", command)
+    by_default = re.search(r"suites=\(([a-z ]+)\)", command)
+    assert accepted is not None
+    assert by_default is not None
+    assert set(accepted[1].split("|")) == folders | {"lint"}
+    assert set(by_default[1].split()) == folders | {"lint"}
 
 
 def test_folders_can_be_looked_over() -> None:
