@@ -13,6 +13,8 @@ from benchmarks.slam_run import judged, logs_in, name_of
 from roomba.commands.map.warm import warm_up
 from roomba.errors import RoombaError
 
+_QUICK, _THOROUGH = 1, 2
+"""Rounds of what is timed."""
 _PICTURES = REPOSITORY / "benchmarks" / "results"
 
 
@@ -31,14 +33,16 @@ def measured(bench: Bench, logs: Path, pictures: Path) -> list[Record]:
     rows: list[Record] = []
     for log in logs_in(logs):
         bench.say(f"slam: {name_of(log)}")
-        rows += _rows(log, pictures / f"slam-{name_of(log)}.png")
+        rows += _rows(
+            log, _QUICK if bench.is_quick else _THOROUGH, pictures / f"slam-{name_of(log)}.png"
+        )
     return rows
 
 
-def _rows(log: Path, picture: Path) -> list[Record]:
+def _rows(log: Path, rounds: int, picture: Path) -> list[Record]:
     """Return the rows of a log; one that cannot be read has one with the reason."""
     try:
-        result = judged(log)
+        result = judged(log, rounds)
     except (RoombaError, ValueError, OSError) as error:
         return [broken_row(name_of(log), error)]
     write_picture(picture, result)
