@@ -56,6 +56,9 @@ class ObservedRobot(Protocol):
     def locate(self) -> None:
         """Beep."""
 
+    def empty_bin(self) -> None:
+        """Tell that the dust bin was emptied; a simulated one is emptied."""
+
     def emergency_stop(self, reason: str) -> None:
         """Hold the drive until it is released."""
 

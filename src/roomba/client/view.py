@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +13,12 @@ from roomba.client.protocol import CleanReport, VacuumSnapshot
 
 Point = tuple[float, float]
 """x and y, m."""
+
+MOST_PASSES: Final = 5
+MOST_ZONES: Final = 200
+MOST_CORNERS: Final = 200
+LONGEST_NAME: Final = 80
+"""Letters."""
 
 
 class LayerName(Enum):
@@ -105,10 +112,10 @@ class PageLimits:
 
     max_speed: float
     max_angular_speed: float
-    most_passes: int
-    most_zones: int
-    most_corners: int
-    longest_name: int
+    most_passes: int = MOST_PASSES
+    most_zones: int = MOST_ZONES
+    most_corners: int = MOST_CORNERS
+    longest_name: int = LONGEST_NAME
 
 
 @dataclass(frozen=True, slots=True)

@@ -29,6 +29,7 @@ from roomba.client.protocol import (
     RequestRefusedError,
 )
 from roomba.client.view import (
+    MOST_ZONES,
     CleanOrder,
     GridLayer,
     HomeView,
@@ -56,10 +57,6 @@ _SPILL: Final = (0.25, 6.0)
 """m and g of a heap of dirt."""
 _STOPS: Final = 3
 """Times that a stop is sent before the drive is left to others."""
-_MOST_PASSES: Final = 5
-_MOST_ZONES: Final = 200
-_MOST_CORNERS: Final = 200
-_LONGEST_NAME: Final = 80
 
 
 class GraphRobot:
@@ -136,10 +133,6 @@ class GraphRobot:
         return PageLimits(
             min(self._parameters.values.robot_max_speed, body.max_speed),
             body.max_angular_speed,
-            _MOST_PASSES,
-            _MOST_ZONES,
-            _MOST_CORNERS,
-            _LONGEST_NAME,
         )
 
     def robot(self) -> RobotView:
@@ -206,6 +199,10 @@ class GraphRobot:
         """Beep."""
         self._vacuum.locate()
 
+    def empty_bin(self) -> None:
+        """Tell that the dust bin was emptied."""
+        self._vacuum.empty_bin()
+
     def emergency_stop(self, reason: str) -> None:
         """Hold the drive until it is released."""
         self._call("emergency_stop", True, reason)
@@ -226,8 +223,8 @@ class GraphRobot:
     def put_zone(self, zone: ZoneView) -> None:
         """Add a zone, or replace the one of the same name."""
         zones = self.home().zones
-        if len(zones) >= _MOST_ZONES and all(zone.name != other.name for other in zones):
-            raise RequestRefusedError(f"expected at most {_MOST_ZONES} zones; remove one first")
+        if len(zones) >= MOST_ZONES and all(zone.name != other.name for other in zones):
+            raise RequestRefusedError(f"expected at most {MOST_ZONES} zones; remove one first")
         self._call("set_zone", zone_message_of(zone))
 
     def remove_zone(self, name: str) -> None:

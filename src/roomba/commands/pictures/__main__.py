@@ -27,6 +27,7 @@ from roomba.commands.pictures.mapping import picture_of_map_errors, picture_of_m
 from roomba.commands.pictures.motion import picture_of_motion
 from roomba.commands.pictures.moving import picture_of_moving
 from roomba.commands.pictures.odometry import picture_of_odometry
+from roomba.commands.pictures.page import picture_of_page, picture_of_phone
 from roomba.commands.pictures.rooms import picture_of_rooms
 from roomba.commands.pictures.station import picture_of_station
 from roomba.commands.pictures.tour import VIEWS, picture_of_home, picture_of_view, picture_of_walk
@@ -66,18 +67,25 @@ PICTURES: dict[str, tuple[str, Callable[[Home], Picture]]] = {
     "layers": ("empty", picture_of_layers),
 }
 """Each picture by the name of its file: the home that it is of, and what makes it."""
+IN_BROWSER: dict[str, tuple[str, Callable[[Home], Picture]]] = {
+    "page": ("flat", picture_of_page),
+    "page_phone": ("flat", picture_of_phone),
+}
+"""Pictures that need a browser: made when they are named."""
 
 
 def main(arguments: list[str] | None = None) -> int:
     """Write all pictures; returns the exit status."""
     parser = argparse.ArgumentParser(prog=spelled("pictures"), description=__doc__)
     parser.add_argument("folder", nargs="?", type=Path, default=_DOCUMENTS)
-    parser.add_argument("--only", nargs="+", choices=PICTURES, default=list(PICTURES))
+    parser.add_argument(
+        "--only", nargs="+", choices=[*PICTURES, *IN_BROWSER], default=list(PICTURES)
+    )
     wanted = parser.parse_args(arguments)
     try:
         wanted.folder.mkdir(parents=True, exist_ok=True)
         for name in wanted.only:
-            home, picture_of = PICTURES[name]
+            home, picture_of = (PICTURES | IN_BROWSER)[name]
             _write(wanted.folder / f"{name}.png", picture_of(load_home(home, HOMES)))
     except (RoombaError, OSError) as error:
         print(f"{spelled('pictures')}: {error}", file=sys.stderr)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 import sys
 import webbrowser
 from typing import Final
@@ -29,7 +30,13 @@ def main(arguments: list[str] | None = None) -> int:
     """Let a robot live until Ctrl-C; returns 0, or 2 for wrong usage."""
     wanted = _parser().parse_args(arguments)
     try:
-        client = live_client(wanted.home, wanted.seed, wanted.speed, knows_map=wanted.map == "home")
+        client = live_client(
+            wanted.home,
+            wanted.seed,
+            wanted.speed,
+            knows_map=wanted.map == "home",
+            bin_grams=wanted.bin,
+        )
         bound = listen("127.0.0.1", wanted.port or DEFAULT_PORT, is_fixed=wanted.port is not None)
     except RoombaError as error:
         print(f"{PROGRAM}: {error}", file=sys.stderr)
@@ -51,9 +58,11 @@ def main(arguments: list[str] | None = None) -> int:
     return 0
 
 
-def live_client(name: str, seed: int, speed: float, *, knows_map: bool) -> LiveClient:
+def live_client(
+    name: str, seed: int, speed: float, *, knows_map: bool, bin_grams: float | None = None
+) -> LiveClient:
     """Return a robot in a home; raises RoombaError."""
-    trial = Trial(home=name, seed=seed)
+    trial = Trial(home=name, seed=seed, bin=bin_grams)
     robot = robot_config_of(trial)
     home = home_of(trial, robot.body)
     docking = load_docking_config(CONFIGURATION / "docking.yaml")
@@ -67,6 +76,7 @@ def live_client(name: str, seed: int, speed: float, *, knows_map: bool) -> LiveC
         known=None if knows_map else load_mapping_config(CONFIGURATION / "mapping.yaml"),
         rooms=rooms,
         longest_burst=int(speed) if speed >= 2.0 else 0,
+        empties_bin_after=math.inf,
     )
     return LiveClient(home, mission, docking, rooms, speed)
 
@@ -93,12 +103,28 @@ def _parser() -> argparse.ArgumentParser:
         help="whether the robot knows the home, or makes a map of it (default: home)",
     )
     parser.add_argument(
+        "--bin",
+        type=_positive,
+        metavar="GRAMS",
+        help="how much its dust bin takes (default: as the configuration says)",
+    )
+    parser.add_argument(
         "--port", type=int, metavar="N", help=f"default: {DEFAULT_PORT}, or the next that is free"
     )
     parser.add_argument(
         "--no-open", dest="open", action="store_false", help="open no browser on the page"
     )
     return parser
+
+
+def _positive(text: str) -> float:
+    try:
+        grams = float(text)
+    except ValueError:
+        grams = 0.0
+    if not 0.0 < grams < math.inf:
+        raise argparse.ArgumentTypeError(f"expected a number above 0, got {text!r}")
+    return grams
 
 
 def _speed(text: str) -> float:

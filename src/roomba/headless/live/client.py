@@ -9,6 +9,7 @@ from typing import Final, TypeVar
 
 from roomba.client.protocol import CleanReport, RequestRefusedError, RobotUnavailableError
 from roomba.client.view import (
+    MOST_ZONES,
     CleanOrder,
     GridLayer,
     HomeView,
@@ -32,10 +33,7 @@ from roomba.headless.live.views import (
     robot_view,
 )
 from roomba.headless.live.visits import Visits
-from roomba.mission.cleaning.request import (
-    MOST_PASSES,
-    CleanRequest,
-)
+from roomba.mission.cleaning.request import CleanRequest
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.mission.phases.machine import Event, Phase
 from roomba.perception.rooms.rooms import Rooms, segment
@@ -43,11 +41,6 @@ from roomba.perception.rooms.zones import Zone, ZoneKind, Zones
 from roomba.vocabulary import CleanMode, FanLevel
 from roomba.world.home.home import Home
 
-_VIEW_PERIOD: Final = 0.1
-"""s of wall time between two snapshots."""
-_MOST_ZONES: Final = 200
-_MOST_CORNERS: Final = 200
-_LONGEST_NAME: Final = 80
 _SPILL: Final = (0.25, 6.0)
 """m and g of a heap of dirt."""
 
@@ -81,10 +74,6 @@ class LiveClient:
         self._limits = PageLimits(
             max_speed=robot.robot.body.max_speed,
             max_angular_speed=robot.robot.body.max_angular_speed,
-            most_passes=MOST_PASSES,
-            most_zones=_MOST_ZONES,
-            most_corners=_MOST_CORNERS,
-            longest_name=_LONGEST_NAME,
         )
 
     def start(self) -> None:
@@ -175,6 +164,16 @@ class LiveClient:
     def locate(self) -> None:
         """Beep: a simulated robot has no speaker, the page shows it."""
 
+    def empty_bin(self) -> None:
+        """Empty the bin, and tell the robot."""
+
+        def empty(robot: HeadlessMission) -> None:
+            robot.simulator.empty_bin()
+            robot.look()
+            robot.mission.empty_bin(robot.senses())
+
+        self._obey(empty)
+
     def emergency_stop(self, reason: str) -> None:
         """Hold the drive until it is released."""
         self._live.drive(Twist())
@@ -203,8 +202,8 @@ class LiveClient:
 
     def put_zone(self, zone: ZoneView) -> None:
         """Add a zone, or replace the one of the same name."""
-        if len(self._zones.all) >= _MOST_ZONES and zone.name not in self._zones.names:
-            raise RequestRefusedError(f"expected at most {_MOST_ZONES} zones; remove one first")
+        if len(self._zones.all) >= MOST_ZONES and zone.name not in self._zones.names:
+            raise RequestRefusedError(f"expected at most {MOST_ZONES} zones; remove one first")
         added = _made(lambda: Zone(zone.name, ZoneKind(zone.kind), zone.points))
         self._edit(lambda: (self._rooms, self._zones.with_zone(added)))
 

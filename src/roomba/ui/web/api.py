@@ -11,13 +11,12 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from roomba.client.observed import ObservedRobot
 from roomba.client.protocol import RequestRefusedError, RobotUnavailableError
-from roomba.client.view import CleanOrder, ZoneView
+from roomba.client.view import LONGEST_NAME, MOST_CORNERS, MOST_PASSES, CleanOrder, ZoneView
 from roomba.ui.web.feed import home_of, state_of
 
-_LONGEST_NAME = 80
 _Value = TypeVar("_Value")
 Coordinate = Annotated[float, Field(ge=-1000.0, le=1000.0, allow_inf_nan=False)]
-Name = Annotated[str, Field(min_length=1, max_length=_LONGEST_NAME)]
+Name = Annotated[str, Field(min_length=1, max_length=LONGEST_NAME)]
 
 
 class Wish(BaseModel):
@@ -36,7 +35,7 @@ class CleanWish(Wish):
         default=[], max_length=100
     )
     spot: tuple[Coordinate, Coordinate] | None = None
-    passes: int = Field(default=1, ge=1, le=5)
+    passes: int = Field(default=1, ge=1, le=MOST_PASSES)
     fan: Literal["quiet", "standard", "strong"] = "standard"
 
 
@@ -58,7 +57,7 @@ class ZoneWish(Wish):
 
     name: Name
     kind: Literal["no-go", "wall"]
-    points: list[tuple[Coordinate, Coordinate]] = Field(min_length=2, max_length=200)
+    points: list[tuple[Coordinate, Coordinate]] = Field(min_length=2, max_length=MOST_CORNERS)
 
 
 class RoomName(Wish):
@@ -141,6 +140,7 @@ def _add_errands(api: APIRouter, robot: ObservedRobot) -> None:
         ("resume", "Go on", robot.resume),
         ("stop", "End the errand, and stay", robot.stop),
         ("locate", "Beep", robot.locate),
+        ("empty_bin", "The dust bin was emptied", robot.empty_bin),
         ("release", "Release the emergency stop", robot.release),
     )
     for name, summary, command in plain:

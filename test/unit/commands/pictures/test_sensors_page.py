@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from roomba.commands.pictures.__main__ import PICTURES
+from roomba.commands.pictures.__main__ import IN_BROWSER, PICTURES
 from roomba.configuration.simulation import load_simulated_config
 from roomba.files.shipped import CONFIGURATION
 from roomba.world.engine.state.arrays import Fault
@@ -73,7 +73,8 @@ def test_every_picture_of_the_documents_exists_and_is_made_by_the_command() -> N
         for link in re.findall(r"!\[[^\]]*\]\(([^)]+)\)", page.read_text(encoding="utf-8"))
     }
     assert {path for path in linked if not path.is_file()} == set()
-    made = {(ROOT / "docs" / "pictures" / f"{name}.png").resolve() for name in PICTURES}
+    names = (*PICTURES, *IN_BROWSER)
+    made = {(ROOT / "docs" / "pictures" / f"{name}.png").resolve() for name in names}
     # Made of recordings of real robots, which the repository does not hold.
     drives = ("intel", "fr079", "breezy", "wean")
     recorded = {(ROOT / "docs" / "pictures" / f"drive_{name}.png").resolve() for name in drives}

@@ -98,6 +98,21 @@ def test_driving_by_hand_ends_with_silence(client: LiveClient) -> None:
     wait_for(stands, "the robot to stand")
 
 
+def test_a_full_bin_is_said_and_emptied() -> None:
+    client = live_client("studio", seed=1, speed=40.0, knows_map=True, bin_grams=3.0)
+    client.start()
+    try:
+        wait_for(lambda: phase(client) == "docked", "the robot on its station")
+        client.clean(CleanOrder())
+        wait_for(lambda: phase(client) == "bin full", "a full bin")
+        assert "empty" in client.robot().vacuum.message
+        client.empty_bin()
+        wait_for(lambda: phase(client) == "cleaning", "the clean to go on")
+        assert client.robot().dirt < 3.0
+    finally:
+        client.end()
+
+
 def test_rooms_and_zones_are_edited(client: LiveClient) -> None:
     first = client.home()
     assert first.rooms

@@ -19,6 +19,7 @@ export function headline(link, state) {
     case "exploring": return "Looking at what it does not know yet";
     case "returning": return "On its way home";
     case "docking": return "Docking";
+    case "bin full": return "Its dust bin is full";
     case "paused": return `Paused${room}`;
     case "error": return "It needs help";
     case "emergency stop": return "Stopped by the emergency stop";

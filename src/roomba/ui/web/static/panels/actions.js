@@ -12,6 +12,7 @@ export function begin() {
   $("dock").onclick = () => wish("dock");
   $("stop").onclick = () => wish("stop");
   $("explore").onclick = () => wish("explore");
+  $("bin").onclick = () => wish("empty_bin");
   $("emergency").onclick = () => (get("state")?.held ? wish("release") : emergency());
   on("state chosen home mayChange", show);
 }
@@ -48,6 +49,7 @@ function show() {
   $("dock").disabled = phase === "docked" || isHeld;
   $("mode").disabled = chosen.length > 0;
   $("explore").hidden = (get("home")?.furniture.length ?? 0) > 0 || (get("home")?.rooms.length ?? 0) > 0;
+  $("bin").hidden = !/bin/.test(state?.vacuum.message ?? "") && phase !== "bin full";
   text($("emergency"), isHeld ? "Release" : "Stop now");
   for (const button of document.querySelectorAll(".panel button, .emergency"))
     button.title = get("mayChange") ? "" : "Open the page by the address that the robot's program printed: it holds the token.";
