@@ -39,6 +39,7 @@ TESTED_BY: dict[str, tuple[str, str]] = {
     "roomba/commands/progress": ("unit/commands/map/test_command.py", COMMAND),
     "roomba/commands/sim/": ("unit/commands/sim/test_command.py", COMMAND),
     "roomba/commands/telling": ("unit/commands/map/test_command.py", COMMAND),
+    "roomba/commands/valetudo/": ("unit/commands/valetudo/test_valetudo_commands.py", COMMAND),
     "roomba/commands/warm_up": ("system/test_workspace.py", WARM),
     "roomba/configuration/": ("unit/configuration/test_robot.py", "numbers with their limits"),
     "roomba/control/tracking_kernels": ("unit/control/test_path_tracker.py", PART),
@@ -56,6 +57,7 @@ TESTED_BY: dict[str, tuple[str, str]] = {
     "roomba/mission/driving/progress_kernels": ("unit/mission/driving/test_path_driver.py", PART),
     "roomba/mission/inputs/senses": ("unit/mission/test_mission.py", VALUES),
     "roomba/mission/phases/cleaning": ("unit/mission/phases/test_phases.py", "one of the phases"),
+    "roomba/mission/phases/dust_bin_kernels": ("unit/mission/phases/test_dust_bin.py", PART),
     "roomba/mission/phases/step": ("unit/mission/phases/test_phases.py", VALUES),
     "roomba/mission/steady": ("unit/headless/test_burst.py", VALUES),
     "roomba/perception/localization/belief": (
@@ -99,6 +101,12 @@ TESTED_BY: dict[str, tuple[str, str]] = {
         "unit/perception/swept/test_coverage_map.py",
         PART,
     ),
+    "roomba/perception/slam/finding_back_kernels": (
+        "unit/perception/slam/test_mapper_foreign.py",
+        PART,
+    ),
+    "roomba/perception/slam/relocation": ("unit/perception/slam/test_mapper_foreign.py", PART),
+    "roomba/perception/slam/scan_kernels": ("unit/perception/slam/test_scan_follower.py", PART),
     "roomba/perception/things/kernels": ("unit/perception/things/test_layer.py", PART),
     "roomba/plots/": ("unit/plots/test_home.py", "a drawing of a home is made of them"),
     "roomba/recordings/": ("unit/recordings/test_drive.py", "read with all others as one drive"),

@@ -26,7 +26,7 @@ from roomba.perception.slam.follow_kernels import LEAST_POINTS, beyond, is_apart
 from roomba.perception.slam.mapper_state import KeptSubmap, LidarNumbers, MapperState
 from roomba.perception.slam.occupancy_counts import OccupancyCounts
 from roomba.perception.slam.pose_graph import relative_to
-from roomba.perception.slam.relocation import Relocation
+from roomba.perception.slam.relocation import MapRelocation
 from roomba.perception.slam.scan_follower import ScanFollower
 from roomba.perception.slam.scan_kernels import Following
 from roomba.perception.slam.submap import Keyframe, moved
@@ -86,7 +86,7 @@ class Mapper:
         self._sheet = OccupancyCounts(config.resolution)
         self._drawn = self._graph.poses.copy()
         self._is_lifted = self._is_lost = False
-        self._relocation = Relocation()
+        self._relocation = MapRelocation()
         self._beside: list[int] = []
         self.version = 0
 

@@ -37,7 +37,7 @@ _SAME_HEADING: Final = 0.1
 """m, rad; two scans agree that were found so near to where they lie to each other."""
 
 
-class Relocation:
+class MapRelocation:
     """Keeps where the scan before was found."""
 
     def __init__(self) -> None:
