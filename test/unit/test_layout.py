@@ -106,7 +106,7 @@ TESTED_BY: dict[str, tuple[str, str]] = {
         PART,
     ),
     "roomba/perception/slam/relocation": ("unit/perception/slam/test_mapper_foreign.py", PART),
-    "roomba/perception/slam/scan_kernels": ("unit/perception/slam/test_scan_follower.py", PART),
+    "roomba/perception/slam/scan_kernels": ("unit/perception/slam/test_mapper.py", PART),
     "roomba/perception/things/kernels": ("unit/perception/things/test_layer.py", PART),
     "roomba/plots/": ("unit/plots/test_home.py", "a drawing of a home is made of them"),
     "roomba/recordings/": ("unit/recordings/test_drive.py", "read with all others as one drive"),
