@@ -35,6 +35,7 @@ LONGEST_FIRST = (
     "test_clean_while_mapping.py",
     "test_unknown_things.py",
     "test_bags.py",
+    "test_foreign_robot.py",
     "test_explore.py",
     "test_walk_to_point_action_server.py",
     "test_seed.py",

@@ -24,6 +24,8 @@ _SET_BACK: Final = 10**9
 _LASTING: Final = 10
 """Messages; if all of so many are earlier than what was recorded before, the clock was set back."""
 
+_TIME: Final = operator.itemgetter(1)
+
 _Place = tuple[int, int]
 """Where a message is in a bag: its chunk, and the place in that."""
 
@@ -150,8 +152,8 @@ class BagFile:
         runs, newest = [_WHOLE], rows[0][1]
         for number, (place, time) in enumerate(rows):
             shift = runs[-1].shift
-            following = [later + shift for _, later in rows[number : number + _LASTING]]
-            if max(following) < newest - _SET_BACK:
+            earlier = newest - _SET_BACK - shift
+            if time < earlier and max(rows[number : number + _LASTING], key=_TIME)[1] < earlier:
                 runs[-1] = runs[-1]._replace(end=place)
                 shift = newest + usual - time
                 runs.append(_Run(place, _WHOLE.end, shift))
