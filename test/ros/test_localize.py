@@ -27,9 +27,8 @@ from tf2_msgs.msg import TFMessage
 
 from roomba.files.occupancy_map import save_map
 from roomba.geometry import Pose
-from roomba.headless.walker import HeadlessRobot
+from roomba.headless.cleaner import HeadlessMission
 from roomba.plots.style import BLUE
-from roomba.world.simulator import Observation
 from roomba_ros.bags.localize_bag import main
 from roomba_ros.convert.common import mount_message, odometry_message, pose_message
 from roomba_ros.convert.sensors import imu_message, scan_message, wheel_drop_message
@@ -54,22 +53,22 @@ class Drive:
     end: Pose = START
 
 
-class RecordedRobot(HeadlessRobot):
+class RecordedRobot(HeadlessMission):
     """Notes down what its sensors say, as the simulator's node would tell it."""
 
     drive: Drive
-    noted_scans = 0
 
-    def localize(self, seen: Observation) -> None:
-        super().localize(seen)
+    def tick(self) -> None:
+        scans = self.body.scans
+        super().tick()
+        seen = self.seen
         now = BEGAN + seen.time
-        self._note("/imu", imu_message(now, seen, self.config.simulation.gyro, "imu_link"), now)
+        self._note("/imu", imu_message(now, seen, self.robot.simulation.gyro, "imu_link"), now)
         odometry = odometry_message(now, seen.odometry, seen.odometry_twist, "odom", "base_link")
         self._note("/odom", odometry, now)
         self._note("/wheel_drop", wheel_drop_message(now, seen.wheels, "base_link"), now)
-        if seen.scans != self.noted_scans:
-            self.noted_scans = seen.scans
-            scan = scan_message(now, self.simulator.ranges, self.config.lidar, "laser")
+        if self.body.scans != scans:
+            scan = scan_message(now, self.simulator.ranges, self.robot.lidar, "laser")
             self._note("/scan", scan, now)
         beside = Pose(seen.pose.x + OFFSET, seen.pose.y, seen.pose.theta)
         self._note("/pose", pose_message(now, beside, "map"), now)

@@ -23,8 +23,7 @@ from roomba.configuration.robot import RobotConfig
 from roomba.files.occupancy_map import load_map
 from roomba.geometry import Pose
 from roomba.grid import FREE
-from roomba.headless.walker import HeadlessRobot
-from roomba.world.simulator import Observation
+from roomba.headless.cleaner import HeadlessMission
 from roomba_ros.convert.common import mount_message, odometry_message, pose_message
 from roomba_ros.convert.sensors import imu_message, scan_message
 
@@ -37,22 +36,22 @@ SEEN = seen_floor(FURNISHED.solid, FURNISHED.frame, (START.x, START.y), RobotCon
 Record = tuple[str, Any, float]
 
 
-class RecordedRobot(HeadlessRobot):
+class RecordedRobot(HeadlessMission):
     """Notes down what its sensors say."""
 
     records: list[Record]
-    noted_scans = 0
 
-    def localize(self, seen: Observation) -> None:
-        super().localize(seen)
+    def tick(self) -> None:
+        scans = self.body.scans
+        super().tick()
+        seen = self.seen
         now = BEGAN + seen.time
-        self._note("/imu", imu_message(now, seen, self.config.simulation.gyro, "imu_link"), now)
+        self._note("/imu", imu_message(now, seen, self.robot.simulation.gyro, "imu_link"), now)
         odometry = odometry_message(now, seen.odometry, seen.odometry_twist, "odom", "base_link")
         self._note("/odom", odometry, now)
         self._note("/ground_truth/pose", pose_message(now, seen.pose, "map"), now)
-        if seen.scans != self.noted_scans:
-            self.noted_scans = seen.scans
-            scan = scan_message(now, self.simulator.ranges, self.config.lidar, "laser")
+        if self.body.scans != scans:
+            scan = scan_message(now, self.simulator.ranges, self.robot.lidar, "laser")
             self._note("/scan", scan, now)
 
     def _note(self, topic: str, message: Any, now: float) -> None:

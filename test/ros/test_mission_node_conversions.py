@@ -37,7 +37,7 @@ from roomba_ros.convert.mission import (
     zones_markers,
     zones_message,
 )
-from roomba_ros.mission.senses import moved
+from roomba_ros.senses.heard_place import moved
 
 
 def test_an_empty_goal_cleans_the_whole_home_once() -> None:

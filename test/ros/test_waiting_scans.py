@@ -3,8 +3,8 @@
 import numpy as np
 
 from roomba.perception.matching.scan_view import LidarModel
-from roomba_ros.convert.scan import Scan
-from roomba_ros.localization.waiting_scans import WaitingScans
+from roomba.robot.readings import ScanReading
+from roomba_ros.senses.waiting_scans import WaitingScans
 
 LIDAR = LidarModel.all_around(4, 0.1, 8.0)
 
@@ -12,7 +12,7 @@ LIDAR = LidarModel.all_around(4, 0.1, 8.0)
 def scans(*stamps: float) -> WaitingScans:
     waiting = WaitingScans()
     for stamp in stamps:
-        waiting.put(Scan(stamp, np.ones(4, np.float32), LIDAR))
+        waiting.put(ScanReading(stamp, np.ones(4, np.float32), LIDAR))
     return waiting
 
 

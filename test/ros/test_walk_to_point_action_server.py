@@ -13,7 +13,7 @@ from fixtures.probe import Probe, Walker
 from fixtures.waiting import wait_until
 from geometry_msgs.msg import PoseStamped
 from move_base_msgs.msg import MoveBaseAction, MoveBaseActionGoal, MoveBaseGoal
-from nav_msgs.msg import OccupancyGrid, Path
+from nav_msgs.msg import OccupancyGrid, Odometry, Path
 from roomba_robot.msg import RobotPosition
 from sensor_msgs.msg import LaserScan
 from std_msgs.msg import Float32
@@ -68,6 +68,15 @@ def stamped(x: float, y: float, frame: str = "map") -> PoseStamped:
     return message
 
 
+def stand(probe: Probe, pose: PoseStamped) -> None:
+    """Tell where a robot is whose wheels stand."""
+    odometry = Odometry()
+    odometry.header.stamp = pose.header.stamp = rospy.Time.now()
+    odometry.pose.pose.orientation.w = 1.0
+    probe.send("/odom", odometry)
+    probe.send("/pose", pose)
+
+
 def room() -> OccupancyGrid:
     message = OccupancyGrid(data=[0] * 6400)
     message.info.resolution, message.info.width, message.info.height = 0.05, 80, 80
@@ -81,7 +90,7 @@ def test_move_base_is_the_same_walk_and_the_newest_goal_counts(graph: RosGraph) 
     probe = Probe(graph)
     probe.hear("/move_base/goal", MoveBaseActionGoal)
     probe.send("/map", room())
-    probe.send("/pose", stamped(0.0, 0.0))
+    stand(probe, stamped(0.0, 0.0))
     walker = Walker()
     client = ActionClient("move_base", MoveBaseAction)
     wait_until(lambda: client.wait_for_server(rospy.Duration(0.01)), 30.0)
@@ -116,7 +125,7 @@ def test_move_base_is_the_same_walk_and_the_newest_goal_counts(graph: RosGraph) 
     heading = probe.next("/change_heading", Float32)
     assert math.isclose(heading.data, 0.5 * math.pi, rel_tol=1e-6), "there it turns"
     wait_until(lambda: client.get_state() == GoalStatus.ACTIVE, 30.0, "it has not ended")
-    probe.send("/pose", wanted)
+    stand(probe, wanted)
     wait_until(lambda: client.get_state() == GoalStatus.SUCCEEDED, 30.0, "it looks there")
 
 
@@ -125,7 +134,7 @@ def test_a_cancelled_walk_frees_the_speed_when_its_wish_to_stay_was_heard(graph:
     probe = Probe(graph)
     told: list[tuple[str, float]] = []
     probe.send("/map", room())
-    probe.send("/pose", stamped(0.0, 0.0))
+    stand(probe, stamped(0.0, 0.0))
     walker = Walker()
     rospy.Subscriber("/change_speed", Float32, lambda m: told.append(("speed", m.data)))
     rospy.Subscriber("/change_position", RobotPosition, lambda m: told.append(("to", m.pos_x)))
@@ -167,12 +176,13 @@ def scan_of_room(stamp: rospy.Time, things: list[tuple[float, float, float]]) ->
 
 @contextmanager
 def standing_robot(probe: Probe, things: list[tuple[float, float, float]]) -> Iterator[None]:
-    """Tell pose and scans, 20 and 10 times a second, of a robot in the middle of the room.
+    """Tell pose, odometry and scans of a robot in the middle of the room, scans 10 times a second.
 
     What is in ``things`` it sees from then on.
     """
     ended = threading.Event()
     poses, scans = probe.publisher("/pose", PoseStamped), probe.publisher("/scan", LaserScan)
+    wheels = probe.publisher("/odom", Odometry)
 
     def tell() -> None:
         number = 0
@@ -182,6 +192,9 @@ def standing_robot(probe: Probe, things: list[tuple[float, float, float]]) -> It
             pose.header.stamp = rospy.Time.now()
             if number % 2:
                 scans.publish(scan_of_room(pose.header.stamp, list(things)))
+            odometry = Odometry(header=pose.header)
+            odometry.pose.pose.orientation.w = 1.0
+            wheels.publish(odometry)
             poses.publish(pose)
 
     teller = threading.Thread(target=tell, daemon=True)

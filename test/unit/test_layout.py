@@ -51,7 +51,6 @@ TESTED_BY: dict[str, tuple[str, str]] = {
     "roomba/headless/live/robot": ("unit/headless/live/test_client.py", "lives under a client"),
     "roomba/headless/live/views": ("unit/headless/live/test_client.py", VALUES),
     "roomba/headless/rows": ("unit/headless/test_burst.py", VALUES),
-    "roomba/headless/walker": ("unit/mission/walking/test_walk.py", "the robot that walks"),
     "roomba/mission/docking/beams": ("unit/mission/docking/test_track.py", VALUES),
     "roomba/mission/docking/step": ("unit/mission/docking/test_docking.py", VALUES),
     "roomba/mission/driving/progress_kernels": ("unit/mission/driving/test_path_driver.py", PART),

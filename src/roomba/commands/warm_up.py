@@ -14,7 +14,7 @@ from roomba.configuration.robot import RobotConfig
 from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.geometry import Pose, Twist
 from roomba.grid import FREE, OCCUPIED, GridFrame, OccupancyMap
-from roomba.headless.walker import HeadlessRobot
+from roomba.headless.cleaner import HeadlessMission
 from roomba.perception.floors.map_changes import MapChanges
 from roomba.perception.localization.localizer import Localizer
 from roomba.perception.matching.scan_view import LidarModel
@@ -35,9 +35,9 @@ def main() -> None:
     _find_place(home, config, simulator)
     _look_for_changes(home, config, simulator)
     segment(home.map)
-    robot = HeadlessRobot(home, config)
+    robot = HeadlessMission(home, config)
     robot.walk(2.0, 2.0)
-    robot.planner.plan((1.0, 1.0), (2.0, 2.0), [(1.5, 1.5, 0.1)])
+    robot.brain.walking.planner(home.map).plan((1.0, 1.0), (2.0, 2.0), [(1.5, 1.5, 0.1)])
     shortest_grid_path(np.ones((4, 4), np.bool_), (0, 0), (3, 3))
     scene = Scene.of(home)
     for supersampling in (1, 2):

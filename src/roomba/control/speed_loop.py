@@ -42,6 +42,16 @@ class Source(Enum):
 
 
 @dataclass(frozen=True, slots=True)
+class Hazards:
+    """What the drive must not go on into: whether the front bumper is pressed, a cliff sensor sees
+    no floor, a wheel hangs in the air."""
+
+    bumper: bool = False
+    cliff: bool = False
+    wheel_drop: bool = False
+
+
+@dataclass(frozen=True, slots=True)
 class _Command:
     twist: Twist
     given: float
@@ -61,11 +71,9 @@ class SpeedLoop:
         self._body, self._max_speed = body, max_speed
         self._cruise_speed = math.inf
         self._commands: dict[Source, _Command] = {}
-        self._bumper_pressed = False
-        self._sees_cliff = False
+        self._hazards = Hazards()
         self._backs_since: float | None = None
         self._pressed_since: float | None = None
-        self._wheel_hangs = False
         self.emergency = False
         """Whether the emergency stop holds the drive."""
 
@@ -90,21 +98,13 @@ class SpeedLoop:
             raise ValueError(f"expected finite velocities, got {twist}")
         self._commands[source] = _Command(twist, now)
 
-    def set_bumper(self, pressed: bool) -> None:
-        """Tell whether the front bumper is pressed."""
-        self._bumper_pressed = pressed
-        if not pressed:
+    def set_hazards(self, hazards: Hazards) -> None:
+        """Tell which hazards there are now."""
+        self._hazards = hazards
+        if not hazards.bumper:
             self._pressed_since = None
-
-    def set_cliff(self, seen: bool) -> None:
-        """Tell whether a cliff sensor sees no floor."""
-        self._sees_cliff = seen
-        if not seen:
+        if not hazards.cliff:
             self._backs_since = None
-
-    def set_wheel_drop(self, dropped: bool) -> None:
-        """Tell whether a wheel hangs in the air."""
-        self._wheel_hangs = dropped
 
     def tick(self, now: float) -> tuple[Twist, Hold]:
         """Return the twist for the drive, and why it is less than the command."""
@@ -117,14 +117,14 @@ class SpeedLoop:
             return Twist(), Hold.NO_COMMAND
         if self.speed_limit == 0.0:
             return Twist(), Hold.SPEED_ZERO
-        if self._wheel_hangs:
+        if self._hazards.wheel_drop:
             return Twist(), Hold.WHEEL_DROP
-        if self._sees_cliff:
+        if self._hazards.cliff:
             self._backs_since = _began(self._backs_since, now)
             is_over = now - self._backs_since > self._body.cliff_backing_time
             return Twist() if is_over else self._backwards(), Hold.CLIFF
         limited = self._within_limit(command)
-        if self._bumper_pressed and limited.linear > 0.0:
+        if self._hazards.bumper and limited.linear > 0.0:
             self._pressed_since = _began(self._pressed_since, now)
             is_over = now - self._pressed_since > self._body.bumper_backing_time
             return Twist(0.0, limited.angular) if is_over else self._backwards(), Hold.BUMPER

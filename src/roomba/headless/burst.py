@@ -27,7 +27,6 @@ from roomba.perception.localization.recent_sight import RecentSight
 from roomba.perception.slam.scan_follower import not_following
 from roomba.perception.swept.coverage_map import CoverageMap
 from roomba.robot.brain import Brain
-from roomba.robot.place import least_apart
 from roomba.world.home.dirt import MICROGRAMS_PER_GRAM
 
 Floats = NDArray[np.float64]
@@ -51,7 +50,7 @@ class Burst:
         self._burst = np.zeros(1, BURST)
         timing, row = brain.robot.timing, self._burst[0]
         row["step"], row["steps"] = timing.world_step, timing.steps_per_tick
-        row["apart"] = least_apart(timing)
+        row["apart"] = brain.keeper.scans.apart
         row["stride"], row["is_mapping"] = brain.robot.scan_stride, brain.mapper is not None
         row["bin_capacity"] = brain.robot.brush.bin_capacity * MICROGRAMS_PER_GRAM
         self._has_ended = False
@@ -92,7 +91,8 @@ class Burst:
 
     @property
     def _may_run(self) -> bool:
-        return len(self._rows) > 0 and self._brain.keeper.place.is_calm
+        is_walking = self._brain.walking.is_under_way
+        return len(self._rows) > 0 and not is_walking and self._brain.keeper.place.is_calm
 
     # ---------------------------------------------------------------- taking over
 
@@ -122,7 +122,7 @@ class Burst:
             row["progress_timeout"] = brain.config.driving.progress_timeout
         row["things_version"] = brain.things.version
         row["clock"] = brain.readings.time - self._body.simulator.time
-        row["scans"], row["seen_at"] = self._body.scans, brain.keeper.seen_at
+        row["scans"], row["seen_at"] = self._body.scans, brain.keeper.scans.seen_at
         if brain.mapper is not None:
             at = brain.mapper.at_scan
             row["at_scan"] = at.x, at.y, at.theta
@@ -181,7 +181,7 @@ class Burst:
         mission = brain.mission
         self._tell_floor()
         self._body.scans = int(row["scans"])
-        brain.keeper.seen_at = float(row["seen_at"])
+        brain.keeper.scans.seen_at = float(row["seen_at"])
         readings = self._body.read()
         readings = replace(readings, time=readings.time + float(row["clock"]))
         brain.told(readings)

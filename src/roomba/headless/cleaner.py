@@ -1,7 +1,7 @@
 """The robot without ROS: its brain in a simulated body, in one home.
 
 Time passes only while it is told to do something. The brain gets what the sensors tell and nothing
-else. It cleans and explores on the map of the home, on another one, or on one that it makes.
+else. It cleans, explores and walks on the map of the home, on another one, or on one that it makes.
 """
 
 from __future__ import annotations
@@ -20,7 +20,13 @@ from roomba.geometry import Pose
 from roomba.grid import OccupancyMap
 from roomba.headless.body import SimulatedBody
 from roomba.headless.burst import LONGEST_BURST, Burst
-from roomba.headless.records import CleanRecord, ExploreRecord, longest_errand, require_end
+from roomba.headless.records import (
+    CleanRecord,
+    ExploreRecord,
+    WalkRecord,
+    longest_errand,
+    require_end,
+)
 from roomba.headless.rows import BELIEVED, PASSED, POSES, TIME
 from roomba.mission.cleaning.request import CleanRequest
 from roomba.mission.inputs.senses import Senses
@@ -42,7 +48,7 @@ from roomba.world.simulator import Observation, Simulator
 
 
 class HeadlessMission:
-    """One robot with its mission in one home.
+    """One robot in one home.
 
     ``truth`` is the floor that its tool really passed over, with room in its bin; ``rows`` are the
     ticks that passed, as of :mod:`roomba.headless.rows`, in pieces; ``context`` is the home as it
@@ -147,6 +153,33 @@ class HeadlessMission:
             np.column_stack((rows[:, TIME], rows[:, BELIEVED])),
             self._hits - hits,
             time.perf_counter() - began,
+        )
+
+    def walk(self, x: float, y: float) -> WalkRecord:
+        """Walk to a point, m, map frame, until the robot is there or gives up.
+
+        Raises NoPathError when there is no way.
+        """
+        walking, walk, start = self.brain.walking, self.brain.walk(x, y), self.seen.time
+        rows, steps = [self.row()], []
+        bumps, was_bumped = 0, self.seen.bumper.pressed
+        while walking.is_under_way:
+            require_end(self.seen.time - start, self._longest)
+            self.tick()
+            rows.append(self.rows[-1])
+            steps.append(walking.newest)
+            bumps += self.seen.bumper.pressed and not was_bumped
+            was_bumped = self.seen.bumper.pressed
+        last, passed = steps[-1], np.concatenate(rows)
+        return WalkRecord(
+            last.state,
+            last.reason,
+            self.seen.time - start,
+            walk.path.points,
+            passed[:, POSES],
+            np.column_stack((passed[:, TIME], passed[:, BELIEVED])),
+            bumps,
+            steps,
         )
 
     # ---------------------------------------------------------------- time

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Final
 
 import numpy as np
@@ -12,6 +12,7 @@ from roomba.errors import RoombaError
 from roomba.grid import OccupancyMap
 from roomba.mission.cleaning.request import CleanResult
 from roomba.mission.exploring.exploration import ExploreResult
+from roomba.mission.walking.walk import WalkState, WalkStep
 from roomba.perception.swept.coverage_map import CoverageMap
 from roomba.world.home.home import Home
 
@@ -56,6 +57,29 @@ class ExploreRecord:
     hits: int
     wall: float
     """s of a wall clock that it took."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class WalkRecord:
+    """What happened on a walk: rows of ``poses`` are t (s), x, y (m), theta (rad), true ones.
+
+    ``believed`` has the same rows, of where the robot took itself to be; ``planned`` is its last
+    path, float64 [n, 2], m.
+    """
+
+    state: WalkState
+    reason: str
+    duration: float
+    planned: NDArray[np.float64]
+    poses: NDArray[np.float64]
+    believed: NDArray[np.float64]
+    bumps: int
+    steps: list[WalkStep] = field(repr=False)
+
+    @property
+    def distance(self) -> float:
+        """What was travelled, m."""
+        return float(np.hypot(*np.diff(self.poses[:, 1:3], axis=0).T).sum())
 
 
 def longest_errand(home: Home) -> float:

@@ -12,15 +12,15 @@ from roomba.configuration.docking import DockingConfig
 from roomba.configuration.mapping import MappingConfig
 from roomba.configuration.mission import MissionConfig
 from roomba.configuration.robot import RobotConfig
+from roomba.control.speed_loop import SpeedLoop
 from roomba.errors import RoombaError
 from roomba.geometry import Pose, Twist
 from roomba.grid import OccupancyMap
-from roomba.mission.exploring.look_around import SearchDrive
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.mission.inputs.senses import Senses
 from roomba.mission.mission import Mission, MissionStep
-from roomba.mission.phases.machine import Phase
-from roomba.perception.localization.estimate import Knowledge
+from roomba.mission.phases.machine import Event
+from roomba.mission.walking.walk import Walk
 from roomba.perception.localization.localizer import Localizer
 from roomba.perception.matching.beams import LidarBeams
 from roomba.perception.matching.scan_view import LidarModel
@@ -28,13 +28,13 @@ from roomba.perception.matching.surface_field import SurfaceField
 from roomba.perception.rooms.rooms import Rooms
 from roomba.perception.rooms.zones import Zones
 from roomba.perception.slam.mapper import Mapper
-from roomba.perception.swept.dirt_map import DirtMap
 from roomba.perception.things.layer import ThingLayer
 from roomba.robot.command import Command
 from roomba.robot.growing_map import GrowingMap
-from roomba.robot.place import PlaceKeeper
+from roomba.robot.mapped_mission import MappedMission, fan_of
+from roomba.robot.place import Place, PlaceKeeper
 from roomba.robot.readings import Readings, ScanReading, senses_of
-from roomba.robot.safe_drive import SafeDrive
+from roomba.robot.walking import Walking
 
 _BESIDE_SURFACES: Final = 0.3
 """m; what is farther from all that a growing map shows is a thing wherever it is seen."""
@@ -69,28 +69,28 @@ class Brain:
         """
         mission.require_possible(robot.body)
         self.robot, self.config, self._docking = robot, mission, docking
-        self._station, self._rooms, self._zones = station, rooms, zones
+        self._known, self._station, self._rooms, self._zones = known, station, rooms, zones
         self._max_speed = robot.body.max_speed if max_speed is None else max_speed
         self.localizer: Localizer | None = None
         self.mapper: Mapper | None = None
         self.growing: GrowingMap | None = None
-        start, belief = start or station, (robot.localization, robot.gyro)
-        if isinstance(known, MappingConfig):
-            self.mapper = place = Mapper(known, *belief, start)
-            self.growing = GrowingMap(place, robot.timing.map_period)
-            self.keeper = PlaceKeeper(place, robot.timing)
-        else:
-            self.localizer = localizer = Localizer(
-                known, *belief, robot.body.radius, start, stride=robot.scan_stride
-            )
-            self.keeper = PlaceKeeper(localizer, robot.timing)
-        self._known = known
-        self._search = SearchDrive(robot.body, robot.looking_around)
-        self._drive = SafeDrive(robot.body, self._max_speed)
-        self._mission: Mission | None = None
-        self._things: ThingLayer | None = None
+        self.keeper = PlaceKeeper(self._place(start or station), robot)
+        self._mapped = MappedMission(robot, mission, docking, self._max_speed)
+        self.walking = Walking(robot)
+        self._drive = SpeedLoop(robot.body, self._max_speed)
         self._readings: Readings | None = None
-        self._beams: tuple[LidarModel, LidarBeams] | None = None
+
+    def _place(self, start: Pose) -> Place:
+        """Return what knows the robot's place, which begins at ``start``."""
+        robot, belief = self.robot, (self.robot.localization, self.robot.gyro)
+        if isinstance(self._known, MappingConfig):
+            self.mapper = Mapper(self._known, *belief, start)
+            self.growing = GrowingMap(self.mapper, robot.timing.map_period)
+            return self.mapper
+        self.localizer = Localizer(
+            self._known, *belief, robot.body.radius, start, stride=robot.scan_stride
+        )
+        return self.localizer
 
     # ---------------------------------------------------------------- ticks
 
@@ -106,30 +106,46 @@ class Brain:
         self.use_newer_map()
 
     def decide(self) -> Command:
-        """Return what is wanted: what the mission wants, as far as that is safe."""
-        if self._mission is None:
+        """Return what is wanted: what walk or mission want, as far as that is safe."""
+        mission = self._mapped.mission
+        if mission is None:
             return Command()
         senses = self.senses()
-        step = self._mission.tick(senses)
+        step = mission.tick(senses)
         self._finish_map(step)
-        twist = self._drive.command(self.readings, self._looking_around(step, senses))
-        return Command(twist, self._fan())
+        wanted, cruise, looks_around = step.twist, self._max_speed, step.looks_around
+        if self.walking.is_under_way:
+            wanted, cruise = self.walking.tick(senses, self._max_speed)
+            looks_around = True
+        if looks_around:
+            wanted = self.keeper.look_around(senses.now, touches=any(senses.touches)) or wanted
+        level = fan_of(mission)
+        fan = None if level is None else self.robot.fan.duty_at(level)
+        return Command(self._safely(wanted, cruise), fan)
+
+    def walk(self, x: float, y: float) -> Walk:
+        """Walk to a point of the map, m; an errand under way is paused.
+
+        Raises NoPathError when there is no way, RoombaError while there is no map.
+        """
+        mission, senses = self.mission, self.senses()
+        walk = self.walking.begin((x, y), mission.context.occupancy, mission.obstacles, senses)
+        if mission.state.drives:
+            mission.command(Event.PAUSE, senses)
+        return walk
 
     def look(self, scan: ScanReading | None) -> None:
         """Look in a scan, if there is one, for things that the map does not show."""
-        if scan is None or self._things is None:
-            return
         estimate = self.keeper.place.estimate
-        if estimate.knowledge is Knowledge.KNOWN:
-            beams = self.beams_of(scan.lidar)
-            self._things.see(scan.ranges, beams, estimate.pose, self.robot.scan_stride)
+        self._mapped.lookout.look(scan, estimate.pose, estimate.knowledge)
 
     def use_newer_map(self) -> None:
         """Begin a mission on the first map, or let it go on with a newer one."""
-        if self._mission is None:
+        mission = self._mapped.mission
+        if mission is None:
             self._begin()
         elif self.growing is not None:
-            newer = self.growing.newer(self.readings.time, self._mission)
+            newer = self.growing.newer(self.readings.time, mission)
             if newer is not None:
                 self._use(newer)
 
@@ -141,63 +157,50 @@ class Brain:
             context = self._context(self.mapper.occupancy())
         else:
             return
-        self._mission = Mission(
-            context,
-            self.robot,
-            self.config,
-            self._docking,
-            self._look_beside(context),
-            DirtMap(context.occupancy),
-            self.senses(),
-            self._max_speed,
-        )
+        self._mapped.begin(context, self._surfaces(context), self.senses())
 
     def _use(self, occupancy: OccupancyMap) -> None:
         """Let the mission go on with another map."""
         context = self._context(occupancy)
-        self.mission.use_map(context, self._look_beside(context), DirtMap(occupancy))
+        self._mapped.go_on(context, self._surfaces(context))
 
     def _finish_map(self, step: MissionStep) -> None:
         """When all was seen go on with the whole map."""
-        if step.wants_whole_map and self.growing is not None and not self.growing.is_whole:
-            assert self.mapper is not None
-            occupancy = self.growing.finish()
-            # To be whole the map was turned a little.
-            self._station = self.mapper.start
-            self._use(occupancy)
+        growing, mapper = self.growing, self.mapper
+        if growing is None or mapper is None or growing.is_whole or not step.wants_whole_map:
+            return
+        growing.is_whole = True
+        occupancy = mapper.finish()
+        # To be whole the map was turned a little.
+        self._station = mapper.start
+        self._use(occupancy)
 
-    def _looking_around(self, step: MissionStep, senses: Senses) -> Twist:
-        """Return what the mission wants, or what helps to find the place."""
-        if not step.looks_around or self.localizer is None:
-            return step.twist
-        touches = senses.is_disturbed
-        return self._search.tick(senses.now, self.localizer, touches) or step.twist
-
-    def _fan(self) -> float | None:
-        """Return the fan's duty that a clean asks for."""
-        cleaning = self.mission.cleaning
-        if cleaning is None or self.mission.state.phase is Phase.ERROR:
-            return None
-        return self.robot.fan.duty_at(cleaning.request.fan)
+    def _safely(self, twist: Twist, cruise: float) -> Twist:
+        """Return what the wheels get when a twist is wanted, at ``cruise`` m/s at most."""
+        now = self.readings.time
+        self._drive.set_hazards(self.readings.hazards)
+        self._drive.set_cruise_speed(cruise)
+        self._drive.command(now, twist)
+        return self._drive.tick(now)[0]
 
     # ---------------------------------------------------------------- what others may look at
 
     @property
     def mission(self) -> Mission:
         """What the robot is at; raises RoombaError while there is no map yet."""
-        if self._mission is None:
+        if self._mapped.mission is None:
             raise RoombaError("the robot has no map yet: let it stand until its first scan came")
-        return self._mission
+        return self._mapped.mission
 
     @mission.setter
     def mission(self, mission: Mission) -> None:
         """Replace the mission by another one with the same map and the same layer of things."""
-        self._mission = mission
+        self._mapped.mission = mission
 
     @property
     def is_ready(self) -> bool:
         """Whether there is a map, and so a mission."""
-        return self._mission is not None
+        return self._mapped.mission is not None
 
     @property
     def readings(self) -> Readings:
@@ -209,9 +212,9 @@ class Brain:
     @property
     def things(self) -> ThingLayer:
         """What stands about besides the map; raises RoombaError while there is no map yet."""
-        if self._things is None:
+        if self._mapped.lookout.things is None:
             raise RoombaError("the robot has no map yet: let it stand until its first scan came")
-        return self._things
+        return self._mapped.lookout.things
 
     @property
     def pose(self) -> Pose:
@@ -220,14 +223,14 @@ class Brain:
 
     def senses(self) -> Senses:
         """Return what the mission senses now."""
-        return senses_of(self.readings, self.keeper.place.estimate)
+        estimate = self.keeper.place.estimate
+        return senses_of(self.readings, estimate.pose, estimate.knowledge, estimate.reason)
 
     def limit_speed(self, max_speed: float) -> None:
         """Set the robot's top speed, m/s."""
         self._max_speed = max_speed
-        self._drive.limit(max_speed)
-        if self._mission is not None:
-            self._mission.max_speed = max_speed
+        self._drive.set_max_speed(max_speed)
+        self._mapped.limit_speed(max_speed)
 
     def told(self, readings: Readings) -> None:
         """Take readings without acting on them.
@@ -240,21 +243,16 @@ class Brain:
     # ---------------------------------------------------------------- parts
 
     def beams_of(self, lidar: LidarModel) -> LidarBeams:
-        """Return a lidar as kernels know it, made anew only when it is another one."""
-        if self._beams is None or self._beams[0] is not lidar:
-            self._beams = lidar, lidar.arrays()
-        return self._beams[1]
+        """Return a lidar as kernels know it."""
+        return self._mapped.lookout.beams_of(lidar)
 
     def _context(self, occupancy: OccupancyMap) -> PlanningContext:
         is_growing = self.growing is not None and not self.growing.is_whole
         parts = self._station, self.robot, self.config, self._docking
         return PlanningContext(occupancy, *parts, self._rooms, self._zones, is_growing=is_growing)
 
-    def _look_beside(self, context: PlanningContext) -> ThingLayer:
-        """Look from now on for what a planning context's map does not show."""
+    def _surfaces(self, context: PlanningContext) -> SurfaceField:
+        """Return the surfaces beside which things are looked for."""
         if self.localizer is not None:
-            field = self.localizer.field
-        else:
-            field = SurfaceField.near(context.occupancy, _BESIDE_SURFACES)
-        self._things = ThingLayer(field)
-        return self._things
+            return self.localizer.field
+        return SurfaceField.near(context.occupancy, _BESIDE_SURFACES)

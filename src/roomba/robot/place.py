@@ -8,9 +8,11 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.configuration.robot import TimingConfig
-from roomba.geometry import Pose
+from roomba.configuration.robot import RobotConfig, TimingConfig
+from roomba.geometry import Pose, Twist
+from roomba.mission.exploring.look_around import SearchDrive
 from roomba.perception.localization.estimate import Estimate
+from roomba.perception.localization.localizer import Localizer
 from roomba.perception.matching.scan_view import LidarModel
 from roomba.robot.readings import Readings, ScanReading
 
@@ -39,30 +41,54 @@ class Place(Protocol):
         """Take a scan, float32 [beams], m."""
 
 
-class PlaceKeeper:
-    """Passes readings on: all motion, and a scan in each ``scan_period``.
+class ScanSelection:
+    """Selects the scans that are looked at: one each ``scan_period``, not those between.
 
-    ``seen_at`` is the stamp of the last scan that was passed on, s.
+    ``apart`` is how long after a scan the next one is selected, s: ticks do not fall on scans.
+    ``seen_at`` is when the last one was taken that was selected, s.
     """
 
-    def __init__(self, place: Place, timing: TimingConfig) -> None:
+    def __init__(self, timing: TimingConfig) -> None:
+        """Begin with no scan: the first one is selected."""
+        self.apart = timing.scan_period - 0.5 * timing.tick
+        self.seen_at = -math.inf
+
+    def selects(self, scan: ScanReading | None) -> bool:
+        """Whether a scan is to be looked at; call it once for each, in the order of time."""
+        if scan is None or 0.0 <= scan.stamp - self.seen_at < self.apart:
+            return False
+        self.seen_at = scan.stamp
+        return True
+
+
+class PlaceKeeper:
+    """Passes readings on: all motion, and the scans that are selected.
+
+    ``place`` may be another one at any time.
+    """
+
+    def __init__(self, place: Place, robot: RobotConfig) -> None:
         """Begin with no scan."""
         self.place = place
-        self.apart = least_apart(timing)
-        self.seen_at = -math.inf
+        self.scans = ScanSelection(robot.timing)
+        self._search = SearchDrive(robot.body, robot.looking_around)
 
     def follow(self, readings: Readings) -> ScanReading | None:
         """Take the readings of a tick; return the scan that was passed on, if there was one."""
         self.place.lift(readings.is_lifted)
         self.place.move(readings.time, readings.odometry, readings.turning)
         scan = readings.scan
-        if scan is None or 0.0 <= scan.stamp - self.seen_at < self.apart:
+        if scan is None or not self.scans.selects(scan):
             return None
-        self.seen_at = scan.stamp
         self.place.see(scan.stamp, scan.ranges, scan.lidar)
         return scan
 
+    def look_around(self, now: float, *, touches: bool) -> Twist | None:
+        """Return what is to be driven to find the place; None while that does not help.
 
-def least_apart(timing: TimingConfig) -> float:
-    """Return how long after a scan the next one is looked at, s: ticks do not fall on scans."""
-    return timing.scan_period - 0.5 * timing.tick
+        ``now`` is in s of the robot's clock; ``touches`` tells whether bumper or cliff sensors
+        found something. A robot that makes its map has no other place to find.
+        """
+        if not isinstance(self.place, Localizer):
+            return None
+        return self._search.tick(now, self.place, touches)

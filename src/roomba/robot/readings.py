@@ -7,10 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.control.speed_loop import Hazards
 from roomba.geometry import STANDSTILL, Pose, Twist
 from roomba.mission.docking.beams import StationBeams
 from roomba.mission.inputs.senses import Battery, Senses
-from roomba.perception.localization.estimate import Estimate
+from roomba.perception.localization.estimate import Knowledge
 from roomba.perception.matching.scan_view import LidarModel
 
 
@@ -73,20 +74,28 @@ class Readings:
         return self.bumper_left or self.bumper_right
 
     @property
+    def hazards(self) -> Hazards:
+        """What the drive must not go on into."""
+        return Hazards(self.bumps, self.cliff.any, self.dropped_left or self.dropped_right)
+
+    @property
     def is_lifted(self) -> bool:
         """Whether both wheels hang in the air: the robot is held."""
         return self.dropped_left and self.dropped_right
 
 
-def senses_of(readings: Readings, estimate: Estimate) -> Senses:
-    """Return what a mission senses, of what the body tells and what is known of the place."""
+def senses_of(readings: Readings, pose: Pose, knowledge: Knowledge, trouble: str = "") -> Senses:
+    """Return what the robot senses, of what its body tells and what is known of its place.
+
+    ``trouble`` says why the place is not known better.
+    """
     turning = readings.twist.angular if readings.turning is None else readings.turning
     return Senses(
         readings.time,
-        estimate.pose,
+        pose,
         Twist(readings.twist.linear, turning),
-        estimate.knowledge,
-        estimate.reason,
+        knowledge,
+        trouble,
         readings.bumper_left,
         readings.bumper_right,
         readings.cliff.left or readings.cliff.front_left,

@@ -7,11 +7,12 @@ from typing import Any, Final
 
 from sensor_msgs.msg import LaserScan
 
+from roomba.robot.readings import ScanReading
 from roomba_ros.convert.errors import MessageError
 from roomba_ros.convert.localization import SAME_TIME
 from roomba_ros.convert.mounts import Mount, Mounts
 from roomba_ros.convert.readings import turning_of
-from roomba_ros.convert.scan import Scan, ScanDecoder
+from roomba_ros.convert.scan import ScanDecoder
 
 LATEST: Final = 1.0
 """s; a scan that odometry is so far behind is of a time that it knows nothing of."""
@@ -26,7 +27,7 @@ class RecordedDrive:
         """Scans that were taken in."""
         self._mounts, self._base = mounts, base
         self._gyro: tuple[float, float] | None = None
-        self._scan: tuple[float, Scan] | None = None
+        self._scan: tuple[float, ScanReading] | None = None
         self._decoder = ScanDecoder(lambda frame: self._mount(frame, "lidar"))
         self._frames: dict[str, Mount] = {}
         self._left_out: Counter[str] = Counter()
@@ -57,7 +58,7 @@ class RecordedDrive:
         is_upside_down = self._mount(message.header.frame_id, "gyro").is_upside_down
         self._gyro = (stamp, -turning if is_upside_down else turning)
 
-    def _scan_of(self, message: LaserScan) -> Scan | None:
+    def _scan_of(self, message: LaserScan) -> ScanReading | None:
         """Return a scan; None, and a note, for one that cannot be used."""
         try:
             return self._decoder.decode(message)

@@ -10,6 +10,7 @@ from roomba_robot.msg import Bumper, Cliff, DockStatus, RobotPosition, WheelDrop
 from sensor_msgs.msg import Imu
 
 from roomba.geometry import Pose, Twist
+from roomba.robot.readings import CliffReading
 from roomba_ros.convert.common import pose_of, pose_of_odometry, twist_of
 from roomba_ros.convert.errors import require_finite
 
@@ -71,11 +72,13 @@ def bumper_of(message: Bumper) -> Sides:
     return Sides(message.is_left_pressed, message.is_right_pressed)
 
 
-def cliff_of(message: Cliff) -> Sides:
-    """Return on which side there is no floor."""
-    return Sides(
-        message.is_cliff_left or message.is_cliff_front_left,
-        message.is_cliff_right or message.is_cliff_front_right,
+def cliff_of(message: Cliff) -> CliffReading:
+    """Return which cliff sensors see no floor."""
+    return CliffReading(
+        message.is_cliff_left,
+        message.is_cliff_front_left,
+        message.is_cliff_front_right,
+        message.is_cliff_right,
     )
 
 

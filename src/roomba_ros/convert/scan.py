@@ -4,27 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from sensor_msgs.msg import LaserScan
 
 from roomba.perception.matching.scan_view import LidarModel
+from roomba.robot.readings import ScanReading
 from roomba_ros.convert.errors import MessageError, require_finite
 from roomba_ros.convert.mounts import Mount, Mounts
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Scan:
-    """A scan of ``lidar``, taken at ``stamp``, s; 0 when that was not told.
-
-    ``ranges`` is float32 [beams], m; one that is not finite met nothing, or failed (REP 117).
-    """
-
-    stamp: float
-    ranges: NDArray[np.float32]
-    lidar: LidarModel
 
 
 class ScanDecoder:
@@ -43,10 +30,14 @@ class ScanDecoder:
         """
         return ScanDecoder(lambda frame: mounts.mount(base, frame) or Mount())
 
-    def decode(self, message: LaserScan) -> Scan:
-        """Return a scan; raises MessageError for one that has no beams, or angles that are none."""
+    def decode(self, message: LaserScan) -> ScanReading:
+        """Return a scan, of time 0 if that was not told.
+
+        Ranges that are not finite met nothing, or failed (REP 117). Raises MessageError for a scan
+        that has no beams, or angles that are none.
+        """
         ranges = np.array(message.ranges, np.float32)
-        return Scan(message.header.stamp.to_sec(), ranges, self._lidar_of(message))
+        return ScanReading(message.header.stamp.to_sec(), ranges, self._lidar_of(message))
 
     def _lidar_of(self, message: LaserScan) -> LidarModel:
         _require_fan(message)

@@ -3,80 +3,61 @@
 from __future__ import annotations
 
 import threading
-from collections import deque
 from dataclasses import replace
 from typing import Final
 
 import rospy
 from geometry_msgs.msg import PoseWithCovarianceStamped
-from nav_msgs.msg import OccupancyGrid, Odometry
-from roomba_robot.msg import WheelDrop
-from sensor_msgs.msg import Imu, LaserScan
+from nav_msgs.msg import OccupancyGrid
 from std_srvs.srv import Empty, EmptyRequest, EmptyResponse
-from tf2_msgs.msg import TFMessage
 
 from roomba.configuration.robot import RobotConfig
-from roomba.geometry import Pose
+from roomba.geometry import Pose, Twist
 from roomba.grid import OccupancyMap
 from roomba.perception.localization.estimate import Estimate, Knowledge
 from roomba.perception.localization.localizer import Localizer
 from roomba.perception.slam.mapper import Mapper
+from roomba.robot.place import PlaceKeeper
+from roomba.robot.readings import Readings, ScanReading
 from roomba_ros.convert.common import map_of
-from roomba_ros.convert.localization import SAME_TIME, told_pose_of
-from roomba_ros.convert.mounts import Mounts, transforms_of
-from roomba_ros.convert.readings import (
-    GyroReading,
-    OdometryReading,
-    Sides,
-    odometry_of,
-    turning_of,
-    wheel_drop_of,
-)
-from roomba_ros.convert.scan import Scan, ScanDecoder
+from roomba_ros.convert.localization import told_pose_of
 from roomba_ros.localization.kept_pose import KeptPose
 from roomba_ros.localization.place_topics import PlaceTopics
-from roomba_ros.localization.waiting_scans import WaitingScans
-from roomba_ros.runtime.node import frame_id
 from roomba_ros.runtime.subscriptions import subscribe
+from roomba_ros.senses.body_topics import BodyTopics
 
-_KEPT: Final = 40
-"""Messages of odometry, and of the gyro, that wait for the next tick: two seconds of them."""
 _PLACED: Final = (0.05, 0.05)
 """m, rad; how unsure a place on another map is before a scan confirms it."""
+_HEARD: Final = ("odom", "imu", "scan", "wheel_drop", "bumper", "cliff")
 
 
 class LocalizationTopics:
-    """Feeds a localizer, and lets :class:`PlaceTopics` tell what it knows.
+    """Keeps the robot's place, and lets :class:`PlaceTopics` tell it.
 
-    Subscribes: ``odom``, ``imu``, ``scan``, ``map``, ``wheel_drop``, ``initialpose``,
-    ``/tf_static`` (where the lidar is mounted).
+    Subscribes: ``map``, ``initialpose``, and of :class:`BodyTopics` ``odom``, ``imu``, ``scan``,
+    ``wheel_drop``, ``bumper``, ``cliff``.
     Services: ``global_localization`` (Empty: forget the place, look for it in the whole map).
     """
 
     def __init__(self, config: RobotConfig) -> None:
         """Connect nothing yet."""
         self._config = config
+        self._body = BodyTopics(config, *_HEARD)
         self._localizer: Localizer | None = None
+        self._keeper: PlaceKeeper | None = None
+        self._newest: Readings | None = None
         self._lock = threading.Lock()
         self._tick_lock = threading.RLock()
-        self._odometry: deque[tuple[float, Pose]] = deque(maxlen=_KEPT)
-        self._gyro: deque[GyroReading] = deque(maxlen=_KEPT)
-        self._scans = WaitingScans()
         self._told: tuple[Pose, tuple[float, float]] | None = None
         self._new_map: OccupancyMap | None = None
         self._is_asked = False
-        self._is_lifted = False
-        self._mounts = Mounts()
-        self._decoder = ScanDecoder.on_robot(self._mounts, frame_id("base_link"))
-        self._stamp = 0.0
-        self._newest: tuple[float, Pose] | None = None
         self._kept = KeptPose()
         self._place = PlaceTopics()
         self.mapper: Mapper | None = None
         """Knows the place instead of the localizer, while a map is being made."""
         self.is_mapping_held = False
         """Whether the mapper must wait: its map is being finished."""
-        self.seen: Scan | None = None
+        self.seen: ScanReading | None = None
         """The newest scan that was used."""
         self.is_map_own = False
         """Whether this node makes the map itself: what comes by the topic is left out then."""
@@ -88,13 +69,7 @@ class LocalizationTopics:
         self._kept.start()
         self._place.start()
         subscribe("map", OccupancyGrid, self._given_map_of, self._on_map)
-        subscribe("/tf_static", TFMessage, transforms_of, self._mounts.add, queue_size=10)
-        subscribe("odom", Odometry, odometry_of, self._on_odometry, queue_size=10, tcp_nodelay=True)
-        subscribe("imu", Imu, turning_of, self._gyro.append, queue_size=10, tcp_nodelay=True)
-        subscribe(
-            "scan", LaserScan, self._decoder.decode, self._scans.put, queue_size=5, tcp_nodelay=True
-        )
-        subscribe("wheel_drop", WheelDrop, wheel_drop_of, self._on_wheel_drop)
+        self._body.start()
         subscribe("initialpose", PoseWithCovarianceStamped, told_pose_of, self._on_told)
         rospy.Service("global_localization", Empty, self._on_forget)
 
@@ -135,25 +110,37 @@ class LocalizationTopics:
         """Let a mapper know the place from now on; None: the localizer again."""
         with self._tick_lock:
             self.mapper, self.is_mapping_held = mapper, False
-            if mapper is not None and self._newest is not None:
-                mapper.move(*self._newest)
+            newest, keeper, localizer = self._newest, self._keeper, self._localizer
+            if newest is None or keeper is None or localizer is None:
+                return
+            keeper.place = mapper or localizer
+            if mapper is not None:
+                mapper.move(newest.time, newest.odometry)
+
+    def look_around(self, now: float) -> Twist | None:
+        """Return what is to be driven to find the place; None while that does not help."""
+        keeper, newest = self._keeper, self._newest
+        if keeper is None or newest is None:
+            return None
+        return keeper.look_around(now, touches=newest.bumps or newest.cliff.any)
 
     def _tick(self, now: float) -> Estimate | None:
-        localizer = self._localizer = self._localizer or self._first_localizer()
-        if localizer is None:
+        told = self._body.take()
+        if self._localizer is None and told:
+            self._begin(told[0])
+        localizer, keeper, mapper = self._localizer, self._keeper, self.mapper
+        if localizer is None or keeper is None:
             return None
         self._hear_map(localizer)
-        self._hear_odometry(localizer)
-        localizer.lift(self._is_lifted)
-        if self.mapper is not None:
-            self.mapper.lift(self._is_lifted)
+        for readings in told:
+            self._follow(keeper, localizer, readings)
         self._hear_people(localizer)
-        self._hear_scan(localizer)
         localizer.pass_time(now)
-        knower = self.mapper or localizer
+        knower = mapper or localizer
         estimate = knower.estimate
         self.is_asked_to_search &= estimate.knowledge is Knowledge.SEARCHING
-        self._place.tell(now, self._stamp, knower, estimate)
+        stamp = now if self._newest is None else self._newest.time
+        self._place.tell(now, stamp, knower, estimate)
         if estimate.knowledge is Knowledge.KNOWN:
             self._kept.keep(knower.map_to_odometry)
         return estimate
@@ -183,15 +170,20 @@ class LocalizationTopics:
         """Whether another process of this node would know the place, and that it was here."""
         return self._kept.is_kept
 
-    def _first_localizer(self) -> Localizer | None:
-        """Return a localizer at the place where the first odometry was told; None before that."""
-        if not self._odometry:
-            return None
-        start, deviation = self._kept.start_pose(self._odometry[0][1])
+    def _begin(self, readings: Readings) -> None:
+        """Begin where the first odometry was told."""
+        start, deviation = self._kept.start_pose(readings.odometry)
         config = self._config
-        return Localizer(
-            None, config.localization, config.gyro, config.body.radius, start, deviation
+        self._localizer = Localizer(
+            None,
+            config.localization,
+            config.gyro,
+            config.body.radius,
+            start,
+            deviation,
+            config.scan_stride,
         )
+        self._keeper = PlaceKeeper(self._localizer, config)
 
     def _hear_map(self, localizer: Localizer) -> None:
         with self._lock:
@@ -199,22 +191,16 @@ class LocalizationTopics:
         if new_map is not None:
             localizer.use_map(new_map)
 
-    def _hear_odometry(self, localizer: Localizer) -> None:
-        for _ in range(len(self._odometry)):
-            self._stamp, pose = self._odometry.popleft()
-            self._newest = self._stamp, pose
-            turning = self._turning_at(self._stamp)
-            localizer.move(self._stamp, pose, turning)
-            if self.mapper is not None:
-                self.mapper.move(self._stamp, pose, turning)
-
-    def _turning_at(self, stamp: float) -> float | None:
-        """Return the gyro's sample of about that time, rad/s."""
-        samples = list(self._gyro)
-        if not samples:
-            return None
-        nearest = min(samples, key=lambda sample: abs(sample.stamp - stamp))
-        return nearest.turning if abs(nearest.stamp - stamp) < SAME_TIME else None
+    def _follow(self, keeper: PlaceKeeper, localizer: Localizer, readings: Readings) -> None:
+        """Go on to where the robot is now, by what its body tells."""
+        self._newest = readings
+        if self.mapper is not None:
+            # It goes on from there, by wheels and gyro, when the map is whole.
+            localizer.lift(readings.is_lifted)
+            localizer.move(readings.time, readings.odometry, readings.turning)
+        if self.is_mapping_held:
+            readings = replace(readings, scan=None)
+        self.seen = keeper.follow(readings) or self.seen
 
     def _hear_people(self, localizer: Localizer) -> None:
         with self._lock:
@@ -228,27 +214,6 @@ class LocalizationTopics:
             localizer.forget("it was asked to look for its place anew")
             self.is_asked_to_search = True
 
-    def _hear_scan(self, localizer: Localizer) -> None:
-        scan = self._scans.take(self._stamp)
-        if scan is None:
-            oldest = self._scans.oldest
-            if oldest is not None and oldest > self._stamp + self._config.localization.scan_timeout:
-                rospy.logwarn_throttle(
-                    10.0,
-                    "no scan is used: they are of %.2f s, odometry only of %.2f s",
-                    oldest,
-                    self._stamp,
-                )
-            return
-        self.seen = scan = replace(scan, stamp=scan.stamp or self._stamp)
-        if self.mapper is None:
-            localizer.see(scan.stamp, scan.ranges, scan.lidar)
-        elif not self.is_mapping_held:
-            self.mapper.see(scan.stamp, scan.ranges, scan.lidar)
-
-    def _on_odometry(self, told: OdometryReading) -> None:
-        self._odometry.append((told.stamp or rospy.get_time(), told.pose))
-
     def _given_map_of(self, message: OccupancyGrid) -> OccupancyMap | None:
         """Return the map of a message; None if this node made it itself."""
         return None if self.is_map_own else map_of(message)
@@ -256,10 +221,6 @@ class LocalizationTopics:
     def _on_map(self, occupancy: OccupancyMap | None) -> None:
         with self._lock:
             self._new_map = occupancy
-
-    def _on_wheel_drop(self, dropped: Sides) -> None:
-        # One wheel hangs over an edge; a robot that is held has both in the air.
-        self._is_lifted = dropped.left and dropped.right
 
     def _on_told(self, told: tuple[Pose, tuple[float, float]]) -> None:
         with self._lock:

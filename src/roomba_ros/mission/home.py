@@ -70,6 +70,11 @@ class KnownHome:
     field: SurfaceField
     digest: str
 
+    def is_edit_of(self, before: KnownHome) -> bool:
+        """Whether station or zones are others than before: that is obeyed at once."""
+        now, then = self.context, before.context
+        return (now.station, now.zones) != (then.station, then.zones)
+
 
 class HomeTopics:
     """Makes contexts in the background: a new one for each map, edit of rooms, and edit of zones.

@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import time
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import rospy
 from std_srvs.srv import Trigger
 
+from roomba.configuration.robot import RobotConfig
 from roomba.geometry import STANDSTILL
+from roomba.grid import OccupancyMap
 from roomba.mission.cleaning.request import CleanOutcome
 from roomba.mission.inputs.senses import Senses
 from roomba.mission.mission import Mission, MissionStep
 from roomba.mission.phases.machine import Phase
-from roomba.perception.swept.dirt_map import DirtMap
-from roomba.perception.things.layer import ThingLayer
+from roomba.perception.localization.estimate import Knowledge
+from roomba.robot.growing_map import GrowingMap
+from roomba.robot.mapped_mission import MappedMission
 from roomba_ros.convert.mission import names_of
 from roomba_ros.mission.drive import MissionDrive
 from roomba_ros.mission.goals import Ended
@@ -22,7 +25,6 @@ from roomba_ros.mission.home import GROWING, HomeTopics, KnownHome
 from roomba_ros.mission.memory import MissionMemory
 from roomba_ros.mission.orders import MissionOrders
 from roomba_ros.mission.round import MissionRound
-from roomba_ros.mission.senses import MissionSenses
 from roomba_ros.mission.topics import MissionTopics
 from roomba_ros.runtime.alone import refuse_second
 from roomba_ros.runtime.background import Background
@@ -36,17 +38,40 @@ from roomba_ros.runtime.parameters import (
     read_robot_config,
     read_thing_config,
 )
+from roomba_ros.senses.senses import HeardSenses
 
 NAME = "mission_node"
 _FINISH_PERIOD = 5.0
 """s of wall time; period of asking for the whole map while it waits for that."""
+_NEEDED = ("odom", "battery_state", "dock_status")
+"""The body's topics without which nothing can be begun."""
+_HEARD = (*_NEEDED, "scan", "bumper", "cliff", "wheel_drop", "ir_omni", "dirt_detect", "bin_level")
+_SILENT = "no message tells its place; is position_pub_node running?"
+
+
+@dataclass(eq=False)
+class _HeardMap:
+    """The map that is being made, as far as it was heard; ``version`` counts what was."""
+
+    home: KnownHome
+    version: int = 1
+
+    def occupancy(self) -> OccupancyMap:
+        """Return the newest."""
+        return self.home.context.occupancy
+
+    def occupancy_around(self, x: float, y: float, reach: float) -> OccupancyMap:
+        """Return all of it."""
+        return self.occupancy()
 
 
 class MissionNode:
     """Ticks one mission for each map; what it is on, it takes up again after it was killed.
 
-    Publishes, subscribes and serves what :class:`MissionSenses`, :class:`HomeTopics`,
-    :class:`MissionOrders`, :class:`MissionDrive` and :class:`MissionTopics` say.
+    Publishes, subscribes and serves what :class:`HeardSenses`, :class:`HomeTopics`,
+    :class:`MissionOrders`, :class:`MissionDrive` and :class:`MissionTopics` say. Of the body it
+    hears ``odom``, ``scan``, ``bumper``, ``cliff``, ``wheel_drop``, ``battery_state``,
+    ``dock_status``, ``ir_omni``, ``dirt_detect`` and ``bin_level``.
     Parameters: ``robot_config``, ``mission_config``, ``docking_config``, ``things_config`` (paths
     of configuration files; by default the shipped ones), ``~memory_folder`` (default:
     roomba_robot/mission in the ROS home folder, and in it a folder for each robot's namespace),
@@ -63,18 +88,25 @@ class MissionNode:
         self._parameters = LiveSeedParameters()
         self.period = self._config.timing.tick
         self._longest_silence = self._config.longest_silence_at(self._mission_config.top_speed)
-        self._docking_config, self._thing_config = read_docking_config(), read_thing_config()
+        docking = read_docking_config()
+        self._mapped = MappedMission(
+            self._config,
+            self._mission_config,
+            docking,
+            self._parameters.values.robot_max_speed,
+            read_thing_config(),
+        )
         self._background = Background()
-        self._mission: Mission | None = None
         self._home: KnownHome | None = None
+        self._growing: tuple[_HeardMap, GrowingMap] | None = None
         self._newer: KnownHome | None = None
         self._memory: MissionMemory | None = None
         self._finished = -_FINISH_PERIOD
-        self._senses = MissionSenses(self._config)
+        self._senses = HeardSenses(self._config, *_HEARD)
         self._context = HomeTopics(
             self._config,
             self._mission_config,
-            self._docking_config,
+            docking,
             self._background,
             folder_of("~zones_folder", "zones"),
         )
@@ -95,12 +127,10 @@ class MissionNode:
     def tick(self, now: float) -> None:
         """Sense, obey, answer, act, publish, save."""
         self._drive.follow_clock(now)
-        senses = self._senses.at(now)
-        self._follow_home(senses)
-        mission = self._mission
-        max_speed = self._parameters.refresh().robot_max_speed
-        if mission is not None:
-            mission.max_speed = max_speed
+        senses = self._sense(now)
+        self._mapped.limit_speed(self._parameters.refresh().robot_max_speed)
+        self._follow_home(now, senses)
+        mission = self._mapped.mission
         self._orders.serve(mission is not None)
         if mission is None or senses is None:
             self._wait(now)
@@ -115,16 +145,26 @@ class MissionNode:
         self._orders.give_up("the mission node was told to end")
         self._background.wait(1.0)
 
+    def _sense(self, now: float) -> Senses | None:
+        """Return what is sensed, and look for what the map does not show."""
+        senses = self._senses.at(now)
+        self._senses.show(self._mapped.lookout)
+        if senses is None or self._senses.missing(*_NEEDED):
+            return None
+        if self._senses.place.is_silent(now):
+            return replace(senses, knowledge=Knowledge.SEARCHING, trouble=_SILENT)
+        return senses
+
     def _wait(self, now: float) -> None:
         """Tell what is not there yet."""
-        missing = self._context.missing + self._senses.missing
+        missing = self._context.missing + self._senses.missing(*_NEEDED)
         reason = self._context.trouble or (
             f"waits for {names_of(missing)}" if missing else "gets to know its map"
         )
         self._orders.refuse(f"the robot is not ready: it {reason}")
         self._topics.wait(now, reason)
 
-    def _follow_home(self, senses: Senses | None) -> None:
+    def _follow_home(self, now: float, senses: Senses | None) -> None:
         """Take over another context, or begin another mission for another map."""
         self._context.tick()
         if senses is None:
@@ -132,10 +172,10 @@ class MissionNode:
         home = self._newer = self._context.take() or self._newer
         if home is None:
             return
-        mission, before = self._mission, self._home
+        mission, before = self._mapped.mission, self._home
         if mission is not None and before is not None:
             if before.context.is_growing:
-                self._grow(mission, senses, before, home)
+                self._grow(now, mission, senses, before, home)
                 return
             if home.digest == before.digest:
                 self._newer = None
@@ -145,21 +185,29 @@ class MissionNode:
             if self._memory is not None:
                 self._memory.forget_errand()
         self._home, self._newer = home, None
-        self._mission = self._begin(home, senses)
+        self._begin(home, senses)
 
-    def _grow(self, mission: Mission, senses: Senses, before: KnownHome, home: KnownHome) -> None:
+    def _grow(
+        self, now: float, mission: Mission, senses: Senses, before: KnownHome, home: KnownHome
+    ) -> None:
         """Let the mission go on with more of the map, when that makes a difference to it."""
-        is_more = home.context.occupancy is not before.context.occupancy
-        if not is_more:
+        if home.context.occupancy is before.context.occupancy:
             mission.use_context(home.context)
-        elif home.context.is_growing and not mission.wants_map(home.context.occupancy):
+        elif home.context.is_growing and not self._is_wanted(now, mission, before, home):
             return
         else:
-            self._things = ThingLayer(home.field, self._thing_config)
-            mission.use_map(home.context, self._things, DirtMap(home.context.occupancy))
+            self._mapped.go_on(home.context, home.field)
             if home.digest != before.digest:
                 self._remember_by(home, mission, senses)
         self._home, self._newer = home, None
+
+    def _is_wanted(self, now: float, mission: Mission, before: KnownHome, home: KnownHome) -> bool:
+        """Whether more of the map makes a difference to the mission, or comes with an edit."""
+        heard, growing = self._growing = self._growing or _growing_map(self._config, before)
+        if heard.home is not home:
+            heard.home, heard.version = home, heard.version + 1
+        is_wanted = growing.newer(now, mission) is not None
+        return is_wanted or home.is_edit_of(before)
 
     def _remember_by(self, home: KnownHome, mission: Mission, senses: Senses) -> None:
         """Remember by the whole map, now that there is one, what is under way."""
@@ -168,25 +216,15 @@ class MissionNode:
         self._memory.keep(mission, senses)
         before.forget_errand()
 
-    def _begin(self, home: KnownHome, senses: Senses) -> Mission:
-        """Return a mission for a map, that goes on with what was under way there."""
-        self._things = ThingLayer(home.field, self._thing_config)
-        dirt = DirtMap(home.context.occupancy)
-        mission = Mission(
-            home.context,
-            self._config,
-            self._mission_config,
-            self._docking_config,
-            self._things,
-            dirt,
-            senses,
-        )
+    def _begin(self, home: KnownHome, senses: Senses) -> None:
+        """Begin a mission for a map; it goes on with what was under way there."""
+        mission = self._mapped.begin(home.context, home.field, senses)
+        self._growing = None
         self._memory = self._memory_by(home.digest)
         if not home.context.is_growing:
-            self._memory.recall_dirt(dirt)
+            self._memory.recall_dirt(mission.dirt)
         if self._memory.recall_errand(mission, senses) or self._recall_growing(mission, senses):
             self._drive.take()
-        return mission
 
     def _recall_growing(self, mission: Mission, senses: Senses) -> bool:
         """Take up what was under way on this map while it was being made."""
@@ -209,13 +247,10 @@ class MissionNode:
         if self._context.is_changing and mission.state.drives:
             # Zones are obeyed at once: until they are known it stands.
             return MissionStep()
-        self._senses.show(self._things)
         step = mission.tick(senses)
+        is_late = self._senses.place.is_late(senses.now, self._longest_silence)
         # Docking goes by the station's beams.
-        if (
-            self._senses.is_late(senses.now, self._longest_silence)
-            and mission.state.phase is not Phase.DOCKING
-        ):
+        if is_late and mission.state.phase is not Phase.DOCKING:
             return replace(step, twist=STANDSTILL)
         return step
 
@@ -234,6 +269,11 @@ class MissionNode:
         self._memory.keep(mission, senses)
         if has_learned:
             self._memory.keep_dirt(mission.dirt)
+
+
+def _growing_map(config: RobotConfig, home: KnownHome) -> tuple[_HeardMap, GrowingMap]:
+    heard = _HeardMap(home)
+    return heard, GrowingMap(heard, config.timing.map_period)
 
 
 def main() -> None:

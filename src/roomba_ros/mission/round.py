@@ -9,7 +9,8 @@ import rospy
 from roomba.geometry import Twist
 from roomba.mission.inputs.senses import Senses
 from roomba.mission.mission import Mission, MissionStep
-from roomba.mission.phases.machine import Event, Phase
+from roomba.mission.phases.machine import Event
+from roomba.robot.mapped_mission import fan_of
 from roomba_ros.mission.drive import MissionDrive
 from roomba_ros.mission.goals import Ended
 from roomba_ros.mission.orders import MissionOrders
@@ -53,9 +54,7 @@ class MissionRound:
     def _act(self, mission: Mission, step: MissionStep) -> None:
         is_driving = mission.state.drives or step.twist != Twist()
         self._drive.drive(step.twist if is_driving else None, looks_around=step.looks_around)
-        cleaning = mission.cleaning
-        sucks = cleaning is not None and mission.state.phase is not Phase.ERROR
-        self._drive.set_fan(cleaning.request.fan if cleaning and sucks else None)
+        self._drive.set_fan(fan_of(mission))
 
     def _tell(self, now: float, mission: Mission, senses: Senses) -> None:
         """Publish the state if it is due, and the progress to the client of the errand."""

@@ -7,7 +7,7 @@ import threading
 
 import rospy
 from geometry_msgs.msg import Twist as TwistMessage
-from roomba_robot.msg import Bumper, Cliff, RobotPosition
+from roomba_robot.msg import RobotPosition
 from std_msgs.msg import Bool, Float32
 
 from roomba.clock import is_recent
@@ -15,11 +15,10 @@ from roomba.control.position_loop import PositionLoop
 from roomba.control.setpoint import Setpoint
 from roomba.errors import ConfigError
 from roomba.geometry import Pose, Twist
-from roomba.mission.exploring.look_around import SearchDrive
 from roomba.perception.localization.estimate import Estimate, Knowledge
 from roomba_ros.convert.common import twist_message
 from roomba_ros.convert.errors import MessageError
-from roomba_ros.convert.readings import Sides, bumper_of, cliff_of, point_of
+from roomba_ros.convert.readings import point_of
 from roomba_ros.convert.values import data_of, number_of
 from roomba_ros.localization.topics import LocalizationTopics
 from roomba_ros.maps.map_topics import MapTopics
@@ -45,8 +44,8 @@ class PositionPubNode:
     :class:`RoomTopics` tell.
     Subscribes: ``change_position`` (RobotPosition, setpoint), ``change_heading`` (Float32, rad, map
     frame, streamed: turn to it on the spot instead), ``look_around`` (Bool, streamed while
-    the mission could go on if the place were known), ``bumper``, ``cliff`` (while it looks
-    around), and what :class:`LocalizationTopics` and :class:`RoomTopics` hear.
+    the mission could go on if the place were known), and what :class:`LocalizationTopics` and
+    :class:`RoomTopics` hear.
     Services: those of :class:`LocalizationTopics` and :class:`RoomTopics`.
     Parameters: ``initial_post_x``, ``initial_post_y``, ``initial_post_theta`` (where odometry
     began), ``robot_max_speed``, ``min_cordinate``, ``max_cordinate``; ``~look_around`` (true: it
@@ -62,10 +61,8 @@ class PositionPubNode:
         self.period = self._config.timing.tick
         self._loop = PositionLoop(self._config.control, self._config.body)
         self._setpoint = Setpoint(self._config.control.stream_timeout)
-        self._search = SearchDrive(self._config.body, self._config.looking_around)
         self._may_look_around = _look_around_parameter()
         self._lock = threading.Lock()
-        self._bumps = self._sees_cliff = False
         self._stops_left = 0
         self._look_asked = -math.inf
         self._heading = (-math.inf, 0.0)
@@ -81,8 +78,6 @@ class PositionPubNode:
         )
         subscribe("change_heading", Float32, number_of, self._on_heading, tcp_nodelay=True)
         subscribe("look_around", Bool, data_of, self._on_look_around)
-        subscribe("bumper", Bumper, bumper_of, self._on_bumper)
-        subscribe("cliff", Cliff, cliff_of, self._on_cliff)
 
     def tick(self, now: float) -> None:
         """Publish the pose, and drive towards the setpoint."""
@@ -152,10 +147,8 @@ class PositionPubNode:
         with self._lock:
             is_wanted = self._setpoint.is_wished(now) or self._place.is_asked_to_search
         is_wanted |= self._is_fresh(now, self._look_asked)
-        if self._place.localizer is None or not (self._may_look_around and is_wanted):
-            return None
-        touches = self._bumps or self._sees_cliff
-        return self._search.tick(now, self._place.localizer, touches)
+        is_allowed = self._may_look_around and is_wanted
+        return self._place.look_around(now) if is_allowed else None
 
     def _command_drive(self, twist: Twist | None) -> None:
         """Ask for a twist; after the last one ask to stop a few times, and leave the drive then."""
@@ -181,12 +174,6 @@ class PositionPubNode:
 
     def _on_look_around(self, is_wanted: bool) -> None:
         self._look_asked = rospy.get_time() if is_wanted else -math.inf
-
-    def _on_bumper(self, pressed: Sides) -> None:
-        self._bumps = pressed.any
-
-    def _on_cliff(self, seen: Sides) -> None:
-        self._sees_cliff = seen.any
 
 
 def _look_around_parameter() -> bool:

@@ -6,6 +6,7 @@ import http.client
 import math
 import threading
 import xmlrpc.client
+from dataclasses import replace
 from functools import partial
 from typing import Final
 
@@ -17,7 +18,8 @@ from roomba_robot.srv import EmergencyStop, EmergencyStopRequest, EmergencyStopR
 from std_msgs.msg import Float32, String
 
 from roomba import geometry
-from roomba.control.speed_loop import Hold, Source, SpeedLoop
+from roomba.control.speed_loop import Hazards, Hold, Source, SpeedLoop
+from roomba.robot.readings import CliffReading
 from roomba_ros.convert.common import twist_message, twist_of
 from roomba_ros.convert.readings import (
     OdometryReading,
@@ -62,6 +64,7 @@ class SpeedPubNode:
         config = read_robot_config()
         body, self.period = config.body, config.timing.tick
         self._loop = SpeedLoop(body, self._parameters.values.robot_max_speed)
+        self._hazards = Hazards()
         self._speed: float | None = None
         self._speed_told = -math.inf
         self._hold = Hold.NO_COMMAND
@@ -70,9 +73,12 @@ class SpeedPubNode:
         self._emergency = rospy.Publisher("emergency_stop", String, queue_size=1, latch=True)
         self._engage_again()
         rospy.Service("emergency_stop", EmergencyStop, self._on_emergency_stop)
-        subscribe("bumper", Bumper, bumper_of, self._on_bumper)
-        subscribe("cliff", Cliff, cliff_of, self._on_cliff, tcp_nodelay=True)
-        subscribe("wheel_drop", WheelDrop, wheel_drop_of, self._on_wheel_drop)
+        for name, kind, convert in (
+            ("bumper", Bumper, bumper_of),
+            ("cliff", Cliff, cliff_of),
+            ("wheel_drop", WheelDrop, wheel_drop_of),
+        ):
+            subscribe(name, kind, convert, partial(self._on_hazard, name), tcp_nodelay=True)
         subscribe("odom", Odometry, odometry_of, self._on_odometry)
         subscribe("change_speed", Float32, speed_of, self._on_change_speed)
         for source in Source:
@@ -143,22 +149,11 @@ class SpeedPubNode:
             self._loop.set_cruise_speed(speed)
         self._tell_drive(rospy.get_time())
 
-    def _on_bumper(self, pressed: Sides) -> None:
+    def _on_hazard(self, hazard: str, felt: Sides | CliffReading) -> None:
         with self._lock:
-            self._loop.set_bumper(pressed.any)
-        if pressed.any:
-            self._tell_drive(rospy.get_time())
-
-    def _on_cliff(self, seen: Sides) -> None:
-        with self._lock:
-            self._loop.set_cliff(seen.any)
-        if seen.any:
-            self._tell_drive(rospy.get_time())
-
-    def _on_wheel_drop(self, dropped: Sides) -> None:
-        with self._lock:
-            self._loop.set_wheel_drop(dropped.any)
-        if dropped.any:
+            self._hazards = replace(self._hazards, **{hazard: felt.any})
+            self._loop.set_hazards(self._hazards)
+        if felt.any:
             self._tell_drive(rospy.get_time())
 
     def _on_odometry(self, told: OdometryReading) -> None:

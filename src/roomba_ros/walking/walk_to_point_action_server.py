@@ -25,8 +25,8 @@ from roomba.mission.driving.obstacles import Obstacles
 from roomba.mission.inputs.senses import Senses
 from roomba.mission.walking.walk import Walk, WalkState, expected_duration
 from roomba.perception.matching.surface_field import SurfaceField
-from roomba.perception.things.layer import ThingLayer
 from roomba.planning.path.planner import PathPlanner
+from roomba.robot.lookout import Lookout
 from roomba_ros.convert.common import header, map_of, path_message, pose_in_map
 from roomba_ros.runtime.action_goal import server_of
 from roomba_ros.runtime.alone import refuse_second
@@ -38,12 +38,13 @@ from roomba_ros.runtime.parameters import (
     read_thing_config,
 )
 from roomba_ros.runtime.subscriptions import subscribe
+from roomba_ros.senses.senses import HeardSenses
 from roomba_ros.walking.walk_goals import MoveBaseGoal, WalkGoal, WalkToPointGoal, checked_goal
-from roomba_ros.walking.walk_senses import WalkSenses
 
 NAME = "walk_to_point_action_server_node"
 SENSES_DEADLINE = 6.0
 """s of wall time after which goals are taken, and rejected, though map and pose are not there."""
+_HEARD = ("odom", "scan", "bumper", "cliff")
 _STANDSTILL = 0.02
 """m/s; a robot that is slower stands."""
 _AIMED = 0.05
@@ -88,7 +89,7 @@ class WalkToPointActionServer:
     ``move_base/{goal,feedback,result,status}``.
     Subscribes: ``map``, ``walk_to_point/{goal,cancel}``, ``move_base/{goal,cancel}``,
     ``move_base_simple/goal`` (PoseStamped: becomes a goal of ``move_base``), and what
-    :class:`WalkSenses` hears.
+    :class:`HeardSenses` hears, of the body ``odom``, ``scan``, ``bumper`` and ``cliff``.
     Services: ``make_plan`` (GetPlan: the path to a point, without walking it).
     Parameters: ``robot_max_speed``, ``min_cordinate``, ``max_cordinate``, ``robot_config``,
     ``mission_config``, ``things_config`` (obstacles are noticed and remembered as on a clean).
@@ -101,15 +102,15 @@ class WalkToPointActionServer:
         self._parameters = LiveSeedParameters()
         self._config = read_robot_config()
         self.period = self._config.timing.tick
-        self._thing_config = read_thing_config()
-        self._things = ThingLayer(SurfaceField.unknown(), self._thing_config)
+        self._lookout = Lookout(self._config, read_thing_config())
+        things = self._lookout.look_beside(SurfaceField.unknown())
         driving = read_mission_config(self._config).driving
-        self._obstacles = Obstacles(self._things, self._config.walk, self._config.body, driving)
+        self._obstacles = Obstacles(things, self._config.walk, self._config.body, driving)
         # Plans are made by ticks and by make_plan, and the planner works on one at a time.
         self._planning = threading.Lock()
         self._planner: PathPlanner | None = None
-        self._newer_map: tuple[PathPlanner, ThingLayer] | None = None
-        self._senses = WalkSenses()
+        self._newer_map: tuple[PathPlanner, SurfaceField] | None = None
+        self._senses = HeardSenses(self._config, *_HEARD)
         self._goals: deque[WalkGoal] = deque()
         self._cancels: deque[tuple[str, str]] = deque()
         self._job: _Job | None = None
@@ -141,7 +142,6 @@ class WalkToPointActionServer:
         """Look around, take new goals, obey cancels, and walk on."""
         self._parameters.refresh()
         self._use_newer_map()
-        self._look_around()
         senses = self._sense(now)
         self._serve_when_ready(senses)
         self._take_goals(senses)
@@ -164,17 +164,15 @@ class WalkToPointActionServer:
         with self._planning:
             newer, self._newer_map = self._newer_map, None
             if newer is not None:
-                self._planner, self._things = newer
-                self._obstacles.use(self._things)
-
-    def _look_around(self) -> None:
-        """Notice what the lidar sees and the map does not show."""
-        if self._planner is not None:
-            with self._planning:
-                self._senses.show(self._things)
+                self._planner, field = newer
+                self._obstacles.use(self._lookout.look_beside(field))
 
     def _sense(self, now: float) -> Senses | None:
-        return None if self._planner is None else self._senses.at(now)
+        """Return what is sensed, and look for what the map does not show; None without a map."""
+        senses = self._senses.at(now)
+        with self._planning:
+            self._senses.show(self._lookout)
+        return None if self._planner is None else senses
 
     def _serve_when_ready(self, senses: Senses | None) -> None:
         knows = senses is not None and senses.knowledge.is_usable
@@ -349,9 +347,9 @@ class WalkToPointActionServer:
         planner = PathPlanner(
             occupancy, self._config.body.radius, walk.clearance, walk.tight_clearance
         )
-        things = ThingLayer(SurfaceField.of(occupancy), self._thing_config)
+        field = SurfaceField.of(occupancy)
         with self._planning:
-            self._newer_map = planner, things
+            self._newer_map = planner, field
 
 
 def main() -> None:

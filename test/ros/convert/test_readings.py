@@ -18,6 +18,7 @@ from std_msgs.msg import Time as TimeMessage
 from roomba.errors import RoombaError
 from roomba.geometry import Pose, Twist
 from roomba.perception.localization.estimate import Knowledge
+from roomba.robot.readings import CliffReading
 from roomba_ros.convert.client import BATTERY_NOT_HEARD, doubt_of, vacuum_of
 from roomba_ros.convert.common import (
     path_of,
@@ -204,10 +205,8 @@ def test_a_state_of_the_place_that_there_is_not_is_refused() -> None:
 def test_sides_are_told_apart() -> None:
     assert bumper_of(Bumper(is_left_pressed=True)) == Sides(True, False)
     assert wheel_drop_of(WheelDrop(is_right_dropped=True)) == Sides(False, True)
-    for cliff in (Cliff(is_cliff_left=True), Cliff(is_cliff_front_left=True)):
-        assert cliff_of(cliff) == Sides(True, False)
-    for cliff in (Cliff(is_cliff_right=True), Cliff(is_cliff_front_right=True)):
-        assert cliff_of(cliff) == Sides(False, True)
+    for name in ("left", "front_left", "front_right", "right"):
+        assert cliff_of(Cliff(**{f"is_cliff_{name}": True})) == CliffReading(**{name: True})
     assert [Sides(*each).any for each in ((False, False), (True, False), (False, True))] == [
         False,
         True,

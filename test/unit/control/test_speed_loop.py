@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from roomba.configuration.robot import BodyConfig
-from roomba.control.speed_loop import Hold, Source, SpeedLoop
+from roomba.control.speed_loop import Hazards, Hold, Source, SpeedLoop
 from roomba.geometry import Twist
 
 BODY = BodyConfig(command_timeout=0.5)
@@ -61,8 +61,7 @@ def test_the_missions_command_grows_old_as_any_other() -> None:
 @pytest.mark.parametrize("source", Source)
 def test_the_emergency_stop_is_above_everything(source: Source) -> None:
     speed_loop = loop()
-    speed_loop.set_cliff(True)
-    speed_loop.set_bumper(True)
+    speed_loop.set_hazards(Hazards(bumper=True, cliff=True))
     speed_loop.emergency = True
     for tenth in range(50):
         speed_loop.command(0.1 * tenth, Twist(-0.3, 1.0), source)
@@ -104,65 +103,64 @@ def test_speed_zero_means_stand() -> None:
 
 def test_a_pressed_bumper_makes_it_back_off_a_little_and_never_push() -> None:
     speed_loop = loop()
-    speed_loop.set_bumper(True)
+    speed_loop.set_hazards(Hazards(bumper=True))
     for tenth in range(20):
         now = 0.1 * tenth
         speed_loop.command(now, Twist(0.3, 1.0))
         backs_off = now <= BODY.bumper_backing_time
         expected = Twist(-BODY.backing_speed, 0.0) if backs_off else Twist(0.0, 1.0)
         assert speed_loop.tick(now) == (expected, Hold.BUMPER)
-    speed_loop.set_bumper(False)
-    speed_loop.set_bumper(True)
+    speed_loop.set_hazards(Hazards())
+    speed_loop.set_hazards(Hazards(bumper=True))
     assert speed_loop.tick(2.0) == (Twist(-BODY.backing_speed, 0.0), Hold.BUMPER)
 
 
 def test_a_pressed_bumper_lets_it_turn_and_drive_backwards() -> None:
     speed_loop = loop()
-    speed_loop.set_bumper(True)
+    speed_loop.set_hazards(Hazards(bumper=True))
     for wanted in (Twist(0.0, 1.0), Twist(-0.3, 1.0)):
         speed_loop.command(0.1, wanted)
         assert speed_loop.tick(0.2) == (wanted, Hold.NONE)
-    speed_loop.set_bumper(False)
+    speed_loop.set_hazards(Hazards())
     speed_loop.command(0.2, Twist(0.3, 0.0))
     assert speed_loop.tick(0.3)[1] is Hold.NONE
 
 
 def test_it_backs_away_from_a_cliff_whatever_was_asked_for() -> None:
     speed_loop = loop()
-    speed_loop.set_cliff(True)
+    speed_loop.set_hazards(Hazards(cliff=True))
     for wanted in (Twist(0.5, 0.0), Twist(0.0, 2.0), Twist(-0.5, 1.0)):
         speed_loop.command(0.0, wanted)
         assert speed_loop.tick(0.1) == (Twist(-BODY.backing_speed, 0.0), Hold.CLIFF)
     speed_loop.set_cruise_speed(0.02)
     assert speed_loop.tick(0.1) == (Twist(-0.02, 0.0), Hold.CLIFF)
-    speed_loop.set_cliff(False)
+    speed_loop.set_hazards(Hazards())
     speed_loop.command(0.2, Twist(0.01, 0.0))
     assert speed_loop.tick(0.3) == (Twist(0.01, 0.0), Hold.NONE)
 
 
 def test_it_does_not_back_away_for_ever() -> None:
     speed_loop = loop()
-    speed_loop.set_cliff(True)
+    speed_loop.set_hazards(Hazards(cliff=True))
     for now in (0.0, 1.0, 2.4):
         speed_loop.command(now, Twist(0.3, 0.0))
         assert speed_loop.tick(now)[0].linear < 0.0
     speed_loop.command(2.6, Twist(0.3, 0.0))
     assert speed_loop.tick(2.6) == (Twist(), Hold.CLIFF)
-    speed_loop.set_cliff(False)
-    speed_loop.set_cliff(True)
+    speed_loop.set_hazards(Hazards())
+    speed_loop.set_hazards(Hazards(cliff=True))
     assert speed_loop.tick(2.7)[0].linear < 0.0
 
 
 def test_without_a_command_it_stands_at_a_cliff_too() -> None:
     speed_loop = loop()
-    speed_loop.set_cliff(True)
+    speed_loop.set_hazards(Hazards(cliff=True))
     assert speed_loop.tick(0.1) == (Twist(), Hold.NO_COMMAND)
 
 
 def test_it_stands_while_a_wheel_hangs_in_the_air() -> None:
     speed_loop = loop()
-    speed_loop.set_wheel_drop(True)
-    speed_loop.set_cliff(True)
+    speed_loop.set_hazards(Hazards(cliff=True, wheel_drop=True))
     speed_loop.command(0.0, Twist(-0.5, 1.0))
     assert speed_loop.tick(0.1) == (Twist(), Hold.WHEEL_DROP)
 

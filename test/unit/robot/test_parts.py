@@ -1,6 +1,8 @@
-"""The parts of the robot, one by one: readings, the place's keeper, the safe drive."""
+"""The parts of the robot, one by one: readings and the place's keeper."""
 
 from __future__ import annotations
+
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,7 +10,8 @@ from fixtures.missions import HOME
 from fixtures.worlds import NOISY
 from numpy.typing import NDArray
 
-from roomba.configuration.robot import TimingConfig
+from roomba.configuration.robot import RobotConfig
+from roomba.control.speed_loop import Hazards
 from roomba.geometry import Pose, Twist
 from roomba.headless.body import SimulatedBody
 from roomba.mission.docking.beams import StationBeams
@@ -18,7 +21,6 @@ from roomba.perception.matching.scan_view import LidarModel
 from roomba.robot.command import Command
 from roomba.robot.place import PlaceKeeper
 from roomba.robot.readings import Readings, ScanReading, senses_of
-from roomba.robot.safe_drive import SafeDrive
 from roomba.world.engine.state.arrays import Fault
 
 LIDAR = LidarModel.all_around(8, 0.1, 5.0)
@@ -61,49 +63,46 @@ def passed(robot: SimulatedBody) -> Readings:
 
 def test_senses_are_what_sensors_tell_and_where_it_believes_to_be() -> None:
     robot = body()
-    believed = Estimate(Pose(9.0, 8.0, 7.0), np.eye(3), Knowledge.ROUGH, 0.5, "fog")
-    senses = senses_of(passed(robot), believed)
-    assert senses.pose == believed.pose
+    believed = Pose(9.0, 8.0, 7.0), Knowledge.ROUGH, "fog"
+    senses = senses_of(passed(robot), *believed)
+    assert senses.pose == believed[0]
     assert (senses.knowledge, senses.trouble) == (Knowledge.ROUGH, "fog")
     assert senses.battery.is_docked
     assert senses.battery.capacity == NOISY.battery.capacity
-    assert not senses.is_disturbed
+    assert not any(senses.touches)
+    assert not senses.lifted
     robot.simulator.inject(Fault.BUMPER_STUCK, 1.0)
     robot.simulator.inject(Fault.CLIFF_DIRTY, 1.0)
     robot.simulator.inject(Fault.INFRARED_BLOCKED, 1.0)
-    senses = senses_of(passed(robot), believed)
+    senses = senses_of(passed(robot), *believed)
     assert (senses.bumper_left, senses.bumper_right) == (True, True)
     assert (senses.cliff_left, senses.cliff_right) == (True, True)
     assert senses.beams == StationBeams()
     robot.simulator.inject(Fault.LIFTED, 1.0)
-    assert senses_of(passed(robot), believed).lifted
+    assert senses_of(passed(robot), *believed).lifted
 
 
 def test_without_a_gyro_the_wheels_tell_how_it_turns() -> None:
-    known = Estimate(Pose(), np.eye(3), Knowledge.KNOWN, 1.0, "")
+    known = Pose(), Knowledge.KNOWN
     wheels = Twist(0.2, 0.5)
-    assert senses_of(Readings(1.0, Pose(), wheels), known).twist == wheels
-    assert senses_of(Readings(1.0, Pose(), wheels, 0.4), known).twist == Twist(0.2, 0.4)
+    assert senses_of(Readings(1.0, Pose(), wheels), *known).twist == wheels
+    assert senses_of(Readings(1.0, Pose(), wheels, 0.4), *known).twist == Twist(0.2, 0.4)
 
 
-@pytest.mark.parametrize("fault", [Fault.BUMPER_STUCK, Fault.CLIFF_DIRTY, Fault.LIFTED])
-def test_nothing_makes_it_drive_into_a_hazard(fault: Fault) -> None:
+@pytest.mark.parametrize(
+    ("fault", "hazards"),
+    [
+        (Fault.BUMPER_STUCK, Hazards(bumper=True)),
+        (Fault.CLIFF_DIRTY, Hazards(cliff=True)),
+        (Fault.LIFTED, Hazards(wheel_drop=True)),
+    ],
+)
+def test_what_the_body_feels_is_a_hazard(fault: Fault, hazards: Hazards) -> None:
     robot = body(Pose(1.2, 0.6, 0.0))
-    drive = SafeDrive(NOISY.body, 0.3)
-    assert drive.command(robot.read(), Twist(0.9, 0.0)).linear == pytest.approx(0.3)
+    assert robot.read().hazards == Hazards()
     robot.simulator.inject(fault, 1.0)
-    readings = passed(robot)
-    assert drive.command(readings, Twist(0.3, 0.0)).linear <= 0.0
-    if fault is Fault.LIFTED:
-        assert drive.command(readings, Twist(-0.1, 0.5)) == Twist()
-    else:
-        assert drive.command(readings, Twist(-0.1, 0.0)).linear < 0.0
-
-
-def test_its_top_speed_may_change() -> None:
-    drive, readings = SafeDrive(NOISY.body, 0.3), Readings(1.0, Pose())
-    drive.limit(0.1)
-    assert drive.command(readings, Twist(0.2, 0.4)) == Twist(0.1, 0.2)
+    felt = passed(robot).hazards
+    assert felt == replace(hazards, cliff=felt.cliff) if fault is Fault.LIFTED else felt == hazards
 
 
 def scan_at(stamp: float) -> ScanReading:
@@ -113,7 +112,7 @@ def scan_at(stamp: float) -> ScanReading:
 @pytest.mark.parametrize(("rate", "looked_at"), [(10.0, 5), (20.0, 5), (5.0, 5), (2.0, 2)])
 def test_one_scan_in_a_period_is_looked_at(rate: float, looked_at: int) -> None:
     place = Noted()
-    keeper = PlaceKeeper(place, TimingConfig())
+    keeper = PlaceKeeper(place, RobotConfig())
     due = 0.0
     for tick in range(20):
         now = 100.0 + 0.05 * tick
@@ -128,7 +127,7 @@ def test_one_scan_in_a_period_is_looked_at(rate: float, looked_at: int) -> None:
 
 def test_a_clock_that_is_set_back_hides_no_scan() -> None:
     place = Noted()
-    keeper = PlaceKeeper(place, TimingConfig())
+    keeper = PlaceKeeper(place, RobotConfig())
     for stamp in (100.0, 50.0, 50.05, 50.2):
         keeper.follow(Readings(stamp, Pose(), scan=scan_at(stamp)))
     assert place.scans == [100.0, 50.0, 50.2]
@@ -136,7 +135,7 @@ def test_a_clock_that_is_set_back_hides_no_scan() -> None:
 
 def test_only_both_wheels_in_the_air_mean_that_it_is_held() -> None:
     place = Noted()
-    keeper = PlaceKeeper(place, TimingConfig())
+    keeper = PlaceKeeper(place, RobotConfig())
     for left, right in ((True, False), (False, True), (True, True)):
         keeper.follow(Readings(1.0, Pose(), dropped_left=left, dropped_right=right))
     assert place.lifts == [False, False, True]

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from roomba.commands.pictures.drives import STEP, DriveRecording
 from roomba.configuration.robot import RobotConfig
-from roomba.control.speed_loop import SpeedLoop
+from roomba.control.speed_loop import Hazards, SpeedLoop
 from roomba.geometry import Pose, Twist
 from roomba.plots.style import (
     BLUE,
@@ -77,8 +77,7 @@ def _with_speed_loop(home: Home, seconds: float) -> DriveRecording:
     loop = SpeedLoop(world.config.body, world.max_speed)
     while world.time < seconds:
         seen = world.observe()
-        loop.set_cliff(seen.cliff.any)
-        loop.set_wheel_drop(seen.wheels.dropped)
+        loop.set_hazards(Hazards(cliff=seen.cliff.any, wheel_drop=seen.wheels.dropped))
         loop.command(seen.time, Twist(_SPEED, 0.0))
         recording.step(loop.tick(seen.time)[0], STEP)
     return recording

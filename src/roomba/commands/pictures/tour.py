@@ -6,7 +6,7 @@ import numpy as np
 
 from roomba.configuration.robot import CameraConfig
 from roomba.geometry import Pose
-from roomba.headless.walker import HeadlessRobot
+from roomba.headless.cleaner import HeadlessMission
 from roomba.plots.canvas import Picture
 from roomba.plots.home import draw_floor_plan
 from roomba.world.camera.camera import Camera, Scene
@@ -31,7 +31,7 @@ def picture_of_home(home: Home) -> Picture:
 
 def picture_of_walk(home: Home) -> Picture:
     """Let the robot walk from point to point; return the plan with the way that it drove."""
-    robot = HeadlessRobot(home)
+    robot = HeadlessMission(home)
     records = [robot.walk(*point) for point in _WALK]
     way = np.concatenate([record.poses[:, 1:3] for record in records])
     return draw_floor_plan(
@@ -44,6 +44,6 @@ def picture_of_walk(home: Home) -> Picture:
 
 def picture_of_view(home: Home, pose: Pose, config: CameraConfig | None = None) -> Picture:
     """Return what the robot's camera sees from a pose, as it takes its pictures."""
-    dirt = HeadlessRobot(home).simulator.dirt
+    dirt = HeadlessMission(home).simulator.dirt
     camera = Camera(Scene.of(home), config or CameraConfig())
     return camera.picture(pose, 0.0, dirt.micrograms, dirt.frame).copy()

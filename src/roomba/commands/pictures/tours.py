@@ -8,11 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.geometry import Pose
-from roomba.headless.walker import HeadlessRobot
+from roomba.headless.cleaner import HeadlessMission
+from roomba.headless.rows import BELIEVED, GYRO, ODOMETRY, TIME, TRUE
 from roomba.perception.localization.dead_reckoning import DeadReckoning
 from roomba.planning.path.planner import NoPathError
 from roomba.world.home.home import Home
-from roomba.world.simulator import Observation
 
 Floats = NDArray[np.float64]
 
@@ -30,34 +30,29 @@ class Tour:
 
 def tour_of(home: Home, seconds: float, seed: int) -> Tour:
     """Walk to one place after the other, chosen at random, for so long."""
-    robot = _ObservedRobot(home, seed)
+    robot = HeadlessMission(home, seed=seed)
     random = np.random.default_rng(seed)
     x_min, x_max, y_min, y_max = home.frame.extent
-    while robot.simulator.time < seconds:
+    while robot.seen.time < seconds:
         try:
             robot.walk(random.uniform(x_min, x_max), random.uniform(y_min, y_max))
         except NoPathError:
             continue
-    rows = np.array(robot.rows)
-    return Tour(rows[:, 0], rows[:, 1:4], rows[:, 4:7], rows[:, 7:10], rows[:, 10:13])
+    rows, start = robot.passed, robot.simulator.start
+    by_wheels, by_gyro = _from(start, rows[:, ODOMETRY]), _from(start, _reckoned(robot, rows))
+    return Tour(rows[:, TIME], rows[:, TRUE], rows[:, BELIEVED], by_wheels, by_gyro)
 
 
-class _ObservedRobot(HeadlessRobot):
-    """Writes down, at each tick, what different ways to know its place come to."""
-
-    def __init__(self, home: Home, seed: int) -> None:
-        super().__init__(home, seed=seed)
-        self.rows: list[tuple[float, ...]] = []
-        self._reckoning = DeadReckoning(self.config.localization, self.config.gyro)
-
-    def localize(self, seen: Observation) -> None:
-        super().localize(seen)
-        self._reckoning.move(seen.time, seen.odometry, seen.angular_velocity)
-        start = self.simulator.start
-        by_wheels, by_gyro = start.compose(seen.odometry), start.compose(self._reckoning.pose)
-        poses = (seen.pose, self.localizer.estimate.pose, by_wheels, by_gyro)
-        self.rows.append((seen.time, *(number for pose in poses for number in _numbers(pose))))
+def _reckoned(robot: HeadlessMission, rows: Floats) -> Floats:
+    """Return where the robot was by wheels and gyro, float64 [n, 3], odometry's frame."""
+    reckoning, poses = DeadReckoning(robot.robot.localization, robot.robot.gyro), []
+    for row in rows.tolist():
+        reckoning.move(row[TIME], Pose(*row[ODOMETRY]), row[GYRO])
+        poses.append((reckoning.pose.x, reckoning.pose.y, reckoning.pose.theta))
+    return np.array(poses)
 
 
-def _numbers(pose: Pose) -> tuple[float, float, float]:
-    return pose.x, pose.y, pose.theta
+def _from(start: Pose, poses: Floats) -> Floats:
+    """Return poses of a frame that lies at ``start``, float64 [n, 3], in the map's."""
+    composed = (start.compose(Pose(*pose)) for pose in poses.tolist())
+    return np.array([(pose.x, pose.y, pose.theta) for pose in composed])

@@ -64,11 +64,6 @@ class Senses:
         return self.bumper_left or self.cliff_left, self.bumper_right or self.cliff_right
 
     @property
-    def is_disturbed(self) -> bool:
-        """Whether anything touches it, or is missing below it."""
-        return any(self.touches) or self.lifted
-
-    @property
     def where(self) -> str:
         """Its place in words."""
         return f"({self.pose.x:.2f}, {self.pose.y:.2f})"

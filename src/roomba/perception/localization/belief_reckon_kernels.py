@@ -23,6 +23,8 @@ _SETTLING: Final = 0.3
 """s; time after a stop from which on the gyro shows its bias alone."""
 SET_BACK: Final = 0.1
 """s; a stamp older than the last one by this is of a clock that was set back."""
+_ROUNDING: Final = 1e-6
+"""s; whatever a clock shows, to the last bit, the same samples count."""
 _UNSEEN: Final = 0.3
 """Deviation of the mean turning speed between two samples, as a share of its change."""
 _JOLT: Final = 0.05
@@ -121,7 +123,7 @@ def _learn_bias(belief: Row, numbers: Row, way: float, turn: float, turning: flo
         return
     belief.still_since = min(belief.still_since, belief.stamp)
     # Faster than any bias: the robot is being turned by hand.
-    is_settling = belief.stamp - belief.still_since < _SETTLING
+    is_settling = belief.stamp - belief.still_since < _SETTLING - _ROUNDING
     if is_settling or abs(turning) > 5.0 * numbers.worst_bias:
         return
     belief.samples += 1

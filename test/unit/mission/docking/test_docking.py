@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 from roomba.configuration.docking import DockingConfig
 from roomba.configuration.simulation import SimulatedRobotConfig
-from roomba.control.speed_loop import SpeedLoop
+from roomba.control.speed_loop import Hazards, SpeedLoop
 from roomba.geometry import Pose, Twist
 from roomba.mission.docking.docking import (
     Docking,
@@ -96,9 +96,8 @@ class Rig:
         step = self.docking.tick(self._senses[0])
         seen = self.world.observe()
         self.pushes += seen.bumper.pressed and step.twist.linear > 0.0
-        self._loop.set_bumper(seen.bumper.pressed)
-        self._loop.set_cliff(seen.cliff.any)
-        self._loop.set_wheel_drop(seen.wheels.dropped)
+        hazards = Hazards(seen.bumper.pressed, seen.cliff.any, seen.wheels.dropped)
+        self._loop.set_hazards(hazards)
         self._loop.command(seen.time, step.twist)
         wanted, was_pressed = self._loop.tick(seen.time)[0], seen.bumper.pressed
         for _ in range(2):

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 from roomba.configuration.docking import DockingConfig
 from roomba.configuration.simulation import SimulatedRobotConfig
-from roomba.control.speed_loop import SpeedLoop
+from roomba.control.speed_loop import Hazards, SpeedLoop
 from roomba.geometry import Pose, Twist
 from roomba.mission.docking.step import DockSenses
 from roomba.mission.docking.undocking import Undocking, UndockState, UndockStep
@@ -68,9 +68,8 @@ class Rig:
         self.late_senses.append(self.sense())
         step = self.undocking.tick(self.late_senses[0])
         seen = self.world.observe()
-        self._loop.set_bumper(seen.bumper.pressed)
-        self._loop.set_cliff(seen.cliff.any)
-        self._loop.set_wheel_drop(seen.wheels.dropped)
+        hazards = Hazards(seen.bumper.pressed, seen.cliff.any, seen.wheels.dropped)
+        self._loop.set_hazards(hazards)
         self._loop.command(seen.time, step.twist)
         self.world.advance(self._loop.tick(seen.time)[0], DT, 2)
         return step

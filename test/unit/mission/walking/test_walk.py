@@ -10,7 +10,7 @@ from roomba.configuration.mission import MissionConfig
 from roomba.configuration.robot import RobotConfig
 from roomba.files.shipped import HOMES
 from roomba.geometry import Pose, Twist
-from roomba.headless.walker import HeadlessRobot
+from roomba.headless.cleaner import HeadlessMission
 from roomba.mission.driving.obstacles import Obstacles
 from roomba.mission.inputs.senses import Senses
 from roomba.mission.walking.walk import Walk, WalkState, feedback_period
@@ -28,8 +28,12 @@ FURNITURE: tuple[Block, ...] = (
 )
 
 
-def furnished(hidden: tuple[Block, ...] = ()) -> HeadlessRobot:
-    return HeadlessRobot(room_home(blocks=FURNITURE, hidden=hidden))
+def furnished(hidden: tuple[Block, ...] = ()) -> HeadlessMission:
+    return HeadlessMission(room_home(blocks=FURNITURE, hidden=hidden))
+
+
+def planner_of(robot: HeadlessMission) -> PathPlanner:
+    return robot.brain.walking.planner(robot.mission.context.occupancy)
 
 
 @settings(max_examples=25)
@@ -37,7 +41,7 @@ def furnished(hidden: tuple[Block, ...] = ()) -> HeadlessRobot:
 def test_it_arrives_wherever_there_is_a_way_and_touches_nothing(x: float, y: float) -> None:
     robot = furnished()
     try:
-        robot.planner.plan((0.5, 0.5), (x, y))
+        planner_of(robot).plan((0.5, 0.5), (x, y))
     except NoPathError:
         assume(False)
     record = robot.walk(x, y)
@@ -104,8 +108,8 @@ def test_a_destination_in_the_wall_is_refused_with_the_nearest_point() -> None:
     assert "1.25, 1.00" in str(refusal.value)
 
 
-def family_robot() -> HeadlessRobot:
-    return HeadlessRobot(load_home("family", HOMES))
+def family_robot() -> HeadlessMission:
+    return HeadlessMission(load_home("family", HOMES))
 
 
 @pytest.mark.parametrize("goal", [(7.1, -0.7), (7.1, -1.0)])
@@ -197,7 +201,7 @@ def test_a_walk_waits_for_its_place_to_be_found_but_not_for_ever() -> None:
     robot = furnished()
     at = Pose(0.5, 0.5, 0.0)
     senses = Senses(0.0, at)
-    walk = Walk(robot.planner, CONFIG.walk, robot.obstacles, (4.5, 3.5), senses)
+    walk = Walk(planner_of(robot), CONFIG.walk, robot.mission.obstacles, (4.5, 3.5), senses)
     astray = replace(senses, knowledge=Knowledge.SEARCHING, trouble="it was carried")
     steps = [walk.tick(replace(astray, now=0.05 * tick), 0.5) for tick in range(1, 1400)]
     assert steps[0].state is WalkState.ASTRAY
@@ -209,7 +213,7 @@ def test_a_walk_waits_for_its_place_to_be_found_but_not_for_ever() -> None:
 def test_a_walk_goes_on_from_where_the_robot_was_found() -> None:
     robot = furnished()
     senses = Senses(0.0, Pose(0.5, 0.5))
-    walk = Walk(robot.planner, CONFIG.walk, robot.obstacles, (4.5, 3.5), senses)
+    walk = Walk(planner_of(robot), CONFIG.walk, robot.mission.obstacles, (4.5, 3.5), senses)
     walk.tick(replace(senses, now=0.05, knowledge=Knowledge.SEARCHING), 0.5)
     found = replace(senses, now=0.1, pose=Pose(4.5, 0.5, 0.0))
     assert walk.tick(found, 0.5).state is WalkState.WALKING
@@ -219,14 +223,14 @@ def test_a_walk_goes_on_from_where_the_robot_was_found() -> None:
 def test_a_robot_that_knows_its_place_but_roughly_walks_slowly() -> None:
     robot = furnished()
     senses = Senses(0.0, Pose(0.5, 0.5), knowledge=Knowledge.ROUGH)
-    walk = Walk(robot.planner, CONFIG.walk, robot.obstacles, (0.5, 3.5), senses)
+    walk = Walk(planner_of(robot), CONFIG.walk, robot.mission.obstacles, (0.5, 3.5), senses)
     assert walk.tick(replace(senses, now=0.05), 0.5).cruise_speed <= CONFIG.walk.careful_speed
 
 
 def test_a_lost_robot_gives_its_walk_up() -> None:
     robot = furnished()
     senses = Senses(0.0, Pose(0.5, 0.5))
-    walk = Walk(robot.planner, CONFIG.walk, robot.obstacles, (0.5, 3.5), senses)
+    walk = Walk(planner_of(robot), CONFIG.walk, robot.mission.obstacles, (0.5, 3.5), senses)
     lost = replace(senses, now=0.05, knowledge=Knowledge.LOST, trouble="several places fit")
     step = walk.tick(lost, 0.5)
     assert step.state is WalkState.FAILED

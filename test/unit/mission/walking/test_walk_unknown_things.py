@@ -14,7 +14,8 @@ from hypothesis import strategies as st
 from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose
 from roomba.grid import FREE, OCCUPIED, OccupancyMap
-from roomba.headless.walker import HeadlessRobot, WalkRecord
+from roomba.headless.cleaner import HeadlessMission
+from roomba.headless.records import WalkRecord
 from roomba.mission.inputs.senses import Senses
 from roomba.mission.walking.walk import Walk, WalkState
 from roomba.perception.localization.estimate import Knowledge
@@ -41,7 +42,7 @@ def nearest(record: WalkRecord, x: float, y: float) -> float:
 
 
 def test_before_what_shuts_its_way_it_waits_and_goes_on_when_that_is_gone() -> None:
-    robot = HeadlessRobot(room_home(blocks=[WALL], moving=[shut_until(12.0)]))
+    robot = HeadlessMission(room_home(blocks=[WALL], moving=[shut_until(12.0)]))
     record = robot.walk(*BEHIND)
     assert record.state is WalkState.ARRIVED
     assert record.bumps == 0
@@ -50,7 +51,7 @@ def test_before_what_shuts_its_way_it_waits_and_goes_on_when_that_is_gone() -> N
 
 
 def test_it_does_not_wait_for_ever_and_tells_where_what_stands() -> None:
-    robot = HeadlessRobot(room_home(blocks=[WALL], moving=[shut_until(1000.0)]))
+    robot = HeadlessMission(room_home(blocks=[WALL], moving=[shut_until(1000.0)]))
     record = robot.walk(*BEHIND)
     assert record.state is WalkState.FAILED
     assert record.bumps == 0
@@ -65,19 +66,19 @@ def test_where_something_stood_it_goes_and_looks_again() -> None:
     gap, behind = Pose(6.45, 3.3), (8.0, 1.0)
     gone = Move(60.0, 0.0, gap, is_present=False)
     leaf = block_that_moves(gone, pose=gap, size=(0.1, 1.4))
-    robot = HeadlessRobot(room_home(9.0, 4.0, blocks=[(6.4, 0.0, 6.5, 2.6)], moving=[leaf]))
+    robot = HeadlessMission(room_home(9.0, 4.0, blocks=[(6.4, 0.0, 6.5, 2.6)], moving=[leaf]))
     assert robot.walk(*behind).state is WalkState.FAILED
     while robot.simulator.time < 60.0:
         robot.walk(0.5, 0.5)
         robot.walk(0.5, 1.0)
-    assert robot.obstacles.standing(robot.simulator.time), "it remembers what it saw"
+    assert robot.mission.obstacles.standing(robot.simulator.time), "it remembers what it saw"
     assert robot.walk(*behind).state is WalkState.ARRIVED
 
 
 def test_a_thing_that_is_taken_away_is_forgotten() -> None:
     at = Pose(2.5, 2.0)
     gone = Move(15.0, 0.0, at, is_present=False)
-    robot = HeadlessRobot(
+    robot = HeadlessMission(
         room_home(moving=[block_that_moves(gone, pose=at)], station=Pose(0.5, 2.0, 0.0))
     )
     there = robot.walk(4.5, 2.0)
@@ -90,7 +91,7 @@ def test_a_thing_that_is_taken_away_is_forgotten() -> None:
     back = robot.walk(0.5, 2.0)
     assert back.state is WalkState.ARRIVED
     assert nearest(back, at.x, at.y) < 0.1
-    assert robot.obstacles.standing(robot.simulator.time) == []
+    assert robot.mission.obstacles.standing(robot.simulator.time) == []
 
 
 @pytest.mark.parametrize(
@@ -100,7 +101,7 @@ def test_a_thing_that_is_taken_away_is_forgotten() -> None:
 )
 def test_a_thing_on_the_goal_is_told_as_the_reason(half: float, told: str) -> None:
     thing = (3.0 - half, 2.0 - half, 3.0 + half, 2.0 + half)
-    record = HeadlessRobot(room_home(hidden=[thing])).walk(3.0, 2.0)
+    record = HeadlessMission(room_home(hidden=[thing])).walk(3.0, 2.0)
     assert record.state is WalkState.FAILED
     assert record.bumps == 0
     assert "something that the map does not show stands" in record.reason
@@ -109,22 +110,28 @@ def test_a_thing_on_the_goal_is_told_as_the_reason(half: float, told: str) -> No
 
 
 def test_a_robot_that_was_carried_forgets_what_stood_around_it() -> None:
-    robot = HeadlessRobot(room_home(hidden=[(1.8, 1.8, 2.2, 2.2)]))
+    robot = HeadlessMission(room_home(hidden=[(1.8, 1.8, 2.2, 2.2)]))
     robot.walk(3.5, 3.5)
-    assert robot.obstacles.standing(robot.simulator.time)
+    assert robot.mission.obstacles.standing(robot.simulator.time)
     known = Senses(100.0, Pose(3.5, 3.5))
-    walk = Walk(robot.planner, CONFIG.walk, robot.obstacles, (0.5, 0.5), known)
+    walk = Walk(
+        robot.brain.walking.planner(robot.mission.context.occupancy),
+        CONFIG.walk,
+        robot.mission.obstacles,
+        (0.5, 0.5),
+        known,
+    )
     walk.tick(Senses(100.05, Pose(3.5, 3.5), knowledge=Knowledge.SEARCHING), 0.5)
     walk.tick(Senses(100.10, Pose(3.4, 3.5)), 0.5)
-    assert robot.obstacles.standing(100.1), "it was here all the time"
+    assert robot.mission.obstacles.standing(100.1), "it was here all the time"
     walk.tick(Senses(100.15, Pose(3.4, 3.5), knowledge=Knowledge.SEARCHING), 0.5)
     walk.tick(Senses(100.20, Pose(1.0, 3.5)), 0.5)
-    assert robot.obstacles.standing(100.2) == []
+    assert robot.mission.obstacles.standing(100.2) == []
 
 
 @pytest.mark.parametrize("max_speed", [0.2, 0.4])
 def test_the_top_speed_reaches_corners_and_the_time_it_takes(max_speed: float) -> None:
-    record = HeadlessRobot(room_home(blocks=[WALL]), max_speed=max_speed).walk(*BEHIND)
+    record = HeadlessMission(room_home(blocks=[WALL]), max_speed=max_speed).walk(*BEHIND)
     assert record.state is WalkState.ARRIVED
     # At first it knows its place but roughly.
     speeds = [step.cruise_speed for step in record.steps[20:]]
@@ -170,7 +177,7 @@ def test_among_unknown_boxes_it_touches_nothing_and_arrives_if_it_can(
     hidden: list[Block], x: float, y: float, seed: int
 ) -> None:
     home = room_home(hidden=hidden)
-    record = HeadlessRobot(home, seed=seed).walk(x, y)
+    record = HeadlessMission(home, seed=seed).walk(x, y)
     assert record.bumps == 0
     if has_way(home, (x, y)):
         assert record.state is WalkState.ARRIVED, record.reason

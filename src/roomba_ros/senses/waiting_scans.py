@@ -6,7 +6,7 @@ import threading
 from typing import Final
 
 from roomba.clock import ClockJumps
-from roomba_ros.convert.scan import Scan
+from roomba.robot.readings import ScanReading
 
 _KEPT: Final = 5
 """Scans; on a busy machine odometry comes later than several of them."""
@@ -19,16 +19,16 @@ class WaitingScans:
         """Begin with none."""
         self._lock = threading.Lock()
         self._jumps = ClockJumps()
-        self._scans: list[Scan] = []
+        self._scans: list[ScanReading] = []
 
-    def put(self, scan: Scan) -> None:
+    def put(self, scan: ScanReading) -> None:
         """Let a scan wait."""
         with self._lock:
             if self._jumps.at(scan.stamp):
                 self._scans.clear()
             self._scans = [*self._scans[1 - _KEPT :], scan]
 
-    def take(self, stamp: float) -> Scan | None:
+    def take(self, stamp: float) -> ScanReading | None:
         """Return the newest that was taken by ``stamp``, s, if there is one; older ones go."""
         with self._lock:
             ready = sum(scan.stamp <= stamp for scan in self._scans)

@@ -1,0 +1,39 @@
+"""Looking out for what the map does not show, in the scans that the robot looks at."""
+
+from __future__ import annotations
+
+from roomba.configuration.robot import RobotConfig
+from roomba.configuration.things import ThingConfig
+from roomba.geometry import Pose
+from roomba.perception.localization.estimate import Knowledge
+from roomba.perception.matching.beams import LidarBeams
+from roomba.perception.matching.scan_view import LidarModel
+from roomba.perception.matching.surface_field import SurfaceField
+from roomba.perception.things.layer import ThingLayer
+from roomba.robot.readings import ScanReading
+
+
+class Lookout:
+    """Keeps the layer of ``things`` besides a map, from the first map on."""
+
+    def __init__(self, robot: RobotConfig, config: ThingConfig | None = None) -> None:
+        """Begin without a map: nothing is a thing."""
+        self._stride, self._config = robot.scan_stride, config
+        self.things: ThingLayer | None = None
+        self._beams: tuple[LidarModel, LidarBeams] | None = None
+
+    def look_beside(self, field: SurfaceField) -> ThingLayer:
+        """Look from now on for what the map of a field does not show; return the new layer."""
+        self.things = ThingLayer(field, self._config)
+        return self.things
+
+    def look(self, scan: ScanReading | None, pose: Pose, knowledge: Knowledge) -> None:
+        """Look in a scan, if there is one, taken at a pose of the map; only if that is known."""
+        if scan is not None and self.things is not None and knowledge is Knowledge.KNOWN:
+            self.things.see(scan.ranges, self.beams_of(scan.lidar), pose, self._stride)
+
+    def beams_of(self, lidar: LidarModel) -> LidarBeams:
+        """Return a lidar as kernels know it, made anew only when it is another one."""
+        if self._beams is None or self._beams[0] is not lidar:
+            self._beams = lidar, lidar.arrays()
+        return self._beams[1]

@@ -1,0 +1,1 @@
+"""What the robot senses, on ROS: messages become readings here, once."""

@@ -1,0 +1,176 @@
+"""The topics of the robot's body: what its sensors tell, as readings."""
+
+from __future__ import annotations
+
+import threading
+from collections import deque
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+from typing import Any, Final
+
+import rospy
+from nav_msgs.msg import Odometry
+from roomba_robot.msg import Bumper, Cliff, DockStatus, WheelDrop
+from sensor_msgs.msg import BatteryState, Imu, LaserScan
+from std_msgs.msg import Float32, UInt16
+from tf2_msgs.msg import TFMessage
+
+from roomba.configuration.robot import RobotConfig
+from roomba.geometry import Pose
+from roomba.mission.docking.beams import StationBeams
+from roomba.mission.inputs.senses import Battery
+from roomba.robot.readings import Readings, ScanReading
+from roomba_ros.convert.localization import SAME_TIME
+from roomba_ros.convert.mission import battery_of, beams_of
+from roomba_ros.convert.mounts import Mounts, transforms_of
+from roomba_ros.convert.readings import (
+    GyroReading,
+    OdometryReading,
+    Sides,
+    bumper_of,
+    cliff_of,
+    is_docked_of,
+    odometry_of,
+    turning_of,
+    wheel_drop_of,
+)
+from roomba_ros.convert.scan import ScanDecoder
+from roomba_ros.convert.values import data_of, number_of
+from roomba_ros.runtime.node import frame_id
+from roomba_ros.runtime.subscriptions import subscribe
+from roomba_ros.senses.waiting_scans import WaitingScans
+
+_KEPT: Final = 40
+"""Messages of odometry, and of the gyro, that wait for the next tick: two seconds of them."""
+_QUEUE: Final = 10
+
+
+class BodyTopics:
+    """Makes readings of what the body tells: one for each message of odometry.
+
+    Each has the newest of all other sensors; a scan comes with the first odometry of its time or
+    later.
+
+    Subscribes: those of ``topics``, out of ``odom``, ``imu``, ``bumper``, ``cliff``,
+    ``wheel_drop``, ``battery_state``, ``dock_status``, ``ir_omni``, ``dirt_detect``, ``bin_level``,
+    and ``scan``, with ``/tf_static`` (where the lidar is mounted).
+    """
+
+    def __init__(self, config: RobotConfig, *topics: str) -> None:
+        """Connect nothing yet."""
+        self._config, self._topics = config, topics
+        self._lock = threading.Lock()
+        self._odometry: deque[OdometryReading] = deque(maxlen=_KEPT)
+        self._gyro: deque[GyroReading] = deque(maxlen=_KEPT)
+        self._scans = WaitingScans()
+        self._others = Readings(0.0, Pose())
+        self._heard: set[str] = set()
+
+    def start(self) -> None:
+        """Connect."""
+        mounts = Mounts()
+        decoder = ScanDecoder.on_robot(mounts, frame_id("base_link"))
+        battery = partial(battery_of, voltage=self._config.battery.nominal_voltage)
+        known: dict[str, tuple[type, Callable[[Any], Any], Callable[[Any], object]]] = {
+            "odom": (Odometry, odometry_of, self._on_odometry),
+            "imu": (Imu, turning_of, self._on_gyro),
+            "scan": (LaserScan, decoder.decode, self._scans.put),
+            "bumper": (Bumper, bumper_of, self._on_bumper),
+            "cliff": (Cliff, cliff_of, lambda cliff: self._note(cliff=cliff)),
+            "wheel_drop": (WheelDrop, wheel_drop_of, self._on_wheel_drop),
+            "battery_state": (BatteryState, battery, self._on_battery),
+            "dock_status": (DockStatus, is_docked_of, self._on_dock),
+            "ir_omni": (UInt16, lambda told: beams_of(told.data), self._on_beams),
+            "dirt_detect": (UInt16, data_of, lambda count: self._note(grains=float(count))),
+            "bin_level": (Float32, number_of, self._on_bin),
+        }
+        if "scan" in self._topics:
+            subscribe("/tf_static", TFMessage, transforms_of, mounts.add, queue_size=_QUEUE)
+        for topic in self._topics:
+            kind, convert, take = known[topic]
+            hear = partial(self._hear, topic, take)
+            subscribe(topic, kind, convert, hear, queue_size=_QUEUE, tcp_nodelay=True)
+
+    def missing(self, *topics: str) -> tuple[str, ...]:
+        """Return those of the topics of which no message was heard yet."""
+        return tuple(topic for topic in topics if topic not in self._heard)
+
+    def take(self) -> list[Readings]:
+        """Return the readings since the last call, in the order of time."""
+        with self._lock:
+            told, others, gyro = list(self._odometry), self._others, list(self._gyro)
+            self._odometry.clear()
+        readings = [
+            replace(
+                others,
+                time=each.stamp,
+                odometry=each.pose,
+                twist=each.twist,
+                turning=_turning_at(each.stamp, gyro),
+            )
+            for each in told
+        ]
+        if readings:
+            readings[-1] = replace(readings[-1], scan=self._scan_by(readings[-1].time))
+        return readings
+
+    def _scan_by(self, stamp: float) -> ScanReading | None:
+        """Return the newest scan that was taken by a time, s, if there is a new one."""
+        scan, oldest = self._scans.take(stamp), self._scans.oldest
+        if scan is not None:
+            return replace(scan, stamp=scan.stamp or stamp)
+        if oldest is not None and oldest > stamp + self._config.localization.scan_timeout:
+            rospy.logwarn_throttle(
+                10.0,
+                "no scan is used: they are of %.2f s, odometry only of %.2f s",
+                oldest,
+                stamp,
+            )
+        return None
+
+    def _hear(self, topic: str, take: Callable[[Any], object], value: object) -> None:
+        take(value)
+        self._heard.add(topic)
+
+    def _note(self, **values: Any) -> None:
+        with self._lock:
+            self._others = replace(self._others, **values)
+
+    def _on_odometry(self, told: OdometryReading) -> None:
+        with self._lock:
+            self._odometry.append(told._replace(stamp=told.stamp or rospy.get_time()))
+
+    def _on_gyro(self, told: GyroReading) -> None:
+        with self._lock:
+            self._gyro.append(told)
+
+    def _on_bumper(self, pressed: Sides) -> None:
+        self._note(bumper_left=pressed.left, bumper_right=pressed.right)
+
+    def _on_wheel_drop(self, dropped: Sides) -> None:
+        self._note(dropped_left=dropped.left, dropped_right=dropped.right)
+
+    def _on_beams(self, beams: StationBeams) -> None:
+        self._note(beams=beams)
+
+    def _on_battery(self, battery: Battery) -> None:
+        with self._lock:
+            here = replace(battery, is_docked=self._others.battery.is_docked)
+            self._others = replace(self._others, battery=here)
+
+    def _on_dock(self, is_docked: bool) -> None:
+        with self._lock:
+            here = replace(self._others.battery, is_docked=is_docked)
+            self._others = replace(self._others, battery=here)
+
+    def _on_bin(self, level: float) -> None:
+        self._note(in_bin=level * self._config.brush.bin_capacity)
+
+
+def _turning_at(stamp: float, gyro: list[GyroReading]) -> float | None:
+    """Return the gyro's sample of about that time, rad/s."""
+    if not gyro:
+        return None
+    nearest = min(gyro, key=lambda sample: abs(sample.stamp - stamp))
+    return nearest.turning if abs(nearest.stamp - stamp) < SAME_TIME else None

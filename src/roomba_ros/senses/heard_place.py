@@ -1,0 +1,138 @@
+"""The robot's place as it is told, carried on by the wheels."""
+
+from __future__ import annotations
+
+import math
+import threading
+import time
+from collections import deque
+from typing import Final
+
+import rospy
+from geometry_msgs.msg import PoseStamped
+from roomba_robot.msg import Localization
+
+from roomba.clock import ClockJumps, is_recent
+from roomba.geometry import Pose, Twist
+from roomba.perception.localization.estimate import Knowledge
+from roomba.robot.readings import Readings
+from roomba_ros.convert.localization import knowledge_of
+from roomba_ros.convert.readings import StampedPose, stamped_pose_of
+from roomba_ros.runtime.subscriptions import subscribe
+
+OLDEST_POSE: Final = 0.5
+_SILENCE: Final = 0.4
+"""s of the robot's clock, and of wall time, after which a pose counts no more: its sender is
+silent. Both, because a fast clock runs on while all nodes work."""
+_KEPT: Final = 40
+"""Readings that are remembered: two seconds of them."""
+
+
+class HeardPlace:
+    """Finds out where odometry's frame is in the map, by a pose and the odometry of its time.
+
+    So a pose that comes late is as good: the wheels tell the way since.
+
+    Subscribes: ``pose``, ``localization``.
+    """
+
+    def __init__(self, tick: float) -> None:
+        """Connect nothing yet; the wheels tell about the way every ``tick`` s."""
+        self._tick = tick
+        self._lock = threading.Lock()
+        self._way: deque[Readings] = deque(maxlen=_KEPT)
+        self._jumps = ClockJumps()
+        self._pose: StampedPose | None = None
+        self._heard = 0.0
+        self._correction = Pose()
+        self._corrected: StampedPose | None = None
+        self._told = (Knowledge.KNOWN, "")
+
+    def start(self) -> None:
+        """Connect."""
+        subscribe("localization", Localization, knowledge_of, self._on_localization, queue_size=5)
+        subscribe(
+            "pose", PoseStamped, stamped_pose_of, self._on_pose, queue_size=5, tcp_nodelay=True
+        )
+
+    @property
+    def told(self) -> Pose | None:
+        """Where the robot was told to be last, map frame; None before that."""
+        return None if self._pose is None else self._pose.pose
+
+    @property
+    def knowledge(self) -> tuple[Knowledge, str]:
+        """How well its place is told to be known, and why not better."""
+        return self._told
+
+    def move(self, readings: Readings) -> None:
+        """Take what the wheels say next."""
+        if self._jumps.at(readings.time):
+            self._way.clear()
+        self._way.append(readings)
+        self._correct()
+
+    def at(self, now: float) -> Pose | None:
+        """Return where the robot is at a time, s, map frame; None until enough was heard.
+
+        Later than what the wheels told last, it is where their twist leads.
+        """
+        self._correct()
+        if self._corrected is None:
+            return None
+        newest = self._way[-1]
+        if now >= newest.time:
+            ahead = min(now - newest.time, OLDEST_POSE)
+            odometry = moved(newest.odometry, newest.twist, ahead)
+        else:
+            odometry = self._odometry_at(now)
+        return self._correction.compose(odometry)
+
+    def is_late(self, now: float, longest: float) -> bool:
+        """Whether the newest pose is ``longest`` s old, or older: the robot must not drive by it.
+
+        It may be another while until it is told that the place is unknown: a busy machine catches
+        up.
+        """
+        stamp = -math.inf if self._corrected is None else self._corrected.stamp
+        return now > stamp and not is_recent(now, stamp, longest)
+
+    def is_silent(self, now: float) -> bool:
+        """Whether the place is not told any more."""
+        stamp = -math.inf if self._corrected is None else self._corrected.stamp
+        return time.monotonic() > self._heard + _SILENCE and not now - OLDEST_POSE <= stamp
+
+    def _correct(self) -> None:
+        """Find out where the odometry's frame is in the map, if a pose is new."""
+        with self._lock:
+            told = self._pose
+        if told is None or told == self._corrected or not self._way:
+            return
+        if self._corrected is not None and told.stamp > self._way[-1].time:
+            # It came before the odometry that it follows from.
+            return
+        self._correction = told.pose.compose(self._odometry_at(told.stamp).inverse())
+        self._corrected = told
+
+    def _odometry_at(self, stamp: float) -> Pose:
+        """Return where odometry was at a time, or at the nearest to it that is remembered, s."""
+        nearest = min(self._way, key=lambda each: abs(each.time - stamp))
+        off = min(max(stamp - nearest.time, -self._tick), self._tick)
+        return moved(nearest.odometry, nearest.twist, off)
+
+    def _on_pose(self, told: StampedPose) -> None:
+        with self._lock:
+            self._heard = time.monotonic()
+            self._pose = told._replace(stamp=told.stamp or rospy.get_time())
+
+    def _on_localization(self, told: tuple[Knowledge, str]) -> None:
+        self._told = told
+
+
+def moved(pose: Pose, twist: Twist, time: float) -> Pose:
+    """Return where a pose is after a time, s, in which it moves along the arc of a twist."""
+    turn = twist.angular * time
+    # The chord of the arc, in the direction of its middle; sin(x)/x for small turns is 1.
+    half = 0.5 * turn
+    chord = twist.linear * time * (math.sin(half) / half if abs(half) > 1e-9 else 1.0)
+    return pose.compose(Pose(chord * math.cos(half), chord * math.sin(half), turn))

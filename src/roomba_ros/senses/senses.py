@@ -1,0 +1,65 @@
+"""What the robot senses on ROS: what its body tells, and its place as it is told."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from roomba.configuration.robot import RobotConfig
+from roomba.geometry import Pose
+from roomba.mission.inputs.senses import Senses
+from roomba.robot.lookout import Lookout
+from roomba.robot.place import ScanSelection
+from roomba.robot.readings import Readings, ScanReading, senses_of
+from roomba_ros.senses.body_topics import BodyTopics
+from roomba_ros.senses.heard_place import HeardPlace
+
+
+class HeardSenses:
+    """Puts together what is sensed, for a node that does not find the robot's place itself.
+
+    Subscribes: what :class:`HeardPlace` hears, and the ``topics`` of :class:`BodyTopics`.
+    """
+
+    def __init__(self, config: RobotConfig, *topics: str) -> None:
+        """Connect nothing yet."""
+        self._body, self.place = BodyTopics(config, *topics), HeardPlace(config.timing.tick)
+        self._scans = ScanSelection(config.timing)
+        self._readings: Readings | None = None
+        self._scan: ScanReading | None = None
+
+    def start(self) -> None:
+        """Connect."""
+        self.place.start()
+        self._body.start()
+
+    def missing(self, *topics: str) -> tuple[str, ...]:
+        """Return those of the body's topics, and ``pose``, of which nothing was heard yet."""
+        without_pose = ("pose",) if self.place.told is None else ()
+        return without_pose + self._body.missing(*topics)
+
+    def at(self, now: float) -> Senses | None:
+        """Take what was heard since the last call; return all that is sensed at a time, s.
+
+        None until place and odometry were heard.
+        """
+        self._scan = None
+        for readings in self._body.take():
+            self._readings = readings
+            self.place.move(readings)
+            if self._scans.selects(readings.scan):
+                self._scan = readings.scan
+        pose = self.place.at(now)
+        if pose is None or self._readings is None:
+            return None
+        return senses_of(replace(self._readings, time=now), pose, *self.place.knowledge)
+
+    def show(self, lookout: Lookout) -> None:
+        """Let things be looked for in the scan that came last, if it is one to be looked at."""
+        pose = None if self._scan is None else self.place.at(self._scan.stamp)
+        if pose is not None:
+            lookout.look(self._scan, pose, self.place.knowledge[0])
+
+    @property
+    def pose(self) -> Pose | None:
+        """Where the robot was told to be last, map frame; None before that."""
+        return self.place.told
