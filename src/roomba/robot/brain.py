@@ -123,6 +123,10 @@ class Brain:
         fan = None if level is None else self.robot.fan.duty_at(level)
         return Command(self._safely(wanted, cruise), fan)
 
+    def steer(self, twist: Twist) -> Command:
+        """Return what is wanted when the robot is steered by hand, as far as that is safe."""
+        return Command(self._safely(twist, self._max_speed))
+
     def walk(self, x: float, y: float) -> Walk:
         """Walk to a point of the map, m; an errand under way is paused.
 

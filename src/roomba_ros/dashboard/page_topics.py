@@ -24,6 +24,7 @@ from roomba.client.view import GridLayer, HomeView, LayerName, RoomView, ZoneVie
 from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose
 from roomba.grid import OccupancyMap
+from roomba.robot.readings import ScanReading
 from roomba_ros.convert.client import doubt_of
 from roomba_ros.convert.common import pose_in_map
 from roomba_ros.convert.mounts import Mounts, transforms_of
@@ -35,7 +36,7 @@ from roomba_ros.convert.page import (
     shown_path_of,
     zone_views_of,
 )
-from roomba_ros.convert.scan import Scan, ScanDecoder
+from roomba_ros.convert.scan import ScanDecoder
 from roomba_ros.convert.values import data_of, number_of
 from roomba_ros.runtime.node import frame_id
 from roomba_ros.runtime.subscriptions import subscribe
@@ -59,7 +60,7 @@ class PageTopics:
         self._lock = threading.Lock()
         self._pose: Pose | None = None
         self._pose_heard = -math.inf
-        self._scan: Scan | None = None
+        self._scan: ScanReading | None = None
         self._path = _NO_POINTS
         self._home = HomeView(
             0, "home", (0.0, 0.0, 0.0), (), (), (), config.body.radius, config.brush.width
@@ -138,7 +139,7 @@ class PageTopics:
     def _on_bin_level(self, level: float) -> None:
         self.in_bin = level * self._config.brush.bin_capacity
 
-    def _on_scan(self, scan: Scan) -> None:
+    def _on_scan(self, scan: ScanReading) -> None:
         self._scan = scan
 
     def _on_path(self, path: NDArray[np.float32]) -> None:

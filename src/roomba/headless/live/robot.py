@@ -18,8 +18,6 @@ from typing import Any, Final, TypeVar
 from roomba.client.protocol import RobotUnavailableError
 from roomba.geometry import STANDSTILL, Twist
 from roomba.headless.cleaner import HeadlessMission
-from roomba.robot.command import Command
-from roomba.robot.safe_drive import SafeDrive
 
 _FRAME: Final = 0.05
 """s of wall time between two frames: at real time, a tick of the robot."""
@@ -47,8 +45,6 @@ class LiveRobot:
         self._thread = threading.Thread(target=self._live, name="live robot", daemon=True)
         self._ends = threading.Event()
         self._failure: BaseException | None = None
-        body = robot.robot.body
-        self._hand = SafeDrive(body, body.max_speed)
         self._by_hand = STANDSTILL
         self._hand_heard = -math.inf
 
@@ -137,6 +133,5 @@ class LiveRobot:
         robot = self._robot
         half_tick = 0.5 * robot.robot.timing.tick
         while robot.seen.time < until - half_tick:
-            twist = self._hand.command(robot.brain.readings, self._by_hand)
-            robot.body.act(Command(twist))
+            robot.body.act(robot.brain.steer(self._by_hand))
             robot.brain.sense(robot.readings())
