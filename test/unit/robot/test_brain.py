@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,17 +14,19 @@ from roomba.configuration.docking import DockingConfig
 from roomba.configuration.mapping import MappingConfig
 from roomba.configuration.mission import DrivingConfig, MissionConfig
 from roomba.errors import ConfigError, RoombaError
-from roomba.geometry import STANDSTILL, Pose
+from roomba.geometry import STANDSTILL, Pose, Twist
 from roomba.grid import OccupancyMap
 from roomba.headless.body import SimulatedBody
 from roomba.mission.cleaning.request import CleanRequest
 from roomba.mission.inputs.senses import Battery
 from roomba.mission.phases.machine import Phase
+from roomba.planning.path.planner import NoPathError
 from roomba.robot.brain import Brain
 from roomba.robot.command import Command
-from roomba.robot.readings import Readings
+from roomba.robot.readings import CliffReading, Readings
 from roomba.vocabulary import FanLevel
 
+ON_FLOOR = Pose(0.9, 0.5, 0.0)
 DOCKED = Readings(0.0, Pose(), battery=Battery(1.0, 26.0, is_docked=True))
 
 
@@ -110,3 +113,41 @@ def test_the_same_readings_give_the_same_commands() -> None:
         ticks = np.arange(1, 40) * 0.05
         commands.append([robot.tick(replace(DOCKED, time=float(now))) for now in ticks])
     assert commands[0] == commands[1]
+
+
+@pytest.mark.parametrize(
+    "hazard", [{"bumper_left": True}, {"cliff": CliffReading(right=True)}, {"dropped_left": True}]
+)
+def test_steered_or_on_a_walk_it_does_not_drive_into_a_hazard(hazard: dict[str, Any]) -> None:
+    robot = Brain(HOME.map, STATION, NOISY, MissionConfig(), DockingConfig(), start=ON_FLOOR)
+    free = Readings(0.0, Pose(), battery=Battery(1.0, 26.0))
+    robot.sense(free)
+    assert robot.steer(Twist(0.9, 0.0)).twist.linear == NOISY.body.max_speed
+    robot.walk(ON_FLOOR.x + 1.0, ON_FLOOR.y)
+    robot.tick(free)
+    assert robot.tick(replace(free, time=0.05)).twist.linear > 0.0
+    felt = replace(free, time=0.1, **hazard)
+    assert robot.tick(felt).twist.linear <= 0.0
+    assert robot.steer(Twist(0.3, 0.0)).twist.linear <= 0.0
+
+
+def test_a_walk_pauses_the_errand_under_way() -> None:
+    robot = brain(HOME.map)
+    robot.tick(DOCKED)
+    robot.mission.clean(CleanRequest(), robot.senses())
+    robot.tick(replace(DOCKED, time=0.05))
+    robot.walk(1.0, 0.5)
+    assert robot.mission.state.phase is Phase.PAUSED
+    assert robot.walking.is_under_way
+
+
+def test_a_walk_that_has_no_way_leaves_the_errand_alone() -> None:
+    robot = brain(HOME.map)
+    robot.tick(DOCKED)
+    robot.mission.clean(CleanRequest(), robot.senses())
+    with pytest.raises(NoPathError):
+        robot.walk(99.0, 99.0)
+    assert robot.mission.state.drives
+    assert not robot.walking.is_under_way
+    with pytest.raises(RoombaError, match="there was none"):
+        _ = robot.walking.newest
