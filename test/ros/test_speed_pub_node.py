@@ -158,7 +158,7 @@ def test_silence_stops_the_drive(node: RosGraph) -> None:
     wait_until(lambda: probe.drive_gets(0.0), 20.0, "standstill")
 
 
-def test_the_mission_drives_while_nobody_else_does(node: RosGraph) -> None:
+def test_the_mission_drives_while_no_other_program_does(node: RosGraph) -> None:
     probe = start(node)
     probe.wanted = None
     wait_until(lambda: probe.drive_gets(0.0), 20.0, "no command is fresh")

@@ -62,7 +62,7 @@ def test_pushed_piece_is_rigid(flat: Home) -> None:
 
 
 @pytest.mark.parametrize("opening", [(1.0, 2.0, 1.9, 2.1), (1.0, 2.0, 1.1, 2.9)])
-def test_nobody_passes_between_things_across_a_doorway(
+def test_no_robot_passes_between_things_across_a_doorway(
     opening: tuple[float, float, float, float],
 ) -> None:
     things = row_across(Door("door", Rectangle(*opening), True))

@@ -97,5 +97,5 @@ def test_a_gain_finds_its_peer_by_the_name_before_what_is_said_of_it() -> None:
 @pytest.mark.parametrize(
     ("name", "reason"), [("absent", "absent: no wheel"), ("other", "other was not measured")]
 )
-def test_a_gain_over_nobody_says_why(name: str, reason: str) -> None:
+def test_a_gain_over_no_peer_says_why(name: str, reason: str) -> None:
     assert reason in gain(ROW, name, 2.0).error

@@ -60,7 +60,7 @@ def test_report_of_another_form_is_refused(line: str) -> None:
     [
         ("/usr/bin/python3", StepState.FINE),
         ("/bin/python3", StepState.FINE),
-        ("/home/somebody/.pyenv/shims/python3", StepState.NOTE),
+        ("/home/user/.pyenv/shims/python3", StepState.NOTE),
         (None, StepState.NOTE),
     ],
 )

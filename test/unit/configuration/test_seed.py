@@ -25,7 +25,7 @@ def test_the_reports_other_spellings_mean_the_same() -> None:
     assert (parsed.min_cordinate, parsed.max_cordinate) == (-7.0, 7.0)
 
 
-def test_where_both_spellings_are_set_the_other_one_was_set_by_somebody() -> None:
+def test_where_both_spellings_are_set_the_other_one_was_set_by_the_operator() -> None:
     assert parse_seed_parameters({"max_coordinate": 7, "max_cordinate": 9}).max_cordinate == 7.0
 
 

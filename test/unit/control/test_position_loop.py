@@ -73,7 +73,7 @@ def test_having_arrived_it_does_not_dance() -> None:
     assert position_loop.tick(Pose(-0.04, 0.0, 0.0), (0.01, 0.0), 0.5).linear > 0.0
 
 
-def test_whoever_rolled_on_after_it_arrived_goes_back_until_a_walk_arrives() -> None:
+def test_a_robot_that_rolled_on_after_it_arrived_goes_back_until_a_walk_arrives() -> None:
     position_loop = loop()
     for rolled in np.arange(0.0, 0.1, 0.005):
         position_loop.tick(Pose(), (0.01, 0.0), 0.5)

@@ -6,8 +6,10 @@ import re
 from pathlib import Path
 
 ROOT = Path(__file__).parents[3]
-VAGUE = re.compile(r"\b(whoever|whomever|somebody|nobody|everybody)\b", re.IGNORECASE)
-PLACES = ("src", "docs", "msg", "srv", "action", "launch", "examples", "scripts", "lint")
+VAGUE = re.compile(
+    r"(?<![a-z])(whoever|whomever|somebody|nobody|everybody)(?![a-z])", re.IGNORECASE
+)
+PLACES = ("src", "docs", "msg", "srv", "action", "launch", "examples", "scripts", "lint", "test")
 ENDINGS = {".action", ".launch", ".md", ".msg", ".py", ".srv", ".yaml"}
 
 
@@ -16,6 +18,7 @@ def test_no_text_leaves_open_which_person_or_program_is_meant() -> None:
         *ROOT.glob("*.md"),
         *(path for place in PLACES for path in (ROOT / place).rglob("*") if path.suffix in ENDINGS),
     ]
+    files.remove(Path(__file__))
     assert len(files) > 400
     found = [
         (str(path.relative_to(ROOT)), number, line.strip())

@@ -195,7 +195,7 @@ def test_lifted_its_error_says_what_to_do() -> None:
     assert rig.mission.take_result() is None
 
 
-def test_lifted_while_it_stands_is_nobodys_matter() -> None:
+def test_lifted_while_it_stands_is_no_matter() -> None:
     rig = Rig()
     rig.tick(lifted=True)
     assert rig.phase is Phase.IDLE

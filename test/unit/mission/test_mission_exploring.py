@@ -228,7 +228,7 @@ def test_commands_end_it(
     rig = exploring()
     if is_paused:
         rig.command(Event.PAUSE)
-    rig.command(event, "somebody pressed it")
+    rig.command(event, "the operator pressed it")
     assert rig.phase is phase
     assert rig.mission.exploration is None
     assert rig.result.outcome is outcome

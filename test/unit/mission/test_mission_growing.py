@@ -172,7 +172,7 @@ def test_shut_in_it_waits_and_does_not_take_the_map_for_whole() -> None:
     assert rig.phase is Phase.CLEANING
 
 
-def test_a_map_that_nobody_finishes_is_an_error_that_says_what_to_do() -> None:
+def test_a_map_that_is_not_finished_is_an_error_that_says_what_to_do() -> None:
     rig = cleaning(known=WHOLE)
     swept(rig)
     rig.tick(6)

@@ -25,7 +25,7 @@ def test_zones_come_back_as_they_were(tmp_path: Path) -> None:
     assert [file.name for file in path.parent.iterdir()] == ["zones.yaml"]
 
 
-def test_a_map_that_nobody_drew_zones_in_has_none(tmp_path: Path) -> None:
+def test_a_map_without_drawn_zones_has_none(tmp_path: Path) -> None:
     assert load_zones(tmp_path / "zones.yaml", FLOOR) == Zones()
 
 

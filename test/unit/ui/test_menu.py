@@ -212,7 +212,7 @@ def test_ctrl_c_during_a_walk_cancels_it_and_returns_to_the_menu() -> None:
     assert answers.prompts[-2:] == ["Select: ", "Select: "]
 
 
-def test_a_walk_that_somebody_else_ended_says_why() -> None:
+def test_a_walk_that_another_program_ended_says_why() -> None:
     robot = FakeRobot(scripts=[WalkScript(message="another goal took over")])
     robot.clock = SteppedClock([(2.0, lambda: robot.walks[0].preempt())])
     _, lines, _ = use(robot, "3", "3", "4")

@@ -187,7 +187,7 @@ def test_a_camera_that_answered_once_may_be_asked_again(first: str, tmp_path: Pa
     assert robot.calls == 3
 
 
-def test_where_nobody_may_write_the_next_directory_is_taken(tmp_path: Path) -> None:
+def test_where_no_one_may_write_the_next_directory_is_taken(tmp_path: Path) -> None:
     missing, good = tmp_path / "missing", tmp_path / "good"
     good.mkdir()
     path = save_picture(b"content", -0.0, (missing, good))

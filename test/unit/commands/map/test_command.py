@@ -60,7 +60,7 @@ def test_the_same_trial_gives_the_same_run_and_another_seed_another_one(run: Map
     assert figures(other)["trajectory"] != figures(run)["trajectory"]
 
 
-def test_whoever_watches_sees_it_every_now_and_then() -> None:
+def test_an_observer_sees_it_every_now_and_then() -> None:
     seen: list[float] = []
 
     def observe(robot: ObservedExplorer) -> None:
@@ -94,9 +94,11 @@ def test_a_report_has_the_same_rows_for_both_maps(run: MapRun) -> None:
     assert [name for name, _ in ours] == [name for name, _ in theirs]
     assert ours != theirs
     assert dict(run_lines(run))["outcome"] == "COMPLETED"
-    message = replace(run.record.result, outcome=CleanOutcome.STOPPED, message="somebody said so")
+    message = replace(
+        run.record.result, outcome=CleanOutcome.STOPPED, message="the operator said so"
+    )
     stopped = replace(run, record=replace(run.record, result=message))
-    assert dict(run_lines(stopped))["outcome"] == "STOPPED: somebody said so"
+    assert dict(run_lines(stopped))["outcome"] == "STOPPED: the operator said so"
     assert not stopped.is_completed
 
 

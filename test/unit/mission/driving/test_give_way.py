@@ -47,7 +47,7 @@ def test_it_does_not_go_past_the_person() -> None:
     assert off(points, PERSON) > 1.1
 
 
-def test_where_nobody_is_known_to_stand_it_leaves_the_place() -> None:
+def test_where_no_person_is_known_to_stand_it_leaves_the_place() -> None:
     points = way_aside(PLANNER, IN_THE_DOOR, Standing([]), Trail(), CONFIG)
     assert points is not None
     assert off(points, [(IN_THE_DOOR.pose.x, IN_THE_DOOR.pose.y, 0.0)]) > 1.0

@@ -70,10 +70,10 @@ def test_with_all_cleaned_there_is_nothing_to_say() -> None:
 @pytest.mark.parametrize("outcome", [CleanOutcome.STOPPED, CleanOutcome.STUCK])
 def test_what_ended_it_early_is_told_as_it_is(outcome: CleanOutcome) -> None:
     job = cleaning_job()
-    end(job, outcome, "somebody sat on it")
+    end(job, outcome, "a person sat on it")
     result = job.take_result()
     assert result is not None
-    assert result.message == "somebody sat on it"
+    assert result.message == "a person sat on it"
 
 
 def test_a_result_is_told_once_and_after_going_on_there_is_another_one() -> None:

@@ -65,7 +65,9 @@ def test_every_state_takes_every_event(state: MissionState, event: Event) -> Non
 
 @pytest.mark.parametrize("phase", DRIVING)
 @pytest.mark.parametrize("errand", Errand)
-def test_whoever_drives_can_be_stopped_paused_and_can_fail(phase: Phase, errand: Errand) -> None:
+def test_a_robot_that_drives_can_be_stopped_paused_and_can_fail(
+    phase: Phase, errand: Errand
+) -> None:
     state = MissionState(phase, errand)
     paused, failed = next_state(state, Event.PAUSE), next_state(state, Event.FAILED)
     assert paused is not None

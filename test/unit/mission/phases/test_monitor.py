@@ -69,7 +69,7 @@ def test_contact_that_comes_or_goes_is_noticed_once() -> None:
         (replace(AWAY, knowledge=Knowledge.LOST), CleanOutcome.LOST),
     ],
 )
-def test_what_ends_a_drive_is_nobodys_matter_while_it_stands(
+def test_what_ends_a_drive_is_no_matter_while_it_stands(
     senses: Senses, outcome: CleanOutcome
 ) -> None:
     failure = Rig().failure(senses)

@@ -356,7 +356,7 @@ def test_an_unsure_pose_is_not_calm() -> None:
     assert robot.localizer.is_calm
 
 
-def test_whoever_waits_for_something_is_not_calm() -> None:
+def test_a_place_that_waits_for_something_is_not_calm() -> None:
     robot = started()
     localizer = robot.localizer
     assert localizer.is_calm

@@ -100,7 +100,7 @@ def test_the_gyro_sees_what_slipping_wheels_do_not(slip: float, side: Fault) -> 
     assert error < 3.0 * math.sqrt(spread) + 0.01
 
 
-def test_a_robot_whose_wheels_stand_and_that_somebody_turns_sees_it_by_its_gyro() -> None:
+def test_a_robot_whose_wheels_stand_and_that_a_person_turns_sees_it_by_its_gyro() -> None:
     reckoned = reckoning()
     for step in range(41):
         reckoned.move(DT * step, Pose(), 0.5)
@@ -149,7 +149,7 @@ def test_no_bias_is_learned_from_turning_while_it_goes_or_has_just_stopped() -> 
     assert reckoned.pose.theta - before == pytest.approx(0.0, abs=0.004)
 
 
-def test_no_bias_is_learned_from_a_robot_that_somebody_turns_fast() -> None:
+def test_no_bias_is_learned_from_a_robot_that_a_person_turns_fast() -> None:
     reckoned = reckoning()
     for step in range(400):
         reckoned.move(DT * step, Pose(), 1.0)

@@ -62,7 +62,7 @@ def test_carried_away_it_is_to_be_searched_for_at_once() -> None:
     assert not expected.is_met(ELSEWHERE)
 
 
-def test_wrong_before_it_finds_that_out_though_nobody_carried_it() -> None:
+def test_wrong_before_it_finds_that_out_though_it_was_not_carried() -> None:
     found = [answer for answer in Rig(ELSEWHERE, HERE).answers(4.0) if answer is not None]
     assert found
     assert found[0].is_met(HERE)

@@ -21,7 +21,7 @@ def test_the_less_sure_it_was_told_the_wider_it_is_looked_for() -> None:
     assert (unsure.radius, unsure.turn) == pytest.approx((1.5, 0.9))
 
 
-def test_where_it_was_it_is_expected_closely_and_all_the_more_if_nobody_carried_it() -> None:
+def test_where_it_was_it_is_expected_closely_and_all_the_more_if_it_was_not_carried() -> None:
     still, moved = (where_known(HERE, LOCALIZATION, is_still=each) for each in (True, False))
     assert still.is_met(Pose(1.03, 2.0, 0.5))
     assert not still.is_met(Pose(1.1, 2.0, 0.5))

@@ -194,9 +194,9 @@ def test_what_is_told_unsurely_is_rough_until_scans_confirm_it() -> None:
 
 def test_told_to_forget_it_looks_in_the_whole_map() -> None:
     robot = started()
-    robot.localizer.forget("somebody asked for it")
+    robot.localizer.forget("the operator asked for it")
     assert robot.estimate.knowledge is Knowledge.SEARCHING
-    assert robot.estimate.reason == "somebody asked for it"
+    assert robot.estimate.reason == "the operator asked for it"
     look_until_known(robot, 5.0)
     assert robot.error < WORST_ERROR
 
@@ -207,7 +207,7 @@ def test_a_search_that_found_nothing_is_tried_anew() -> None:
     random = np.random.default_rng(1)
     feet = random.uniform(0.3, 6.0, LIDAR.beams).astype(np.float32)
     robot.see_as = lambda ranges: feet
-    robot.localizer.forget("somebody asked for it")
+    robot.localizer.forget("the operator asked for it")
     robot.stay(0.5)
     assert robot.estimate.knowledge is Knowledge.SEARCHING
     robot.see_as = lambda ranges: ranges
@@ -218,7 +218,7 @@ def test_a_search_that_found_nothing_is_tried_anew() -> None:
 
 def test_told_to_forget_before_anything_is_sensed_it_is_not_lost_at_once() -> None:
     robot = Localizer(TWO_ROOMS.map, CONFIG.localization, CONFIG.gyro, 0.17, START)
-    robot.forget("nobody told where it is")
+    robot.forget("it was not told where it is")
     robot.move(1.7e9, Pose(), 0.0)
     assert robot.estimate.knowledge is Knowledge.SEARCHING
     robot.move(1.7e9 + CONFIG.localization.search_timeout + 1.0, Pose(), 0.0)
@@ -266,7 +266,7 @@ def test_what_stands_around_it_all_at_once_makes_it_look_for_its_place() -> None
     assert robot.estimate.knowledge is Knowledge.SEARCHING
 
 
-def test_wrong_all_along_it_finds_that_out_though_nobody_carried_it() -> None:
+def test_wrong_all_along_it_finds_that_out_though_it_was_not_carried() -> None:
     robot = Located(TWO_ROOMS, START)
     robot.stay(2.0)
     robot.localizer.belief["pose"] = (6.0, 2.0, 0.3)

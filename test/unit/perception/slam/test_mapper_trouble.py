@@ -130,7 +130,7 @@ def test_a_wheel_that_slips_does_not_carry_it_away(fault: Fault) -> None:
     assert wrong_cells(made, FURNISHED) == (0, 0)
 
 
-def test_somebody_who_walks_through_leaves_nothing_behind() -> None:
+def test_a_person_who_walks_through_leaves_nothing_behind() -> None:
     """There and back behind the circle, 0.5 m/s."""
     walk = [Move(2.0, 8.0, Pose(4.2, 2.4, 1.6)), Move(11.0, 8.0, Pose(4.2, 0.5, -1.6))]
     home = room_home(
@@ -144,7 +144,7 @@ def test_somebody_who_walks_through_leaves_nothing_behind() -> None:
     assert wrong_cells(robot.mapper.finish(), FURNISHED) == (0, 0)
 
 
-def test_somebody_who_stands_there_is_drawn() -> None:
+def test_a_person_who_stands_there_is_drawn() -> None:
     home = room_home(5.0, 4.0, moving=(person(pose=Pose(4.2, 2.0, 0.0)),))
     made = Mapped(home).drive(CIRCLE, AROUND).mapper.finish()
     row, column = made.frame.cell_of(4.2, 2.0)

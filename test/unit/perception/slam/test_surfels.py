@@ -82,7 +82,7 @@ def test_every_few_points_suffice(stride: int) -> None:
     assert found.asked == pytest.approx(350 / stride, rel=0.1)
 
 
-def test_somebody_who_walks_about_does_not_pull() -> None:
+def test_a_person_who_walks_about_does_not_pull() -> None:
     """A third of what is in sight belongs to a person who came 0.15 m nearer."""
     person = (1.2, 1.6, 1.6, 2.6)
     before = Eye(room_home(5.0, 4.0, ((3.3, 3.1, 3.8, 4.0), (0.0, 1.4, 0.3, 1.9), person)))

@@ -88,7 +88,7 @@ def test_nothing_is_seen_behind_a_wall() -> None:
         assert seen_at(world, 0.8, 0.0).infrared == expected
 
 
-def test_a_dead_station_sends_nothing_and_charges_nobody() -> None:
+def test_a_dead_station_sends_nothing_and_charges_no_robot() -> None:
     world = Simulator(room_home())
     seen = world.step(Twist(), 0.025)
     assert seen.infrared == HALO | RED | GREEN

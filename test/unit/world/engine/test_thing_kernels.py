@@ -46,7 +46,7 @@ poses = st.builds(Pose, st.floats(2.0, 4.5), st.floats(1.5, 3.5), st.floats(-3.1
     st.booleans(),
     st.sampled_from((0.01, 0.025, 0.1, 0.7)),
 )
-def test_a_thing_is_where_its_track_says_while_nobody_is_in_its_way(
+def test_a_thing_is_where_its_track_says_while_no_robot_is_in_its_way(
     parts: list[tuple[float, float, Pose, bool]], is_present: bool, dt: float
 ) -> None:
     moves, time = [], 0.0

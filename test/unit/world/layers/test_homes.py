@@ -99,7 +99,7 @@ def test_walls_are_solid_and_shut_the_home_in(homes: dict[str, Home], name: str)
     assert home.solid[border].all()
 
 
-def test_flat_has_five_rooms_of_a_flat_and_a_toy_nobody_mapped(homes: dict[str, Home]) -> None:
+def test_flat_has_five_rooms_of_a_flat_and_a_toy_that_is_not_mapped(homes: dict[str, Home]) -> None:
     flat = homes["flat"]
     assert [room.name for room in flat.rooms] == [
         "living room",
