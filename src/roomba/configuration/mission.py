@@ -148,7 +148,7 @@ class ExploringConfig(Frozen):
 
     speed: Positive = 0.40
     clearance: Positive = 0.12
-    tight_clearance: Positive = 0.02
+    tight_clearance: Positive = 0.005
     look_first: Positive = 10.0
     most_stuck: Annotated[int, Field(ge=0)] = 3
     viewpoint_tolerance: Positive = 0.12

@@ -7,6 +7,7 @@ on its way to is looked at again.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Final
 
@@ -83,7 +84,7 @@ class Exploration:
         the robot is shut in.
 
         Those that are ``farthest`` m of way off and more are left out. A frontier to which no way
-        leads is given up.
+        leads is given up. When none is left, gaps that only a clean passes are looked through.
         """
         self._leave_behind(here, context)
         at = (here.x, here.y)
@@ -91,15 +92,44 @@ class Exploration:
             fits = context.paths.reachable(at, obstacles)
         except NoPathError:
             return None
+        points = self._way_to_next(
+            context,
+            at,
+            fits,
+            farthest,
+            lambda there: context.paths.plan(at, there, obstacles).points,
+        )
+        if points is not None or not math.isinf(farthest):
+            return points
+        narrow = context.narrow_floor(at, obstacles)
+        if not (narrow.places & ~fits).any():
+            return None
+        return self._way_to_next(
+            context,
+            at,
+            narrow.places,
+            farthest,
+            lambda there: context.squeeze(at, narrow.place_near(there), obstacles),
+        )
+
+    def _way_to_next(
+        self,
+        context: PlanningContext,
+        at: Point,
+        fits: NDArray[np.bool_],
+        farthest: float,
+        plan: Callable[[Point], NDArray[np.float64]],
+    ) -> NDArray[np.float64] | None:
+        """Return the way to the next viewpoint on floor where the robot ``fits``, or None."""
         found = frontiers(context.known, fits, at, self.unseen, self._choice)
         for frontier in [each for each in found if each.way < farthest][:_MOST_TRIES]:
             try:
-                path = context.paths.plan(at, frontier.viewpoint, obstacles)
+                points = plan(frontier.viewpoint)
             except NoPathError:
                 self.unseen.append(frontier.middle)
                 continue
             self.goal = frontier
-            return path.points
+            return points
         return None
 
     def still_unseen(self, occupancy: OccupancyMap) -> tuple[Point, ...]:

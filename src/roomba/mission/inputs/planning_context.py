@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -24,6 +25,30 @@ from roomba.planning.path.costmap import Point, RoundObstacle
 from roomba.planning.path.planner import NoPathError, NoPathReason, PathPlanner
 
 Mask = NDArray[np.bool_]
+
+
+@dataclass(frozen=True, eq=False)
+class NarrowFloor:
+    """Where the robot's middle can be, as near to walls as it cleans.
+
+    ``places``, bool over the map's grid ``frame``, are cells in which it can be somewhere; ``fine``
+    over the ``fine_frame`` is exact.
+    """
+
+    frame: GridFrame
+    fine_frame: GridFrame
+    places: Mask
+    fine: Mask
+
+    def place_near(self, there: Point) -> Point:
+        """Return the point of the cell of ``places`` around ``there`` that is nearest to it, m."""
+        row, column = self.frame.cell_of(*there)
+        parts = self.fine_frame.rows // self.frame.rows
+        window = self.fine[row * parts : (row + 1) * parts, column * parts : (column + 1) * parts]
+        cells = np.argwhere(window) + np.array((row * parts, column * parts))
+        x, y = self.fine_frame.centres(cells[:, 0], cells[:, 1])
+        nearest = int(np.argmin(np.hypot(x - there[0], y - there[1])))
+        return float(x[nearest]), float(y[nearest])
 
 
 class PlanningContext:
@@ -97,6 +122,14 @@ class PlanningContext:
         """
         nothing = np.zeros(self.frame.shape, np.bool_)
         return self.coverage.plan(here, there, nothing, obstacles).points
+
+    def narrow_floor(self, here: Point, obstacles: Sequence[RoundObstacle]) -> NarrowFloor:
+        """Return where the robot's middle can get to through all gaps that a clean passes."""
+        fine = self.floor.with_obstacles(obstacles).middles(here)
+        parts = self.frame.rows // self.known.frame.rows
+        rows, columns = self.known.frame.shape
+        places = fine.reshape(rows, parts, columns, parts).any(axis=(1, 3))
+        return NarrowFloor(self.known.frame, self.frame, places, fine)
 
     def is_in_zone(self, here: Point) -> bool:
         """Whether a robot at a point touches a zone where it must not go."""

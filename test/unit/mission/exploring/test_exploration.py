@@ -14,7 +14,7 @@ from roomba.configuration.docking import DockingConfig
 from roomba.configuration.mission import MissionConfig
 from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose
-from roomba.grid import FREE, UNKNOWN, OccupancyMap
+from roomba.grid import FREE, OCCUPIED, UNKNOWN, OccupancyMap
 from roomba.mission.exploring.exploration import Exploration
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.planning.path.planner import NoPathError, NoPathReason, PathPlanner
@@ -194,3 +194,42 @@ def test_it_comes_back_from_plain_values() -> None:
 def test_junk_is_refused(junk: Any) -> None:
     with pytest.raises((ValueError, TypeError)):
         Exploration.of(junk, CONFIG)
+
+
+def gap_of(low: float, high: float) -> PlanningContext:
+    """The two rooms as far as the doorway, which is a gap from ``low`` to ``high`` in y, m."""
+    values = HALL.values.copy()
+    frame = HALL.frame
+    (first, column), (last, after) = frame.cell_of(WALL_X, low), frame.cell_of(WALL_X + 0.1, high)
+    values[:first, column:after] = OCCUPIED
+    values[last:, column:after] = OCCUPIED
+    values[first:last, column:after] = FREE
+    return context_of(OccupancyMap(frame, values))
+
+
+@pytest.mark.parametrize("width", [0.35, 0.40])
+def test_a_gap_that_a_clean_passes_is_looked_through(width: float) -> None:
+    context = gap_of(1.0, 1.0 + width + 1e-9)
+    exploration = Exploration(CONFIG)
+    points = exploration.next_path(HERE, context, [])
+    assert points is not None
+    assert math.dist(points[-1], (WALL_X + 0.05, 1.0 + 0.5 * width)) < 1.3
+
+
+def test_a_gap_between_the_cells_of_the_map_is_passed_where_a_clean_passes_it() -> None:
+    """From no middle of a cell both sides are far enough; on the fine grid of a clean they are."""
+    context, here = context_of(known_to(WALL_X + 1.4)), (HERE.x, HERE.y)
+    middle, half = 1.2, ROBOT.body.radius + 0.0125
+    away = np.arange(half + 0.05, 0.5, 0.06)
+    fence = [(WALL_X + 0.05, middle + side, 0.05) for side in (*away.tolist(), *(-away).tolist())]
+    beyond = context.known.frame.cell_of(WALL_X + 0.5, middle)
+    assert not context.paths.reachable(here, fence)[beyond]
+    assert context.narrow_floor(here, fence).places[beyond]
+    points = Exploration(CONFIG).next_path(HERE, context, fence)
+    assert points is not None
+    assert points[-1][0] > WALL_X + 0.1
+    floor = context.floor.with_obstacles(fence)
+    for x, y in points[1:].tolist():
+        assert floor.fits[floor.frame.cell_of(x, y)]
+    # Where it cleans meanwhile it first cleans what is near.
+    assert Exploration(CONFIG).next_path(HERE, context, fence, farthest=10.0) is None

@@ -129,11 +129,10 @@ def test_in_a_map_that_grows_paths_keep_farther_away() -> None:
         gaps.append(shapely.LineString(points).distance(table) - ROBOT.body.radius)
     assert gaps[0] == pytest.approx(driving.way_clearance, abs=0.03)
     assert exploring.clearance - 0.01 < gaps[1] < exploring.clearance + 0.05
-    # So is the least that it accepts: this gap is too narrow for it.
+    # But it passes what a clean passes: it is to see all that can be cleaned.
     ends = ((0.85, 1.25), (1.5, 1.25))
     half = ROBOT.body.radius + 0.036
     away = np.arange(half + 0.05, 1.4, 0.06)
     fence = [(1.2, 1.25 + side, 0.05) for side in (*away.tolist(), *(-away).tolist())]
     assert len(context().paths.plan(*ends, fence).points)
-    with pytest.raises(NoPathError):
-        grows.paths.plan(*ends, fence)
+    assert len(grows.paths.plan(*ends, fence).points)
