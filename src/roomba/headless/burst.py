@@ -91,8 +91,11 @@ class Burst:
 
     @property
     def _may_run(self) -> bool:
-        is_walking = self._brain.walking.is_under_way
-        return len(self._rows) > 0 and not is_walking and self._brain.keeper.place.is_calm
+        if len(self._rows) == 0 or self._brain.walking.is_under_way:
+            return False
+        # A localizer's kernels take all beams as measured at once.
+        is_still = self._brain.localizer is None or self._body.lidar.time_increment == 0.0
+        return is_still and self._brain.keeper.place.is_calm
 
     # ---------------------------------------------------------------- taking over
 

@@ -40,12 +40,13 @@ class LidarBook:
         """Return the lidar of a scan."""
         frame = str(message.header.frame_id)
         first, step, beams = message.angle_min, message.angle_increment, len(message.ranges)
-        key = (frame, beams, first, step, message.range_min, message.range_max)
+        ranges, increment = (message.range_min, message.range_max), message.time_increment
+        key = (frame, beams, first, step, *ranges, increment)
         if key not in self._known:
             mount = self.mount_of(frame, Kind.SCAN)
             angles = first + step * np.arange(beams)
             angles = -angles if mount.is_upside_down else angles
-            self._known[key] = LidarModel(angles, message.range_min, message.range_max, mount.pose)
+            self._known[key] = LidarModel(angles, *ranges, mount.pose, increment)
         return self._known[key]
 
 

@@ -48,6 +48,7 @@ class ScanDecoder:
             message.angle_increment,
             message.range_min,
             message.range_max,
+            message.time_increment,
             mount,
         )
         if self._newest is None or self._newest[0] != key:
@@ -59,7 +60,8 @@ def _lidar(message: LaserScan, mount: Mount) -> LidarModel:
     angles = message.angle_min + np.arange(len(message.ranges)) * message.angle_increment
     if mount.is_upside_down:
         angles = -angles
-    return LidarModel(angles, message.range_min, message.range_max, mount.pose)
+    ranges = message.range_min, message.range_max
+    return LidarModel(angles, *ranges, mount.pose, message.time_increment)
 
 
 def _require_fan(message: LaserScan) -> None:

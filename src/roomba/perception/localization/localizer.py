@@ -117,7 +117,7 @@ class Localizer:
 
     def see(self, stamp: float, ranges: NDArray[np.float32], lidar: LidarModel) -> None:
         """Take a scan, float32 [beams], m; raises ValueError for another number of beams."""
-        self.view = view = lidar.view(ranges)
+        self.view = view = lidar.view(lidar.at_once(stamp, ranges, self.path))
         reckoned = self._reckoning.at(stamp)
         self._row["beams"] = len(view)
         self._is_blind = len(view) == 0

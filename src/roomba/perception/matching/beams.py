@@ -15,9 +15,10 @@ class LidarBeams(NamedTuple):
 
     ``directions`` is float64 [beams, 2], cosine and sine in its own frame; ``mount`` [3] its x, y,
     theta in the robot's frame; ``first_angle`` that of beam 0 in the lidar's and ``step`` from one
-    beam to the next, rad; ranges count from ``nearest`` to ``farthest``, m. ``ends`` is
-    [beams, 4], as of :class:`roomba.perception.matching.scan_view.ScanView`; ``lanes``
-    [JUDGE_LANES, beams] is a work array.
+    beam to the next, rad; ranges count from ``nearest`` on that are less than ``farthest``, m. Each
+    beam is measured ``time_increment``, s, after the one before it. ``ends`` is [beams, 4], as of
+    :class:`roomba.perception.matching.scan_view.ScanView`; ``lanes`` [JUDGE_LANES, beams] is a work
+    array.
     """
 
     directions: Floats
@@ -26,5 +27,6 @@ class LidarBeams(NamedTuple):
     step: float
     nearest: float
     farthest: float
+    time_increment: float
     ends: Floats
     lanes: Floats

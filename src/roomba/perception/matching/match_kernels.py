@@ -45,7 +45,7 @@ def beam_ends(
     count = 0
     for beam in range(ranges.size):
         length = ranges[beam]
-        if not nearest <= length <= farthest:
+        if not nearest <= length < farthest:
             continue
         along = cosine * directions[beam, 0] - sine * directions[beam, 1]
         across = sine * directions[beam, 0] + cosine * directions[beam, 1]

@@ -90,7 +90,7 @@ def _count(
     for last in range(ranges.size):
         length = ranges[last]
         a, b, c, d = b, c, d, e
-        if not nearest <= length <= farthest or length <= 0.0:
+        if not nearest <= length < farthest or length <= 0.0:
             whole = 0
             continue
         e = 1.0 / length

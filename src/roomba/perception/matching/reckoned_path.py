@@ -16,6 +16,8 @@ _REMEMBERED: Final = 2.0
 """s; how late a scan may come."""
 _MOST: Final = 1024
 """Poses that are remembered at most: with more than 500 a second it is less than that time."""
+_AHEAD: Final = 0.5
+"""s; so far beyond the newest pose the robot is taken to go on as it did."""
 _NEWEST: Final = 0
 _COUNT: Final = 1
 """Places in ``ends``."""
@@ -85,3 +87,29 @@ def pose_at(path: ReckonedPath, stamp: float, pose: Floats) -> bool:
         pose[2] = wrapped(rows[earlier, 3] + share * turn)
         return True
     return False
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def pose_beyond(path: ReckonedPath, stamp: float, pose: Floats) -> None:
+    """Fill ``pose`` [3] with that at a time, also a little before or beyond all that are known.
+
+    Before them it is the oldest one; beyond them the robot goes on as between the newest two.
+    """
+    rows, ends = path.rows, path.ends
+    size, newest, count = rows.shape[0], ends[_NEWEST], ends[_COUNT]
+    if count == 0:
+        pose[:] = 0.0
+        return
+    beyond = min(stamp - rows[newest, 0], _AHEAD)
+    if beyond <= 0.0 or count == 1:
+        if not pose_at(path, stamp, pose):
+            oldest = (newest + 1 - count) % size
+            for axis in range(3):
+                pose[axis] = rows[oldest, 1 + axis]
+        return
+    earlier = (newest - 1) % size
+    share = beyond / (rows[newest, 0] - rows[earlier, 0])
+    for axis in range(1, 3):
+        pose[axis - 1] = rows[newest, axis] + share * (rows[newest, axis] - rows[earlier, axis])
+    turn = wrapped(rows[newest, 3] - rows[earlier, 3])
+    pose[2] = wrapped(rows[newest, 3] + share * turn)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +20,14 @@ from roomba.perception.matching.fit_kernels import (
     judge,
 )
 from roomba.perception.matching.match_kernels import beam_ends
+from roomba.perception.matching.reckoned_path import ReckonedPath
 from roomba.perception.matching.surface_field import SurfaceField
+from roomba.perception.matching.sweep import SWEEP_WORK, at_once
+
+Ranges = NDArray[np.float32]
+
+_LONGEST_SWEEP: Final = 1.5
+"""s; no lidar takes longer for a scan: drivers fill the field with other things."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,9 +53,11 @@ class LidarModel:
         nearest: float,
         farthest: float,
         mount: Pose | None = None,
+        time_increment: float = 0.0,
     ) -> None:
-        """``angles`` is float64 [beams], rad, evenly spaced; ranges count from ``nearest`` to
-        ``farthest``, m.
+        """``angles`` is float64 [beams], rad, evenly spaced; ranges count from ``nearest`` on that
+        are less than ``farthest``, m. Each beam is measured ``time_increment``, s, after the one
+        before it, the first one at the stamp of its scan; numbers that make no sense count as 0.
         """
         mount = mount or Pose()
         self.beams = len(angles)
@@ -55,7 +65,11 @@ class LidarModel:
         self._first_angle = float(angles[0]) if self.beams else 0.0
         self._step = float(angles[1] - angles[0]) if self.beams > 1 else 2.0 * np.pi
         self._directions = np.column_stack((np.cos(angles), np.sin(angles)))
-        self._nearest, self._farthest = float(nearest), float(farthest)
+        # Ranges are float32: one as long as the farthest is told for no echo.
+        self._nearest, self._farthest = float(nearest), float(np.float32(farthest))
+        is_sweep = abs(time_increment) * self.beams <= _LONGEST_SWEEP
+        self.time_increment = float(time_increment) if is_sweep else 0.0
+        self._arrays: LidarBeams | None = None
 
     @staticmethod
     def all_around(beams: int, nearest: float, farthest: float) -> LidarModel:
@@ -72,9 +86,29 @@ class LidarModel:
             self._step,
             self._nearest,
             self._farthest,
+            self.time_increment,
             ends,
             lanes,
         )
+
+    @property
+    def sweep(self) -> float:
+        """How long after the stamp of a scan its last beam is measured, s."""
+        return max(0.0, self.time_increment * (self.beams - 1))
+
+    def at_once(self, stamp: float, ranges: Ranges, path: ReckonedPath) -> Ranges:
+        """Return a scan, float32 [beams], m, as if all of it was measured at its stamp, s.
+
+        ``path`` tells how the robot moved meanwhile. That of a lidar that measures all beams at
+        once is returned as it is.
+        """
+        if self.time_increment == 0.0 or ranges.shape != (self.beams,):
+            return ranges
+        if self._arrays is None:
+            self._arrays = self.arrays()
+        still, work = np.empty(self.beams, np.float32), np.empty((SWEEP_WORK, max(self.beams, 3)))
+        at_once(ranges, self._arrays, path, stamp, still, work)
+        return still
 
     def view(self, ranges: NDArray[np.float32]) -> ScanView:
         """Return a scan, float32 [beams], m; raises ValueError for another number of beams."""

@@ -142,7 +142,7 @@ class Mapper:
             raise ValueError(f"expected a scan of {lidar.beams} ranges, got shape {ranges.shape}")
         if lidar is not self._lidar:
             self._use(lidar)
-        points = follower.see(ranges)
+        points = follower.see(stamp, ranges)
         self._graph.use_noise(follower.range_noise)
         if self._is_lost:
             self._relocate(stamp, points)

@@ -14,6 +14,7 @@ from roomba.perception.localization.dead_reckoning import DeadReckoning
 from roomba.perception.matching.beams import LidarBeams
 from roomba.perception.matching.range_noise import unknown_noise
 from roomba.perception.matching.reckoned_path import ReckonedPath, pose_at
+from roomba.perception.matching.sweep import SWEEP_WORK
 from roomba.perception.slam.finding_back_kernels import FINDING
 from roomba.perception.slam.follow_kernels import FOLLOWER, follow, moved_since
 from roomba.perception.slam.latency import no_latency
@@ -73,15 +74,17 @@ class ScanFollower:
             beams,
             np.empty((count, POINT)),
             room_for_sums(count),
+            np.empty(count, np.float32),
+            np.empty((SWEEP_WORK, max(count, 3))),
         )
 
     def find_reckoned(self, stamp: float) -> bool:
         """Look up where dead reckoning had the robot at a scan, and tell whether that is known."""
         return pose_at(self._reckoning.path, stamp - self.latency, self._row["scanned_at"])
 
-    def see(self, ranges: NDArray[np.float32]) -> Floats:
+    def see(self, stamp: float, ranges: NDArray[np.float32]) -> Floats:
         """Find the points, float64 [n, 4], that a scan shows, float32 [beams], m."""
-        see_points(self.following, ranges)
+        see_points(self.following, stamp, ranges)
         return self.points
 
     @property
@@ -199,4 +202,6 @@ def not_following(beams: LidarBeams) -> Following:
         beams,
         np.empty((0, POINT)),
         room_for_sums(0),
+        np.empty(0, np.float32),
+        np.empty((SWEEP_WORK, 0)),
     )

@@ -14,6 +14,7 @@ from roomba.perception.localization.belief import Rows
 from roomba.perception.matching.beams import LidarBeams
 from roomba.perception.matching.range_noise import measure_noise
 from roomba.perception.matching.reckoned_path import ReckonedPath, pose_at
+from roomba.perception.matching.sweep import at_once
 from roomba.perception.slam.finding_back_kernels import is_due, saw
 from roomba.perception.slam.follow_kernels import follow, is_apart
 from roomba.perception.slam.latency import learn_latency
@@ -35,7 +36,8 @@ class Following(NamedTuple):
 
     Of one row each are ``follower``, FOLLOWER, ``belief``, BELIEF, ``noise``, NOISE, ``latency``,
     LATENCY, and ``finding``, FINDING. Scans of ``beams`` are matched to ``surfels``; ``points`` is
-    float64 [beams, POINT], those of the newest scan; in ``sums`` kernels work.
+    float64 [beams, POINT], those of the newest scan; in ``sums``, ``still`` and ``work`` kernels
+    work.
     """
 
     follower: Rows
@@ -48,6 +50,8 @@ class Following(NamedTuple):
     beams: LidarBeams
     points: Floats
     sums: Floats
+    still: Ranges
+    work: Floats
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -59,7 +63,7 @@ def take_scan(following: Following, stamp: float, ranges: Ranges) -> int:
     follower = following.follower[0]
     if not find_reckoned(following, stamp):
         return IS_LEFT
-    see_points(following, ranges)
+    see_points(following, stamp, ranges)
     follow_points(following, stamp)
     if not follower.is_sure or is_due(following.finding):
         return IS_FOLLOWED
@@ -77,11 +81,23 @@ def find_reckoned(following: Following, stamp: float) -> bool:
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def see_points(following: Following, ranges: Ranges) -> None:
+def see_points(following: Following, stamp: float, ranges: Ranges) -> None:
     """Find the points that a scan shows, and learn how noisy its ranges are."""
-    follower, noise, beams = following.follower[0], following.noise, following.beams
+    noise, beams = following.noise, following.beams
     measure_noise(noise, ranges, beams.nearest, beams.farthest)
-    follower.range_deviation = noise[0].deviation
+    following.follower[0].range_deviation = noise[0].deviation
+    if beams.time_increment == 0.0:
+        _find_points(following, ranges)
+        return
+    began = stamp - following.latency[0].seconds
+    at_once(ranges, beams, following.path, began, following.still, following.work)
+    _find_points(following, following.still)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _find_points(following: Following, ranges: Ranges) -> None:
+    """Find the points that a scan shows that was measured at once."""
+    follower, beams = following.follower[0], following.beams
     follower.points = surface_points_in(
         ranges, beams.directions, beams.mount, beams.nearest, beams.farthest,
         follower.range_deviation, following.points, following.sums,

@@ -83,7 +83,7 @@ def surface_points_in(
     count = 0
     for beam in range(beams):
         length = ranges[beam]
-        if not nearest <= length <= farthest:
+        if not nearest <= length < farthest:
             continue
         along_x = turn_cosine * directions[beam, 0] - turn_sine * directions[beam, 1]
         along_y = turn_sine * directions[beam, 0] + turn_cosine * directions[beam, 1]
@@ -139,7 +139,7 @@ def _add_up(
             sums[row + 1, column] = sums[row, column]
         if beam != place and not is_around:
             continue
-        if not nearest <= length <= farthest:
+        if not nearest <= length < farthest:
             continue
         x, y = length * directions[beam, 0], length * directions[beam, 1]
         after = sums[row + 1]

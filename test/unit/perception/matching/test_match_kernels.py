@@ -224,7 +224,7 @@ def test_a_beam_that_is_a_scale_off_weighs_a_quarter() -> None:
 
 
 def test_ends_are_those_of_the_beams_in_reach_through_the_mount() -> None:
-    ranges = np.array([1.0, 0.1, 2.0, np.inf, -np.inf, np.nan, 12.0, 12.5], np.float32)
+    ranges = np.array([1.0, 0.1, 2.0, np.inf, -np.inf, np.nan, 11.9, 12.0], np.float32)
     angles = np.arange(8) * (math.pi / 4.0)
     ends = np.full((8, 4), 7.0)
     directions = np.column_stack((np.cos(angles), np.sin(angles)))

@@ -94,7 +94,7 @@ class MapReplay:
         if self._at is not None:
             self.way += here.distance_to(self._at.x, self._at.y)
         self._at = here
-        if self._scan is not None and self._scan[0] <= stamp:
+        if self._scan is not None and self._scan[0] + self._scan[1].lidar.sweep <= stamp:
             self._see()
 
     def _turning_at(self, stamp: float) -> float | None:
@@ -104,13 +104,13 @@ class MapReplay:
         return self._turning[1]
 
     def _hear_scan(self, stamp: float, scan: LidarScan) -> None:
-        """Keep a scan until odometry has reached its time, or the next scan comes."""
+        """Keep a scan until odometry has reached its last beam, or the next scan comes."""
         if not math.isfinite(self._stamp):
             self.left_out["scans before the first odometry"] += 1
             return
         self._see()
         self._scan = (stamp, scan)
-        if stamp <= self._stamp:
+        if stamp + scan.lidar.sweep <= self._stamp:
             self._see()
 
     def _see(self) -> None:
