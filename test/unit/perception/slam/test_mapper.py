@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -23,6 +24,8 @@ from roomba.geometry import Pose, Twist, wrap_angle
 from roomba.grid import FREE, UNKNOWN
 from roomba.perception.localization.estimate import Knowledge
 from roomba.perception.matching.scan_view import LidarModel
+from roomba.perception.slam.mapper import Mapper
+from roomba.perception.slam.mapper_state import MapperState
 
 WORST = 0.03
 """m; farther from its true place it never is."""
@@ -141,13 +144,27 @@ def test_the_frame_of_the_map_is_that_of_the_start() -> None:
 def test_submaps_that_moved_are_drawn_where_they_are_now() -> None:
     """As if all had been drawn anew: nothing is left where they were."""
     numbers = MappingConfig(submap_keyframes=6)
-    mapper = Mapped(seed=2, mapping=numbers).drive(CIRCLE, AROUND).mapper
-    graph = mapper._graph
-    assert len(graph.submaps) > 4
-    graph.poses[1:3] += (0.3, -0.2, 0.1)
-    made = mapper.occupancy()
-    mapper._redraw()
-    anew = mapper.occupancy()
+    robot = Mapped(seed=2, mapping=numbers).drive(CIRCLE, AROUND)
+    config = robot.world.config
+
+    def another(state: MapperState) -> Mapper:
+        """Return a mapper that has drawn the whole map anew."""
+        parts = config.localization, config.gyro
+        return Mapper.taken_up(numbers, *parts, state, robot.mapper.pose)
+
+    def state() -> MapperState:
+        state = robot.mapper.state()
+        assert state is not None
+        return state
+
+    # Two submaps lie wrongly until their links are used the next time.
+    wrong = state().poses.copy()
+    assert len(wrong) > 4
+    wrong[1:3] += (0.3, -0.2, 0.1)
+    robot.mapper = another(replace(state(), poses=wrong))
+    robot.drive(CIRCLE, 0.3 * AROUND)
+    assert np.abs(state().poses[1:3, :2] - wrong[1:3, :2]).min() > 0.15
+    made, anew = robot.mapper.occupancy(), another(state()).occupancy()
     rows, columns = anew.frame.shape
     row = round((anew.frame.origin_y - made.frame.origin_y) / 0.05)
     column = round((anew.frame.origin_x - made.frame.origin_x) / 0.05)
