@@ -4,11 +4,15 @@ import math
 
 import numpy as np
 import pytest
+from fixtures.missions import HOME
 from geometry_msgs.msg import Point, Point32, Polygon
 from roomba_robot.msg import CleanGoal, Rectangle, Room, RoomArray
 from roomba_robot.msg import Zone as ZoneMessage
 from sensor_msgs.msg import BatteryState
 
+from roomba.configuration.docking import DockingConfig
+from roomba.configuration.mission import MissionConfig
+from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose, Twist
 from roomba.grid import FREE, GridFrame, OccupancyMap
 from roomba.mission.cleaning.request import (
@@ -19,7 +23,9 @@ from roomba.mission.cleaning.request import (
     MissReason,
 )
 from roomba.mission.docking.beams import StationBeams
+from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.mission.inputs.senses import Battery
+from roomba.perception.matching.surface_field import SurfaceField
 from roomba.perception.rooms.rooms import Rooms
 from roomba.perception.rooms.zones import Zone, ZoneKind, Zones, ZonesError
 from roomba.perception.swept.coverage_bits import SWEPT, WANTED
@@ -37,6 +43,7 @@ from roomba_ros.convert.mission import (
     zones_markers,
     zones_message,
 )
+from roomba_ros.mission.home import GROWING, KnownHome
 from roomba_ros.senses.heard_place import moved
 
 
@@ -169,3 +176,15 @@ def test_a_pose_moves_on_along_its_arc() -> None:
     assert quarter.theta == pytest.approx(0.5 * math.pi)
     assert moved(Pose(), Twist(0.3, 0.0), 2.0) == Pose(0.6, 0.0, 0.0)
     assert moved(Pose(), Twist(0.3, 0.0), -1.0).x == pytest.approx(-0.3)
+
+
+def test_an_edit_of_zones_is_told_from_a_map_that_only_grew() -> None:
+    def known(zones: Zones) -> KnownHome:
+        configs = RobotConfig(), MissionConfig(), DockingConfig()
+        context = PlanningContext(HOME.map, HOME.station, *configs, None, zones, is_growing=True)
+        return KnownHome(context, SurfaceField.unknown(), GROWING)
+
+    shut = Zones().with_zone(Zone("mat", ZoneKind.NO_GO, ((1.0, 1.8), (1.4, 1.8), (1.4, 2.2))))
+    assert not known(shut).is_edit_of(known(shut))
+    assert known(shut).is_edit_of(known(Zones()))
+    assert known(Zones()).is_edit_of(known(shut))

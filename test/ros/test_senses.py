@@ -94,7 +94,7 @@ def test_a_scan_is_shown_once_and_only_where_the_place_is_known(ros: Lockstep) -
 
 def test_scans_between_those_that_are_looked_at_are_left_out(ros: Lockstep) -> None:
     senses, lookout = heard_senses(), empty_floor()
-    for tick, distance in enumerate((1.0, 0.5, 1.0)):
+    for tick, distance in enumerate((1.0, 0.5)):
         stamp = 10.0 + 0.5 * tick * CONFIG.timing.scan_period
         tell(ros, stamp, distance)
         senses.at(stamp)
