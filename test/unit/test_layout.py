@@ -105,6 +105,7 @@ TESTED_BY: dict[str, tuple[str, str]] = {
         PART,
     ),
     "roomba/perception/slam/relocation": ("unit/perception/slam/test_mapper_foreign.py", PART),
+    "roomba/perception/slam/refinement_kernels": ("unit/perception/slam/test_refinement.py", PART),
     "roomba/perception/slam/scan_kernels": ("unit/perception/slam/test_mapper.py", PART),
     "roomba/perception/things/kernels": ("unit/perception/things/test_layer.py", PART),
     "roomba/plots/": ("unit/plots/test_home.py", "a drawing of a home is made of them"),

@@ -9,16 +9,15 @@ Milios, "Globally consistent range scan alignment", 1997), and all of it is done
 
 from __future__ import annotations
 
-import math
 from collections import defaultdict
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.perception.matching.match_kernels import invert
 from roomba.perception.slam.follow_kernels import in_plane, last_scale
 from roomba.perception.slam.pose_graph import Link, optimised, relative_to
+from roomba.perception.slam.refinement_kernels import Scans, match_to_group
 from roomba.perception.slam.submap import Keyframe
 from roomba.perception.slam.surfels import SurfelGrid
 
@@ -35,22 +34,10 @@ _MOST_VISITS: Final = 5
 _BETWEEN: Final = 12
 """Keyframes; groups that are nearer to each other in time say the same."""
 _ROUNDS: Final = 2
-_MATCH_ROUNDS: Final = 5
-_POINTS: Final = 120
-"""Of a keyframe, about so many are matched: neighbouring beams err alike."""
 _SETTLED: Final = 0.002
 """m; when no keyframe moved farther, all agree."""
 _SCALES: Final = (0.1, 0.05)
 """m; of the first rounds of a match."""
-_LOOSE: Final = np.diag([0.2**2, 0.2**2, 0.1**2])
-"""m2, rad2; how unsure the present poses are taken to be."""
-_LEAST_POINTS: Final = 25
-_LEAST_MET: Final = 0.5
-_LEAST_CLOSE: Final = 0.75
-_FARTHEST: Final = 0.3
-"""m; a match that corrects more is of another place."""
-_LEAST: Final = np.diag([0.004**2, 0.004**2, 0.0015**2])
-"""m2, rad2; no match is surer: neighbouring beams err alike."""
 _DRIVEN: Final = np.diag([0.02**-2, 0.02**-2, 0.02**-2])
 """1/m2, 1/rad2; of a step between two keyframes of one submap, if nothing else is known."""
 
@@ -99,46 +86,26 @@ class _GroupMatcher:
     def __init__(
         self, points: list[Floats], half_width: float, range_deviation: float, deviation: float
     ) -> None:
-        self._points = points
+        self._points = np.concatenate(points)
+        self._firsts = np.cumsum([0, *map(len, points)])
         self._grid = SurfelGrid(half_width)
         self._scales = np.array([*_SCALES, last_scale(range_deviation)])
         self._in_plane = in_plane(range_deviation)
-        self._deviation = deviation
+        self._variance = deviation**2
 
     def links(self, poses: Floats) -> list[Link]:
         """Return the links between keyframes that matches at the present poses tell."""
-        found = []
+        links, scans = [], Scans(self._points, self._firsts, np.ascontiguousarray(poses))
         for first, frames in _asked(poses).items():
-            middle = first + _SIZE // 2
-            self._grid.clear()
-            within = np.arange(first, first + _SIZE)
-            group = relative_to(np.repeat(poses[middle][None], _SIZE, axis=0), poses[within])
-            for index, pose in zip(within.tolist(), group, strict=True):
-                self._grid.add(self._points[index], pose)
-            for frame in frames:
-                link = self._link(middle, frame, poses)
-                if link is not None:
-                    found.append(link)
-        return found
-
-    def _link(self, middle: int, frame: int, poses: Floats) -> Link | None:
-        thought = relative_to(poses[middle][None], poses[frame][None])[0]
-        points = self._points[frame]
-        match = self._grid.match(
-            points, thought, _LOOSE, self._scales, self._deviation,
-            self._in_plane, rounds=_MATCH_ROUNDS, stride=max(1, len(points) // _POINTS),
-        )  # fmt: skip
-        if match is None or match.met * match.asked < _LEAST_POINTS:
-            return None
-        if match.met < _LEAST_MET or match.close < _LEAST_CLOSE:
-            return None
-        if math.hypot(*(match.pose[:2] - thought[:2])) > _FARTHEST:
-            return None
-        covariance, information = np.empty((3, 3)), np.empty((3, 3))
-        if not invert(match.information + 1e-3 * np.eye(3), covariance):
-            return None
-        invert(covariance + _LEAST, information)
-        return Link(middle, frame, match.pose, information)
+            middle, group = first + _SIZE // 2, np.arange(first, first + _SIZE)
+            found, information = np.empty((len(frames), 3)), np.empty((len(frames), 3, 3))
+            match_to_group(
+                self._grid.arrays, scans, group, middle, np.array(frames), self._scales,
+                self._variance, self._in_plane, found, information,
+            )  # fmt: skip
+            for index in np.flatnonzero(np.isfinite(found[:, 0])).tolist():
+                links.append(Link(middle, frames[index], found[index], information[index]))
+        return links
 
 
 def _asked(poses: Floats) -> dict[int, list[int]]:
