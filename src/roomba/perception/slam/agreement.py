@@ -17,7 +17,7 @@ from roomba.perception.slam.pose_graph import Link, composed, relative_to
 
 Floats = NDArray[np.float64]
 
-_FAR: Final = 1.0
+_FAR: Final = 2.0
 """m; a link that moves its child farther than this must be backed."""
 NEIGHBOURS: Final = 3
 """Submaps; a link is backed by one of another child that is so few submaps away."""

@@ -29,8 +29,8 @@ def moved_by(child: int, x: float, y: float = 0.0, turn: float = 0.0, parent: in
     return Link(parent, child, relative_to(CHAIN[parent][None], there[None])[0], SURE)
 
 
-@pytest.mark.parametrize(("x", "far"), [(0.9, False), (-0.9, False), (1.1, True), (-4.0, True)])
-def test_a_link_is_far_that_moves_its_child_by_more_than_a_metre(x: float, far: bool) -> None:
+@pytest.mark.parametrize(("x", "far"), [(0.9, False), (-1.9, False), (2.1, True), (-4.0, True)])
+def test_a_link_is_far_that_moves_its_child_by_more_than_two_metres(x: float, far: bool) -> None:
     assert is_far(moved_by(9, x), CHAIN) == far
 
 
