@@ -20,6 +20,7 @@ from roomba.configuration.frozen import (
     read_yaml,
     validated,
 )
+from roomba.configuration.lidars import with_model
 from roomba.vocabulary import FanLevel
 
 FASTEST_SPEED: Final = 3.0
@@ -123,13 +124,44 @@ class BatteryConfig(Frozen):
 
 
 class LidarConfig(Frozen):
-    """The lidar: beams evenly all around, beam 0 ahead, counter-clockwise; ranges in m."""
+    """The lidar: beams evenly spaced, counter-clockwise; ranges in m, times in s.
 
+    One that looks all around, ``field`` 360 degrees, has beam 0 ahead; another one's middle is
+    ahead. It takes ``sweep_time`` from its first beam to where a next one would be; with 0 all are
+    measured at once. ``model`` is the file of ``data/configuration/lidars`` whose numbers stand
+    for what is not given.
+    """
+
+    model: str = "ideal_12m"
     beams: Annotated[int, Field(ge=8, le=4096)] = 360
+    field: Annotated[float, Field(ge=10.0, le=360.0)] = 360.0
     min_range: Positive = 0.15
     max_range: Positive = 12.0
     rate: Positive = 10.0
+    sweep_time: NotNegative = 0.0
     mount_height: Positive = 0.085
+
+    @property
+    def beam_step(self) -> float:
+        """Angle from one beam to the next, rad."""
+        is_around = self.field == 360.0
+        return math.radians(self.field) / (self.beams if is_around else self.beams - 1)
+
+    @property
+    def first_angle(self) -> float:
+        """Where beam 0 points, rad, 0 ahead."""
+        return 0.0 if self.field == 360.0 else -0.5 * math.radians(self.field)
+
+    @property
+    def time_increment(self) -> float:
+        """Time from one beam to the next, s."""
+        return self.sweep_time / self.beams
+
+    @model_validator(mode="after")
+    def _sweeps_fit(self) -> LidarConfig:
+        if self.sweep_time > 1.0 / self.rate + 1e-9:
+            raise ValueError(f"expected a sweep_time of at most 1 / rate ({1.0 / self.rate:g} s)")
+        return self
 
     @model_validator(mode="after")
     def _ranges_in_order(self) -> LidarConfig:
@@ -431,4 +463,5 @@ def load_robot_config(path: Path) -> RobotConfig:
     raw = read_yaml(path)
     if isinstance(raw, dict):
         raw.pop(SIMULATION, None)
+        raw = with_model(raw)
     return validated(RobotConfig, raw, f"{path}: ", UNKNOWN)

@@ -7,9 +7,9 @@ The simulator alone reads them. What is true and known as well, such as the body
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from roomba.configuration.frozen import (
     Frozen,
@@ -20,7 +20,8 @@ from roomba.configuration.frozen import (
     read_yaml,
     validated,
 )
-from roomba.configuration.robot import SIMULATION, UNKNOWN, RobotConfig
+from roomba.configuration.lidars import LIDAR, lidar_file, with_model
+from roomba.configuration.robot import SIMULATION, UNKNOWN, LidarConfig, RobotConfig
 
 Sensors = Literal["ideal", "noisy"]
 
@@ -64,10 +65,54 @@ class SimulatedBattery(Frozen):
 
 
 class SimulatedLidar(Frozen):
-    """Errors of the lidar: m, and a share of the beams."""
+    """Errors of the lidar.
+
+    ``noise`` and ``noise_growth``
+        Standard deviation of a range r that meets a surface squarely: m, and m for r = 1 m; it is
+        noise + noise_growth r^2, as of a lidar that triangulates.
+    ``grazing_noise``
+        By how much of it that grows with 1 / cos(angle to the normal) - 1.
+    ``misses``
+        Share of the beams that have no range, whatever they meet.
+    ``range_step``, ``angle_rounding``
+        Ranges are rounded to such steps, m; a beam points so much, degrees in all, beside the angle
+        that is told.
+    ``spot``
+        Width of a beam, degrees: at an edge it has a range between two.
+    ``white_reach``
+        How far white paint is seen, m, if met squarely; others by reflectivity and angle; 0: all.
+    ``dark``, ``shiny``
+        Shares of a home's surfaces: black ones, and those that are seen only head on.
+    ``delay``
+        s; from the end of a sweep until it has come over the line.
+    """
 
     noise: NotNegative = 0.005
+    noise_growth: NotNegative = 0.0
+    grazing_noise: NotNegative = 0.0
     misses: Ratio = 0.01
+    range_step: NotNegative = 0.0
+    angle_rounding: NotNegative = 0.0
+    spot: NotNegative = 0.0
+    white_reach: NotNegative = 0.0
+    dark: Ratio = 0.0
+    shiny: Ratio = 0.0
+    delay: NotNegative = 0.0
+
+    @property
+    def is_simple(self) -> bool:
+        """Whether there is nothing but noise and beams that are missed."""
+        return not any(
+            (
+                self.noise_growth,
+                self.grazing_noise,
+                self.range_step,
+                self.angle_rounding,
+                self.spot,
+                self.white_reach,
+                self.delay,
+            )
+        )
 
 
 class SimulatedWheels(Frozen):
@@ -124,6 +169,28 @@ class SimulatedRobotConfig(RobotConfig):
         simulation = self.simulation.model_copy(update={"sensors": sensors})
         return self.model_copy(update={"simulation": simulation})
 
+    def with_lidar(self, model: str) -> SimulatedRobotConfig:
+        """Return the same robot with a lidar as sold, mounted as high; ConfigError for others."""
+        found = lidar_file(model)
+        known = {**found[LIDAR], "model": model, "mount_height": self.lidar.mount_height}
+        errors = validated(SimulatedLidar, found[SIMULATION], f"{model}: ")
+        simulation = self.simulation.model_copy(update={LIDAR: errors})
+        lidar = validated(LidarConfig, known, f"{model}: ")
+        return self.model_copy(update={LIDAR: lidar, SIMULATION: simulation})
+
+    @property
+    def is_swept(self) -> bool:
+        """Whether the lidar is simulated beam by beam: it turns, or has errors that need it."""
+        lidar, errors = self.lidar, self.simulation.lidar
+        return lidar.sweep_time > 0.0 or lidar.field < 360.0 or not errors.is_simple
+
+    @model_validator(mode="after")
+    def _scans_arrive_in_time(self) -> SimulatedRobotConfig:
+        period = 1.0 / self.lidar.rate
+        if self.simulation.lidar.delay > period + 1e-9:
+            raise ValueError(f"expected simulation.lidar.delay of at most 1 / rate ({period:g} s)")
+        return self
+
 
 def pickup_share(brush: float, fan: float) -> float:
     """Return the share that one pass picks up, of those that brush and fan would alone: 0..1."""
@@ -137,6 +204,21 @@ def load_simulated_config(path: Path, simulation: Path) -> SimulatedRobotConfig:
     Raises :class:`ConfigError` with the reason.
     """
     raw = read_yaml(path)
-    if isinstance(raw, dict) and SIMULATION not in raw:
-        raw[SIMULATION] = load_config(SimulationConfig, simulation)
+    if isinstance(raw, dict):
+        if SIMULATION not in raw:
+            shipped = load_config(SimulationConfig, simulation)
+            raw[SIMULATION] = shipped.model_dump(exclude_unset=True)
+        raw = _with_errors_of_model(with_model(raw))
     return validated(SimulatedRobotConfig, raw, f"{path}: ", UNKNOWN)
+
+
+def _with_errors_of_model(raw: dict[str, Any]) -> dict[str, Any]:
+    """Return a robot's file with all errors of its lidar's model, but for those that it has."""
+    lidar, simulation = raw.get(LIDAR), raw[SIMULATION]
+    if not isinstance(lidar, dict) or "model" not in lidar or not isinstance(simulation, dict):
+        return raw
+    own = simulation.get(LIDAR, {})
+    if not isinstance(own, dict):
+        return raw
+    errors = {**lidar_file(lidar["model"])[SIMULATION], **own}
+    return {**raw, SIMULATION: {**simulation, LIDAR: errors}}

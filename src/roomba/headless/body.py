@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import numpy as np
+
+from roomba.configuration.robot import LidarConfig
 from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.geometry import Pose
 from roomba.mission.docking.beams import StationBeams
@@ -18,7 +21,8 @@ class SimulatedBody:
     """One robot's body in one home.
 
     ``seen`` is the observation after the last tick, with the truth and what the sensors measured;
-    ``scans`` is the number of scans by then.
+    ``scans`` is the number of scans by then; ``has_late_scans`` says that scans are older than the
+    tick at which they come.
     """
 
     def __init__(
@@ -31,8 +35,8 @@ class SimulatedBody:
     ) -> None:
         """Put it on its station, or at ``start``; raises HomeError where it does not fit."""
         self.simulator = Simulator(home, robot, seed=seed, max_speed=max_speed, start=start)
-        lidar = robot.lidar
-        self.lidar = LidarModel.all_around(lidar.beams, lidar.min_range, lidar.max_range)
+        self.lidar = lidar_model(robot.lidar)
+        self.has_late_scans = robot.is_swept
         self._timing, self._usual = robot.timing, (robot.brush.duty, robot.fan.duty)
         self._wanted: tuple[float | None, float | None] = (None, None)
         self.seen = self.simulator.observe()
@@ -48,8 +52,9 @@ class SimulatedBody:
         return readings_of(seen, scan)
 
     def newest_scan(self) -> ScanReading:
-        """Return the newest scan, as if it were taken now."""
-        return ScanReading(self.seen.time, self.simulator.ranges, self.lidar)
+        """Return the newest scan; the stamp of one that takes time is that of its first beam."""
+        stamp = self.seen.scan_stamp if self.has_late_scans else self.seen.time
+        return ScanReading(stamp, self.simulator.ranges, self.lidar)
 
     def act(self, command: Command) -> None:
         """Carry out a command for one tick."""
@@ -66,6 +71,13 @@ class SimulatedBody:
         self.simulator.set_power(
             usual_brush if brush is None else brush, usual_fan if fan is None else fan
         )
+
+
+def lidar_model(config: LidarConfig) -> LidarModel:
+    """Return where the beams of a lidar in the middle of the robot go."""
+    angles = config.first_angle + np.arange(config.beams) * config.beam_step
+    reach = config.min_range, config.max_range
+    return LidarModel(angles, *reach, time_increment=config.time_increment)
 
 
 def readings_of(seen: Observation, scan: ScanReading | None) -> Readings:

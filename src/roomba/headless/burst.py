@@ -93,9 +93,8 @@ class Burst:
     def _may_run(self) -> bool:
         if len(self._rows) == 0 or self._brain.walking.is_under_way:
             return False
-        # A localizer's kernels take all beams as measured at once.
-        is_still = self._brain.localizer is None or self._body.lidar.time_increment == 0.0
-        return is_still and self._brain.keeper.place.is_calm
+        # A burst takes all beams as measured at once, where the robot is now.
+        return not self._body.has_late_scans and self._brain.keeper.place.is_calm
 
     # ---------------------------------------------------------------- taking over
 

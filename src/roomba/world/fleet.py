@@ -156,6 +156,7 @@ class Fleet:
         state.dirt.micrograms[row["dirt_at"] : row["dirt_end"]] = fresh.dirt.micrograms
         state.dirt.falls[row["falls_at"] : row["falls_end"]] = fresh.dirt.falls
         state.solid.robots[robots], state.ranges[robots] = fresh.solid.robots, fresh.ranges
+        state.made[robots], state.underway[robots] = fresh.made, fresh.underway
         # A seed puts off what moves, but all seeds' tracks are of the same length.
         tracks_at = state.solid.things["last_row"][things.start - 1] + 1 if things.start else 0
         state.tracks[tracks_at : tracks_at + len(fresh.tracks)] = fresh.tracks
@@ -299,6 +300,8 @@ class Fleet:
             "falls": state.dirt.falls,
             "tracks": state.tracks,
             "ranges": state.ranges,
+            "made": state.made,
+            "underway": state.underway,
         }
 
     def _place(self, starts: NDArray[np.float64] | None, robots_per_home: int) -> None:

@@ -81,7 +81,8 @@ class Observation:
     ``odometry`` and ``odometry_twist`` are by the wheel encoders, in the frame that the robot
     started in; ``angular_velocity`` (rad/s) and ``acceleration`` (m/s2, ahead) are the gyro's and
     accelerometer's. ``dirt_under`` is g under the body's disc, ``in_bin`` g in the bin, ``grains``
-    what the dirt sensor counts, 1/s, ``brush_current`` A. ``scans`` counts the lidar's scans.
+    what the dirt sensor counts, 1/s, ``brush_current`` A. ``scans`` counts the lidar's scans that
+    arrived; ``scan_stamp`` is when the first beam of the newest one was measured, s.
     """
 
     time: float
@@ -101,6 +102,7 @@ class Observation:
     grains: float
     brush_current: float
     scans: int
+    scan_stamp: float
 
 
 _CHAIR: Final = 0.40
@@ -253,6 +255,7 @@ class Simulator:
             grains=now["grains"],
             brush_current=now["brush_current"],
             scans=int(now["scans"]),
+            scan_stamp=now["scan_stamp"],
         )
 
     def set_power(self, brush: float | None = None, fan: float | None = None) -> None:

@@ -97,10 +97,7 @@ class SimBag:
         self._put("/ground_truth/pose", pose_message(now, seen.pose, _MAP), now)
         if seen.scans != self._scans:
             self._scans = seen.scans
-            # Taken when it was due, which may be a tick ago.
-            due = float(robot.simulator.numbers["next_scan"]) - 1.0 / config.lidar.rate
-            taken = min(max(due, 0.0), now)
-            scan = scan_message(taken, robot.simulator.ranges, config.lidar, _LASER)
+            scan = scan_message(seen.scan_stamp, robot.simulator.ranges, config.lidar, _LASER)
             self._put("/scan", scan, now)
         if now - self._battery_at >= _BATTERY_PERIOD - 1e-6:
             self._battery_at = now

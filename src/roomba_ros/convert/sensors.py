@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import math
 from collections.abc import Iterable
 
 import numpy as np
@@ -41,14 +40,14 @@ _UNKNOWN = -1.0
 def scan_message(
     now: float, ranges: NDArray[np.float32], config: LidarConfig, frame_id: str
 ) -> LaserScan:
-    """Return a scan, float32 [beams], m, all around counter-clockwise from ahead."""
-    turn = 2.0 * math.pi / len(ranges)
+    """Return a scan, float32 [beams], m, counter-clockwise; ``now``: when its first beam was."""
+    first, step = config.first_angle, config.beam_step
     return LaserScan(
         header=header(now, frame_id),
-        angle_min=0.0,
-        angle_max=2.0 * math.pi - turn,
-        angle_increment=turn,
-        time_increment=0.0,
+        angle_min=first,
+        angle_max=first + step * (len(ranges) - 1),
+        angle_increment=step,
+        time_increment=config.time_increment,
         scan_time=1.0 / config.rate,
         range_min=config.min_range,
         range_max=config.max_range,

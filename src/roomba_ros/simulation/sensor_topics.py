@@ -163,7 +163,8 @@ class SensorTopics:
             self._scans = seen.scans
             if self._scan.get_num_connections() > 0:
                 ranges = self._simulator.ranges
-                self._scan.publish(scan_message(now, ranges, self._config.lidar, self._laser))
+                taken = now - (seen.time - seen.scan_stamp if self._config.is_swept else 0.0)
+                self._scan.publish(scan_message(taken, ranges, self._config.lidar, self._laser))
 
 
 def _topic(

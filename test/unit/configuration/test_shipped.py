@@ -40,7 +40,7 @@ def unset(model: BaseModel, name: str = "") -> Iterator[str]:
 
 
 def test_every_shipped_file_is_of_a_model() -> None:
-    assert {path.stem for path in CONFIGURATION.glob("*")} == set(MODELS)
+    assert {path.stem for path in CONFIGURATION.glob("*.yaml")} == set(MODELS)
 
 
 @pytest.mark.parametrize("name", MODELS)
@@ -50,7 +50,9 @@ def test_the_file_says_what_the_library_takes_without_a_file(name: str) -> None:
 
 @pytest.mark.parametrize("name", MODELS)
 def test_the_file_has_every_number(name: str) -> None:
-    assert list(unset(load_config(MODELS[name], CONFIGURATION / f"{name}.yaml"))) == []
+    found = list(unset(load_config(MODELS[name], CONFIGURATION / f"{name}.yaml")))
+    # The lidar's numbers stand in files of their own, lidars/NAME.yaml.
+    assert [number for number in found if number.split(".")[0] != "lidar"] == []
 
 
 @pytest.mark.parametrize("name", MODELS)

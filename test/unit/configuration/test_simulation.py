@@ -23,8 +23,9 @@ def test_the_shipped_files_say_what_the_library_takes_without_a_file() -> None:
 
 def test_the_shipped_file_has_every_value() -> None:
     raw = load_config(SimulationConfig, SHIPPED)
-    assert raw.model_fields_set == set(SimulationConfig.model_fields)
-    for name in SimulationConfig.model_fields.keys() - {"sensors"}:
+    parts = set(SimulationConfig.model_fields) - {"lidar"}  # see test_lidars.py
+    assert raw.model_fields_set == parts
+    for name in parts - {"sensors"}:
         part = getattr(raw, name)
         assert part.model_fields_set == set(type(part).model_fields), name
 

@@ -1,4 +1,4 @@
-"""The lidar: a noisy scan over the plan, and how far its ranges are off."""
+"""The lidar: noisy scans over the plan, and how far its ranges are off."""
 
 from __future__ import annotations
 
@@ -27,23 +27,37 @@ from roomba.world.simulator import Simulator
 
 _STAND = Pose(1.1, 1.4, 0.4)
 """A place in the flat from which doors and other rooms are seen."""
+_SOLD = "neato"
+_MOST_LINES = 20
+"""Beams that were lost are drawn one by one, if they are no more."""
 _BINS = np.arange(-20.0, 20.1, 1.0)
 """mm"""
 
 
 @drawn
 def picture_of_lidar(home: Home, stand: Pose = _STAND, scans: int = 100) -> Figure:
-    """Draw one scan over the plan, and the errors of all ranges of so many scans."""
+    """Draw one scan and one of a lidar as sold, and the errors of all ranges of so many scans."""
     config = SimulatedRobotConfig()
     world = Simulator(home, config, seed=1, start=stand)
     exact = Lidar.of(home, config.lidar).scan(np.array([[stand.x, stand.y, stand.theta]]))[0]
     measured = np.array([_next_scan(world) for _ in range(scans)])
-    figure = empty_figure(1150, 520)
-    plan, errors = figure.subplots(1, 2, width_ratios=[1.25, 1.0])
-    show_floor_plan(plan, home, area_of(home))
-    _draw_scan(plan, stand, measured[0], exact)
+    figure = empty_figure(1700, 520)
+    plan, sold, errors = figure.subplots(1, 3, width_ratios=[1.25, 1.25, 1.0])
+    for axes, title, scan in (
+        (plan, "One scan", measured[0]),
+        (sold, "One scan of a Neato's lidar", _scan_of(home, config.with_lidar(_SOLD), stand)),
+    ):
+        show_floor_plan(axes, home, area_of(home))
+        _draw_scan(axes, stand, scan, exact)
+        axes.set_title(title)
     _draw_errors(errors, measured, exact, config.simulation.lidar)
     return figure
+
+
+def _scan_of(home: Home, config: SimulatedRobotConfig, stand: Pose) -> NDArray[np.float32]:
+    world = Simulator(home, config, seed=1, start=stand)
+    world.advance(Twist(), config.timing.world_step, 20)
+    return world.ranges
 
 
 def _next_scan(world: Simulator) -> NDArray[np.float32]:
@@ -65,10 +79,13 @@ def _draw_scan(
         markersize=4.0,
         label=f"{np.count_nonzero(hit)} ranges",
     )
+    label = f"{len(lost)} beams lost"
+    if len(lost) > _MOST_LINES:
+        axes.plot([], [], "x", color=RED, label=label)
+        lost = lost[:0]
     for number, beam in enumerate(lost):
         x = stand.x + exact[beam] * math.cos(angles[beam])
         y = stand.y + exact[beam] * math.sin(angles[beam])
-        label = f"{len(lost)} beams lost" if number == 0 else None
         axes.plot(
             [stand.x, x],
             [stand.y, y],
@@ -76,13 +93,12 @@ def _draw_scan(
             color=RED,
             linewidth=1.2,
             marker="x",
-            label=label,
+            label=label if number == 0 else None,
             markevery=[1],
             markersize=7.0,
             markeredgewidth=2.0,
         )
     draw_robot(axes, stand)
-    axes.set_title("One scan")
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.11), ncols=2, columnspacing=3.0)
 
 

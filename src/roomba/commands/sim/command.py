@@ -174,6 +174,8 @@ def _again(trial: Trial) -> str:
     usual = Trial(home=RANDOM)
     if trial.sensors is not None:
         words += ["--sensors", trial.sensors]
+    if trial.lidar is not None:
+        words += ["--lidar", trial.lidar]
     if trial.things:
         words += ["--things", str(trial.things)]
     if trial.shut_doors:

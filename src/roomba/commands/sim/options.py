@@ -12,6 +12,7 @@ from typing import Any, Final, NoReturn
 
 from roomba.commands.sim.trial import MOST_THINGS, RANDOM, Trial, UsageError
 from roomba.commands.spelling import spelled
+from roomba.configuration.lidars import lidar_models
 from roomba.geometry import Pose
 from roomba.mission.cleaning.request import MOST_PASSES, CleanRefusedError, CleanRequest
 from roomba.vocabulary import CleanMode, FanLevel
@@ -45,6 +46,7 @@ def options_of(arguments: list[str] | None) -> SimOptions:
         seed=given.seed,
         request=_request_of(given),
         sensors=given.sensors,
+        lidar=given.lidar,
         no_go=tuple(_rectangle("--no-go", corners) for corners in given.no_go),
         things=given.things,
         shut_doors=given.shut_doors,
@@ -148,6 +150,13 @@ def _add_circumstances(parser: argparse.ArgumentParser) -> None:
         type=_choice("noisy", "ideal"),
         metavar="noisy|ideal",
         help="default: as the configuration says",
+    )
+    models = lidar_models()
+    how.add_argument(
+        "--lidar",
+        type=_choice(*models),
+        metavar="NAME",
+        help=f"a lidar as sold: {', '.join(models)} (default: as the configuration says)",
     )
     how.add_argument(
         "--things",

@@ -172,6 +172,8 @@ def robot_config_of(trial: Trial) -> SimulatedRobotConfig:
     if trial.bin is not None:
         brush = config.brush.model_copy(update={"bin_capacity": trial.bin})
         config = config.model_copy(update={"brush": brush})
+    if trial.lidar is not None:
+        config = config.with_lidar(trial.lidar)
     if trial.sensors is None:
         return config
     return config.with_sensors(trial.sensors)

@@ -69,6 +69,7 @@ def first_state(
         world["falls_end"], world["things_end"] = len(falls), len(things)
         robots_at, dirt_at = robots_at + robots_per_home, dirt_at + dirt[home].size
     robots = first_robots(config, seeds, robots_per_home, max_speed)
+    swept = config.lidar.beams if config.is_swept else 0
     return State(
         homes=layout.homes,
         worlds=worlds,
@@ -88,6 +89,8 @@ def first_state(
         edges=layout.edges,
         tracks=np.concatenate([*tracks, np.zeros((0, 5))]),
         ranges=np.full((len(robots), config.lidar.beams), np.inf, np.float32),
+        made=np.full((len(robots), swept), np.inf, np.float32),
+        underway=np.full((len(robots), swept), np.inf, np.float32),
     )
 
 

@@ -13,6 +13,7 @@ from roomba.world.engine.fall_kernels import let_dirt_fall
 from roomba.world.engine.ground_kernels import feel_ground, ground_at
 from roomba.world.engine.lidar.projection import ScanBuffers
 from roomba.world.engine.lidar.scan_kernels import is_scan_due, scan
+from roomba.world.engine.lidar.sweep_kernels import sweep
 from roomba.world.engine.state.arrays import Row, Rows, State
 from roomba.world.engine.state.compilation import entry, part
 from roomba.world.engine.station_kernels import sense_station
@@ -47,7 +48,10 @@ def advance(
             world.time += dt
             let_dirt_fall(state.dirt, home, world)
             for robot in range(world.robots_at, world.robots_end):
-                if is_scan_due(world, state.solid.robots[robot], row.scan_period):
+                if row.is_swept > 0.0:
+                    scans = state.made, state.underway, state.ranges
+                    sweep(state.solid, home, world, robot, row, quantiles, scans, dt)
+                elif is_scan_due(world, state.solid.robots[robot], row.scan_period):
                     scan(
                         state.solid,
                         state.edges,
@@ -75,6 +79,7 @@ def step_robot(
     solid = state.solid
     body = solid.robots[robot]
     x, y, theta = body.x, body.y, body.theta
+    body.before_x, body.before_y, body.before_theta = x, y, theta
     ground = ground_at(solid.cells, home, x, y)
     length, turn = drive(solid, home, world, robot, numbers, quantiles, ground, dt)
     feel_bumper(solid, home, world, robot, numbers.radius)

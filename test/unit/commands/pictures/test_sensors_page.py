@@ -36,6 +36,7 @@ def numbers() -> list[tuple[str, str, object]]:
         for section in SECTIONS
         if hasattr(numbers, section)
         for name, value in getattr(numbers, section).model_dump().items()
+        if not isinstance(value, str)
     ]
 
 

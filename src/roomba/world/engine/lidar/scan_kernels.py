@@ -51,6 +51,7 @@ def scan(
     """Fill the robot's row of ``ranges`` with what its lidar measures now."""
     body = solid.robots[robot]
     body.scans += 1
+    body.scan_stamp = world.time
     if body.lidar_blocked > 0.0:
         for beam in range(ranges.shape[1]):
             ranges[robot, beam] = np.float32(math.inf)

@@ -172,6 +172,19 @@ ROBOT: Final = np.dtype(
         ("beams", "i8"),  # of the station, see Infrared
         ("scans", "i8"),  # how many the lidar has made
         ("next_scan", "f8"),
+        ("scan_stamp", "f8"),  # when the first beam of the newest scan was measured
+        # a sweep of a lidar that turns while it measures, see sweep_kernels
+        ("before_x", "f8"),  # the pose before the last step
+        ("before_y", "f8"),
+        ("before_theta", "f8"),
+        ("sweeps", "f8"),  # 1 while one is made
+        ("sweep_start", "f8"),
+        ("next_beam", "f8"),
+        ("last_range", "f8"),  # exact, of the beam before
+        ("sweep_key", "u8"),
+        ("is_underway", "f8"),  # 1 while one is on the line
+        ("underway_stamp", "f8"),
+        ("arrival", "f8"),
         # what is its own: chance, and the errors of its parts
         ("random", "u8"),
         ("wheel_left_size", "f8"),  # 1 without error
@@ -287,3 +300,7 @@ class State(NamedTuple):
     """[rows, 5]: time, x, y, theta, present; see :mod:`roomba.world.home.moving`."""
     ranges: NDArray[np.float32]
     """[robots, beams]: the last scans."""
+    made: NDArray[np.float32]
+    """[robots, beams]: the sweeps that are being made; no beams if all are measured at once."""
+    underway: NDArray[np.float32]
+    """The same: those on the line."""

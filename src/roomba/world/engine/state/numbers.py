@@ -81,6 +81,20 @@ def numbers_of(config: SimulatedRobotConfig) -> Rows:
         "range_noise": noise * truth.lidar.noise,
         "misses": noise * truth.lidar.misses,
         "lidar_height": lidar.mount_height,
+        "is_swept": 1.0 if config.is_swept else 0.0,
+        "first_angle": lidar.first_angle,
+        "beam_step": lidar.beam_step,
+        "sweep_time": lidar.sweep_time,
+        "time_increment": lidar.time_increment,
+        "scan_delay": truth.lidar.delay,
+        "noise_growth": noise * truth.lidar.noise_growth,
+        "grazing_noise": noise * truth.lidar.grazing_noise,
+        "range_step": noise * truth.lidar.range_step,
+        "angle_rounding": noise * math.radians(truth.lidar.angle_rounding),
+        "spot": noise * math.radians(0.5 * truth.lidar.spot),
+        "white_reach": noise * truth.lidar.white_reach,
+        "dark": truth.lidar.dark,
+        "shiny": truth.lidar.shiny,
     }
     for name, angle in zip("abcd", config.cliff.angles, strict=True):
         fields[f"cliff_{name}_ahead"] = config.cliff.radius * math.cos(math.radians(angle))

@@ -1,0 +1,259 @@
+"""Compiled lidar that turns while it measures: each beam from its own pose, with its own errors.
+
+A sweep begins at the lidar's rhythm; in each step of the world those beams are measured that are
+due by then. A whole sweep waits for the line's delay, and is then the newest scan; its stamp is the
+time of its first beam.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.angles import wrapped
+from roomba.world.engine.lidar.ray_kernels import ray_to_cells, ray_to_movable
+from roomba.world.engine.state.arrays import Row, Solid
+from roomba.world.engine.state.compilation import part
+from roomba.world.engine.state.random_kernels import next_bits
+
+Floats = NDArray[np.float32]
+
+_SLACK: Final = 1e-9
+"""s; a beam is due when the time is as near to it as this."""
+_EDGE: Final = 0.10
+"""m; a beam whose range differs by more from the last one's may lie on an edge."""
+PATCH: Final = 0.7
+"""m; side of the squares in which the surfaces of a home are of one reflectivity (assumed)."""
+_DARK: Final = 0.04
+"""Reflectivity of black leather, black lacquer, dark fabric in the infrared (assumed)."""
+_LEAST, _MOST = 0.35, 0.9
+"""Reflectivity of all else: wood and fabrics to white paint (assumed)."""
+_SQUARE: Final = 0.96
+"""Cosine; a shiny surface is seen when it is met as squarely as this, within 16 degrees."""
+_FADE: Final = 0.08
+"""Share of the reach by which a faint echo comes and goes (assumed)."""
+_FLATTEST: Final = 0.1
+"""Cosine; no beam counts as more grazing than this."""
+_MOVABLE: Final = 0.6
+"""Reflectivity of what is no part of the home (assumed)."""
+_UNIT_16: Final = 1.0 / (1 << 16)
+_UNIT_20: Final = 1.0 / (1 << 20)
+
+
+@part
+def sweep(
+    solid: Solid,
+    home: Row,
+    world: Row,
+    robot: int,
+    numbers: Row,
+    quantiles: Floats,
+    scans: tuple[Floats, Floats, Floats],
+    dt: float,
+) -> None:
+    """Measure what is due in the step of ``dt`` s that ends now; deliver what has waited.
+
+    ``scans``, float32 [robots, beams] each: the sweep that is made, one that is on the line, and
+    the newest that arrived.
+    """
+    body = solid.robots[robot]
+    made, underway, arrived = scans
+    beams = made.shape[1]
+    while True:
+        if body.sweeps == 0.0 and not begin_sweep(world, body, numbers, dt):
+            break
+        due = beams
+        if numbers.time_increment > 0.0:
+            due = math.floor((world.time - body.sweep_start + _SLACK) / numbers.time_increment) + 1
+            due = min(due, beams)
+        measure_beams(solid, home, world, robot, numbers, quantiles, made, due, dt)
+        if due < beams:
+            break
+        # The delay is no longer than the period: what was on the line has arrived by now.
+        if body.is_underway > 0.0:
+            deliver(body, robot, underway, arrived)
+        for beam in range(beams):
+            underway[robot, beam] = made[robot, beam]
+        body.is_underway, body.underway_stamp = 1.0, body.sweep_start
+        body.arrival = body.sweep_start + numbers.sweep_time + numbers.scan_delay
+        body.sweeps = 0.0
+    if body.is_underway > 0.0 and body.arrival <= world.time + _SLACK:
+        deliver(body, robot, underway, arrived)
+
+
+@part
+def begin_sweep(world: Row, body: Row, numbers: Row, dt: float) -> bool:
+    """Begin a sweep if it is time for one; sweeps before this step stay missed."""
+    period = numbers.scan_period
+    late = world.time - dt - body.next_scan
+    if late > _SLACK:
+        body.next_scan += math.ceil((late - _SLACK) / period) * period
+    if body.next_scan > world.time + _SLACK:
+        return False
+    body.sweeps, body.sweep_start, body.next_beam = 1.0, body.next_scan, 0.0
+    body.next_scan += period
+    body.last_range = math.inf
+    body.sweep_key = next_bits(body) if numbers.noisy > 0.0 else np.uint64(0)
+    return True
+
+
+@part
+def deliver(body: Row, robot: int, underway: Floats, arrived: Floats) -> None:
+    """Let the sweep on the line be the newest scan."""
+    for beam in range(arrived.shape[1]):
+        arrived[robot, beam] = underway[robot, beam]
+    body.scans += 1
+    body.scan_stamp = body.underway_stamp
+    body.is_underway = 0.0
+
+
+@part
+def measure_beams(
+    solid: Solid,
+    home: Row,
+    world: Row,
+    robot: int,
+    numbers: Row,
+    quantiles: Floats,
+    ranges: Floats,
+    due: int,
+    dt: float,
+) -> None:
+    """Measure the beams from the next one to before ``due``, each where the robot was at its time.
+
+    Between the poses before and after the step the body goes along an arc.
+    """
+    body = solid.robots[robot]
+    turn = wrapped(body.theta - body.before_theta)
+    chord_x, chord_y = body.x - body.before_x, body.y - body.before_y
+    for beam in range(int(body.next_beam), due):
+        time = body.sweep_start + beam * numbers.time_increment
+        share = min(max((time - (world.time - dt)) / dt, 0.0), 1.0)
+        # The chord to a point of an arc: shorter than that to its end, and turned against it.
+        bend = 0.5 * (share - 1.0) * turn
+        scale = share if abs(turn) < 1e-9 else math.sin(0.5 * share * turn) / math.sin(0.5 * turn)
+        cosine, sine = scale * math.cos(bend), scale * math.sin(bend)
+        x = body.before_x + cosine * chord_x - sine * chord_y
+        y = body.before_y + sine * chord_x + cosine * chord_y
+        theta = body.before_theta + share * turn
+        ranges[robot, beam] = measure(
+            solid, home, world, robot, numbers, quantiles, beam, x, y, theta
+        )
+    body.next_beam = due
+
+
+@part
+def hashed(bits: np.uint32) -> np.uint32:
+    """Return Wellons' "lowbias32" of 32 bits."""
+    bits = np.uint32(np.uint32(bits ^ (bits >> np.uint32(16))) * np.uint32(0x7FEB352D))
+    bits = np.uint32(np.uint32(bits ^ (bits >> np.uint32(15))) * np.uint32(0x846CA68B))
+    return np.uint32(bits ^ (bits >> np.uint32(16)))
+
+
+@part
+def reflectivity(x: float, y: float, numbers: Row) -> float:
+    """Return the share of light that the home gives back at a place, 0..1; below 0 it is shiny.
+
+    The same for each robot and run: the place alone decides, m from the grid's corner.
+    """
+    column, row = math.floor(x / PATCH), math.floor(y / PATCH)
+    bits = hashed(np.uint32(column * 73856093 + row * 19349663 + 12345))
+    chance = float(bits >> np.uint32(12)) * _UNIT_20
+    if chance < numbers.dark:
+        return _DARK
+    if chance < numbers.dark + numbers.shiny:
+        return -1.0
+    return _LEAST + (_MOST - _LEAST) * float(bits & np.uint32(4095)) / 4096.0
+
+
+@part
+def is_seen(found: float, facing: float, reflected: float, reach: float, fading: float) -> bool:
+    """Tell whether enough light comes back: as reflectivity times cosine over squared range.
+
+    ``reach``, m, is that of white paint met squarely; ``fading`` is a normal random number.
+    """
+    if reflected < 0.0:
+        return facing > _SQUARE
+    return found < reach * math.sqrt(reflected / _MOST * facing) * (1.0 + _FADE * fading)
+
+
+@part
+def ray(
+    solid: Solid,
+    home: Row,
+    world: Row,
+    robot: int,
+    numbers: Row,
+    x: float,
+    y: float,
+    angle: float,
+) -> tuple[float, float, bool]:
+    """Return the exact range, m, the cosine to the normal, and whether it is the home's own."""
+    cosine, sine = math.cos(angle), math.sin(angle)
+    found, facing = ray_to_cells(solid.cells, home, x, y, cosine, sine, numbers.max_range)
+    nearer, square = ray_to_movable(
+        solid, world, robot, x, y, cosine, sine, numbers.lidar_height, numbers.radius
+    )
+    if nearer < found:
+        return nearer, square, False
+    return found, facing, True
+
+
+@part
+def measure(
+    solid: Solid,
+    home: Row,
+    world: Row,
+    robot: int,
+    numbers: Row,
+    quantiles: Floats,
+    beam: int,
+    x: float,
+    y: float,
+    theta: float,
+) -> float:
+    """Return what one beam measures from a pose, m: inf without an echo, -inf too near."""
+    body = solid.robots[robot]
+    if body.lidar_blocked > 0.0:
+        return math.inf
+    key = np.uint32(body.sweep_key & np.uint64(0xFFFFFFFF))
+    first = hashed(np.uint32(key + np.uint32(beam) * np.uint32(0x9E3779B9)))
+    second = hashed(np.uint32(first ^ np.uint32(0x85EBCA6B)))
+    third = hashed(np.uint32(second ^ np.uint32(0xC2B2AE35)))
+    aside = numbers.angle_rounding * (float(second & np.uint32(65535)) * _UNIT_16 - 0.5)
+    angle = theta + numbers.first_angle + beam * numbers.beam_step + aside
+    found, facing, is_home = ray(solid, home, world, robot, numbers, x, y, angle)
+    last, body.last_range = body.last_range, found
+    if numbers.spot > 0.0 and abs(found - last) > _EDGE:
+        right, _, _ = ray(solid, home, world, robot, numbers, x, y, angle - numbers.spot)
+        left, _, _ = ray(solid, home, world, robot, numbers, x, y, angle + numbers.spot)
+        if abs(left - right) > _EDGE and left + right < math.inf:
+            # The spot lies on both sides of an edge: as much of either as chance has it.
+            share = float(second >> np.uint32(16)) * _UNIT_16
+            found = share * left + (1.0 - share) * right
+    if found > numbers.max_range:
+        return math.inf
+    if numbers.noisy > 0.0:
+        if float(first >> np.uint32(12)) * _UNIT_20 < numbers.misses:
+            return math.inf
+        if numbers.white_reach > 0.0:
+            # A little inside of what was met: its face may lie on the border of two patches.
+            into = found + 0.01
+            end_x, end_y = x + into * math.cos(angle), y + into * math.sin(angle)
+            reflected = _MOVABLE
+            if is_home:
+                reflected = reflectivity(end_x - home.left, end_y - home.bottom, numbers)
+            fading = float(quantiles[third & np.uint32(4095)])
+            if not is_seen(found, facing, reflected, numbers.white_reach, fading):
+                return math.inf
+        sigma = numbers.range_noise + numbers.noise_growth * found * found
+        sigma *= 1.0 + numbers.grazing_noise * (1.0 / max(facing, _FLATTEST) - 1.0)
+        found += sigma * float(quantiles[first & np.uint32(4095)])
+        if numbers.range_step > 0.0:
+            found = numbers.range_step * math.floor(found / numbers.range_step + 0.5)
+    if found < numbers.min_range:
+        return -math.inf
+    return found if found < numbers.max_range else math.inf
