@@ -118,13 +118,13 @@ def _asked(poses: Floats) -> dict[int, list[int]]:
         if before >= 0:
             asked[before].append(frame)
         away = np.hypot(*(poses[middles, :2] - poses[frame, :2]).T)
+        others = np.flatnonzero((away <= _NEARBY) & (np.abs(middles - frame) > _APART))
         chosen: list[int] = []
-        for index in np.argsort(away, kind="stable").tolist():
-            if away[index] > _NEARBY or len(chosen) == _MOST_VISITS:
-                break
+        for index in others[np.argsort(away[others], kind="stable")].tolist():
             middle = int(middles[index])
-            is_other = abs(middle - frame) > _APART
-            if is_other and all(abs(middle - other) > _BETWEEN for other in chosen):
+            if all(abs(middle - other) > _BETWEEN for other in chosen):
                 chosen.append(middle)
                 asked[int(firsts[index])].append(frame)
+            if len(chosen) == _MOST_VISITS:
+                break
     return asked
