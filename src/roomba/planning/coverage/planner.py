@@ -32,12 +32,12 @@ __all__ = ["CoverageFloor", "CoveragePlan", "CoveragePlanner"]
 
 Line = NDArray[np.float64]
 
-_PIECE = 12.0
+_PIECE = 6.0
 """Widths of the tool; edges can be left for swaths about this often."""
 _OFF_MIDDLES = 0.2
 """cells; the tool is a whole number of cells wide, so that seams would lie on their middles, where
 it takes the least error of the drive to leave a whole row unswept."""
-_TURNING = 6.0
+_TURNING = 3.0
 """cells of way that a radian is worth when the way is polished."""
 _UNSWEPT = 1.0
 """cells of way that a cell of floor is worth."""

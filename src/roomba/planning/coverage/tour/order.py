@@ -32,7 +32,7 @@ _EVERYWHERE = 1e8
 class Weights:
     """What the order is to keep low: ``turning`` is the way, in cells, that a radian is worth."""
 
-    turning: float = 6.0
+    turning: float = 4.0
 
 
 def ordered(

@@ -10,8 +10,8 @@ from roomba.planning.compilation import part
 from roomba.planning.coverage.tour.costs import Costs, Tour, cost_of, tour_cost
 from roomba.planning.coverage.tour.moves import Trip, exchange, improve
 
-_MOST_ROUNDS = 12000
-_A_WHILE = 2000
+_MOST_ROUNDS = 100000
+_A_WHILE = 20000
 """rounds; the fewest, and how many without enough gain end the search."""
 _PAYS = 0.005
 """Share of the cost that these rounds must gain."""
