@@ -41,6 +41,9 @@ class ObservedRobot(Protocol):
     def explore(self) -> None:
         """Begin to look at what the map does not show yet."""
 
+    def go_to(self, x: float, y: float) -> None:
+        """Walk to a point, m; an errand under way is paused."""
+
     def dock(self) -> None:
         """Go to the charging station."""
 

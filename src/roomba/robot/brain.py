@@ -18,8 +18,8 @@ from roomba.geometry import Pose, Twist
 from roomba.grid import OccupancyMap
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.mission.inputs.senses import Senses
-from roomba.mission.mission import Mission, MissionStep
-from roomba.mission.phases.machine import Event
+from roomba.mission.mission import Mission
+from roomba.mission.phases.machine import Event, Phase
 from roomba.mission.walking.walk import Walk
 from roomba.perception.localization.localizer import Localizer
 from roomba.perception.matching.beams import LidarBeams
@@ -112,7 +112,11 @@ class Brain:
             return Command()
         senses = self.senses()
         step = mission.tick(senses)
-        self._finish_map(step)
+        if step.wants_whole_map:
+            self.finish_map()
+        if mission.state.drives or mission.state.phase is Phase.EMERGENCY:
+            # What was commanded later counts.
+            self.walking.end()
         wanted, cruise, looks_around = step.twist, self._max_speed, step.looks_around
         if self.walking.is_under_way:
             wanted, cruise = self.walking.tick(senses, self._max_speed)
@@ -153,6 +157,11 @@ class Brain:
             if newer is not None:
                 self._use(newer)
 
+    def use_rooms(self, rooms: Rooms | None, zones: Zones) -> None:
+        """Go on with other rooms and zones; raises RoombaError while there is no map."""
+        self._rooms, self._zones = rooms, zones
+        self.mission.use_context(self._context(self.mission.context.occupancy))
+
     def _begin(self) -> None:
         """Begin the mission, as soon as there is a map."""
         if not isinstance(self._known, MappingConfig):
@@ -168,10 +177,10 @@ class Brain:
         context = self._context(occupancy)
         self._mapped.go_on(context, self._surfaces(context))
 
-    def _finish_map(self, step: MissionStep) -> None:
-        """When all was seen go on with the whole map."""
+    def finish_map(self) -> None:
+        """Take the map that is being made for whole, and go on with it."""
         growing, mapper = self.growing, self.mapper
-        if growing is None or mapper is None or growing.is_whole or not step.wants_whole_map:
+        if growing is None or mapper is None or growing.is_whole:
             return
         growing.is_whole = True
         occupancy = mapper.finish()

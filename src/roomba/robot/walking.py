@@ -50,6 +50,10 @@ class Walking:
         self._walk = Walk(planner, self._robot.walk, obstacles, goal, senses)
         return self._walk
 
+    def end(self) -> None:
+        """End the walk under way, if there is one."""
+        self._walk = None
+
     def tick(self, senses: Senses, max_speed: float) -> tuple[Twist, float]:
         """Return the wanted twist, and the cruise speed, m/s; there must be a walk."""
         assert self._walk is not None

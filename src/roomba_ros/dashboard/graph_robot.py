@@ -27,6 +27,8 @@ from roomba.client.protocol import (
     ErrandOutcome,
     ExploringHandle,
     RequestRefusedError,
+    WalkHandle,
+    WalkOutcome,
 )
 from roomba.client.view import (
     MOST_ZONES,
@@ -42,7 +44,7 @@ from roomba.client.view import (
 from roomba.configuration.robot import RobotConfig
 from roomba.geometry import STANDSTILL, Twist
 from roomba.vocabulary import CleanMode, FanLevel
-from roomba_ros.client.ros_clean import RosVacuum
+from roomba_ros.client.ros_client import RosRobot
 from roomba_ros.convert.common import twist_message
 from roomba_ros.convert.page import zone_message_of
 from roomba_ros.dashboard.page_topics import PageTopics
@@ -62,16 +64,17 @@ _STOPS: Final = 3
 class GraphRobot:
     """Observes topics; commands by actions, services and ``cmd_vel``.
 
-    Publishes: ``cmd_vel`` (Twist, while it is driven by hand), and what :class:`RosVacuum` does.
+    Publishes: ``cmd_vel`` (Twist, while it is driven by hand), and what :class:`RosRobot` does.
     Calls: ``emergency_stop``, ``set_zone``, ``remove_zone``, ``rooms/rename``, ``rooms/join``,
-    ``rooms/split``, ``sim/spill``, ``sim/inject_fault``, and what :class:`RosVacuum` does.
+    ``rooms/split``, ``sim/spill``, ``sim/inject_fault``, and what :class:`RosRobot` does.
     """
 
     def __init__(self, config: RobotConfig) -> None:
         """Connect nothing yet."""
         self._config = config
         self._topics = PageTopics(config)
-        self._vacuum = RosVacuum()
+        self._vacuum = RosRobot()
+        self._walk: WalkHandle | None = None
         self._errand: CleanHandle | ExploringHandle | None = None
         self._last: CleanReport | None = None
         self._hand_lock = threading.Lock()
@@ -179,6 +182,17 @@ class GraphRobot:
         """Begin to look at what the map does not show yet."""
         self._begin(self._vacuum.explore())
 
+    def go_to(self, x: float, y: float) -> None:
+        """Walk to a point."""
+        if self._vacuum.vacuum().state == "cleaning":
+            self._vacuum.pause()
+        walk = self._vacuum.walk_to(x, y)
+        walk.next_feedback(_REFUSED_WITHIN)
+        report = walk.report()
+        if report is not None and report.outcome is WalkOutcome.REFUSED:
+            raise RequestRefusedError(report.message)
+        self._walk = walk
+
     def dock(self) -> None:
         """Go to the charging station."""
         _require_taken(self._vacuum.dock())
@@ -192,7 +206,10 @@ class GraphRobot:
         self._vacuum.resume()
 
     def stop(self) -> None:
-        """End the errand, and stay."""
+        """End the errand, or the walk, and stay."""
+        if self._walk is not None:
+            self._walk.cancel()
+            self._walk = None
         self._vacuum.stop()
 
     def locate(self) -> None:

@@ -78,7 +78,7 @@ def live_client(
         longest_burst=int(speed) if speed >= 2.0 else 0,
         empties_bin_after=math.inf,
     )
-    return LiveClient(home, mission, docking, rooms, speed)
+    return LiveClient(home, mission, rooms, speed)
 
 
 def _parser() -> argparse.ArgumentParser:

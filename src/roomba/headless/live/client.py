@@ -19,7 +19,6 @@ from roomba.client.view import (
     RobotView,
     ZoneView,
 )
-from roomba.configuration.docking import DockingConfig
 from roomba.errors import RoombaError
 from roomba.geometry import Pose, Twist
 from roomba.headless.cleaner import HeadlessMission
@@ -34,7 +33,6 @@ from roomba.headless.live.views import (
 )
 from roomba.headless.live.visits import Visits
 from roomba.mission.cleaning.request import CleanRequest
-from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.mission.phases.machine import Event, Phase
 from roomba.perception.rooms.rooms import Rooms, segment
 from roomba.perception.rooms.zones import Zone, ZoneKind, Zones
@@ -54,12 +52,11 @@ class LiveClient:
         self,
         home: Home,
         robot: HeadlessMission,
-        docking: DockingConfig,
         rooms: Rooms | None,
         speed: float,
     ) -> None:
         """Start nothing yet."""
-        self._home, self._docking = home, docking
+        self._home = home
         self._rooms, self._zones = rooms, Zones()
         self._lock = threading.Lock()
         self._versions = itertools.count(1)
@@ -145,6 +142,10 @@ class LiveClient:
 
         self._obey(begin)
 
+    def go_to(self, x: float, y: float) -> None:
+        """Walk to a point; an errand under way is paused."""
+        self._obey(lambda robot: _ignored(robot.brain.walk(x, y)))
+
     def dock(self) -> None:
         """Go to the charging station."""
         self._command(Event.DOCK)
@@ -158,8 +159,13 @@ class LiveClient:
         self._command(Event.RESUME)
 
     def stop(self) -> None:
-        """End the errand, and stay."""
-        self._command(Event.STOP)
+        """End the errand, or the walk, and stay."""
+
+        def stop(robot: HeadlessMission) -> None:
+            robot.brain.walking.end()
+            robot.mission.command(Event.STOP, robot.senses())
+
+        self._obey(stop)
 
     def locate(self) -> None:
         """Beep: a simulated robot has no speaker, the page shows it."""
@@ -239,19 +245,7 @@ class LiveClient:
         self._obey(use)
 
     def _use(self, robot: HeadlessMission, rooms: Rooms | None, zones: Zones) -> None:
-        before = robot.mission.context
-        robot.mission.use_context(
-            PlanningContext(
-                before.occupancy,
-                before.station,
-                robot.robot,
-                robot.config,
-                self._docking,
-                rooms,
-                zones,
-                is_growing=before.is_growing,
-            )
-        )
+        robot.brain.use_rooms(rooms, zones)
         self._rooms, self._zones = rooms, zones
 
     # ---------------------------------------------------------------- to play with
@@ -314,6 +308,7 @@ class LiveClient:
         exploration = robot.mission.take_exploration()
         if exploration is not None:
             self._last = exploration_report(exploration)
+            robot.brain.finish_map()
 
     def _follow_map(self, robot: HeadlessMission) -> None:
         """Take over a map that has changed."""
@@ -361,6 +356,10 @@ def _request_of(order: CleanOrder) -> CleanRequest:
             order.in_order,
         )
     )
+
+
+def _ignored(_: object) -> None:
+    """Take a value that is not needed."""
 
 
 def _made(make: Callable[[], _Value]) -> _Value:

@@ -148,6 +148,10 @@ def _add_errands(api: APIRouter, robot: ObservedRobot) -> None:
             f"/{name}", _obeying(command), methods=["POST"], summary=summary, name=name
         )
 
+    @api.post("/go", summary="Walk to a point")
+    def go_to(wish: PlaceWish) -> Answer:
+        return _obeyed(lambda: robot.go_to(wish.x, wish.y))
+
     @api.post("/emergency_stop", summary="Hold the drive until it is released")
     def emergency_stop(wish: StopWish) -> Answer:
         return _obeyed(lambda: robot.emergency_stop(wish.reason))

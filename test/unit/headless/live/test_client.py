@@ -98,6 +98,25 @@ def test_driving_by_hand_ends_with_silence(client: LiveClient) -> None:
     wait_for(stands, "the robot to stand")
 
 
+def test_it_goes_where_it_is_sent(client: LiveClient) -> None:
+    x, y = client.home().rooms[0].anchor
+    client.go_to(x, y)
+    wait_for(lambda: math.dist(client.robot().pose[:2], (x, y)) < 0.05, "the robot there")
+    with pytest.raises(RequestRefusedError, match=r"\w"):
+        client.go_to(500.0, 500.0)
+
+
+def test_the_emergency_stop_ends_a_walk(client: LiveClient) -> None:
+    client.go_to(*client.home().rooms[0].anchor)
+    wait_for(lambda: client.robot().speed > 0.1, "the robot on its way")
+    client.emergency_stop("a test")
+    client.release()
+    held = client.robot()
+    wait_for(lambda: client.robot().time > held.time + 3.0, "time to pass")
+    assert math.dist(client.robot().pose[:2], held.pose[:2]) < 0.2
+    assert client.robot().speed == 0.0
+
+
 def test_a_full_bin_is_said_and_emptied() -> None:
     client = live_client("studio", seed=1, speed=40.0, knows_map=True, bin_grams=3.0)
     client.start()
@@ -169,6 +188,7 @@ def test_without_a_map_it_explores_and_finds_rooms() -> None:
         wait_for(lambda: client.robot().last is not None, "the end of the exploration")
         layer = client.layer(LayerName.MAP)
         assert layer is not None
+        assert client.home().rooms
         assert np.count_nonzero(layer.cells == 1) > np.count_nonzero(first.cells == 1)
     finally:
         client.end()

@@ -1,6 +1,7 @@
 /** The robot's state in words that a person would say. */
 
 const SOON = 90; // s
+const MOVES = 0.02; // m/s
 
 /** Return the headline for a state. */
 export function headline(link, state) {
@@ -13,7 +14,7 @@ export function headline(link, state) {
   switch (vacuum.phase) {
     case "docked": return "On its station, ready";
     case "charging": return "Charging, then it goes on";
-    case "idle": return `Standing${room}`;
+    case "idle": return state.speed > MOVES ? `On its way${room}` : `Standing${room}`;
     case "undocking": return "Leaving its station";
     case "cleaning": return `Cleaning${room}${togo}`;
     case "exploring": return "Looking at what it does not know yet";

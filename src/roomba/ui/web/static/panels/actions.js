@@ -44,7 +44,7 @@ function show() {
   text($("clean"), chosen.length ? `Clean ${chosen.length} room${chosen.length > 1 ? "s" : ""}` : "Clean all");
   text($("pause"), isPaused ? "Go on" : "Pause");
   $("pause").disabled = stands || isHeld;
-  $("stop").disabled = stands || isHeld;
+  $("stop").disabled = (stands && !state?.speed) || isHeld;
   $("clean").disabled = isHeld;
   $("dock").disabled = phase === "docked" || isHeld;
   $("mode").disabled = chosen.length > 0;

@@ -12,6 +12,7 @@ export function tapped(x, y, px, py) {
   const room = get("home")?.rooms.find((one) => isInside(one.rings, x, y));
   const offers = [];
   if (room) offers.push([get("chosen").includes(room.name) ? `Leave out ${room.name}` : `Choose ${room.name}`, () => toggle(room.name)]);
+  offers.push(["Go here", () => wish("go", { x, y })]);
   offers.push(["Clean here", () => wish("clean", { mode: "spot", spot: [x, y], ...how() })]);
   offers.push(["Spill dirt", () => wish("play/spill", { x, y })]);
   offers.push(["Put a chair", () => wish("play/chair", { x, y })]);
