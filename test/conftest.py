@@ -25,11 +25,11 @@ signal.signal(signal.SIGINT, signal.default_int_handler)
 LONGEST_FIRST = (
     "test_clean.py",
     "test_map_topics.py",
-    "test_faults.py",
     "test_workspace.py",
-    "test_wheel.py",
     "test_library_set_up.py",
     "test_turn_camera.py",
+    "test_page.py",
+    "test_faults.py",
     "test_explore_with_person.py",
     "test_map_kept.py",
     "test_clean_while_mapping.py",

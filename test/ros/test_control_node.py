@@ -23,7 +23,7 @@ def test_ctrl_c_at_the_menu_ends_it(master: RosGraph) -> None:
 def test_a_wrong_choice_is_asked_again(master: RosGraph) -> None:
     menu = master.rosrun("control_node.py")
     menu.says("press 1-4", 30.0)
-    for wrong in ("11", "one", ""):
+    for wrong in ("12", "one", ""):
         menu.type(wrong)
     menu.end_of_input()
     assert menu.ends(20.0) == 0

@@ -63,7 +63,7 @@ def bag(tmp_path: Path) -> Path:
 def play(graph: RosGraph, bag: Path, map_wish: str, listener: Listener) -> None:
     """Play a bag to a new position node, and go on with the clock after its end."""
     node = graph.rosrun("position_pub_node.py", f"_map:={map_wish}")
-    player = graph.run("rosbag", "play", "--clock", "-k", "-q", "-d", "3", "-r", "3", str(bag))
+    player = graph.run("rosbag", "play", "--clock", "-k", "-q", "-d", "3", "-r", "2", str(bag))
 
     def is_over() -> bool:
         assert player.status is None, player.output

@@ -41,7 +41,7 @@ def picture_of_lidar(home: Home, stand: Pose = _STAND, scans: int = 100) -> Figu
     world = Simulator(home, config, seed=1, start=stand)
     exact = Lidar.of(home, config.lidar).scan(np.array([[stand.x, stand.y, stand.theta]]))[0]
     measured = np.array([_next_scan(world) for _ in range(scans)])
-    figure = empty_figure(1700, 520)
+    figure = empty_figure(1200, 400)
     plan, sold, errors = figure.subplots(1, 3, width_ratios=[1.25, 1.25, 1.0])
     for axes, title, scan in (
         (plan, "One scan", measured[0]),
