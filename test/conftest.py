@@ -22,14 +22,14 @@ settings.load_profile("project")
 # programs that they start: these would end after their deadlines only.
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
+TESTS = Path(__file__).resolve().parent
 LONGEST_FIRST = (
     "test_clean.py",
     "test_map_topics.py",
+    "test_faults.py",
     "test_workspace.py",
     "test_library_set_up.py",
     "test_turn_camera.py",
-    "test_page.py",
-    "test_faults.py",
     "test_explore_with_person.py",
     "test_map_kept.py",
     "test_clean_while_mapping.py",
@@ -48,8 +48,28 @@ LONGEST_FIRST = (
 """Files that take longest, so that no worker is left with one when the others have ended."""
 
 
+SLOW = (
+    "unit/benchmarks",
+    "unit/commands/map",
+    "unit/commands/pictures/test_pictures.py",
+    "unit/headless",
+    "unit/mission/test_mission.py",
+    "unit/mission/walking",
+    "unit/perception/floors",
+    "unit/perception/slam",
+    "unit/planning/coverage",
+    "unit/ui",
+    "unit/world/engine",
+    "unit/world/test_fleet.py",
+)
+"""Folders and files whose tests take two thirds of the time of all unit tests."""
+
+
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Let the files that take longest come first."""
+    """Let the files that take longest come first, and mark what is slow."""
+    for item in items:
+        if item.path.relative_to(TESTS).as_posix().startswith(SLOW):
+            item.add_marker(pytest.mark.slow)
     rank = {name: rank for rank, name in enumerate(LONGEST_FIRST)}
     items.sort(key=lambda item: rank.get(item.path.name, len(rank)))
 

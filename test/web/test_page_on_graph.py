@@ -7,10 +7,12 @@ import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+import pytest
 from fixtures.graph import RosGraph
 from fixtures.waiting import wait_until
 from playwright.sync_api import Page, sync_playwright
 
+pytestmark = pytest.mark.xdist_group("graph")
 WORKS_WITHIN = 60_000
 """ms of wall time for what the robot does by its own clock."""
 

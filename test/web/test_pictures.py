@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from pathlib import Path
 
 import cv2
 
-from roomba.commands.pictures.__main__ import main
-
 
 def test_the_page_is_drawn_in_both_sizes(tmp_path: Path) -> None:
-    assert main([str(tmp_path), "--only", "page", "page_phone"]) == 0
+    command = (sys.executable, "-m", "roomba.commands.pictures", str(tmp_path))
+    subprocess.run((*command, "--only", "page", "page_phone"), check=True, timeout=240.0)
     for name, width in (("page", 1280), ("page_phone", 390)):
         picture = cv2.imread(str(tmp_path / f"{name}.png"))
         assert picture is not None

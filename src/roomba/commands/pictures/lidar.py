@@ -112,5 +112,5 @@ def _draw_errors(
     normal = np.exp(-0.5 * (x / sigma) ** 2) / (sigma * math.sqrt(2.0 * math.pi))
     axes.plot(x, normal, color=INK, label=f"normal, σ = {sigma:g} mm")
     axes.set(xlabel="error of a range, mm", ylabel="share per mm")
-    axes.set_title(f"{len(errors)} ranges: σ = {errors.std():.2f} mm, mean {errors.mean():+.2f} mm")
+    axes.set_title(f"{len(errors)} ranges\nσ = {errors.std():.2f} mm, mean {errors.mean():+.2f} mm")
     axes.legend(loc="upper right")
