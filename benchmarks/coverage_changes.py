@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.coverage_floor import Disc
-from roomba.configuration.robot import BodyConfig
+from roomba.configuration.body import BodyConfig
 from roomba.geometry import Pose
 from roomba.grid import GridFrame
 from roomba.world.home.home import Door, Furniture, Home, MovingKind

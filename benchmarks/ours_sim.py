@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from benchmarks.floors import Floor, free_poses
 from benchmarks.peers.arena import SPEED, TURNING_SPEED
 from benchmarks.peers.protocol import Work
-from roomba.configuration.robot import LidarConfig
+from roomba.configuration.sensors import LidarConfig
 from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.geometry import Pose
 from roomba.grid import FREE, OCCUPIED, OccupancyMap

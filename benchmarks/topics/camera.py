@@ -16,7 +16,7 @@ from benchmarks.peers.boxes import boxes_of
 from benchmarks.peers.protocol import Work
 from benchmarks.record import Better, Record, gain
 from benchmarks.rounds import milliseconds
-from roomba.configuration.robot import CameraConfig
+from roomba.configuration.sensors import CameraConfig
 from roomba.files.shipped import HOMES
 from roomba.geometry import Pose
 from roomba.world.camera.camera import Camera, Scene

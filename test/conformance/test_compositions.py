@@ -11,7 +11,7 @@ from hypothesis import Phase as Stage
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from roomba.configuration.robot import BodyConfig
+from roomba.configuration.body import BodyConfig
 from roomba.geometry import Pose
 from roomba.mission.phases.machine import Phase
 from roomba.world.random.home import random_home

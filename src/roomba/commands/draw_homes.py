@@ -15,7 +15,7 @@ import cv2
 import numpy as np
 import shapely
 
-from roomba.configuration.robot import BodyConfig
+from roomba.configuration.body import BodyConfig
 from roomba.files.home_layer import LAYER_NAME, MAP_NAME, read_layer
 from roomba.files.occupancy_map import save_map
 from roomba.files.shipped import HOMES

@@ -2,12 +2,7 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-from typing import Annotated
-
-from pydantic import Field
-
-from roomba.configuration.frozen import Frozen, Positive, Ratio, load_config
+from roomba.configuration.frozen import Acute, AtLeastOne, Frozen, Positive, Ratio
 
 
 class DockingConfig(Frozen):
@@ -53,7 +48,7 @@ class DockingConfig(Frozen):
     blocked_wait: Positive = 2.0
     """Before the next attempt, so that what stands in the way can leave."""
 
-    max_attempts: Annotated[int, Field(ge=1)] = 4
+    max_attempts: AtLeastOne = 4
     beam_wait: Positive = 0.5
     """Without a beam it goes on for so long."""
     lost_timeout: Positive = 10.0
@@ -70,11 +65,11 @@ class DockingConfig(Frozen):
 
     place_tolerance: Positive = 0.08
     """Arriving at the staging place, or at one from which it looks for beams."""
-    turn_in_place_angle: Annotated[float, Field(gt=0.0, lt=1.6)] = 0.5
+    turn_in_place_angle: Acute = 0.5
     """rad; when its heading is wrong by more, it turns on the spot."""
     shortest_reach: Positive = 0.15
     """Look-ahead for aiming at the middle of the beams; it is longer while the robot is far."""
-    most_aside: Annotated[float, Field(gt=0.0, lt=1.6)] = 0.5
+    most_aside: Acute = 0.5
     """rad; the largest angle to the straight way at which it aims; smaller when it is near."""
     least_aside: Positive = 0.09
     """rad; the same angle at the end: within what the contacts tolerate."""
@@ -97,8 +92,3 @@ class DockingConfig(Frozen):
     aside."""
     late_beams: Positive = 0.3
     """s; after a new belief, beams may still be those that were seen before it."""
-
-
-def load_docking_config(path: Path) -> DockingConfig:
-    """Read ``configuration/docking.yaml`` or a file like it; raises ConfigError with the reason."""
-    return load_config(DockingConfig, path)

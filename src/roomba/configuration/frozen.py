@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import math
+import operator
+from itertools import pairwise
 from pathlib import Path
-from typing import Annotated, Any, TypeVar
+from typing import Annotated, Any, ClassVar, Final, Self, TypeVar
 
 import yaml
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from roomba.errors import ConfigError
 
@@ -14,14 +17,34 @@ Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
 Ratio = Annotated[float, Field(ge=0.0, le=1.0, allow_inf_nan=False)]
 Degrees = Annotated[float, Field(ge=-180.0, le=180.0)]
 NotNegative = Annotated[float, Field(ge=0.0, allow_inf_nan=False)]
+Finite = Annotated[float, Field(allow_inf_nan=False)]
+Acute = Annotated[float, Field(gt=0.0, lt=math.pi / 2)]
+"""rad; less than a right angle."""
+Count = Annotated[int, Field(ge=0)]
+AtLeastOne = Annotated[int, Field(ge=1)]
 
+_SIGNS: Final = {"<": operator.lt, "<=": operator.le}
 _Model = TypeVar("_Model", bound=BaseModel)
 
 
 class Frozen(BaseModel):
-    """A part of a configuration: what it does not know it refuses."""
+    """A part of a configuration: what it does not know it refuses.
+
+    ``in_order`` has relations that its fields must keep, such as ``low <= middle < high``.
+    """
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=False)
+    in_order: ClassVar[tuple[str, ...]] = ()
+
+    @model_validator(mode="after")
+    def _fields_in_order(self) -> Self:
+        for relation in self.in_order:
+            names, signs = relation.split()[::2], relation.split()[1::2]
+            values = [getattr(self, name) for name in names]
+            pairs = zip(signs, pairwise(values), strict=True)
+            if not all(_SIGNS[sign](*pair) for sign, pair in pairs):
+                raise ValueError(f"expected {relation}, got {', '.join(map(str, values))}")
+        return self
 
 
 def load_config(model: type[_Model], path: Path) -> _Model:
@@ -50,8 +73,11 @@ def validated(
     except ValidationError as error:
         first = error.errors()[0]
         name = ".".join(str(part) for part in first["loc"])
-        reason = first["msg"].removeprefix("Value error, ")
-        if first["type"] == "extra_forbidden":
-            reason = unknown
-        got = f", got {first['input']!r}" if name else ""
-        raise ConfigError(f"{where}{name}: {reason}{got}".replace(": :", ":")) from error
+        match first["type"]:
+            case "value_error":  # raised by a validator of the model, which says what it got
+                reason = first["msg"].removeprefix("Value error, ")
+            case "extra_forbidden":
+                reason = f"{unknown}, got {first['input']!r}"
+            case _:
+                reason = f"{first['msg']}, got {first['input']!r}"
+        raise ConfigError(f"{where}{name}: {reason}" if name else f"{where}{reason}") from error

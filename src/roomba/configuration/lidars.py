@@ -16,6 +16,8 @@ LIDARS: Final = Path(__file__).resolve().parent.parent / "data" / "configuration
 """A YAML file for each."""
 LIDAR: Final = "lidar"
 """The part of a robot's file, of a lidar's file and of the simulation that is the lidar's."""
+SIMULATION: Final = "simulation"
+"""The part of a robot's file and of a lidar's file that is the simulator's; no brain reads it."""
 
 
 def lidar_models() -> list[str]:
@@ -36,9 +38,16 @@ def lidar_file(model: object) -> dict[str, dict[str, Any]]:
 def with_model(raw: Mapping[str, Any]) -> dict[str, Any]:
     """Return a robot's file with all numbers of its lidar's model, but for those that it has.
 
-    Raises ConfigError for a model that there is not.
+    The lidar's errors are filled in where the file has a part ``simulation``. Raises ConfigError
+    for a model that there is not.
     """
-    own = raw.get(LIDAR, {})
+    own, simulation = raw.get(LIDAR), raw.get(SIMULATION)
     if not isinstance(own, Mapping) or "model" not in own:
         return dict(raw)
-    return {**raw, LIDAR: {**lidar_file(own["model"])[LIDAR], **own}}
+    model = lidar_file(own["model"])
+    filled = {**raw, LIDAR: {**model[LIDAR], **own}}
+    if isinstance(simulation, Mapping):
+        errors = simulation.get(LIDAR, {})
+        if isinstance(errors, Mapping):
+            filled[SIMULATION] = {**simulation, LIDAR: {**model[SIMULATION], **errors}}
+    return filled

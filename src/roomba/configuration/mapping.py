@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Annotated
 
 from pydantic import Field
 
-from roomba.configuration.frozen import Frozen, Positive, Ratio, load_config
+from roomba.configuration.frozen import AtLeastOne, Frozen, Positive, Ratio
 
 
 class MapChangesConfig(Frozen):
@@ -53,11 +52,6 @@ class MappingConfig(Frozen):
     least_link_deviation: Positive = 0.004
     least_link_turn: Positive = 0.0015
     occupied_share: Ratio = 0.3
-    occupied_beams: Annotated[int, Field(ge=1)] = 2
+    occupied_beams: AtLeastOne = 2
     redrawn_shift: Positive = 0.01
     changes: MapChangesConfig = MapChangesConfig()
-
-
-def load_mapping_config(path: Path) -> MappingConfig:
-    """Read ``configuration/mapping.yaml`` or a file like it; raises ConfigError with the reason."""
-    return load_config(MappingConfig, path)

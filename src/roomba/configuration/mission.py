@@ -7,12 +7,19 @@ from typing import Annotated
 
 from pydantic import Field
 
-from roomba.configuration.frozen import Frozen, NotNegative, Positive, Ratio, load_config
-from roomba.configuration.robot import BodyConfig
+from roomba.configuration.body import BodyConfig
+from roomba.configuration.frozen import (
+    AtLeastOne,
+    Count,
+    Frozen,
+    NotNegative,
+    Positive,
+    Ratio,
+    load_config,
+)
 from roomba.errors import ConfigError
 
 Share = Annotated[float, Field(ge=-1.0, le=1.0, allow_inf_nan=False)]
-Count = Annotated[int, Field(ge=1)]
 Move = tuple[Share, Share, Positive]
 """Speed and turning speed as shares of those of a recovery, and for how many s."""
 Moves = Annotated[tuple[Move, ...], Field(min_length=1)]
@@ -56,9 +63,9 @@ class GivingWayConfig(Frozen):
 class WaitingConfig(Frozen):
     """Waiting where no way leads on, until one opens: s."""
 
-    most_ways_home: Annotated[int, Field(ge=0)] = 5
+    most_ways_home: Count = 5
     """Attempts to find a way home before it begins to wait."""
-    first_waits: Annotated[int, Field(ge=0)] = 2
+    first_waits: Count = 2
     """The first so many waits are short: people pass sooner than doors are opened."""
     first_wait: Positive = 10.0
     """The length of each of them."""
@@ -66,7 +73,7 @@ class WaitingConfig(Frozen):
     """The length of the others."""
     look_period: Positive = 2.0
     """From one look whether the way is clear to the next."""
-    most_waits: Count = 41
+    most_waits: AtLeastOne = 41
     """After so many it gives up: twenty minutes in all."""
 
 
@@ -82,7 +89,7 @@ class DrivingConfig(Frozen):
     backing_way: Positive = 0.08
     backing_speed: Positive = 0.10
     progress_timeout: Positive = 5.0
-    most_recoveries: Annotated[int, Field(ge=1)] = 6
+    most_recoveries: AtLeastOne = 6
     felt_memory: Positive = 180.0
     mean_speed: Annotated[float, Field(gt=0.0, le=1.0)] = 0.65
     """Mean speed of a clean as a share of ``speed``, by which the time to go is told."""
@@ -90,11 +97,11 @@ class DrivingConfig(Frozen):
     """m along the path; less is no progress."""
     leaves_trouble: Positive = 0.5
     """m of progress after which earlier recoveries count no more."""
-    most_futile: Count = 3
+    most_futile: AtLeastOne = 3
     """New paths from one place; after these it tries recoveries."""
     touch_radius: Positive = 0.10
     """m; touches from places nearer to each other are of the same thing."""
-    most_touches: Count = 4
+    most_touches: AtLeastOne = 4
     """Consecutive touches of the same thing, after which a path is given up."""
     lasting_radius: Positive = 0.06
     """m; what is felt again from a place nearer than this is a lasting obstacle."""
@@ -117,7 +124,7 @@ class CleaningConfig(Frozen):
     enough: Ratio = 0.9965
     least_patch: Positive = 0.004
     least_while_growing: Positive = 0.5
-    most_rounds: Annotated[int, Field(ge=0)] = 4
+    most_rounds: Count = 4
     dirty_times: Positive = 6.0
     least_dirt: Positive = 500.0
     """Grains/m2; floor with fewer of them is not dirty."""
@@ -127,13 +134,13 @@ class CleaningConfig(Frozen):
     """m2; smaller floor out of reach is not tried again."""
     least_for_round: Positive = 0.02
     """m2; a patch as large as this is worth another round, though ``enough`` is clean."""
-    most_ways_out: Annotated[int, Field(ge=0)] = 40
+    most_ways_out: Count = 40
     """Times, in a clean, that it leaves a place where it is shut in, or waits."""
-    most_cut_offs: Annotated[int, Field(ge=0)] = 12
+    most_cut_offs: Count = 12
     """Paths that were given up and do not count as rounds, in a clean."""
     replan_period: Positive = 20.0
     """s; the least time between two new plans because of things on the path."""
-    most_replans: Annotated[int, Field(ge=0)] = 40
+    most_replans: Count = 40
     """Such plans in a clean."""
     least_way_to_replan: Positive = 8.0
     """m; with less of it left a path is driven to its end."""
@@ -150,7 +157,7 @@ class ExploringConfig(Frozen):
     clearance: Positive = 0.12
     tight_clearance: Positive = 0.005
     look_first: Positive = 10.0
-    most_stuck: Annotated[int, Field(ge=0)] = 3
+    most_stuck: Count = 3
     viewpoint_tolerance: Positive = 0.12
     """m; as near to a viewpoint it has seen all that is to be seen from there."""
     frontier_radius: Positive = 0.25

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-from typing import Annotated
+from typing import Annotated, ClassVar
 
-from pydantic import Field, model_validator
+from pydantic import Field
 
-from roomba.configuration.frozen import Frozen, load_config
+from roomba.configuration.frozen import Frozen, Ratio
 
 Length = Annotated[float, Field(gt=0.0, le=10.0, allow_inf_nan=False)]
 Area = Annotated[float, Field(gt=0.0, le=100.0, allow_inf_nan=False)]
-Share = Annotated[float, Field(ge=0.0, le=1.0, allow_inf_nan=False)]
 
 
 class RoomsConfig(Frozen):
@@ -48,7 +46,7 @@ class RoomsConfig(Frozen):
 
     narrowest_door: Length = 0.5
     widest_door: Length = 1.3
-    narrowing: Share = 0.7
+    narrowing: Ratio = 0.7
     thickest_wall: Length = 0.6
     jamb: Length = 0.3
     furniture_size: Length = 1.0
@@ -56,18 +54,6 @@ class RoomsConfig(Frozen):
     roughness: Length = 0.1
     reach: Length = 0.3
     smallest_room: Area = 1.5
-    most_unknown: Share = 0.5
+    most_unknown: Ratio = 0.5
 
-    @model_validator(mode="after")
-    def _widths_in_order(self) -> RoomsConfig:
-        if not self.tightest_passage <= self.narrowest_door < self.widest_door:
-            raise ValueError(
-                "expected tightest_passage <= narrowest_door < widest_door, got "
-                f"{self.tightest_passage}, {self.narrowest_door}, {self.widest_door}"
-            )
-        return self
-
-
-def load_rooms_config(path: Path) -> RoomsConfig:
-    """Read ``configuration/rooms.yaml`` or a file like it; raises ConfigError with the reason."""
-    return load_config(RoomsConfig, path)
+    in_order: ClassVar = ("tightest_passage <= narrowest_door < widest_door",)

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar
 
-from pydantic import Field, model_validator
+from pydantic import Field
 
-from roomba.configuration.frozen import Frozen, validated
-from roomba.configuration.robot import FASTEST_SPEED
+from roomba.configuration.body import Speed
+from roomba.configuration.frozen import Finite, Frozen, validated
 from roomba.errors import ConfigError
 
 
@@ -20,21 +20,14 @@ class SeedParameters(Frozen):
     """
 
     robot_name: Annotated[str, Field(min_length=1, strict=True)] = "roomba_robot"
-    robot_max_speed: Annotated[float, Field(gt=0.0, le=FASTEST_SPEED, allow_inf_nan=False)] = 0.5
-    initial_post_x: Annotated[float, Field(allow_inf_nan=False)] = 0.0
-    initial_post_y: Annotated[float, Field(allow_inf_nan=False)] = 0.0
-    initial_post_theta: Annotated[float, Field(allow_inf_nan=False)] = 0.0
-    min_cordinate: Annotated[float, Field(allow_inf_nan=False)] = -100.0
-    max_cordinate: Annotated[float, Field(allow_inf_nan=False)] = 100.0
+    robot_max_speed: Speed = 0.5
+    initial_post_x: Finite = 0.0
+    initial_post_y: Finite = 0.0
+    initial_post_theta: Finite = 0.0
+    min_cordinate: Finite = -100.0
+    max_cordinate: Finite = 100.0
 
-    @model_validator(mode="after")
-    def _limits_in_order(self) -> SeedParameters:
-        if self.min_cordinate >= self.max_cordinate:
-            raise ValueError(
-                f"min_cordinate ({self.min_cordinate}) must be below max_cordinate "
-                f"({self.max_cordinate})"
-            )
-        return self
+    in_order: ClassVar = ("min_cordinate < max_cordinate",)
 
     def allows(self, x: float, y: float) -> bool:
         """Whether a point, m, is finite and within the limits of both coordinates."""

@@ -7,7 +7,7 @@ The simulator alone reads them. What is true and known as well, such as the body
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Final, Literal
 
 from pydantic import Field, model_validator
 
@@ -20,10 +20,14 @@ from roomba.configuration.frozen import (
     read_yaml,
     validated,
 )
-from roomba.configuration.lidars import LIDAR, lidar_file, with_model
-from roomba.configuration.robot import SIMULATION, UNKNOWN, LidarConfig, RobotConfig
+from roomba.configuration.lidars import LIDAR, SIMULATION, lidar_file, with_model
+from roomba.configuration.robot import UNKNOWN, RobotConfig
+from roomba.configuration.sensors import LidarConfig
 
 Sensors = Literal["ideal", "noisy"]
+_SIMPLE_ERRORS: Final = frozenset({"noise", "misses", "dark", "shiny"})
+"""Errors of a lidar that need no simulation beam by beam; dark and shiny things are only seen by
+one that has a reach."""
 
 
 class SimulatedBrush(Frozen):
@@ -73,7 +77,7 @@ class SimulatedLidar(Frozen):
     ``grazing_noise``
         By how much of it that grows with 1 / cos(angle to the normal) - 1.
     ``misses``
-        Share of the beams that have no range, whatever they meet.
+        Share of the beams that have no range, near or far.
     ``range_step``, ``angle_rounding``
         Ranges are rounded to such steps, m; a beam points so much, degrees in all, beside the angle
         that is told.
@@ -103,15 +107,7 @@ class SimulatedLidar(Frozen):
     def is_simple(self) -> bool:
         """Whether there is nothing but noise and beams that are missed."""
         return not any(
-            (
-                self.noise_growth,
-                self.grazing_noise,
-                self.range_step,
-                self.angle_rounding,
-                self.spot,
-                self.white_reach,
-                self.delay,
-            )
+            getattr(self, name) for name in type(self).model_fields if name not in _SIMPLE_ERRORS
         )
 
 
@@ -208,17 +204,5 @@ def load_simulated_config(path: Path, simulation: Path) -> SimulatedRobotConfig:
         if SIMULATION not in raw:
             shipped = load_config(SimulationConfig, simulation)
             raw[SIMULATION] = shipped.model_dump(exclude_unset=True)
-        raw = _with_errors_of_model(with_model(raw))
+        raw = with_model(raw)
     return validated(SimulatedRobotConfig, raw, f"{path}: ", UNKNOWN)
-
-
-def _with_errors_of_model(raw: dict[str, Any]) -> dict[str, Any]:
-    """Return a robot's file with all errors of its lidar's model, but for those that it has."""
-    lidar, simulation = raw.get(LIDAR), raw[SIMULATION]
-    if not isinstance(lidar, dict) or "model" not in lidar or not isinstance(simulation, dict):
-        return raw
-    own = simulation.get(LIDAR, {})
-    if not isinstance(own, dict):
-        return raw
-    errors = {**lidar_file(lidar["model"])[SIMULATION], **own}
-    return {**raw, SIMULATION: {**simulation, LIDAR: errors}}

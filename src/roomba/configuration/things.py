@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Annotated
 
 from pydantic import Field
 
-from roomba.configuration.frozen import Frozen, NotNegative, Positive, load_config
+from roomba.configuration.frozen import Frozen, NotNegative, Positive
 
 Count = Annotated[int, Field(ge=1, le=1000)]
 
@@ -43,8 +42,3 @@ class ThingConfig(Frozen):
     loss: Count = 3
     most: Count = 24
     enough: Count = 6
-
-
-def load_thing_config(path: Path) -> ThingConfig:
-    """Read ``configuration/things.yaml`` or a file like it; raises ConfigError with the reason."""
-    return load_config(ThingConfig, path)

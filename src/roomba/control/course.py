@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.angles import wrap_angles
-from roomba.configuration.robot import TrackingConfig
+from roomba.configuration.loops import TrackingConfig
 from roomba.control.tracking_kernels import Course
 
 Floats = NDArray[np.float64]

@@ -7,7 +7,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.configuration.robot import BodyConfig, TrackingConfig
+from roomba.configuration.body import BodyConfig
+from roomba.configuration.loops import TrackingConfig
 from roomba.control.course import course_of
 from roomba.control.tracking_kernels import TRACK, track
 from roomba.geometry import Pose, Twist

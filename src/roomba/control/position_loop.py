@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 
-from roomba.configuration.robot import BodyConfig, ControlConfig
+from roomba.configuration.body import BodyConfig
+from roomba.configuration.loops import ControlConfig
 from roomba.geometry import Pose, Twist
 
 _STANDSTILL = Twist()

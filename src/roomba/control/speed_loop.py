@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from enum import Enum
 
 from roomba.clock import is_recent
-from roomba.configuration.robot import BodyConfig
+from roomba.configuration.body import BodyConfig
 from roomba.geometry import Twist
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from roomba.configuration.robot import LidarConfig
+from roomba.configuration.sensors import LidarConfig
 from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.geometry import Pose
 from roomba.mission.docking.beams import StationBeams

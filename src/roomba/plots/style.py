@@ -17,7 +17,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 from numpy.typing import NDArray
 
-from roomba.configuration.robot import BodyConfig
+from roomba.configuration.body import BodyConfig
 from roomba.geometry import Pose
 from roomba.plots.canvas import Canvas, Picture
 from roomba.plots.floor import draw_carpets, draw_floor

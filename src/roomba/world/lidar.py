@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.configuration.robot import LidarConfig
+from roomba.configuration.sensors import LidarConfig
 from roomba.grid import GridFrame
 from roomba.world.engine.layout import joined_edges, seen_by_lidar
 from roomba.world.engine.lidar.edges import LidarEdges, lidar_edges

@@ -21,7 +21,8 @@ from sensor_msgs.msg import (
 )
 from sensor_msgs.msg import CameraInfo, CompressedImage, Image, Imu, JointState, LaserScan
 
-from roomba.configuration.robot import BatteryConfig, CameraConfig, LidarConfig
+from roomba.configuration.body import BatteryConfig
+from roomba.configuration.sensors import CameraConfig, LidarConfig
 from roomba.configuration.simulation import SimulatedGyro
 from roomba.world.health import PartHealth
 from roomba.world.power import BatteryState

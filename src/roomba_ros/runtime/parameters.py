@@ -9,14 +9,15 @@ from typing import Any
 import rospkg
 import rospy
 
-from roomba.configuration.docking import DockingConfig, load_docking_config
-from roomba.configuration.mapping import MappingConfig, load_mapping_config
+from roomba.configuration.docking import DockingConfig
+from roomba.configuration.frozen import load_config
+from roomba.configuration.mapping import MappingConfig
 from roomba.configuration.mission import MissionConfig, load_mission_config
 from roomba.configuration.robot import RobotConfig, load_robot_config
-from roomba.configuration.rooms import RoomsConfig, load_rooms_config
+from roomba.configuration.rooms import RoomsConfig
 from roomba.configuration.seed import SEED_SPELLINGS, SeedParameters, parse_seed_parameters
 from roomba.configuration.simulation import SimulatedRobotConfig, load_simulated_config
-from roomba.configuration.things import ThingConfig, load_thing_config
+from roomba.configuration.things import ThingConfig
 from roomba.errors import ConfigError
 from roomba.files.shipped import CONFIGURATION
 
@@ -51,22 +52,22 @@ def read_simulated_config() -> SimulatedRobotConfig:
 
 def read_mapping_config() -> MappingConfig:
     """Return the configuration named by the parameter ``mapping_config``, or the shipped one."""
-    return load_mapping_config(_configuration_file("mapping"))
+    return load_config(MappingConfig, _configuration_file("mapping"))
 
 
 def read_docking_config() -> DockingConfig:
     """Return the configuration named by the parameter ``docking_config``, or the shipped one."""
-    return load_docking_config(_configuration_file("docking"))
+    return load_config(DockingConfig, _configuration_file("docking"))
 
 
 def read_rooms_config() -> RoomsConfig:
     """Return the configuration named by the parameter ``rooms_config``, or the shipped one."""
-    return load_rooms_config(_configuration_file("rooms"))
+    return load_config(RoomsConfig, _configuration_file("rooms"))
 
 
 def read_thing_config() -> ThingConfig:
     """Return the configuration named by the parameter ``things_config``, or the shipped one."""
-    return load_thing_config(_configuration_file("things"))
+    return load_config(ThingConfig, _configuration_file("things"))
 
 
 def read_mission_config(robot: RobotConfig) -> MissionConfig:

@@ -11,7 +11,7 @@ import rospy
 from roomba_robot.srv import TurnCamera, TurnCameraRequest, TurnCameraResponse
 from sensor_msgs.msg import CameraInfo, CompressedImage, Image
 
-from roomba.configuration.robot import CameraConfig
+from roomba.configuration.sensors import CameraConfig
 from roomba.errors import RoombaError
 from roomba.world.camera.camera import Camera, Scene
 from roomba.world.simulator import Simulator

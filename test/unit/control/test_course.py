@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from roomba.configuration.robot import TrackingConfig
+from roomba.configuration.loops import TrackingConfig
 from roomba.control.course import SHORTEST_LEG, course_of
 
 CONFIG = TrackingConfig()

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from roomba.configuration.robot import BodyConfig
+from roomba.configuration.body import BodyConfig
 from roomba.control.speed_loop import Hazards, Hold, Source, SpeedLoop
 from roomba.geometry import Twist
 

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from fixtures.rooms import room_home
 
-from roomba.configuration.robot import LidarConfig
+from roomba.configuration.sensors import LidarConfig
 from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.gym import RoombaClean
 from roomba.gym.observation import (

@@ -8,7 +8,7 @@ from fixtures.rooms import room_home
 from gymnasium.utils.env_checker import check_env
 
 import roomba.gym
-from roomba.configuration.robot import BatteryConfig, BrushConfig
+from roomba.configuration.body import BatteryConfig, BrushConfig
 from roomba.configuration.simulation import SimulatedBrush, SimulatedRobotConfig, SimulationConfig
 from roomba.errors import HomeError
 from roomba.gym import RoombaClean

@@ -14,7 +14,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from roomba.configuration.robot import LidarConfig
+from roomba.configuration.sensors import LidarConfig
 from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.errors import HomeError
 from roomba.files.shipped import HOMES

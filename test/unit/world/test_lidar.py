@@ -13,7 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from roomba.configuration.robot import LidarConfig
+from roomba.configuration.sensors import LidarConfig
 from roomba.files.shipped import HOMES
 from roomba.grid import GridFrame
 from roomba.world.layers.layer import list_homes, load_home

@@ -9,7 +9,7 @@ from fixtures.worlds import DT, IDEAL, block_that_moves, drive
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from roomba.configuration.robot import BodyConfig
+from roomba.configuration.body import BodyConfig
 from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.geometry import Pose, Twist, wrap_angle
 from roomba.world.home.home import Move

@@ -10,7 +10,7 @@ from fixtures.worlds import drive
 from hypothesis import given
 from hypothesis import strategies as st
 
-from roomba.configuration.robot import BatteryConfig
+from roomba.configuration.body import BatteryConfig
 from roomba.configuration.simulation import SimulatedBrush, SimulatedFan
 from roomba.geometry import Pose
 from roomba.world.power import CELLS, BatteryState, battery_state, noise_level, open_circuit_voltage

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.configuration.localization import LocalizationConfig
 from roomba.configuration.mapping import MappingConfig
-from roomba.configuration.robot import GyroConfig, LocalizationConfig
+from roomba.configuration.sensors import GyroConfig
 from roomba.geometry import Pose, wrap_angle
 from roomba.grid import OccupancyMap
 from roomba.perception.localization.dead_reckoning import DeadReckoning

@@ -15,7 +15,8 @@ from roomba.commands.map.seen_floor import seen_floor
 from roomba.commands.sim.homes import home_of
 from roomba.commands.sim.runs import mission_config, robot_config_of
 from roomba.commands.sim.trial import Trial
-from roomba.configuration.mapping import MappingConfig, load_mapping_config
+from roomba.configuration.frozen import load_config
+from roomba.configuration.mapping import MappingConfig
 from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.files.shipped import CONFIGURATION
 from roomba.geometry import Pose
@@ -130,7 +131,7 @@ class MapScene:
         self.seen = seen_floor(
             self.home.solid, self.home.frame, (station.x, station.y), self.config
         )
-        mapping = load_mapping_config(CONFIGURATION / "mapping.yaml")
+        mapping = load_config(MappingConfig, CONFIGURATION / "mapping.yaml")
         self.robot = ObservedExplorer(
             self.home, self.config, mission_config(self.config), known=mapping, seed=trial.seed
         )

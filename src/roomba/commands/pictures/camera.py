@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.figure import Figure
 
-from roomba.configuration.robot import CameraConfig
+from roomba.configuration.sensors import CameraConfig
 from roomba.geometry import Pose, Twist
 from roomba.plots.style import drawn, empty_figure
 from roomba.world.camera.camera import Camera, Scene

@@ -9,7 +9,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.configuration.robot import BodyConfig, ControlConfig
+from roomba.configuration.body import BodyConfig
+from roomba.configuration.loops import ControlConfig
 from roomba.control.position_loop import PositionLoop
 from roomba.geometry import Twist
 from roomba.world.simulator import Simulator

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 from numpy.typing import NDArray
 
-from roomba.configuration.robot import LidarConfig
+from roomba.configuration.sensors import LidarConfig
 from roomba.geometry import Pose, Twist
 from roomba.plots.style import (
     BLUE,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from roomba.configuration.robot import CameraConfig
+from roomba.configuration.sensors import CameraConfig
 from roomba.geometry import Pose
 from roomba.headless.cleaner import HeadlessMission
 from roomba.plots.canvas import Picture

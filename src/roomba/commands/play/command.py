@@ -12,8 +12,9 @@ from roomba.commands.sim.homes import home_of, rooms_of
 from roomba.commands.sim.runs import mission_config, robot_config_of
 from roomba.commands.sim.trial import Trial
 from roomba.commands.spelling import spelled
-from roomba.configuration.docking import load_docking_config
-from roomba.configuration.mapping import load_mapping_config
+from roomba.configuration.docking import DockingConfig
+from roomba.configuration.frozen import load_config
+from roomba.configuration.mapping import MappingConfig
 from roomba.errors import RoombaError
 from roomba.files.shipped import CONFIGURATION
 from roomba.headless.cleaner import HeadlessMission
@@ -65,7 +66,7 @@ def live_client(
     trial = Trial(home=name, seed=seed, bin=bin_grams)
     robot = robot_config_of(trial)
     home = home_of(trial, robot.body)
-    docking = load_docking_config(CONFIGURATION / "docking.yaml")
+    docking = load_config(DockingConfig, CONFIGURATION / "docking.yaml")
     rooms = rooms_of(home) if knows_map else None
     mission = HeadlessMission(
         home,
@@ -73,7 +74,7 @@ def live_client(
         mission_config(robot),
         docking,
         seed=seed,
-        known=None if knows_map else load_mapping_config(CONFIGURATION / "mapping.yaml"),
+        known=None if knows_map else load_config(MappingConfig, CONFIGURATION / "mapping.yaml"),
         rooms=rooms,
         longest_burst=int(speed) if speed >= 2.0 else 0,
         empties_bin_after=math.inf,

@@ -7,7 +7,7 @@ from dataclasses import replace
 import shapely
 
 from roomba.commands.sim.trial import RANDOM, Trial, UsageError
-from roomba.configuration.robot import BodyConfig
+from roomba.configuration.body import BodyConfig
 from roomba.errors import RoomsError
 from roomba.files.shipped import HOMES
 from roomba.grid import FREE

@@ -16,7 +16,8 @@ from roomba.commands.sim.things import Disc, seeded_things
 from roomba.commands.sim.trial import Trial
 from roomba.commands.sim.truth import coverable_floor, true_map
 from roomba.commands.sim.zones import zones_of
-from roomba.configuration.docking import load_docking_config
+from roomba.configuration.docking import DockingConfig
+from roomba.configuration.frozen import load_config
 from roomba.configuration.mission import MissionConfig, load_mission_config
 from roomba.configuration.robot import RobotConfig
 from roomba.configuration.simulation import SimulatedRobotConfig, load_simulated_config
@@ -79,7 +80,7 @@ class TrialSetup:
         self.config = robot_config_of(trial)
         self.home = home_of(trial, self.config.body)
         mission = mission_config(self.config)
-        docking = load_docking_config(CONFIGURATION / "docking.yaml")
+        docking = load_config(DockingConfig, CONFIGURATION / "docking.yaml")
         self.robot = ObservedMission(
             self.home,
             self.config,

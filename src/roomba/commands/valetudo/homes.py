@@ -11,7 +11,7 @@ import yaml
 
 from roomba.commands.sim.homes import rooms_of
 from roomba.commands.sim.zones import ZONES_NAME, zones_of_home
-from roomba.configuration.robot import BodyConfig
+from roomba.configuration.body import BodyConfig
 from roomba.files.atomic import write_whole
 from roomba.files.home_layer import LAYER_NAME, MAP_NAME
 from roomba.files.occupancy_map import save_map

@@ -8,8 +8,9 @@ from __future__ import annotations
 
 import math
 
+from roomba.configuration.body import BodyConfig
 from roomba.configuration.docking import DockingConfig
-from roomba.configuration.robot import BodyConfig, StationConfig
+from roomba.configuration.sensors import StationConfig
 from roomba.geometry import Pose, Twist, wrap_angle
 from roomba.mission.docking.beams import StationBeams
 

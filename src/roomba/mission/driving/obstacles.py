@@ -12,8 +12,9 @@ from typing import Final, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.configuration.body import BodyConfig
+from roomba.configuration.loops import WalkConfig
 from roomba.configuration.mission import DrivingConfig
-from roomba.configuration.robot import BodyConfig, WalkConfig
 from roomba.mission.driving.unknown_things import UnknownThings
 from roomba.mission.inputs.senses import Senses
 from roomba.perception.things.layer import ThingLayer

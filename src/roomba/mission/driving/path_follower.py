@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from roomba.configuration.robot import WalkConfig
+from roomba.configuration.loops import WalkConfig
 from roomba.geometry import Pose
 from roomba.planning.path.planner import Path
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-from roomba.configuration.robot import BodyConfig, WalkConfig
+from roomba.configuration.body import BodyConfig
+from roomba.configuration.loops import WalkConfig
 from roomba.geometry import Pose
 
 Obstacle = tuple[float, float, float]

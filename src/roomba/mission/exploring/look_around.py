@@ -12,7 +12,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.configuration.robot import BodyConfig, LookingAroundConfig
+from roomba.configuration.body import BodyConfig
+from roomba.configuration.loops import LookingAroundConfig
 from roomba.geometry import Pose, Twist
 from roomba.perception.localization.estimate import Knowledge
 from roomba.perception.localization.localizer import Localizer

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from roomba.configuration.robot import WalkConfig
+from roomba.configuration.loops import WalkConfig
 from roomba.mission.cleaning.request import CleanOutcome
 from roomba.mission.driving.drives import Drives
 from roomba.mission.inputs.senses import Senses

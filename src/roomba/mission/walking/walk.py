@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from enum import Enum
 
 from roomba.clock import LONGEST_TICK, ClockJumps
-from roomba.configuration.robot import WalkConfig
+from roomba.configuration.loops import WalkConfig
 from roomba.mission.driving.obstacles import Obstacles
 from roomba.mission.driving.path_follower import PathFollower
 from roomba.mission.driving.way_ahead import LEAVING, WayAhead

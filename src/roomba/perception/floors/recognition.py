@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Final
 
-from roomba.configuration.robot import LocalizationConfig
+from roomba.configuration.localization import LocalizationConfig
 from roomba.geometry import Pose
 from roomba.grid import OccupancyMap
 from roomba.perception.localization.relocation import Expectation, Relocation, Verdict

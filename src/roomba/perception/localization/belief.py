@@ -11,7 +11,8 @@ from typing import Any, Final, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.configuration.robot import GyroConfig, LocalizationConfig
+from roomba.configuration.localization import LocalizationConfig
+from roomba.configuration.sensors import GyroConfig
 
 Row: TypeAlias = Any
 """One row of an array below, in a kernel."""

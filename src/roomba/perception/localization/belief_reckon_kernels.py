@@ -8,7 +8,7 @@ from typing import Final
 from numba import njit
 
 from roomba.angles import wrapped
-from roomba.configuration.robot import FASTEST_SPEED
+from roomba.configuration.body import FASTEST_SPEED
 from roomba.perception.localization.belief import Row, Rows
 from roomba.perception.matching.reckoned_path import ReckonedPath, forget_path, remember
 

@@ -7,7 +7,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.configuration.robot import GyroConfig, LocalizationConfig
+from roomba.configuration.localization import LocalizationConfig
+from roomba.configuration.sensors import GyroConfig
 from roomba.geometry import Pose
 from roomba.perception.localization.belief import Rows, numbers_of, unknown_belief
 from roomba.perception.localization.belief_reckon_kernels import reckon_on

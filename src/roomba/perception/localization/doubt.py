@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from typing import Final
 
-from roomba.configuration.robot import LocalizationConfig
+from roomba.configuration.localization import LocalizationConfig
 from roomba.geometry import Pose
 from roomba.perception.localization.expecting import where_known
 from roomba.perception.localization.recent_sight import RecentSight

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from roomba.configuration.robot import LocalizationConfig
+from roomba.configuration.localization import LocalizationConfig
 from roomba.geometry import Pose
 from roomba.perception.localization.relocation import Expectation
 

@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.clock import ClockJumps
-from roomba.configuration.robot import GyroConfig, LocalizationConfig
+from roomba.configuration.localization import LocalizationConfig
+from roomba.configuration.sensors import GyroConfig
 from roomba.geometry import Pose
 from roomba.grid import OccupancyMap
 from roomba.perception.localization.belief import numbers_of, unknown_belief

@@ -10,7 +10,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.configuration.robot import LocalizationConfig
+from roomba.configuration.localization import LocalizationConfig
 from roomba.geometry import Pose, wrap_angle
 from roomba.perception.localization.place_search import PlaceSearch
 from roomba.perception.matching.match_kernels import match

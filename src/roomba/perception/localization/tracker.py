@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.configuration.robot import GyroConfig, LocalizationConfig
+from roomba.configuration.localization import LocalizationConfig
+from roomba.configuration.sensors import GyroConfig
 from roomba.geometry import Pose
 from roomba.perception.localization.belief import AGREE, Rows, numbers_of, unknown_belief
 from roomba.perception.localization.belief_correct_kernels import judge_ends, match_ends, trust

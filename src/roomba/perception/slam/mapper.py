@@ -14,8 +14,9 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.configuration.localization import LocalizationConfig
 from roomba.configuration.mapping import MappingConfig
-from roomba.configuration.robot import GyroConfig, LocalizationConfig
+from roomba.configuration.sensors import GyroConfig
 from roomba.geometry import Pose
 from roomba.grid import OccupancyMap
 from roomba.perception.localization.dead_reckoning import DeadReckoning

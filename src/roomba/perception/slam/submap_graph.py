@@ -9,8 +9,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.configuration.localization import LocalizationConfig
 from roomba.configuration.mapping import MappingConfig
-from roomba.configuration.robot import LocalizationConfig
 from roomba.perception.slam.agreement import NEIGHBOURS, is_backed, is_far
 from roomba.perception.slam.axis_alignment import phase_of_walls, turn_of_walls
 from roomba.perception.slam.linking import Linker

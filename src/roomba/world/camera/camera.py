@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.configuration.robot import CameraConfig
+from roomba.configuration.sensors import CameraConfig
 from roomba.errors import PictureError
 from roomba.geometry import Pose
 from roomba.grid import GridFrame

@@ -8,7 +8,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.configuration.robot import CameraConfig
+from roomba.configuration.sensors import CameraConfig
 from roomba.world.camera.kernels.span import SPANS_OF_BOX, SPANS_OF_WALL
 from roomba.world.camera.lanes.lanes import LANES
 from roomba.world.camera.scene.arrays import Spans, ViewTables, Workspace

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
-from roomba.configuration.robot import BodyConfig
+from roomba.configuration.body import BodyConfig
 from roomba.errors import HomeError
 from roomba.files.home_layer import LAYER_NAME, MAP_NAME, Layer, read_layer
 from roomba.files.occupancy_map import load_map

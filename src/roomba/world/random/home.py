@@ -6,7 +6,7 @@ from typing import Final
 
 import numpy as np
 
-from roomba.configuration.robot import BodyConfig
+from roomba.configuration.body import BodyConfig
 from roomba.grid import FREE, OCCUPIED, UNKNOWN, GridFrame, OccupancyMap
 from roomba.world.home.home import (
     Carpet,

@@ -13,7 +13,7 @@ import pytest
 from numpy.typing import NDArray
 
 from roomba.commands.pictures.__main__ import PICTURES, main
-from roomba.configuration.robot import CameraConfig
+from roomba.configuration.sensors import CameraConfig
 from roomba.files.shipped import HOMES
 from roomba.world.home.home import Home
 from roomba.world.layers.layer import load_home

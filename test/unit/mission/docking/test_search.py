@@ -8,8 +8,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from roomba.configuration.body import BodyConfig
 from roomba.configuration.docking import DockingConfig
-from roomba.configuration.robot import BodyConfig, StationConfig
+from roomba.configuration.sensors import StationConfig
 from roomba.geometry import Pose, Twist
 from roomba.mission.docking.search import BeamSearch, drive_to, is_at_staging, steered
 from roomba.mission.docking.track import StationTrack

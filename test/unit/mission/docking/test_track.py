@@ -8,8 +8,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from roomba.configuration.body import BodyConfig
 from roomba.configuration.docking import DockingConfig
-from roomba.configuration.robot import BodyConfig, StationConfig
+from roomba.configuration.sensors import StationConfig
 from roomba.geometry import Pose, Twist
 from roomba.mission.docking.beams import StationBeams
 from roomba.mission.docking.track import StationTrack

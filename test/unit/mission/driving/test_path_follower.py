@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from roomba.configuration.robot import WalkConfig
+from roomba.configuration.loops import WalkConfig
 from roomba.geometry import Pose
 from roomba.mission.driving.path_follower import PathFollower
 from roomba.planning.path.polyline import Path

@@ -10,8 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from roomba.configuration.localization import LocalizationConfig
 from roomba.configuration.mapping import MappingConfig
-from roomba.configuration.robot import LocalizationConfig
 from roomba.perception.slam.mapper_state import KeptSubmap
 from roomba.perception.slam.submap import Keyframe
 from roomba.perception.slam.submap_graph import SubmapGraph

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from fixtures.camera_rooms import CLEAN, DIRT_FRAME, camera_of, even_dirt, home_with
 
-from roomba.configuration.robot import CameraConfig
+from roomba.configuration.sensors import CameraConfig
 from roomba.geometry import Pose
 from roomba.grid import GridFrame
 from roomba.world.camera.camera import Camera, Scene

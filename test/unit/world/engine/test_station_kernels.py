@@ -10,7 +10,7 @@ from fixtures.worlds import drive
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from roomba.configuration.robot import StationConfig
+from roomba.configuration.sensors import StationConfig
 from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.geometry import Pose, Twist
 from roomba.world.catalogue.furniture import STATION_GAP

@@ -11,7 +11,7 @@ from fixtures.worlds import DT, block_that_moves, drive
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from roomba.configuration.robot import BodyConfig
+from roomba.configuration.body import BodyConfig
 from roomba.files.shipped import HOMES
 from roomba.geometry import Pose, Twist, wrap_angle
 from roomba.world.home.home import Home, Move, MovingThing

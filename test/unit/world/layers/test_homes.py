@@ -11,7 +11,7 @@ import pytest
 import shapely
 
 from roomba.commands.draw_homes import drawn_map
-from roomba.configuration.robot import BodyConfig
+from roomba.configuration.body import BodyConfig
 from roomba.files.occupancy_map import load_map
 from roomba.files.shipped import HOMES
 from roomba.grid import FREE, OCCUPIED

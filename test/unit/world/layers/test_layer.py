@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from roomba.configuration.robot import BodyConfig
+from roomba.configuration.body import BodyConfig
 from roomba.errors import HomeError
 from roomba.files.occupancy_map import save_map
 from roomba.geometry import Pose

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from roomba.commands.sim.homes import rooms_of, with_doors_shut
-from roomba.configuration.robot import BodyConfig
+from roomba.configuration.body import BodyConfig
 from roomba.world.home.raster import largest_component, where_body_fits
 from roomba.world.random.home import random_home
 from roomba.world.random.walls import random_openings, random_rooms

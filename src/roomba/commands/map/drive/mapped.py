@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 
 from roomba.commands.map.drive.replay import MapReplay
 from roomba.commands.progress import Show
-from roomba.configuration.mapping import load_mapping_config
+from roomba.configuration.frozen import load_config
+from roomba.configuration.mapping import MappingConfig
 from roomba.configuration.robot import load_robot_config
 from roomba.files.shipped import CONFIGURATION
 from roomba.geometry import Pose
@@ -91,7 +92,7 @@ def mapped_drive(logs: Sequence[Path], wanted: Wanted, show: Show) -> MappedDriv
 def _replayed(drive: LoggedDrive, start: Pose, show: Show) -> tuple[MapReplay, Floats]:
     """Return the replay of a drive from a start, map frame, and its true poses, [n, 3]."""
     config = load_robot_config(CONFIGURATION / "robot.yaml")
-    mapping = load_mapping_config(CONFIGURATION / "mapping.yaml")
+    mapping = load_config(MappingConfig, CONFIGURATION / "mapping.yaml")
     replay = MapReplay(config, mapping, start)
     true = []
     for number, (stamp, value) in enumerate(drive.readings()):

@@ -19,7 +19,7 @@ from hypothesis import given, reject, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from roomba.configuration.robot import LidarConfig
+from roomba.configuration.sensors import LidarConfig
 from roomba.configuration.simulation import SimulatedLidar, SimulatedRobotConfig, SimulationConfig
 from roomba.errors import HomeError
 from roomba.geometry import Pose, Twist

@@ -11,7 +11,7 @@ from fixtures.slow_lidar import ranges_to_box, ranges_to_cells, ranges_to_disc
 from fixtures.worlds import DT, block_that_moves
 from numpy.typing import NDArray
 
-from roomba.configuration.robot import LidarConfig
+from roomba.configuration.sensors import LidarConfig
 from roomba.configuration.simulation import SimulatedLidar, SimulatedRobotConfig, SimulationConfig
 from roomba.geometry import Pose, Twist
 from roomba.world.engine.state.arrays import Fault

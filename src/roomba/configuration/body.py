@@ -1,0 +1,98 @@
+"""Numbers of the robot's body, its tools and its battery."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, ClassVar, Final
+
+from pydantic import Field
+
+from roomba.configuration.frozen import Frozen, Positive, Ratio
+from roomba.vocabulary import FanLevel
+
+FASTEST_SPEED: Final = 3.0
+"""m/s; a speed above this is a slip of the finger, not a robot for a home."""
+Speed = Annotated[float, Field(gt=0.0, le=FASTEST_SPEED, allow_inf_nan=False)]
+Angles = Annotated[
+    tuple[Annotated[float, Field(ge=-math.pi, le=math.pi)], ...], Field(min_length=1)
+]
+
+
+class BodyConfig(Frozen):
+    """The round differential-drive body; lengths in m, speeds in m/s and rad/s."""
+
+    diameter: Positive = 0.32
+    height: Positive = 0.092
+    wheel_separation: Positive = 0.235
+    wheel_diameter: Positive = 0.072
+    max_speed: Speed = 0.5
+    max_angular_speed: Positive = 4.25
+    max_acceleration: Positive = 0.9
+    max_deceleration: Positive = 2.0
+    max_angular_acceleration: Positive = 7.7
+    command_timeout: Positive = 0.15
+    backing_speed: Positive = 0.1
+    """m/s; away from a cliff, and from what the bumper met."""
+    cliff_backing_time: Positive = 2.5
+    """s; then it stands: no sensor looks behind, and a cliff sensor may be dirty."""
+    bumper_backing_time: Positive = 0.6
+    """s; the longest time that it backs off from what the bumper met."""
+    bumper_side: Angles = (0.35, 0.95)
+    """rad; where on the left half of the rim a press of that half may come from; the right half is
+    its mirror image."""
+    bumper_middle: Angles = (-0.45, 0.0, 0.45)
+    """rad; the same of a press of both halves."""
+
+    @property
+    def radius(self) -> float:
+        """Radius of the body's disc, m."""
+        return self.diameter / 2.0
+
+    @property
+    def max_angular_deceleration(self) -> float:
+        """Braking of a turn on the spot, rad/s2: each wheel brakes as in a straight drive."""
+        return 2.0 * self.max_deceleration / self.wheel_separation
+
+    @property
+    def braking_time(self) -> float:
+        """Time from top speed to rest, straight or turning, s."""
+        return max(
+            self.max_speed / self.max_deceleration,
+            self.max_angular_speed / self.max_angular_deceleration,
+        )
+
+
+class BrushConfig(Frozen):
+    """Brushes and bin: the cleaned width, m, the duty at the start, 0..1, and the bin, g."""
+
+    width: Positive = 0.20
+    duty: Ratio = 1.0
+    bin_capacity: Positive = 100.0
+
+
+class FanConfig(Frozen):
+    """The fan's duty at the start and at each level of a clean, 0..1."""
+
+    duty: Ratio = 0.60
+    quiet: Ratio = 0.30
+    standard: Ratio = 0.60
+    strong: Ratio = 1.0
+
+    in_order: ClassVar = ("quiet <= standard <= strong",)
+
+    def duty_at(self, level: FanLevel) -> float:
+        """Return the duty at a level of a clean, 0..1."""
+        match level:
+            case FanLevel.QUIET:
+                return self.quiet
+            case FanLevel.STANDARD:
+                return self.standard
+            case FanLevel.STRONG:
+                return self.strong
+
+
+class BatteryConfig(Frozen):
+    """The battery as its label has it: Wh, V."""
+
+    capacity: Positive = 26.0
+    nominal_voltage: Positive = 14.4

@@ -1,0 +1,105 @@
+"""Numbers of the loops that drive the robot: to a point, along a path, by what is in sight."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from roomba.configuration.frozen import Acute, Count, Frozen, NotNegative, Positive
+
+
+class ControlConfig(Frozen):
+    """The position loop."""
+
+    approach_deceleration: Positive = 0.5
+    heading_gain: Positive = 4.0
+    turn_in_place_angle: Acute = 0.9
+    arrival_tolerance: Positive = 0.02
+    restart_distance: Positive = 0.03
+    turning_speed: Positive = 2.5
+    stream_timeout: Positive = 0.15
+
+
+class WalkConfig(Frozen):
+    """Walking to a point: the path, the setpoint moving along it, and when to give up."""
+
+    lookahead: Positive = 0.25
+    clearance: Positive = 0.04
+    tight_clearance: Positive = 0.01
+    look_ahead: Positive = 0.5
+    corner_speed: Positive = 0.25
+    careful_speed: Positive = 0.15
+    astray_timeout: Positive = 60.0
+    arrival_tolerance: Positive = 0.03
+    bump_radius: Positive = 0.06
+    progress_timeout: Positive = 6.0
+    max_replans: Count = 12
+    max_ways_around: Count = 60
+    blocked_wait: Positive = 10.0
+    look_period: Positive = 1.0
+    """s; from one look for a way around, while it waits, to the next."""
+    off_path: Positive = 0.35
+    """m; farther off its path the robot was carried or pushed, and plans anew."""
+    carried: Positive = 1.0
+    """m; a robot that finds itself farther from its last known place was carried: what it
+    remembers of things is of another place. Of cleans as well."""
+    least_progress: Positive = 0.05
+    """m; coming nearer to the goal by less is no progress."""
+    standstill: Positive = 0.03
+    """m/s; slower than this the robot stands."""
+    sharp_corner: Acute = 0.3
+    """rad; at a sharper corner the setpoint waits for the robot; softer ones are cut."""
+    corner_reached: Positive = 0.04
+    """m; the setpoint goes on when the robot is as near to a sharp corner."""
+    braking: Positive = 0.4
+    """m/s2; before corners."""
+    slowest: Positive = 0.08
+    """m/s; never slower than this before the goal."""
+
+
+class LookingAroundConfig(Frozen):
+    """Driving by what is in sight while the place is not known: m, m/s, rad, rad/s, s."""
+
+    speed: Positive = 0.25
+    turning_speed: Positive = 1.5
+    backing_speed: Positive = 0.1
+    """Away from what it touched."""
+    backing_time: Positive = 0.8
+    clearance: Positive = 0.06
+    """Between the body and all that is in sight."""
+    tight_clearance: Positive = 0.02
+    """The same where there is no other way to go."""
+    longest_leg: Positive = 1.5
+    shortest_leg: Positive = 0.15
+    """Shorter legs are driven only where there is no longer one."""
+    arrival_tolerance: Positive = 0.02
+    """So near to where it goes, or to what is in its way, a leg has ended."""
+    aimed: Positive = 0.08
+    """Tolerance of the heading before it drives."""
+
+    in_order: ClassVar = ("shortest_leg <= longest_leg",)
+
+
+class TrackingConfig(Frozen):
+    """Following a path exactly, as cleaning does: m, s, rad."""
+
+    sharp_corner: Acute = 0.35
+    off_corner: Positive = 0.0015
+    braking: Positive = 1.2
+    reach: Positive = 0.12
+    heading_gain: Positive = 5.0
+    turning_speed: Positive = 2.5
+    corner_turning: Positive = 2.0
+    corner_acceleration: Positive = 5.0
+    slowest_corner: Positive = 0.06
+    longest_blend: Positive = 0.10
+    """m; so far before and after a soft corner the heading changes at most."""
+    aimed: Positive = 0.01
+    arrival_tolerance: Positive = 0.003
+    turn_in_place_angle: Acute = 0.6
+    """rad; with a larger error of the heading it turns on the spot first."""
+    turning_delay: NotNegative = 0.06
+    """s; until the drive has the turning speed that it is told."""
+    late_ticks: NotNegative = 2.0
+    """Ticks; by so much the drive is expected to brake late."""
+    slowest: Positive = 0.015
+    """m/s and rad/s; slower than this drives do not turn reliably."""

@@ -1,0 +1,106 @@
+"""Numbers of the sensors as the robot knows them, and of the station that they look for."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, ClassVar
+
+from pydantic import Field, model_validator
+
+from roomba.configuration.frozen import Degrees, Frozen, NotNegative, Positive
+
+
+class LidarConfig(Frozen):
+    """The lidar: beams evenly spaced, counter-clockwise; ranges in m, times in s.
+
+    One that looks all around, ``field`` 360 degrees, has beam 0 ahead; another one's middle is
+    ahead. It takes ``sweep_time`` from its first beam to where a next one would be; with 0 all are
+    measured at once. ``model`` is the file of ``data/configuration/lidars`` whose numbers stand
+    for what is not given.
+    """
+
+    model: str = "ideal_12m"
+    beams: Annotated[int, Field(ge=8, le=4096)] = 360
+    field: Annotated[float, Field(ge=10.0, le=360.0)] = 360.0
+    min_range: Positive = 0.15
+    max_range: Positive = 12.0
+    rate: Positive = 10.0
+    sweep_time: NotNegative = 0.0
+    mount_height: Positive = 0.085
+
+    in_order: ClassVar = ("min_range < max_range",)
+
+    @property
+    def beam_step(self) -> float:
+        """Angle from one beam to the next, rad."""
+        is_around = self.field == 360.0
+        return math.radians(self.field) / (self.beams if is_around else self.beams - 1)
+
+    @property
+    def first_angle(self) -> float:
+        """Where beam 0 points, rad, 0 ahead."""
+        return 0.0 if self.field == 360.0 else -0.5 * math.radians(self.field)
+
+    @property
+    def time_increment(self) -> float:
+        """Time from one beam to the next, s."""
+        return self.sweep_time / self.beams
+
+    @model_validator(mode="after")
+    def _sweeps_fit(self) -> LidarConfig:
+        if self.sweep_time > 1.0 / self.rate + 1e-9:
+            raise ValueError(
+                f"expected a sweep_time of at most 1 / rate ({1.0 / self.rate:g} s), "
+                f"got {self.sweep_time:g} s"
+            )
+        return self
+
+
+class WheelsConfig(Frozen):
+    """The wheel encoders."""
+
+    counts_per_turn: Positive = 508.8
+
+
+class GyroConfig(Frozen):
+    """The gyro as its data sheet has it, rad/s: standard deviations of a sample and of the bias.
+
+    What a simulated gyro does is :class:`roomba.configuration.simulation.SimulatedGyro`.
+    """
+
+    noise: NotNegative = 0.0015
+    bias: NotNegative = 0.0005
+
+
+class CliffConfig(Frozen):
+    """Four cliff sensors under the front rim, left to right; degrees and m."""
+
+    angles: tuple[Degrees, Degrees, Degrees, Degrees] = (60.0, 15.0, -15.0, -60.0)
+    radius: Positive = 0.155
+
+
+class StationConfig(Frozen):
+    """What the charging station sends out: a halo, and two beams that overlap; m and degrees."""
+
+    halo: Positive = 0.6
+    beam: Positive = 1.0
+    beam_angle: Positive = 20.0
+    overlap: Positive = 4.0
+
+
+class DirtSensorConfig(Frozen):
+    """The dirt sensor in the intake: it counts grains, ug each, up to ``most`` per second."""
+
+    grain: Positive = 50.0
+    most: Annotated[float, Field(gt=0.0, le=65535.0)] = 2550.0
+
+
+class CameraConfig(Frozen):
+    """The pan camera; ``horizontal_field`` and ``max_pan`` in degrees, as in the report."""
+
+    width: Annotated[int, Field(gt=0)] = 1024
+    height: Annotated[int, Field(gt=0)] = 768
+    horizontal_field: Annotated[float, Field(gt=10.0, lt=150.0)] = 75.0
+    mount_forward: float = 0.15
+    mount_height: Positive = 0.085
+    max_pan: Positive = 30.0

@@ -1,0 +1,82 @@
+"""What every part of the configuration refuses, and how it says so."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+import pytest
+from pydantic import ValidationError
+
+from roomba.configuration.body import FanConfig
+from roomba.configuration.frozen import Frozen, validated
+from roomba.configuration.localization import LocalizationConfig
+from roomba.configuration.loops import LookingAroundConfig
+from roomba.configuration.rooms import RoomsConfig
+from roomba.configuration.seed import SeedParameters
+from roomba.configuration.sensors import LidarConfig
+from roomba.errors import ConfigError
+
+
+class Ordered(Frozen):
+    """Three numbers, the first two of which may be alike."""
+
+    low: float = 1.0
+    middle: float = 2.0
+    high: float = 3.0
+
+    in_order: ClassVar = ("low <= middle < high",)
+
+
+class Whole(Frozen):
+    """A part of a whole."""
+
+    part: Ordered = Ordered()
+
+
+@pytest.mark.parametrize("values", [(1.0, 2.0, 3.0), (2.0, 2.0, 3.0)])
+def test_fields_in_order_are_taken(values: tuple[float, float, float]) -> None:
+    low, middle, high = values
+    assert Ordered(low=low, middle=middle, high=high).low == low
+
+
+@pytest.mark.parametrize("values", [(2.1, 2.0, 3.0), (1.0, 3.0, 3.0), (1.0, 4.0, 3.0)])
+def test_fields_out_of_order_are_refused(values: tuple[float, float, float]) -> None:
+    low, middle, high = values
+    said = f"expected low <= middle < high, got {low}, {middle}, {high}"
+    with pytest.raises(ValidationError, match=said):
+        Ordered(low=low, middle=middle, high=high)
+
+
+@pytest.mark.parametrize(
+    ("raw", "said"),
+    [
+        ({"part": {"low": 5}}, "part: expected low <= middle < high, got 5.0, 2.0, 3.0"),
+        ({"part": {"low": "x"}}, "part.low: Input should be a valid number, unable to parse"),
+        ({"part": {"wings": 2}}, "part.wings: no such key, got 2"),
+        ({"part": 3}, "part: Input should be a valid dictionary or instance of Ordered, got 3"),
+    ],
+)
+def test_a_refusal_is_one_line_that_names_the_key_once(raw: dict[str, Any], said: str) -> None:
+    with pytest.raises(ConfigError) as refusal:
+        validated(Whole, raw, "a.yaml: ", "no such key")
+    message = str(refusal.value)
+    assert message.startswith(f"a.yaml: {said}")
+    assert message.count("got") == 1
+    assert "\n" not in message
+
+
+@pytest.mark.parametrize(
+    ("model", "values"),
+    [
+        (FanConfig, {"standard": 0.2}),
+        (LidarConfig, {"min_range": 12.0}),
+        (LocalizationConfig, {"known_deviation": 1.0}),
+        (LookingAroundConfig, {"shortest_leg": 1.6}),
+        (RoomsConfig, {"widest_door": 0.5}),
+        (RoomsConfig, {"tightest_passage": 0.6}),
+        (SeedParameters, {"min_cordinate": 100.0}),
+    ],
+)
+def test_the_order_of_sizes_is_kept(model: type[Frozen], values: dict[str, float]) -> None:
+    with pytest.raises(ValidationError, match=f"expected .*{next(iter(values))}"):
+        model.model_validate(values)
