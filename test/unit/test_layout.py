@@ -17,6 +17,7 @@ ROOT = Path(__file__).resolve().parents[2]
 SOURCE, TEST = ROOT / "src", ROOT / "test"
 MOST_FILES = 15
 
+LIVE = "lives under a client"
 PART = "a compiled or private part of one stage, tested through it"
 VALUES = "values without behaviour of their own"
 COMMAND = "a part of one command, tested by running it"
@@ -48,7 +49,9 @@ TESTED_BY: dict[str, tuple[str, str]] = {
     "roomba/gym/": ("unit/gym/test_single.py", "one environment, tested by stepping it"),
     "roomba/headless/body": ("unit/robot/test_parts.py", "the robot's parts are tested in it"),
     "roomba/headless/burst_kernels": ("unit/headless/test_burst.py", PART),
-    "roomba/headless/live/robot": ("unit/headless/live/test_client.py", "lives under a client"),
+    "roomba/headless/live/floor_plan": ("unit/headless/live/test_client.py", LIVE),
+    "roomba/headless/live/observation": ("unit/headless/live/test_client.py", LIVE),
+    "roomba/headless/live/robot": ("unit/headless/live/test_client.py", LIVE),
     "roomba/headless/live/views": ("unit/headless/live/test_client.py", VALUES),
     "roomba/headless/rows": ("unit/headless/test_burst.py", VALUES),
     "roomba/mission/docking/beams": ("unit/mission/docking/test_track.py", VALUES),

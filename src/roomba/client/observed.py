@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Protocol
+from typing import Final, Protocol
 
-from roomba.client.view import (
-    CleanOrder,
-    GridLayer,
-    HomeView,
-    LayerName,
-    PageLimits,
-    Point,
-    RobotView,
-    ZoneView,
-)
+from roomba.client import view
+
+HAND_SILENCE: Final = 0.5
+"""s of wall time; a drive by hand without news for so long ends."""
+SPILL: Final = (0.25, 6.0)
+"""m and g of a heap of dirt."""
 
 
 class ObservedRobot(Protocol):
@@ -23,19 +19,19 @@ class ObservedRobot(Protocol):
     Commands raise RequestRefusedError with the reason when the robot will not obey.
     """
 
-    def limits(self) -> PageLimits:
+    def limits(self) -> view.PageLimits:
         """Return what may be asked for."""
 
-    def robot(self) -> RobotView:
+    def robot(self) -> view.RobotView:
         """Return the newest state; raises RobotUnavailableError before the first one."""
 
-    def home(self) -> HomeView:
+    def home(self) -> view.HomeView:
         """Return what seldom changes."""
 
-    def layer(self, name: LayerName) -> GridLayer | None:
+    def layer(self, name: view.LayerName) -> view.GridLayer | None:
         """Return a layer as it is now, or None while there is none."""
 
-    def clean(self, order: CleanOrder) -> None:
+    def clean(self, order: view.CleanOrder) -> None:
         """Begin a clean."""
 
     def explore(self) -> None:
@@ -71,7 +67,7 @@ class ObservedRobot(Protocol):
     def drive(self, linear: float, angular: float) -> None:
         """Drive by hand, m/s and rad/s; without another call for 0.5 s the robot stands."""
 
-    def put_zone(self, zone: ZoneView) -> None:
+    def put_zone(self, zone: view.ZoneView) -> None:
         """Add a zone, or replace the one of the same name."""
 
     def remove_zone(self, name: str) -> None:
@@ -83,7 +79,7 @@ class ObservedRobot(Protocol):
     def join_rooms(self, names: tuple[str, ...]) -> None:
         """Make rooms that touch one, by the first one's name."""
 
-    def split_room(self, name: str, start: Point, end: Point) -> None:
+    def split_room(self, name: str, start: view.Point, end: view.Point) -> None:
         """Cut a room along a line between two points."""
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Collection
 from dataclasses import dataclass
 from enum import Enum
 from typing import Final
@@ -9,7 +11,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.client.protocol import CleanReport, VacuumSnapshot
+from roomba.client.protocol import CleanReport, ErrandOutcome, RequestRefusedError, VacuumSnapshot
+from roomba.grid import FREE, OCCUPIED, GridFrame, OccupancyMap
 
 Point = tuple[float, float]
 """x and y, m."""
@@ -19,6 +22,8 @@ MOST_ZONES: Final = 200
 MOST_CORNERS: Final = 200
 LONGEST_NAME: Final = 80
 """Letters."""
+MOST_PATH: Final = 400
+"""Points of the path that are shown."""
 
 
 class LayerName(Enum):
@@ -45,6 +50,11 @@ class GridLayer:
     origin_x: float
     origin_y: float
     cells: NDArray[np.uint8]
+
+    @staticmethod
+    def over(frame: GridFrame, cells: NDArray[np.uint8], shape: int) -> GridLayer:
+        """Return a layer of cells that lie as ``frame`` says."""
+        return GridLayer(shape, frame.resolution, frame.origin_x, frame.origin_y, cells)
 
 
 @dataclass(frozen=True, slots=True)
@@ -129,3 +139,24 @@ class CleanOrder:
     spot: Point | None = None
     passes: int = 1
     fan: str = "standard"
+
+
+def known_cells(occupancy: OccupancyMap) -> NDArray[np.uint8]:
+    """Return the cells of :attr:`LayerName.MAP`."""
+    cells = np.zeros(occupancy.frame.shape, np.uint8)
+    cells[occupancy.values == FREE] = 1
+    cells[occupancy.values >= OCCUPIED] = 2
+    return cells
+
+
+def exploration_as_clean(
+    outcome: ErrandOutcome, message: str, distance: float, duration: float
+) -> CleanReport:
+    """Return the end of an exploration in the words of a clean: nothing was wanted or covered."""
+    return CleanReport(outcome, message, 0.0, 0.0, 0.0, distance, duration, math.nan)
+
+
+def require_another_zone(name: str, names: Collection[str]) -> None:
+    """Raise RequestRefusedError when a zone of this name would be one too many."""
+    if len(names) >= MOST_ZONES and name not in names:
+        raise RequestRefusedError(f"expected at most {MOST_ZONES} zones; remove one first")

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Final
-
 import numpy as np
 from geometry_msgs.msg import Point as PointMessage
 from geometry_msgs.msg import Polygon
@@ -12,23 +10,17 @@ from numpy.typing import NDArray
 from roomba_robot.msg import Room, RoomArray, ZoneArray
 from roomba_robot.msg import Zone as ZoneMessage
 
-from roomba.client.view import Point, RoomView, ZoneView
-from roomba.grid import FREE, OCCUPIED, OccupancyMap
+from roomba.client.view import MOST_PATH, Point, RoomView, ZoneView, known_cells
+from roomba.grid import OccupancyMap
 from roomba_ros.convert.common import map_of, path_of
 from roomba_ros.convert.errors import MessageError, require_finite
 from roomba_ros.convert.mission import KINDS, zones_of
-
-_MOST_PATH: Final = 400
-"""Points of a path that are shown."""
 
 
 def known_cells_of(message: OccupancyGrid) -> OccupancyMap:
     """Return a map whose values are 0 unknown, 1 free, 2 occupied."""
     known = map_of(message)
-    cells = np.zeros(known.frame.shape, np.int8)
-    cells[known.values == FREE] = 1
-    cells[known.values >= OCCUPIED] = 2
-    return OccupancyMap(known.frame, cells)
+    return OccupancyMap(known.frame, known_cells(known).astype(np.int8))
 
 
 def covered_cells_of(message: OccupancyGrid) -> OccupancyMap:
@@ -45,7 +37,7 @@ def dirt_cells_of(message: OccupancyGrid) -> OccupancyMap:
 
 def shown_path_of(message: Path) -> NDArray[np.float32]:
     """Return the first points of a path, float32 [n, 2], m."""
-    return path_of(message)[:_MOST_PATH].astype(np.float32)
+    return path_of(message)[:MOST_PATH].astype(np.float32)
 
 
 def room_views_of(message: RoomArray) -> tuple[RoomView, ...]:

@@ -21,6 +21,8 @@ from roomba_robot.srv import (
     SplitRoom,
 )
 
+from roomba.client import view
+from roomba.client.observed import HAND_SILENCE, SPILL
 from roomba.client.protocol import (
     CleanHandle,
     CleanReport,
@@ -29,17 +31,6 @@ from roomba.client.protocol import (
     RequestRefusedError,
     WalkHandle,
     WalkOutcome,
-)
-from roomba.client.view import (
-    MOST_ZONES,
-    CleanOrder,
-    GridLayer,
-    HomeView,
-    LayerName,
-    PageLimits,
-    Point,
-    RobotView,
-    ZoneView,
 )
 from roomba.configuration.robot import RobotConfig
 from roomba.geometry import STANDSTILL, Twist
@@ -51,12 +42,8 @@ from roomba_ros.dashboard.page_topics import PageTopics
 from roomba_ros.runtime.calls import call_service
 from roomba_ros.runtime.parameters import LiveSeedParameters
 
-_SILENCE: Final = 0.5
-"""s of wall time; a drive by hand without news for so long ends."""
 _REFUSED_WITHIN: Final = 1.0
 """s of wall time within which an action server refuses a goal that it will not take."""
-_SPILL: Final = (0.25, 6.0)
-"""m and g of a heap of dirt."""
 _STOPS: Final = 3
 """Times that a stop is sent before the drive is left to others."""
 
@@ -102,7 +89,7 @@ class GraphRobot:
         """Keep on driving as the hand wants, or stop when it let go."""
         self._parameters.refresh()
         with self._hand_lock:
-            if time.monotonic() - self._hand_heard < _SILENCE:
+            if time.monotonic() - self._hand_heard < HAND_SILENCE:
                 self._stops_left = _STOPS
                 twist = self._by_hand
             elif self._stops_left:
@@ -130,19 +117,19 @@ class GraphRobot:
 
     # ---------------------------------------------------------------- what a page reads
 
-    def limits(self) -> PageLimits:
+    def limits(self) -> view.PageLimits:
         """Return what may be asked for."""
         body = self._config.body
-        return PageLimits(
+        return view.PageLimits(
             min(self._parameters.values.robot_max_speed, body.max_speed),
             body.max_angular_speed,
         )
 
-    def robot(self) -> RobotView:
+    def robot(self) -> view.RobotView:
         """Return the newest state."""
         pose = self._topics.pose()
         self._take_report()
-        return RobotView(
+        return view.RobotView(
             time=rospy.get_time(),
             pose=(pose.x, pose.y, pose.theta),
             doubt=self._topics.doubt,
@@ -155,17 +142,17 @@ class GraphRobot:
             last=self._last,
         )
 
-    def home(self) -> HomeView:
+    def home(self) -> view.HomeView:
         """Return what seldom changes."""
         return self._topics.home()
 
-    def layer(self, name: LayerName) -> GridLayer | None:
+    def layer(self, name: view.LayerName) -> view.GridLayer | None:
         """Return the newest grid of a layer."""
         return self._topics.layer(name)
 
     # ---------------------------------------------------------------- commands
 
-    def clean(self, order: CleanOrder) -> None:
+    def clean(self, order: view.CleanOrder) -> None:
         """Begin a clean."""
         errand = self._vacuum.clean(
             CleanMode(order.mode),
@@ -237,11 +224,9 @@ class GraphRobot:
 
     # ---------------------------------------------------------------- rooms and zones
 
-    def put_zone(self, zone: ZoneView) -> None:
+    def put_zone(self, zone: view.ZoneView) -> None:
         """Add a zone, or replace the one of the same name."""
-        zones = self.home().zones
-        if len(zones) >= MOST_ZONES and all(zone.name != other.name for other in zones):
-            raise RequestRefusedError(f"expected at most {MOST_ZONES} zones; remove one first")
+        view.require_another_zone(zone.name, [other.name for other in self.home().zones])
         self._call("set_zone", zone_message_of(zone))
 
     def remove_zone(self, name: str) -> None:
@@ -256,7 +241,7 @@ class GraphRobot:
         """Make rooms that touch one."""
         self._call("rooms/join", list(names))
 
-    def split_room(self, name: str, start: Point, end: Point) -> None:
+    def split_room(self, name: str, start: view.Point, end: view.Point) -> None:
         """Cut a room along a line."""
         self._call("rooms/split", name, PointMessage(*start, 0.0), PointMessage(*end, 0.0))
 
@@ -264,7 +249,7 @@ class GraphRobot:
 
     def spill_dirt(self, x: float, y: float) -> None:
         """Spill a heap of dirt; a simulated home only."""
-        self._call("sim/spill", x, y, *_SPILL)
+        self._call("sim/spill", x, y, *SPILL)
 
     def place_chair(self, x: float, y: float) -> None:
         """Put a chair in the way; a simulated home only."""
@@ -290,8 +275,9 @@ class GraphRobot:
         if isinstance(report, CleanReport):
             self._last = report
         else:
-            nothing = (0.0, 0.0, 0.0, report.distance, report.duration, math.nan)
-            self._last = CleanReport(report.outcome, report.message, *nothing)
+            self._last = view.exploration_as_clean(
+                report.outcome, report.message, report.distance, report.duration
+            )
 
 
 def _require_taken(errand: Any) -> None:

@@ -122,11 +122,7 @@ class PageTopics:
         scan = self._scan
         if scan is None:
             return _NO_POINTS
-        ends = scan.lidar.view(scan.ranges).ends
-        cosine, sine = math.cos(pose.theta), math.sin(pose.theta)
-        x = pose.x + cosine * ends[:, 0] - sine * ends[:, 1]
-        y = pose.y + sine * ends[:, 0] + cosine * ends[:, 1]
-        return np.column_stack((x, y)).astype(np.float32)
+        return scan.lidar.view(scan.ranges).ends_at(pose)
 
     # ---------------------------------------------------------------- callbacks
 
@@ -160,16 +156,13 @@ class PageTopics:
             self._home = replace(before, version=before.version + 1, **changes)
 
     def _on_layer(self, name: LayerName, grid: OccupancyMap) -> None:
-        frame = grid.frame
         cells = grid.values.astype(np.uint8)
         with self._lock:
             before = self._layers.get(name)
             shape = 1 if before is None else before.shape
             if before is not None and not _lies_as(before, grid):
                 shape += 1
-            self._layers[name] = GridLayer(
-                shape, frame.resolution, frame.origin_x, frame.origin_y, cells
-            )
+            self._layers[name] = GridLayer.over(grid.frame, cells, shape)
 
 
 def _lies_as(before: GridLayer, grid: OccupancyMap) -> bool:

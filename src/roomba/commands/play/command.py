@@ -6,6 +6,7 @@ import argparse
 import math
 import sys
 import webbrowser
+from collections.abc import Callable
 from typing import Final
 
 from roomba.commands.sim.homes import home_of, rooms_of
@@ -118,23 +119,22 @@ def _parser() -> argparse.ArgumentParser:
     return parser
 
 
-def _positive(text: str) -> float:
-    try:
-        grams = float(text)
-    except ValueError:
-        grams = 0.0
-    if not 0.0 < grams < math.inf:
-        raise argparse.ArgumentTypeError(f"expected a number above 0, got {text!r}")
-    return grams
+def _number(is_right: Callable[[float], bool], expected: str) -> Callable[[str], float]:
+    """Return a reader of numbers; of another one it says what was expected."""
+
+    def read(text: str) -> float:
+        try:
+            number = float(text)
+        except ValueError:
+            number = math.nan
+        if not is_right(number):
+            raise argparse.ArgumentTypeError(f"expected a number {expected}, got {text!r}")
+        return number
+
+    return read
 
 
-def _speed(text: str) -> float:
-    try:
-        speed = float(text)
-    except ValueError:
-        speed = 0.0
-    if not SPEEDS[0] <= speed <= SPEEDS[1]:
-        raise argparse.ArgumentTypeError(
-            f"expected a number from {SPEEDS[0]:g} to {SPEEDS[1]:g}, got {text!r}"
-        )
-    return speed
+_positive = _number(lambda number: 0.0 < number < math.inf, "above 0")
+_speed = _number(
+    lambda number: SPEEDS[0] <= number <= SPEEDS[1], f"from {SPEEDS[0]:g} to {SPEEDS[1]:g}"
+)

@@ -2,76 +2,35 @@
 
 from __future__ import annotations
 
-import itertools
-import threading
 from collections.abc import Callable
-from typing import Final, TypeVar
 
-from roomba.client.protocol import CleanReport, RequestRefusedError, RobotUnavailableError
-from roomba.client.view import (
-    MOST_ZONES,
-    CleanOrder,
-    GridLayer,
-    HomeView,
-    LayerName,
-    PageLimits,
-    Point,
-    RobotView,
-    ZoneView,
-)
+from roomba.client import view
+from roomba.client.observed import SPILL
+from roomba.client.protocol import RequestRefusedError, RobotUnavailableError
 from roomba.errors import RoombaError
-from roomba.geometry import Pose, Twist
+from roomba.geometry import STANDSTILL, Pose, Twist
 from roomba.headless.cleaner import HeadlessMission
+from roomba.headless.live.floor_plan import FloorPlan, made
+from roomba.headless.live.observation import Observation
 from roomba.headless.live.robot import LiveRobot
-from roomba.headless.live.views import (
-    clean_report,
-    dirt_layer,
-    exploration_report,
-    home_view,
-    map_cells,
-    robot_view,
-)
-from roomba.headless.live.visits import Visits
 from roomba.mission.cleaning.request import CleanRequest
 from roomba.mission.phases.machine import Event, Phase
-from roomba.perception.rooms.rooms import Rooms, segment
-from roomba.perception.rooms.zones import Zone, ZoneKind, Zones
+from roomba.perception.rooms.rooms import Rooms
 from roomba.vocabulary import CleanMode, FanLevel
 from roomba.world.home.home import Home
-
-_SPILL: Final = (0.25, 6.0)
-"""m and g of a heap of dirt."""
-
-_Value = TypeVar("_Value")
 
 
 class LiveClient:
     """Observes and commands one headless robot; its methods may be called from any thread."""
 
     def __init__(
-        self,
-        home: Home,
-        robot: HeadlessMission,
-        rooms: Rooms | None,
-        speed: float,
+        self, home: Home, robot: HeadlessMission, rooms: Rooms | None, speed: float
     ) -> None:
         """Start nothing yet."""
-        self._home = home
-        self._rooms, self._zones = rooms, Zones()
-        self._lock = threading.Lock()
-        self._versions = itertools.count(1)
-        self._live = LiveRobot(robot, speed, self._observe)
-        self._view: RobotView | None = None
-        self._home_view: HomeView | None = None
-        self._last: CleanReport | None = None
-        self._map: GridLayer | None = None
-        self._map_of: object = None
-        self._visits = Visits(robot.mission.context.occupancy.frame, robot.robot.brush.width)
-        self._shape = 0
-        self._limits = PageLimits(
-            max_speed=robot.robot.body.max_speed,
-            max_angular_speed=robot.robot.body.max_angular_speed,
-        )
+        self._observation = Observation(home, robot, FloorPlan(rooms))
+        self._live = LiveRobot(robot, speed, self._observation.observe)
+        body = robot.robot.body
+        self._limits = view.PageLimits(body.max_speed, body.max_angular_speed)
 
     def start(self) -> None:
         """Let the robot live."""
@@ -83,49 +42,35 @@ class LiveClient:
 
     # ---------------------------------------------------------------- what a page reads
 
-    def limits(self) -> PageLimits:
+    def limits(self) -> view.PageLimits:
         """Return what may be asked for."""
         return self._limits
 
-    def robot(self) -> RobotView:
+    def robot(self) -> view.RobotView:
         """Return the newest state."""
-        if self._view is None:
-            raise RobotUnavailableError("the robot has not begun to live yet")
-        return self._view
+        return self._observation.robot()
 
-    def home(self) -> HomeView:
+    def home(self) -> view.HomeView:
         """Return what seldom changes."""
-        if self._home_view is None:
-            raise RobotUnavailableError("the robot has not begun to live yet")
-        return self._home_view
+        return self._observation.home()
 
-    def layer(self, name: LayerName) -> GridLayer | None:
+    def layer(self, name: view.LayerName) -> view.GridLayer | None:
         """Return a copy of a layer as it is now."""
-        with self._lock:
-            if name is LayerName.MAP:
-                return self._map
-            if name is LayerName.COVERAGE:
-                frame = self._visits.frame
-                return GridLayer(
-                    self._shape,
-                    frame.resolution,
-                    frame.origin_x,
-                    frame.origin_y,
-                    self._visits.counts.copy(),
-                )
-        shape = self._shape
-        return self._live.carry_out(lambda robot: dirt_layer(robot.dirt, shape))
+        if name is view.LayerName.MAP:
+            return self._observation.map()
+        if name is view.LayerName.COVERAGE:
+            return self._observation.coverage()
+        return self._live.carry_out(self._observation.dirt)
 
     # ---------------------------------------------------------------- commands
 
-    def clean(self, order: CleanOrder) -> None:
+    def clean(self, order: view.CleanOrder) -> None:
         """Begin a clean."""
         request = _request_of(order)
 
         def begin(robot: HeadlessMission) -> None:
             robot.mission.clean(request, robot.senses())
-            with self._lock:
-                self._visits.clear()
+            self._observation.begin_coverage()
 
         self._obey(begin)
 
@@ -144,7 +89,11 @@ class LiveClient:
 
     def go_to(self, x: float, y: float) -> None:
         """Walk to a point; an errand under way is paused."""
-        self._obey(lambda robot: _ignored(robot.brain.walk(x, y)))
+
+        def walk(robot: HeadlessMission) -> None:
+            robot.brain.walk(x, y)
+
+        self._obey(walk)
 
     def dock(self) -> None:
         """Go to the charging station."""
@@ -182,7 +131,7 @@ class LiveClient:
 
     def emergency_stop(self, reason: str) -> None:
         """Hold the drive until it is released."""
-        self._live.drive(Twist())
+        self._live.drive(STANDSTILL)
         self._command(Event.EMERGENCY, reason)
 
     def release(self) -> None:
@@ -206,53 +155,36 @@ class LiveClient:
 
     # ---------------------------------------------------------------- rooms and zones
 
-    def put_zone(self, zone: ZoneView) -> None:
+    def put_zone(self, zone: view.ZoneView) -> None:
         """Add a zone, or replace the one of the same name."""
-        if len(self._zones.all) >= MOST_ZONES and zone.name not in self._zones.names:
-            raise RequestRefusedError(f"expected at most {MOST_ZONES} zones; remove one first")
-        added = _made(lambda: Zone(zone.name, ZoneKind(zone.kind), zone.points))
-        self._edit(lambda: (self._rooms, self._zones.with_zone(added)))
+        self._edit(lambda plan: plan.with_zone(zone))
 
     def remove_zone(self, name: str) -> None:
         """Remove a zone."""
-        self._edit(lambda: (self._rooms, self._zones.without(name)))
+        self._edit(lambda plan: plan.without_zone(name))
 
     def rename_room(self, name: str, new_name: str) -> None:
         """Give a room another name."""
-        self._edit(lambda: (self._known_rooms.renamed(name, new_name), self._zones))
+        self._edit(lambda plan: plan.with_name(name, new_name))
 
     def join_rooms(self, names: tuple[str, ...]) -> None:
         """Make rooms that touch one."""
-        self._edit(lambda: (self._known_rooms.joined(*names), self._zones))
+        self._edit(lambda plan: plan.with_joined(names))
 
-    def split_room(self, name: str, start: Point, end: Point) -> None:
+    def split_room(self, name: str, start: view.Point, end: view.Point) -> None:
         """Cut a room along a line."""
-        self._edit(lambda: (self._known_rooms.split(name, start, end), self._zones))
+        self._edit(lambda plan: plan.with_cut(name, start, end))
 
-    @property
-    def _known_rooms(self) -> Rooms:
-        if self._rooms is None:
-            raise RequestRefusedError("there are no rooms yet: explore the home first")
-        return self._rooms
-
-    def _edit(self, change: Callable[[], tuple[Rooms | None, Zones]]) -> None:
+    def _edit(self, change: Callable[[FloorPlan], FloorPlan]) -> None:
         """Let the mission go on with other rooms and zones."""
-
-        def use(robot: HeadlessMission) -> None:
-            self._use(robot, *change())
-            self._home_view = self._new_home_view(robot)
-
-        self._obey(use)
-
-    def _use(self, robot: HeadlessMission, rooms: Rooms | None, zones: Zones) -> None:
-        robot.brain.use_rooms(rooms, zones)
-        self._rooms, self._zones = rooms, zones
+        seen = self._observation
+        self._obey(lambda robot: seen.use(robot, change(seen.plan)))
 
     # ---------------------------------------------------------------- to play with
 
     def spill_dirt(self, x: float, y: float) -> None:
         """Spill a heap of dirt."""
-        self._obey(lambda robot: robot.simulator.spill(x, y, *_SPILL))
+        self._obey(lambda robot: robot.simulator.spill(x, y, *SPILL))
 
     def place_chair(self, x: float, y: float) -> None:
         """Put a chair where it stands in the way."""
@@ -268,8 +200,7 @@ class LiveClient:
 
         def obey(robot: HeadlessMission) -> None:
             command(robot)
-            self._take_results(robot)
-            self._look(robot)
+            self._observation.look(robot)
 
         try:
             self._live.carry_out(obey)
@@ -278,74 +209,10 @@ class LiveClient:
         except (RoombaError, ValueError) as refusal:
             raise RequestRefusedError(str(refusal)) from refusal
 
-    def _observe(self, robot: HeadlessMission) -> None:
-        """Take snapshots after a frame."""
-        self._follow_sweeps(robot)
-        self._take_results(robot)
-        self._look(robot)
 
-    def _look(self, robot: HeadlessMission) -> None:
-        if self._home_view is None:
-            self._home_view = self._new_home_view(robot)
-        self._follow_map(robot)
-        self._view = robot_view(robot, self._last)
-
-    def _follow_sweeps(self, robot: HeadlessMission) -> None:
-        """Count what was swept during the frame."""
-        with self._lock:
-            if not robot.mission.sweeps:
-                self._visits.lift()
-                return
-            for row in robot.passed[::2]:
-                self._visits.sweep(float(row[0]), float(row[4]), float(row[5]))
-            pose = robot.brain.pose
-            self._visits.sweep(robot.seen.time, pose.x, pose.y)
-
-    def _take_results(self, robot: HeadlessMission) -> None:
-        clean = robot.mission.take_result()
-        if clean is not None:
-            self._last = clean_report(clean)
-        exploration = robot.mission.take_exploration()
-        if exploration is not None:
-            self._last = exploration_report(exploration)
-            robot.brain.finish_map()
-
-    def _follow_map(self, robot: HeadlessMission) -> None:
-        """Take over a map that has changed."""
-        occupancy = robot.mission.context.occupancy
-        if self._map_of is occupancy:
-            return
-        self._map_of = occupancy
-        with self._lock:
-            if self._map is None or self._map.cells.shape != occupancy.frame.shape:
-                self._shape += 1
-                self._visits = Visits(occupancy.frame, robot.robot.brush.width)
-            frame = occupancy.frame
-            self._map = GridLayer(
-                self._shape,
-                frame.resolution,
-                frame.origin_x,
-                frame.origin_y,
-                map_cells(occupancy),
-            )
-        self._find_rooms(robot)
-        self._home_view = self._new_home_view(robot)
-
-    def _find_rooms(self, robot: HeadlessMission) -> None:
-        """As soon as a map that was made is whole, find its rooms."""
-        growing = robot.brain.growing
-        if growing is not None and growing.is_whole and self._rooms is None:
-            rooms = segment(robot.mission.context.occupancy)
-            if rooms.names:
-                self._use(robot, rooms, self._zones)
-
-    def _new_home_view(self, robot: HeadlessMission) -> HomeView:
-        return home_view(next(self._versions), self._home, robot, self._rooms, self._zones)
-
-
-def _request_of(order: CleanOrder) -> CleanRequest:
+def _request_of(order: view.CleanOrder) -> CleanRequest:
     """Return a request; raises RequestRefusedError."""
-    return _made(
+    return made(
         lambda: CleanRequest(
             CleanMode(order.mode),
             order.rooms,
@@ -356,14 +223,3 @@ def _request_of(order: CleanOrder) -> CleanRequest:
             order.in_order,
         )
     )
-
-
-def _ignored(_: object) -> None:
-    """Take a value that is not needed."""
-
-
-def _made(make: Callable[[], _Value]) -> _Value:
-    try:
-        return make()
-    except (RoombaError, ValueError, KeyError) as refusal:
-        raise RequestRefusedError(str(refusal)) from refusal

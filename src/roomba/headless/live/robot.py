@@ -15,6 +15,7 @@ from concurrent.futures import TimeoutError as FutureTimeoutError
 from queue import Empty, SimpleQueue
 from typing import Any, Final, TypeVar
 
+from roomba.client.observed import HAND_SILENCE
 from roomba.client.protocol import RobotUnavailableError
 from roomba.geometry import STANDSTILL, Twist
 from roomba.headless.cleaner import HeadlessMission
@@ -23,8 +24,6 @@ _FRAME: Final = 0.05
 """s of wall time between two frames: at real time, a tick of the robot."""
 _ANSWER: Final = 5.0
 """s of wall time within which a command is answered."""
-_SILENCE: Final = 0.5
-"""s of wall time; a drive by hand without news for so long ends."""
 SPEEDS: Final = (0.1, 100.0)
 """The robot's seconds per second of the wall clock: the least and the most."""
 
@@ -126,7 +125,7 @@ class LiveRobot:
 
     @property
     def _is_driven_by_hand(self) -> bool:
-        return time.monotonic() - self._hand_heard < _SILENCE
+        return time.monotonic() - self._hand_heard < HAND_SILENCE
 
     def _pass_by_hand(self, until: float) -> None:
         """Drive as the hand wants; the mission stands meanwhile."""

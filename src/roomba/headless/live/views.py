@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from typing import Final
 
@@ -11,8 +10,16 @@ import shapely
 from numpy.typing import NDArray
 
 from roomba.client.protocol import CleanReport, ErrandOutcome, MissedFloor, VacuumSnapshot
-from roomba.client.view import GridLayer, HomeView, LayerName, Point, RobotView, RoomView, ZoneView
-from roomba.grid import FREE, OCCUPIED, OccupancyMap
+from roomba.client.view import (
+    MOST_PATH,
+    GridLayer,
+    HomeView,
+    Point,
+    RobotView,
+    RoomView,
+    ZoneView,
+    exploration_as_clean,
+)
 from roomba.headless.cleaner import HeadlessMission
 from roomba.mission.cleaning.request import CleanResult
 from roomba.mission.exploring.exploration import ExploreResult
@@ -22,11 +29,10 @@ from roomba.perception.rooms.rooms import Rooms
 from roomba.perception.rooms.zones import Zones
 from roomba.perception.swept.dirt_map import DirtMap
 from roomba.world.home.home import Home
+from roomba.world.home.raster import footprint
 
 _DIRTIEST: Final = 8000.0
 """Grains/m2 that are drawn as the dirtiest floor there is: sixteen times where dirt begins."""
-_MOST_PATH: Final = 400
-"""Points of the path that are shown."""
 
 
 def robot_view(robot: HeadlessMission, last: CleanReport | None) -> RobotView:
@@ -42,7 +48,7 @@ def robot_view(robot: HeadlessMission, last: CleanReport | None) -> RobotView:
         dirt=seen.in_bin,
         held=held or ("emergency stop" if mission.state.phase is Phase.EMERGENCY else ""),
         vacuum=vacuum_snapshot(robot),
-        scan=_scan(robot),
+        scan=robot.lidar.view(robot.simulator.ranges).ends_at(pose),
         path=_path(robot),
         last=last,
     )
@@ -71,34 +77,15 @@ def vacuum_snapshot(robot: HeadlessMission) -> VacuumSnapshot:
     )
 
 
-def _scan(robot: HeadlessMission) -> NDArray[np.float32]:
-    """Return where the beams of the newest scan met something, float32 [n, 2], m, map frame."""
-    view = robot.lidar.view(robot.simulator.ranges)
-    pose = robot.brain.pose
-    cosine, sine = math.cos(pose.theta), math.sin(pose.theta)
-    x, y = view.ends[:, 0], view.ends[:, 1]
-    return np.column_stack((pose.x + cosine * x - sine * y, pose.y + sine * x + cosine * y)).astype(
-        np.float32
-    )
-
-
 def _path(robot: HeadlessMission) -> NDArray[np.float32]:
     """Return what is left of the path that it drives, float32 [n, 2], m."""
     driver = robot.mission.driver
     if driver is None:
         return np.empty((0, 2), np.float32)
-    return driver.tracker.rest[:_MOST_PATH].astype(np.float32)
+    return driver.tracker.rest[:MOST_PATH].astype(np.float32)
 
 
 # ---------------------------------------------------------------- layers
-
-
-def map_cells(occupancy: OccupancyMap) -> NDArray[np.uint8]:
-    """Return what is known: 0 unknown, 1 free, 2 occupied."""
-    cells = np.zeros(occupancy.frame.shape, np.uint8)
-    cells[occupancy.values == FREE] = 1
-    cells[occupancy.values >= OCCUPIED] = 2
-    return cells
 
 
 def dirt_cells(dirt: DirtMap) -> NDArray[np.uint8]:
@@ -112,11 +99,7 @@ def dirt_cells(dirt: DirtMap) -> NDArray[np.uint8]:
 
 def dirt_layer(dirt: DirtMap, shape: int) -> GridLayer:
     """Return the dirt map to be drawn."""
-    frame = dirt.frame
-    return GridLayer(shape, frame.resolution, frame.origin_x, frame.origin_y, dirt_cells(dirt))
-
-
-LAYERS: Final = (LayerName.MAP, LayerName.COVERAGE, LayerName.DIRT)
+    return GridLayer.over(dirt.frame, dirt_cells(dirt), shape)
 
 
 # ---------------------------------------------------------------- the home
@@ -158,16 +141,7 @@ def _outlines(home: Home) -> Iterator[tuple[Point, ...]]:
         if not piece.on_map:
             continue
         for box in piece.boxes:
-            half = 0.5 * box.length, 0.5 * box.width
-            corners = ((-1, -1), (1, -1), (1, 1), (-1, 1))
-            cosine, sine = math.cos(box.theta), math.sin(box.theta)
-            yield tuple(
-                (
-                    box.x + cosine * sx * half[0] - sine * sy * half[1],
-                    box.y + sine * sx * half[0] + cosine * sy * half[1],
-                )
-                for sx, sy in corners
-            )
+            yield tuple((x, y) for x, y in footprint(box).exterior.coords[:-1])
 
 
 # ---------------------------------------------------------------- results
@@ -192,14 +166,6 @@ def clean_report(result: CleanResult) -> CleanReport:
 
 
 def exploration_report(result: ExploreResult) -> CleanReport:
-    """Return how an exploration ended, in the words of a clean: nothing was wanted or covered."""
-    return CleanReport(
-        ErrandOutcome(result.outcome.value),
-        result.message,
-        0.0,
-        0.0,
-        0.0,
-        result.distance,
-        result.duration,
-        math.nan,
-    )
+    """Return how an exploration ended, in the words of a clean."""
+    outcome = ErrandOutcome(result.outcome.value)
+    return exploration_as_clean(outcome, result.message, result.distance, result.duration)

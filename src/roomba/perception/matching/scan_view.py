@@ -130,6 +130,14 @@ class ScanView:
         """How many beams met something."""
         return len(self.ends)
 
+    def ends_at(self, pose: Pose) -> NDArray[np.float32]:
+        """Return where the beams met something as seen from a pose, float32 [n, 2], m."""
+        cosine, sine = np.cos(pose.theta), np.sin(pose.theta)
+        x, y = self.ends[:, 0], self.ends[:, 1]
+        return np.column_stack(
+            (pose.x + cosine * x - sine * y, pose.y + sine * x + cosine * y)
+        ).astype(np.float32)
+
     def fit(self, field: SurfaceField, pose: NDArray[np.float64], stride: int = 1) -> Fit:
         """Return how well the scan fits a pose, float64 [3], by each ``stride``-th of its beams."""
         counts, lanes = np.empty(5), np.empty((JUDGE_LANES, len(self.ends)))

@@ -1,8 +1,8 @@
 /** The buttons: clean, pause, dock, stop, explore, emergency stop. */
+import { $, put } from "../dom.js";
 import { wish } from "../link.js";
 import { get, on, set } from "../store.js";
 
-const $ = (id) => document.getElementById(id);
 const STANDS = ["docked", "idle"];
 
 /** Connect the buttons. */
@@ -41,8 +41,8 @@ function show() {
   const state = get("state"), chosen = get("chosen"), phase = state?.vacuum.phase ?? "";
   const stands = STANDS.includes(phase), isHeld = Boolean(state?.held);
   const isPaused = phase === "paused" || phase === "error";
-  text($("clean"), chosen.length ? `Clean ${chosen.length} room${chosen.length > 1 ? "s" : ""}` : "Clean all");
-  text($("pause"), isPaused ? "Go on" : "Pause");
+  put($("clean"), chosen.length ? `Clean ${chosen.length} room${chosen.length > 1 ? "s" : ""}` : "Clean all");
+  put($("pause"), isPaused ? "Go on" : "Pause");
   $("pause").disabled = stands || isHeld;
   $("stop").disabled = (stands && !state?.speed) || isHeld;
   $("clean").disabled = isHeld;
@@ -50,11 +50,7 @@ function show() {
   $("mode").disabled = chosen.length > 0;
   $("explore").hidden = (get("home")?.furniture.length ?? 0) > 0 || (get("home")?.rooms.length ?? 0) > 0;
   $("bin").hidden = !/bin/.test(state?.vacuum.message ?? "") && phase !== "bin full";
-  text($("emergency"), isHeld ? "Release" : "Stop now");
+  put($("emergency"), isHeld ? "Release" : "Stop now");
   for (const button of document.querySelectorAll(".panel button, .emergency"))
     button.title = get("mayChange") ? "" : "Open the page by the address that the robot's program printed: it holds the token.";
-}
-
-function text(element, words) {
-  if (element.textContent !== words) element.textContent = words;
 }

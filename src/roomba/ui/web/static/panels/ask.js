@@ -1,6 +1,5 @@
 /** Asks the viewer for a name, or for a yes. */
-
-const $ = (id) => document.getElementById(id);
+import { $ } from "../dom.js";
 
 /** Return the text that was entered, or null. */
 export function askName(title, text) { return ask(title, text); }

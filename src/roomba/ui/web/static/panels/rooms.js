@@ -1,9 +1,8 @@
 /** The rooms: choose them in order, rename, join, split. */
+import { $ } from "../dom.js";
 import { wish } from "../link.js";
 import { get, on, set } from "../store.js";
 import { askName } from "./ask.js";
-
-const $ = (id) => document.getElementById(id);
 
 /** Keep the list up to date. */
 export function begin() {

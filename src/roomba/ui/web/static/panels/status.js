@@ -1,8 +1,7 @@
 /** The state line: headline, explanation, figures, and how the last run ended. */
+import { $, put } from "../dom.js";
 import { get, on } from "../store.js";
 import { explanation, headline, lastRun } from "../words.js";
-
-const $ = (id) => document.getElementById(id);
 
 /** Keep it up to date. */
 export function begin() {
@@ -36,9 +35,4 @@ function showLast(report) {
     item.textContent = `${miss.area.toFixed(2)} m² missed${miss.room ? ` in ${miss.room}` : ""}: ${miss.reason}`;
     return item;
   }));
-}
-
-/** Write a text only when it is another one: screen readers tell each change. */
-function put(element, text) {
-  if (element.textContent !== text) element.textContent = text;
 }

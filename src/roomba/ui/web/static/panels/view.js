@@ -1,9 +1,9 @@
 /** The tools of the map: zoom, layers, scale, a picture to save. */
+import { $ } from "../dom.js";
 import * as draw from "../map/draw.js";
 import { view, zoom } from "../map/view.js";
 import { get, set } from "../store.js";
 
-const $ = (id) => document.getElementById(id);
 const NAMES = { coverage: "Coverage", trail: "Way so far", path: "Way to go", rooms: "Rooms", furniture: "Furniture", zones: "Zones", dirt: "Dirt found", scan: "Lidar" };
 const STEP = 1.4;
 

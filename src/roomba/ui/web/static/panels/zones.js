@@ -1,9 +1,9 @@
 /** Zones: what the robot must not enter, and what is to be cleaned once. */
+import { $ } from "../dom.js";
 import { wish } from "../link.js";
 import { get, on, set } from "../store.js";
 import { how } from "./actions.js";
 
-const $ = (id) => document.getElementById(id);
 const DRAWS = { "draw-clean": "clean", "draw-no-go": "no-go", "draw-wall": "wall" };
 
 /** Connect the buttons, and keep the list up to date. */

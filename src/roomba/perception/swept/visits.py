@@ -9,14 +9,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.grid import GridFrame
+from roomba.perception.swept.coverage_bits import SWEPT
+from roomba.perception.swept.coverage_kernels import sweep
+from roomba.perception.swept.coverage_map import LONGEST_STEP
 
 CELL: Final = 0.05
 """m; side of a cell, as fine as can be seen on a page."""
 _ANOTHER_VISIT: Final = 6.0
 """s after which a cell that is swept again counts once more: neighbouring swaths overlap."""
 _MOST: Final = 3
-_LONGEST_STEP: Final = 0.3
-"""m between two ticks; a longer one means that the robot was carried."""
 
 
 class Visits:
@@ -45,7 +46,7 @@ class Visits:
     def sweep(self, now: float, x: float, y: float) -> None:
         """Count what the tool passes on a straight way to (x, y), m, at a time, s."""
         from_x, from_y = self._at or (x, y)
-        if math.hypot(x - from_x, y - from_y) > _LONGEST_STEP:
+        if math.hypot(x - from_x, y - from_y) > LONGEST_STEP:
             from_x, from_y = x, y
         self._at = (x, y)
         reach, frame = self._radius, self.frame
@@ -55,31 +56,12 @@ class Visits:
         columns = np.arange(max(low_column, 0), min(high_column + 1, frame.columns))
         if not (rows.size and columns.size):
             return
-        cell_x, cell_y = frame.centres(rows, columns)
-        distance = _to_segment(cell_x[None, :], cell_y[:, None], from_x, from_y, x, y)
-        under = distance <= reach
+        first_x, first_y = frame.centre_of(rows[0], columns[0])
+        passed = np.zeros((rows.size, columns.size), np.uint8)
+        sweep(passed, np.array([first_x, first_y, CELL]), from_x, from_y, x, y, reach)
+        under = passed == SWEPT
         area = np.ix_(rows, columns)
         counts, swept_at = self.counts[area], self._swept_at[area]
         fresh = under & (now - swept_at > _ANOTHER_VISIT)
         self.counts[area] = np.where(fresh, np.minimum(counts + 1, _MOST), counts)
         self._swept_at[area] = np.where(under, now, swept_at)
-
-
-def _to_segment(
-    x: NDArray[np.float64],
-    y: NDArray[np.float64],
-    from_x: float,
-    from_y: float,
-    to_x: float,
-    to_y: float,
-) -> NDArray[np.float64]:
-    """Return the distance of points from a line between two points, m."""
-    along_x, along_y = to_x - from_x, to_y - from_y
-    length = along_x**2 + along_y**2
-    share = np.zeros(np.broadcast_shapes(x.shape, y.shape))
-    if length > 0.0:
-        share = np.clip(((x - from_x) * along_x + (y - from_y) * along_y) / length, 0.0, 1.0)
-    distance: NDArray[np.float64] = np.hypot(
-        x - from_x - share * along_x, y - from_y - share * along_y
-    )
-    return distance

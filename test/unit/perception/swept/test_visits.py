@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from roomba.grid import GridFrame
-from roomba.headless.live.visits import Visits
+from roomba.perception.swept.visits import Visits
 
 FRAME = GridFrame(0.05, -0.5, 1.0, 40, 60)
 

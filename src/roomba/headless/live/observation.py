@@ -1,0 +1,138 @@
+"""What a page reads of a live headless robot: snapshots that are taken in the robot's thread."""
+
+from __future__ import annotations
+
+import itertools
+import threading
+
+from roomba.client.protocol import CleanReport, RobotUnavailableError
+from roomba.client.view import GridLayer, HomeView, RobotView, known_cells
+from roomba.headless.cleaner import HeadlessMission
+from roomba.headless.live.floor_plan import FloorPlan
+from roomba.headless.live.views import (
+    clean_report,
+    dirt_layer,
+    exploration_report,
+    home_view,
+    robot_view,
+)
+from roomba.perception.rooms.rooms import segment
+from roomba.perception.swept.visits import Visits
+from roomba.world.home.home import Home
+
+
+class Observation:
+    """The newest snapshots; they may be read from any thread, all else is for the robot's own."""
+
+    def __init__(self, home: Home, robot: HeadlessMission, plan: FloorPlan) -> None:
+        """Begin before the first frame."""
+        self._home, self.plan = home, plan
+        self._lock = threading.Lock()
+        self._versions = itertools.count(1)
+        self._view: RobotView | None = None
+        self._home_view: HomeView | None = None
+        self._last: CleanReport | None = None
+        self._map: GridLayer | None = None
+        self._map_of: object = None
+        self._visits = Visits(robot.mission.context.occupancy.frame, robot.robot.brush.width)
+        self._shape = 0
+
+    # ---------------------------------------------------------------- snapshots
+
+    def robot(self) -> RobotView:
+        """Return the newest state; raises RobotUnavailableError before the first one."""
+        if self._view is None:
+            raise RobotUnavailableError("the robot has not begun to live yet")
+        return self._view
+
+    def home(self) -> HomeView:
+        """Return what seldom changes; raises RobotUnavailableError before the first frame."""
+        if self._home_view is None:
+            raise RobotUnavailableError("the robot has not begun to live yet")
+        return self._home_view
+
+    def map(self) -> GridLayer | None:
+        """Return the newest map."""
+        with self._lock:
+            return self._map
+
+    def coverage(self) -> GridLayer:
+        """Return a copy of how often each cell was swept."""
+        with self._lock:
+            return GridLayer.over(self._visits.frame, self._visits.counts.copy(), self._shape)
+
+    def dirt(self, robot: HeadlessMission) -> GridLayer:
+        """Return where dirt was found."""
+        return dirt_layer(robot.dirt, self._shape)
+
+    # ---------------------------------------------------------------- in the robot's thread
+
+    def observe(self, robot: HeadlessMission) -> None:
+        """Take snapshots after a frame."""
+        self._follow_sweeps(robot)
+        self.look(robot)
+
+    def look(self, robot: HeadlessMission) -> None:
+        """Take snapshots after a command."""
+        self._take_results(robot)
+        if self._home_view is None:
+            self._look_at_home(robot)
+        self._follow_map(robot)
+        self._view = robot_view(robot, self._last)
+
+    def begin_coverage(self) -> None:
+        """Count sweeps from nothing on."""
+        with self._lock:
+            self._visits.clear()
+
+    def use(self, robot: HeadlessMission, plan: FloorPlan) -> None:
+        """Let the robot go on with other rooms and zones."""
+        robot.brain.use_rooms(plan.rooms, plan.zones)
+        self.plan = plan
+        self._look_at_home(robot)
+
+    def _look_at_home(self, robot: HeadlessMission) -> None:
+        version = next(self._versions)
+        self._home_view = home_view(version, self._home, robot, self.plan.rooms, self.plan.zones)
+
+    def _follow_sweeps(self, robot: HeadlessMission) -> None:
+        """Count what was swept during the frame."""
+        with self._lock:
+            if not robot.mission.sweeps:
+                self._visits.lift()
+                return
+            for row in robot.passed[::2]:
+                self._visits.sweep(float(row[0]), float(row[4]), float(row[5]))
+            pose = robot.brain.pose
+            self._visits.sweep(robot.seen.time, pose.x, pose.y)
+
+    def _take_results(self, robot: HeadlessMission) -> None:
+        clean = robot.mission.take_result()
+        if clean is not None:
+            self._last = clean_report(clean)
+        exploration = robot.mission.take_exploration()
+        if exploration is not None:
+            self._last = exploration_report(exploration)
+            robot.brain.finish_map()
+
+    def _follow_map(self, robot: HeadlessMission) -> None:
+        """Take over a map that has changed."""
+        occupancy = robot.mission.context.occupancy
+        if self._map_of is occupancy:
+            return
+        self._map_of = occupancy
+        with self._lock:
+            if self._map is None or self._map.cells.shape != occupancy.frame.shape:
+                self._shape += 1
+                self._visits = Visits(occupancy.frame, robot.robot.brush.width)
+            self._map = GridLayer.over(occupancy.frame, known_cells(occupancy), self._shape)
+        self._find_rooms(robot)
+        self._look_at_home(robot)
+
+    def _find_rooms(self, robot: HeadlessMission) -> None:
+        """As soon as a map that was made is whole, find its rooms."""
+        growing = robot.brain.growing
+        if growing is not None and growing.is_whole and self.plan.rooms is None:
+            rooms = segment(robot.mission.context.occupancy)
+            if rooms.names:
+                self.use(robot, FloorPlan(rooms, self.plan.zones))
