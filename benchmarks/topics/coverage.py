@@ -14,12 +14,12 @@ import numpy as np
 
 from benchmarks.bench import Bench
 from benchmarks.contestants import REPOSITORY
-from benchmarks.coverage_aims import COVERAGE, aims_of
-from benchmarks.coverage_changes import Change
-from benchmarks.coverage_clean import Clean, Task, clean, home_named, true_floor
-from benchmarks.coverage_floor import Reachable
-from benchmarks.coverage_lanes import Order
-from benchmarks.coverage_peers import (
+from benchmarks.coverage.aims import COVERAGE, aims_of
+from benchmarks.coverage.changes import Change
+from benchmarks.coverage.clean import Clean, Task, clean, home_named, true_floor
+from benchmarks.coverage.floor import Reachable
+from benchmarks.coverage.lanes import Order
+from benchmarks.coverage.peers import (
     BOUNCE,
     Driven,
     context_of,
@@ -29,9 +29,9 @@ from benchmarks.coverage_peers import (
     planned,
     shares_at,
 )
-from benchmarks.coverage_plot import OURS, plot_over_time, plot_way
-from benchmarks.coverage_recorded import recorded
-from benchmarks.coverage_rows import (
+from benchmarks.coverage.plot import OURS, plot_over_time, plot_way
+from benchmarks.coverage.recorded import recorded
+from benchmarks.coverage.rows import (
     Case,
     broken_row,
     changed_rows,

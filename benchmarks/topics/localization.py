@@ -11,14 +11,15 @@ from pathlib import Path
 
 import numpy as np
 
-from benchmarks import localization_drive, localization_kidnaps
 from benchmarks.bench import Bench
 from benchmarks.contestants import REPOSITORY
-from benchmarks.localization_drive import Drive, drive
-from benchmarks.localization_kidnaps import Manner, Try, kidnap
-from benchmarks.localization_peers import Followed, ScannedDrive, follow, match_row
-from benchmarks.localization_plot import plot_drive, plot_spread
-from benchmarks.localization_rows import broken_row, drive_rows, kidnap_rows
+from benchmarks.localization import drive as drives
+from benchmarks.localization import kidnaps as kidnapped
+from benchmarks.localization.drive import Drive, drive
+from benchmarks.localization.kidnaps import Manner, Try, kidnap
+from benchmarks.localization.peers import Followed, ScannedDrive, follow, match_row
+from benchmarks.localization.plot import plot_drive, plot_spread
+from benchmarks.localization.rows import broken_row, drive_rows, kidnap_rows
 from benchmarks.record import Record
 
 _SHIPPED = ("flat", "studio", "family", "apartment", "empty", "lshape", "hall")
@@ -110,7 +111,7 @@ def _begin(bench: Bench, pool: Executor, homes: Homes, extent: Extent) -> _Begun
     for name in homes.names:
         begun.scans[name] = bench.folder / f"scans-{homes.title(name)}.npz"
         tasks = [
-            localization_drive.Task(
+            drives.Task(
                 name,
                 seed,
                 extent.seconds,
@@ -124,7 +125,7 @@ def _begin(bench: Bench, pool: Executor, homes: Homes, extent: Extent) -> _Begun
         begun.drives[title] = [pool.submit(drive, task) for task in tasks]
     for name in homes.changed:
         tasks = [
-            localization_drive.Task(name, seed, extent.seconds, homes.folder, is_changed=True)
+            drives.Task(name, seed, extent.seconds, homes.folder, is_changed=True)
             for seed in range(extent.drives)
         ]
         title = f"{homes.title(name)}, changed, {minutes}"
@@ -135,7 +136,7 @@ def _begin(bench: Bench, pool: Executor, homes: Homes, extent: Extent) -> _Begun
             begun.kidnaps[homes.title(name), manner] = [
                 pool.submit(
                     kidnap,
-                    localization_kidnaps.Task(name, manner, seed, together, homes.folder),
+                    kidnapped.Task(name, manner, seed, together, homes.folder),
                 )
                 for seed in range(homes.tries // together)
             ]

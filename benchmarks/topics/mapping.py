@@ -10,10 +10,10 @@ from multiprocessing import get_context
 from typing import TypeVar
 
 from benchmarks.bench import Bench
-from benchmarks.mapping_cost import recorded, share_of_core, speed
-from benchmarks.mapping_explore import Explored, Task, clean, clean_unknown, explore
-from benchmarks.mapping_loop import loop
-from benchmarks.mapping_rows import (
+from benchmarks.mapping.cost import recorded, share_of_core, speed
+from benchmarks.mapping.explore import Explored, Task, clean, clean_unknown, explore
+from benchmarks.mapping.loop import loop
+from benchmarks.mapping.rows import (
     broken_row,
     clean_rows,
     core_row,

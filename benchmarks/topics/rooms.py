@@ -9,10 +9,10 @@ from benchmarks.bench import Bench
 from benchmarks.contestants import REPOSITORY, Local
 from benchmarks.peers.protocol import Work, once
 from benchmarks.record import Better, PeerFigure, Record
-from benchmarks.rooms_baseline import distance_split
-from benchmarks.rooms_furniture import furnished
-from benchmarks.rooms_picture import write_picture
-from benchmarks.rooms_truth import KnownRooms, RoomLabels, known_homes, known_maps, score
+from benchmarks.rooms.baseline import distance_split
+from benchmarks.rooms.furniture import furnished
+from benchmarks.rooms.picture import write_picture
+from benchmarks.rooms.truth import KnownRooms, RoomLabels, known_homes, known_maps, score
 from benchmarks.rounds import milliseconds
 from roomba.grid import OccupancyMap
 from roomba.perception.rooms.rooms import segment

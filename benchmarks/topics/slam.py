@@ -7,9 +7,9 @@ from pathlib import Path
 from benchmarks.bench import Bench
 from benchmarks.contestants import REPOSITORY
 from benchmarks.record import Record
-from benchmarks.slam_picture import write_picture
-from benchmarks.slam_rows import broken_row, rows_of
-from benchmarks.slam_run import judged, logs_in, name_of
+from benchmarks.slam.picture import write_picture
+from benchmarks.slam.rows import broken_row, rows_of
+from benchmarks.slam.run import judged, logs_in, name_of
 from roomba.commands.map.warm import warm_up
 from roomba.errors import RoombaError
 

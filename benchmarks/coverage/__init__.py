@@ -1,0 +1,1 @@
+"""Cleans and what is compared with them: by area, by way, by time."""

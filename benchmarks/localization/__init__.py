@@ -1,0 +1,1 @@
+"""Drives through homes on whose maps the robot finds its place."""

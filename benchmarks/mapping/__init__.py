@@ -1,0 +1,1 @@
+"""Explored homes, and how far their maps are off the truth."""

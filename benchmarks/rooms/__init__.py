@@ -1,0 +1,1 @@
+"""Rooms of maps, beside rooms that were drawn by hand."""

@@ -1,0 +1,1 @@
+"""Recorded drives, and how far their maps are off what was surveyed."""

@@ -1,0 +1,81 @@
+"""What becomes of mapped drives in the table."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from typing import Final
+
+from benchmarks.record import Better, PeerFigure, Record
+from benchmarks.slam.peers import Reached, aims_of, peers_of
+from benchmarks.slam.relations import Errors
+from benchmarks.slam.run import Judged
+
+TOPIC = "slam"
+ODOMETRY: Final = "odometry alone"
+SPEED_AIM: Final = 100.0
+"""Times real time, on one core."""
+
+
+def rows_of(judged: Judged) -> Iterator[Record]:
+    """Yield the rows of a drive."""
+    if judged.ours is not None and judged.by_odometry is not None:
+        yield from _error_rows(judged.name, judged.ours, judged.by_odometry)
+    replay = judged.drive.replay
+    fitting = 100.0 * replay.unconfirmed / replay.scans
+    yield _row(judged.name, "scans that fitted nothing seen before", fitting, "%")
+    yield Record(
+        TOPIC,
+        judged.name,
+        "times real time",
+        judged.times_real_time,
+        "x, one core",
+        Better.HIGHER,
+        SPEED_AIM,
+    )
+
+
+def broken_row(name: str, error: Exception) -> Record:
+    """Return the row of a log that cannot be read."""
+    reason = f"{type(error).__name__}: {error}"
+    return Record(TOPIC, name, "everything", None, "", Better.LOWER, error=reason)
+
+
+def _error_rows(name: str, ours: Errors, blind: Errors) -> Iterator[Record]:
+    aims, peers = aims_of(name), peers_of(name)
+    counted = f"of {ours.count} relations"
+    values = zip(("mean", "deviation", "largest"), ours.translation, blind.translation, strict=True)
+    published: tuple[Callable[[Reached], float | None], ...]
+    published = (lambda peer: peer.translation, lambda peer: peer.deviation, lambda _: None)
+    reach = zip((aims.translation, None, aims.largest), published, strict=True)
+    for (word, value, by_odometry), (aim, of) in zip(values, reach, strict=True):
+        beside = _beside(by_odometry, peers, of)
+        yield _row(name, f"translation error, {word}, {counted}", value, "m", aim, beside)
+    turns = zip(("mean", "deviation", "largest"), ours.rotation, blind.rotation, strict=True)
+    for word, turn, by_odometry in turns:
+        is_mean = word == "mean"
+        beside = _beside(
+            math.degrees(by_odometry), peers if is_mean else (), lambda peer: peer.rotation
+        )
+        aim = aims.rotation if is_mean else None
+        figure = f"rotation error, {word}, {counted}"
+        yield _row(name, figure, math.degrees(turn), "degrees", aim, beside)
+
+
+def _beside(
+    by_odometry: float, peers: tuple[Reached, ...], of: Callable[[Reached], float | None]
+) -> tuple[PeerFigure, ...]:
+    """Return the figures of odometry, and of those others that published this one."""
+    others = (PeerFigure(peer.name, value=of(peer)) for peer in peers if of(peer) is not None)
+    return (PeerFigure(ODOMETRY, value=by_odometry), *others)
+
+
+def _row(
+    name: str,
+    figure: str,
+    value: float,
+    unit: str,
+    aim: float | None = None,
+    peers: tuple[PeerFigure, ...] = (),
+) -> Record:
+    return Record(TOPIC, name, figure, value, unit, Better.LOWER, aim, peers)
