@@ -37,7 +37,7 @@ BOUNCE: Final = "random bounce"
 
 @dataclass(frozen=True, eq=False)
 class Planned:
-    """Our plan as it is, before anybody drives it; ``cpu`` s from the map to the way."""
+    """Our plan as it is, before a robot drives it; ``cpu`` s from the map to the way."""
 
     share: float
     ratio: float

@@ -118,7 +118,7 @@ def _any_angle_rows(bench: Bench) -> list[Record]:
     cells = FitMap.build(home.map, body.radius, walk.clearance).fits
     for over, ways in (
         ("over the same cells", ShortestWays.over_cells(cells, home.frame)),
-        ("of a disc, whatever the cells", ShortestWays.of_disc(home.map.solid, home.frame, room)),
+        ("of a disc, without cells", ShortestWays.of_disc(home.map.solid, home.frame, room)),
     ):
         excess = [
             100.0 * (planner.plan(start, goal).length / ways.length(start, goal) - 1.0)

@@ -51,12 +51,12 @@ def test_a_clock_that_was_set_back_is_told_at_once(publisher: type[Publisher]) -
     assert publisher.told == pytest.approx([500.0, 3.0, 3.1])
 
 
-def test_who_drives_nothing_tells_nothing(publisher: type[Publisher]) -> None:
+def test_a_node_that_drives_nothing_tells_nothing(publisher: type[Publisher]) -> None:
     started("dirt_pub_node").tell(7.0)
     assert publisher.made == publisher.told == []
 
 
-def test_nor_does_anybody_on_a_real_robot(
+def test_on_a_real_robot_no_node_tells_anything(
     publisher: type[Publisher], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(rospy.rostime, "is_wallclock", lambda: True)

@@ -1,4 +1,4 @@
-"""Whatever ends its driving, the robot stands within half a second of its own clock."""
+"""The robot stands within half a second of its own clock after each end of its driving."""
 
 import contextlib
 import math

@@ -1,7 +1,7 @@
 """Reads and writes floor plans in map_server's format: a YAML file beside a picture.
 
 The meaning of every field is that of map_server's ``image_loader.cpp``, with two differences that
-keep unknown floor from being taken for free: a transparent pixel is unknown whatever its colour (in
+keep unknown floor from being taken for free: a transparent pixel of any colour is unknown (in
 map_server's trinary mode the alpha channel is averaged in as if it were a colour), and raw values
 above 100 are unknown (map_server lets them wrap around).
 """

@@ -131,7 +131,7 @@ class BagFile:
                     start = recorded + 1
                     yield recorded, bytes(data)
                 break
-            except Exception as error:  # whatever rosbags raises of a damaged bag
+            except Exception as error:  # rosbags raises many kinds of errors of a damaged bag
                 start = (start or reader.start_time) + _SKIPPED
                 skips += 1
                 reason = str(error) or type(error).__name__
@@ -166,7 +166,7 @@ class BagFile:
         try:
             reader = (Reader1 if self.is_of_ros_1 else Reader2)(self._file.path)
             reader.open()
-        except Exception as error:  # whatever rosbags raises of what is no bag
+        except Exception as error:  # rosbags raises many kinds of errors of no bag
             raise LogError(_told(self.path, error)) from None
         self._readers.append(reader)
         return reader

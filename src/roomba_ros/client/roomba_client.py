@@ -89,7 +89,7 @@ class RoombaClient:
         try:
             return _wait(walk)
         except BaseException:
-            # whatever ends the waiting, the robot must not walk on unseen
+            # an error or Ctrl-C ends the waiting: the robot must not walk on unseen
             walk.cancel()
             raise
 

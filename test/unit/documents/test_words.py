@@ -7,7 +7,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[3]
 VAGUE = re.compile(
-    r"(?<![a-z])(whoever|whomever|somebody|nobody|everybody)(?![a-z])", re.IGNORECASE
+    r"(?<![a-z])(whoever|whomever|somebody|nobody|everybody|anybody)(?![a-z])", re.IGNORECASE
 )
 PLACES = ("src", "docs", "msg", "srv", "action", "launch", "examples", "scripts", "lint", "test")
 ENDINGS = {".action", ".launch", ".md", ".msg", ".py", ".srv", ".yaml"}

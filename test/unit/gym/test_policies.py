@@ -1,4 +1,4 @@
-"""The reward must order what anybody would order: cleaning, wandering about, standing."""
+"""The reward must be highest for cleaning, lower for wandering about, lowest for standing."""
 
 from collections.abc import Callable
 

@@ -1,4 +1,4 @@
-"""Whole explorations of small homes: the map that comes of it, and whatever comes up meanwhile.
+"""Whole explorations of small homes: the map that comes of it, and what happens meanwhile.
 
 How good a map is is counted by the home as it is, never by what the robot believes.
 """
@@ -109,7 +109,7 @@ def test_with_a_low_battery_it_goes_home_charges_and_goes_on() -> None:
     until(robot, in_phase(robot, Phase.RETURNING))
     began = robot.seen.time
     until(robot, in_phase(robot, Phase.CHARGING))
-    # It turned and drove home at once, whatever the map gained meanwhile.
+    # It turned and drove home at once, though the map grew meanwhile.
     assert robot.seen.time - began < 40.0
     assert robot.seen.battery.is_docked
     assert mission.take_exploration() is None

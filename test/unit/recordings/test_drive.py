@@ -1,4 +1,4 @@
-"""Any number of logs as one drive: in the order of time, whatever order they have."""
+"""Any number of logs as one drive: in the order of time, given in any order."""
 
 from __future__ import annotations
 

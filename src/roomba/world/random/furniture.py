@@ -88,7 +88,7 @@ def _bounds(area: Rectangle) -> tuple[float, float, float, float]:
 
 
 def _outline(piece: Furniture) -> shapely.Geometry:
-    """Return the rectangle that a piece takes, whatever it is made of."""
+    """Return the rectangle that a piece of its kind takes."""
     size = KINDS[piece.kind].size
     corners = [
         piece.pose.compose(Pose(x * size.front, y * size.side, 0.0))

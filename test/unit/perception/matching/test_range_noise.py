@@ -1,4 +1,4 @@
-"""The noise of ranges is measured, whatever the lidar and whatever stands around it."""
+"""The noise of ranges is measured, of any lidar and in any surroundings."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Floors are cut at doorways, whatever stands on them, however the map lies and how fine it is."""
+"""Floors are cut at doorways, with furniture and without, on turned maps and at any resolution."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def label_in(rooms: Rooms, area: Area) -> int:
 
 
 def agreement(first: NDArray[np.int16], second: NDArray[np.int16]) -> float:
-    """The share of labelled cells that are in the same room in both, whatever its number."""
+    """The share of labelled cells that are in the same room in both; its number may differ."""
     best = sum(np.bincount(second[first == label]).max() for label in range(1, first.max() + 1))
     return float(best) / np.count_nonzero(first)
 

@@ -1,4 +1,4 @@
-"""Scans matched to what was seen before: found again exactly, whatever stands or walks about."""
+"""Scans matched to what was seen before: found again exactly, with things and persons about."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A viewer that applies differences has the layer, whatever it missed."""
+"""A viewer that applies differences has the layer, also when it missed some."""
 
 from __future__ import annotations
 

@@ -2,7 +2,7 @@
 
 A texture is uint8 [n, n], n a power of two, first axis v, second u, seamless in both directions;
 128 is a material's mean colour. Palettes (:mod:`roomba.world.camera.scene.texture_atlas`) turn the
-greys into colours, so that grout, grain and weave need one byte per texel whatever their material.
+greys into colours, so that grout, grain and weave need one byte per texel in every material.
 """
 
 from __future__ import annotations
