@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import math
-import time
-from collections.abc import Callable
 
 import pytest
+from fixtures.waiting import wait_until
 from web.conftest import Opened
 
 from roomba.ui.web.app import create_app
 from roomba.ui.web.server import PageServer, listen
 
 DEADLINE = 20.0
+"""s of wall time."""
 
 COUNT_COLOURS = """() => {
     const canvas = document.getElementById("floor"), seen = new Set();
@@ -51,13 +51,6 @@ CONTROLS = """() => [...document.querySelectorAll("button, select, summary, canv
         const name = element.getAttribute("aria-label") || element.textContent || label;
         return [element.id, name, width, height];
     })"""
-
-
-def wait_for(condition: Callable[[], bool], what: str) -> None:
-    ends = time.monotonic() + DEADLINE
-    while not condition():
-        assert time.monotonic() < ends, f"expected {what} within {DEADLINE:g} s"
-        time.sleep(0.05)
 
 
 def pixels(opened: Opened, x: float, y: float) -> tuple[float, float]:
@@ -134,12 +127,12 @@ def test_a_zone_is_drawn_and_removed(opened: Opened, kind: str) -> None:
     page.mouse.move(*pixels(opened, x, y))
     page.mouse.move(*pixels(opened, x + 0.5, y + 0.4))
     page.mouse.up()
-    wait_for(lambda: len(opened.robot.home().zones) == 1, "a zone")
+    wait_until(lambda: len(opened.robot.home().zones) == 1, DEADLINE, "a zone")
     (zone,) = opened.robot.home().zones
     assert zone.points[0] == pytest.approx((x - 0.5, y - 0.3), abs=0.05)
     assert len(zone.points) == (4 if kind == "No-go zone" else 2)
     page.get_by_role("button", name=f"Remove {zone.name}").click()
-    wait_for(lambda: not opened.robot.home().zones, "no zone")
+    wait_until(lambda: not opened.robot.home().zones, DEADLINE, "no zone")
 
 
 def test_a_room_gets_another_name(opened: Opened) -> None:
@@ -192,15 +185,17 @@ def test_driving_by_hand_lasts_as_long_as_a_key_is_held(opened: Opened) -> None:
     page.get_by_text("Drive by hand", exact=True).click()
     before = opened.robot.robot().pose
     page.keyboard.down("ArrowLeft")
-    wait_for(lambda: abs(opened.robot.robot().pose[2] - before[2]) > 0.3, "a turn to the left")
+    wait_until(
+        lambda: abs(opened.robot.robot().pose[2] - before[2]) > 0.3, DEADLINE, "a turn to the left"
+    )
     page.keyboard.up("ArrowLeft")
 
     def stands() -> bool:
         one = opened.robot.robot()
-        wait_for(lambda: opened.robot.robot().time > one.time + 5.0, "time to pass")
+        wait_until(lambda: opened.robot.robot().time > one.time + 5.0, DEADLINE, "time to pass")
         return math.isclose(opened.robot.robot().pose[2], one.pose[2], abs_tol=0.02)
 
-    wait_for(stands, "the robot to stand")
+    wait_until(stands, DEADLINE, "the robot to stand")
 
 
 def test_the_page_comes_back_after_its_server_was_gone(opened: Opened) -> None:

@@ -8,11 +8,12 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from fixtures.waiting import promised, wait_until
 
 from roomba.commands.sim import command, many
 from roomba.commands.sim.figures import Figures, MissedShare
@@ -110,16 +111,6 @@ def test_help_names_every_option(capsys: pytest.CaptureFixture[str]) -> None:
         assert option in text
 
 
-def within(seconds: float, is_so: Callable[[], bool]) -> bool:
-    """Wait until something is so, at most so long."""
-    deadline = time.monotonic() + seconds
-    while not is_so():
-        if time.monotonic() > deadline:
-            return False
-        time.sleep(0.01)
-    return True
-
-
 def is_alive(process: str) -> bool:
     """Whether a process runs; one that only waits for its parent to notice its end does not."""
     try:
@@ -141,7 +132,7 @@ def test_ctrl_c_ends_it_and_its_processes_at_once_without_a_traceback() -> None:
         start_new_session=True,
     )
     children = Path(f"/proc/{process.pid}/task/{process.pid}/children")
-    assert within(10.0, lambda: len(children.read_text().split()) >= 2)
+    wait_until(lambda: len(children.read_text().split()) >= 2, 10.0, "two processes")
     started = children.read_text().split()
     began = time.monotonic()
     process.send_signal(signal.SIGINT)
@@ -149,4 +140,4 @@ def test_ctrl_c_ends_it_and_its_processes_at_once_without_a_traceback() -> None:
     assert time.monotonic() - began < 5.0
     assert process.returncode == 130
     assert output + error == "./roomba sim: stopped on the way\n"
-    assert within(5.0, lambda: not any(map(is_alive, started)))
+    promised(lambda: not any(map(is_alive, started)), 5.0, "its processes end")

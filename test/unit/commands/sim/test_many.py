@@ -65,7 +65,7 @@ def test_every_trial_comes_back_with_what_came_of_it() -> None:
         assert found[seed] == replace(NOTHING, hits=seed)
 
 
-def test_who_stops_listening_ends_all_at_once(tmp_path: Path) -> None:
+def test_a_caller_that_stops_listening_ends_all_at_once(tmp_path: Path) -> None:
     note = tmp_path / "pid"
     hangs = Trial(home=str(note), seed=99)
     runs = run_many([hangs, *trials(1)], worked, 2, FORK)

@@ -3,32 +3,26 @@
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Callable, Iterator
 
 import numpy as np
 import pytest
+from fixtures.waiting import wait_until
 
 from roomba.client.protocol import RequestRefusedError, RobotUnavailableError
 from roomba.client.view import CleanOrder, LayerName, ZoneView
 from roomba.commands.play.command import live_client
 from roomba.headless.live.client import LiveClient
 
-DEADLINE = 60.0
-
-
-def wait_for(condition: Callable[[], bool], what: str) -> None:
-    ends = time.monotonic() + DEADLINE
-    while not condition():
-        assert time.monotonic() < ends, f"expected {what} within {DEADLINE:g} s"
-        time.sleep(0.02)
+DEADLINE = 20.0
+"""s of wall time."""
 
 
 @pytest.fixture
 def client() -> Iterator[LiveClient]:
     client = live_client("studio", seed=1, speed=40.0, knows_map=True)
     client.start()
-    wait_for(lambda: phase(client) == "docked", "the robot on its station")
+    wait_until(lambda: phase(client) == "docked", DEADLINE, "the robot on its station")
     yield client
     client.end()
 
@@ -40,11 +34,11 @@ def phase(client: LiveClient) -> str:
 def test_it_cleans_pauses_goes_on_stops_and_docks(client: LiveClient) -> None:
     assert phase(client) == "docked"
     client.clean(CleanOrder())
-    wait_for(lambda: client.robot().vacuum.covered > 0.5, "some clean floor")
+    wait_until(lambda: client.robot().vacuum.covered > 0.5, DEADLINE, "some clean floor")
     client.pause()
     assert phase(client) == "paused"
     stood = client.robot()
-    wait_for(lambda: client.robot().time > stood.time + 2.0, "time to pass")
+    wait_until(lambda: client.robot().time > stood.time + 2.0, DEADLINE, "time to pass")
     assert math.dist(client.robot().pose[:2], stood.pose[:2]) < 0.1
     client.resume()
     assert phase(client) != "paused"
@@ -54,12 +48,12 @@ def test_it_cleans_pauses_goes_on_stops_and_docks(client: LiveClient) -> None:
     assert last is not None
     assert last.outcome.value == "stopped"
     client.dock()
-    wait_for(lambda: phase(client) == "docked", "the robot on its station")
+    wait_until(lambda: phase(client) == "docked", DEADLINE, "the robot on its station")
 
 
 def test_a_whole_clean_is_shown_and_told(client: LiveClient) -> None:
     client.clean(CleanOrder())
-    wait_for(lambda: client.robot().last is not None, "the end of the clean")
+    wait_until(lambda: client.robot().last is not None, DEADLINE, "the end of the clean")
     last, layer = client.robot().last, client.layer(LayerName.COVERAGE)
     assert last is not None
     assert layer is not None
@@ -82,37 +76,39 @@ def test_the_emergency_stop_holds_until_it_is_released(client: LiveClient) -> No
 
 def test_driving_by_hand_ends_with_silence(client: LiveClient) -> None:
     client.clean(CleanOrder())
-    wait_for(lambda: phase(client) == "cleaning", "the clean")
+    wait_until(lambda: phase(client) == "cleaning", DEADLINE, "the clean")
     with pytest.raises(RequestRefusedError, match="pause it"):
         client.drive(0.1, 0.0)
     client.pause()
     before = client.robot()
     client.drive(0.0, 1.0)
-    wait_for(lambda: abs(client.robot().pose[2] - before.pose[2]) > 0.2, "a turn")
+    wait_until(lambda: abs(client.robot().pose[2] - before.pose[2]) > 0.2, DEADLINE, "a turn")
 
     def stands() -> bool:
         one = client.robot()
-        wait_for(lambda: client.robot().time > one.time + 1.0, "time to pass")
+        wait_until(lambda: client.robot().time > one.time + 1.0, DEADLINE, "time to pass")
         return abs(client.robot().pose[2] - one.pose[2]) < 0.01
 
-    wait_for(stands, "the robot to stand")
+    wait_until(stands, DEADLINE, "the robot to stand")
 
 
 def test_it_goes_where_it_is_sent(client: LiveClient) -> None:
     x, y = client.home().rooms[0].anchor
     client.go_to(x, y)
-    wait_for(lambda: math.dist(client.robot().pose[:2], (x, y)) < 0.05, "the robot there")
+    wait_until(
+        lambda: math.dist(client.robot().pose[:2], (x, y)) < 0.05, DEADLINE, "the robot there"
+    )
     with pytest.raises(RequestRefusedError, match=r"\w"):
         client.go_to(500.0, 500.0)
 
 
 def test_the_emergency_stop_ends_a_walk(client: LiveClient) -> None:
     client.go_to(*client.home().rooms[0].anchor)
-    wait_for(lambda: client.robot().speed > 0.1, "the robot on its way")
+    wait_until(lambda: client.robot().speed > 0.1, DEADLINE, "the robot on its way")
     client.emergency_stop("a test")
     client.release()
     held = client.robot()
-    wait_for(lambda: client.robot().time > held.time + 3.0, "time to pass")
+    wait_until(lambda: client.robot().time > held.time + 3.0, DEADLINE, "time to pass")
     assert math.dist(client.robot().pose[:2], held.pose[:2]) < 0.2
     assert client.robot().speed == 0.0
 
@@ -121,12 +117,12 @@ def test_a_full_bin_is_said_and_emptied() -> None:
     client = live_client("studio", seed=1, speed=40.0, knows_map=True, bin_grams=3.0)
     client.start()
     try:
-        wait_for(lambda: phase(client) == "docked", "the robot on its station")
+        wait_until(lambda: phase(client) == "docked", DEADLINE, "the robot on its station")
         client.clean(CleanOrder())
-        wait_for(lambda: phase(client) == "bin full", "a full bin")
+        wait_until(lambda: phase(client) == "bin full", DEADLINE, "a full bin")
         assert "empty" in client.robot().vacuum.message
         client.empty_bin()
-        wait_for(lambda: phase(client) == "cleaning", "the clean to go on")
+        wait_until(lambda: phase(client) == "cleaning", DEADLINE, "the clean to go on")
         assert client.robot().dirt < 3.0
     finally:
         client.end()
@@ -185,7 +181,7 @@ def test_without_a_map_it_explores_and_finds_rooms() -> None:
         first = client.layer(LayerName.MAP)
         assert first is not None
         client.explore()
-        wait_for(lambda: client.robot().last is not None, "the end of the exploration")
+        wait_until(lambda: client.robot().last is not None, DEADLINE, "the end of the exploration")
         layer = client.layer(LayerName.MAP)
         assert layer is not None
         assert client.home().rooms
