@@ -4,7 +4,7 @@ from fixtures.graph import RosGraph
 
 
 def test_end_of_input_ends_it(master: RosGraph) -> None:
-    """FAULTS row 20."""
+    """Without input the menu ends with status 0, and does not print its choices for ever."""
     menu = master.rosrun("control_node.py")
     menu.says("Select: ", 30.0)
     menu.end_of_input()
@@ -13,7 +13,7 @@ def test_end_of_input_ends_it(master: RosGraph) -> None:
 
 
 def test_ctrl_c_at_the_menu_ends_it(master: RosGraph) -> None:
-    """FAULTS row 21."""
+    """Ctrl-C ends the menu with the status of an interrupted program, 130."""
     menu = master.rosrun("control_node.py")
     menu.says("Select: ", 30.0)
     menu.send(signal.SIGINT)

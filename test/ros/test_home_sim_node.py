@@ -55,7 +55,7 @@ def follower(tmp_path: Path) -> Iterator[RosGraph]:
 def test_a_wrong_parameter_ends_it_with_one_clear_line(
     master: RosGraph, parameter: str, value: object, said: str, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    """FAULTS rows 18 and 19."""
+    """A missing or damaged home, and a value that makes no sense, are named before it starts."""
     master.set_param(parameter, value)
     try:
         assert said in refusal(main, master, capfd)

@@ -72,7 +72,7 @@ def test_the_pose_is_where_odometry_began_and_the_way_since(graph: RosGraph) -> 
 
 
 def test_wishes_that_are_no_places_are_refused(at_origin: RosGraph) -> None:
-    """FAULTS row 26: change_position NaN and 9999; and missing parameters have their defaults."""
+    """A wish that is not finite, or outside the default limits, moves nothing and is logged."""
     probe, node = Probe(at_origin), at_origin.programs[-1]
     probe.hear("/cmd_vel", Twist)
     probe.send("/odom", odometry(0.0, 0.0))
@@ -135,7 +135,7 @@ def wait_for_positions(probe: Probe, number: int, when: str) -> None:
 
 
 def test_it_goes_on_when_the_clock_jumps_back_and_far_ahead(graph: RosGraph) -> None:
-    """FAULTS rows 15 and 16."""
+    """Positions go on after the clock was set back, and after it was set far ahead."""
     graph.set_param("/use_sim_time", True)
     probe, node = start(graph)
     clock = FastClock(probe, 1000.0)
@@ -150,7 +150,7 @@ def test_it_goes_on_when_the_clock_jumps_back_and_far_ahead(graph: RosGraph) -> 
 def test_simulated_time_without_a_clock_is_a_clear_error(
     graph: RosGraph, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    """FAULTS row 17."""
+    """A node that waits for a clock that does not come ends, and says what is missing."""
     graph.set_param("/use_sim_time", True)
     monkeypatch.setattr("roomba_ros.runtime.node.CLOCK_DEADLINE", 0.5)
     said = refusal(main, graph, capfd)
@@ -169,7 +169,7 @@ def test_simulated_time_without_a_clock_is_a_clear_error(
 def test_a_wrong_parameter_stops_it_with_one_clear_line(
     master: RosGraph, name: str, value: object, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    """FAULTS row 19, and limits in the wrong order."""
+    """A limit that is no positive number, or limits in the wrong order, are named."""
     master.set_param(name, value)
     try:
         assert name.strip("/") in refusal(main, master, capfd)

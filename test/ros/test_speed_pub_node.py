@@ -82,7 +82,7 @@ def test_limits_hold_and_a_changed_parameter_is_obeyed(node: RosGraph) -> None:
 
 
 def test_a_bad_speed_limit_is_refused_put_back_and_the_old_one_stays(node: RosGraph) -> None:
-    """FAULTS row 28."""
+    """A top speed that is no positive number has no effect, and the parameter is put back."""
     probe = start(node)
     probe.want(2.0)
     wait_until(lambda: probe.drive_gets(0.5), 20.0)
@@ -109,7 +109,7 @@ def has_refused_more(node: RosGraph, before: int) -> bool:
 
 
 def test_bad_wishes_are_refused_and_the_old_ones_stay(node: RosGraph) -> None:
-    """FAULTS row 26: change_speed inf."""
+    """A speed that is not finite, or negative, has no effect and is logged."""
     probe = start(node)
     probe.want(2.0)
     probe.send("/change_speed", Float32(0.3))
@@ -226,7 +226,7 @@ def test_it_tells_the_speed_of_the_body(node: RosGraph) -> None:
 
 
 def test_a_flood_of_wishes_does_not_slow_it(node: RosGraph) -> None:
-    """FAULTS row 30: with 10,000 messages a second the speed still comes, at 10 Hz or nearly so."""
+    """With 10,000 messages a second the speed still comes, at 10 Hz or nearly so."""
     probe = start(node)
     probe.send("/odom", Odometry())
     probe.next("/speed", Float32)

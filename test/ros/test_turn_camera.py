@@ -108,7 +108,7 @@ def test_on_a_fast_clock_it_takes_no_more_than_one_a_second(
 
 
 def test_what_is_no_angle_is_an_error_of_the_service(graph: RosGraph, tmp_path: Path) -> None:
-    """FAULTS row 23."""
+    """An angle that is not finite, or far too large, is refused with what was expected."""
     Probe(graph)
     offer_camera()
     service = start(graph, tmp_path)
@@ -118,7 +118,7 @@ def test_what_is_no_angle_is_an_error_of_the_service(graph: RosGraph, tmp_path: 
 
 
 def test_a_picture_missing_or_corrupt_is_named(graph: RosGraph, tmp_path: Path) -> None:
-    """FAULTS row 24: without a camera there is nothing to replace it by."""
+    """Without a camera there is nothing to replace it by: the service names the file."""
     Probe(graph)
     (tmp_path / "15.png").write_bytes(b"not a picture")
     service = start(graph, tmp_path)
@@ -147,7 +147,7 @@ def test_a_corrupt_picture_is_taken_again(graph: RosGraph, tmp_path: Path) -> No
 
 
 def test_the_client_without_a_service_says_so_in_time(graph: RosGraph) -> None:
-    """FAULTS row 25."""
+    """The client waits 5 s for the service, then ends with an error."""
     client = graph.rosrun("turn_camera_client.py")
     client.says("Enter the angle: ", 30.0)
     client.type("0")
@@ -158,7 +158,7 @@ def test_the_client_without_a_service_says_so_in_time(graph: RosGraph) -> None:
 def test_the_client_asks_again_for_what_is_no_number_and_ends(
     graph: RosGraph, tmp_path: Path
 ) -> None:
-    """FAULTS row 22."""
+    """A wrong entry ends neither the client nor in an endless loop; q ends it."""
     Probe(graph)
     offer_camera()
     start(graph, tmp_path / "Images")

@@ -30,7 +30,7 @@ def serving(graph: RosGraph) -> bool:
 
 
 def test_a_second_server_is_refused_by_name_and_by_topic(graph: RosGraph) -> None:
-    """FAULTS row 31."""
+    """One server walks the robot: a second one ends with an error, and the first goes on."""
     first = graph.rosrun(SCRIPT)
     wait_until(lambda: serving(graph), 30.0)
     for arguments in ((), ("__name:=another_server",)):

@@ -85,7 +85,7 @@ def test_a_replay_shows_the_same_run(bag: Path, graph: RosGraph, clock: tuple[st
 
 
 def test_nodes_go_on_while_a_bag_is_played_in_a_loop(bag: Path, graph: RosGraph) -> None:
-    """FAULTS row 15: the recorded clock jumps back at the end of every round."""
+    """The recorded clock jumps back at the end of every round."""
     graph.set_param("/use_sim_time", True)
     node = graph.rosrun("speed_pub_node.py", "speed:=/speed_again", "cmd_vel_out:=/nowhere")
     probe = Probe(graph)

@@ -44,7 +44,7 @@ def test_the_reports_walk_there_and_back(shared_robot: RosGraph) -> None:
 
 
 def test_short_ways_and_where_it_stands(shared_robot: RosGraph) -> None:
-    """FAULTS row 1."""
+    """A goal where the robot stands, and one 0.3 m away, are reached within 5 cm."""
     probe = Probe(shared_robot)
     walker = Walker()
     x, y = probe.position()
@@ -67,7 +67,7 @@ def test_short_ways_and_where_it_stands(shared_robot: RosGraph) -> None:
 def test_what_cannot_be_walked_to_is_rejected_at_once(
     shared_robot: RosGraph, x: float, y: float, said: str
 ) -> None:
-    """FAULTS rows 2, 5 and 6."""
+    """A goal that is not finite, outside the limits or in no room is rejected; nothing moves."""
     probe = Probe(shared_robot)
     walker = Walker()
     before = probe.position()
@@ -78,7 +78,7 @@ def test_what_cannot_be_walked_to_is_rejected_at_once(
 
 
 def test_cancel_stops_it_on_its_way(shared_robot: RosGraph) -> None:
-    """FAULTS row 3."""
+    """After a cancel the robot stands as soon as is promised, and stays where it is."""
     probe = Probe(shared_robot)
     told: list[tuple[float, float]] = []
     rospy.Subscriber(
@@ -108,7 +108,7 @@ def test_cancel_stops_it_on_its_way(shared_robot: RosGraph) -> None:
 def test_the_robots_own_pose_counts_and_a_newer_goal_takes_over_without_a_halt(
     shared_robot: RosGraph,
 ) -> None:
-    """FAULTS rows 4 and 8."""
+    """A wrong start in the goal has no effect; a newer goal preempts the older one."""
     probe = Probe(shared_robot)
     probe.hear("/position", RobotPosition)
     first, second = Walker(), Walker()
@@ -128,7 +128,7 @@ def test_the_robots_own_pose_counts_and_a_newer_goal_takes_over_without_a_halt(
 
 
 def test_never_above_the_top_speed_nor_a_jump(shared_robot: RosGraph) -> None:
-    """FAULTS row 7, and what `rosparam set` does while it walks."""
+    """The track has no step faster than the top speed; `rosparam set` lowers it in a walk."""
     probe = Probe(shared_robot)
     track: list[tuple[float, float, float]] = []
     rospy.Subscriber(
