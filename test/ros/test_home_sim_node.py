@@ -10,7 +10,7 @@ from fixtures.probe import Probe
 from fixtures.refusal import refusal
 from fixtures.simulated import Body, simulated, twist
 from fixtures.standstill import PROMISE
-from fixtures.waiting import wait_until
+from fixtures.waiting import unchanged, wait_until
 from nav_msgs.msg import OccupancyGrid, Odometry
 from roomba_robot.msg import Bumper
 from roomba_robot.srv import SpillDirt, TurnCamera
@@ -93,10 +93,8 @@ def test_a_node_that_drives_and_falls_behind_is_waited_for(shared_robot: RosGrap
     def held() -> bool:
         # Here no mission runs: this test tells how far one is.
         probe.send("/mission_node/progress", Time(rospy.Time.now()))
-        time.sleep(0.5)
-        told = rospy.get_time()
-        time.sleep(0.5)
-        return bool(rospy.get_time() == told)
+        time.sleep(0.5)  # until it is as far as it goes without it
+        return unchanged(rospy.get_time, 0.5)
 
     wait_until(held, 30.0, "the clock stands")
     told = rospy.get_time()
@@ -212,5 +210,5 @@ def test_who_owns_no_clock_goes_by_that_of_another(follower: RosGraph) -> None:
     assert end - begin > 3.0
     assert abs(to_x - from_x) / (end - begin) == pytest.approx(0.2, rel=0.1)
     # Nor does it go when that one stands.
-    time.sleep(0.5)
+    assert unchanged(lambda: track[-1][0], 0.5)
     assert track[-1][0] == pytest.approx(now)

@@ -68,7 +68,7 @@ class World(Probe):
                 self._topics["battery_state"].publish(BatteryState(percentage=0.8, capacity=1.8))
                 self._topics["bin_level"].publish(self.bin_level)
                 self._topics["dock_status"].publish(DockStatus(is_docked=self.is_docked))
-            time.sleep(0.05)
+            time.sleep(0.05)  # a robot tells all that at 20 Hz
 
     @property
     def state(self) -> VacuumState:

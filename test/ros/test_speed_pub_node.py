@@ -30,6 +30,7 @@ class SpeedProbe(Probe):
         threading.Thread(target=self._command, daemon=True).start()
 
     def _command(self) -> None:
+        # A program that steers: 20 commands a second.
         while not rospy.is_shutdown():
             if self.wanted is not None:
                 self._commands.publish(self.wanted)
@@ -140,6 +141,7 @@ def test_ten_commands_a_second_drive_without_a_halt(node: RosGraph) -> None:
         sent = [time.monotonic()]
         sender.publish(command)
         while len(sent) < 25:
+            # A program that steers ten times a second.
             time.sleep(max(0.0, sent[-1] + 0.1 - time.monotonic()))
             sent.append(time.monotonic())
             sender.publish(command)
@@ -169,14 +171,13 @@ def test_the_mission_drives_while_no_other_program_does(node: RosGraph) -> None:
 
     def drives(linear: float) -> bool:
         mission.publish(wish)
-        time.sleep(0.05)
         return probe.drive_gets(linear)
 
-    wait_until(lambda: drives(0.5), 20.0, "the mission drives, within the same limit")
+    wait_until(lambda: drives(0.5), 20.0, "the mission drives, within the same limit", pause=0.05)
     probe.want(-0.2)
-    wait_until(lambda: drives(-0.2), 20.0, "direct steering comes first")
+    wait_until(lambda: drives(-0.2), 20.0, "direct steering comes first", pause=0.05)
     probe.wanted = None
-    wait_until(lambda: drives(0.5), 20.0, "the mission drives again")
+    wait_until(lambda: drives(0.5), 20.0, "the mission drives again", pause=0.05)
 
 
 def test_an_emergency_stop_holds_and_outlives_the_node(graph: RosGraph) -> None:
@@ -235,6 +236,7 @@ def test_a_flood_of_wishes_does_not_slow_it(node: RosGraph) -> None:
     for sent in range(100, 20_001, 100):
         for _ in range(100):
             flood.publish(0.3)
+        # A burst of a hundred each 10 ms.
         time.sleep(max(0.0, begin + sent / 10_000 - time.monotonic()))
     rate = (probe.counts["/speed"] - before) / (time.monotonic() - begin)
     # Each of 20,000 in a queue would hold it up.

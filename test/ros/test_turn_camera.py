@@ -79,6 +79,7 @@ def test_while_it_travels_it_keeps_the_newest_picture_of_each_angle(
         f"{angle}.png" for angle in ANGLES
     }
     standing = len(asked)
+    # A robot that stands for 4 s tells its pose five times a second.
     for _ in range(20):
         probe.send("/pose", message)
         time.sleep(0.2)
@@ -102,6 +103,7 @@ def test_on_a_fast_clock_it_takes_no_more_than_one_a_second(
         message.pose.position.x += 1.0
         probe.send("/pose", message)
         probe.send("/clock", Clock(rospy.Time(now)))
+        # The clock of a simulation that is 30 times as fast as real time.
         time.sleep(0.1)
     assert now > 30.0
     assert 5 < len(asked) <= 5 + (time.monotonic() - began)

@@ -1,4 +1,4 @@
-"""Messages that make no sense have no effect on a robot that cleans, on whatever topic."""
+"""Messages that make no sense have no effect on a robot that cleans, on any topic."""
 
 import itertools
 import time
@@ -197,7 +197,7 @@ def flood(witness: Witness) -> None:
     began = time.monotonic()
     for _ in range(FLOOD):
         steering.publish(malformed("geometry_msgs/Twist")["nan"])
-        time.sleep(0.01)
+        time.sleep(0.01)  # a program that steers a hundred times a second
     wait_until(
         lambda: witness.counts["speed_pub_node", "cmd_vel"] >= before + 0.9 * FLOOD, 10.0, "all"
     )
