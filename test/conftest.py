@@ -27,8 +27,6 @@ LONGEST_FIRST = (
     "test_clean.py",
     "test_map_topics.py",
     "test_faults.py",
-    "test_workspace.py",
-    "test_library_set_up.py",
     "test_turn_camera.py",
     "test_explore_with_person.py",
     "test_map_kept.py",

@@ -41,7 +41,7 @@ TESTED_BY: dict[str, tuple[str, str]] = {
     "roomba/commands/sim/": ("unit/commands/sim/test_command.py", COMMAND),
     "roomba/commands/telling": ("unit/commands/map/test_command.py", COMMAND),
     "roomba/commands/valetudo/": ("unit/commands/valetudo/test_valetudo_commands.py", COMMAND),
-    "roomba/commands/warm_up": ("system/test_workspace.py", WARM),
+    "roomba/commands/warm_up": ("system/test_one_command.py", WARM),
     "roomba/configuration/": ("unit/configuration/test_robot.py", "numbers with their limits"),
     "roomba/control/tracking_kernels": ("unit/control/test_path_tracker.py", PART),
     "roomba/errors": ("unit/world/test_simulator.py", VALUES),

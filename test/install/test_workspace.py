@@ -1,4 +1,4 @@
-"""The conventional way (catkin_make, source, rosrun, install), and the manners of ./roomba."""
+"""The conventional way: a catkin workspace of one's own, with catkin_make, source, rosrun, install."""
 
 from __future__ import annotations
 
@@ -219,73 +219,3 @@ def test_environment_hook_works_in_a_bare_shell(workspace: Path, path: str) -> N
     venv = str(workspace / "src/roomba_robot/.venv/bin")
     assert done.returncode == 0, done.stderr
     assert done.stdout == (f"{venv}:{path}" if path else venv)
-
-
-def test_unknown_command_is_refused_with_the_usage() -> None:
-    done = run(["./roomba", "bogus"], REPOSITORY)
-    assert done.returncode == 2
-    assert "'bogus'" in done.stderr
-    assert "usage: ./roomba COMMAND" in done.stderr
-
-
-@pytest.mark.parametrize("arguments", [[], ["help"], ["--help"]])
-def test_usage_is_told(arguments: list[str]) -> None:
-    done = run(["./roomba", *arguments], REPOSITORY)
-    assert done.returncode == 0
-    assert done.stdout.startswith("usage: ./roomba COMMAND")
-
-
-def test_exec_without_a_command_is_refused() -> None:
-    done = run(["./roomba", "exec"], REPOSITORY)
-    assert done.returncode == 2
-    assert "expected a command" in done.stderr
-
-
-def test_exec_runs_in_the_environment_wherever_it_is_called(tmp_path: Path) -> None:
-    script = (
-        'pwd; command -v python3; printf "%s\\n" "$ROS_IP"; python3 -c "import roomba_robot.msg"'
-    )
-    done = run([REPOSITORY / "roomba", "exec", "bash", "-c", script], tmp_path)
-    assert done.returncode == 0, done.stderr
-    assert done.stdout.splitlines() == [
-        str(tmp_path),
-        str(REPOSITORY / ".venv/bin/python3"),
-        "127.0.0.1",
-    ]
-
-
-def test_exec_hands_back_the_status() -> None:
-    assert run(["./roomba", "exec", "bash", "-c", "exit 7"], REPOSITORY).returncode == 7
-
-
-def test_rosrun_of_the_one_command_finds_a_script_without_asking() -> None:
-    command = ["./roomba", "exec", "rosrun", "--prefix", "echo", "roomba_robot", "control_node.py"]
-    done = run(command, REPOSITORY)
-    script = REPOSITORY / ".workspace/devel/lib/roomba_robot/control_node.py"
-    assert done.stdout.splitlines() == [str(script)], done.stderr
-
-
-def test_doctor_finds_nothing_missing() -> None:
-    done = run(["./roomba", "doctor"], REPOSITORY)
-    assert done.returncode == 0, done.stdout + done.stderr
-    assert "missing" not in done.stdout
-
-
-@pytest.mark.parametrize("uri", ["localhost", "http://localhost", "ftp://localhost:11311"])
-def test_broken_master_uri_is_refused_with_what_was_expected(uri: str) -> None:
-    done = run(["env", f"ROS_MASTER_URI={uri}", "./roomba", "exec", "true"], REPOSITORY)
-    assert done.returncode == 1
-    assert "expected http://HOST:PORT" in done.stderr
-    assert uri in done.stderr
-
-
-def test_missing_suite_is_an_error(workspace: Path) -> None:
-    package = workspace / "src/roomba_robot"
-    suite, away = package / "test/contract", package / "test/contract_away"
-    suite.rename(away)
-    try:
-        done = run(["./roomba", "test", "contract"], package)
-    finally:
-        away.rename(suite)
-    assert done.returncode == 1
-    assert "test/contract" in done.stderr

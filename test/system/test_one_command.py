@@ -1,0 +1,100 @@
+"""The manners of ./roomba: usage, exec, doctor, and what it refuses."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+from collections.abc import Sequence
+from pathlib import Path
+
+import pytest
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+DEADLINE = 60.0
+"""s that a command may take."""
+
+
+def run(command: Sequence[str | Path], folder: Path) -> subprocess.CompletedProcess[str]:
+    """Run a command as after a fresh login, without a terminal."""
+    environment = {
+        "HOME": os.environ["HOME"],
+        "LANG": "C.UTF-8",
+        "PATH": "/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin",
+    }
+    return subprocess.run(
+        [str(word) for word in command],
+        cwd=folder,
+        env=environment,
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+        timeout=DEADLINE,
+        check=False,
+    )
+
+
+def test_unknown_command_is_refused_with_the_usage() -> None:
+    done = run(["./roomba", "bogus"], REPOSITORY)
+    assert done.returncode == 2
+    assert "'bogus'" in done.stderr
+    assert "usage: ./roomba COMMAND" in done.stderr
+
+
+@pytest.mark.parametrize("arguments", [[], ["help"], ["--help"]])
+def test_usage_is_told(arguments: list[str]) -> None:
+    done = run(["./roomba", *arguments], REPOSITORY)
+    assert done.returncode == 0
+    assert done.stdout.startswith("usage: ./roomba COMMAND")
+
+
+def test_exec_without_a_command_is_refused() -> None:
+    done = run(["./roomba", "exec"], REPOSITORY)
+    assert done.returncode == 2
+    assert "expected a command" in done.stderr
+
+
+def test_exec_runs_in_the_environment_wherever_it_is_called(tmp_path: Path) -> None:
+    script = (
+        'pwd; command -v python3; printf "%s\\n" "$ROS_IP"; python3 -c "import roomba_robot.msg"'
+    )
+    done = run([REPOSITORY / "roomba", "exec", "bash", "-c", script], tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.splitlines() == [
+        str(tmp_path),
+        str(REPOSITORY / ".venv/bin/python3"),
+        "127.0.0.1",
+    ]
+
+
+def test_exec_hands_back_the_status() -> None:
+    assert run(["./roomba", "exec", "bash", "-c", "exit 7"], REPOSITORY).returncode == 7
+
+
+def test_rosrun_of_the_one_command_finds_a_script_without_asking() -> None:
+    command = ["./roomba", "exec", "rosrun", "--prefix", "echo", "roomba_robot", "control_node.py"]
+    done = run(command, REPOSITORY)
+    script = REPOSITORY / ".workspace/devel/lib/roomba_robot/control_node.py"
+    assert done.stdout.splitlines() == [str(script)], done.stderr
+
+
+def test_doctor_finds_nothing_missing() -> None:
+    done = run(["./roomba", "doctor"], REPOSITORY)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "missing" not in done.stdout
+
+
+@pytest.mark.parametrize("uri", ["localhost", "http://localhost", "ftp://localhost:11311"])
+def test_broken_master_uri_is_refused_with_what_was_expected(uri: str) -> None:
+    done = run(["env", f"ROS_MASTER_URI={uri}", "./roomba", "exec", "true"], REPOSITORY)
+    assert done.returncode == 1
+    assert "expected http://HOST:PORT" in done.stderr
+    assert uri in done.stderr
+
+
+def test_missing_suite_is_an_error(tmp_path: Path) -> None:
+    for name in ("roomba", "install_dependencies.sh"):
+        shutil.copy2(REPOSITORY / name, tmp_path)
+    done = run(["./roomba", "test", "contract"], tmp_path)
+    assert done.returncode == 1
+    assert "test/contract" in done.stderr
