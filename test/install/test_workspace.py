@@ -1,4 +1,4 @@
-"""The conventional way: a catkin workspace of one's own, with catkin_make, source, rosrun, install."""
+"""A workspace of one's own, the conventional way: catkin_make, source, rosrun, install."""
 
 from __future__ import annotations
 

@@ -32,6 +32,30 @@ class MapBound(Entry):
 _File = TypeVar("_File", bound=MapBound)
 
 
+class _Dumper(yaml.SafeDumper):
+    """Escapes the line breaks of Unicode, which outside of double quotes do not come back."""
+
+
+def _text_node(dumper: yaml.SafeDumper, text: str) -> yaml.ScalarNode:
+    style = '"' if set(text) & set("\x85\u2028\u2029") else None
+    return dumper.represent_scalar("tag:yaml.org,2002:str", text, style)
+
+
+_Dumper.add_representer(str, _text_node)
+
+
+def yaml_text(value: dict[str, object]) -> str:
+    """Return a value of plain Python as YAML for people to read; any text in it comes back."""
+    return yaml.dump(
+        value,
+        Dumper=_Dumper,
+        sort_keys=False,
+        allow_unicode=True,
+        default_flow_style=None,
+        width=100,
+    )
+
+
 def map_digest(occupancy: OccupancyMap) -> str:
     """Return a map's digest: the SHA-256 of its frame and values, hexadecimal."""
     frame = occupancy.frame
@@ -46,13 +70,7 @@ def save_map_bound(
 
     Raises OSError when the disk refuses.
     """
-    text = yaml.safe_dump(
-        {"map": map_digest(occupancy), key: entries},
-        sort_keys=False,
-        allow_unicode=True,
-        default_flow_style=None,
-        width=100,
-    )
+    text = yaml_text({"map": map_digest(occupancy), key: entries})
     write_whole(path, f"# {comment}\n{text}".encode())
 
 

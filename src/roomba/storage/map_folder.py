@@ -12,7 +12,6 @@ from typing import Final
 
 import numpy as np
 import shapely
-import yaml
 
 from roomba.errors import HomeError, RoombaError, RoomsError
 from roomba.files.atomic import write_whole
@@ -22,6 +21,7 @@ from roomba.geometry import Pose
 from roomba.grid import OccupancyMap
 from roomba.perception.rooms.rooms import Rooms
 from roomba.perception.rooms.zones import Zones, ZonesError
+from roomba.storage.map_bound import yaml_text
 from roomba.storage.rooms import load_rooms, save_rooms
 from roomba.storage.zones import load_zones, save_zones
 
@@ -133,10 +133,7 @@ def _layer_text(stored: StoredMap) -> str:
             {"name": name, "outline": _corners(rooms.outline(label))}
             for label, name in enumerate(rooms.names, 1)
         ]
-    text = yaml.safe_dump(
-        layer, sort_keys=False, allow_unicode=True, default_flow_style=None, width=100
-    )
-    return _LAYER_COMMENT + text
+    return _LAYER_COMMENT + yaml_text(layer)
 
 
 def _corners(outline: shapely.Geometry) -> list[list[float]]:

@@ -34,6 +34,13 @@ def test_rooms_are_read_as_they_were_written(tmp_path: Path) -> None:
     assert [entry.name for entry in path.parent.iterdir()] == ["rooms.yaml"]
 
 
+@pytest.mark.parametrize("name", ["a\x85den", "a\u2028den", "a\u2029den", "a\nden"])
+def test_a_name_with_line_breaks_comes_back(tmp_path: Path, name: str) -> None:
+    occupancy, rooms = two_rooms()
+    save_rooms(rooms.renamed("Küche", name), occupancy, tmp_path / "rooms.yaml")
+    assert name in load_rooms(tmp_path / "rooms.yaml", occupancy).names
+
+
 def test_a_file_of_another_map_is_refused(tmp_path: Path) -> None:
     occupancy, rooms = two_rooms()
     path = tmp_path / "rooms.yaml"
