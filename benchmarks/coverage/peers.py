@@ -21,6 +21,7 @@ from benchmarks.coverage.floor import (
 )
 from benchmarks.coverage.lanes import Order, boustrophedon
 from benchmarks.coverage.peer import PeerRobot
+from roomba.configuration.coverage import CoverageConfig
 from roomba.configuration.docking import DockingConfig
 from roomba.configuration.mission import MissionConfig
 from roomba.configuration.robot import RobotConfig
@@ -32,6 +33,7 @@ from roomba.world.home.home import Home
 
 Floats = NDArray[np.float64]
 
+CONFIG: Final = CoverageConfig()
 BOUNCE: Final = "random bounce"
 
 
@@ -63,7 +65,9 @@ class Driven:
 
 def context_of(home: Home) -> PlanningContext:
     """Return the home as the robot plans in it."""
-    return PlanningContext(home.map, home.station, RobotConfig(), MissionConfig(), DockingConfig())
+    return PlanningContext(
+        home.map, home.station, RobotConfig(), MissionConfig(coverage=CONFIG), DockingConfig()
+    )
 
 
 def planned(home: Home, context: PlanningContext, floor: Reachable, rounds: int) -> Planned:
@@ -73,7 +77,7 @@ def planned(home: Home, context: PlanningContext, floor: Reachable, rounds: int)
 
     def plan() -> CoveragePlan:
         # A planner keeps what it knows of the ground, so each time a new one.
-        return CoveragePlanner(context.known, context.reach, width).plan(start, start, todo)
+        return CoveragePlanner(context.known, context.reach, width, CONFIG).plan(start, start, todo)
 
     made, cpu = plan(), float("inf")
     for _ in range(rounds):

@@ -8,6 +8,7 @@ from typing import Annotated
 from pydantic import Field
 
 from roomba.configuration.body import BodyConfig
+from roomba.configuration.coverage import CoverageConfig
 from roomba.configuration.frozen import (
     AtLeastOne,
     Count,
@@ -171,6 +172,10 @@ class ExploringConfig(Frozen):
     small_frontier: NotNegative = 0.4
     """m; a shorter frontier comes later: it costs ``small_cost``, m of way, more."""
     small_cost: NotNegative = 1.0
+    least_cells: AtLeastOne = 3
+    """Cells of the map; a frontier of fewer is none: a gap between two beams."""
+    frontier_stride: Positive = 0.3
+    """m; about so far apart are the places of a frontier from which viewpoints are looked for."""
     same_frontier: Positive = 0.3
     """m; frontiers nearer to one that was given up are the same."""
     map_wait: Positive = 120.0
@@ -214,6 +219,7 @@ class MissionConfig(Frozen):
 
     driving: DrivingConfig = DrivingConfig()
     cleaning: CleaningConfig = CleaningConfig()
+    coverage: CoverageConfig = CoverageConfig()
     exploring: ExploringConfig = ExploringConfig()
     energy: EnergyConfig = EnergyConfig()
     bin: BinConfig = BinConfig()

@@ -102,7 +102,7 @@ class HeadlessMission:
         self._stand_until_ready()
         self.context = self.mission.context
         frame = home.map.frame if isinstance(known, MappingConfig) else known.frame
-        fine = fine_frame(frame)
+        fine = fine_frame(frame, self.config.coverage.cell)
         self.truth = CoverageMap(fine, np.ones(fine.shape, np.bool_), self.context.tool_width)
         self._burst = Burst(self.body, self.brain, self.truth, longest_burst)
 

@@ -33,7 +33,6 @@ from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.perception.matching.surface_field import SurfaceField
 from roomba.perception.rooms.rooms import Rooms
 from roomba.perception.rooms.zones import Zones, ZonesError
-from roomba.planning.coverage.floor.floor import FINE
 from roomba.storage.map_bound import map_digest
 from roomba.storage.zones import load_zones, save_zones
 from roomba_ros.convert.common import ToldMap, pose_in_map, told_map_of
@@ -172,7 +171,7 @@ class HomeTopics:
             if occupancy is not None and station is not None:
                 if zones is None:
                     raise ZonesError(f"its zones cannot be read: {self._path()}")
-                _require_small(occupancy)
+                _require_small(occupancy, self._mission.coverage.cell)
                 field = field or SurfaceField.of(occupancy)
                 context = PlanningContext(
                     occupancy,
@@ -315,13 +314,13 @@ class HomeTopics:
         return RemoveZoneResponse(*self._edit(lambda zones: zones.without(request.name)))
 
 
-def _require_small(occupancy: OccupancyMap) -> None:
+def _require_small(occupancy: OccupancyMap, cell: float) -> None:
     frame = occupancy.frame
-    cells = frame.rows * frame.columns * max(1, round(frame.resolution / FINE)) ** 2
+    cells = frame.rows * frame.columns * max(1, round(frame.resolution / cell)) ** 2
     if cells > MOST_FINE_CELLS:
         raise RoombaError(
-            f"expected a map of {MOST_FINE_CELLS * FINE**2:g} m2 at most, got one of "
-            f"{cells * FINE**2:g} m2; cut it to what is to be cleaned"
+            f"expected a map of {MOST_FINE_CELLS * cell**2:g} m2 at most, got one of "
+            f"{cells * cell**2:g} m2; cut it to what is to be cleaned"
         )
 
 

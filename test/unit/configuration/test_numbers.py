@@ -1,7 +1,7 @@
 """Numbers of the robot, its home and its behaviour stand in the configuration, not in modules.
 
-A module keeps the numbers of its algorithm: tolerances, steps and budgets of a search, codes. In
-the parts that decide what the robot does each of them is told here, with the reason.
+A module keeps the numbers of its algorithm: tolerances, steps and budgets of a search, codes. Each
+of them stands in ``numbers_that_stay.yaml``, by folder and by the reason for which it stays.
 """
 
 from __future__ import annotations
@@ -11,48 +11,15 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+import yaml
 
-SOURCE = Path(__file__).resolve().parents[3] / "src" / "roomba"
-
-ROUNDING = "rounding: less than this is nothing"
-SEARCH = "a step, a window or a budget of a search: a finer or larger one finds the same, later"
-MEMORY = "the size of a buffer"
-CODE = "a code, or a column of an array"
-WORDS = "decides which words are told, not what is done"
-CORRECTION = "makes up for how another part thickens or rounds what it gives"
-
-STAYS: dict[str, dict[str, str]] = {
-    "control": {"SHORTEST_LEG": ROUNDING, "_STRAIGHT": ROUNDING},
-    "mission": {
-        "VERSION": CODE,
-        "_ALL": CODE,
-        "_NEVER": CODE,
-        "MOST_PASSES": "a limit of a request: more over the same floor are a slip of the finger",
-        "_MOSTLY": WORDS,
-        "_HARDLY_ANY": WORDS,
-        "_SIZE": CORRECTION,
-        "_ALONE": CORRECTION,
-        "_SPARED": CORRECTION,
-        "_LEAST": CORRECTION,
-        "LEAVING": CORRECTION,
-        "_NEARLY": ROUNDING,
-        "_TOUCHES": MEMORY,
-        "_LENGTH": MEMORY,
-        "_REMEMBERED": MEMORY,
-        **dict.fromkeys(
-            (
-                *("_AHEAD", "_DIRECTIONS", "_EVERY", "_FREE_RUN", "_HORIZON", "_MOST_TRIES"),
-                *("_ROUNDS", "_SEARCH_AHEAD", "_STEP", "_STRETCH"),
-            ),
-            SEARCH,
-        ),
-    },
-    "robot": {
-        "_BESIDE_SURFACES": CORRECTION,
-        "_AROUND_GOAL": SEARCH,
-    },
-}
-"""Of each part, the names of its numbers that may stay, and why."""
+SOURCE = Path(__file__).resolve().parents[3] / "src"
+PARTS = ("roomba/control", "roomba/mission", "roomba/planning", "roomba/robot")
+"""Whose numbers are told, with all folders in them."""
+_TOLD = yaml.safe_load(Path(__file__).with_name("numbers_that_stay.yaml").read_text("utf-8"))
+REASONS: dict[str, str] = _TOLD["reasons"]
+STAYS: dict[str, dict[str, str]] = _TOLD["numbers"]
+"""Of each folder the names of its numbers that may stay, by the reason, one of ``REASONS``."""
 
 
 def numbers_of(source: str) -> Iterator[str]:
@@ -88,21 +55,43 @@ def _is_numeric(value: ast.expr) -> bool:
     return False
 
 
-def numbers_in(part: str) -> dict[str, str]:
-    """Return the constants of a part of the brain that are numbers, each with a file of it."""
+def numbers_in(folder: str) -> dict[str, str]:
+    """Return the constants of a folder's modules that are numbers, each with a file of it."""
     return {
-        name: str(path.relative_to(SOURCE))
-        for path in sorted((SOURCE / part).rglob("*.py"))
+        name: path.name
+        for path in sorted((SOURCE / folder).glob("*.py"))
         for name in numbers_of(path.read_text(encoding="utf-8"))
     }
 
 
-@pytest.mark.parametrize("part", STAYS)
-def test_numbers_stand_in_the_configuration(part: str) -> None:
-    found = numbers_in(part)
-    astray = {name: file for name, file in found.items() if name not in STAYS[part]}
-    assert astray == {}, "move them to roomba/configuration, or tell here why they stay"
-    assert [name for name in STAYS[part] if name not in found] == [], "they are gone: forget them"
+def folders() -> list[str]:
+    """Return all folders of the parts in which a module has a number of its own."""
+    found = {path.parent.relative_to(SOURCE) for part in PARTS for path in files_of(part)}
+    return sorted(str(folder) for folder in found if numbers_in(str(folder)))
+
+
+def files_of(part: str) -> list[Path]:
+    """Return the modules of a part; a part without any is a mistake."""
+    found = sorted((SOURCE / part).rglob("*.py"))
+    assert found, f"there is no {part}"
+    return found
+
+
+@pytest.mark.parametrize("folder", folders())
+def test_numbers_stand_in_the_configuration(folder: str) -> None:
+    found = numbers_in(folder)
+    stays = {name for names in STAYS.get(folder, {}).values() for name in names.split()}
+    astray = {name: file for name, file in found.items() if name not in stays}
+    assert astray == {}, "move them to roomba/configuration, or tell in the file why they stay"
+    assert stays - set(found) == set(), "they are gone: forget them"
+
+
+def test_nothing_is_told_of_folders_without_numbers() -> None:
+    assert set(STAYS) == set(folders())
+
+
+def test_every_reason_is_one_and_is_needed() -> None:
+    assert {reason for told in STAYS.values() for reason in told} == set(REASONS)
 
 
 @pytest.mark.parametrize(

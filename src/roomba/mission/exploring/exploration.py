@@ -55,6 +55,8 @@ class Exploration:
             config.nearer_worth,
             config.small_frontier,
             config.small_cost,
+            config.least_cells,
+            config.frontier_stride,
         )
         self.goal: Frontier | None = None
         self.unseen: list[Point] = []
@@ -163,4 +165,6 @@ class Exploration:
 
     def _is_left(self, occupancy: OccupancyMap, middle: Point) -> bool:
         """Whether something of a frontier is left on a map."""
-        return is_frontier(occupancy, middle, self._config.frontier_radius)
+        return is_frontier(
+            occupancy, middle, self._config.frontier_radius, self._config.least_cells
+        )

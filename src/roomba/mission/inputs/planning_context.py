@@ -79,6 +79,7 @@ class PlanningContext:
         self.staging_tolerance = docking.place_tolerance
         self.spot_size = mission.cleaning.spot_size
         self.tool_width = robot.brush.width
+        self._coverage_config = mission.coverage
         self.plans, self.planning_time = 0, 0.0
         self.body_radius, self.is_growing = radius, is_growing
         # Paths may come as near to walls as swaths do, so that they can join them.
@@ -91,7 +92,7 @@ class PlanningContext:
     @cached_property
     def coverage(self) -> CoveragePlanner:
         """The planner of ways over the floor; made when it is first asked for: that takes time."""
-        return CoveragePlanner(self.known, self.reach, self.tool_width)
+        return CoveragePlanner(self.known, self.reach, self.tool_width, self._coverage_config)
 
     @property
     def floor(self) -> CoverageFloor:

@@ -15,6 +15,7 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.configuration.coverage import CoverageConfig
 from roomba.grid import OccupancyMap
 from roomba.planning.coverage.floor.floor import CoverageFloor
 from roomba.planning.coverage.ground import Ground
@@ -23,7 +24,7 @@ from roomba.planning.coverage.passes.swaths import swaths
 from roomba.planning.coverage.passes.sweep import unswept
 from roomba.planning.coverage.plan import CoveragePlan
 from roomba.planning.coverage.tour.connection import connected, tidy
-from roomba.planning.coverage.tour.order import Weights, ordered
+from roomba.planning.coverage.tour.order import ordered
 from roomba.planning.coverage.tour.polish import polished
 from roomba.planning.path.costmap import Mask, Point, RoundObstacle
 from roomba.planning.path.planner import NoPathError, NoPathReason
@@ -32,26 +33,23 @@ __all__ = ["CoverageFloor", "CoveragePlan", "CoveragePlanner"]
 
 Line = NDArray[np.float64]
 
-_PIECE = 6.0
-"""Widths of the tool; edges can be left for swaths about this often."""
 _OFF_MIDDLES = 0.2
 """cells; the tool is a whole number of cells wide, so that seams would lie on their middles, where
 it takes the least error of the drive to leave a whole row unswept."""
-_TURNING = 3.0
-"""cells of way that a radian is worth when the way is polished."""
-_UNSWEPT = 1.0
-"""cells of way that a cell of floor is worth."""
 
 
 class CoveragePlanner:
     """Plans over one map for one body and one tool; all lengths in m, map frame."""
 
-    def __init__(self, map: OccupancyMap, reach: float, tool_width: float) -> None:
+    def __init__(
+        self, map: OccupancyMap, reach: float, tool_width: float, config: CoverageConfig
+    ) -> None:
         """Take the map, how far the middle keeps from all that is solid, and the tool's width.
 
         Raises ValueError for lengths that are not finite or not above 0.
         """
-        self.floor = CoverageFloor.build(map, reach, tool_width)
+        self.floor = CoverageFloor.build(map, reach, tool_width, config)
+        self._config = config
         self._ground: Ground | None = None
 
     def plan(
@@ -79,16 +77,17 @@ class CoveragePlanner:
         ground, first = self._ground_from(start, obstacles)
         last = None if end is None else _end_on(ground, end)
         need = ground.coverable if todo is None else ground.coverable & todo[ground.window]
-        edge_pieces = edges(ground.rings, need, ground.radius, _PIECE * 2 * ground.radius)
+        config, radius = self._config, ground.radius
+        edge_pieces = edges(ground.rings, need, radius, config.piece * 2 * radius, config)
         swath_pieces: list[Line] = []
         if not edges_only:
-            left = unswept(need, edge_pieces, ground.radius) & ground.middles
+            left = unswept(need, edge_pieces, radius) & ground.middles
             swath_pieces = [
-                _off_middles(line) for line in swaths(left, ground.middles, ground.radius)
+                _off_middles(line) for line in swaths(left, ground.middles, radius, config)
             ]
-        pieces = ordered(ground.net, edge_pieces + swath_pieces, first, last, Weights())
+        pieces = ordered(ground.net, edge_pieces + swath_pieces, first, last, config)
         line = connected(ground.net, pieces, first, last)
-        line = polished(line, need, ground.middles, ground.radius, _TURNING, _UNSWEPT)
+        line = polished(line, need, ground.middles, radius, config)
         return CoveragePlan(
             _from_to(ground, line, start, end),
             tuple(ground.metres(piece) for piece in swath_pieces),

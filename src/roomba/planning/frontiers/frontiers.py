@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,11 +16,6 @@ from numpy.typing import NDArray
 from roomba.grid import GridFrame, OccupancyMap
 from roomba.planning.frontiers.kernels import clusters, frontier_cells, seen_from, ways_from
 from roomba.planning.path.costmap import Point
-
-_LEAST_CELLS: Final = 3
-"""Cells of the shortest frontier."""
-_STRIDE: Final = 0.3
-"""m; about so far apart are the places of a frontier that are tried."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,7 +25,8 @@ class FrontierChoice:
     Patches of the unknown of less than ``least_unknown`` m2 are no frontiers, and neither are those
     nearer than ``away`` m to one that is left out. A viewpoint is at most ``look_from`` m off its
     frontier; one metre nearer to it is worth ``nearer_worth`` m of way. Frontiers shorter than
-    ``small`` m cost ``small_cost`` m of way more, so that large ones come first.
+    ``small`` m cost ``small_cost`` m of way more, so that large ones come first. One of fewer than
+    ``least_cells`` is none; about ``stride`` m apart are the places of one that are tried.
     """
 
     least_unknown: float
@@ -40,6 +35,8 @@ class FrontierChoice:
     nearer_worth: float
     small: float
     small_cost: float
+    least_cells: int
+    stride: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,10 +79,10 @@ def frontiers(
     apart = _from_middle(cells, ends)
     leave = np.array(left_out, np.float64).reshape(-1, 2)
     radius = int(choice.look_from / frame.resolution)
-    every, worth = max(1, round(_STRIDE / frame.resolution)), choice.nearer_worth
+    every, worth = max(1, round(choice.stride / frame.resolution)), choice.nearer_worth
     found = []
     for first, last in pairwise(ends.tolist()):
-        if last - first < _LEAST_CELLS:
+        if last - first < choice.least_cells:
             continue
         # A place near its middle, if that can be.
         tried = first + np.argsort(apart[first:last])[::every]
@@ -100,8 +97,8 @@ def frontiers(
     return sorted(found, key=lambda frontier: _cost(frontier, choice))
 
 
-def is_frontier(occupancy: OccupancyMap, point: Point, radius: float) -> bool:
-    """Whether the known ends nearer than ``radius`` to a point, m."""
+def is_frontier(occupancy: OccupancyMap, point: Point, radius: float, least: int) -> bool:
+    """Whether the known ends in ``least`` cells nearer than ``radius`` to a point, m."""
     frame = occupancy.frame
     row, column = frame.cell_of(*point)
     reach = int(radius / frame.resolution)
@@ -111,7 +108,7 @@ def is_frontier(occupancy: OccupancyMap, point: Point, radius: float) -> bool:
     frontier = np.zeros(values.shape, np.bool_)
     if values.size:
         frontier_cells(values, 1, frontier)
-    return int(frontier.sum()) >= _LEAST_CELLS
+    return int(frontier.sum()) >= least
 
 
 def _cost(frontier: Frontier, choice: FrontierChoice) -> float:

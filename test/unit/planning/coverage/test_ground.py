@@ -9,6 +9,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
+from roomba.configuration.coverage import CoverageConfig
 from roomba.grid import FREE, OCCUPIED, GridFrame, OccupancyMap
 from roomba.planning.coverage.floor.floor import CoverageFloor
 from roomba.planning.coverage.ground import Ground
@@ -27,7 +28,10 @@ def grounds(draw: st.DrawFn) -> tuple[Ground, tuple[int, int]]:
     solid: Mask = draw(MAPS)
     values = np.where(solid, OCCUPIED, FREE).astype(np.int8)
     floor = CoverageFloor.build(
-        OccupancyMap(GridFrame(0.04, -1.0, 2.0, *solid.shape), values), 0.045, 0.06
+        OccupancyMap(GridFrame(0.04, -1.0, 2.0, *solid.shape), values),
+        0.045,
+        0.06,
+        CoverageConfig(),
     )
     cells = np.argwhere(floor.fits).tolist()
     assume(cells)
@@ -74,7 +78,9 @@ def test_places_are_the_centres_of_cells_in_metres_and_back(
 
 def test_no_cell_outside_the_floor_is_held() -> None:
     values = np.full((8, 8), FREE, np.int8)
-    floor = CoverageFloor.build(OccupancyMap(GridFrame(0.05, 0.0, 0.0, 8, 8), values), 0.1, 0.1)
+    floor = CoverageFloor.build(
+        OccupancyMap(GridFrame(0.05, 0.0, 0.0, 8, 8), values), 0.1, 0.1, CoverageConfig()
+    )
     ground = Ground.around(floor, (20, 20))
     for cell in ((-1, 20), (20, -1), (40, 20), (20, 40), (0, 0)):
         assert not ground.holds(cell)

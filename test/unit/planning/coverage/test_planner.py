@@ -11,12 +11,13 @@ import shapely
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from roomba.configuration.coverage import CoverageConfig
 from roomba.grid import FREE, OCCUPIED, UNKNOWN, GridFrame, OccupancyMap
 from roomba.planning.coverage.planner import CoverageFloor, CoveragePlan, CoveragePlanner
 from roomba.planning.path.costmap import FitMap, Mask, Point, RoundObstacle
 from roomba.planning.path.planner import NoPathError, NoPathReason
 
-REACH, TOOL = 0.169, 0.2
+REACH, TOOL, CONFIG = 0.169, 0.2, CoverageConfig()
 TOLERANCE = 0.0015
 
 
@@ -79,7 +80,7 @@ def test_sweeps_all_that_can_be_reached_and_keeps_clear_of_walls(
     map: OccupancyMap, x: float, y: float, comes_back: bool
 ) -> None:
     reach, tool = 0.11, 0.14
-    planner = CoveragePlanner(map, reach, tool)
+    planner = CoveragePlanner(map, reach, tool, CONFIG)
     assume(FitMap.build(map, reach, 0.0).fits_at(x, y))
     end = (x, y) if comes_back else None
     try:
@@ -98,7 +99,7 @@ def test_sweeps_all_that_can_be_reached_and_keeps_clear_of_walls(
 
 def test_an_empty_room_is_swept_with_little_more_than_the_least_way() -> None:
     map = room(5.0, 4.0)
-    planner = CoveragePlanner(map, REACH, TOOL)
+    planner = CoveragePlanner(map, REACH, TOOL, CONFIG)
     plan = planner.plan((2.5, 0.3), (2.5, 0.3))
     need = planner.floor.coverable((2.5, 0.3))
     least = float(need.sum()) * planner.floor.frame.resolution**2 / TOOL
@@ -114,22 +115,22 @@ def test_length_and_turning_are_those_of_the_way() -> None:
 
 
 def test_ends_where_it_is_asked_to() -> None:
-    plan = CoveragePlanner(FLAT, REACH, TOOL).plan(START, (2.7, 2.1))
+    plan = CoveragePlanner(FLAT, REACH, TOOL, CONFIG).plan(START, (2.7, 2.1))
     assert tuple(plan.points[0]) == START
     assert tuple(plan.points[-1]) == (2.7, 2.1)
 
 
 def test_the_same_input_gives_the_same_plan_whatever_was_planned_before() -> None:
-    planner = CoveragePlanner(FLAT, REACH, TOOL)
+    planner = CoveragePlanner(FLAT, REACH, TOOL, CONFIG)
     first = planner.plan(START, START)
     planner.plan((2.5, 1.5), obstacles=[(1.0, 1.5, 0.1)])
     assert np.array_equal(planner.plan(START, START).points, first.points)
-    other = CoveragePlanner(FLAT, REACH, TOOL).plan(START, START)
+    other = CoveragePlanner(FLAT, REACH, TOOL, CONFIG).plan(START, START)
     assert np.array_equal(other.points, first.points)
 
 
 def test_sweeps_patches_with_a_short_way() -> None:
-    planner = CoveragePlanner(FLAT, REACH, TOOL)
+    planner = CoveragePlanner(FLAT, REACH, TOOL, CONFIG)
     coverable = planner.floor.coverable(START)
     todo = np.zeros_like(coverable)
     for x, y in ((0.3, 2.0), (1.5, 1.5), (1.6, 0.1)):
@@ -145,13 +146,13 @@ def test_sweeps_patches_with_a_short_way() -> None:
     ("end", "expected"), [(None, [START]), (START, [START]), ((1.0, 2.0), [START, (1.0, 2.0)])]
 )
 def test_nothing_to_do_is_no_way_but_to_the_end(end: Point | None, expected: list[Point]) -> None:
-    planner = CoveragePlanner(FLAT, REACH, TOOL)
+    planner = CoveragePlanner(FLAT, REACH, TOOL, CONFIG)
     plan = planner.plan(START, end, todo=np.zeros(planner.floor.frame.shape, np.bool_))
     assert [tuple(point) for point in plan.points] == expected
 
 
 def test_keeps_clear_of_obstacles_that_the_map_does_not_show() -> None:
-    planner = CoveragePlanner(FLAT, REACH, TOOL)
+    planner = CoveragePlanner(FLAT, REACH, TOOL, CONFIG)
     obstacles = ((0.9, 1.6, 0.12), (1.9, 1.7, 0.05))
     plan = planner.plan(START, START, obstacles=obstacles)
     assert least_room(plan, FLAT, obstacles) >= REACH - TOLERANCE
@@ -161,7 +162,7 @@ def test_keeps_clear_of_obstacles_that_the_map_does_not_show() -> None:
 
 
 def test_edges_only_stays_along_walls_and_furniture() -> None:
-    planner = CoveragePlanner(FLAT, REACH, TOOL)
+    planner = CoveragePlanner(FLAT, REACH, TOOL, CONFIG)
     plan = planner.plan(START, START, edges_only=True)
     done = swept(plan, planner.floor.frame)
     frame = planner.floor.frame
@@ -174,7 +175,7 @@ def test_edges_only_stays_along_walls_and_furniture() -> None:
 
 def test_rooms_without_a_way_to_them_do_not_count() -> None:
     map = room(4.0, 2.0, (1.9, 0.0, 0.1, 2.0))
-    planner = CoveragePlanner(map, REACH, TOOL)
+    planner = CoveragePlanner(map, REACH, TOOL, CONFIG)
     need = planner.floor.coverable((0.5, 0.5))
     assert not need[planner.floor.frame.cell_of(3.0, 1.0)]
     plan = planner.plan((0.5, 0.5))
@@ -186,7 +187,7 @@ def test_rooms_without_a_way_to_them_do_not_count() -> None:
 
 
 def test_a_start_in_the_station_counts_as_just_in_front_of_it() -> None:
-    planner = CoveragePlanner(FLAT, REACH, TOOL)
+    planner = CoveragePlanner(FLAT, REACH, TOOL, CONFIG)
     plan = planner.plan((0.05, 1.0), (0.05, 1.0))
     assert tuple(plan.points[0]) == tuple(plan.points[-1]) == (0.05, 1.0)
     need = planner.floor.coverable((0.05, 1.0))
@@ -196,20 +197,20 @@ def test_a_start_in_the_station_counts_as_just_in_front_of_it() -> None:
 @pytest.mark.parametrize("start", [(9.0, 9.0), (2.45, -0.5), (-3.0, 1.0)])
 def test_a_robot_that_cannot_move_gets_no_plan(start: Point) -> None:
     with pytest.raises(NoPathError) as refusal:
-        CoveragePlanner(FLAT, REACH, TOOL).plan(start)
+        CoveragePlanner(FLAT, REACH, TOOL, CONFIG).plan(start)
     assert refusal.value.reason is NoPathReason.START_BLOCKED
 
 
 def test_a_station_behind_a_thin_wall_is_not_in_this_room() -> None:
     map = room(3.0, 2.0, (1.0, 0.0, 0.05, 2.0), (0.0, 0.3, 1.0, 0.05))
-    floor = CoverageFloor.build(map, REACH, TOOL)
+    floor = CoverageFloor.build(map, REACH, TOOL, CONFIG)
     assert not floor.middles((0.9, 0.15)).any()
 
 
 def test_unknown_floor_is_solid() -> None:
     map = room(2.0, 2.0)
     map.values[:, 20:] = UNKNOWN
-    need = CoverageFloor.build(map, REACH, TOOL).coverable((0.5, 1.0))
+    need = CoverageFloor.build(map, REACH, TOOL, CONFIG).coverable((0.5, 1.0))
     assert need.any()
     assert not need[:, 95:].any()
 
@@ -217,13 +218,13 @@ def test_unknown_floor_is_solid() -> None:
 @pytest.mark.parametrize("length", [0.0, -0.1, math.nan, math.inf])
 def test_lengths_that_make_no_sense_are_refused(length: float) -> None:
     with pytest.raises(ValueError, match="reach"):
-        CoveragePlanner(FLAT, length, TOOL)
+        CoveragePlanner(FLAT, length, TOOL, CONFIG)
     with pytest.raises(ValueError, match="tool_width"):
-        CoveragePlanner(FLAT, REACH, length)
+        CoveragePlanner(FLAT, REACH, length, CONFIG)
 
 
 def test_points_masks_and_obstacles_that_make_no_sense_are_refused() -> None:
-    planner = CoveragePlanner(FLAT, REACH, TOOL)
+    planner = CoveragePlanner(FLAT, REACH, TOOL, CONFIG)
     with pytest.raises(ValueError, match="finite"):
         planner.plan((math.nan, 1.0))
     with pytest.raises(ValueError, match="finite"):

@@ -14,7 +14,10 @@ from roomba.planning.frontiers.frontiers import Frontier, FrontierChoice, fronti
 CELL = 0.05
 Point = tuple[float, float]
 
-CHOICE = FrontierChoice(0.03, 0.3, 1.2, 2.0, small=0.4, small_cost=1.0)
+LEAST = 3
+CHOICE = FrontierChoice(
+    0.03, 0.3, 1.2, 2.0, small=0.4, small_cost=1.0, least_cells=LEAST, stride=0.3
+)
 
 
 def occupancy(values: NDArray[np.int8]) -> OccupancyMap:
@@ -154,12 +157,12 @@ def test_a_place_off_the_map_is_refused() -> None:
 def test_whether_one_is_left_is_told() -> None:
     made = room()
     (frontier,) = found_in(made)
-    assert is_frontier(made, frontier.middle, 0.25)
-    assert not is_frontier(made, (1.0, 1.0), 0.25)
+    assert is_frontier(made, frontier.middle, 0.25, LEAST)
+    assert not is_frontier(made, (1.0, 1.0), 0.25, LEAST)
     # Nearer to the border than so much it is told as well.
     cut = OccupancyMap(GridFrame(CELL, 0.0, 0.0, 10, 30), np.full((10, 30), FREE, np.int8))
     cut.values[0, 5:25] = UNKNOWN
-    assert is_frontier(cut, (0.75, 0.075), 0.25)
-    assert not is_frontier(room(gaps=()), frontier.middle, 0.25)
+    assert is_frontier(cut, (0.75, 0.075), 0.25, LEAST)
+    assert not is_frontier(room(gaps=()), frontier.middle, 0.25, LEAST)
     for far in ((-9.0, 1.0), (9.0, 1.0), (1.0, -9.0), (1.0, 9.0)):
-        assert not is_frontier(made, far, 0.25)
+        assert not is_frontier(made, far, 0.25, LEAST)

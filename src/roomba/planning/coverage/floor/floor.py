@@ -12,20 +12,17 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.configuration.coverage import CoverageConfig
 from roomba.grid import GridFrame, OccupancyMap
 from roomba.planning.coverage.floor.masks import filled_from, grown, half_widths
 from roomba.planning.path.costmap import Mask, Point, RoundObstacle, checked_obstacles, clear_of
 
-FINE = 0.01
-"""m; approximate size of the cells on which floor is counted."""
-_DOCKED = 0.4
-"""m; how far the middle of a robot that stands in its station is from where it can drive freely."""
 _TOUCH = 1e-7
 
 
-def fine_frame(coarse: GridFrame) -> GridFrame:
-    """Return the fine grid over the extent of a map's."""
-    parts = max(1, round(coarse.resolution / FINE))
+def fine_frame(coarse: GridFrame, cell: float) -> GridFrame:
+    """Return a grid of about ``cell`` m over the extent of a map's."""
+    parts = max(1, round(coarse.resolution / cell))
     return GridFrame(
         coarse.resolution / parts,
         coarse.origin_x,
@@ -41,19 +38,23 @@ class CoverageFloor:
 
     ``frame`` is the fine grid, over the extent of the map. ``fits``, bool [rows, columns] on it,
     tells for the middle on each fine cell's centre whether it keeps ``reach``, m, from the squares
-    of all solid cells, from the ``obstacles`` and from the outside of the map; exact.
+    of all solid cells, from the ``obstacles`` and from the outside of the map; exact. A
+    robot in its station is at most ``out_of_station``, m, from where it fits.
     """
 
     frame: GridFrame
     reach: float
     tool_width: float
+    out_of_station: float
     obstacles: tuple[RoundObstacle, ...]
     fits: Mask
     _fits_walls: Mask
     _solid: Mask
 
     @classmethod
-    def build(cls, map: OccupancyMap, reach: float, tool_width: float) -> CoverageFloor:
+    def build(
+        cls, map: OccupancyMap, reach: float, tool_width: float, config: CoverageConfig
+    ) -> CoverageFloor:
         """Return the floor of a map for a middle that keeps ``reach`` and a tool, both m.
 
         Raises ValueError for lengths that are not finite or not above 0.
@@ -61,14 +62,14 @@ class CoverageFloor:
         for name, length in (("reach", reach), ("tool_width", tool_width)):
             if not (math.isfinite(length) and length > 0.0):
                 raise ValueError(f"expected a finite {name} above 0 m, got {length}")
-        frame = fine_frame(map.frame)
+        frame = fine_frame(map.frame, config.cell)
         parts = frame.rows // map.frame.rows
         solid = np.repeat(np.repeat(map.solid, parts, axis=0), parts, axis=1)
         fenced = np.pad(solid, 1, constant_values=True)
         near = half_widths((reach - _TOUCH) / frame.resolution, to_squares=True)
         fits = np.ascontiguousarray(~grown(fenced, near)[1:-1, 1:-1])
         fits.flags.writeable = False
-        return cls(frame, reach, tool_width, (), fits, fits, solid)
+        return cls(frame, reach, tool_width, config.out_of_station, (), fits, fits, solid)
 
     def with_obstacles(self, obstacles: Iterable[RoundObstacle]) -> CoverageFloor:
         """Return the same floor with these round things, (x, y, radius) in m, in place of others.
@@ -86,7 +87,7 @@ class CoverageFloor:
 
         Bool [rows, columns] on ``frame``, connected over sides; all false when the robot cannot
         move from there. A robot that stands where it does not fit, in its station, counts as at the
-        nearest place within 0.4 m where it does, with no wall between.
+        nearest place within ``out_of_station`` where it does, with no wall between.
         """
         seed = self.cell_near(start)
         if seed is None:
@@ -108,14 +109,14 @@ class CoverageFloor:
 
     def cell_near(self, point: Point) -> tuple[int, int] | None:
         """Return the (row, column) nearest to a point where the middle may be, and to which no wall
-        bars the way; None if none is within 0.4 m."""
+        bars the way; None if none is within ``out_of_station``."""
         frame = self.frame
         if not (math.isfinite(point[0]) and math.isfinite(point[1])):
             raise ValueError(f"expected a point of two finite numbers, m, got {point}")
         row, column = frame.cell_of(*point)
         if frame.contains(*point) and self.fits[row, column]:
             return row, column
-        span = math.ceil(_DOCKED / frame.resolution)
+        span = math.ceil(self.out_of_station / frame.resolution)
         first_row, first_column = max(row - span, 0), max(column - span, 0)
         window = self.fits[
             first_row : max(row + span + 1, 0), first_column : max(column + span + 1, 0)
@@ -124,7 +125,7 @@ class CoverageFloor:
         x, y = frame.centres(cells[:, 0], cells[:, 1])
         away = np.hypot(x - point[0], y - point[1])
         for index in np.argsort(away, kind="stable"):
-            if away[index] > _DOCKED:
+            if away[index] > self.out_of_station:
                 break
             if not self._is_walled_off(point, cells[index]):
                 return int(cells[index, 0]), int(cells[index, 1])

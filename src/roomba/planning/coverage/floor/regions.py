@@ -13,10 +13,6 @@ from roomba.raster.regions import Labels, Mask, join, numbered_regions, root_of
 
 _BLOCK = 5
 """Cells to a side of the blocks that are told apart."""
-_NARROW = 6.0
-"""Blocks from the middle of a place to its sides: a narrower place divides the floor."""
-_SMALL = 300
-"""Blocks; a part with a smaller wide place is joined to its neighbour."""
 
 
 class Regions(NamedTuple):
@@ -32,18 +28,20 @@ class Regions(NamedTuple):
     sizes: NDArray[np.int64]
 
 
-def regions(floor: Mask) -> Regions:
+def regions(floor: Mask, narrow: float, least: int) -> Regions:
     """Return the regions of ``floor``, bool [rows, columns], numbered by their first cells.
 
+    A place with less than ``narrow`` blocks of 5 cells to both sides is not wide, and one of fewer
+    than ``least`` blocks is of the region beside it.
     A region is a connected wide place with all that is nearer to it than to other wide places, or
     connected floor without any.
     """
     shape = (-(-floor.shape[0] // _BLOCK), -(-floor.shape[1] // _BLOCK))
     middles, blocks = np.zeros(shape, np.bool_), np.zeros(shape, np.bool_)
     _to_blocks(floor, middles, blocks)
-    wide = numbered_regions(distance_to_nearest(~middles) > _NARROW)
+    wide = numbered_regions(distance_to_nearest(~middles) > narrow)
     sizes = np.bincount(wide.ravel())
-    wide[(sizes < _SMALL)[wide]] = 0
+    wide[(sizes < least)[wide]] = 0
     _spread(blocks, wide)
     found: Regions = _joined(_runs(floor, wide))
     return found

@@ -11,6 +11,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from roomba.configuration.coverage import CoverageConfig
 from roomba.planning.coverage.passes.contours import outlines, straightened
 from roomba.planning.coverage.passes.sweep import (
     Counts,
@@ -28,10 +29,6 @@ _SIDEWAYS = 0.45
 """cells; how far an edge may be off the outline that it straightens."""
 _STRETCH = 10.0
 """cells; edges are kept or left out by stretches of this length."""
-_WORTH = 1.0
-"""cells of new floor for a cell of way: the least that an edge is driven for."""
-_BRIDGE = 4
-"""stretches; a gap without new floor of up to this length is driven, not gone around."""
 
 
 def rings(middles: Mask) -> list[Line]:
@@ -43,7 +40,9 @@ def rings(middles: Mask) -> list[Line]:
     return lines
 
 
-def edges(rings: list[Line], need: Mask, radius: float, piece_length: float) -> list[Line]:
+def edges(
+    rings: list[Line], need: Mask, radius: float, piece_length: float, config: CoverageConfig
+) -> list[Line]:
     """Return lines along the rings that together sweep the needed floor there.
 
     ``need`` is bool [rows, columns]; ``radius`` is half the tool's width, cells. Lines are cut to
@@ -53,8 +52,8 @@ def edges(rings: list[Line], need: Mask, radius: float, piece_length: float) -> 
     pieces: list[Line] = []
     for ring in rings:
         stretches = cut(ring, _STRETCH)
-        worth = _claim(need, counts, stretches, radius)
-        pieces.extend(_joined(stretches, _bridged(worth), piece_length))
+        worth = _claim(need, counts, stretches, radius, config.edge_worth)
+        pieces.extend(_joined(stretches, _bridged(worth, config.edge_gap), piece_length))
     return pieces
 
 
@@ -69,8 +68,13 @@ def cut(line: Line, spacing: float) -> Line:
 
 
 @njit(cache=True, nogil=True)
-def _claim(need: Mask, counts: Counts, stretches: Line, radius: float) -> NDArray[np.bool_]:
-    """Return which legs sweep enough new floor, bool [n - 1], and count what they sweep."""
+def _claim(
+    need: Mask, counts: Counts, stretches: Line, radius: float, least: float
+) -> NDArray[np.bool_]:
+    """Return which legs sweep ``least`` new cells for a cell of way, bool [n - 1].
+
+    What they sweep is counted.
+    """
     worth = np.zeros(len(stretches) - 1, np.bool_)
     legs = room_for_legs()
     for leg in range(len(worth)):
@@ -78,18 +82,18 @@ def _claim(need: Mask, counts: Counts, stretches: Line, radius: float) -> NDArra
         to_x, to_y = stretches[leg + 1]
         set_leg(legs, 0, x, y, to_x, to_y)
         found = -left_without(need, counts, legs, 0, 1, radius, np.inf)
-        if found > _WORTH * np.hypot(to_x - x, to_y - y):
+        if found > least * np.hypot(to_x - x, to_y - y):
             worth[leg] = True
             sweep_leg(counts, x, y, to_x, to_y, radius, 1)
     return worth
 
 
-def _bridged(worth: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Return the same with short gaps between true ones closed."""
+def _bridged(worth: NDArray[np.bool_], gap: int) -> NDArray[np.bool_]:
+    """Return the same with gaps of up to ``gap`` between true ones closed."""
     bridged = worth.copy()
     true = np.flatnonzero(worth)
     for first, last in pairwise(true):
-        if last - first <= _BRIDGE:
+        if last - first <= gap:
             bridged[first:last] = True
     return bridged
 

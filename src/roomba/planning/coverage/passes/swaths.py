@@ -9,36 +9,32 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from roomba.configuration.coverage import CoverageConfig
 from roomba.planning.coverage.floor.masks import transposed
 from roomba.planning.coverage.floor.regions import mask_of, regions
 from roomba.raster.regions import Mask
 
 Line = NDArray[np.float64]
 
-_SPECK = 20
-"""cells; patches smaller than this are left."""
-_NEW_SWATH = 30.0
-"""cells of way that getting to another swath costs, when the rows are chosen."""
-_GAP = 30
-"""cells; over swept floor narrower than this a swath goes on."""
 
-
-def swaths(left: Mask, middles: Mask, radius: float) -> list[Line]:
+def swaths(left: Mask, middles: Mask, radius: float, config: CoverageConfig) -> list[Line]:
     """Return lines, float64 [2, 2], that sweep the floor in ``left``, bool [rows, columns].
 
     The lines stay in ``middles``, bool of the same shape. Every cell of ``left`` must be so far
     from where the middle may not be that the middle may be anywhere within ``radius``, cells, of
     it. Each region is swept along rows or along columns, whichever takes less way.
     """
-    parts = regions(left)
+    parts = regions(left, config.narrow, config.least_part)
     across = transposed(middles)
     lines: list[Line] = []
-    for region in np.flatnonzero(parts.sizes >= _SPECK).tolist():
+    for region in np.flatnonzero(parts.sizes >= config.speck).tolist():
         mask = mask_of(parts, region)
         top, _, left_side, _ = parts.bounds[region].tolist()
         offset = np.array([left_side, top], np.float64)
-        flat, flat_cost = _along_rows(mask, middles, top, left_side, radius)
-        upright, upright_cost = _along_rows(transposed(mask), across, left_side, top, radius)
+        flat, flat_cost = _along_rows(mask, middles, top, left_side, radius, config)
+        upright, upright_cost = _along_rows(
+            transposed(mask), across, left_side, top, radius, config
+        )
         if flat_cost <= upright_cost:
             lines.extend(line + offset for line in flat)
         else:
@@ -47,14 +43,14 @@ def swaths(left: Mask, middles: Mask, radius: float) -> list[Line]:
 
 
 def _along_rows(
-    region: Mask, floor: Mask, top: int, left: int, radius: float
+    region: Mask, floor: Mask, top: int, left: int, radius: float, config: CoverageConfig
 ) -> tuple[Line, float]:
     """Return swaths along rows that sweep a region, and what they cost, in cells of way.
 
     float64 [n, 2, 2]. The first cell of ``region`` is the one at (``top``, ``left``) of ``floor``.
     """
-    runs = _runs_by_row(region, floor, top, left, int(radius + 1e-6), _GAP)
-    ways = runs[:, 2] - runs[:, 1] + _NEW_SWATH
+    runs = _runs_by_row(region, floor, top, left, int(radius + 1e-6), config.swath_gap)
+    ways = runs[:, 2] - runs[:, 1] + config.swath_cost
     costs = np.bincount(runs[:, 0], ways, len(region)).astype(np.float64)
     rows = _cheapest_rows(region.any(axis=1), costs, int(2 * radius + 1e-6))
     chosen = runs[np.isin(runs[:, 0], rows)]

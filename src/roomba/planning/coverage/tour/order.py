@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.configuration.coverage import CoverageConfig
 from roomba.planning.coverage.tour.costs import Costs, costs_of, note_pair
 from roomba.planning.coverage.tour.near import (
     NearestSearch,
@@ -28,15 +27,8 @@ _NEAR = 300.0
 _EVERYWHERE = 1e8
 
 
-@dataclass(frozen=True)
-class Weights:
-    """What the order is to keep low: ``turning`` is the way, in cells, that a radian is worth."""
-
-    turning: float = 4.0
-
-
 def ordered(
-    net: Net, pieces: list[Line], start: Line, end: Line | None, weights: Weights
+    net: Net, pieces: list[Line], start: Line, end: Line | None, config: CoverageConfig
 ) -> list[Line]:
     """Return the pieces in a good order from ``start`` to ``end``, float64 [2], turned as driven.
 
@@ -51,8 +43,13 @@ def ordered(
     spots = places_over(net, places)
     nearest, lengths = neighbours(net, search, spots, _NEAREST, _NEAR)
     headings = _headings(lines)
-    costs = costs_of(nearest, lengths, places, headings, net.fits, weights.turning, end is None)
-    tour = shaken(costs, _first_tour(net, search, spots, costs))
+    costs = costs_of(nearest, lengths, places, headings, net.fits, config.turning, end is None)
+    tour = shaken(
+        costs,
+        _first_tour(net, search, spots, costs),
+        config.search_rounds,
+        config.search_pays,
+    )
     return [
         lines[entry // 2] if entry % 2 == 0 else lines[entry // 2][::-1]
         for entry in tour[2:-2:2].tolist()

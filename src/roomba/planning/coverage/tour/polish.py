@@ -13,6 +13,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from roomba.configuration.coverage import CoverageConfig
 from roomba.planning.compilation import part
 from roomba.planning.coverage.floor.masks import way_fits
 from roomba.planning.coverage.passes.edges import cut
@@ -35,8 +36,6 @@ _LONGEST = 60.0
 """cells; no leg longer than this is made."""
 _ROUNDS = 14
 _LEAST_GAIN = 0.02
-_SPARE = 0.002
-"""Share of the needed floor that may be left at most."""
 _BENDS = 0.01
 """rad; a point where the way turns less than this is moved only with others."""
 
@@ -61,13 +60,12 @@ class Bent(NamedTuple):
     legs: Legs
 
 
-def polished(
-    line: Line, need: Mask, fits: Mask, radius: float, turning: float, floor: float
-) -> Line:
+def polished(line: Line, need: Mask, fits: Mask, radius: float, config: CoverageConfig) -> Line:
     """Return the line changed to cost less, with the same ends.
 
-    Its cost is its length, ``turning`` for each radian and ``floor`` for each needed cell left, all
-    in cells of way; ``need`` and ``fits`` are bool [rows, columns], ``radius`` in cells.
+    Its cost is its length, ``config.polish_turning`` for each radian and ``config.unswept`` for
+    each needed cell left, all in cells of way; ``need`` and ``fits`` are bool [rows, columns],
+    ``radius`` in cells.
     """
     if len(line) < 3:
         return line
@@ -81,10 +79,10 @@ def polished(
         np.zeros(need.shape, np.int16),
         need,
         fits,
-        np.array([int(_SPARE * need.sum())]),
+        np.array([int(config.spare * need.sum())]),
         room_for_legs(),
     )
-    _polish(bent, radius, turning, floor)
+    _polish(bent, radius, config.polish_turning, config.unswept)
     kept = [0]
     while bent.after[kept[-1]] >= 0:
         kept.append(int(bent.after[kept[-1]]))

@@ -11,10 +11,6 @@ from roomba.planning.coverage.tour.costs import Costs, Tour, cost_of, tour_cost
 from roomba.planning.coverage.tour.moves import Trip, exchange, improve
 
 _MOST_ROUNDS = 100000
-_A_WHILE = 20000
-"""rounds; the fewest, and how many without enough gain end the search."""
-_PAYS = 0.005
-"""Share of the cost that these rounds must gain."""
 _NEAR_SHARE = 30
 """Of a hundred rounds, those that exchange runs between connections that are near each other."""
 _LONGEST = 25
@@ -72,10 +68,11 @@ def _connection_near(costs: Costs, trip: Trip, end: int, state: NDArray[np.uint6
 
 
 @njit(cache=True, nogil=True)
-def shaken(costs: Costs, first_tour: Tour) -> Tour:
+def shaken(costs: Costs, first_tour: Tour, period: int, pays: float) -> Tour:
     """Return a tour improved, then again and again from where runs were exchanged, while that pays.
 
-    The exchanges are drawn from a fixed sequence, so the outcome is always the same.
+    It goes on while ``period`` exchanges gain the share ``pays`` of the cost. They are drawn from a
+    fixed sequence, so the outcome is always the same.
     """
     ends = first_tour.size
     tour = first_tour.copy()
@@ -100,8 +97,8 @@ def shaken(costs: Costs, first_tour: Tour) -> Tour:
     cost = tour_cost(costs, tour)
     gained = 0.0
     for round in range(_MOST_ROUNDS):
-        if round % _A_WHILE == _A_WHILE - 1:
-            if gained < _PAYS * cost:
+        if round % period == period - 1:
+            if gained < pays * cost:
                 break
             cost -= gained
             gained = 0.0

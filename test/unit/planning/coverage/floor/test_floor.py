@@ -11,9 +11,12 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
+from roomba.configuration.coverage import CoverageConfig
 from roomba.grid import FREE, UNKNOWN, GridFrame, OccupancyMap
-from roomba.planning.coverage.floor.floor import FINE, CoverageFloor
+from roomba.planning.coverage.floor.floor import CoverageFloor
 from roomba.planning.path.costmap import Mask, RoundObstacle
+
+CONFIG = CoverageConfig()
 
 CELL, ORIGIN, REACH, TOOL = 0.03, (-0.4, 0.7), 0.033, 0.09
 SURE = 1e-6
@@ -65,8 +68,8 @@ def test_the_middle_fits_where_it_keeps_its_reach_from_all_that_is_solid(
     solid: Mask, obstacles: list[RoundObstacle]
 ) -> None:
     made = map_of(solid)
-    floor = CoverageFloor.build(made, REACH, TOOL)
-    assert abs(floor.frame.resolution - FINE) < 1e-12
+    floor = CoverageFloor.build(made, REACH, TOOL, CONFIG)
+    assert abs(floor.frame.resolution - CONFIG.cell) < 1e-12
     assert floor.frame.extent == made.frame.extent
     assert_fits(floor, made, [])
     among = floor.with_obstacles(obstacles)
@@ -79,7 +82,7 @@ def test_the_middle_fits_where_it_keeps_its_reach_from_all_that_is_solid(
 def test_what_is_swept_is_free_floor_near_a_middle_that_can_be_got_to(
     solid: Mask, data: st.DataObject
 ) -> None:
-    floor = CoverageFloor.build(map_of(solid), REACH, TOOL)
+    floor = CoverageFloor.build(map_of(solid), REACH, TOOL, CONFIG)
     cells = [(row, column) for row, column in np.argwhere(floor.fits).tolist()]
     assume(cells)
     start = data.draw(st.sampled_from(cells))
@@ -102,7 +105,7 @@ def test_a_robot_that_does_not_fit_counts_as_at_the_nearest_place_with_no_wall_b
     solid: Mask, right: int, up: int
 ) -> None:
     made = map_of(solid)
-    floor = CoverageFloor.build(made, REACH, TOOL)
+    floor = CoverageFloor.build(made, REACH, TOOL, CONFIG)
     point = ORIGIN[0] + right / 100 + 0.0041, ORIGIN[1] + up / 100 + 0.0023
     found = floor.cell_near(point)
     own = floor.frame.cell_of(*point)

@@ -8,14 +8,17 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
+from roomba.configuration.coverage import CoverageConfig
 from roomba.planning.coverage.floor.regions import mask_of, regions
 from roomba.raster.regions import Mask, numbered_regions
+
+CONFIG = CoverageConfig()
 
 
 @given(arrays(np.bool_, st.tuples(st.integers(1, 40), st.integers(1, 40))))
 @settings(max_examples=60, derandomize=True, deadline=None)
 def test_small_floor_is_parted_where_it_does_not_hang_together(floor: Mask) -> None:
-    found = regions(floor)
+    found = regions(floor, CONFIG.narrow, CONFIG.least_part)
     labels = numbered_regions(floor)
     assert found.sizes.tolist() == np.bincount(labels.ravel())[1:].tolist()
     for region in range(len(found.sizes)):
@@ -29,7 +32,7 @@ def test_two_wide_places_with_a_narrow_one_between_are_two_regions() -> None:
     floor = np.zeros((240, 520), np.bool_)
     floor[10:230, 10:250] = floor[10:230, 270:510] = True
     floor[110:140, 250:270] = True
-    found = regions(floor)
+    found = regions(floor, CONFIG.narrow, CONFIG.least_part)
     assert len(found.sizes) == 2
     assert found.sizes.sum() == floor.sum()
     assert abs(found.sizes[0] - found.sizes[1]) < 0.05 * floor.sum()
@@ -46,7 +49,7 @@ def test_each_cell_is_of_one_region_and_each_region_is_connected(
     for _ in range(int(random.integers(0, 4))):
         column = int(random.integers(columns))
         floor[: int(random.integers(rows)), column : column + int(random.integers(1, 20))] = False
-    found = regions(floor)
+    found = regions(floor, CONFIG.narrow, CONFIG.least_part)
     regions_of = np.zeros(floor.shape, np.int64)
     for region, (top, bottom, left, right) in enumerate(found.bounds.tolist()):
         mask = mask_of(found, region)

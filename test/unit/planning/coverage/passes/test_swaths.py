@@ -10,10 +10,11 @@ from fixtures.straight_ways import Mask, connected_to, length_of, parts_of, shru
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from roomba.configuration.coverage import CoverageConfig
 from roomba.planning.coverage.passes.swaths import swaths
 
-SPECK, NEW_SWATH, GAP = 20, 30.0, 30
-"""cells; as in the stage."""
+CONFIG = CoverageConfig()
+SPECK, NEW_SWATH, GAP = CONFIG.speck, CONFIG.swath_cost, CONFIG.swath_gap
 
 
 @st.composite
@@ -41,7 +42,7 @@ def test_all_but_specks_is_swept_without_leaving_the_floor(
     for _ in range(int(random.integers(0, 3))):
         row, column = random.integers(0, 35, 2).tolist()
         left[row : row + 6, column : column + 9] = False
-    lines = swaths(left, middles, radius)
+    lines = swaths(left, middles, radius, CONFIG)
     for line in lines:
         (x, y), (to_x, to_y) = line.astype(int).tolist()
         assert np.array_equal(line, line.astype(int))
@@ -103,7 +104,7 @@ def test_no_set_of_rows_or_columns_sweeps_a_region_with_less_way(
     rows, columns = (np.flatnonzero(left.any(axis=axis)) for axis in (1, 0))
     window = slice(rows[0], rows[-1] + 1), slice(columns[0], columns[-1] + 1)
     left, middles = left[window], middles[window]
-    lines = swaths(left, middles, float(radius))
+    lines = swaths(left, middles, float(radius), CONFIG)
     cost = sum(length_of(line) + NEW_SWATH for line in lines)
     expected = min(least_cost(left, middles, radius), least_cost(left.T, middles.T, radius))
     assert cost == pytest.approx(expected)
@@ -119,7 +120,7 @@ def test_over_a_narrow_gap_of_swept_floor_a_swath_goes_on_and_around_a_wide_one_
         left[2:7, 40 + gap : 40 + gap + 40] = True
         # The thin bridge makes it one region, without a cell where the rows run.
         left[2, 40 : 40 + gap] = True
-        lines = swaths(left, middles, 1.0)
+        lines = swaths(left, middles, 1.0, CONFIG)
         assert len({float(line[0, 1]) for line in lines}) >= 2
         on_last = [line for line in lines if line[0, 1] == max(line[0, 1] for line in lines)]
         assert len(on_last) == expected
@@ -130,7 +131,7 @@ def test_rows_are_chosen_for_what_they_cost_and_not_only_as_far_apart_as_can_be(
     left = np.zeros((40, 300), np.bool_)
     left[:, :9] = True
     left[[6, 15, 24, 33]] = True
-    lines = swaths(left, np.ones_like(left), 2.0)
+    lines = swaths(left, np.ones_like(left), 2.0, CONFIG)
     assert sum(length_of(line) > 100.0 for line in lines) == 4
 
 
@@ -138,4 +139,4 @@ def test_rows_are_chosen_for_what_they_cost_and_not_only_as_far_apart_as_can_be(
 def test_a_patch_is_swept_from_twenty_cells_on(columns: int, expected: int) -> None:
     left = np.zeros((9, 40), np.bool_)
     left[4, 5 : 5 + columns] = True
-    assert len(swaths(left, np.ones_like(left), 3.0)) == expected
+    assert len(swaths(left, np.ones_like(left), 3.0, CONFIG)) == expected

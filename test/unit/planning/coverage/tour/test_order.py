@@ -11,8 +11,9 @@ from fixtures.straight_ways import Line, Mask, connected_to, turning_of
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from roomba.configuration.coverage import CoverageConfig
 from roomba.planning.coverage.tour.net import net_over
-from roomba.planning.coverage.tour.order import Weights, ordered
+from roomba.planning.coverage.tour.order import ordered
 
 TURNING = 6.0
 
@@ -44,7 +45,7 @@ def test_few_pieces_are_ordered_hardly_worse_than_in_the_best_of_all_orders(
 ) -> None:
     pieces, start, end = drawn
     net = net_over(np.ones((204, 204), np.bool_))
-    found = ordered(net, pieces, start, end, Weights(TURNING))
+    found = ordered(net, pieces, start, end, CoverageConfig(turning=TURNING))
     assert names(found) == names(pieces)
     best = min(
         cost(start, [piece[::flip] for piece, flip in zip(order, flips, strict=True)], end)
@@ -79,7 +80,7 @@ def test_each_piece_is_driven_once_on_floors_of_all_kinds(
         cells[random.integers(len(cells), size=int(random.integers(2, 4)))] for _ in range(count)
     ]
     start, end = cells[random.integers(len(cells), size=2)]
-    found = ordered(net_over(part), pieces, start, end if has_end else None, Weights())
+    found = ordered(net_over(part), pieces, start, end if has_end else None, CoverageConfig())
     assert names(found) == names(pieces)
 
 
@@ -101,9 +102,13 @@ def test_the_same_pieces_come_in_the_same_order_each_time(turning: float) -> Non
     pieces = [random.uniform(5.0, 195.0, (2, 2)) for _ in range(30)]
     net = net_over(np.ones((200, 200), np.bool_))
     start = np.array([3.0, 3.0])
-    first, again = (ordered(net, pieces, start, None, Weights(turning)) for _ in range(2))
+    first, again = (
+        ordered(net, pieces, start, None, CoverageConfig(turning=turning)) for _ in range(2)
+    )
     assert all(np.array_equal(one, other) for one, other in zip(first, again, strict=True))
 
 
 def test_without_pieces_there_is_no_order() -> None:
-    assert ordered(net_over(np.ones((9, 9), np.bool_)), [], np.zeros(2), None, Weights()) == []
+    assert (
+        ordered(net_over(np.ones((9, 9), np.bool_)), [], np.zeros(2), None, CoverageConfig()) == []
+    )

@@ -7,6 +7,7 @@ from itertools import permutations, product
 import numpy as np
 import pytest
 
+from roomba.configuration.coverage import CoverageConfig
 from roomba.planning.coverage.tour.costs import (
     Costs,
     Tour,
@@ -17,8 +18,10 @@ from roomba.planning.coverage.tour.costs import (
 )
 from roomba.planning.coverage.tour.near import neighbours, places_over, search_over
 from roomba.planning.coverage.tour.net import net_over
-from roomba.planning.coverage.tour.order import Weights, ordered
+from roomba.planning.coverage.tour.order import ordered
 from roomba.planning.coverage.tour.tour import shaken
+
+CONFIG = CoverageConfig()
 
 
 def costs_between(seed: int, pieces: int) -> Costs:
@@ -43,7 +46,7 @@ def tour_of(order: tuple[int, ...], flips: tuple[int, ...]) -> Tour:
 @pytest.mark.parametrize("seed", range(4))
 def test_few_pieces_are_put_in_hardly_a_worse_order_than_the_best(seed: int) -> None:
     costs = costs_between(seed, 7)
-    tour = shaken(costs, np.arange(14, dtype=np.int32))
+    tour = shaken(costs, np.arange(14, dtype=np.int32), CONFIG.search_rounds, CONFIG.search_pays)
     best = min(
         tour_cost(costs, tour_of(order, flips))
         for order in permutations(range(1, 6))
@@ -58,7 +61,7 @@ def test_few_pieces_are_put_in_hardly_a_worse_order_than_the_best(seed: int) -> 
 def test_many_pieces_get_a_much_better_order() -> None:
     costs = costs_between(1, 60)
     first = np.arange(120, dtype=np.int32)
-    tour = shaken(costs, first)
+    tour = shaken(costs, first, CONFIG.search_rounds, CONFIG.search_pays)
     assert sorted(tour.tolist()) == first.tolist()
     assert all(tour[at] ^ 1 == tour[at + 1] for at in range(0, 120, 2))
     assert tour_cost(costs, tour) < 0.3 * tour_cost(costs, first)
@@ -79,6 +82,6 @@ def test_lanes_are_driven_to_and_fro() -> None:
     net = net_over(np.ones((300, 300), np.bool_))
     lanes = [np.array([[20.0 * n, 10.0], [20.0 * n, 290.0]]) for n in range(1, 13)]
     shuffled = [lanes[n] for n in np.random.default_rng(2).permutation(12)]
-    way = ordered(net, shuffled, np.array([20.0, 5.0]), None, Weights())
+    way = ordered(net, shuffled, np.array([20.0, 5.0]), None, CONFIG)
     assert [float(lane[0, 0]) for lane in way] == [20.0 * n for n in range(1, 13)]
     assert [float(lane[0, 1]) for lane in way] == [10.0, 290.0] * 6

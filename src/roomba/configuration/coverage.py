@@ -1,0 +1,46 @@
+"""Numbers of planning how a floor is covered: the part ``coverage`` of ``mission.yaml``."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import Field
+
+from roomba.configuration.frozen import AtLeastOne, Count, Frozen, NotNegative, Positive, Ratio
+
+
+class CoverageConfig(Frozen):
+    """Where it is swept along, in which order, and what is left; lengths in cells of ``cell`` m."""
+
+    cell: Annotated[float, Field(ge=0.005, le=0.05)] = 0.01
+    """m; approximate side of the cells on which floor is counted: finer is exacter, and slower."""
+    out_of_station: Positive = 0.4
+    """m; the farthest from a robot in its station to where it can drive freely."""
+    narrow: Positive = 6.0
+    """Blocks of 5 cells to both sides; a place that is narrower divides the floor."""
+    least_part: Count = 300
+    """Blocks; a part with a smaller wide place is joined to its neighbour."""
+    speck: Count = 20
+    """Cells; smaller patches that the edges leave get no swath."""
+    piece: Positive = 6.0
+    """Widths of the tool; edges can be left for swaths about this often."""
+    edge_worth: NotNegative = 1.0
+    """Cells of new floor for a cell of way: the least that an edge is driven for."""
+    edge_gap: Count = 4
+    """Stretches of 10 cells; a gap without new floor that is no longer is driven along."""
+    swath_cost: NotNegative = 30.0
+    """Cells of way that getting to another swath costs, when the rows are chosen."""
+    swath_gap: Count = 30
+    """Cells; over swept floor that is narrower a swath goes on."""
+    turning: NotNegative = 4.0
+    """Cells of way that a radian costs in the order of edges and swaths."""
+    polish_turning: NotNegative = 3.0
+    """Cells of way that a radian costs when the way is polished."""
+    unswept: Positive = 1.0
+    """Cells of way that a cell of floor is worth when the way is polished."""
+    spare: Ratio = 0.002
+    """Share of the floor that polishing may leave at most."""
+    search_rounds: AtLeastOne = 20000
+    """Exchanges in the search for an order, after which it goes on only if they paid."""
+    search_pays: Ratio = 0.005
+    """Share of the cost that so many exchanges must gain, or the search ends."""
