@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from roomba.commands.compiling import compiled_functions_told
 from roomba.configuration.mapping import MapChangesConfig
 from roomba.configuration.robot import RobotConfig
 from roomba.configuration.simulation import SimulatedRobotConfig
@@ -85,4 +86,5 @@ def _small_room() -> Home:
 
 
 if __name__ == "__main__":
-    main()
+    with compiled_functions_told():
+        main()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 from typing import Any, Final
 
+from roomba.commands.compiling import compiled_functions_told
 from roomba.commands.map.map_error import map_error
 from roomba.commands.map.seen_floor import seen_floor
 from roomba.commands.sim.warm import closet
@@ -32,4 +33,5 @@ def warm_up() -> None:
 
 
 if __name__ == "__main__":
-    warm_up()
+    with compiled_functions_told():
+        warm_up()

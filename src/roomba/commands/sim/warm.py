@@ -6,6 +6,7 @@ import functools
 
 import numpy as np
 
+from roomba.commands.compiling import compiled_functions_told
 from roomba.geometry import Pose
 from roomba.grid import FREE, OCCUPIED, GridFrame, OccupancyMap
 from roomba.headless.cleaner import HeadlessMission
@@ -38,4 +39,5 @@ def closet() -> Home:
 
 
 if __name__ == "__main__":
-    warm_up()
+    with compiled_functions_told():
+        warm_up()
