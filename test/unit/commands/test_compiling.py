@@ -11,11 +11,11 @@ from roomba.commands.compiling import compiled_functions_told
 def test_each_function_is_told_when_it_begins_to_be_compiled(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    @njit
+    @njit(nogil=True)
     def inner(values: NDArray[np.float64]) -> None:
         values += 1.0
 
-    @njit
+    @njit(nogil=True)
     def outer(values: NDArray[np.float64]) -> None:
         inner(values)
         values *= 2.0
