@@ -23,6 +23,7 @@ VALUES = "values without behaviour of their own"
 COMMAND = "a part of one command, tested by running it"
 PICTURES = "a picture is drawn with all others, and its figures are looked at"
 WORLD = "a part of the simulated world, tested by what the robot meets there"
+MISSION = "a part of the mission, tested by commanding and ticking it"
 NODE = "a part of a node, tested with the node in a graph"
 WARM = "compiles ahead of time what others test"
 
@@ -52,8 +53,12 @@ TESTED_BY: dict[str, tuple[str, str]] = {
     "roomba/headless/live/floor_plan": ("unit/headless/live/test_client.py", LIVE),
     "roomba/headless/live/observation": ("unit/headless/live/test_client.py", LIVE),
     "roomba/headless/live/robot": ("unit/headless/live/test_client.py", LIVE),
+    "roomba/headless/burst_place_kernels": ("unit/headless/test_burst.py", PART),
+    "roomba/headless/burst_state": ("unit/headless/test_burst.py", VALUES),
     "roomba/headless/live/views": ("unit/headless/live/test_client.py", VALUES),
     "roomba/headless/rows": ("unit/headless/test_burst.py", VALUES),
+    "roomba/mission/changed_home": ("unit/mission/test_mission_growing.py", MISSION),
+    "roomba/mission/commands": ("unit/mission/test_mission.py", MISSION),
     "roomba/mission/docking/beams": ("unit/mission/docking/test_track.py", VALUES),
     "roomba/mission/docking/step": ("unit/mission/docking/test_docking.py", VALUES),
     "roomba/mission/driving/progress_kernels": ("unit/mission/driving/test_path_driver.py", PART),
@@ -61,7 +66,8 @@ TESTED_BY: dict[str, tuple[str, str]] = {
     "roomba/mission/phases/cleaning": ("unit/mission/phases/test_phases.py", "one of the phases"),
     "roomba/mission/phases/dust_bin_kernels": ("unit/mission/phases/test_dust_bin.py", PART),
     "roomba/mission/phases/step": ("unit/mission/phases/test_phases.py", VALUES),
-    "roomba/mission/steady": ("unit/headless/test_burst.py", VALUES),
+    "roomba/mission/steady": ("unit/headless/test_burst.py", MISSION),
+    "roomba/mission/transitions": ("unit/mission/test_mission.py", MISSION),
     "roomba/perception/localization/belief": (
         "unit/perception/localization/test_belief_kernels.py",
         "the belief and its kernels are one",

@@ -26,10 +26,10 @@ class Hold(Enum):
     BUMPER = "the bumper is pressed"
     """It backs off a little, so that it can turn away; then it only does not push."""
     CLIFF = "there is no floor ahead"
-    """It backs away until there is, whatever the command, for ``cliff_backing_time`` at most."""
+    """The robot backs away until there is, ``cliff_backing_time`` at most; no command counts."""
     WHEEL_DROP = "a wheel hangs in the air"
     EMERGENCY = "emergency stop"
-    """It stands, whatever the command, until it is released."""
+    """The robot stands until the stop is released; no command counts."""
 
 
 class Source(Enum):

@@ -11,15 +11,8 @@ from numpy.typing import NDArray
 from roomba.control.path_tracker import PathTracker
 from roomba.geometry import Pose
 from roomba.headless.body import SimulatedBody
-from roomba.headless.burst_kernels import (
-    BURST,
-    Drive,
-    Floor,
-    PlaceParts,
-    Sight,
-    World,
-    run,
-)
+from roomba.headless.burst_kernels import run
+from roomba.headless.burst_state import BURST, Drive, Floor, PlaceParts, Sight, World
 from roomba.headless.rows import BELIEVED, PASSED
 from roomba.mission.driving.progress_kernels import PROGRESS
 from roomba.mission.steady import Steady

@@ -8,130 +8,21 @@ same. Ticks begin when all was sensed, and end there, as :meth:`HeadlessMission.
 from __future__ import annotations
 
 import math
-from typing import Any, Final, NamedTuple
+from typing import Any
 
-import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
-from roomba.control.tracking_kernels import Course, track
+from roomba.control.tracking_kernels import track
+from roomba.headless.burst_place_kernels import believed, follow
+from roomba.headless.burst_state import Drive, Floats, Floor, PlaceParts, Rows, Sight, World
 from roomba.headless.rows import GYRO, TIME
 from roomba.mission.driving.progress_kernels import along_of, mark_progress, off_path
 from roomba.mission.phases.dust_bin_kernels import note_dust
-from roomba.perception.localization.belief_correct_kernels import correct, is_calm
-from roomba.perception.localization.belief_reckon_kernels import reckon_on
-from roomba.perception.localization.recent_sight_kernels import Sights, note_sight
-from roomba.perception.matching.beams import LidarBeams
-from roomba.perception.matching.match_kernels import beam_ends
-from roomba.perception.matching.reckoned_path import ReckonedPath
-from roomba.perception.slam.follow_kernels import beyond, moved_since
-from roomba.perception.slam.scan_kernels import IS_DONE, IS_LEFT, Following, take_scan
 from roomba.perception.swept.coverage_kernels import sweep
 from roomba.perception.swept.coverage_map import LONGEST_STEP
 from roomba.perception.swept.dirt_map import note_dirt
-from roomba.perception.things.kernels import Things, note
-from roomba.world.engine.lidar.projection import ScanBuffers
-from roomba.world.engine.state.arrays import State
+from roomba.perception.things.kernels import Things
 from roomba.world.engine.step_kernels import advance
-
-Floats = NDArray[np.float64]
-Rows = NDArray[np.void]
-
-BURST: Final = np.dtype(
-    [
-        # what does not change
-        ("step", "f8"),  # s of the world
-        ("steps", "i8"),  # of the world in a tick
-        ("apart", "f8"),  # s; at least, between two scans that are looked at
-        ("stride", "i8"),  # scans that such a one stands for
-        ("bin_capacity", "f8"),  # micrograms
-        ("is_mapping", "?"),  # whether the place is a mapper's
-        # what ends it
-        ("drives", "?"),  # along a path; else it stands on its station
-        ("limit", "f8"),  # m/s
-        ("until", "f8"),  # s
-        ("least_charge", "f8"),  # Wh
-        ("most_charge", "f8"),
-        ("goal", "f8", (2,)),  # m
-        ("near", "f8"),  # m
-        ("most_in_bin", "f8"),  # micrograms
-        ("most_silent", "f8"),  # m2 that became clean without a grain
-        ("cell_area", "f8"),  # m2
-        ("clear_to", "f8"),  # m along the path
-        ("off_path", "f8"),  # m
-        ("progress_timeout", "f8"),  # s without progress
-        ("things_version", "i8"),  # of what is known to stand in the way
-        # what goes on
-        ("clock", "f8"),  # s; of the robot, beside the world's
-        ("scans", "i8"),  # that came so far
-        ("seen_at", "f8"),  # s; when the last one that was looked at came
-        ("submap", "f8", (3,)),  # m, rad; where a mapper follows it
-        ("at_scan", "f8", (3,)),  # a mapper's place at that one
-        ("seen_from", "f8", (3,)),  # and by now
-        ("last", "f8", (3,)),  # time, s, and place, m, as believed, when the last tick began
-        ("way", "f8"),  # m; driven between these, as believed
-        ("sweeps", "?"),  # whether what is driven over counts
-        ("swept_at", "f8", (2,)),  # m; where it counted last, as believed
-        ("true_at", "f8", (2,)),  # m; the same in truth
-        ("swept", "i8"),  # wanted cells that became clean
-        ("truth_swept", "i8"),
-        # what the classes have to finish
-        ("is_left", "?"),  # the newest scan
-        ("is_followed", "?"),  # though a mapper's place was followed by it
-    ],
-    align=True,
-)
-"""State and numbers of a burst, one row."""
-
-
-class World(NamedTuple):
-    """The simulated one, of one robot."""
-
-    state: State
-    numbers: Rows
-    quantiles: NDArray[np.float32]
-    buffers: ScanBuffers
-
-
-class PlaceParts(NamedTuple):
-    """What knows the place: ``sights`` counts for a localizer, ``following`` for a mapper."""
-
-    belief: Rows
-    numbers: Rows
-    path: ReckonedPath
-    beams: LidarBeams
-    sights: Sights
-    following: Following
-
-
-class Sight(NamedTuple):
-    """What is seen that the map does not show; ``field`` and ``place`` are that map's."""
-
-    things: Things
-    field: NDArray[np.float32]
-    place: Floats
-
-
-class Drive(NamedTuple):
-    """The tracker, its path, and how it comes farther on it."""
-
-    state: Rows
-    course: Course
-    progress: Rows
-
-
-class Floor(NamedTuple):
-    """What is cleaned as the robot believes and in truth, how dirty it was, and what came in."""
-
-    cells: NDArray[np.uint8]
-    place: Floats
-    true_cells: NDArray[np.uint8]
-    true_place: Floats
-    radius: float
-    grains: NDArray[np.float32]
-    way: NDArray[np.float32]
-    dirt_place: Floats
-    dust: Rows
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -173,9 +64,6 @@ def run(
         if not is_settled:
             break
     return ticks
-
-
-# ---------------------------------------------------------------- deciding
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -241,9 +129,6 @@ def wanted(burst: Any, drive: Drive, x: float, y: float, theta: float) -> tuple[
     return linear, angular, False
 
 
-# ---------------------------------------------------------------- keeping the ledgers
-
-
 @njit(cache=True, nogil=True, error_model="numpy")
 def account(burst: Any, robot: Any, floor: Floor, now: float, x: float, y: float) -> None:
     """Note the way since the last tick began, and what floor was cleaned on it."""
@@ -290,81 +175,3 @@ def write_down(row: Floats, now: float, robot: Any, x: float, y: float, theta: f
     row[4], row[5], row[6] = x, y, theta
     row[7], row[8], row[9] = robot.odometry_x, robot.odometry_y, robot.odometry_theta
     row[GYRO] = robot.gyro
-
-
-# ---------------------------------------------------------------- knowing the place
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def believed(burst: Any, place: PlaceParts) -> tuple[float, float, float]:
-    """Return where the robot takes itself to be, x, y, theta, map."""
-    if burst.is_mapping:
-        at = burst.at_scan
-        return moved_since(place.following.follower, place.belief, at[0], at[1], at[2])
-    pose: Any = place.belief[0].pose
-    return pose[0], pose[1], pose[2]
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def follow(burst: Any, world: World, place: PlaceParts, sight: Sight, now: float) -> bool:
-    """Go on by wheels, gyro and scans; tell whether the place is known and all of it is done."""
-    robot: Any = world.state.solid.robots[0]
-    reckon_on(
-        place.belief,
-        place.numbers,
-        place.path,
-        now,
-        robot.odometry_x,
-        robot.odometry_y,
-        robot.odometry_theta,
-        robot.gyro,
-    )
-    is_new = robot.scans != burst.scans
-    burst.scans = robot.scans
-    if is_new and not 0.0 <= now - burst.seen_at < burst.apart:
-        burst.seen_at = now
-        ranges = world.state.ranges[0]
-        if burst.is_mapping:
-            return map_on(burst, place, sight, ranges, now)
-        return localize(burst, place, sight, ranges, now)
-    if burst.is_mapping:
-        return True
-    return bool(is_calm(place.belief, place.numbers, now))
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def localize(
-    burst: Any, place: PlaceParts, sight: Sight, ranges: NDArray[np.float32], now: float
-) -> bool:
-    """Correct a localizer's place by a scan; tell whether it is sure of it."""
-    belief, beams = place.belief, place.beams
-    count = correct(belief, place.numbers, sight.field, sight.place, beams, ranges, now)
-    if not is_calm(belief, place.numbers, now):
-        burst.is_left = True
-        return False
-    note_sight(place.sights, now, belief[0].reckoned, beams.ends, count)
-    pose = belief[0].pose
-    note(sight.things, sight.field, sight.place, beams, ranges, count, pose, burst.stride)
-    return True
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def map_on(
-    burst: Any, place: PlaceParts, sight: Sight, ranges: NDArray[np.float32], now: float
-) -> bool:
-    """Follow a mapper's place by a scan; tell whether that is all that is to be done with it."""
-    following = place.following
-    left = take_scan(following, now, ranges)
-    if left != IS_DONE:
-        burst.is_left, burst.is_followed = True, left != IS_LEFT
-        return False
-    submap, here, at = burst.submap, following.follower[0].here, burst.at_scan
-    at[0], at[1], at[2] = beyond(submap[0], submap[1], submap[2], here[0], here[1], here[2])
-    seen_from = burst.seen_from
-    seen_from[0], seen_from[1], seen_from[2] = believed(burst, place)
-    beams = place.beams
-    count = beam_ends(
-        ranges, beams.directions, beams.mount, beams.nearest, beams.farthest, beams.ends
-    )
-    note(sight.things, sight.field, sight.place, beams, ranges, count, seen_from, burst.stride)
-    return True

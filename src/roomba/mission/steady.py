@@ -7,9 +7,19 @@ tick has its turn at the first one at which a bound given here does not hold any
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Final
 
+from roomba.mission.driving.drives import Drives
 from roomba.mission.driving.path_driver import PathDriver
+from roomba.mission.driving.retry_policy import RetryPolicy
+from roomba.mission.inputs.senses import Senses
+from roomba.mission.phases.at_station import AtStation
+from roomba.mission.phases.job import Job
+from roomba.mission.phases.machine import Phase
+from roomba.mission.phases.monitor import Monitor
+
+_ALONG_PATHS: Final = (Phase.CLEANING, Phase.EXPLORING, Phase.RETURNING)
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,3 +46,62 @@ class Steady:
     most_silent: float = math.inf
     goal: tuple[float, float] = (0.0, 0.0)
     near: float = -1.0
+
+
+class SteadyTicks:
+    """Finds out whether the next ticks are steady, and what ends them."""
+
+    def __init__(
+        self,
+        job: Job,
+        drives: Drives,
+        at_station: AtStation,
+        monitor: Monitor,
+        retries: RetryPolicy,
+    ) -> None:
+        """Take the mission's parts."""
+        self._job, self._drives, self._at_station = job, drives, at_station
+        self._monitor, self._retries = monitor, retries
+
+    def after(self, senses: Senses, phase: Phase, limit: float, *, sweeps: bool) -> Steady | None:
+        """Return what the mission does from these senses on; None: its own tick decides.
+
+        It drives at ``limit`` m/s at most; ``sweeps``: what it drives over counts as cleaned.
+        """
+        if phase is Phase.CHARGING:
+            return self._charging(senses)
+        driver = self._driver_in(phase)
+        if driver is None:
+            return None
+        if phase is Phase.RETURNING:
+            steady = self._returning(driver, limit)
+        else:
+            ledger = self._job.ledger
+            steady = Steady(driver, limit, ledger.next_check, ledger.empty)
+        return self._until_bin_full(steady, senses) if sweeps else steady
+
+    def _charging(self, senses: Senses) -> Steady | None:
+        needed = self._at_station.needed
+        if needed is None:
+            return None
+        return Steady(None, most_energy=self._job.ledger.charged_at(senses, needed))
+
+    def _driver_in(self, phase: Phase) -> PathDriver | None:
+        """Return what drives along a path with nothing else to decide."""
+        driver = self._drives.driver
+        if phase not in _ALONG_PATHS or driver is None or not driver.is_undisturbed:
+            return None
+        is_retrying = self._retries.is_pending and phase is not Phase.EXPLORING
+        return None if is_retrying or self._monitor.is_astray else driver
+
+    def _returning(self, driver: PathDriver, limit: float) -> Steady:
+        context, empty = self._drives.context, self._job.ledger.empty
+        goal = context.staging.x, context.staging.y
+        near = context.staging_tolerance
+        return Steady(driver, limit, least_level=empty, goal=goal, near=near)
+
+    def _until_bin_full(self, steady: Steady, senses: Senses) -> Steady:
+        """Let steady ticks end when the bin may have become full."""
+        dust_bin = self._job.bin
+        most_silent = dust_bin.most_silent if dust_bin.heeds_silence(senses.in_bin) else math.inf
+        return replace(steady, most_in_bin=dust_bin.full_from, most_silent=most_silent)

@@ -24,9 +24,10 @@ from roomba_robot.msg import ExploreResult as ExploreResultMessage
 
 from roomba.grid import OccupancyMap
 from roomba.mission.cleaning.request import CleanOutcome, CleanRequest, CleanResult
+from roomba.mission.commands import CommandRefusedError
 from roomba.mission.exploring.exploration import ExploreResult
 from roomba.mission.inputs.senses import Senses
-from roomba.mission.mission import CommandRefusedError, Mission
+from roomba.mission.mission import Mission
 from roomba.mission.phases.machine import Errand, Event, Phase
 from roomba_ros.convert.mission import (
     explored_message,

@@ -43,8 +43,9 @@ from roomba.mission.cleaning.request import (
     CleanRequest,
     MissReason,
 )
+from roomba.mission.commands import CommandRefusedError
 from roomba.mission.inputs.planning_context import PlanningContext
-from roomba.mission.mission import CommandRefusedError, Mission
+from roomba.mission.mission import Mission
 from roomba.mission.phases.machine import Errand, Event, Phase
 from roomba.perception.localization.estimate import Knowledge
 from roomba.perception.rooms.zones import Zone, ZoneKind, Zones

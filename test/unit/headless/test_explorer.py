@@ -21,7 +21,7 @@ from roomba.grid import FREE
 from roomba.headless.cleaner import HeadlessMission
 from roomba.headless.records import ExploreRecord
 from roomba.mission.cleaning.request import CleanOutcome
-from roomba.mission.mission import CommandRefusedError
+from roomba.mission.commands import CommandRefusedError
 from roomba.mission.phases.machine import Event, Phase
 from roomba.perception.localization.estimate import Knowledge
 from roomba.world.engine.state.arrays import Fault

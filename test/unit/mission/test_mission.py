@@ -15,9 +15,10 @@ from roomba.configuration.robot import RobotConfig
 from roomba.errors import ConfigError
 from roomba.geometry import Pose, Twist
 from roomba.mission.cleaning.request import CleanOutcome, CleanRequest
+from roomba.mission.commands import CommandRefusedError
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.mission.inputs.senses import Battery, Senses
-from roomba.mission.mission import CommandRefusedError, Mission, MissionStep
+from roomba.mission.mission import Mission, MissionStep
 from roomba.mission.phases.machine import Errand, Event, Phase
 from roomba.perception.localization.estimate import Knowledge
 from roomba.perception.matching.surface_field import SurfaceField

@@ -24,10 +24,10 @@ from fixtures.missions import DOOR, TWO_ROOMS, WALL_X
 from roomba.geometry import Twist
 from roomba.grid import OCCUPIED, OccupancyMap
 from roomba.mission.cleaning.request import CleanOutcome, CleanRequest
+from roomba.mission.commands import CommandRefusedError
 from roomba.mission.driving.path_driver import DriveState, DriveStep, PathDriver
 from roomba.mission.exploring.exploration import Exploration
 from roomba.mission.inputs.senses import Battery
-from roomba.mission.mission import CommandRefusedError
 from roomba.mission.phases.machine import Errand, Event, Phase
 from roomba.perception.localization.estimate import Knowledge
 

@@ -8,7 +8,7 @@ from roomba.clock import LONGEST_TICK
 from roomba.configuration.mission import MissionConfig
 from roomba.mission.cleaning.cleaning import Cleaning
 from roomba.mission.cleaning.missed import why_hardly_any
-from roomba.mission.cleaning.request import CleanOutcome, CleanResult
+from roomba.mission.cleaning.request import CleanOutcome, CleanRequest, CleanResult
 from roomba.mission.driving.obstacles import Obstacles
 from roomba.mission.exploring.exploration import Exploration, ExploreResult
 from roomba.mission.inputs.planning_context import PlanningContext
@@ -41,6 +41,12 @@ class Job:
         self._cleaned: CleanResult | None = None
         self._explored: ExploreResult | None = None
 
+    def cleaning_of(
+        self, request: CleanRequest, context: PlanningContext, senses: Senses
+    ) -> Cleaning:
+        """Return the clean of a request, begun here; raises CleanRefusedError."""
+        return Cleaning(request, context, self.dirt, self._config.cleaning, senses.pose)
+
     def begin_clean(self, cleaning: Cleaning, senses: Senses) -> None:
         """Begin a clean, with new ledgers; if it explores, it does so on the way."""
         self.cleaning = cleaning
@@ -56,6 +62,11 @@ class Job:
         self.outcome, self._is_told = None, False
         self.ledger.begin(senses)
         self._started = senses.now
+
+    def look_no_more(self) -> None:
+        """On the whole map a clean has nothing left to look for."""
+        if self.cleaning is not None and not self.cleaning.explores:
+            self.exploration = None
 
     def take_up(self) -> None:
         """Go on after its result was told: it will have another one."""

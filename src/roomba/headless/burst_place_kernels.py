@@ -1,0 +1,93 @@
+"""Knowing the place in a burst: wheels, gyro and scans, for a localizer and for a mapper."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from roomba.headless.burst_state import PlaceParts, Sight, World
+from roomba.perception.localization.belief_correct_kernels import correct, is_calm
+from roomba.perception.localization.belief_reckon_kernels import reckon_on
+from roomba.perception.localization.recent_sight_kernels import note_sight
+from roomba.perception.matching.match_kernels import beam_ends
+from roomba.perception.slam.follow_kernels import beyond, moved_since
+from roomba.perception.slam.scan_kernels import IS_DONE, IS_LEFT, take_scan
+from roomba.perception.things.kernels import note
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def believed(burst: Any, place: PlaceParts) -> tuple[float, float, float]:
+    """Return where the robot takes itself to be, x, y, theta, map."""
+    if burst.is_mapping:
+        at = burst.at_scan
+        return moved_since(place.following.follower, place.belief, at[0], at[1], at[2])
+    pose: Any = place.belief[0].pose
+    return pose[0], pose[1], pose[2]
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def follow(burst: Any, world: World, place: PlaceParts, sight: Sight, now: float) -> bool:
+    """Go on by wheels, gyro and scans; tell whether the place is known and all of it is done."""
+    robot: Any = world.state.solid.robots[0]
+    reckon_on(
+        place.belief,
+        place.numbers,
+        place.path,
+        now,
+        robot.odometry_x,
+        robot.odometry_y,
+        robot.odometry_theta,
+        robot.gyro,
+    )
+    is_new = robot.scans != burst.scans
+    burst.scans = robot.scans
+    if is_new and not 0.0 <= now - burst.seen_at < burst.apart:
+        burst.seen_at = now
+        ranges = world.state.ranges[0]
+        if burst.is_mapping:
+            return map_on(burst, place, sight, ranges, now)
+        return localize(burst, place, sight, ranges, now)
+    if burst.is_mapping:
+        return True
+    return bool(is_calm(place.belief, place.numbers, now))
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def localize(
+    burst: Any, place: PlaceParts, sight: Sight, ranges: NDArray[np.float32], now: float
+) -> bool:
+    """Correct a localizer's place by a scan; tell whether it is sure of it."""
+    belief, beams = place.belief, place.beams
+    count = correct(belief, place.numbers, sight.field, sight.place, beams, ranges, now)
+    if not is_calm(belief, place.numbers, now):
+        burst.is_left = True
+        return False
+    note_sight(place.sights, now, belief[0].reckoned, beams.ends, count)
+    pose = belief[0].pose
+    note(sight.things, sight.field, sight.place, beams, ranges, count, pose, burst.stride)
+    return True
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def map_on(
+    burst: Any, place: PlaceParts, sight: Sight, ranges: NDArray[np.float32], now: float
+) -> bool:
+    """Follow a mapper's place by a scan; tell whether that is all that is to be done with it."""
+    following = place.following
+    left = take_scan(following, now, ranges)
+    if left != IS_DONE:
+        burst.is_left, burst.is_followed = True, left != IS_LEFT
+        return False
+    submap, here, at = burst.submap, following.follower[0].here, burst.at_scan
+    at[0], at[1], at[2] = beyond(submap[0], submap[1], submap[2], here[0], here[1], here[2])
+    seen_from = burst.seen_from
+    seen_from[0], seen_from[1], seen_from[2] = believed(burst, place)
+    beams = place.beams
+    count = beam_ends(
+        ranges, beams.directions, beams.mount, beams.nearest, beams.farthest, beams.ends
+    )
+    note(sight.things, sight.field, sight.place, beams, ranges, count, seen_from, burst.stride)
+    return True

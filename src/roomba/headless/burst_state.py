@@ -1,0 +1,116 @@
+"""What a burst works on: a row of its own state, and the arrays of the parts that it advances."""
+
+from __future__ import annotations
+
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.control.tracking_kernels import Course
+from roomba.perception.localization.recent_sight_kernels import Sights
+from roomba.perception.matching.beams import LidarBeams
+from roomba.perception.matching.reckoned_path import ReckonedPath
+from roomba.perception.slam.scan_kernels import Following
+from roomba.perception.things.kernels import Things
+from roomba.world.engine.lidar.projection import ScanBuffers
+from roomba.world.engine.state.arrays import State
+
+Floats = NDArray[np.float64]
+Rows = NDArray[np.void]
+
+BURST: Final = np.dtype(
+    [
+        # what does not change
+        ("step", "f8"),  # s of the world
+        ("steps", "i8"),  # of the world in a tick
+        ("apart", "f8"),  # s; at least, between two scans that are looked at
+        ("stride", "i8"),  # scans that such a one stands for
+        ("bin_capacity", "f8"),  # micrograms
+        ("is_mapping", "?"),  # whether the place is a mapper's
+        # what ends it
+        ("drives", "?"),  # along a path; else it stands on its station
+        ("limit", "f8"),  # m/s
+        ("until", "f8"),  # s
+        ("least_charge", "f8"),  # Wh
+        ("most_charge", "f8"),
+        ("goal", "f8", (2,)),  # m
+        ("near", "f8"),  # m
+        ("most_in_bin", "f8"),  # micrograms
+        ("most_silent", "f8"),  # m2 that became clean without a grain
+        ("cell_area", "f8"),  # m2
+        ("clear_to", "f8"),  # m along the path
+        ("off_path", "f8"),  # m
+        ("progress_timeout", "f8"),  # s without progress
+        ("things_version", "i8"),  # of what is known to stand in the way
+        # what goes on
+        ("clock", "f8"),  # s; of the robot, beside the world's
+        ("scans", "i8"),  # that came so far
+        ("seen_at", "f8"),  # s; when the last one that was looked at came
+        ("submap", "f8", (3,)),  # m, rad; where a mapper follows it
+        ("at_scan", "f8", (3,)),  # a mapper's place at that one
+        ("seen_from", "f8", (3,)),  # and by now
+        ("last", "f8", (3,)),  # time, s, and place, m, as believed, when the last tick began
+        ("way", "f8"),  # m; driven between these, as believed
+        ("sweeps", "?"),  # whether what is driven over counts
+        ("swept_at", "f8", (2,)),  # m; where it counted last, as believed
+        ("true_at", "f8", (2,)),  # m; the same in truth
+        ("swept", "i8"),  # wanted cells that became clean
+        ("truth_swept", "i8"),
+        # what the classes have to finish
+        ("is_left", "?"),  # the newest scan
+        ("is_followed", "?"),  # though a mapper's place was followed by it
+    ],
+    align=True,
+)
+"""State and numbers of a burst, one row."""
+
+
+class World(NamedTuple):
+    """The simulated one, of one robot."""
+
+    state: State
+    numbers: Rows
+    quantiles: NDArray[np.float32]
+    buffers: ScanBuffers
+
+
+class PlaceParts(NamedTuple):
+    """What knows the place: ``sights`` counts for a localizer, ``following`` for a mapper."""
+
+    belief: Rows
+    numbers: Rows
+    path: ReckonedPath
+    beams: LidarBeams
+    sights: Sights
+    following: Following
+
+
+class Sight(NamedTuple):
+    """What is seen that the map does not show; ``field`` and ``place`` are that map's."""
+
+    things: Things
+    field: NDArray[np.float32]
+    place: Floats
+
+
+class Drive(NamedTuple):
+    """The tracker, its path, and how it comes farther on it."""
+
+    state: Rows
+    course: Course
+    progress: Rows
+
+
+class Floor(NamedTuple):
+    """What is cleaned as the robot believes and in truth, how dirty it was, and what came in."""
+
+    cells: NDArray[np.uint8]
+    place: Floats
+    true_cells: NDArray[np.uint8]
+    true_place: Floats
+    radius: float
+    grains: NDArray[np.float32]
+    way: NDArray[np.float32]
+    dirt_place: Floats
+    dust: Rows

@@ -1,0 +1,69 @@
+"""A home that changed under a mission: other zones or rooms, or more of the map."""
+
+from __future__ import annotations
+
+from roomba.grid import OccupancyMap
+from roomba.mission.driving.drives import Drives
+from roomba.mission.driving.obstacles import Obstacles
+from roomba.mission.inputs.planning_context import PlanningContext
+from roomba.mission.phases.job import Job
+from roomba.mission.phases.machine import Phase
+from roomba.mission.transitions import Transitions
+from roomba.perception.swept.dirt_map import DirtMap
+from roomba.perception.things.layer import ThingLayer
+
+_LOOKING = (Phase.EXPLORING, Phase.CLEANING)
+
+
+class ChangedHome:
+    """Lets a mission go on in the home as it is known now."""
+
+    def __init__(
+        self, transitions: Transitions, job: Job, drives: Drives, obstacles: Obstacles
+    ) -> None:
+        """Take the mission's parts."""
+        self._transitions, self._job, self._drives = transitions, job, drives
+        self._obstacles = obstacles
+
+    def use_context(self, context: PlanningContext) -> None:
+        """Go on with other zones or rooms, from the next tick on."""
+        job = self._job
+        self._drives.use_context(context)
+        if not self._goes_on_looking():
+            self._transitions.drop_driver()
+        if job.cleaning is not None:
+            job.cleaning.use_context(context, job.dirt)
+            job.look_no_more()
+
+    def use_map(self, context: PlanningContext, things: ThingLayer, dirt: DirtMap) -> None:
+        """Go on with a map that has grown, or with the whole one, from the next tick on.
+
+        ``things`` and ``dirt`` are new ones of that map.
+        """
+        job, before = self._job, self._drives.context
+        dirt.carry_on(job.dirt, context.station.compose(before.station.inverse()))
+        self._obstacles.use(things)
+        job.dirt = dirt
+        job.bin.forget_places()
+        self.use_context(context)
+
+    def wants_map(self, occupancy: OccupancyMap) -> bool:
+        """Whether a map that has grown to this makes a difference to what the robot does."""
+        phase, exploration = self._transitions.state.phase, self._job.exploration
+        if self._drives.driver is None:
+            # By its station it goes by beams, and a new map would make it late.
+            return phase not in (Phase.UNDOCKING, Phase.DOCKING)
+        if phase is Phase.RETURNING:
+            # Its way leads over known floor; a path planned anew each time begins with a turn.
+            return False
+        return exploration is not None and exploration.wants_another(occupancy)
+
+    def _goes_on_looking(self) -> bool:
+        """Whether it is on its way to a frontier that still is one, and nothing stands between."""
+        exploration, driver = self._job.exploration, self._drives.driver
+        if self._transitions.state.phase not in _LOOKING or driver is None or exploration is None:
+            return False
+        context = self._drives.context
+        if not exploration.is_under_way or exploration.wants_another(context.known):
+            return False
+        return context.paths.is_free(driver.tracker.rest)

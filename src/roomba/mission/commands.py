@@ -1,0 +1,110 @@
+"""The commands of a mission: what each requires, and what it begins or ends."""
+
+from __future__ import annotations
+
+from roomba.configuration.mission import MissionConfig
+from roomba.errors import RoombaError
+from roomba.mission.cleaning.request import CleanOutcome, CleanRequest
+from roomba.mission.driving.drives import Drives
+from roomba.mission.driving.obstacles import Obstacles
+from roomba.mission.driving.retry_policy import RetryPolicy
+from roomba.mission.inputs.senses import Senses
+from roomba.mission.phases.job import Job
+from roomba.mission.phases.machine import Event, Phase, next_state
+from roomba.mission.transitions import BIN_FULL, Transitions
+
+
+class CommandRefusedError(RoombaError):
+    """A command that is not possible now; the message says why."""
+
+
+class Commands:
+    """Obeys commands, or refuses them with a reason."""
+
+    def __init__(
+        self,
+        config: MissionConfig,
+        bin_capacity: float,
+        transitions: Transitions,
+        job: Job,
+        drives: Drives,
+        obstacles: Obstacles,
+        retries: RetryPolicy,
+    ) -> None:
+        """Take the mission's parts; its dust bin takes ``bin_capacity`` g."""
+        self._config, self._bin_capacity = config, bin_capacity
+        self._transitions, self._job, self._drives = transitions, job, drives
+        self._obstacles, self._retries = obstacles, retries
+
+    def clean(self, request: CleanRequest, senses: Senses) -> None:
+        """Begin a clean; raises CleanRefusedError or CommandRefusedError with the reason."""
+        self._require_start(Event.CLEAN, senses)
+        self._require_room_in_bin(senses)
+        cleaning = self._job.cleaning_of(request, self._drives.context, senses)
+        self._end("a newer clean took over", senses)
+        self._job.begin_clean(cleaning, senses)
+        self._obstacles.forget()
+        self._transitions.go(Event.CLEAN, senses)
+
+    def explore(self, senses: Senses) -> None:
+        """Begin to look for what the map does not show yet; raises CommandRefusedError."""
+        self._require_start(Event.EXPLORE, senses)
+        self._end("it was told to explore", senses)
+        self._job.begin_exploration(senses)
+        self._obstacles.forget()
+        self._transitions.go(Event.EXPLORE, senses)
+
+    def obey(self, event: Event, senses: Senses, reason: str) -> None:
+        """Obey a command without arguments; raises CommandRefusedError with the reason."""
+        self._require_possible(event)
+        if event in (Event.DOCK, Event.UNDOCK, Event.STOP):
+            self._end(f"it was told to {event.value}", senses)
+        if event is Event.EMERGENCY:
+            self._end(f"emergency stop: {reason}", senses, CleanOutcome.FAULT)
+        if event is Event.RESUME:
+            self._retries.renew()
+            self._job.take_up()
+        self._transitions.go(event, senses)
+        self._transitions.reason = reason if event is Event.EMERGENCY else ""
+        if event in (Event.RELEASE, Event.STOP) and senses.battery.is_docked:
+            self._transitions.go(Event.CONTACT, senses)
+
+    def empty_bin(self, senses: Senses) -> None:
+        """Go by an emptied dust bin; raises CommandRefusedError if its level sensor says no."""
+        level = senses.in_bin / self._bin_capacity
+        if level >= self._config.bin.full:
+            raise CommandRefusedError(
+                f"expected an empty dust bin, got one that is {level:.0%} full by its level sensor"
+            )
+        self._job.bin.emptied()
+        self._transitions.go(Event.EMPTIED, senses)
+
+    def _end(
+        self, message: str, senses: Senses, outcome: CleanOutcome = CleanOutcome.STOPPED
+    ) -> None:
+        """End the job under way for good."""
+        self._transitions.end_job(outcome, message, senses)
+        self._job.forget()
+
+    def _require_possible(self, event: Event) -> None:
+        state, message = self._transitions.state, self._transitions.message
+        if next_state(state, event) is None:
+            raise CommandRefusedError(
+                f"cannot {event.value} now: the robot is {state.phase.value}"
+                + (f" ({message})" if message else "")
+            )
+
+    def _require_start(self, event: Event, senses: Senses) -> None:
+        if self._transitions.state.phase is Phase.EMERGENCY:
+            self._require_possible(event)
+        least = self._config.energy.least_to_start
+        if senses.battery.level < least and not senses.battery.is_docked:
+            raise CommandRefusedError(
+                f"expected a battery of {least:.0%} or more to begin, got "
+                f"{senses.battery.level:.0%}; bring the robot to its station"
+            )
+
+    def _require_room_in_bin(self, senses: Senses) -> None:
+        self._job.look_at_bin(senses)
+        if self._job.bin.is_full:
+            raise CommandRefusedError(f"expected room in the dust bin, got none: {BIN_FULL}")
