@@ -7,7 +7,7 @@ from typing import Annotated, ClassVar, Final
 
 from pydantic import Field
 
-from roomba.configuration.frozen import Frozen, Positive, Ratio
+from roomba.configuration.frozen import AtLeastOne, Frozen, Positive, Ratio
 from roomba.vocabulary import FanLevel
 
 FASTEST_SPEED: Final = 3.0
@@ -96,3 +96,21 @@ class BatteryConfig(Frozen):
 
     capacity: Positive = 26.0
     nominal_voltage: Positive = 14.4
+    cells: AtLeastOne = 4
+    """In series."""
+
+
+class HealthConfig(Frozen):
+    """From when on a part is in need, as ``/diagnostics`` tells it: shares 0..1."""
+
+    low_battery: Ratio = 0.10
+    """Of the charge; with less the robot should go home."""
+    empty_battery: Ratio = 0.03
+    """Of the charge; with less it must be carried."""
+    hot_battery: Positive = 45.0
+    """Degrees Celsius; lithium cells should not be charged much warmer."""
+    full_bin: Ratio = 0.95
+    most_misses: Ratio = 0.5
+    """Of the beams without a range; a home with walls explains no more."""
+
+    in_order: ClassVar = ("empty_battery <= low_battery",)

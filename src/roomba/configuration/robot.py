@@ -11,7 +11,13 @@ from typing import Final
 
 from pydantic import model_validator
 
-from roomba.configuration.body import BatteryConfig, BodyConfig, BrushConfig, FanConfig
+from roomba.configuration.body import (
+    BatteryConfig,
+    BodyConfig,
+    BrushConfig,
+    FanConfig,
+    HealthConfig,
+)
 from roomba.configuration.frozen import Frozen, Positive, read_yaml, validated
 from roomba.configuration.lidars import SIMULATION, with_model
 from roomba.configuration.localization import LocalizationConfig
@@ -72,6 +78,7 @@ class RobotConfig(Frozen):
     brush: BrushConfig = BrushConfig()
     fan: FanConfig = FanConfig()
     battery: BatteryConfig = BatteryConfig()
+    health: HealthConfig = HealthConfig()
     lidar: LidarConfig = LidarConfig()
     wheels: WheelsConfig = WheelsConfig()
     gyro: GyroConfig = GyroConfig()

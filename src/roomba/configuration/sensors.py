@@ -89,10 +89,14 @@ class StationConfig(Frozen):
 
 
 class DirtSensorConfig(Frozen):
-    """The dirt sensor in the intake: it counts grains, ug each, up to ``most`` per second."""
+    """The dirt sensor in the intake: it counts grains, ug each, up to ``most`` per second.
+
+    The rate that it tells is that of the last ``window`` s.
+    """
 
     grain: Positive = 50.0
     most: Annotated[float, Field(gt=0.0, le=65535.0)] = 2550.0
+    window: Positive = 0.1
 
 
 class CameraConfig(Frozen):

@@ -7,7 +7,7 @@ The simulator alone reads them. What is true and known as well, such as the body
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Final, Literal
+from typing import Annotated, ClassVar, Final, Literal
 
 from pydantic import Field, model_validator
 
@@ -66,6 +66,10 @@ class SimulatedBattery(Frozen):
     ambient: Annotated[float, Field(ge=-20.0, le=60.0)] = 22.0
     heating: NotNegative = 0.4
     heating_time: Positive = 900.0
+    taper_from: Annotated[float, Field(ge=0.0, lt=1.0)] = 0.9
+    """Share of the charge from which on charging becomes slower, evenly, down to ``taper_to``."""
+    taper_to: Annotated[float, Field(gt=0.0, lt=1.0)] = 0.2
+    """Share of the power that is left when the battery is full."""
 
 
 class SimulatedLidar(Frozen):
@@ -112,13 +116,18 @@ class SimulatedLidar(Frozen):
 
 
 class SimulatedWheels(Frozen):
-    """How wheels slip: shares of the way, and what varies, m/sqrt(m)."""
+    """How wheels slip: shares of the way, and what varies, m/sqrt(m), over ``slip_length`` m.
+
+    ``noise_level`` is that of the wheels alone, dB(A) at 1 m.
+    """
 
     scale_error: NotNegative = 0.001
     slip: Ratio = 0.001
     carpet_slip: Ratio = 0.02
     slip_noise: NotNegative = 0.002
+    slip_length: Positive = 0.1
     blocked_slip: Ratio = 0.3
+    noise_level: NotNegative = 45.0
 
 
 class SimulatedGyro(Frozen):
@@ -129,6 +138,7 @@ class SimulatedGyro(Frozen):
     bias_walk: NotNegative = 0.00002
     scale_error: NotNegative = 0.003
     acceleration_noise: NotNegative = 0.03
+    most_acceleration: Positive = 19.6
 
 
 class SimulatedStation(Frozen):
@@ -136,6 +146,36 @@ class SimulatedStation(Frozen):
 
     position_tolerance: Positive = 0.015
     angle_tolerance: Positive = 8.0
+
+
+class SimulatedSurroundings(Frozen):
+    """What is true of every home: how its surfaces give back a lidar's light, crumbs, and quiet.
+
+    Reflectivities, 0..1, are those in the infrared.
+    """
+
+    patch: Positive = 0.7
+    """m; side of the squares in which surfaces are of one reflectivity."""
+    black: Ratio = 0.04
+    """Reflectivity of black leather, black lacquer, dark fabric."""
+    dimmest: Ratio = 0.35
+    """The least reflectivity of all else: wood and fabrics."""
+    white: Annotated[float, Field(gt=0.0, le=1.0)] = 0.9
+    """The largest: white paint."""
+    movable: Ratio = 0.6
+    """Reflectivity of what is no part of the home."""
+    shiny_cosine: Ratio = 0.96
+    """Cosine to the normal; a shiny surface is seen when it is met as squarely."""
+    fading: NotNegative = 0.08
+    """Share of the reach by which a faint echo comes and goes."""
+    edge: Positive = 0.10
+    """m; a wide beam whose range differs by more from the last one's may lie on an edge."""
+    crumb: Annotated[int, Field(gt=0, le=1_000_000)] = 2000
+    """Micrograms; what falls at once from a source of dirt."""
+    quiet: NotNegative = 20.0
+    """dB(A) at 1 m; of a robot that stands in a quiet room."""
+
+    in_order: ClassVar = ("black < dimmest <= white",)
 
 
 class SimulationConfig(Frozen):
@@ -153,6 +193,7 @@ class SimulationConfig(Frozen):
     wheels: SimulatedWheels = SimulatedWheels()
     gyro: SimulatedGyro = SimulatedGyro()
     station: SimulatedStation = SimulatedStation()
+    surroundings: SimulatedSurroundings = SimulatedSurroundings()
 
 
 class SimulatedRobotConfig(RobotConfig):

@@ -4,21 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import IntEnum
-from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.configuration.body import HealthConfig
 from roomba.world.simulator import Observation
-
-LOW_BATTERY: Final = 0.10
-"""Below this charge, 0..1, the robot should go home."""
-EMPTY_BATTERY: Final = 0.03
-HOT_BATTERY: Final = 45.0
-"""Degrees Celsius; lithium cells should not be charged much warmer."""
-FULL_BIN: Final = 0.95
-MOST_MISSES: Final = 0.5
-"""Share of a scan without a range that a home with walls does not explain."""
 
 
 class Level(IntEnum):
@@ -42,23 +33,24 @@ class PartHealth:
 
 
 def health_of(
-    seen: Observation, ranges: NDArray[np.float32], bin_capacity: float
+    seen: Observation, ranges: NDArray[np.float32], bin_capacity: float, config: HealthConfig
 ) -> tuple[PartHealth, ...]:
     """Return the health of battery, drive, lidar and bin.
 
     ``ranges`` is the last scan, float32 [beams], m; ``bin_capacity`` in g.
     """
-    return _battery(seen), _drive(seen), _lidar(ranges), _bin(seen.in_bin / bin_capacity)
+    fill = seen.in_bin / bin_capacity
+    return _battery(seen, config), _drive(seen), _lidar(ranges, config), _bin(fill, config)
 
 
-def _battery(seen: Observation) -> PartHealth:
+def _battery(seen: Observation, config: HealthConfig) -> PartHealth:
     battery = seen.battery
     level, message = Level.OK, "charging" if battery.is_charging else "ok"
-    if not battery.is_docked and battery.level < EMPTY_BATTERY:
+    if not battery.is_docked and battery.level < config.empty_battery:
         level, message = Level.ERROR, "empty: carry the robot to its station"
-    elif battery.temperature > HOT_BATTERY:
+    elif battery.temperature > config.hot_battery:
         level, message = Level.WARN, "hot: let it cool down"
-    elif not battery.is_docked and battery.level < LOW_BATTERY:
+    elif not battery.is_docked and battery.level < config.low_battery:
         level, message = Level.WARN, "low: the robot should go home"
     values = {
         "charge (0..1)": f"{battery.level:.3f}",
@@ -79,18 +71,18 @@ def _drive(seen: Observation) -> PartHealth:
     return PartHealth("drive", level, message, values)
 
 
-def _lidar(ranges: NDArray[np.float32]) -> PartHealth:
+def _lidar(ranges: NDArray[np.float32], config: HealthConfig) -> PartHealth:
     misses = float(np.mean(np.isposinf(ranges)))
     level, message = Level.OK, "ok"
     if misses == 1.0:
         level, message = Level.ERROR, "no beam comes back: look what covers it, if there are walls"
-    elif misses > MOST_MISSES:
+    elif misses > config.most_misses:
         level, message = Level.WARN, "many beams do not come back: clean it"
     return PartHealth("lidar", level, message, {"misses (0..1)": f"{misses:.3f}"})
 
 
-def _bin(fill: float) -> PartHealth:
+def _bin(fill: float, config: HealthConfig) -> PartHealth:
     level, message = Level.OK, "ok"
-    if fill >= FULL_BIN:
+    if fill >= config.full_bin:
         level, message = Level.WARN, "full: empty it"
     return PartHealth("bin", level, message, {"fill (0..1)": f"{fill:.3f}"})

@@ -21,7 +21,7 @@ from roomba.world.engine.state.arrays import Fault, Infrared, Rows, State
 from roomba.world.fleet import Fleet
 from roomba.world.home.dirt import MICROGRAMS_PER_GRAM, DirtField
 from roomba.world.home.home import Home
-from roomba.world.power import STANDING_NOISE, BatteryState, battery_state, noise_level
+from roomba.world.power import BatteryState, battery_state, noise_level
 
 
 @dataclass(frozen=True, slots=True)
@@ -245,6 +245,7 @@ class Simulator:
             battery=battery_state(
                 self.config.battery.capacity,
                 self.config.simulation.battery.resistance,
+                self.config.battery.cells,
                 charge=now["charge"],
                 power=now["power"],
                 temperature=now["temperature"],
@@ -300,9 +301,8 @@ class Simulator:
         now = self.numbers
         stands = now["linear"] == 0.0 and now["angular"] == 0.0
         if stands:
-            return STANDING_NOISE
-        truth = self.config.simulation
-        return noise_level(truth.brush, truth.fan, self.duty)
+            return self.config.simulation.surroundings.quiet
+        return noise_level(self.config.simulation, self.duty)
 
     def spill(self, x: float, y: float, radius: float, grams: float) -> None:
         """Spill crumbs around a point of the map frame; raises ValueError as DirtField.spread."""

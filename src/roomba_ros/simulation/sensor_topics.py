@@ -150,7 +150,7 @@ class SensorTopics:
                 DiagnosticArray,
                 20,
                 lambda now, seen: diagnostics_message(
-                    now, health_of(seen, simulator.ranges, capacity), robot
+                    now, health_of(seen, simulator.ranges, capacity, simulator.config.health), robot
                 ),
             ),
         ]

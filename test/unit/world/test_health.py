@@ -4,9 +4,11 @@ import numpy as np
 import pytest
 from fixtures.rooms import room_home
 
+from roomba.configuration.body import HealthConfig
 from roomba.world.health import Level, PartHealth, health_of
 from roomba.world.simulator import Observation, Simulator
 
+HEALTH = HealthConfig()
 WHOLE = np.full(360, 2.0, np.float32)
 
 
@@ -21,7 +23,7 @@ def part(name: str, parts: tuple[PartHealth, ...]) -> PartHealth:
 
 
 def test_all_is_well_at_first() -> None:
-    parts = health_of(seen(), WHOLE, 100.0)
+    parts = health_of(seen(), WHOLE, 100.0, HEALTH)
     assert {found.level for found in parts} == {Level.OK}
     assert part("battery", parts).values["charge (0..1)"] == "1.000"
 
@@ -35,7 +37,7 @@ def test_all_is_well_at_first() -> None:
     ],
 )
 def test_a_battery_in_need_says_so(changes: dict[str, float], level: Level, said: str) -> None:
-    battery = part("battery", health_of(seen(**changes), WHOLE, 100.0))
+    battery = part("battery", health_of(seen(**changes), WHOLE, 100.0, HEALTH))
     assert battery.level is level
     assert said in battery.message
 
@@ -43,7 +45,7 @@ def test_a_battery_in_need_says_so(changes: dict[str, float], level: Level, said
 def test_a_low_battery_on_the_station_is_no_trouble() -> None:
     observation = seen(level=0.02)
     docked = replace(observation, battery=replace(observation.battery, is_docked=True))
-    assert part("battery", health_of(docked, WHOLE, 100.0)).level is Level.OK
+    assert part("battery", health_of(docked, WHOLE, 100.0, HEALTH)).level is Level.OK
 
 
 @pytest.mark.parametrize(
@@ -52,7 +54,7 @@ def test_a_low_battery_on_the_station_is_no_trouble() -> None:
 def test_wheels_in_trouble_are_an_error(wrong: str, said: str) -> None:
     observation = seen()
     ill = replace(observation, wheels=replace(observation.wheels, **{wrong: True}))
-    drive = part("drive", health_of(ill, WHOLE, 100.0))
+    drive = part("drive", health_of(ill, WHOLE, 100.0, HEALTH))
     assert drive.level is Level.ERROR
     assert said in drive.message
 
@@ -61,9 +63,9 @@ def test_wheels_in_trouble_are_an_error(wrong: str, said: str) -> None:
 def test_a_lidar_without_returns_is_noticed(lost: int, level: Level) -> None:
     ranges = WHOLE.copy()
     ranges[:lost] = np.inf
-    assert part("lidar", health_of(seen(), ranges, 100.0)).level is level
+    assert part("lidar", health_of(seen(), ranges, 100.0, HEALTH)).level is level
 
 
 def test_a_full_bin_wants_to_be_emptied() -> None:
     full = replace(seen(), in_bin=99.0)
-    assert part("bin", health_of(full, WHOLE, 100.0)).message == "full: empty it"
+    assert part("bin", health_of(full, WHOLE, 100.0, HEALTH)).message == "full: empty it"

@@ -70,7 +70,15 @@ def _by_minutes(values: Floats, docked: NDArray[np.bool_]) -> Floats:
 def _voltages(config: SimulatedRobotConfig, charge: Floats, power: Floats) -> Floats:
     capacity, resistance = config.battery.capacity, config.simulation.battery.resistance
     states = (
-        battery_state(capacity, resistance, charge=c, power=p, temperature=0.0, is_docked=False)
+        battery_state(
+            capacity,
+            resistance,
+            config.battery.cells,
+            charge=c,
+            power=p,
+            temperature=0.0,
+            is_docked=False,
+        )
         for c, p in zip(charge.tolist(), power.tolist(), strict=True)
     )
     return np.array([state.voltage for state in states])
@@ -94,7 +102,7 @@ def picture_of_levels(home: Home, points: int = 101) -> Figure:
     for part, colour in ((brush.power, BLUE), (brush.carpet_power, GREEN), (0.0, ORANGE)):
         power.plot(duty, part + fan.power * duty**3, color=colour)
     for part, colour in ((1.0, BLUE), (0.0, ORANGE)):
-        levels = [noise_level(brush, fan, (part, float(value))) for value in duty]
+        levels = [noise_level(config.simulation, (part, float(value))) for value in duty]
         noise.plot(duty, levels, color=colour)
     share.set(ylabel="share that one pass picks up", ylim=(0.0, 1.0))
     power.set(ylabel="power of brush and fan, W", ylim=(0.0, None))

@@ -5,7 +5,6 @@ from __future__ import annotations
 from roomba.world.engine.brush_kernels import duty_now
 from roomba.world.engine.state.arrays import CARPET, Row
 from roomba.world.engine.state.compilation import part
-from roomba.world.engine.state.numbers import TAPER_FROM, TAPER_TO
 
 _HOUR = 3600.0
 
@@ -29,8 +28,8 @@ def drawn_power(body: Row, numbers: Row, ground: int) -> float:
 @part
 def offered_power(charge: float, numbers: Row) -> float:
     """Return what the station's charger brings at a charge (Wh), W: ever less when nearly full."""
-    over = (charge / numbers.capacity - TAPER_FROM) / (1.0 - TAPER_FROM)
-    return float(numbers.charge_power * (1.0 - (1.0 - TAPER_TO) * min(max(over, 0.0), 1.0)))
+    over = (charge / numbers.capacity - numbers.taper_from) / (1.0 - numbers.taper_from)
+    return float(numbers.charge_power * (1.0 - (1.0 - numbers.taper_to) * min(max(over, 0.0), 1.0)))
 
 
 @part

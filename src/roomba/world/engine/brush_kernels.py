@@ -14,8 +14,6 @@ from roomba.world.engine.state.random_kernels import next_normal
 
 Floats = NDArray[np.float64]
 
-COUNTING_TIME: Final = 0.1
-"""s; window over which the dirt sensor counts."""
 _LEAST: Final = 20
 """Micrograms; a smaller amount is picked up completely."""
 
@@ -171,5 +169,5 @@ def sense_cleaning(
     if body.dirt_sensor_blocked > 0.0:
         grains = 0.0
     newest = min(grains / dt, numbers.most_grains)
-    body.grains += (newest - body.grains) * dt / (COUNTING_TIME + dt)
+    body.grains += (newest - body.grains) * dt / (numbers.counting_time + dt)
     body.brush_current = max(current, 0.0)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,13 +11,9 @@ from roomba.angles import wrapped
 from roomba.world.engine.contact_kernels import arc, free_share
 from roomba.world.engine.state.arrays import CARPET, Row, Solid
 from roomba.world.engine.state.compilation import part
-from roomba.world.engine.state.numbers import SLIP_LENGTH
 from roomba.world.engine.state.random_kernels import next_normal
 
 Quantiles = NDArray[np.float32]
-
-MOST_ACCELERATION: Final = 19.6
-"""m/s2; consumer accelerometers measure up to twice gravity: a bump is more."""
 
 
 @part
@@ -49,13 +44,13 @@ def slips(
 ) -> tuple[float, float]:
     """Return which share of its ``way``, m, each wheel loses in this step.
 
-    What varies of it stays about the same over SLIP_LENGTH (a process of Ornstein and Uhlenbeck),
-    so that the noise of a long way grows as a random walk does, for any step.
+    What varies of it stays about the same over ``slip_length`` (a process of Ornstein and
+    Uhlenbeck), so that the noise of a long way grows as a random walk does, for any step.
     """
     left, right = body.slip_left, body.slip_right
     if numbers.noisy > 0.0 and way > 0.0:
         mean = numbers.carpet_slip if ground == CARPET else numbers.slip
-        stays = math.exp(-way / SLIP_LENGTH)
+        stays = math.exp(-way / numbers.slip_length)
         fresh = numbers.slip_spread * math.sqrt(1.0 - stays * stays)
         body.varying_left = stays * body.varying_left + fresh * next_normal(body, quantiles)
         body.varying_right = stays * body.varying_right + fresh * next_normal(body, quantiles)
@@ -170,6 +165,7 @@ def feel_motion(
         angular = angular * body.gyro_scale + body.gyro_bias
         angular += numbers.gyro_noise * next_normal(body, quantiles)
         acceleration += numbers.acceleration_noise * next_normal(body, quantiles)
-        acceleration = min(max(acceleration, -MOST_ACCELERATION), MOST_ACCELERATION)
+        most = numbers.most_acceleration
+        acceleration = min(max(acceleration, -most), most)
     body.gyro = angular
     body.acceleration = acceleration

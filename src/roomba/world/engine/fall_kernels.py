@@ -10,25 +10,23 @@ from roomba.world.engine.state.compilation import part
 from roomba.world.engine.state.random_kernels import next_exponential, next_uniform
 from roomba.world.home.dirt import FULL_CELL
 
-CRUMB: Final = 2000
-"""Micrograms of one crumb."""
 _TRIES: Final = 64
 """Attempts to find a place on the floor before a crumb counts as fallen on the furniture."""
 
 
 @part
-def let_dirt_fall(dirt: Dirt, home: Row, world: Row) -> None:
-    """Let fall what is due in a world by now."""
+def let_dirt_fall(dirt: Dirt, home: Row, world: Row, crumb: int) -> None:
+    """Let fall what is due in a world by now, crumbs of ``crumb`` micrograms."""
     for number in range(world.falls_at, world.falls_end):
         fall = dirt.falls[number]
         source = dirt.sources[fall.source]
         while fall.time <= world.time:
-            drop_crumb(dirt, home, world, source)
+            drop_crumb(dirt, home, world, source, crumb)
             fall.time += source.mean_wait * next_exponential(world)
 
 
 @part
-def drop_crumb(dirt: Dirt, home: Row, world: Row, source: Row) -> None:
+def drop_crumb(dirt: Dirt, home: Row, world: Row, source: Row, crumb: int) -> None:
     """Let a crumb fall as the Gaussian of its source says, on floor; else it lands nowhere."""
     size, reach = home.dirt_resolution, 3.0 * source.radius
     rows, columns = home.dirt_rows, home.dirt_columns
@@ -46,7 +44,7 @@ def drop_crumb(dirt: Dirt, home: Row, world: Row, source: Row) -> None:
         cell = row * columns + column
         if not dirt.floors[home.floors_at + cell]:
             continue
-        if dirt.micrograms[world.dirt_at + cell] <= FULL_CELL - CRUMB:
-            dirt.micrograms[world.dirt_at + cell] += CRUMB
-            world.brought_in += CRUMB
+        if dirt.micrograms[world.dirt_at + cell] <= FULL_CELL - crumb:
+            dirt.micrograms[world.dirt_at + cell] += crumb
+            world.brought_in += crumb
             return

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.configuration.robot import RobotConfig
+from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.raster.distance import distance_to_nearest
-from roomba.world.engine.fall_kernels import CRUMB
 from roomba.world.engine.lidar.edges import LidarEdges, lidar_edges
 from roomba.world.engine.state.arrays import (
     BOX,
@@ -47,7 +47,7 @@ class Layout:
     """[homes][things + 1]: the first box of each moving thing."""
 
 
-def layout_of(homes: Sequence[Home], config: RobotConfig) -> Layout:
+def layout_of(homes: Sequence[Home], config: SimulatedRobotConfig) -> Layout:
     """Return the arrays of homes, each once."""
     fields = [DirtField.of(home) for home in homes]
     edges = [lidar_edges(seen_by_lidar(home), home.frame.resolution) for home in homes]
@@ -73,12 +73,13 @@ def layout_of(homes: Sequence[Home], config: RobotConfig) -> Layout:
         row["tiles_at"], row["tile_columns"] = tiles_at[number], part.tile_columns
         row["tile_size"] = part.tile_cells * frame.resolution
         row["has_drops"] = bool(home.drop.any())
+    crumb = config.simulation.surroundings.crumb / MICROGRAMS_PER_GRAM
     boxes = [[_boxes(thing, config) for thing in home.moving] for home in homes]
     return Layout(
         homes=rows,
         cells=np.concatenate([_cells(home) for home in homes]),
         floors=np.concatenate([field.floor.ravel() for field in fields]),
-        sources=_rows(SOURCE, [row for home in homes for row in _sources(home)]),
+        sources=_rows(SOURCE, [row for home in homes for row in _sources(home, crumb)]),
         boxes=_rows(BOX, [row for of_home in boxes for of_thing in of_home for row in of_thing]),
         edges=joined_edges(edges),
         sources_at=_starts([len(home.dirt_sources) for home in homes]),
@@ -128,8 +129,8 @@ def _cells(home: Home) -> Rows:
     return cells
 
 
-def _sources(home: Home) -> list[tuple[float, ...]]:
-    crumb = CRUMB / MICROGRAMS_PER_GRAM
+def _sources(home: Home, crumb: float) -> list[tuple[float, ...]]:
+    """Return the sources of dirt, from which crumbs of so many g fall."""
     return [
         (
             source.x,

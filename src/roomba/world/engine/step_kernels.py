@@ -46,7 +46,7 @@ def advance(
             for robot in range(world.robots_at, world.robots_end):
                 step_robot(state, home, world, robot, row, quantiles, dt)
             world.time += dt
-            let_dirt_fall(state.dirt, home, world)
+            let_dirt_fall(state.dirt, home, world, int(row.crumb))
             for robot in range(world.robots_at, world.robots_end):
                 if row.is_swept > 0.0:
                     scans = state.made, state.underway, state.ranges

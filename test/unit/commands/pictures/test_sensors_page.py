@@ -16,7 +16,7 @@ ROOT = Path(__file__).parents[4]
 INTERFACE = (ROOT / "docs" / "ros_interface.md").read_text(encoding="utf-8")
 PAGE = (ROOT / "docs" / "sensors.md").read_text(encoding="utf-8")
 SECTIONS = ("body", "brush", "fan", "battery", "lidar", "wheels", "gyro", "cliff", "station",
-            "dirt_sensor", "camera")  # fmt: skip
+            "dirt_sensor", "camera", "surroundings", "health")  # fmt: skip
 
 
 def names_of_faults() -> set[str]:

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.geometry import Pose, Twist, wrap_angle
-from roomba.world.engine.drive_kernels import MOST_ACCELERATION, ramp
+from roomba.world.engine.drive_kernels import ramp
 from roomba.world.engine.state.arrays import Fault
 from roomba.world.home.home import Home
 from roomba.world.simulator import Simulator
@@ -138,7 +138,7 @@ def test_the_imu_is_not_swamped_by_slip_and_a_bump_is_its_most() -> None:
     assert float(np.std([look.acceleration for look in seen])) < 0.1
     assert float(np.std([look.angular_velocity for look in seen])) < 0.03
     bumped = [world.step(Twist(0.5, 0.0), DT).acceleration for _ in range(200)]
-    assert min(bumped) >= -MOST_ACCELERATION
+    assert min(bumped) >= -NOISY.simulation.gyro.most_acceleration
 
 
 def test_noisy_sensors_repeat_with_the_seed() -> None:

@@ -8,11 +8,12 @@ from fixtures.rooms import room_home
 from fixtures.worlds import drive
 from numpy.typing import NDArray
 
-from roomba.world.engine.fall_kernels import CRUMB
+from roomba.configuration.simulation import SimulatedSurroundings
 from roomba.world.home.home import DirtSource
 from roomba.world.simulator import Simulator
 
 HOUR = 3600.0
+CRUMB = SimulatedSurroundings().crumb
 
 
 def fallen(world: Simulator, hours: float) -> NDArray[np.int64]:

@@ -23,22 +23,8 @@ Floats = NDArray[np.float32]
 
 _SLACK: Final = 1e-9
 """s; a beam is due when the time is as near to it as this."""
-_EDGE: Final = 0.10
-"""m; a beam whose range differs by more from the last one's may lie on an edge."""
-PATCH: Final = 0.7
-"""m; side of the squares in which the surfaces of a home are of one reflectivity (assumed)."""
-_DARK: Final = 0.04
-"""Reflectivity of black leather, black lacquer, dark fabric in the infrared (assumed)."""
-_LEAST, _MOST = 0.35, 0.9
-"""Reflectivity of all else: wood and fabrics to white paint (assumed)."""
-_SQUARE: Final = 0.96
-"""Cosine; a shiny surface is seen when it is met as squarely as this, within 16 degrees."""
-_FADE: Final = 0.08
-"""Share of the reach by which a faint echo comes and goes (assumed)."""
 _FLATTEST: Final = 0.1
 """Cosine; no beam counts as more grazing than this."""
-_MOVABLE: Final = 0.6
-"""Reflectivity of what is no part of the home (assumed)."""
 _UNIT_16: Final = 1.0 / (1 << 16)
 _UNIT_20: Final = 1.0 / (1 << 20)
 
@@ -159,25 +145,27 @@ def reflectivity(x: float, y: float, numbers: Row) -> float:
 
     The same for each robot and run: the place alone decides, m from the grid's corner.
     """
-    column, row = math.floor(x / PATCH), math.floor(y / PATCH)
+    column, row = math.floor(x / numbers.patch), math.floor(y / numbers.patch)
     bits = hashed(np.uint32(column * 73856093 + row * 19349663 + 12345))
     chance = float(bits >> np.uint32(12)) * _UNIT_20
     if chance < numbers.dark:
-        return _DARK
+        return float(numbers.black)
     if chance < numbers.dark + numbers.shiny:
         return -1.0
-    return _LEAST + (_MOST - _LEAST) * float(bits & np.uint32(4095)) / 4096.0
+    share = float(bits & np.uint32(4095)) / 4096.0
+    return float(numbers.dimmest + (numbers.white - numbers.dimmest) * share)
 
 
 @part
-def is_seen(found: float, facing: float, reflected: float, reach: float, fading: float) -> bool:
+def is_seen(found: float, facing: float, reflected: float, numbers: Row, fading: float) -> bool:
     """Tell whether enough light comes back: as reflectivity times cosine over squared range.
 
-    ``reach``, m, is that of white paint met squarely; ``fading`` is a normal random number.
+    White paint met squarely is seen from ``white_reach``; ``fading`` is a normal random number.
     """
     if reflected < 0.0:
-        return facing > _SQUARE
-    return found < reach * math.sqrt(reflected / _MOST * facing) * (1.0 + _FADE * fading)
+        return bool(facing > numbers.shiny_cosine)
+    reach = numbers.white_reach * math.sqrt(reflected / numbers.white * facing)
+    return bool(found < reach * (1.0 + numbers.fading * fading))
 
 
 @part
@@ -227,10 +215,10 @@ def measure(
     angle = theta + numbers.first_angle + beam * numbers.beam_step + aside
     found, facing, is_home = ray(solid, home, world, robot, numbers, x, y, angle)
     last, body.last_range = body.last_range, found
-    if numbers.spot > 0.0 and abs(found - last) > _EDGE:
+    if numbers.spot > 0.0 and abs(found - last) > numbers.edge:
         right, _, _ = ray(solid, home, world, robot, numbers, x, y, angle - numbers.spot)
         left, _, _ = ray(solid, home, world, robot, numbers, x, y, angle + numbers.spot)
-        if abs(left - right) > _EDGE and left + right < math.inf:
+        if abs(left - right) > numbers.edge and left + right < math.inf:
             # The spot lies on both sides of an edge: as much of either as chance has it.
             share = float(second >> np.uint32(16)) * _UNIT_16
             found = share * left + (1.0 - share) * right
@@ -243,11 +231,11 @@ def measure(
             # A little inside of what was met: its face may lie on the border of two patches.
             into = found + 0.01
             end_x, end_y = x + into * math.cos(angle), y + into * math.sin(angle)
-            reflected = _MOVABLE
+            reflected = numbers.movable
             if is_home:
                 reflected = reflectivity(end_x - home.left, end_y - home.bottom, numbers)
             fading = float(quantiles[third & np.uint32(4095)])
-            if not is_seen(found, facing, reflected, numbers.white_reach, fading):
+            if not is_seen(found, facing, reflected, numbers, fading):
                 return math.inf
         sigma = numbers.range_noise + numbers.noise_growth * found * found
         sigma *= 1.0 + numbers.grazing_noise * (1.0 / max(facing, _FLATTEST) - 1.0)

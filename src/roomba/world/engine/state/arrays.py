@@ -167,7 +167,7 @@ ROBOT: Final = np.dtype(
         ("odometry_angular", "f8"),
         ("gyro", "f8"),
         ("acceleration", "f8"),
-        ("grains", "f8"),  # per second in the intake, over the last COUNTING_TIME
+        ("grains", "f8"),  # per second in the intake, over the dirt sensor's window
         ("brush_current", "f8"),
         ("beams", "i8"),  # of the station, see Infrared
         ("scans", "i8"),  # how many the lidar has made

@@ -6,27 +6,19 @@ SI units but for energy (Wh) and dirt (micrograms); what is noise is 0 for ideal
 from __future__ import annotations
 
 import math
-from typing import Final
 
 import numpy as np
 
-from roomba.configuration.simulation import SimulatedRobotConfig
+from roomba.configuration.simulation import SimulatedBattery, SimulatedRobotConfig
 from roomba.world.catalogue.furniture import STATION_GAP
 from roomba.world.engine.state.arrays import Rows
 from roomba.world.home.dirt import MICROGRAMS_PER_GRAM
-
-SLIP_LENGTH: Final = 0.1
-"""m; correlation length of a wheel's slip (assumed)."""
-TAPER_FROM: Final = 0.9
-"""Share of the charge from which on charging becomes slower, evenly, down to TAPER_TO."""
-TAPER_TO: Final = 0.2
-"""Share of the power that is left when the battery is full."""
 
 
 def numbers_of(config: SimulatedRobotConfig) -> Rows:
     """Return a configuration's numbers, an array of one row."""
     body, lidar, truth = config.body, config.lidar, config.simulation
-    brush, battery = truth.brush, truth.battery
+    brush, battery, around = truth.brush, truth.battery, truth.surroundings
     noise = 1.0 if truth.sensors == "noisy" else 0.0
     fields: dict[str, float] = {
         "noisy": noise,
@@ -42,11 +34,13 @@ def numbers_of(config: SimulatedRobotConfig) -> Rows:
         "slip": noise * truth.wheels.slip,
         "carpet_slip": noise * truth.wheels.carpet_slip,
         # The sum of a process with this spread and length varies by slip_noise over each metre.
-        "slip_spread": noise * truth.wheels.slip_noise / math.sqrt(2.0 * SLIP_LENGTH),
+        "slip_spread": noise * truth.wheels.slip_noise / math.sqrt(2.0 * truth.wheels.slip_length),
+        "slip_length": truth.wheels.slip_length,
         "blocked_slip": noise * truth.wheels.blocked_slip,
         "gyro_noise": noise * truth.gyro.noise,
         "gyro_walk": noise * truth.gyro.bias_walk,
         "acceleration_noise": noise * truth.gyro.acceleration_noise,
+        "most_acceleration": truth.gyro.most_acceleration,
         "brush_width": config.brush.width,
         "brush_depth": brush.depth,
         "pickup": brush.pickup,
@@ -60,11 +54,15 @@ def numbers_of(config: SimulatedRobotConfig) -> Rows:
         "bin_capacity": config.brush.bin_capacity * MICROGRAMS_PER_GRAM,
         "grain": config.dirt_sensor.grain,
         "most_grains": config.dirt_sensor.most,
+        "counting_time": config.dirt_sensor.window,
+        "crumb": around.crumb,
         "capacity": config.battery.capacity,
         "idle_power": battery.idle_power,
         "drive_power": 0.5 * battery.drive_power / battery.drive_speed,
         "stall_power": battery.stall_power,
-        "charge_power": charge_power(config.battery.capacity, battery.charge_hours),
+        "charge_power": charge_power(config.battery.capacity, battery),
+        "taper_from": battery.taper_from,
+        "taper_to": battery.taper_to,
         "ambient": battery.ambient,
         "heating": battery.heating,
         "heating_time": battery.heating_time,
@@ -95,6 +93,14 @@ def numbers_of(config: SimulatedRobotConfig) -> Rows:
         "white_reach": noise * truth.lidar.white_reach,
         "dark": truth.lidar.dark,
         "shiny": truth.lidar.shiny,
+        "patch": around.patch,
+        "black": around.black,
+        "dimmest": around.dimmest,
+        "white": around.white,
+        "movable": around.movable,
+        "shiny_cosine": around.shiny_cosine,
+        "fading": around.fading,
+        "edge": around.edge,
     }
     for name, angle in zip("abcd", config.cliff.angles, strict=True):
         fields[f"cliff_{name}_ahead"] = config.cliff.radius * math.cos(math.radians(angle))
@@ -105,11 +111,12 @@ def numbers_of(config: SimulatedRobotConfig) -> Rows:
     return numbers
 
 
-def charge_power(capacity: float, hours: float) -> float:
-    """Return the power, W, that fills ``capacity`` Wh in so many hours, its end ever slower.
+def charge_power(capacity: float, battery: SimulatedBattery) -> float:
+    """Return the power, W, that fills ``capacity`` Wh in ``charge_hours``, its end ever slower.
 
-    From TAPER_FROM on the power falls evenly with the charge; that part takes ln(1 / TAPER_TO) /
-    (1 - TAPER_TO) times as long as it would at full power.
+    From ``taper_from`` on the power falls evenly with the charge; that part takes
+    ln(1 / taper_to) / (1 - taper_to) times as long as it would at full power.
     """
-    taper = (1.0 - TAPER_FROM) * math.log(1.0 / TAPER_TO) / (1.0 - TAPER_TO)
-    return capacity * (TAPER_FROM + taper) / hours
+    begin, end = battery.taper_from, battery.taper_to
+    taper = (1.0 - begin) * math.log(1.0 / end) / (1.0 - end)
+    return capacity * (begin + taper) / battery.charge_hours
