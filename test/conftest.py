@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import signal
 from collections.abc import Iterator
 from pathlib import Path
@@ -21,6 +22,13 @@ settings.load_profile("project")
 # Tests that are started in the background inherit that Ctrl-C is ignored, and so would the
 # programs that they start: these would end after their deadlines only.
 signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+@pytest.fixture(scope="session", autouse=True)
+def own_history(tmp_path_factory: pytest.TempPathFactory) -> None:
+    """Keep the runs of the tests, and of programs that they start, away from the user's own."""
+    os.environ["ROOMBA_HISTORY"] = str(tmp_path_factory.mktemp("history"))
+
 
 TESTS = Path(__file__).resolve().parent
 LONGEST_FIRST = (

@@ -12,6 +12,9 @@ from fixtures.graph import RosGraph
 from fixtures.waiting import wait_until
 from playwright.sync_api import Page, sync_playwright
 
+from roomba.history.database import History, KeptRun
+from roomba.history.folder import history_folder
+
 pytestmark = pytest.mark.xdist_group("graph")
 WORKS_WITHIN = 60_000
 """ms of wall time for what the robot does by its own clock."""
@@ -41,6 +44,12 @@ def open_page(graph: RosGraph) -> Iterator[Page]:
 
 def wait_for_phase(page: Page, phase: str) -> None:
     page.wait_for_selector(f"body[data-phase='{phase}']", timeout=WORKS_WITHIN)
+
+
+def kept_runs() -> list[KeptRun]:
+    """Return the runs of the graph in the history."""
+    runs = History(history_folder()).runs()
+    return [run for run in runs if run.figures.source.program == "ros"]
 
 
 def test_it_is_served_on_loopback_alone_and_the_log_has_no_token(
@@ -81,6 +90,11 @@ def test_a_person_cleans_pauses_edits_and_stops(robot_with_page: RosGraph) -> No
         page.get_by_role("button", name="Release").click()
         wait_for_phase(page, "idle")
         assert "emergency" in page.inner_text("#last-text").lower()
+        wait_until(lambda: kept_runs() != [], 10.0)
+        (kept,) = kept_runs()
+        assert kept.figures.source.home == "flat"
+        assert "emergency" in kept.figures.message.lower()
+        assert kept.is_recorded
         page.locator("#rooms button").first.click()
         page.get_by_role("button", name="Rename").click()
         page.get_by_role("textbox", name="Name").fill("Den")

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Final, Protocol
+from dataclasses import dataclass
+from typing import Final, Protocol, runtime_checkable
 
 from roomba.client import view
 
@@ -81,6 +82,40 @@ class ObservedRobot(Protocol):
 
     def split_room(self, name: str, start: view.Point, end: view.Point) -> None:
         """Cut a room along a line between two points."""
+
+
+@dataclass(frozen=True, slots=True)
+class TimelineView:
+    """Where a recording is: s of ``duration``, and its seconds per second.
+
+    ``jumps`` grows by one whenever another time was chosen.
+    """
+
+    duration: float
+    at: float
+    speed: float
+    is_playing: bool
+    jumps: int
+
+
+@runtime_checkable
+class Timeline(Protocol):
+    """What a recorded robot can do beside: its time is chosen."""
+
+    def timeline(self) -> TimelineView:
+        """Return where the recording is."""
+
+    def play(self, *, is_playing: bool) -> None:
+        """Go on, or stand."""
+
+    def seek(self, at: float) -> None:
+        """Show another time, s."""
+
+    def set_speed(self, speed: float) -> None:
+        """Play at so many of its seconds per second."""
+
+    def way(self) -> list[view.Point]:
+        """Return the places up to now, m."""
 
 
 class Playground(Protocol):

@@ -3,18 +3,27 @@
 from __future__ import annotations
 
 import numpy as np
+from actionlib_msgs.msg import GoalStatus
 from geometry_msgs.msg import Point as PointMessage
 from geometry_msgs.msg import Polygon
 from nav_msgs.msg import OccupancyGrid, Path
 from numpy.typing import NDArray
-from roomba_robot.msg import Room, RoomArray, ZoneArray
+from roomba_robot.msg import CleanActionResult, ExploreActionResult, Room, RoomArray, ZoneArray
 from roomba_robot.msg import Zone as ZoneMessage
 
-from roomba.client.view import MOST_PATH, Point, RoomView, ZoneView, known_cells
+from roomba.client.protocol import CleanReport, ErrandOutcome, MissedFloor
+from roomba.client.view import (
+    MOST_PATH,
+    Point,
+    RoomView,
+    ZoneView,
+    exploration_as_clean,
+    known_cells,
+)
 from roomba.grid import OccupancyMap
 from roomba_ros.convert.common import map_of, path_of
 from roomba_ros.convert.errors import MessageError, require_finite
-from roomba_ros.convert.mission import KINDS, zones_of
+from roomba_ros.convert.mission import KINDS, OUTCOMES, zones_of
 
 
 def known_cells_of(message: OccupancyGrid) -> OccupancyMap:
@@ -63,6 +72,53 @@ def zone_views_of(message: ZoneArray) -> tuple[ZoneView, ...]:
     """Return the zones where the robot must not go."""
     zones = zones_of(message).all
     return tuple(ZoneView(zone.name, zone.kind.value, zone.points) for zone in zones)
+
+
+def clean_report_of(message: CleanActionResult) -> CleanReport | None:
+    """Return how a clean ended; None for a goal that was refused."""
+    result = message.result
+    if message.status.status == GoalStatus.REJECTED:
+        return None
+    return CleanReport(
+        _outcome_of(result.outcome),
+        # Only the goal's status says which program ended a clean.
+        result.message or _reason_of(message),
+        result.covered,
+        result.wanted,
+        result.dirt,
+        result.distance,
+        result.duration,
+        result.energy,
+        tuple(
+            MissedFloor(area.area, area.at.x, area.at.y, area.room, area.message)
+            for area in result.missed
+        ),
+    )
+
+
+def exploration_report_of(message: ExploreActionResult) -> CleanReport | None:
+    """Return how an exploration ended; None for a goal that was refused."""
+    result = message.result
+    if message.status.status == GoalStatus.REJECTED:
+        return None
+    return exploration_as_clean(
+        _outcome_of(result.outcome),
+        result.message or _reason_of(message),
+        result.distance,
+        result.duration,
+    )
+
+
+def _outcome_of(code: int) -> ErrandOutcome:
+    named = (outcome for outcome, its_code in OUTCOMES.items() if its_code == code)
+    found = next(named, None)
+    return ErrandOutcome.FAULT if found is None else ErrandOutcome(found.value)
+
+
+def _reason_of(message: CleanActionResult | ExploreActionResult) -> str:
+    """Return what the goal's status says of an errand that did not succeed."""
+    status = message.status
+    return "" if status.status == GoalStatus.SUCCEEDED else str(status.text)
 
 
 def zone_message_of(zone: ZoneView) -> ZoneMessage:

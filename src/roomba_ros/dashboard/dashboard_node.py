@@ -2,9 +2,15 @@
 
 from __future__ import annotations
 
+import shlex
+
 import rospy
 
 from roomba.errors import ConfigError
+from roomba.history.database import History
+from roomba.history.folder import history_folder
+from roomba.history.recorder import HistoryKeeper
+from roomba.history.run import Source
 from roomba.ui.web.app import create_app
 from roomba.ui.web.guard import Guard, new_token
 from roomba.ui.web.server import DEFAULT_PORT, PageServer, listen
@@ -22,7 +28,8 @@ class DashboardNode:
     """Serves the page on loopback, and prints its address with the token that commands need.
 
     Publishes, subscribes and calls what :class:`GraphRobot` does.
-    Parameters: ``~port`` (by default -1: 8400, or the next that is free; 0: any).
+    Parameters: ``~port`` (by default -1: 8400, or the next that is free; 0: any), ``~home`` (what
+    runs are kept under in the history).
     """
 
     period = _PERIOD
@@ -34,7 +41,7 @@ class DashboardNode:
         guard = Guard(new_token())
         port = _port()
         bound = listen("127.0.0.1", DEFAULT_PORT if port == _ANY else port, is_fixed=port != _ANY)
-        self._server = PageServer(create_app(self._robot, guard), bound)
+        self._server = PageServer(create_app(self._robot, guard, _keeper()), bound)
         self._server.start()
         # Not to the log, which every program on the graph can read.
         print(f"The page: {self._server.address}#token={guard.token}", flush=True)
@@ -46,6 +53,12 @@ class DashboardNode:
     def stop(self) -> None:
         """Stop what it drives."""
         self._robot.stop_hand()
+
+
+def _keeper() -> HistoryKeeper:
+    home = str(rospy.get_param("~home", "home"))
+    source = Source("ros", home, None, shlex.join(["./roomba", "run", f"home:={home}"]))
+    return HistoryKeeper(History(history_folder()), source, rospy.logwarn)
 
 
 def _port() -> int:

@@ -24,10 +24,7 @@ from roomba_robot.srv import (
 from roomba.client import view
 from roomba.client.observed import HAND_SILENCE, SPILL
 from roomba.client.protocol import (
-    CleanHandle,
-    CleanReport,
     ErrandOutcome,
-    ExploringHandle,
     RequestRefusedError,
     WalkHandle,
     WalkOutcome,
@@ -62,8 +59,6 @@ class GraphRobot:
         self._topics = PageTopics(config)
         self._vacuum = RosRobot()
         self._walk: WalkHandle | None = None
-        self._errand: CleanHandle | ExploringHandle | None = None
-        self._last: CleanReport | None = None
         self._hand_lock = threading.Lock()
         self._by_hand, self._hand_heard, self._stops_left = STANDSTILL, -math.inf, 0
         self._drive: rospy.Publisher | None = None
@@ -128,7 +123,6 @@ class GraphRobot:
     def robot(self) -> view.RobotView:
         """Return the newest state."""
         pose = self._topics.pose()
-        self._take_report()
         return view.RobotView(
             time=rospy.get_time(),
             pose=(pose.x, pose.y, pose.theta),
@@ -139,7 +133,7 @@ class GraphRobot:
             vacuum=self._vacuum.vacuum(0.0),
             scan=self._topics.scan_at(pose),
             path=self._topics.path(),
-            last=self._last,
+            last=self._topics.last,
         )
 
     def home(self) -> view.HomeView:
@@ -163,11 +157,11 @@ class GraphRobot:
             passes=order.passes,
             fan=FanLevel(order.fan),
         )
-        self._begin(errand)
+        _require_taken(errand)
 
     def explore(self) -> None:
         """Begin to look at what the map does not show yet."""
-        self._begin(self._vacuum.explore())
+        _require_taken(self._vacuum.explore())
 
     def go_to(self, x: float, y: float) -> None:
         """Walk to a point."""
@@ -261,23 +255,6 @@ class GraphRobot:
         answer = call_service(self._services[name], *arguments)
         if not answer.success:
             raise RequestRefusedError(answer.message)
-
-    def _begin(self, errand: CleanHandle | ExploringHandle) -> None:
-        _require_taken(errand)
-        self._errand = errand
-
-    def _take_report(self) -> None:
-        """Keep how the last errand ended."""
-        report = None if self._errand is None else self._errand.report()
-        if report is None:
-            return
-        self._errand = None
-        if isinstance(report, CleanReport):
-            self._last = report
-        else:
-            self._last = view.exploration_as_clean(
-                report.outcome, report.message, report.distance, report.duration
-            )
 
 
 def _require_taken(errand: Any) -> None:

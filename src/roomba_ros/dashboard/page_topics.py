@@ -14,12 +14,18 @@ import numpy as np
 from geometry_msgs.msg import PoseStamped
 from nav_msgs.msg import OccupancyGrid, Path
 from numpy.typing import NDArray
-from roomba_robot.msg import Localization, RoomArray, ZoneArray
+from roomba_robot.msg import (
+    CleanActionResult,
+    ExploreActionResult,
+    Localization,
+    RoomArray,
+    ZoneArray,
+)
 from sensor_msgs.msg import LaserScan
 from std_msgs.msg import Float32, String
 from tf2_msgs.msg import TFMessage
 
-from roomba.client.protocol import RobotUnavailableError
+from roomba.client.protocol import CleanReport, RobotUnavailableError
 from roomba.client.view import GridLayer, HomeView, LayerName, RoomView, ZoneView
 from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose
@@ -29,8 +35,10 @@ from roomba_ros.convert.client import doubt_of
 from roomba_ros.convert.common import pose_in_map
 from roomba_ros.convert.mounts import Mounts, transforms_of
 from roomba_ros.convert.page import (
+    clean_report_of,
     covered_cells_of,
     dirt_cells_of,
+    exploration_report_of,
     known_cells_of,
     room_views_of,
     shown_path_of,
@@ -51,7 +59,7 @@ class PageTopics:
 
     Subscribes: ``pose``, ``localization``, ``speed``, ``bin_level``, ``emergency_stop``, ``scan``,
     ``plan``, ``map``, ``coverage_map``, ``dirt_map``, ``rooms``, ``zones``, ``station_pose``,
-    ``/tf_static``.
+    ``clean/result``, ``explore/result``, ``/tf_static``.
     """
 
     def __init__(self, config: RobotConfig) -> None:
@@ -67,6 +75,7 @@ class PageTopics:
         )
         self._layers: dict[LayerName, GridLayer] = {}
         self.doubt, self.held = "", ""
+        self.last: CleanReport | None = None
         self.speed, self.in_bin = 0.0, 0.0
         self._mounts = Mounts()
         self._decoder = ScanDecoder.on_robot(self._mounts, frame_id("base_link"))
@@ -84,6 +93,8 @@ class PageTopics:
         subscribe("station_pose", PoseStamped, pose_in_map, self._on_station)
         subscribe("rooms", RoomArray, room_views_of, self._on_rooms)
         subscribe("zones", ZoneArray, zone_views_of, self._on_zones)
+        subscribe("clean/result", CleanActionResult, clean_report_of, self._on_report)
+        subscribe("explore/result", ExploreActionResult, exploration_report_of, self._on_report)
         layers: tuple[tuple[str, LayerName, Callable[[Any], OccupancyMap]], ...] = (
             ("map", LayerName.MAP, known_cells_of),
             ("coverage_map", LayerName.COVERAGE, covered_cells_of),
@@ -137,6 +148,9 @@ class PageTopics:
 
     def _on_scan(self, scan: ScanReading) -> None:
         self._scan = scan
+
+    def _on_report(self, report: CleanReport | None) -> None:
+        self.last = report or self.last
 
     def _on_path(self, path: NDArray[np.float32]) -> None:
         self._path = path

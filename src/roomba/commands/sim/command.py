@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+import shlex
 import sys
 import time
 from collections.abc import Callable
@@ -42,7 +43,7 @@ def main(arguments: list[str] | None = None, open_bag: BagOpener | None = None) 
             raise UsageError(f"--bag: expected a Python with ROS, got none; call {PROGRAM} --bag")
         if options.homes is not None:
             return _run_homes(options, options.homes)
-        return _run_one(options, open_bag)
+        return _run_one(options, open_bag, sys.argv[1:] if arguments is None else arguments)
     except RoombaError as error:
         return _complain(str(error), USAGE)
     except BrokenPipeError:
@@ -63,23 +64,31 @@ def _complain(text: str, status: int) -> int:
 # ---------------------------------------------------------------- one run
 
 
-def _run_one(options: SimOptions, open_bag: BagOpener | None) -> int:
+def _run_one(options: SimOptions, open_bag: BagOpener | None, words: list[str]) -> int:
     # Imported here: it takes a second, and a mistyped option should be reported at once.
+    from roomba.commands.sim.kept_run import StateSamples, keep_run
     from roomba.commands.sim.runs import TrialSetup
     from roomba.commands.sim.warm import warm_up
     from roomba.headless.burst import LONGEST_BURST
 
     burst = LONGEST_BURST if options.bag is None else BAG_BURST
-    setup = TrialSetup(options.trial, burst)
+    setup, samples = TrialSetup(options.trial, burst), StateSamples()
     with contextlib.ExitStack() as stack:
         observers: list[RunObserver] = []
         show = stack.enter_context(progress("Cleaning", options.quiet))
         warm_up()
         observers.append(_shown_by(show))
+        if options.keep:
+            observers.append(samples)
         if options.bag is not None and open_bag is not None:
             observers.append(stack.enter_context(open_bag(options.bag, setup)))
         run = setup.run(observers)
     _tell_run(options, run)
+    if options.keep:
+        try:
+            keep_run(run, samples, shlex.join([*PROGRAM.split(), *words]))
+        except RoombaError as error:
+            print(f"{PROGRAM}: the run was not kept: {error}", file=sys.stderr)
     return COMPLETED if run.figures.is_completed else ENDED_OTHERWISE
 
 

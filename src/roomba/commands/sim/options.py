@@ -34,6 +34,8 @@ class SimOptions:
     plot: Path | None
     bag: Path | None
     quiet: bool
+    keep: bool = True
+    """Whether one run is kept in the history."""
 
 
 def options_of(arguments: list[str] | None) -> SimOptions:
@@ -56,7 +58,9 @@ def options_of(arguments: list[str] | None) -> SimOptions:
         bin=given.bin,
         empties_bin_after=given.empty_after,
     )
-    return SimOptions(trial, given.homes, given.json, given.plot, given.bag, given.quiet)
+    return SimOptions(
+        trial, given.homes, given.json, given.plot, given.bag, given.quiet, given.keep
+    )
 
 
 class _Parser(argparse.ArgumentParser):
@@ -196,6 +200,12 @@ def _add_output(parser: argparse.ArgumentParser) -> None:
     )
     told.add_argument("--plot", type=Path, metavar="FILE.png", help="a picture of the run")
     told.add_argument("--bag", type=Path, metavar="FILE.bag", help="a bag of the run, for ROS")
+    told.add_argument(
+        "--no-history",
+        dest="keep",
+        action="store_false",
+        help="do not keep the run for `report` and `replay`; many runs are never kept",
+    )
     told.add_argument("--quiet", action="store_true", help="no progress and no table")
 
 

@@ -17,6 +17,7 @@ from starlette.types import ASGIApp, Receive, Scope, Send
 
 from roomba.client.observed import ObservedRobot
 from roomba.client.protocol import RequestRefusedError, RobotUnavailableError
+from roomba.history.recorder import HistoryKeeper
 from roomba.ui.web.api import DriveWish, api_of
 from roomba.ui.web.feed import Feed
 from roomba.ui.web.guard import Guard
@@ -31,9 +32,12 @@ _POLICY: Final = (
 )
 
 
-def create_app(robot: ObservedRobot, guard: Guard) -> FastAPI:
-    """Return the application for a robot; what changes anything needs the guard's token."""
-    feed = Feed(robot)
+def create_app(robot: ObservedRobot, guard: Guard, keeper: HistoryKeeper | None = None) -> FastAPI:
+    """Return the application for a robot; what changes anything needs the guard's token.
+
+    The keeper keeps its runs in the history.
+    """
+    feed = Feed(robot, keeper)
 
     @contextlib.asynccontextmanager
     async def life(_: FastAPI) -> AsyncIterator[None]:

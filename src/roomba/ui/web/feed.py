@@ -8,12 +8,14 @@ from __future__ import annotations
 
 import asyncio
 import math
-from typing import Any, Final
+from typing import Final
 
-from roomba.client.observed import ObservedRobot
-from roomba.client.protocol import CleanReport, RobotUnavailableError
+from roomba.client.observed import ObservedRobot, Timeline
+from roomba.client.plain import Json, home_of, replay_of, state_of
+from roomba.client.protocol import RobotUnavailableError
 from roomba.client.view import HomeView, LayerName, RobotView
 from roomba.errors import RoombaError
+from roomba.history.recorder import HistoryKeeper
 from roomba.ui.web.tiles import TiledLayer
 
 PERIOD: Final = 0.1
@@ -25,15 +27,14 @@ _STEP: Final = 0.03
 _MOST_TRAIL: Final = 20000
 """Places of the trail that are kept."""
 
-Json = dict[str, Any]
-
 
 class Feed:
     """What viewers are shown; ``number`` grows with each look."""
 
-    def __init__(self, robot: ObservedRobot) -> None:
-        """Begin with nothing."""
-        self._robot = robot
+    def __init__(self, robot: ObservedRobot, keeper: HistoryKeeper | None = None) -> None:
+        """Begin with nothing; the keeper, if there is one, is shown each look."""
+        self._robot, self._keeper = robot, keeper
+        self._recorded = robot if isinstance(robot, Timeline) else None
         self._looked = asyncio.Condition()
         self._looks = 0
         self.number = 0
@@ -43,6 +44,7 @@ class Feed:
         self.layers = {name: TiledLayer(name.value) for name in LayerName}
         self.trail: list[tuple[float, float]] = []
         self.trail_began = 0
+        self._jumps = 0
 
     async def run(self) -> None:
         """Look at the robot for ever."""
@@ -54,16 +56,17 @@ class Feed:
         """Look at the robot once, and let waiting viewers know."""
         self._looks += 1
         try:
-            view = await asyncio.to_thread(self._robot.robot)
-            home = await asyncio.to_thread(self._robot.home)
-            if self._looks % _LAYERS_EVERY == 1:
-                await asyncio.to_thread(self._look_at_layers)
+            view, home = await asyncio.to_thread(self._look_at_robot)
         except (RobotUnavailableError, RoombaError) as reason:
             # What was seen last stays on the page, greyed, with the reason.
             self.state = {**self.state, "link": "gone", "reason": str(reason)}
         else:
+            if self._recorded is not None:
+                self._follow_jumps(self._recorded)
             self._follow(view.pose[0], view.pose[1])
             self.state = state_of(view)
+            if self._recorded is not None:
+                self.state["replay"] = replay_of(self._recorded.timeline())
             if home.version != self.home_version:
                 self.home, self.home_version = home_of(home), home.version
         async with self._looked:
@@ -89,11 +92,29 @@ class Feed:
             "points": points,
         }
 
+    def _look_at_robot(self) -> tuple[RobotView, HomeView]:
+        view, home = self._robot.robot(), self._robot.home()
+        if self._looks % _LAYERS_EVERY == 1:
+            self._look_at_layers()
+        if self._keeper is not None:
+            self._keeper.look(view, home, self._robot.layer)
+        return view, home
+
     def _look_at_layers(self) -> None:
         for name, tiled in self.layers.items():
             layer = self._robot.layer(name)
             if layer is not None:
                 tiled.update(layer)
+
+    def _follow_jumps(self, recorded: Timeline) -> None:
+        """When another time was chosen, let the way up to it take the place of the trail."""
+        jumps = recorded.timeline().jumps
+        if jumps == self._jumps:
+            return
+        self._jumps = jumps
+        places = recorded.way()
+        self.trail_began += len(self.trail) + 1
+        self.trail = [(round(x, 3), round(y, 3)) for x, y in places[-_MOST_TRAIL:]]
 
     def _follow(self, x: float, y: float) -> None:
         if self.trail and math.dist(self.trail[-1], (x, y)) < _STEP:
@@ -103,75 +124,3 @@ class Feed:
         if surplus > 0:
             del self.trail[:surplus]
             self.trail_began += surplus
-
-
-def state_of(view: RobotView) -> Json:
-    """Return a robot's state as JSON; what is not known is null."""
-    vacuum = view.vacuum
-    return {
-        "type": "state",
-        "link": "live",
-        "time": round(view.time, 2),
-        "pose": [round(value, 4) for value in view.pose],
-        "doubt": view.doubt,
-        "speed": round(view.speed, 3),
-        "dirt": round(view.dirt, 2),
-        "held": view.held,
-        "vacuum": {
-            "state": vacuum.state,
-            "phase": vacuum.phase,
-            "message": vacuum.message,
-            "room": vacuum.room,
-            "covered": round(vacuum.covered, 2),
-            "wanted": round(vacuum.wanted, 2),
-            "fraction": round(vacuum.fraction, 4),
-            "seconds_to_go": round(vacuum.seconds_to_go, 1),
-            "battery": known(vacuum.battery),
-        },
-        "scan": (view.scan * 100.0).round().astype(int).ravel().tolist(),
-        "path": (view.path * 100.0).round().astype(int).ravel().tolist(),
-        "last": None if view.last is None else report_of(view.last),
-    }
-
-
-def report_of(report: CleanReport) -> Json:
-    """Return how an errand ended as JSON."""
-    return {
-        "outcome": report.outcome.value,
-        "message": report.message,
-        "covered": known(report.covered),
-        "wanted": known(report.wanted),
-        "dirt": known(report.dirt),
-        "distance": known(report.distance),
-        "duration": known(report.duration),
-        "energy": known(report.energy),
-        "missed": [
-            {"area": miss.area, "x": miss.x, "y": miss.y, "room": miss.room, "reason": miss.reason}
-            for miss in report.missed
-        ],
-    }
-
-
-def home_of(view: HomeView) -> Json:
-    """Return a home as JSON."""
-    return {
-        "type": "home",
-        "version": view.version,
-        "name": view.name,
-        "station": view.station,
-        "radius": view.radius,
-        "tool": view.tool,
-        "rooms": [
-            {"name": room.name, "area": room.area, "anchor": room.anchor, "rings": room.rings}
-            for room in view.rooms
-        ],
-        "zones": [
-            {"name": zone.name, "kind": zone.kind, "points": zone.points} for zone in view.zones
-        ],
-        "furniture": view.furniture,
-    }
-
-
-def known(value: float) -> float | None:
-    """Return a number as JSON has it: what is not finite is null."""
-    return value if math.isfinite(value) else None

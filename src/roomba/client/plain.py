@@ -1,0 +1,118 @@
+"""What a page shows, as plain values for JSON; what is not known is null."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from roomba.client.observed import TimelineView
+from roomba.client.protocol import CleanReport
+from roomba.client.view import HomeView, Point, RobotView, RoomView, ZoneView
+
+Json = dict[str, Any]
+
+
+def state_of(view: RobotView) -> Json:
+    """Return a robot's state as JSON; what is not known is null."""
+    vacuum = view.vacuum
+    return {
+        "type": "state",
+        "link": "live",
+        "time": round(view.time, 2),
+        "pose": [round(value, 4) for value in view.pose],
+        "doubt": view.doubt,
+        "speed": round(view.speed, 3),
+        "dirt": round(view.dirt, 2),
+        "held": view.held,
+        "vacuum": {
+            "state": vacuum.state,
+            "phase": vacuum.phase,
+            "message": vacuum.message,
+            "room": vacuum.room,
+            "covered": round(vacuum.covered, 2),
+            "wanted": round(vacuum.wanted, 2),
+            "fraction": round(vacuum.fraction, 4),
+            "seconds_to_go": round(vacuum.seconds_to_go, 1),
+            "battery": known(vacuum.battery),
+        },
+        "scan": (view.scan * 100.0).round().astype(int).ravel().tolist(),
+        "path": (view.path * 100.0).round().astype(int).ravel().tolist(),
+        "last": None if view.last is None else report_of(view.last),
+    }
+
+
+def replay_of(timeline: TimelineView) -> Json:
+    """Return where a recording is as JSON."""
+    return {
+        "duration": round(timeline.duration, 2),
+        "at": round(timeline.at, 2),
+        "speed": timeline.speed,
+        "playing": timeline.is_playing,
+    }
+
+
+def report_of(report: CleanReport) -> Json:
+    """Return how an errand ended as JSON."""
+    return {
+        "outcome": report.outcome.value,
+        "message": report.message,
+        "covered": known(report.covered),
+        "wanted": known(report.wanted),
+        "dirt": known(report.dirt),
+        "distance": known(report.distance),
+        "duration": known(report.duration),
+        "energy": known(report.energy),
+        "missed": [
+            {"area": miss.area, "x": miss.x, "y": miss.y, "room": miss.room, "reason": miss.reason}
+            for miss in report.missed
+        ],
+    }
+
+
+def home_of(view: HomeView) -> Json:
+    """Return a home as JSON."""
+    return {
+        "type": "home",
+        "version": view.version,
+        "name": view.name,
+        "station": view.station,
+        "radius": view.radius,
+        "tool": view.tool,
+        "rooms": [
+            {"name": room.name, "area": room.area, "anchor": room.anchor, "rings": room.rings}
+            for room in view.rooms
+        ],
+        "zones": [
+            {"name": zone.name, "kind": zone.kind, "points": zone.points} for zone in view.zones
+        ],
+        "furniture": view.furniture,
+    }
+
+
+def home_from(plain: Json) -> HomeView:
+    """Return the home of plain values."""
+    return HomeView(
+        int(plain["version"]),
+        str(plain["name"]),
+        tuple(plain["station"]),
+        tuple(
+            RoomView(room["name"], room["area"], tuple(room["anchor"]), _outlines(room["rings"]))
+            for room in plain["rooms"]
+        ),
+        tuple(
+            ZoneView(zone["name"], zone["kind"], tuple(map(tuple, zone["points"])))
+            for zone in plain["zones"]
+        ),
+        _outlines(plain["furniture"]),
+        float(plain["radius"]),
+        float(plain["tool"]),
+    )
+
+
+def _outlines(rings: list[list[list[float]]]) -> tuple[tuple[Point, ...], ...]:
+    return tuple(tuple((x, y) for x, y in ring) for ring in rings)
+
+
+def known(value: float) -> float | None:
+    """Return a number as JSON has it: what is not finite is null."""
+    return value if math.isfinite(value) else None

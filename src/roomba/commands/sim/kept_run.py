@@ -1,0 +1,144 @@
+"""A run of ``sim`` as the history keeps it."""
+
+from __future__ import annotations
+
+import math
+import time
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.client.plain import home_of
+from roomba.client.protocol import MissedFloor
+from roomba.client.view import known_cells
+from roomba.commands.sim.figures import Figures
+from roomba.commands.sim.runs import TRAJECTORY_STEP, Run
+from roomba.grid import GridFrame
+from roomba.headless.cleaner import HeadlessMission
+from roomba.headless.live.views import home_view, vacuum_snapshot
+from roomba.history.database import History
+from roomba.history.folder import history_folder
+from roomba.history.run import (
+    TRACE,
+    TRACE_STEP,
+    CellLayer,
+    Floats,
+    Recording,
+    RunFigures,
+    Source,
+    Word,
+)
+from roomba.mission.cleaning.checkpoint import request_values
+from roomba.mission.cleaning.request import CleanOutcome
+from roomba.perception.swept.visits import Visits
+
+_STEP: Final = 2.0
+"""s of the robot's clock between two looks at its state."""
+_COLUMNS: Final = TRACE[4:]
+"""What is looked at; poses are in the trajectory."""
+_COVERAGE_STRIDE: Final = 2
+"""Poses of the trajectory from one to the next between which the tool is drawn."""
+
+
+class StateSamples:
+    """Looks at the robot's state now and then while it cleans."""
+
+    def __init__(self) -> None:
+        """Begin before the run."""
+        self.rows: list[tuple[float, ...]] = []
+        self.words: list[Word] = []
+        self.home: dict[str, object] = {}
+        self._due, self._phase = -math.inf, ""
+
+    def __call__(self, robot: HeadlessMission) -> None:
+        """Look, if it is time to."""
+        phase = robot.mission.state.phase.value
+        if robot.seen.time < self._due and phase == self._phase:
+            return
+        self._due, self._phase = robot.seen.time + _STEP, phase
+        snapshot, seen, now = vacuum_snapshot(robot), robot.seen, robot.seen.time
+        self.rows.append(
+            (
+                now,
+                abs(seen.odometry_twist.linear),
+                seen.battery.level,
+                seen.in_bin,
+                snapshot.covered,
+                snapshot.wanted,
+                snapshot.seconds_to_go,
+                float(robot.mission.sweeps),
+            )
+        )
+        word = Word(now, snapshot.state, phase, snapshot.message, snapshot.room)
+        if not self.words or not word.is_as(self.words[-1]):
+            self.words.append(word)
+        if not self.home:
+            context = robot.mission.context
+            view = home_view(1, robot.simulator.home, robot, context.rooms, context.zones)
+            self.home = home_of(view)
+
+
+def keep_run(run: Run, samples: StateSamples, repeat: str) -> int:
+    """Keep a run in the history; return its number. Raises RoombaError."""
+    trial = run.trial
+    configuration = {"request": request_values(trial.request), "battery": trial.battery}
+    source = Source("sim", run.home.name, trial.seed, repeat, configuration)
+    return History(history_folder()).add(
+        figures_of(run.figures, source), recording_of(run, samples)
+    )
+
+
+def figures_of(figures: Figures, source: Source) -> RunFigures:
+    """Return the figures: what is covered and wanted are true areas, of floor that can be."""
+    return RunFigures(
+        source,
+        "clean",
+        time.time() - figures.wall_s,
+        CleanOutcome[figures.outcome].value,
+        figures.message,
+        figures.duration_s,
+        figures.covered_m2,
+        figures.coverable_m2,
+        figures.distance_m,
+        figures.turning_rad,
+        figures.dirt_g,
+        figures.energy_wh,
+        tuple(
+            MissedFloor(each.area_m2, each.x, each.y, each.room, each.reason)
+            for each in figures.missed
+        ),
+    )
+
+
+def recording_of(run: Run, samples: StateSamples) -> Recording:
+    """Return what was seen: true poses, and the state as of the last look at it."""
+    began = float(run.trajectory[0, 0])
+    words = tuple(
+        Word(max(word.time - began, 0.0), word.state, word.phase, word.message, word.room)
+        for word in samples.words
+    )
+    visits = Visits(run.home.map.frame, run.figures.tool_width_m)
+    for moment, x, y, _ in run.trajectory[::_COVERAGE_STRIDE].tolist():
+        visits.sweep(moment, x, y)
+    layers = {
+        "map": _layer(run.home.map.frame, known_cells(run.home.map)),
+        "coverage": _layer(visits.frame, visits.counts),
+    }
+    return Recording(_trace(run, samples), words, samples.home, layers)
+
+
+def _trace(run: Run, samples: StateSamples) -> Floats:
+    stride = round(TRACE_STEP / TRAJECTORY_STEP)
+    poses = run.trajectory[::stride]
+    trace = np.zeros((len(poses), len(TRACE)))
+    trace[:, :4] = poses - [run.trajectory[0, 0], 0.0, 0.0, 0.0]
+    states = np.array(samples.rows).reshape(-1, 1 + len(_COLUMNS))
+    latest = np.maximum(np.searchsorted(states[:, 0], poses[:, 0], side="right") - 1, 0)
+    trace[:, 4:] = states[latest, 1:]
+    result: Floats = trace.astype(np.float32)
+    return result
+
+
+def _layer(frame: GridFrame, cells: NDArray[np.uint8]) -> CellLayer:
+    return CellLayer(frame.resolution, frame.origin_x, frame.origin_y, cells)

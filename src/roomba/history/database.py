@@ -1,0 +1,271 @@
+"""The database of runs: SQLite with a write-ahead log, so that several programs can write."""
+
+from __future__ import annotations
+
+import contextlib
+import fcntl
+import json
+import math
+import os
+import sqlite3
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final
+
+from roomba.client.protocol import MissedFloor
+from roomba.errors import RoombaError
+from roomba.history.run import Recording, RunFigures, Source
+from roomba.history.run_file import packed, unpacked
+
+LAST: Final = "last"
+"""In place of a run's number: the newest one."""
+_NAME: Final = "runs.sqlite"
+_BUSY: Final = 10.0
+"""s of wall time that a writer waits for another one."""
+_MOST_RECORDINGS: Final = 200
+"""Of the newest runs; of older ones only the figures are kept."""
+
+MIGRATIONS: Final = (
+    """
+    CREATE TABLE runs (
+        id INTEGER PRIMARY KEY AUTOINCREMENT,
+        program TEXT NOT NULL, home TEXT NOT NULL, seed INTEGER, repeat TEXT NOT NULL,
+        configuration TEXT NOT NULL, kind TEXT NOT NULL, began REAL NOT NULL,
+        outcome TEXT NOT NULL, message TEXT NOT NULL, duration REAL, covered REAL, wanted REAL,
+        distance REAL, turning REAL, dirt REAL, energy REAL
+    );
+    CREATE INDEX runs_by_time ON runs (began);
+    CREATE TABLE missed (
+        run INTEGER NOT NULL REFERENCES runs (id) ON DELETE CASCADE,
+        area REAL NOT NULL, x REAL NOT NULL, y REAL NOT NULL, room TEXT NOT NULL,
+        reason TEXT NOT NULL
+    );
+    CREATE INDEX missed_by_run ON missed (run);
+    """,
+    """
+    CREATE TABLE recordings (
+        run INTEGER PRIMARY KEY REFERENCES runs (id) ON DELETE CASCADE, content BLOB NOT NULL
+    );
+    """,
+)
+"""What makes each version of the schema of the one before; the first one of nothing."""
+
+_COLUMNS: Final = (
+    "program", "home", "seed", "repeat", "configuration", "kind", "began", "outcome", "message",
+    "duration", "covered", "wanted", "distance", "turning", "dirt", "energy",
+)  # fmt: skip
+_NUMBERS: Final = ("duration", "covered", "wanted", "distance", "turning", "dirt", "energy")
+
+
+class HistoryError(RoombaError):
+    """The history cannot be used; the message names the file and says what to do."""
+
+
+@dataclass(frozen=True, slots=True)
+class KeptRun:
+    """A run of the history by its number; ``is_recorded`` whether it can be looked at again."""
+
+    number: int
+    figures: RunFigures
+    is_recorded: bool
+
+
+class History:
+    """The runs in a folder; nothing is kept open between two calls, which may be of any thread.
+
+    A database that is damaged is set aside under another name, and ``set_aside`` names it; a new
+    one takes its place. All methods raise HistoryError.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        """Touch nothing yet."""
+        self.path = folder / _NAME
+        self.set_aside: Path | None = None
+
+    def add(self, figures: RunFigures, recording: Recording | None = None) -> int:
+        """Keep a run, and return its number; it is on the disk then."""
+        content = None if recording is None else packed(figures, recording)
+        with self._opened() as database, _transaction(database):
+            number = _insert(database, figures)
+            if content is not None:
+                database.execute("INSERT INTO recordings VALUES (?, ?)", (number, content))
+                database.execute(
+                    "DELETE FROM recordings WHERE run NOT IN "
+                    "(SELECT run FROM recordings ORDER BY run DESC LIMIT ?)",
+                    (_MOST_RECORDINGS,),
+                )
+        return number
+
+    def runs(self, limit: int = 1000, home: str | None = None) -> list[KeptRun]:
+        """Return the newest runs, the newest first; ``home`` chooses those of one home."""
+        with self._opened() as database:
+            return _select(
+                database,
+                "(? IS NULL OR home = ?) ORDER BY began DESC, id DESC LIMIT ?",
+                (home, home, limit),
+            )
+
+    def run(self, number: int) -> KeptRun:
+        """Return a run by its number."""
+        with self._opened() as database:
+            found = _select(database, "id = ?", (number,))
+        if not found:
+            raise HistoryError(f"{self.path}: expected the number of a run, got {number}")
+        return found[0]
+
+    def named(self, word: str) -> KeptRun:
+        """Return a run by its number in letters, or LAST for the newest one."""
+        if word == LAST:
+            runs = self.runs(limit=1)
+            if not runs:
+                raise HistoryError(f"there are no runs yet in {self.path.parent}")
+            return runs[0]
+        if not word.isdecimal():
+            raise HistoryError(f"expected the number of a run, or {LAST}, got {word!r}")
+        return self.run(int(word))
+
+    def recording(self, number: int) -> Recording:
+        """Return what was recorded of a run."""
+        with self._opened() as database:
+            row = database.execute(
+                "SELECT content FROM recordings WHERE run = ?", (number,)
+            ).fetchone()
+        if row is None:
+            raise HistoryError(
+                f"{self.path}: expected a recording of run {number}, found none; they are kept of "
+                f"the newest {_MOST_RECORDINGS} runs"
+            )
+        return unpacked(row[0])[1]
+
+    # ---------------------------------------------------------------- the file
+
+    @contextlib.contextmanager
+    def _opened(self) -> Iterator[sqlite3.Connection]:
+        """Open the database as the newest version; one that is damaged is set aside first."""
+        try:
+            self._prepare()
+            with contextlib.closing(self._connect()) as database:
+                yield database
+        except (sqlite3.Error, OSError) as error:
+            raise HistoryError(f"{self.path}: cannot be used: {error}") from error
+
+    def _connect(self) -> sqlite3.Connection:
+        database = sqlite3.connect(self.path, timeout=_BUSY, isolation_level=None)
+        database.execute("PRAGMA foreign_keys = ON")
+        database.execute("PRAGMA synchronous = FULL")
+        return database
+
+    def _prepare(self) -> None:
+        """Make the file, or bring it up to date; one process at a time."""
+        self.path.parent.mkdir(parents=True, exist_ok=True, mode=0o700)
+        flags = os.O_RDWR | os.O_CREAT | os.O_CLOEXEC | os.O_NOFOLLOW
+        with open(os.open(self.path.with_suffix(".lock"), flags, 0o600), "r+b") as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            # SQLite gives its log the mode of the file.
+            os.close(os.open(self.path, flags, 0o600))
+            try:
+                self._bring_up_to_date()
+            except sqlite3.DatabaseError as error:
+                if isinstance(error, sqlite3.OperationalError):
+                    raise
+                self._set_aside()
+                os.close(os.open(self.path, flags, 0o600))
+                self._bring_up_to_date()
+
+    def _bring_up_to_date(self) -> None:
+        with contextlib.closing(self._connect()) as database:
+            database.execute("PRAGMA journal_mode = WAL")
+            version = int(database.execute("PRAGMA user_version").fetchone()[0])
+            if version > len(MIGRATIONS):
+                raise HistoryError(
+                    f"{self.path}: expected version {len(MIGRATIONS)} or older, got {version}, "
+                    "which a newer program wrote; use that one, or move the file away"
+                )
+            if database.execute("PRAGMA quick_check(1)").fetchone()[0] != "ok":
+                raise sqlite3.DatabaseError("the check of its pages failed")
+            for step in range(version, len(MIGRATIONS)):
+                script = f"BEGIN;{MIGRATIONS[step]};PRAGMA user_version = {step + 1};COMMIT;"
+                database.executescript(script)
+
+    def _set_aside(self) -> None:
+        stamp = time.strftime("%Y%m%d-%H%M%S")
+        aside = self.path.with_name(f"{_NAME}.damaged-{stamp}-{os.getpid()}")
+        self.path.replace(aside)
+        for end in ("-wal", "-shm"):
+            with contextlib.suppress(FileNotFoundError):
+                self.path.with_name(_NAME + end).replace(aside.with_name(aside.name + end))
+        self.set_aside = aside
+
+
+@contextlib.contextmanager
+def _transaction(database: sqlite3.Connection) -> Iterator[None]:
+    database.execute("BEGIN IMMEDIATE")
+    try:
+        yield
+    except BaseException:
+        database.execute("ROLLBACK")
+        raise
+    database.execute("COMMIT")
+
+
+def _insert(database: sqlite3.Connection, figures: RunFigures) -> int:
+    source = figures.source
+    values = {
+        "program": source.program,
+        "home": source.home,
+        "seed": source.seed,
+        "repeat": source.repeat,
+        "configuration": json.dumps(dict(source.configuration), sort_keys=True),
+        "kind": figures.kind,
+        "began": figures.began,
+        "outcome": figures.outcome,
+        "message": figures.message,
+        **{name: _known(getattr(figures, name)) for name in _NUMBERS},
+    }
+    names = ", ".join(_COLUMNS)
+    places = ", ".join(f":{name}" for name in _COLUMNS)
+    added = database.execute(f"INSERT INTO runs ({names}) VALUES ({places})", values)
+    number = added.lastrowid
+    assert number is not None
+    database.executemany(
+        "INSERT INTO missed VALUES (?, ?, ?, ?, ?, ?)",
+        [(number, miss.area, miss.x, miss.y, miss.room, miss.reason) for miss in figures.missed],
+    )
+    return number
+
+
+def _known(value: float) -> float | None:
+    return value if math.isfinite(value) else None
+
+
+def _select(database: sqlite3.Connection, which: str, values: tuple[Any, ...]) -> list[KeptRun]:
+    names = ", ".join(_COLUMNS)
+    rows = database.execute(
+        f"SELECT id, id IN (SELECT run FROM recordings), {names} FROM runs WHERE {which}", values
+    ).fetchall()
+    return [
+        KeptRun(
+            row[0], _figures_of(database, row[0], dict(zip(_COLUMNS, row[2:], strict=True))), row[1]
+        )
+        for row in rows
+    ]
+
+
+def _figures_of(database: sqlite3.Connection, number: int, row: dict[str, Any]) -> RunFigures:
+    missed = database.execute(
+        "SELECT area, x, y, room, reason FROM missed WHERE run = ? ORDER BY area DESC", (number,)
+    )
+    source = Source(
+        row["program"], row["home"], row["seed"], row["repeat"], json.loads(row["configuration"])
+    )
+    return RunFigures(
+        source,
+        row["kind"],
+        row["began"],
+        row["outcome"],
+        row["message"],
+        **{name: math.nan if row[name] is None else row[name] for name in _NUMBERS},
+        missed=tuple(MissedFloor(*miss) for miss in missed),
+    )

@@ -1,0 +1,148 @@
+"""Makes the record of each run out of looks at a robot, as a page looks at it."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable
+from typing import Final
+
+import numpy as np
+
+from roomba.client.plain import home_of
+from roomba.client.protocol import CleanReport, ErrandOutcome
+from roomba.client.view import GridLayer, HomeView, LayerName, RobotView
+from roomba.errors import RoombaError
+from roomba.geometry import wrap_angle
+from roomba.history.database import History
+from roomba.history.run import TRACE, TRACE_STEP, CellLayer, Recording, RunFigures, Source, Word
+
+BEGINS: Final = ("undocking", "cleaning", "exploring")
+"""Phases in which a run has begun."""
+_SWEEPS: Final = ("undocking", "cleaning", "returning", "docking")
+"""Phases of a clean in which what is driven over counts."""
+_AT_REST: Final = ("docked", "idle")
+_GIVEN_UP: Final = 10.0
+"""s of the robot's clock at rest without a report after which it was no run."""
+_NOT_RUN: Final = (ErrandOutcome.REFUSED, ErrandOutcome.DISCONNECTED)
+
+Layers = Callable[[LayerName], GridLayer | None]
+
+
+class RunRecorder:
+    """Follows one robot from look to look; a run that ended is returned by the look that saw it."""
+
+    def __init__(self, source: Source) -> None:
+        """Begin between two runs."""
+        self._source = source
+        self._run: _Run | None = None
+        self._last: CleanReport | None = None
+
+    def look(
+        self, view: RobotView, home: HomeView, layer: Layers
+    ) -> tuple[RunFigures, Recording] | None:
+        """Take a look; return the run that it was the end of."""
+        report, self._last = self._last, view.last
+        if self._run is None and view.vacuum.phase in BEGINS:
+            self._run = _Run(view)
+        if self._run is None:
+            return None
+        self._run.take(view)
+        if view.last is not None and view.last is not report:
+            run, self._run = self._run, None
+            if view.last.outcome in _NOT_RUN:
+                return None
+            return run.figures(self._source, view.last), run.recording(home, layer)
+        if self._run.rests_since is not None and view.time - self._run.rests_since > _GIVEN_UP:
+            self._run = None
+        return None
+
+
+class HistoryKeeper:
+    """Keeps the runs of a robot that is looked at; trouble with the history is told, once each."""
+
+    def __init__(self, history: History, source: Source, tell: Callable[[str], None]) -> None:
+        """Begin between two runs."""
+        self.history = history
+        self._recorder = RunRecorder(source)
+        self._tell = tell
+        self._told = ""
+
+    def look(self, view: RobotView, home: HomeView, layer: Layers) -> None:
+        """Take a look, and keep a run that it was the end of."""
+        ended = self._recorder.look(view, home, layer)
+        if ended is None:
+            return
+        before, trouble = self.history.set_aside, ""
+        try:
+            self.history.add(*ended)
+        except RoombaError as error:
+            trouble = f"the run was not kept: {error}"
+        if self.history.set_aside is not before:
+            trouble = f"the history was damaged; it is set aside as {self.history.set_aside}"
+        if trouble and trouble != self._told:
+            self._tell(trouble)
+        self._told = trouble
+
+
+class _Run:
+    """A run under way."""
+
+    def __init__(self, view: RobotView) -> None:
+        self._began, self._wall = view.time, time.time()
+        self._rows: list[tuple[float, ...]] = []
+        self._words: list[Word] = []
+        self._theta = view.pose[2]
+        self._turning = 0.0
+        self.rests_since: float | None = None
+
+    def take(self, view: RobotView) -> None:
+        """Remember what is seen now."""
+        now, vacuum = view.time - self._began, view.vacuum
+        if vacuum.phase not in _AT_REST:
+            self.rests_since = None
+        elif self.rests_since is None:
+            self.rests_since = view.time
+        self._turning += abs(wrap_angle(view.pose[2] - self._theta))
+        self._theta = view.pose[2]
+        word = Word(now, vacuum.state, vacuum.phase, vacuum.message, vacuum.room, view.doubt)
+        is_news = not self._words or not word.is_as(self._words[-1])
+        if is_news:
+            self._words.append(word)
+        if not is_news and now - self._rows[-1][0] < TRACE_STEP - 1e-6:
+            return
+        battery = vacuum.battery if math.isfinite(vacuum.battery) else -1.0
+        progress = (vacuum.covered, vacuum.wanted, vacuum.seconds_to_go)
+        sweeps = float(vacuum.wanted > 0.0 and vacuum.phase in _SWEEPS)
+        self._rows.append((now, *view.pose, view.speed, battery, view.dirt, *progress, sweeps))
+
+    def figures(self, source: Source, report: CleanReport) -> RunFigures:
+        """Return what was achieved."""
+        explores = any(word.phase == "exploring" for word in self._words)
+        return RunFigures(
+            source,
+            "explore" if explores else "clean",
+            self._wall,
+            report.outcome.value,
+            report.message,
+            report.duration,
+            report.covered,
+            report.wanted,
+            report.distance,
+            self._turning,
+            report.dirt,
+            report.energy,
+            report.missed,
+        )
+
+    def recording(self, home: HomeView, layer: Layers) -> Recording:
+        """Return what was seen."""
+        trace = np.array(self._rows, np.float32).reshape(-1, len(TRACE))
+        layers = {}
+        for name in (LayerName.MAP, LayerName.COVERAGE):
+            grid = layer(name)
+            if grid is not None:
+                layers[name.value] = CellLayer(
+                    grid.resolution, grid.origin_x, grid.origin_y, grid.cells.copy()
+                )
+        return Recording(trace, tuple(self._words), home_of(home), layers)

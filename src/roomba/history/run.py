@@ -1,0 +1,123 @@
+"""A run as it is kept: its figures, and a recording of what was seen of it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.client.protocol import MissedFloor
+
+TRACE: Final = (
+    "time", "x", "y", "theta", "speed", "battery", "dirt", "covered", "wanted", "to_go", "sweeps",
+)  # fmt: skip
+"""Columns of a trace: s since the run began, m, rad, m/s, 0..1, g, m2, m2, s, and 1 while floor is
+swept."""
+TRACE_STEP: Final = 0.5
+"""s of the robot's clock between two rows of a trace."""
+CELL_LAYERS: Final = ("map", "coverage")
+
+Floats = NDArray[np.float32]
+
+
+@dataclass(frozen=True, slots=True)
+class Source:
+    """What is run: ``program`` is sim, play or ros; ``seed`` is None where there is none.
+
+    ``repeat`` is the command that repeats it, and ``configuration`` plain values that differ from
+    what is usual.
+    """
+
+    program: str
+    home: str
+    seed: int | None = None
+    repeat: str = ""
+    configuration: Mapping[str, Any] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class RunFigures:
+    """What a run achieved: areas in m2, dirt in g, m, rad, s of the robot's clock, Wh.
+
+    ``kind`` is clean or explore, ``began`` s since 1970 of the wall clock; what is not known is
+    NaN. ``missed`` has the largest area first.
+    """
+
+    source: Source
+    kind: str
+    began: float
+    outcome: str
+    message: str
+    duration: float
+    covered: float
+    wanted: float
+    distance: float
+    turning: float
+    dirt: float
+    energy: float
+    missed: tuple[MissedFloor, ...] = ()
+
+    @property
+    def fraction(self) -> float:
+        """Share of the wanted floor that is clean, 0..1; NaN where none was wanted."""
+        return self.covered / self.wanted if self.wanted > 0.0 else math.nan
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CellLayer:
+    """Cells over the floor, uint8 [rows, columns], row 0 at the lowest y; lower left corner, m."""
+
+    resolution: float
+    origin_x: float
+    origin_y: float
+    cells: NDArray[np.uint8]
+
+
+@dataclass(frozen=True, slots=True)
+class Word:
+    """What the robot said from a time on, s: state, phase, message, room and doubt."""
+
+    time: float
+    state: str
+    phase: str
+    message: str = ""
+    room: str = ""
+    doubt: str = ""
+
+    def is_as(self, other: Word) -> bool:
+        """Whether another one says the same, at whatever time."""
+        return replace(other, time=self.time) == self
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Recording:
+    """What was seen of a run: ``trace`` is float32 [n, columns of TRACE], ``words`` by time.
+
+    ``home`` are the plain values of the home as a page shows it; ``layers`` are those of
+    CELL_LAYERS that there were, at the end.
+    """
+
+    trace: Floats
+    words: tuple[Word, ...]
+    home: Mapping[str, Any]
+    layers: Mapping[str, CellLayer]
+
+    def column(self, name: str) -> Floats:
+        """Return a column of the trace, float32 [n]."""
+        column: Floats = self.trace[:, TRACE.index(name)]
+        return column
+
+    @property
+    def duration(self) -> float:
+        """s of the robot's clock."""
+        return float(self.trace[-1, 0]) if len(self.trace) else 0.0
+
+
+def turning_of(trace: Floats) -> float:
+    """Return how much the robot turned between the rows of a trace, rad."""
+    turns = np.diff(trace[:, TRACE.index("theta")].astype(np.float64))
+    return float(np.abs((turns + math.pi) % math.tau - math.pi).sum())

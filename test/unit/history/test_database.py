@@ -1,0 +1,146 @@
+"""The history in real SQLite files: several writers, damage, older and newer versions."""
+
+from __future__ import annotations
+
+import math
+import sqlite3
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from roomba.history.database import MIGRATIONS, History, HistoryError
+from roomba.history.run import Recording, RunFigures
+
+WRITER = """
+import sys
+from dataclasses import replace
+from pathlib import Path
+from roomba.history.database import History
+from roomba.history.run import RunFigures, Source
+history = History(Path(sys.argv[1]))
+for number in range(25):
+    source = Source(sys.argv[2], "box", number)
+    history.add(RunFigures(source, "clean", 0.0, "completed", "", *[1.0] * 7))
+"""
+
+
+def test_a_run_comes_back_as_it_was(
+    tmp_path: Path, figures: RunFigures, recording: Recording
+) -> None:
+    number = History(tmp_path).add(figures, recording)
+    (kept,) = History(tmp_path).runs()
+    assert kept.number == number
+    assert kept.is_recorded
+    assert math.isnan(kept.figures.energy)
+    assert replace(kept.figures, energy=0.0) == replace(figures, energy=0.0)
+    read = History(tmp_path).recording(number)
+    assert np.array_equal(read.trace, recording.trace)
+    assert read.words == recording.words
+    assert read.home == recording.home
+    assert np.array_equal(read.layers["map"].cells, recording.layers["map"].cells)
+
+
+def test_the_newest_comes_first_and_homes_are_told_apart(
+    tmp_path: Path, figures: RunFigures
+) -> None:
+    history = History(tmp_path)
+    for day in (3, 1, 2):
+        history.add(replace(figures, began=86400.0 * day))
+    history.add(replace(figures, source=replace(figures.source, home="flat"), began=0.0))
+    assert [run.figures.began for run in history.runs()] == [259200.0, 172800.0, 86400.0, 0.0]
+    assert [run.figures.source.home for run in history.runs(home="flat")] == ["flat"]
+    assert len(history.runs(limit=2)) == 2
+
+
+def test_two_processes_that_write_at_the_same_time_lose_nothing(tmp_path: Path) -> None:
+    writers = [
+        subprocess.Popen([sys.executable, "-c", WRITER, str(tmp_path), name])
+        for name in ("one", "other")
+    ]
+    assert [writer.wait(120.0) for writer in writers] == [0, 0]
+    kept = [
+        (run.figures.source.program, run.figures.source.seed) for run in History(tmp_path).runs()
+    ]
+    assert sorted(kept) == [(name, n) for name in ("one", "other") for n in range(25)]
+
+
+def test_only_the_owner_reads_it(tmp_path: Path, figures: RunFigures) -> None:
+    history = History(tmp_path / "new")
+    history.add(figures)
+    with sqlite3.connect(history.path) as reader:
+        reader.execute("SELECT * FROM runs").fetchall()
+        modes = {file.name: file.stat().st_mode & 0o777 for file in history.path.parent.iterdir()}
+    assert len(modes) == 4
+    assert set(modes.values()) == {0o600}
+    assert history.path.parent.stat().st_mode & 0o777 == 0o700
+
+
+@pytest.mark.parametrize("damage", ["no database", "a page", "a table"])
+def test_a_damaged_file_is_set_aside_and_told(
+    tmp_path: Path, figures: RunFigures, damage: str
+) -> None:
+    history = History(tmp_path)
+    for _ in range(200):
+        history.add(figures)
+    content = bytearray(history.path.read_bytes())
+    if damage == "no database":
+        content[:100] = b"x" * 100
+    elif damage == "a page":
+        content[4096 * 3 : 4096 * 5] = b"\xff" * 8192
+    else:
+        content = content[: len(content) // 2]
+    history.path.write_bytes(content)
+    again = History(tmp_path)
+    again.add(figures)
+    assert len(again.runs()) == 1
+    assert again.set_aside is not None
+    assert again.set_aside.read_bytes() == bytes(content)
+
+
+def test_an_older_version_is_brought_up_to_date(
+    tmp_path: Path, figures: RunFigures, recording: Recording
+) -> None:
+    history = History(tmp_path)
+    with sqlite3.connect(history.path) as old:
+        old.executescript(MIGRATIONS[0])
+        old.execute(
+            "INSERT INTO runs (program, home, repeat, configuration, kind, began, outcome, message)"
+            " VALUES ('ros', 'attic', '', '{}', 'clean', 5.0, 'completed', '')"
+        )
+        old.execute("PRAGMA user_version = 1")
+    old.close()
+    (kept,) = history.runs()
+    assert kept.figures.source.home == "attic"
+    assert not kept.is_recorded
+    assert history.set_aside is None
+    assert history.recording(history.add(figures, recording)).duration == 60.0
+
+
+def test_a_newer_version_is_left_alone(tmp_path: Path, figures: RunFigures) -> None:
+    history = History(tmp_path)
+    history.add(figures)
+    with sqlite3.connect(history.path) as newer:
+        newer.execute("PRAGMA user_version = 99")
+    newer.close()
+    with pytest.raises(HistoryError, match="newer program"):
+        history.add(figures)
+    assert history.set_aside is None
+
+
+def test_what_is_not_there_is_said(tmp_path: Path, figures: RunFigures) -> None:
+    history = History(tmp_path)
+    number = history.add(figures)
+    with pytest.raises(HistoryError, match="got 42"):
+        history.run(42)
+    with pytest.raises(HistoryError, match="found none"):
+        history.recording(number)
+
+
+def test_a_folder_that_cannot_be_made_is_said(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    with pytest.raises(HistoryError, match="cannot be used"):
+        History(tmp_path / "file" / "history").runs()

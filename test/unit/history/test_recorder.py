@@ -1,0 +1,117 @@
+"""Runs are noticed by looking at a robot."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from roomba.client.protocol import CleanReport, ErrandOutcome, MissedFloor, VacuumSnapshot
+from roomba.client.view import GridLayer, HomeView, LayerName, RobotView
+from roomba.history.database import History
+from roomba.history.recorder import HistoryKeeper, RunRecorder
+from roomba.history.run import Recording, RunFigures, Source
+
+HOME = HomeView(1, "box", (0.0, 0.0, 0.0), (), (), (), 0.16, 0.18)
+SOURCE = Source("play", "box", 3)
+REPORT = CleanReport(
+    ErrandOutcome.COMPLETED,
+    "",
+    9.0,
+    10.0,
+    2.0,
+    30.0,
+    40.0,
+    5.0,
+    (MissedFloor(1.0, 2.0, 3.0, "", "x"),),
+)
+NO_POINTS = np.empty((0, 2), np.float32)
+
+
+def layer(name: LayerName) -> GridLayer | None:
+    return (
+        None if name is LayerName.DIRT else GridLayer(1, 0.05, 0.0, 0.0, np.ones((4, 5), np.uint8))
+    )
+
+
+def view(time: float, phase: str, last: CleanReport | None = None) -> RobotView:
+    state = "cleaning" if phase == "cleaning" else "docked"
+    vacuum = VacuumSnapshot(state, phase, "", "", 0.0, 0.0, 0.0, 0.0, math.nan)
+    pose = (time / 10.0, 0.0, 0.1 * time)
+    return RobotView(time, pose, "", 0.2, 0.0, "", vacuum, NO_POINTS, NO_POINTS, last)
+
+
+def run_of(recorder: RunRecorder, report: CleanReport) -> Iterator[tuple[RunFigures, Recording]]:
+    """Look ten times a second at a robot that leaves its station at 5 s and is back at 45 s."""
+    for tenth in range(600):
+        time = tenth / 10.0
+        phase = "cleaning" if 5.0 <= time < 45.0 else "docked"
+        ended = recorder.look(view(time, phase, report if time >= 45.0 else None), HOME, layer)
+        if ended:
+            yield ended
+
+
+def test_one_run_is_one_record() -> None:
+    ((figures, recording),) = run_of(RunRecorder(SOURCE), REPORT)
+    assert figures.source is SOURCE
+    assert figures.kind == "clean"
+    assert (figures.covered, figures.wanted, figures.distance) == (9.0, 10.0, 30.0)
+    assert figures.missed == REPORT.missed
+    assert figures.turning == pytest.approx(4.0, abs=0.02)
+    assert recording.duration == pytest.approx(40.0, abs=0.11)
+    assert len(recording.trace) == pytest.approx(81, abs=2)
+    assert recording.column("x")[0] == pytest.approx(0.5)
+    assert set(recording.column("battery")) == {-1.0}
+    assert [word.phase for word in recording.words] == ["cleaning", "docked"]
+    assert set(recording.layers) == {"map", "coverage"}
+
+
+def test_what_ended_before_the_first_look_and_what_was_refused_is_no_run() -> None:
+    recorder = RunRecorder(SOURCE)
+    assert recorder.look(view(0.0, "docked", REPORT), HOME, layer) is None
+    assert recorder.look(view(1.0, "cleaning", REPORT), HOME, layer) is None
+    refused = replace(REPORT, outcome=ErrandOutcome.REFUSED)
+    assert list(run_of(RunRecorder(SOURCE), refused)) == []
+
+
+def test_leaving_the_station_alone_is_no_run() -> None:
+    recorder = RunRecorder(SOURCE)
+    recorder.look(view(0.0, "undocking"), HOME, layer)
+    for second in range(1, 20):
+        recorder.look(view(float(second), "idle"), HOME, layer)
+    recorder.look(view(20.0, "cleaning"), HOME, layer)
+    ended = recorder.look(view(30.0, "docked", REPORT), HOME, layer)
+    assert ended is not None
+    assert ended[1].duration == pytest.approx(10.0)
+
+
+def test_an_exploration_is_told_as_such() -> None:
+    recorder = RunRecorder(SOURCE)
+    recorder.look(view(0.0, "exploring"), HOME, layer)
+    ended = recorder.look(view(9.0, "docked", REPORT), HOME, layer)
+    assert ended is not None
+    assert ended[0].kind == "explore"
+
+
+def test_runs_are_kept_and_trouble_is_told(tmp_path: Path) -> None:
+    told: list[str] = []
+    history = History(tmp_path)
+    keeper = HistoryKeeper(history, SOURCE, told.append)
+    keeper.look(view(0.0, "cleaning"), HOME, layer)
+    keeper.look(view(9.0, "docked", REPORT), HOME, layer)
+    assert [run.is_recorded for run in history.runs()] == [True]
+    assert told == []
+    history.path.write_bytes(b"x" * 5000)
+    keeper.look(view(10.0, "cleaning", REPORT), HOME, layer)
+    keeper.look(view(19.0, "docked", replace(REPORT)), HOME, layer)
+    assert len(told) == 1
+    assert str(history.set_aside) in told[0]
+    assert len(history.runs()) == 1
+    blocked = HistoryKeeper(History(tmp_path / "runs.sqlite"), SOURCE, told.append)
+    blocked.look(view(0.0, "cleaning"), HOME, layer)
+    blocked.look(view(9.0, "docked", REPORT), HOME, layer)
+    assert "not kept" in told[1]

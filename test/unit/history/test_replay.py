@@ -1,0 +1,111 @@
+"""A recording as a robot."""
+
+from __future__ import annotations
+
+import math
+import time
+
+import numpy as np
+import pytest
+
+from roomba.client.observed import ObservedRobot, Timeline
+from roomba.client.protocol import RequestRefusedError
+from roomba.client.view import CleanOrder, GridLayer, LayerName
+from roomba.history.replay import RecordedRobot
+from roomba.history.run import TRACE, Recording, RunFigures
+from roomba.history.run_file import RunFileError
+
+
+@pytest.fixture
+def robot(figures: RunFigures, recording: Recording) -> RecordedRobot:
+    return RecordedRobot(figures, recording, speed=50.0)
+
+
+def coverage(robot: RecordedRobot) -> GridLayer:
+    layer = robot.layer(LayerName.COVERAGE)
+    assert layer is not None
+    return layer
+
+
+def test_it_is_where_it_was_at_the_time(robot: RecordedRobot) -> None:
+    robot.seek(20.25)
+    seen = robot.robot()
+    assert seen.time == 20.25
+    assert seen.pose == pytest.approx((0.5 + 20.25 / 20.0, 1.5, 0.0), abs=1e-5)
+    assert seen.vacuum.phase == "cleaning"
+    assert seen.vacuum.room == "hall"
+    assert seen.vacuum.battery == pytest.approx(1.0 - 20.0 / 120.0, abs=1e-5)
+    assert seen.last is None
+    assert len(robot.way()) == 41
+    robot.seek(0.0)
+    assert robot.robot().vacuum.phase == "docked"
+    robot.seek(1e9)
+    assert robot.timeline().at == 60.0
+    last = robot.robot().last
+    assert last is not None
+    assert last.outcome.value == "completed"
+    assert last.missed[0].room == "hall"
+
+
+def test_coverage_grows_and_shrinks_with_the_time(robot: RecordedRobot) -> None:
+    counts = []
+    for at in (5.0, 30.0, 60.0, 30.0, 0.0):
+        robot.seek(at)
+        counts.append(np.count_nonzero(coverage(robot).cells))
+    assert counts[0] == counts[4] == 0
+    assert counts[1] == counts[3]
+    # 0.5 s rows from 10 s to 50 s at 0.05 m/s, a tool of 0.18 m, cells of 0.05 m
+    assert counts[2] * 0.05**2 == pytest.approx(2.0 * 0.18, rel=0.25)
+    assert 0.4 * counts[2] < counts[1] < 0.6 * counts[2]
+
+
+def test_time_passes_while_it_plays(robot: RecordedRobot) -> None:
+    assert robot.timeline().at == 0.0
+    robot.play(is_playing=True)
+    ends = time.monotonic() + 30.0
+    while robot.timeline().is_playing:
+        assert time.monotonic() < ends
+    assert robot.timeline().at == 60.0
+    jumps = robot.timeline().jumps
+    robot.play(is_playing=True)
+    assert robot.timeline().at < 60.0
+    assert robot.timeline().jumps == jumps + 1
+    robot.play(is_playing=False)
+    stood = robot.timeline().at
+    assert robot.timeline().at == stood
+
+
+def test_commands_are_refused_with_the_reason(robot: RecordedRobot) -> None:
+    observed: ObservedRobot = robot
+    assert isinstance(observed, Timeline)
+    with pytest.raises(RequestRefusedError, match="recorded run of 'box'"):
+        observed.clean(CleanOrder())
+    with pytest.raises(RequestRefusedError, match="nothing is driven"):
+        observed.drive(0.1, 0.0)
+    with pytest.raises(RequestRefusedError):
+        observed.emergency_stop("a test")
+
+
+def test_home_and_map_are_those_of_the_run(robot: RecordedRobot) -> None:
+    home = robot.home()
+    assert home.rooms[0].name == "hall"
+    assert home.rooms[0].rings[0][1] == (4, 0)
+    layer = robot.layer(LayerName.MAP)
+    assert layer is not None
+    assert layer.cells.shape == (60, 80)
+    assert robot.layer(LayerName.DIRT) is None
+
+
+def test_a_robot_that_was_carried_does_not_glide(figures: RunFigures, recording: Recording) -> None:
+    recording.trace[60:, TRACE.index("y")] = 3.0
+    recording.trace[:, TRACE.index("battery")] = -1.0
+    robot = RecordedRobot(figures, recording)
+    robot.seek(29.9)
+    assert robot.robot().pose[1] == 1.5
+    assert math.isnan(robot.robot().vacuum.battery)
+
+
+def test_nothing_cannot_be_played(figures: RunFigures, recording: Recording) -> None:
+    empty = Recording(recording.trace[:0], recording.words, recording.home, recording.layers)
+    with pytest.raises(RunFileError, match="at least one row"):
+        RecordedRobot(figures, empty)
