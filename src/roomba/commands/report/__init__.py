@@ -1,0 +1,1 @@
+"""`./roomba report`: the runs that were kept, as tables and documents."""

@@ -1,0 +1,112 @@
+"""``roomba report``: the runs that were kept, told as tables, CSV and HTML."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+from typing import Final
+
+from roomba.commands.report.table import csv_of, run_table, runs_table, weeks_table
+from roomba.commands.spelling import spelled
+from roomba.commands.telling import tell_tables
+from roomba.errors import RoombaError
+from roomba.files.atomic import write_whole
+from roomba.history.database import LAST, History, KeptRun
+from roomba.history.folder import history_folder
+from roomba.history.report.document import comparison_of, report_of
+from roomba.history.run import Recording
+from roomba.history.run_file import write_run
+
+PROGRAM: Final = spelled("report")
+_LISTED: Final = 20
+"""Runs of the list in a terminal."""
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Tell of the runs; returns 0, 1 when a file cannot be written, 2 for what there is not."""
+    wanted = _parser().parse_args(arguments)
+    history = History(wanted.history or history_folder())
+    try:
+        _tell(wanted, history)
+    except (RoombaError, OSError) as error:
+        print(f"{PROGRAM}: {error}", file=sys.stderr)
+        return 2 if isinstance(error, RoombaError) else 1
+    finally:
+        if history.set_aside is not None:
+            print(f"{PROGRAM}: damaged, and set aside: {history.set_aside}", file=sys.stderr)
+    return 0
+
+
+def _tell(wanted: argparse.Namespace, history: History) -> None:
+    if wanted.csv is not None:
+        _write(wanted.csv, csv_of(history.runs(limit=1_000_000)))
+        if wanted.run is None and wanted.compare is None:
+            return
+    if wanted.compare is not None:
+        one, other = (history.named(word) for word in wanted.compare)
+        text = comparison_of((one, _recording(history, one)), (other, _recording(history, other)))
+        _write_document(wanted.out or Path(f"compare-{one.number}-{other.number}.html"), text)
+        return
+    if wanted.run is None and wanted.out is None and wanted.recording is None:
+        _list(history)
+        return
+    _report(wanted, history, history.named(wanted.run or LAST))
+
+
+def _report(wanted: argparse.Namespace, history: History, run: KeptRun) -> None:
+    recording = _recording(history, run)
+    tell_tables([run_table(run)], None, quiet=False)
+    if wanted.recording is not None:
+        write_run(run.figures, recording or history.recording(run.number), wanted.recording)
+        print(f"Recording: {wanted.recording}")
+    others = history.runs(home=run.figures.source.home)
+    text = report_of(run, recording, others)
+    _write_document(wanted.out or Path(f"run-{run.number}.html"), text)
+
+
+def _list(history: History) -> None:
+    runs = history.runs(limit=1_000_000)
+    if not runs:
+        print(f"There are no runs yet in {history.path.parent}: ./roomba sim makes one.")
+        return
+    tell_tables([runs_table(runs[:_LISTED]), weeks_table(runs)], None, quiet=False)
+    if len(runs) > _LISTED:
+        print(f"{len(runs) - _LISTED} older runs are in --csv.")
+
+
+def _recording(history: History, run: KeptRun) -> Recording | None:
+    return history.recording(run.number) if run.is_recorded else None
+
+
+def _write_document(path: Path, text: str) -> None:
+    _write(path, text)
+    print(f"Report: {path}")
+
+
+def _write(path: Path, text: str) -> None:
+    if str(path) == "-":
+        sys.stdout.write(text)
+    else:
+        write_whole(path, text.encode())
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog=PROGRAM,
+        description="Tell of the runs that sim, play and run kept. Without a run: the newest ones, "
+        "and totals by week.",
+    )
+    parser.add_argument("run", nargs="?", metavar="RUN", help=f"its number, or {LAST}")
+    parser.add_argument(
+        "--out", type=Path, metavar="FILE.html", help="the report (default: run-RUN.html)"
+    )
+    parser.add_argument("--compare", nargs=2, metavar=("A", "B"), help="two runs in one report")
+    parser.add_argument("--csv", type=Path, metavar="FILE|-", help="all runs, for programs")
+    parser.add_argument(
+        "--recording", type=Path, metavar="FILE.run", help="the run as a file, for replay"
+    )
+    parser.add_argument(
+        "--history", type=Path, metavar="FOLDER", help="where the runs are (default: the own)"
+    )
+    return parser

@@ -1,0 +1,1 @@
+"""Runs as a document that stands alone in one file."""

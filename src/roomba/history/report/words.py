@@ -1,0 +1,57 @@
+"""Figures in words, as reports and tables show them."""
+
+from __future__ import annotations
+
+import math
+import time
+
+from roomba.history.run import RunFigures
+
+
+def outcome_of(run: RunFigures) -> str:
+    """Return how a run ended, as a sentence begins."""
+    return run.outcome[:1].upper() + run.outcome[1:]
+
+
+def number(value: float, digits: int, unit: str) -> str:
+    """Return a number with its unit; a dash where it is not known."""
+    return f"{value:.{digits}f} {unit}" if math.isfinite(value) else "–"
+
+
+def share(value: float) -> str:
+    """Return a share, 0..1, in percent."""
+    return number(100.0 * value, 1, "%")
+
+
+def duration(seconds: float) -> str:
+    """Return a time, s, as hours, minutes and seconds."""
+    if not math.isfinite(seconds):
+        return "–"
+    minutes, rest = divmod(round(seconds), 60)
+    hours, minutes = divmod(minutes, 60)
+    return f"{hours} h {minutes:02} min" if hours else f"{minutes} min {rest:02} s"
+
+
+def moment(began: float) -> str:
+    """Return a time of the wall clock."""
+    return time.strftime("%Y-%m-%d %H:%M", time.localtime(began))
+
+
+def figure_rows(run: RunFigures) -> list[tuple[str, str]]:
+    """Return what a run achieved: names, and numbers with units."""
+    source = run.source
+    return [
+        ("Began", moment(run.began)),
+        ("Home", source.home),
+        ("Seed", "–" if source.seed is None else str(source.seed)),
+        ("Program", source.program),
+        ("Outcome", outcome_of(run)),
+        ("Clean", f"{number(run.covered, 2, 'm²')} of {number(run.wanted, 2, 'm²')}"),
+        ("Share", share(run.fraction)),
+        ("Missed", f"{len(run.missed)} places"),
+        ("Time", duration(run.duration)),
+        ("Way", number(run.distance, 1, "m")),
+        ("Turning", number(run.turning, 1, "rad")),
+        ("Dirt", number(run.dirt, 2, "g")),
+        ("Energy", number(run.energy, 2, "Wh")),
+    ]

@@ -1,0 +1,98 @@
+"""The command on a history of its own, beside real runs of another command."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+from pathlib import Path
+
+import pytest
+
+from roomba.commands.report.command import main
+from roomba.commands.sim.command import main as sim
+from roomba.history.database import History
+from roomba.history.run import RunFigures, Source
+from roomba.history.run_file import read_run
+
+
+def figures(home: str, covered: float) -> RunFigures:
+    numbers = (100.0, covered, 20.0, 30.0, 4.0, 5.0, 6.0)
+    return RunFigures(Source("play", home, 1), "clean", 1e9, "completed", "", *numbers)
+
+
+@pytest.fixture
+def history(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> History:
+    folder = tmp_path / "history"
+    monkeypatch.setenv("ROOMBA_HISTORY", str(folder))
+    monkeypatch.chdir(tmp_path)
+    return History(folder)
+
+
+def test_a_real_run_is_reported(
+    history: History, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    told = tmp_path / "run.json"
+    assert sim(["--home", "studio", "--seed", "4", "--quiet", "--json", str(told)]) == 0
+    run = json.loads(told.read_text())
+    assert main(["last", "--out", "r.html", "--recording", "one.run"]) == 0
+    output = capsys.readouterr().out
+    area = f"{run['covered_m2']:.2f} m² of {run['coverable_m2']:.2f} m²"
+    assert area in output
+    document = (tmp_path / "r.html").read_text()
+    assert area in document
+    assert f"{run['distance_m']:.1f} m<" in document
+    assert f"{run['turning_rad']:.1f} rad" in document
+    assert f"{run['dirt_g']:.2f} g" in document
+    for miss in run["missed"]:
+        assert miss["reason"] in document
+    assert read_run(tmp_path / "one.run")[0].source.seed == 4
+    assert len(document) < 300_000
+
+
+def test_the_list_tells_runs_and_weeks(
+    history: History, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main([]) == 0
+    assert "no runs yet" in capsys.readouterr().out
+    for covered in (10.0, 19.0):
+        history.add(figures("attic", covered))
+    assert main([]) == 0
+    output = capsys.readouterr().out
+    assert "attic" in output
+    assert "19.0 m² (95.0 %)" in output
+    assert "2001-W36" in output
+    assert "29.0 m²" in output
+
+
+def test_csv_has_every_run(history: History, capsys: pytest.CaptureFixture[str]) -> None:
+    for covered in (10.0, float("nan")):
+        history.add(figures("attic, north", covered))
+    assert main(["--csv", "-"]) == 0
+    rows = list(csv.DictReader(io.StringIO(capsys.readouterr().out)))
+    assert [row["covered_m2"] for row in rows] == ["", "10.0000"]
+    assert rows[0]["home"] == "attic, north"
+    assert rows[0]["began"] == "2001-09-09T01:46:40Z"
+
+
+def test_two_are_compared(history: History, tmp_path: Path) -> None:
+    one, other = (history.add(figures("attic", covered)) for covered in (10.0, 19.0))
+    assert main(["--compare", str(one), str(other)]) == 0
+    assert "+9.00" in (tmp_path / f"compare-{one}-{other}.html").read_text()
+
+
+@pytest.mark.parametrize("words", [["7"], ["last"], ["one"], ["--compare", "1", "2"]])
+def test_what_there_is_not_is_said(
+    history: History, words: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(words) == 2
+    assert "report: " in capsys.readouterr().err
+
+
+def test_damage_is_told_where_it_is_found(
+    history: History, capsys: pytest.CaptureFixture[str]
+) -> None:
+    history.add(figures("attic", 1.0))
+    history.path.write_bytes(b"damaged" * 1000)
+    assert main([]) == 0
+    assert "set aside" in capsys.readouterr().err

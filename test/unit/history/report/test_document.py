@@ -1,0 +1,129 @@
+"""Reports are read as HTML, and their figures compared with the run."""
+
+from __future__ import annotations
+
+import re
+import xml.etree.ElementTree as ElementTree
+from dataclasses import replace
+from html.parser import HTMLParser
+
+import pytest
+
+from roomba.history.database import KeptRun
+from roomba.history.report.document import comparison_of, report_of
+from roomba.history.run import Recording, RunFigures
+
+VOID = ("meta", "link", "br", "img", "input")
+
+
+class Read(HTMLParser):
+    """The cells of all tables by row, the addresses that are referred to, and what is left open."""
+
+    def __init__(self, document: str) -> None:
+        super().__init__()
+        self.rows: list[list[str]] = []
+        self.addresses: list[str] = []
+        self.tags: list[str] = []
+        self.open: list[str] = []
+        self.title = ""
+        self.feed(document)
+
+    def handle_starttag(self, tag: str, attributes: list[tuple[str, str | None]]) -> None:
+        self.tags.append(tag)
+        if tag not in VOID:
+            self.open.append(tag)
+        self.addresses += [value or "" for name, value in attributes if name in ("href", "src")]
+        if tag == "tr":
+            self.rows.append([])
+        elif tag in ("td", "th"):
+            self.rows[-1].append("")
+
+    def handle_startendtag(self, tag: str, attributes: list[tuple[str, str | None]]) -> None:
+        self.tags.append(tag)
+        self.addresses += [value or "" for name, value in attributes if name in ("href", "src")]
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self.open.pop() == tag
+
+    def handle_data(self, data: str) -> None:
+        if self.open and self.open[-1] in ("td", "th"):
+            self.rows[-1][-1] += data
+        if self.open and self.open[-1] == "title" and "svg" not in self.open:
+            self.title += data
+
+
+@pytest.fixture
+def kept(figures: RunFigures) -> KeptRun:
+    return KeptRun(12, figures, True)
+
+
+def test_the_figures_are_those_of_the_run(kept: KeptRun, recording: Recording) -> None:
+    read = Read(report_of(kept, recording))
+    assert read.open == []
+    assert read.title.startswith("Run 12: box, ")
+    told = dict(row for row in read.rows if len(row) == 2)
+    assert told["Clean"] == "11.00 m² of 12.00 m²"
+    assert told["Share"] == "91.7 %"
+    assert told["Time"] == "1 min 00 s"
+    assert told["Way"] == "24.0 m"
+    assert told["Turning"] == "6.5 rad"
+    assert told["Dirt"] == "3.25 g"
+    assert told["Energy"] == "–"
+    assert told["Seed"] == "7"
+    assert ["1", "hall", "1.00 m²", "a thing <stood> in the way"] in read.rows
+
+
+def test_it_stands_alone(kept: KeptRun, recording: Recording) -> None:
+    document = report_of(kept, recording)
+    read = Read(document)
+    assert read.addresses
+    assert all(address.startswith("data:image/png;base64,") for address in read.addresses)
+    assert "script" not in read.tags
+    assert re.findall(r"url\(|@import|https?://(?!www\.w3\.org/2000/svg)", document) == []
+    assert kept.figures.source.repeat in document
+
+
+def test_the_floor_is_drawn_where_it_is(kept: KeptRun, recording: Recording) -> None:
+    document = report_of(kept, recording)
+    svg = ElementTree.fromstring(re.findall(r"<svg.*?</svg>", document)[0])
+    space = "{http://www.w3.org/2000/svg}"
+    assert [float(part) for part in svg.attrib["viewBox"].split()] == [-20, -320, 440, 340]
+    way = svg.find(f"{space}polyline")
+    assert way is not None
+    assert way.attrib["points"].startswith("50,-150 ")
+    assert way.attrib["points"].endswith(" 350,-150")
+    circle = svg.find(f"{space}circle")
+    assert circle is not None
+    assert (circle.attrib["cx"], circle.attrib["cy"]) == ("350", "-250")
+    assert float(circle.attrib["r"]) == pytest.approx(100 * (1.0 / 3.14159) ** 0.5, abs=1.0)
+    title = svg.find(f"{space}title")
+    assert title is not None
+    assert title.text == "Floor of box: 91.7 % clean, 1 places missed"
+    assert len(svg.findall(f"{space}image")) == 2
+
+
+def test_weeks_and_the_dirt_of_the_home_are_told(
+    kept: KeptRun,
+    recording: Recording,
+) -> None:
+    later = replace(kept.figures, began=kept.figures.began + 7 * 86400.0, dirt=6.5)
+    read = Read(report_of(kept, recording, [kept, KeptRun(13, later, False)]))
+    weeks = [row for row in read.rows if re.fullmatch(r"\d{4}-W\d\d", row[0])]
+    assert [row[1] for row in weeks] == ["1", "1"]
+    assert [row[5] for row in weeks] == ["6.5 g", "3.2 g"]
+
+
+def test_a_run_without_a_recording_is_told(kept: KeptRun) -> None:
+    document = report_of(kept, None)
+    assert Read(document).open == []
+    assert "no longer kept" in document
+
+
+def test_two_runs_are_compared(kept: KeptRun, recording: Recording) -> None:
+    other = KeptRun(15, replace(kept.figures, covered=11.5, distance=20.0, missed=()), True)
+    read = Read(comparison_of((kept, recording), (other, recording)))
+    assert read.open == []
+    assert ["Clean, m²", "11.00", "11.50", "+0.50"] in read.rows
+    assert ["Way, m", "24.0", "20.0", "-4.0"] in read.rows
+    assert ["Energy, Wh", "–", "–", "–"] in read.rows
+    assert ["Places missed", "1", "0", "-1"] in read.rows
