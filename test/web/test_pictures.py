@@ -9,10 +9,11 @@ from pathlib import Path
 import cv2
 
 
-def test_the_page_is_drawn_in_both_sizes(tmp_path: Path) -> None:
+def test_the_page_is_drawn_in_both_sizes_and_a_report(tmp_path: Path) -> None:
     command = (sys.executable, "-m", "roomba.commands.pictures", str(tmp_path))
-    subprocess.run((*command, "--only", "page", "page_phone"), check=True, timeout=240.0)
-    for name, width in (("page", 1280), ("page_phone", 390)):
+    wanted = {"page": 1280, "page_phone": 390, "replay": 1280, "report": 1100}
+    subprocess.run((*command, "--only", *wanted), check=True, timeout=300.0)
+    for name, width in wanted.items():
         picture = cv2.imread(str(tmp_path / f"{name}.png"))
         assert picture is not None
         assert picture.shape[1] == width

@@ -18,6 +18,8 @@ _COMMANDS: Final = {
     "sim": "roomba.commands.sim.command",
     "map": "roomba.commands.map.command",
     "play": "roomba.commands.play.command",
+    "replay": "roomba.commands.play.replay",
+    "report": "roomba.commands.report.command",
     "import": "roomba.commands.valetudo.import_command",
     "export": "roomba.commands.valetudo.export_command",
     "pictures": "roomba.commands.pictures.__main__",
@@ -38,6 +40,10 @@ usage: roomba COMMAND ...
                    recorded drive (see --help)
   play [ARGS]      a robot that lives in a home, on a web page: --home NAME, --speed N,
                    --map none (see --help)
+  report [RUN]     the runs that were kept: a list, or a report as HTML: --out FILE.html,
+                   --compare A B, --csv FILE (see --help)
+  replay [RUN|FILE.run]
+                   a recorded run on the page, with a time line (see --help)
   import valetudo FILE.json [--out FOLDER]
                    a home of a map of Valetudo: rooms, station, zones
   export valetudo HOME [--out FILE.json]

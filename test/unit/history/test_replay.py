@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
-import time
 
 import numpy as np
 import pytest
+from fixtures.waiting import wait_until
 
 from roomba.client.observed import ObservedRobot, Timeline
 from roomba.client.protocol import RequestRefusedError
@@ -62,9 +62,7 @@ def test_coverage_grows_and_shrinks_with_the_time(robot: RecordedRobot) -> None:
 def test_time_passes_while_it_plays(robot: RecordedRobot) -> None:
     assert robot.timeline().at == 0.0
     robot.play(is_playing=True)
-    ends = time.monotonic() + 30.0
-    while robot.timeline().is_playing:
-        assert time.monotonic() < ends
+    wait_until(lambda: not robot.timeline().is_playing, 30.0, "the end of the recording")
     assert robot.timeline().at == 60.0
     jumps = robot.timeline().jumps
     robot.play(is_playing=True)

@@ -27,7 +27,12 @@ from roomba.commands.pictures.mapping import picture_of_map_errors, picture_of_m
 from roomba.commands.pictures.motion import picture_of_motion
 from roomba.commands.pictures.moving import picture_of_moving
 from roomba.commands.pictures.odometry import picture_of_odometry
-from roomba.commands.pictures.page import picture_of_page, picture_of_phone
+from roomba.commands.pictures.page import (
+    picture_of_page,
+    picture_of_phone,
+    picture_of_replay,
+    picture_of_report,
+)
 from roomba.commands.pictures.rooms import picture_of_rooms
 from roomba.commands.pictures.station import picture_of_station
 from roomba.commands.pictures.tour import VIEWS, picture_of_home, picture_of_view, picture_of_walk
@@ -70,6 +75,8 @@ PICTURES: dict[str, tuple[str, Callable[[Home], Picture]]] = {
 IN_BROWSER: dict[str, tuple[str, Callable[[Home], Picture]]] = {
     "page": ("flat", picture_of_page),
     "page_phone": ("flat", picture_of_phone),
+    "replay": ("flat", picture_of_replay),
+    "report": ("flat", picture_of_report),
 }
 """Pictures that need a browser: made when they are named."""
 

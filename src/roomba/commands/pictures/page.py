@@ -1,4 +1,4 @@
-"""Pictures of the web page, made in a real browser while a robot cleans."""
+"""Pictures of the web page while a robot cleans, and of a report, made in a real browser."""
 
 from __future__ import annotations
 
@@ -10,7 +10,14 @@ import cv2
 import numpy as np
 
 from roomba.commands.play.command import live_client
+from roomba.commands.sim.kept_run import StateSamples, figures_of, recording_of
+from roomba.commands.sim.runs import run_trial
+from roomba.commands.sim.trial import Trial
 from roomba.errors import RoombaError
+from roomba.history.database import KeptRun
+from roomba.history.replay import RecordedRobot
+from roomba.history.report.document import report_of
+from roomba.history.run import Recording, RunFigures, Source
 from roomba.plots.canvas import Picture
 from roomba.ui.web.app import create_app
 from roomba.ui.web.guard import Guard, new_token
@@ -23,6 +30,10 @@ _CLEANED: Final = 4.0
 """m2 that are clean in the picture."""
 _DEADLINE: Final = 90.0
 """s of wall time until so much is clean."""
+_IS_COVERED: Final = """async () => {
+    const { grid } = await import("/map/grids.js");
+    return grid("coverage")?.cells.some((value) => value > 0);
+}"""
 _BROWSERS: Final = ("chromium", "chromium-browser", "google-chrome")
 
 
@@ -34,6 +45,49 @@ def picture_of_page(home: Home) -> Picture:
 def picture_of_phone(home: Home) -> Picture:
     """Return the same on a phone, in the dark."""
     return _picture(home, {"width": 390, "height": 844}, "dark")
+
+
+def _recorded_clean(home: Home) -> tuple[RunFigures, Recording]:
+    """Return a clean with three things that the map does not show."""
+    samples = StateSamples()
+    run = run_trial(Trial(home=home.name, seed=1, things=3), (samples,))
+    source = Source("sim", home.name, 1, f"./roomba sim --home {home.name} --seed 1 --things 3")
+    return figures_of(run.figures, source), recording_of(run, samples)
+
+
+def picture_of_replay(home: Home) -> Picture:
+    """Return that clean again on the page, half way through."""
+    robot = RecordedRobot(*_recorded_clean(home))
+    robot.seek(0.5 * robot.timeline().duration)
+    guard = Guard(new_token())
+    server = PageServer(create_app(robot, guard), listen("127.0.0.1", 0, is_fixed=True))
+    server.start()
+    try:
+        with _playwright() as playwright:
+            browser = playwright.chromium.launch(executable_path=_browser(), args=["--no-sandbox"])
+            page = browser.new_context(viewport={"width": 1280, "height": 800}).new_page()
+            page.goto(server.address)
+            page.wait_for_selector("#timeline:not([hidden])")
+            page.wait_for_function(_IS_COVERED, timeout=1000.0 * _DEADLINE)
+            page.wait_for_timeout(500)
+            picture = _decoded(page.screenshot())
+            browser.close()
+    finally:
+        server.stop()
+    return picture
+
+
+def picture_of_report(home: Home) -> Picture:
+    """Return the report of that clean."""
+    figures, recording = _recorded_clean(home)
+    document = report_of(KeptRun(1, figures, True), recording)
+    with _playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=_browser(), args=["--no-sandbox"])
+        page = browser.new_context(viewport={"width": 1100, "height": 1250}).new_page()
+        page.set_content(document)
+        picture = _decoded(page.screenshot())
+        browser.close()
+    return picture
 
 
 def _picture(home: Home, size: dict[str, int], scheme: str) -> Picture:
@@ -64,9 +118,13 @@ def _looked_at(address: str, size: dict[str, int], scheme: str) -> Picture:
             if time.monotonic() > ends:
                 raise RoombaError(f"expected {_CLEANED} m2 clean within {_DEADLINE:g} s")
             page.wait_for_timeout(200)
-        encoded = np.frombuffer(page.screenshot(), np.uint8)
+        picture = _decoded(page.screenshot())
         browser.close()
-    decoded: Any = cv2.imdecode(encoded, cv2.IMREAD_COLOR)
+    return picture
+
+
+def _decoded(screenshot: bytes) -> Picture:
+    decoded: Any = cv2.imdecode(np.frombuffer(screenshot, np.uint8), cv2.IMREAD_COLOR)
     picture: Picture = decoded[:, :, ::-1].copy()
     return picture
 

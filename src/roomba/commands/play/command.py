@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import argparse
 import math
+import shlex
 import sys
-import webbrowser
 from collections.abc import Callable
 from typing import Final
 
+from roomba.commands.play.serving import add_page_options, listen_on, serve_page
 from roomba.commands.sim.homes import home_of, rooms_of
 from roomba.commands.sim.runs import mission_config, robot_config_of
 from roomba.commands.sim.trial import Trial
@@ -21,9 +22,10 @@ from roomba.files.shipped import CONFIGURATION
 from roomba.headless.cleaner import HeadlessMission
 from roomba.headless.live.client import LiveClient
 from roomba.headless.live.robot import SPEEDS
-from roomba.ui.web.app import create_app
-from roomba.ui.web.guard import Guard, new_token
-from roomba.ui.web.server import DEFAULT_PORT, PageServer, listen
+from roomba.history.database import History
+from roomba.history.folder import history_folder
+from roomba.history.recorder import HistoryKeeper
+from roomba.history.run import Source
 
 PROGRAM: Final = spelled("play")
 
@@ -39,25 +41,27 @@ def main(arguments: list[str] | None = None) -> int:
             knows_map=wanted.map == "home",
             bin_grams=wanted.bin,
         )
-        bound = listen("127.0.0.1", wanted.port or DEFAULT_PORT, is_fixed=wanted.port is not None)
+        bound = listen_on(wanted.port)
     except RoombaError as error:
         print(f"{PROGRAM}: {error}", file=sys.stderr)
         return 2
-    guard = Guard(new_token())
-    server = PageServer(create_app(client, guard), bound)
-    address = f"{server.address}#token={guard.token}"
-    print(f"The robot lives in {wanted.home!r}. Its page:\n\n    {address}\n\nCtrl-C ends it.")
-    sys.stdout.flush()
+    source = Source("play", wanted.home, wanted.seed, _repeat(arguments))
+    keeper = HistoryKeeper(History(history_folder()), source, _warn)
     client.start()
-    if wanted.open:
-        webbrowser.open(address)
     try:
-        server.serve()
-    except KeyboardInterrupt:
-        pass
+        told = f"The robot lives in {wanted.home!r}. Its page:"
+        serve_page(client, bound, told, is_opened=wanted.open, keeper=keeper)
     finally:
         client.end()
     return 0
+
+
+def _repeat(arguments: list[str] | None) -> str:
+    return shlex.join([*PROGRAM.split(), *(sys.argv[1:] if arguments is None else arguments)])
+
+
+def _warn(text: str) -> None:
+    print(f"{PROGRAM}: {text}", file=sys.stderr, flush=True)
 
 
 def live_client(
@@ -110,12 +114,7 @@ def _parser() -> argparse.ArgumentParser:
         metavar="GRAMS",
         help="how much its dust bin takes (default: as the configuration says)",
     )
-    parser.add_argument(
-        "--port", type=int, metavar="N", help=f"default: {DEFAULT_PORT}, or the next that is free"
-    )
-    parser.add_argument(
-        "--no-open", dest="open", action="store_false", help="open no browser on the page"
-    )
+    add_page_options(parser)
     return parser
 
 

@@ -9,10 +9,10 @@ from typing import Annotated, Any, Literal, TypeVar
 from fastapi import APIRouter, HTTPException
 from pydantic import BaseModel, ConfigDict, Field
 
-from roomba.client.observed import ObservedRobot
+from roomba.client.observed import ObservedRobot, Timeline
+from roomba.client.plain import home_of, replay_of, state_of
 from roomba.client.protocol import RequestRefusedError, RobotUnavailableError
 from roomba.client.view import LONGEST_NAME, MOST_CORNERS, MOST_PASSES, CleanOrder, ZoneView
-from roomba.ui.web.feed import home_of, state_of
 
 _Value = TypeVar("_Value")
 Coordinate = Annotated[float, Field(ge=-1000.0, le=1000.0, allow_inf_nan=False)]
@@ -88,6 +88,14 @@ class PlaceWish(Wish):
     y: Coordinate
 
 
+class ReplayWish(Wish):
+    """A time of a recording, s, whether it goes on, and its seconds per second."""
+
+    at: float | None = Field(default=None, ge=0.0, le=1e6, allow_inf_nan=False)
+    playing: bool | None = None
+    speed: float | None = Field(default=None, ge=0.25, le=100.0, allow_inf_nan=False)
+
+
 class Answer(BaseModel):
     """The robot obeys."""
 
@@ -101,6 +109,7 @@ def api_of(robot: ObservedRobot) -> APIRouter:
     _add_errands(api, robot)
     _add_edits(api, robot)
     _add_play(api, robot)
+    _add_replay(api, robot)
     return api
 
 
@@ -182,6 +191,22 @@ def _add_edits(api: APIRouter, robot: ObservedRobot) -> None:
     @api.post("/rooms/split", summary="Cut a room along a line")
     def split_room(wish: RoomCut) -> Answer:
         return _obeyed(lambda: robot.split_room(wish.name, wish.start, wish.end))
+
+
+def _add_replay(api: APIRouter, robot: ObservedRobot) -> None:
+    """Add what can be done to a recording, if it is one."""
+    if not isinstance(robot, Timeline):
+        return
+
+    @api.post("/replay", summary="Show another time of the recording, let it go on, or stand")
+    def replay(wish: ReplayWish) -> dict[str, Any]:
+        if wish.speed is not None:
+            robot.set_speed(wish.speed)
+        if wish.at is not None:
+            robot.seek(wish.at)
+        if wish.playing is not None:
+            robot.play(is_playing=wish.playing)
+        return replay_of(robot.timeline())
 
 
 def _add_play(api: APIRouter, robot: ObservedRobot) -> None:

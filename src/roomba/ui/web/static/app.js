@@ -5,6 +5,7 @@ import * as actions from "./panels/actions.js";
 import * as drive from "./panels/drive.js";
 import * as keys from "./panels/keys.js";
 import * as offer from "./panels/offer.js";
+import * as replay from "./panels/replay.js";
 import * as rooms from "./panels/rooms.js";
 import * as status from "./panels/status.js";
 import * as tools from "./panels/view.js";
@@ -13,5 +14,5 @@ import { connect } from "./link.js";
 
 draw.begin();
 gestures.begin(offer.tapped, zones.drawn);
-for (const panel of [status, actions, rooms, zones, drive, tools, keys]) panel.begin();
+for (const panel of [status, actions, rooms, zones, drive, tools, keys, replay]) panel.begin();
 connect();

@@ -9,6 +9,7 @@ export function headline(link, state) {
   if (!state) return link === "gone" ? "The robot does not answer" : "Connecting again …";
   if (link === "gone") return "The robot does not answer";
   if (link === "reconnecting") return "Connecting again …";
+  if (state.replay) return `Recorded: ${headline(link, { ...state, replay: null })}`;
   const { vacuum } = state, room = vacuum.room ? ` · ${vacuum.room}` : "";
   const togo = vacuum.seconds_to_go > 0 && vacuum.state === "cleaning" ? ` · ${duration(vacuum.seconds_to_go)} to go` : "";
   switch (vacuum.phase) {

@@ -3,6 +3,7 @@ import { pan, zoom } from "../map/view.js";
 import { emergency, pauseOrResume } from "./actions.js";
 import { hold, isOpen, release } from "./drive.js";
 import { close } from "./offer.js";
+import * as replay from "./replay.js";
 import { toggleNumber } from "./rooms.js";
 
 const ARROWS = { ArrowUp: [1, 0], ArrowDown: [-1, 0], ArrowLeft: [0, 1], ArrowRight: [0, -1] };
@@ -16,7 +17,7 @@ export function begin() {
 }
 
 function down(event) {
-  if (event.key === "Escape") { close(); emergency(); return; }
+  if (event.key === "Escape") { close(); if (!replay.isShown()) emergency(); return; }
   const writes = event.target.matches?.("input, select, textarea");
   if (writes || event.ctrlKey || event.metaKey || event.altKey || document.querySelector("dialog[open]")) return;
   if (event.key in ARROWS) {
@@ -25,7 +26,7 @@ function down(event) {
     if (isOpen()) hold(event.key, ahead, aside); else pan(aside * STEP, ahead * STEP);
   } else if (event.key === " " && !event.target.matches?.("button, summary")) {
     event.preventDefault();
-    pauseOrResume();
+    if (replay.isShown()) replay.playOrPause(); else pauseOrResume();
   } else if (event.key === "+" || event.key === "=") zoom(1.4);
   else if (event.key === "-") zoom(1 / 1.4);
   else if (event.key === "?") document.getElementById("keys").showModal();

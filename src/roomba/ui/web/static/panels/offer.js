@@ -2,6 +2,7 @@
 import { wish } from "../link.js";
 import { get } from "../store.js";
 import { how } from "./actions.js";
+import { isShown } from "./replay.js";
 import { toggle } from "./rooms.js";
 
 const MARGIN = 8, BESIDE = 12; // pixels
@@ -11,6 +12,7 @@ const place = document.getElementById("offer");
 export function tapped(x, y, px, py) {
   const room = get("home")?.rooms.find((one) => isInside(one.rings, x, y));
   const offers = [];
+  if (isShown()) return;
   if (room) offers.push([get("chosen").includes(room.name) ? `Leave out ${room.name}` : `Choose ${room.name}`, () => toggle(room.name)]);
   offers.push(["Go here", () => wish("go", { x, y })]);
   offers.push(["Clean here", () => wish("clean", { mode: "spot", spot: [x, y], ...how() })]);

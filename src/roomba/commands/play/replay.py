@@ -1,0 +1,64 @@
+"""``roomba replay``: a recorded run on the page, with a time line."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+from typing import Final
+
+from roomba.commands.play.serving import add_page_options, listen_on, serve_page
+from roomba.commands.spelling import spelled
+from roomba.errors import RoombaError
+from roomba.history.database import LAST, History
+from roomba.history.folder import history_folder
+from roomba.history.replay import RecordedRobot
+from roomba.history.run import Recording, RunFigures
+from roomba.history.run_file import read_run
+
+PROGRAM: Final = spelled("replay")
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Show a run until Ctrl-C; returns 0, or 2 for one that cannot be read."""
+    wanted = _parser().parse_args(arguments)
+    try:
+        figures, recording = _run_of(wanted.run, History(wanted.history or history_folder()))
+        robot = RecordedRobot(figures, recording)
+        bound = listen_on(wanted.port)
+    except RoombaError as error:
+        print(f"{PROGRAM}: {error}", file=sys.stderr)
+        return 2
+    robot.play(is_playing=True)
+    told = f"A recorded run of {figures.source.home!r}. Its page:"
+    serve_page(robot, bound, told, is_opened=wanted.open)
+    return 0
+
+
+def _run_of(word: str, history: History) -> tuple[RunFigures, Recording]:
+    if word == LAST or word.isdecimal():
+        run = history.named(word)
+        return run.figures, history.recording(run.number)
+    return read_run(Path(word).expanduser())
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog=PROGRAM, description="Show a recorded run on a page, with a time line to drag."
+    )
+    parser.add_argument(
+        "run",
+        nargs="?",
+        default=LAST,
+        metavar="RUN|FILE.run",
+        help=f"a run's number, {LAST} (default), or a file of `report --recording`",
+    )
+    parser.add_argument(
+        "--history", type=Path, metavar="FOLDER", help="where the runs are (default: the own)"
+    )
+    add_page_options(parser)
+    return parser
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,143 @@
+"""A recorded run on the page: its time is dragged, and nothing is driven."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import pytest
+from fixtures.waiting import wait_until
+from playwright.sync_api import Browser, Page
+from web.conftest import SIZES
+from web.test_page import CONTRASTS, CONTROLS, DEADLINE
+
+from roomba.commands.sim.kept_run import StateSamples, figures_of, recording_of
+from roomba.commands.sim.runs import run_trial
+from roomba.commands.sim.trial import Trial
+from roomba.history.replay import RecordedRobot
+from roomba.history.run import Recording, RunFigures, Source
+from roomba.ui.web.app import create_app
+from roomba.ui.web.guard import Guard, new_token
+from roomba.ui.web.server import PageServer, listen
+
+SWEPT = """async () => {
+    const { grid } = await import("/map/grids.js");
+    return grid("coverage")?.cells.reduce((sum, value) => sum + (value > 0), 0) ?? 0;
+}"""
+DRAG = """(at) => {
+    const slider = document.getElementById("replay-at");
+    slider.value = at;
+    slider.dispatchEvent(new Event("input"));
+}"""
+
+
+@pytest.fixture(scope="module")
+def recorded() -> tuple[RunFigures, Recording]:
+    """A real clean of the studio."""
+    samples = StateSamples()
+    run = run_trial(Trial(home="studio", seed=1), (samples,))
+    source = Source("sim", run.home.name, 1)
+    return figures_of(run.figures, source), recording_of(run, samples)
+
+
+@dataclass
+class Replayed:
+    """A page over a recording."""
+
+    page: Page
+    robot: RecordedRobot
+    recording: Recording
+
+    def drag_to(self, at: float) -> None:
+        self.page.evaluate(DRAG, at)
+        wait_until(lambda: abs(self.robot.timeline().at - at) < 0.5, DEADLINE, f"the time {at:g} s")
+
+    def wait_for_swept(self, least: int, most: int) -> None:
+        wait_until(
+            lambda: least <= self.swept() <= most, DEADLINE, f"{least} to {most} swept cells"
+        )
+
+    def swept(self) -> int:
+        return int(self.page.evaluate(SWEPT))
+
+
+@pytest.fixture(params=list(SIZES))
+def replayed(
+    request: pytest.FixtureRequest, browser: Browser, recorded: tuple[RunFigures, Recording]
+) -> Iterator[Replayed]:
+    robot = RecordedRobot(*recorded)
+    guard = Guard(new_token())
+    server = PageServer(create_app(robot, guard), listen("127.0.0.1", 0, is_fixed=True))
+    server.start()
+    width, height = SIZES[request.param]
+    context = browser.new_context(viewport={"width": width, "height": height})
+    page = context.new_page()
+    errors: list[str] = []
+    page.on("pageerror", lambda error: errors.append(str(error)))
+    page.goto(f"{server.address}#token={guard.token}")
+    page.wait_for_selector("#timeline:not([hidden])")
+    yield Replayed(page, robot, recorded[1])
+    context.close()
+    server.stop()
+    assert errors == []
+
+
+def test_dragging_shows_another_time(replayed: Replayed) -> None:
+    page, duration = replayed.page, replayed.recording.duration
+    assert page.inner_text("#headline").startswith("Recorded: ")
+    replayed.wait_for_swept(0, 40)
+    replayed.drag_to(duration)
+    page.wait_for_selector("#last:not([hidden])")
+    assert "Completed" in page.inner_text("#last-text")
+    wait_until(lambda: replayed.swept() > 5000, DEADLINE, "swept floor")
+    whole = replayed.swept()
+    replayed.drag_to(0.5 * duration)
+    replayed.wait_for_swept(whole // 4, 3 * whole // 4)
+    page.wait_for_selector("#last[hidden]", state="attached")
+    trail = page.evaluate("async () => (await import('/store.js')).get('trail').length")
+    assert 0 < trail <= len(replayed.recording.trace) // 2 + 2
+    replayed.drag_to(0.0)
+    replayed.wait_for_swept(0, 40)
+
+
+def test_the_keyboard_plays_and_drags(replayed: Replayed) -> None:
+    page = replayed.page
+    page.locator("#floor").focus()
+    page.keyboard.press(" ")
+    wait_until(lambda: replayed.robot.timeline().is_playing, DEADLINE, "the recording to go on")
+    page.wait_for_function("() => document.getElementById('replay-play').textContent === 'Pause'")
+    wait_until(lambda: replayed.robot.timeline().at > 3.0, DEADLINE, "time to pass")
+    page.keyboard.press(" ")
+    wait_until(lambda: not replayed.robot.timeline().is_playing, DEADLINE, "the recording to stand")
+    before = replayed.robot.timeline().at
+    page.locator("#replay-at").focus()
+    page.keyboard.press("PageUp")
+    wait_until(lambda: replayed.robot.timeline().at > before + 10.0, DEADLINE, "a later time")
+    page.select_option("#replay-speed", "100")
+    wait_until(lambda: replayed.robot.timeline().speed == 100.0, DEADLINE, "another speed")
+
+
+def test_commands_are_not_offered_and_are_refused(replayed: Replayed) -> None:
+    page = replayed.page
+    for name in ("#clean", "#emergency", "#draw-no-go", "details.drive"):
+        assert not page.locator(name).is_visible()
+    told = page.evaluate(
+        """async () => {
+            const { wish } = await import("/link.js");
+            await wish("clean", {});
+            return document.getElementById("refusal").textContent;
+        }"""
+    )
+    assert "recorded run" in told
+    page.mouse.click(*(0.5 * side for side in page.evaluate("() => [innerWidth, innerHeight / 2]")))
+    assert not page.locator("#offer").is_visible()
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_it_can_be_read_and_touched(replayed: Replayed, scheme: str) -> None:
+    page = replayed.page
+    page.emulate_media(color_scheme="dark" if scheme == "dark" else "light")
+    assert [(text, ratio) for text, ratio in page.evaluate(CONTRASTS) if ratio < 4.5] == []
+    for identity, name, width, height in page.evaluate(CONTROLS):
+        assert name, identity
+        assert min(width, height) >= 24, (identity, name)
