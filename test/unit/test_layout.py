@@ -101,13 +101,27 @@ TESTED_BY: dict[str, tuple[str, str]] = {
     ),
     "roomba/perception/matching/beams": ("unit/perception/matching/test_match_kernels.py", VALUES),
     "roomba/perception/matching/mounts": ("ros/convert/test_scan.py", "made of messages there"),
-    "roomba/perception/slam/follow_kernels": ("unit/perception/slam/test_mapper.py", PART),
+    "roomba/perception/slam/following/follow_kernels": (
+        "unit/perception/slam/test_mapper.py",
+        PART,
+    ),
     "roomba/perception/slam/mapper_state": (
         "unit/perception/slam/test_mapper_taken_up.py",
         VALUES,
     ),
-    "roomba/perception/slam/scan_follower": ("unit/perception/slam/test_mapper.py", PART),
-    "roomba/perception/slam/surfel_kernels": ("unit/perception/slam/test_surfels.py", PART),
+    "roomba/perception/slam/following/scan_follower": ("unit/perception/slam/test_mapper.py", PART),
+    "roomba/perception/slam/scan_matching/surfel_kernels": (
+        "unit/perception/slam/scan_matching/test_surfels.py",
+        PART,
+    ),
+    "roomba/perception/slam/drawing/submap_drawing": ("unit/perception/slam/test_mapper.py", PART),
+    "roomba/perception/slam/finishing/finish": ("unit/perception/slam/test_mapper.py", PART),
+    "roomba/perception/slam/mapper_estimate": ("unit/perception/slam/test_mapper.py", VALUES),
+    "roomba/perception/slam/submap_map": ("unit/perception/slam/test_mapper.py", PART),
+    "roomba/perception/slam/scan_matching/tolerances": (
+        "unit/perception/slam/scan_matching/test_surfels.py",
+        VALUES,
+    ),
     "roomba/perception/swept/coverage_bits": (
         "unit/perception/swept/test_coverage_map.py",
         VALUES,
@@ -116,13 +130,19 @@ TESTED_BY: dict[str, tuple[str, str]] = {
         "unit/perception/swept/test_coverage_map.py",
         PART,
     ),
-    "roomba/perception/slam/finding_back_kernels": (
+    "roomba/perception/slam/following/finding_back_kernels": (
         "unit/perception/slam/test_mapper_foreign.py",
         PART,
     ),
-    "roomba/perception/slam/relocation": ("unit/perception/slam/test_mapper_foreign.py", PART),
-    "roomba/perception/slam/refinement_kernels": ("unit/perception/slam/test_refinement.py", PART),
-    "roomba/perception/slam/scan_kernels": ("unit/perception/slam/test_mapper.py", PART),
+    "roomba/perception/slam/submaps/relocation": (
+        "unit/perception/slam/test_mapper_foreign.py",
+        PART,
+    ),
+    "roomba/perception/slam/finishing/refinement_kernels": (
+        "unit/perception/slam/finishing/test_refinement.py",
+        PART,
+    ),
+    "roomba/perception/slam/following/scan_kernels": ("unit/perception/slam/test_mapper.py", PART),
     "roomba/perception/things/kernels": ("unit/perception/things/test_layer.py", PART),
     "roomba/plots/": ("unit/plots/test_home.py", "a drawing of a home is made of them"),
     "roomba/recordings/": ("unit/recordings/test_drive.py", "read with all others as one drive"),
@@ -158,11 +178,9 @@ LARGE_FOLDERS = {
     "benchmarks/peers": "one script a peer",
     "src/roomba/commands/pictures": "one file a picture",
     "src/roomba/commands/sim": "one command: its options, runs, figures and what they are told in",
-    "src/roomba/perception/slam": "one algorithm: its stages, and the kernels of each beside it",
     "test/fixtures": "one file a fixture",
     "test/ros": "one file a node",
     "test/system": "one file a promise of the whole",
-    "test/unit/perception/slam": "one file a stage, and some for whole maps",
 }
 
 

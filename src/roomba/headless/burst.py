@@ -17,7 +17,7 @@ from roomba.headless.rows import BELIEVED, PASSED
 from roomba.mission.driving.progress_kernels import PROGRESS
 from roomba.mission.steady import Steady
 from roomba.perception.localization.recent_sight import RecentSight
-from roomba.perception.slam.scan_follower import not_following
+from roomba.perception.slam.following.scan_follower import not_following
 from roomba.perception.swept.coverage_map import CoverageMap
 from roomba.robot.brain import Brain
 from roomba.world.home.dirt import MICROGRAMS_PER_GRAM

@@ -13,8 +13,9 @@ from roomba.perception.localization.belief_correct_kernels import correct, is_ca
 from roomba.perception.localization.belief_reckon_kernels import reckon_on
 from roomba.perception.localization.recent_sight_kernels import note_sight
 from roomba.perception.matching.match_kernels import beam_ends
-from roomba.perception.slam.follow_kernels import beyond, moved_since
-from roomba.perception.slam.scan_kernels import IS_DONE, IS_LEFT, take_scan
+from roomba.perception.matching.pose_kernels import beyond
+from roomba.perception.slam.following.follow_kernels import moved_since
+from roomba.perception.slam.following.scan_kernels import IS_DONE, IS_LEFT, take_scan
 from roomba.perception.things.kernels import note
 
 

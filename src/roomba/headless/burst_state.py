@@ -11,7 +11,7 @@ from roomba.control.tracking_kernels import Course
 from roomba.perception.localization.recent_sight_kernels import Sights
 from roomba.perception.matching.beams import LidarBeams
 from roomba.perception.matching.reckoned_path import ReckonedPath
-from roomba.perception.slam.scan_kernels import Following
+from roomba.perception.slam.following.scan_kernels import Following
 from roomba.perception.things.kernels import Things
 from roomba.world.engine.lidar.projection import ScanBuffers
 from roomba.world.engine.state.arrays import State

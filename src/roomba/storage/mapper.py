@@ -14,10 +14,10 @@ from numpy.typing import NDArray
 from roomba.errors import RoombaError
 from roomba.files.atomic import UNREADABLE, write_whole
 from roomba.geometry import Pose
-from roomba.perception.slam.mapper_state import KeptSubmap, LidarNumbers, MapperState
-from roomba.perception.slam.pose_graph import Link
-from roomba.perception.slam.submap import Keyframe
-from roomba.perception.slam.surface_kernels import POINT
+from roomba.perception.slam.mapper_state import LidarNumbers, MapperState
+from roomba.perception.slam.scan_matching.surface_kernels import POINT
+from roomba.perception.slam.submaps.pose_graph import Link
+from roomba.perception.slam.submaps.submap import KeptSubmap, Keyframe
 
 Arrays = Mapping[str, NDArray[Any]]
 

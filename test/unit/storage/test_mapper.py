@@ -15,9 +15,9 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from roomba.geometry import Pose
-from roomba.perception.slam.mapper_state import KeptSubmap, LidarNumbers, MapperState
-from roomba.perception.slam.pose_graph import Link
-from roomba.perception.slam.submap import Keyframe
+from roomba.perception.slam.mapper_state import LidarNumbers, MapperState
+from roomba.perception.slam.submaps.pose_graph import Link
+from roomba.perception.slam.submaps.submap import KeptSubmap, Keyframe
 from roomba.storage.mapper import (
     KeptMap,
     MapperFileError,

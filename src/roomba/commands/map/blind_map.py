@@ -12,8 +12,12 @@ from roomba.geometry import Pose, wrap_angle
 from roomba.grid import OccupancyMap
 from roomba.perception.localization.dead_reckoning import DeadReckoning
 from roomba.perception.matching.scan_view import LidarModel
-from roomba.perception.slam.occupancy_counts import OccupancyCounts
-from roomba.perception.slam.surface_kernels import POINT, surface_points
+from roomba.perception.slam.drawing.occupancy_counts import OccupancyCounts
+from roomba.perception.slam.scan_matching.surface_kernels import (
+    POINT,
+    room_for_sums,
+    surface_points,
+)
 
 
 class BlindMap:
@@ -51,10 +55,9 @@ class BlindMap:
         self._drawn = here
         if lidar is not self._lidar:
             self._lidar, self._beams = lidar, lidar.arrays()
+            self._sums = room_for_sums(lidar.beams)
         beams, points = self._beams, np.empty((lidar.beams, POINT))
-        count = surface_points(
-            ranges, beams.directions, beams.mount, beams.nearest, beams.farthest, 0.0, points
-        )
+        count = surface_points(ranges, beams, 0.0, points, self._sums)
         pose = np.array([here.x, here.y, here.theta])
         self._sheet.draw(points[:count].astype(np.float32), beams.mount[:2], pose, beams.farthest)
 

@@ -21,8 +21,8 @@ from roomba.geometry import Pose, wrap_angle
 from roomba.grid import FREE, OCCUPIED, UNKNOWN, OccupancyMap
 from roomba.perception.floors.map_changes_kernels import NO_BOUNDS, count_scan, score_look
 from roomba.perception.matching.beams import LidarBeams
-from roomba.perception.slam.drawing_kernels import CountArrays
-from roomba.perception.slam.surface_kernels import POINT
+from roomba.perception.slam.drawing.drawing_kernels import CountArrays
+from roomba.perception.slam.scan_matching.surface_kernels import POINT
 from roomba.raster.distance import distance_to_nearest
 from roomba.raster.regions import dilated, numbered_regions
 

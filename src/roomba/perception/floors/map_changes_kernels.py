@@ -9,8 +9,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from roomba.perception.slam.drawing_kernels import CountArrays, draw
-from roomba.perception.slam.surface_kernels import NORMAL_X, NORMAL_Y, X, Y
+from roomba.perception.slam.drawing.drawing_kernels import CountArrays, draw
+from roomba.perception.slam.scan_matching.surface_kernels import NORMAL_X, NORMAL_Y, X, Y
 
 Floats = NDArray[np.float64]
 

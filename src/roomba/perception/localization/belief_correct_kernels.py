@@ -35,7 +35,7 @@ _WORSE: Final = 0.45
 _THROUGH: Final = 0.15
 """Share of beams that go through walls more than usual, at which the pose is doubted."""
 _LEAST: Final = 0.35
-"""Share of beams that must agree, whatever is usual."""
+"""The least share of beams that must agree, even where fewer are usual."""
 _STILL: Final = (0.0005**2, 0.0005**2, 0.0003**2)
 """m2, rad2; the least variance, of the map's errors, which more scans do not reduce."""
 

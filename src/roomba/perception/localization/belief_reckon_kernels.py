@@ -24,7 +24,7 @@ _SETTLING: Final = 0.3
 SET_BACK: Final = 0.1
 """s; a stamp older than the last one by this is of a clock that was set back."""
 _ROUNDING: Final = 1e-6
-"""s; whatever a clock shows, to the last bit, the same samples count."""
+"""s; rounding of a clock decides nothing: the same samples count at any time."""
 _UNSEEN: Final = 0.3
 """Deviation of the mean turning speed between two samples, as a share of its change."""
 _JOLT: Final = 0.05

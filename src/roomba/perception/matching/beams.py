@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+import math
+from typing import Final, NamedTuple
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
+
+_ALL_AROUND: Final = 0.01
+"""rad; beams that lack no more of a full turn have no first and no last one."""
 
 
 class LidarBeams(NamedTuple):
@@ -30,3 +35,9 @@ class LidarBeams(NamedTuple):
     time_increment: float
     ends: Floats
     lanes: Floats
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def is_all_around(beams: int, step: float) -> bool:
+    """Whether so many beams, ``step`` rad from one to the next, go all around."""
+    return beams * abs(step) > 2.0 * math.pi - _ALL_AROUND

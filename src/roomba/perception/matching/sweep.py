@@ -15,7 +15,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from roomba.angles import wrapped
-from roomba.perception.matching.beams import LidarBeams
+from roomba.perception.matching.beams import LidarBeams, is_all_around
 from roomba.perception.matching.reckoned_path import ReckonedPath, pose_beyond
 
 Floats = NDArray[np.float64]
@@ -28,8 +28,6 @@ lies between them, and so much, m."""
 _MOST_TURNED: Final = 0.5
 """Share of the angle between two beams by which ends may lie apart at most to be neighbours still,
 beyond that angle itself."""
-_ALL_AROUND: Final = 0.01
-"""rad; beams that lack no more of a full turn have no first and no last one."""
 SWEEP_WORK: Final = 3
 """Rows of what :func:`at_once` works in."""
 
@@ -53,7 +51,7 @@ def at_once(
     _see_from_first(ranges, lidar, path, stamp, places, lengths, work[2])
     for beam in range(beams):
         still[beam] = math.nan
-    is_around = beams * abs(lidar.step) > 2.0 * math.pi - _ALL_AROUND
+    is_around = is_all_around(beams, lidar.step)
     # What met nothing first: what met something takes its place.
     for beam in range(beams):
         if not lengths[beam] >= 0.0:

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from roomba.geometry import Pose
 from roomba.perception.matching.scan_view import LidarModel
-from roomba.perception.slam.pose_graph import Link
-from roomba.perception.slam.submap import Keyframe
+from roomba.perception.slam.submaps.pose_graph import Link
+from roomba.perception.slam.submaps.submap import KeptSubmap
 
 Floats = NDArray[np.float64]
 
@@ -44,14 +44,6 @@ class LidarNumbers:
         """The lidar itself."""
         angles = self.first_angle + self.step * np.arange(self.beams)
         return LidarModel(angles, self.nearest, self.farthest, self.mount)
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class KeptSubmap:
-    """A submap: ``way`` is what was driven before it, m; ``keyframes`` are those it has by now."""
-
-    way: float
-    keyframes: tuple[Keyframe, ...]
 
 
 @dataclass(frozen=True, slots=True, eq=False)

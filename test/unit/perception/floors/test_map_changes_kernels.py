@@ -16,7 +16,7 @@ from roomba.perception.floors.map_changes_kernels import (
     count_scan,
     score_look,
 )
-from roomba.perception.slam.drawing_kernels import CountArrays
+from roomba.perception.slam.drawing.drawing_kernels import CountArrays
 
 SIZE, CELL = 40, 0.1
 COUNTS = arrays(np.uint16, (6, 7), elements=st.integers(0, 12))

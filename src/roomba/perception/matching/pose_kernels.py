@@ -1,0 +1,44 @@
+"""Compiled: poses seen from other poses, and how far apart they are."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from roomba.angles import wrapped
+
+Floats = NDArray[np.float64]
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def beyond(
+    x: float, y: float, theta: float, ahead: float, aside: float, turn: float
+) -> tuple[float, float, float]:
+    """Return the pose, x, y, theta, that the one at ``x``, ``y``, ``theta`` sees: m and rad.
+
+    It lies ``ahead`` and ``aside``, to the left, and is turned by ``turn``.
+    """
+    cosine, sine = math.cos(theta), math.sin(theta)
+    return (
+        x + cosine * ahead - sine * aside,
+        y + sine * ahead + cosine * aside,
+        wrapped(theta + turn),
+    )
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def seen_from(pose: Floats, other: Floats) -> tuple[float, float, float]:
+    """Return how a pose [3] sees another one, [3]: ahead and to the left, m, and turned, rad."""
+    off_x, off_y = other[0] - pose[0], other[1] - pose[1]
+    cosine, sine = math.cos(pose[2]), math.sin(pose[2])
+    return cosine * off_x + sine * off_y, cosine * off_y - sine * off_x, wrapped(other[2] - pose[2])
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def is_apart(pose: Floats, other: Floats, way: float, turn: float) -> bool:
+    """Whether two poses [3] are ``way``, m, apart or turned by ``turn``, rad, or more."""
+    away = math.hypot(pose[0] - other[0], pose[1] - other[1])
+    return away >= way or abs(wrapped(pose[2] - other[2])) >= turn

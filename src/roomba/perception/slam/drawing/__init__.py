@@ -1,0 +1,1 @@
+"""Occupancy counts of the scans that are kept."""

@@ -1,0 +1,255 @@
+"""Compiled: counting, for each cell of a grid, how many beams went through and how many ended."""
+
+from __future__ import annotations
+
+import math
+from typing import Final, NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from roomba.grid import FREE, OCCUPIED, UNKNOWN
+from roomba.perception.slam.scan_matching.surface_kernels import NORMAL_X, NORMAL_Y, X, Y
+
+Floats = NDArray[np.float64]
+Counts = NDArray[np.uint16]
+
+_INTO: Final = 0.4
+"""cells; so far behind the surface that it met a beam is counted, to be inside the wall's cell."""
+INTO_EDGE: Final = 0.25
+"""cells; the same at edges and thin things, where the way that the surface faces is not known:
+farther along the beam, past a corner, is the next cell."""
+_BEFORE: Final = 0.5
+"""cells; so far before the surface a beam counts as through no more."""
+_EDGE: Final = 0.15
+"""cells; a cell that beams met, in the mean, so near to its border, or beyond, may be but the edge
+of what stands in the next one. Two cells for the leg of a chair close the way past it."""
+_SURER: Final = 1.5
+"""Times the share of beams that ended: so much more of them ended in that one."""
+_ROW_STEPS, _COLUMN_STEPS = (0, 1, 0, -1), (1, 0, -1, 0)
+_NOWHERE: Final = np.zeros((0, 0, 2), np.float32)
+_MOST: Final = 60000
+"""Counts are halved there: a cell never overflows."""
+
+
+class CountArrays(NamedTuple):
+    """The grid as kernels know it: counts, uint16 [rows, columns]; ``place`` is the lower left
+    corner x, y and the cell size, m; ``bounds`` int64 [4] the first and last row and column with
+    counts; ``offsets``, float32 [rows, columns, 2], sums of where the cell's beams met a surface, x
+    and y from its middle, cells: none unless :func:`occupancy` is called.
+    """
+
+    hits: Counts
+    passes: Counts
+    place: Floats
+    bounds: NDArray[np.int64]
+    offsets: NDArray[np.float32] = _NOWHERE
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def draw(
+    cells: CountArrays,
+    points: NDArray[np.float32],
+    lidar: Floats,
+    pose: Floats,
+    into_edge: float = _INTO,
+    times: int = 1,
+) -> None:
+    """Count a scan, ``points`` [n, 4] in the robot's frame, seen from ``pose`` [3].
+
+    ``lidar`` is x, y of the lidar in the robot's frame; ``into_edge`` is how far behind the surface
+    a beam is counted, cells, where the way that it faces is not known. -1 ``times`` undoes it; the
+    bounds stay.
+    """
+    per_metre = 1.0 / cells.place[2]
+    rows, columns = cells.hits.shape
+    shape = rows, columns
+    hits, passes = cells.hits.ravel(), cells.passes.ravel()
+    cosine, sine = math.cos(pose[2]), math.sin(pose[2])
+    from_x = pose[0] + cosine * lidar[0] - sine * lidar[1]
+    from_y = pose[1] + sine * lidar[0] + cosine * lidar[1]
+    from_u, from_v = (from_x - cells.place[0]) * per_metre, (from_y - cells.place[1]) * per_metre
+    for index in range(points.shape[0]):
+        x = pose[0] + cosine * points[index, X] - sine * points[index, Y]
+        y = pose[1] + sine * points[index, X] + cosine * points[index, Y]
+        u, v = (x - cells.place[0]) * per_metre, (y - cells.place[1]) * per_metre
+        length = math.hypot(u - from_u, v - from_v)
+        if length == 0.0:
+            continue
+        along_u, along_v = (u - from_u) / length, (v - from_v) / length
+        normal_x, normal_y = points[index, NORMAL_X], points[index, NORMAL_Y]
+        into_u, into_v = along_u, along_v
+        into, before = into_edge, _BEFORE
+        if normal_x != 0.0 or normal_y != 0.0:
+            into_u = -(cosine * normal_x - sine * normal_y)
+            into_v = -(sine * normal_x + cosine * normal_y)
+            into, before = _INTO, _BEFORE / max(into_u * along_u + into_v * along_v, 0.1)
+        _pass(passes, shape, from_u, from_v, along_u, along_v, length - before, times)
+        row, column = math.floor(v + into * into_v), math.floor(u + into * into_u)
+        _hit(cells.offsets, hits, shape, row, column, u, v, times)
+        _bound(cells, row, column)
+    _bound(cells, math.floor(from_v), math.floor(from_u))
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _pass(
+    counts: Counts,
+    shape: tuple[int, int],
+    u: float,
+    v: float,
+    along_u: float,
+    along_v: float,
+    length: float,
+    times: int,
+) -> None:
+    """Count the cells on a straight way, once each (Amanatides and Woo, 1987)."""
+    if length <= 0.0:
+        return
+    column, row = math.floor(u), math.floor(v)
+    columns = shape[1]
+    step_u, step_v = (1 if along_u > 0.0 else -1), (1 if along_v > 0.0 else -1)
+    per_u = math.inf if along_u == 0.0 else abs(1.0 / along_u)
+    per_v = math.inf if along_v == 0.0 else abs(1.0 / along_v)
+    next_u = math.inf if along_u == 0.0 else per_u * (column + 1 - u if step_u > 0 else u - column)
+    next_v = math.inf if along_v == 0.0 else per_v * (row + 1 - v if step_v > 0 else v - row)
+    end_row, end_column = math.floor(v + length * along_v), math.floor(u + length * along_u)
+    # Of a straight way all cells lie between its ends, or next to them.
+    if _is_in(shape, row, column, 1) and _is_in(shape, end_row, end_column, 1):
+        at, side = row * columns + column, step_v * columns
+        _walk(counts, at, step_u, side, per_u, per_v, next_u, next_v, length, times)
+        return
+    while True:
+        if _is_in(shape, row, column, 0):
+            _count(counts, row * columns + column, times)
+        if min(next_u, next_v) > length:
+            return
+        if next_u < next_v:
+            column += step_u
+            next_u += per_u
+        else:
+            row += step_v
+            next_v += per_v
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _walk(
+    counts: Counts,
+    at: int,
+    step_u: int,
+    step_v: int,
+    per_u: float,
+    per_v: float,
+    next_u: float,
+    next_v: float,
+    length: float,
+    times: int,
+) -> None:
+    """Count the cells of a way of which all are on the grid: ``at``, and each after a step.
+
+    The direction of a step is unpredictable, so nothing branches on it: that halves the time.
+    """
+    while True:
+        _count(counts, at, times)
+        is_aside = next_u < next_v
+        if (next_u if is_aside else next_v) > length:
+            return
+        at += step_u if is_aside else step_v
+        next_u += per_u if is_aside else 0.0
+        next_v += 0.0 if is_aside else per_v
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _hit(
+    offsets: NDArray[np.float32],
+    counts: Counts,
+    shape: tuple[int, int],
+    row: int,
+    column: int,
+    u: float,
+    v: float,
+    times: int,
+) -> None:
+    """Count a beam that ended in a cell, and met the surface at ``u``, ``v``, cells."""
+    if not _is_in(shape, row, column, 0):
+        return
+    at = row * shape[1] + column
+    if offsets.shape[0] > 0:
+        if counts[at] + times > _MOST:
+            offsets[row, column, 0] *= 0.5
+            offsets[row, column, 1] *= 0.5
+        offsets[row, column, 0] += times * (u - column - 0.5)
+        offsets[row, column, 1] += times * (v - row - 0.5)
+    _count(counts, at, times)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _is_in(shape: tuple[int, int], row: int, column: int, margin: int) -> bool:
+    rows, columns = shape
+    return margin <= row < rows - margin and margin <= column < columns - margin
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _count(counts: Counts, at: int, times: int) -> None:
+    before = int(counts[at])
+    after = before + times
+    if not 0 <= after <= _MOST:
+        after = 0 if after < 0 else before // 2 + times
+    counts[at] = after
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _bound(cells: CountArrays, row: int, column: int) -> None:
+    rows, columns = cells.hits.shape
+    cells.bounds[0] = max(min(cells.bounds[0], row), 0)
+    cells.bounds[1] = min(max(cells.bounds[1], row), rows - 1)
+    cells.bounds[2] = max(min(cells.bounds[2], column), 0)
+    cells.bounds[3] = min(max(cells.bounds[3], column), columns - 1)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def occupancy(cells: CountArrays, share: float, least: int, values: NDArray[np.int8]) -> None:
+    """Fill ``values``, all within the bounds, from the counts.
+
+    Occupied where ``least`` beams or more, and ``share`` of all, ended, unless that is the edge of
+    what stands in the cell beside it; free where beams went through; else unknown.
+    """
+    rows, columns = values.shape
+    first_row, first_column = cells.bounds[0], cells.bounds[2]
+    for row in range(rows):
+        for column in range(columns):
+            ended = int(cells.hits[first_row + row, first_column + column])
+            through = int(cells.passes[first_row + row, first_column + column])
+            is_met = _is_met(ended, through, share, least)
+            if is_met and not _is_edge(cells, first_row + row, first_column + column, least):
+                values[row, column] = OCCUPIED
+            elif through > 0:
+                values[row, column] = FREE
+            else:
+                values[row, column] = OCCUPIED if ended > 0 else UNKNOWN
+
+
+@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+def _is_met(ended: int, through: int, share: float, least: int) -> bool:
+    return ended >= least and ended >= share * (ended + through)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _is_edge(cells: CountArrays, row: int, column: int, least: int) -> bool:
+    """Whether beams met a cell but at its border to one that is more surely occupied."""
+    rows, columns = cells.offsets.shape[:2]
+    hits = int(cells.hits[row, column])
+    surer = _SURER * hits / (hits + int(cells.passes[row, column]))
+    for step in range(4):
+        step_row, step_column = _ROW_STEPS[step], _COLUMN_STEPS[step]
+        beside_row, beside_column = row + step_row, column + step_column
+        if not (0 <= beside_row < rows and 0 <= beside_column < columns):
+            continue
+        offset_x, offset_y = cells.offsets[row, column]
+        if step_column * offset_x + step_row * offset_y < (0.5 - _EDGE) * hits:
+            continue
+        ended = int(cells.hits[beside_row, beside_column])
+        through = int(cells.passes[beside_row, beside_column])
+        if _is_met(ended, through, surer, least):
+            return True
+    return False

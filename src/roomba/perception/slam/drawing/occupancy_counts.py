@@ -1,0 +1,125 @@
+"""Occupancy counts: how many beams ended in each cell and went through it, on a growing grid."""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.grid import UNKNOWN, GridFrame, OccupancyMap
+from roomba.perception.slam.drawing import drawing_kernels
+from roomba.perception.slam.drawing.drawing_kernels import INTO_EDGE, Counts, draw, occupancy
+
+Floats = NDArray[np.float64]
+Offsets = NDArray[np.float32]
+
+_STEP: Final = 5.0
+_SHARE: Final = 0.25
+"""m; it grows by so much at a time, and by this share of its size if that is more: copying a large
+one takes long."""
+_NONE: Final = 2**40
+"""The first row and column with counts, as long as there are none."""
+_MARGIN: Final = 1
+"""Cells of the unknown around what is known."""
+
+
+class OccupancyCounts:
+    """Counts of beams in cells of ``resolution``, m.
+
+    The corners of cells lie at whole multiples of it, plus ``phase``, x and y in m.
+    """
+
+    def __init__(self, resolution: float, phase: tuple[float, float] = (0.0, 0.0)) -> None:
+        """Begin empty."""
+        self._resolution, self._phase = resolution, phase
+        self._row = self._column = 0
+        nothing = np.zeros((0, 0), np.uint16)
+        offsets = np.zeros((0, 0, 2), np.float32)
+        self._lay(nothing, nothing, offsets, np.array([_NONE, -1, _NONE, -1]))
+
+    def draw(self, points: NDArray[np.float32], lidar: Floats, pose: Floats, reach: float) -> None:
+        """Add a scan, float32 [n, 4], robot's frame, seen from ``pose`` [3], map frame.
+
+        ``lidar`` is x, y in the robot's frame, ``reach`` how far its beams go, m.
+        """
+        self._cover(pose, reach)
+        draw(self._arrays, points, lidar, pose, INTO_EDGE, 1)
+
+    def erase(self, points: NDArray[np.float32], lidar: Floats, pose: Floats) -> None:
+        """Take a scan away that was drawn."""
+        draw(self._arrays, points, lidar, pose, INTO_EDGE, -1)
+
+    def occupancy(self, share: float, least: int) -> OccupancyMap:
+        """Return the map of what was drawn; see :func:`.drawing_kernels.occupancy`.
+
+        Raises ValueError while nothing was drawn.
+        """
+        first_row, last_row, first_column, last_column = self._arrays.bounds.tolist()
+        if last_row < first_row:
+            raise ValueError("expected counts of at least one scan, got an empty one")
+        values = np.empty((last_row - first_row + 1, last_column - first_column + 1), np.int8)
+        occupancy(self._arrays, share, least, values)
+        size = self._resolution
+        frame = GridFrame(
+            size,
+            self._phase[0] + (self._column + first_column - _MARGIN) * size,
+            self._phase[1] + (self._row + first_row - _MARGIN) * size,
+            values.shape[0] + 2 * _MARGIN,
+            values.shape[1] + 2 * _MARGIN,
+        )
+        return OccupancyMap(frame, np.pad(values, _MARGIN, constant_values=UNKNOWN))
+
+    def around(self, x: float, y: float, reach: float, share: float, least: int) -> OccupancyMap:
+        """Return what lies up to ``reach`` m off a place, as far as the grid goes."""
+        size = self._resolution
+        row = math.floor((y - reach - self._phase[1]) / size) - self._row
+        column = math.floor((x - reach - self._phase[0]) / size) - self._column
+        cells = math.ceil(2.0 * reach / size) + 1
+        rows, columns = self._arrays.hits.shape
+        first_row, last_row = np.clip((row, row + cells), 0, rows).tolist()
+        first_column, last_column = np.clip((column, column + cells), 0, columns).tolist()
+        window = np.array([first_row, last_row - 1, first_column, last_column - 1])
+        values = np.empty((last_row - first_row, last_column - first_column), np.int8)
+        occupancy(self._arrays._replace(bounds=window), share, least, values)
+        frame = GridFrame(
+            size,
+            self._phase[0] + (self._column + first_column) * size,
+            self._phase[1] + (self._row + first_row) * size,
+            *values.shape,
+        )
+        return OccupancyMap(frame, values)
+
+    def _lay(
+        self, hits: Counts, passes: Counts, offsets: Offsets, bounds: NDArray[np.int64]
+    ) -> None:
+        """Take other counts, as its first row and column are now."""
+        size = self._resolution
+        corner = self._phase[0] + self._column * size, self._phase[1] + self._row * size
+        place = np.array([*corner, size])
+        self._arrays = drawing_kernels.CountArrays(hits, passes, place, bounds, offsets)
+
+    def _cover(self, pose: Floats, reach: float) -> None:
+        """Make room for all that can be seen from a pose."""
+        size, (phase_x, phase_y) = self._resolution, self._phase
+        x, y = float(pose[0]) - phase_x, float(pose[1]) - phase_y
+        column, last_column = math.floor((x - reach) / size), math.floor((x + reach) / size)
+        row, last_row = math.floor((y - reach) / size), math.floor((y + reach) / size)
+        hits, passes, _, bounds, offsets = self._arrays
+        rows, columns = hits.shape
+        if rows == 0:
+            self._row, self._column = row, column
+        step = max(int(_STEP / size), int(_SHARE * max(rows, columns)))
+        below = -(-max(self._row - row, 0) // step) * step
+        left = -(-max(self._column - column, 0) // step) * step
+        above = -(-max(last_row + 1 - self._row - rows, 0) // step) * step
+        right = -(-max(last_column + 1 - self._column - columns, 0) // step) * step
+        if below or left or above or right:
+            around = ((below, above), (left, right))
+            self._row -= below
+            self._column -= left
+            if bounds[0] != _NONE:
+                bounds += (below, below, left, left)
+            offsets = np.pad(offsets, (*around, (0, 0)))
+            self._lay(np.pad(hits, around), np.pad(passes, around), offsets, bounds)

@@ -1,0 +1,122 @@
+"""Compiled: keyframes of a finished drive are matched to a group of others."""
+
+from __future__ import annotations
+
+import math
+from typing import Final, NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from roomba.perception.matching.match_kernels import invert
+from roomba.perception.matching.pose_kernels import seen_from
+from roomba.perception.slam.scan_matching.surfel_kernels import (
+    ALIGN_WORK,
+    ASKED,
+    CLOSE,
+    COUNTS,
+    MATCHED,
+    Surfels,
+    add_points,
+    align,
+    clear,
+)
+from roomba.perception.slam.scan_matching.tolerances import Tolerances
+
+Floats = NDArray[np.float64]
+Numbers = NDArray[np.int64]
+
+_ROUNDS: Final = 5
+_POINTS: Final = 120
+"""Of a keyframe, about so many are matched: neighbouring beams err alike."""
+_LOOSE: Final = (0.2**2, 0.2**2, 0.1**2)
+"""m2, rad2; how unsure the present poses are taken to be."""
+_LEAST_POINTS: Final = 25
+_LEAST_MET: Final = 0.5
+_LEAST_CLOSE: Final = 0.75
+_FARTHEST: Final = 0.3
+"""m; a match that corrects more is of another place."""
+_LEAST: Final = (0.004**2, 0.004**2, 0.0015**2)
+"""m2, rad2; no match is surer: neighbouring beams err alike."""
+_NEXT_TO_NOTHING: Final = 1e-3
+"""1/m2, 1/rad2; what is known of a direction in which nothing holds a match."""
+
+
+class Scans(NamedTuple):
+    """All keyframes: ``points`` [n, 4], one after the other, each from ``firsts`` [keyframes + 1]
+    on; ``poses`` [keyframes, 3] are where they were taken, map frame.
+    """
+
+    points: Floats
+    firsts: Numbers
+    poses: Floats
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def match_to_group(
+    surfels: Surfels,
+    scans: Scans,
+    group: Numbers,
+    middle: int,
+    frames: Numbers,
+    tolerances: Tolerances,
+    found: Floats,
+    information: Floats,
+) -> None:
+    """Match each of ``frames`` [n] to the keyframes of a ``group``, seen from the ``middle`` one.
+
+    Fills ``found`` [n, 3] with their poses in its frame, nan where there is none to tell, and
+    ``information`` [n, 3, 3] with how sure these are. Of ``surfels``
+    nothing stays.
+    """
+    clear(surfels)
+    work, pose = np.empty((ALIGN_WORK, 3)), np.empty(3)
+    for index in group:
+        pose[0], pose[1], pose[2] = seen_from(scans.poses[middle], scans.poses[index])
+        points = scans.points[scans.firsts[index] : scans.firsts[index + 1]]
+        add_points(surfels, points, len(points), pose)
+    for place in range(frames.size):
+        frame = frames[place]
+        pose[0], pose[1], pose[2] = seen_from(scans.poses[middle], scans.poses[frame])
+        points = scans.points[scans.firsts[frame] : scans.firsts[frame + 1]]
+        is_found = _match(surfels, points, pose, tolerances, found[place], information[place], work)
+        if not is_found:
+            found[place] = math.nan
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _match(
+    surfels: Surfels,
+    points: Floats,
+    thought: Floats,
+    tolerances: Tolerances,
+    pose: Floats,
+    information: Floats,
+    work: Floats,
+) -> bool:
+    """Find the pose at which points fit near that where they are ``thought`` to be seen from."""
+    covariance, gained, counts = np.zeros((3, 3)), np.zeros((3, 3)), np.zeros(COUNTS)
+    for axis in range(3):
+        covariance[axis, axis] = _LOOSE[axis]
+        pose[axis] = thought[axis]
+    stride = max(1, len(points) // _POINTS)
+    is_solved = align(
+        surfels, points, len(points), stride, 1, thought, covariance, tolerances, _ROUNDS, pose,
+        gained, counts, work,
+    )  # fmt: skip
+    if not (is_solved and math.isfinite(pose[0] + pose[1] + pose[2])):
+        return False
+    if counts[MATCHED] < max(_LEAST_POINTS, _LEAST_MET * counts[ASKED]):
+        return False
+    if counts[CLOSE] < _LEAST_CLOSE * counts[MATCHED]:
+        return False
+    if math.hypot(pose[0] - thought[0], pose[1] - thought[1]) > _FARTHEST:
+        return False
+    for axis in range(3):
+        gained[axis, axis] += _NEXT_TO_NOTHING
+    if not invert(gained, covariance):
+        return False
+    for axis in range(3):
+        covariance[axis, axis] += _LEAST[axis]
+    return invert(covariance, information)

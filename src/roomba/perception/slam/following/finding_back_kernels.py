@@ -1,0 +1,79 @@
+"""Compiled: whether scans fit as well as usual, and how fast the robot drives."""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+import numpy as np
+from numba import njit
+
+from roomba.perception.localization.belief import Row, Rows
+from roomba.perception.matching.pose_kernels import is_apart
+from roomba.perception.slam.following.follow_kernels import LEAST_POINTS
+
+FINDING: Final = np.dtype(
+    [
+        ("usual", "f8"),  # share of points that scans usually agree in
+        ("pace", "f8"),  # m/s; the fastest one of late
+        ("stamp", "f8"),  # s; of the newest scan
+        ("way", "f8"),  # m; driven by then
+        ("well_since", "f8"),  # s; stamp of the newest scan that agreed well; nan: none yet
+        ("well_at", "f8", (3,)),  # where dead reckoning had the robot then
+        ("misses", "i8"),  # scans in a row that show enough and confirm nothing
+        ("doubts", "i8"),  # scans in a row that confirm less than is usual
+    ],
+    align=True,
+)
+"""How well scans fit of late, one row."""
+
+_AT_ONCE: Final = 2
+_EVERY: Final = 3
+"""Of scans in a row that do not fit, the first ones are searched for, and then each such one."""
+_LEARNING: Final = 0.05
+"""Share of the newest scan in how well scans usually agree."""
+_PACE_FADES: Final = 10.0
+"""s; after so long the fastest pace counts a third."""
+_DOUBTFUL: Final = 0.85
+"""A scan agrees badly that agrees less than by this share of what is usual."""
+_STANDS: Final = 0.03
+"""m and rad; less than this is no motion of the wheels."""
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def saw(findings: Rows, followers: Rows, stamp: float) -> None:
+    """Take how well the newest scan fits, and its stamp, s."""
+    finding, follower = findings[0], followers[0]
+    _count(finding, follower, stamp)
+    elapsed = stamp - finding.stamp
+    if elapsed > 0.0 and follower.is_sure:
+        pace = (follower.way - finding.way) / elapsed
+        finding.pace = max(math.exp(-elapsed / _PACE_FADES) * finding.pace, pace)
+    finding.stamp, finding.way = stamp, follower.way
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def is_due(findings: Rows) -> bool:
+    """Whether the newest scan is to be searched for."""
+    finding = findings[0]
+    count: int = finding.misses if finding.misses > 0 else finding.doubts
+    return 0 < count <= _AT_ONCE or (count > 0 and count % _EVERY == 0)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _count(finding: Row, follower: Row, stamp: float) -> None:
+    """Count the scans in a row that confirm nothing, or less than is usual."""
+    if not follower.is_sure:
+        finding.misses += follower.points >= LEAST_POINTS
+        return
+    finding.misses = 0
+    agreement = follower.met * follower.close
+    stands = not is_apart(follower.reckoned, finding.well_at, _STANDS, _STANDS)
+    if agreement < _DOUBTFUL * finding.usual and stands:
+        finding.doubts += 1
+        return
+    finding.doubts = 0
+    finding.usual += _LEARNING * (agreement - finding.usual)
+    finding.well_since = stamp
+    for axis in range(3):
+        finding.well_at[axis] = follower.reckoned[axis]

@@ -1,0 +1,176 @@
+"""Compiled: following the robot from scan to scan, in the frame of the newest submap."""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from roomba.angles import wrapped
+from roomba.perception.localization.belief import Row, Rows
+from roomba.perception.localization.belief_reckon_kernels import compose
+from roomba.perception.matching.pose_kernels import beyond, seen_from
+from roomba.perception.slam.scan_matching.surfel_kernels import (
+    ALIGN_WORK,
+    ASKED,
+    CLOSE,
+    MATCHED,
+    Surfels,
+    align,
+)
+from roomba.perception.slam.scan_matching.tolerances import Tolerances, in_plane, last_scale
+
+Floats = NDArray[np.float64]
+
+FOLLOWER: Final = np.dtype(
+    [
+        ("here", "f8", (3,)),  # at the newest scan: x, y, theta, frame of the newest submap
+        ("reckoned", "f8", (3,)),  # the same by dead reckoning, in its own frame
+        ("spread", "f8", (3, 3)),  # since a scan confirmed it, m2 and rad2, submap's axes
+        ("way", "f8"),  # m; driven in all
+        ("met", "f8"),  # of the newest scan: share of points that met a known surface
+        ("close", "f8"),  # and of those that lie in it
+        ("is_sure", "?"),  # whether it confirmed the pose
+        ("misses", "i8"),  # scans since one did
+        ("unsure_way", "f8"),  # m; driven since one did
+        ("unsure_turn", "f8"),  # rad; turned since one did
+        ("odometry_scale", "f8", (3,)),  # how many times its variances dead reckoning is off by
+        ("range_deviation", "f8"),  # m; of a range, as measured
+        ("scanned_at", "f8", (3,)),  # by dead reckoning, where the newest scan was taken
+        ("points", "i8"),  # that it shows
+        ("heading_before", "f8"),  # rad; at the scan before, nan if that did not confirm it
+        ("keyframe", "f8", (3,)),  # where the newest one was kept, in its submap
+        # what does not change
+        ("variance", "f8"),  # m2; of a point
+        ("least_met", "f8"),
+        ("least_close", "f8"),
+        ("keyframe_way", "f8"),  # m; a scan is kept that is so far from the newest keyframe,
+        ("keyframe_turn", "f8"),  # rad; or turned by so much
+        ("work", "f8", (10 + ALIGN_WORK, 3)),  # what the kernel works in; means nothing between
+    ],
+    align=True,
+)
+"""State and numbers of a follower, one row."""
+
+LEAST_POINTS: Final = 30
+"""The fewest points that count."""
+_MANY: Final = 5
+"""Misses after which a scan is matched from farther away."""
+_FIRST_SCALES: Final = (0.1, 0.05)
+"""m; of the first rounds of a match."""
+_LEARNING: Final = 0.02
+"""Share of the newest scan in how far off dead reckoning is thought to be."""
+_MARGIN: Final = 4.0
+"""What was seen of its errors is taken times this: they are not the same all the time."""
+_DOUBTED_MORE: Final = 1.2
+"""Times that it is thought to be off by more after a scan that confirms nothing."""
+_MOST_OFF: Final = 200.0
+"""Times its variance that one scan makes it off at most: a jump says nothing of the usual."""
+_ROUNDS: Final = 6
+_STRIDE: Final = 2
+"""Each such point follows the robot; keyframes have all of them."""
+_FAR_REACH: Final = 3
+"""Cells of surfels; so far a scan is matched after many misses."""
+_LEAST_SPREAD: Final = (0.001**2, 0.001**2, 0.0005**2)
+"""m2, rad2; the least variance of a prior, also at standstill."""
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def follow(
+    followers: Rows, beliefs: Rows, reckoned: Floats, surfels: Surfels, points: Floats, count: int
+) -> None:
+    """Move on to ``reckoned`` [3], and correct that by a scan, points [n, 4] seen from there."""
+    follower = followers[0]
+    _move_on(follower, beliefs[0], reckoned)
+    work = follower.work
+    prior, pose, scales, counts = work[0], work[1], work[2], work[3]
+    covariance, information = work[4:7], work[7:10]
+    for row in range(3):
+        prior[row] = pose[row] = follower.here[row]
+        for column in range(3):
+            covariance[row, column] = follower.spread[row, column]
+        covariance[row, row] += _LEAST_SPREAD[row]
+    reach = _FAR_REACH if follower.misses >= _MANY else 1
+    noise = follower.range_deviation
+    scales[0], scales[1], scales[2] = _FIRST_SCALES[0], _FIRST_SCALES[1], last_scale(noise)
+    tolerances = Tolerances(scales, follower.variance, in_plane(noise))
+    is_solved = align(
+        surfels, points, count, _STRIDE, reach, prior, covariance, tolerances, _ROUNDS, pose,
+        information, counts, work[10:],
+    )  # fmt: skip
+    is_solved = is_solved and math.isfinite(pose[0] + pose[1] + pose[2])
+    follower.met = follower.close = 0.0
+    if is_solved and counts[ASKED] >= LEAST_POINTS:
+        follower.met = counts[MATCHED] / counts[ASKED]
+        follower.close = counts[CLOSE] / max(counts[MATCHED], 1.0)
+    follower.is_sure = (
+        is_solved
+        and counts[ASKED] >= LEAST_POINTS
+        and follower.met >= follower.least_met
+        and follower.close >= follower.least_close
+    )
+    if not follower.is_sure:
+        follower.misses += 1
+        for axis in range(3):
+            # It may be dead reckoning that is off by more than is thought.
+            follower.odometry_scale[axis] = min(
+                _DOUBTED_MORE * follower.odometry_scale[axis], _MOST_OFF
+            )
+        return
+    _learn_scale(follower, prior, pose)
+    follower.here[0], follower.here[1], follower.here[2] = pose[0], pose[1], wrapped(pose[2])
+    follower.spread[:] = 0.0
+    follower.misses = 0
+    follower.unsure_way = follower.unsure_turn = 0.0
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _learn_scale(follower: Row, prior: Floats, pose: Floats) -> None:
+    """Learn from a match how far off dead reckoning was, by its own variances: 1 or more."""
+    cosine, sine = math.cos(prior[2]), math.sin(prior[2])
+    off_x, off_y, turn = pose[0] - prior[0], pose[1] - prior[1], wrapped(pose[2] - prior[2])
+    off = (cosine * off_x + sine * off_y, cosine * off_y - sine * off_x, turn)
+    spread, scale = follower.spread, follower.odometry_scale
+    along = cosine * cosine * spread[0, 0] + sine * sine * spread[1, 1]
+    along += 2.0 * cosine * sine * spread[0, 1]
+    across = spread[0, 0] + spread[1, 1] - along
+    thought = (along, across, spread[2, 2])
+    for axis in range(3):
+        if thought[axis] < _LEAST_SPREAD[axis]:
+            continue  # it hardly moved: the match itself is no surer
+        seen = min(_MARGIN * off[axis] * off[axis] * scale[axis] / thought[axis], _MOST_OFF)
+        scale[axis] = max(1.0, scale[axis] + _LEARNING * (seen - scale[axis]))
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _move_on(follower: Row, belief: Row, reckoned: Floats) -> None:
+    """Go by dead reckoning, and be as unsure as that became since the last scan."""
+    ahead, aside, turn = seen_from(follower.reckoned, reckoned)
+    driven = math.hypot(ahead, aside)
+    follower.way += driven
+    follower.unsure_way += driven
+    follower.unsure_turn += abs(turn)
+    compose(follower.here, ahead, aside, turn)
+    for axis in range(3):
+        follower.reckoned[axis] = reckoned[axis]
+    cosine, sine = math.cos(follower.here[2]), math.sin(follower.here[2])
+    scale, spread = follower.odometry_scale, follower.spread
+    along, across = scale[0] * belief.spread[0], scale[1] * belief.spread[1]
+    spread[0, 0] += cosine * cosine * along + sine * sine * across
+    spread[1, 1] += sine * sine * along + cosine * cosine * across
+    spread[0, 1] += cosine * sine * (along - across)
+    spread[1, 0] = spread[0, 1]
+    spread[2, 2] += scale[2] * belief.spread[2]
+    belief.spread[:] = 0.0
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def moved_since(
+    followers: Rows, beliefs: Rows, x: float, y: float, theta: float
+) -> tuple[float, float, float]:
+    """Return where a robot is now, x, y, theta, that was at a pose when the newest scan came."""
+    ahead, aside, turn = seen_from(followers[0].reckoned, beliefs[0].reckoned)
+    return beyond(x, y, theta, ahead, aside, turn)

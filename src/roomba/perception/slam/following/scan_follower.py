@@ -1,0 +1,218 @@
+"""Following the robot from scan to scan, in the frame of the newest submap."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.configuration.mapping import MappingConfig
+from roomba.geometry import Pose
+from roomba.perception.localization.belief import Rows, unknown_belief
+from roomba.perception.localization.dead_reckoning import DeadReckoning
+from roomba.perception.matching.beams import LidarBeams
+from roomba.perception.matching.range_noise import unknown_noise
+from roomba.perception.matching.reckoned_path import ReckonedPath, pose_at
+from roomba.perception.matching.sweep import SWEEP_WORK
+from roomba.perception.slam.following.finding_back_kernels import FINDING
+from roomba.perception.slam.following.follow_kernels import FOLLOWER, follow, moved_since
+from roomba.perception.slam.following.latency import no_latency
+from roomba.perception.slam.following.scan_kernels import (
+    Following,
+    compare_turns,
+    follow_points,
+    is_apart_from_keyframe,
+    see_points,
+)
+from roomba.perception.slam.scan_matching.surface_kernels import POINT, room_for_sums
+from roomba.perception.slam.scan_matching.surfels import CELL, SurfelGrid
+
+Floats = NDArray[np.float64]
+
+_TAKEN_UP_SPREAD: Final = np.diag([0.1**2, 0.1**2, 0.05**2])
+"""m2, rad2; of a pose by the wheels alone, after the mapping process was away."""
+_FOUND_SPREAD: Final = np.diag([0.1**2, 0.1**2, 0.05**2])
+"""m2, rad2; of a pose that a search found."""
+
+
+class ScanFollower:
+    """Keeps ``here``, float64 [3], the pose at the newest scan; ``way`` is what was driven, m.
+
+    Of that scan ``met`` is the share of points that met a known surface, ``close`` the share of
+    those that lie in it. While it ``is_sure`` they confirm the pose, else it goes by the wheels.
+    All of it is in ``state``, FOLLOWER [1], that kernels go on with. Scans can be followed as soon
+    as their lidar is known: see :meth:`use`.
+    """
+
+    def __init__(self, config: MappingConfig, reckoning: DeadReckoning, finding: Rows) -> None:
+        """Begin at the origin of the first submap; ``finding``, FINDING [1], is told of scans."""
+        self._reckoning, self._finding = reckoning, finding
+        self.state = np.zeros(1, FOLLOWER)
+        self._noise, self._latency = unknown_noise(), no_latency()
+        self._row = row = self.state[0]
+        row["variance"] = config.point_deviation**2
+        row["least_met"], row["least_close"] = config.least_met, config.least_close
+        row["keyframe_way"], row["keyframe_turn"] = config.keyframe_way, config.keyframe_turn
+        row["odometry_scale"] = 1.0
+        row["range_deviation"] = self.range_noise
+        self._go_on_from(np.zeros(3))
+
+    def use(self, beams: LidarBeams, surfels: SurfelGrid) -> None:
+        """Follow the scans of a lidar, by what ``surfels`` shows."""
+        count = len(beams.directions)
+        self.following = Following(
+            self.state,
+            self._reckoning.belief,
+            self._reckoning.path,
+            self._noise,
+            self._latency,
+            self._finding,
+            surfels.arrays,
+            beams,
+            np.empty((count, POINT)),
+            room_for_sums(count),
+            np.empty(count, np.float32),
+            np.empty((SWEEP_WORK, max(count, 3))),
+        )
+
+    def find_reckoned(self, stamp: float) -> bool:
+        """Look up where dead reckoning had the robot at a scan, and tell whether that is known."""
+        return pose_at(self._reckoning.path, stamp - self.latency, self._row["scanned_at"])
+
+    def see(self, stamp: float, ranges: NDArray[np.float32]) -> Floats:
+        """Find the points, float64 [n, 4], that a scan shows, float32 [beams], m."""
+        see_points(self.following, stamp, ranges)
+        return self.points
+
+    @property
+    def points(self) -> Floats:
+        """What the newest scan shows, float64 [n, 4], robot's frame."""
+        return self.following.points[: int(self._row["points"])]
+
+    def follow(self, stamp: float) -> None:
+        """Move on to where dead reckoning had the robot at a scan, and correct that by it."""
+        follow_points(self.following, stamp)
+
+    def compare_turns(self, stamp: float) -> None:
+        """Learn how late scans are, if the newest two confirmed where the robot was."""
+        compare_turns(self.following, stamp)
+
+    @property
+    def range_noise(self) -> float:
+        """Standard deviation of the lidar's ranges, m, as measured so far."""
+        return float(self._noise[0]["deviation"])
+
+    @property
+    def latency(self) -> float:
+        """How late scans are against odometry, s, as learned so far."""
+        return float(self._latency[0]["seconds"])
+
+    @property
+    def here(self) -> Floats:
+        """A copy, as it is now."""
+        here: Floats = self._row["here"].copy()
+        return here
+
+    @property
+    def way(self) -> float:
+        """What was driven, m."""
+        return float(self._row["way"])
+
+    @property
+    def met(self) -> float:
+        """Share of the newest scan's points that met a known surface."""
+        return float(self._row["met"])
+
+    @property
+    def close(self) -> float:
+        """Share of those that lie in it."""
+        return float(self._row["close"])
+
+    @property
+    def unsure_way(self) -> float:
+        """What was driven since a scan confirmed the pose, m."""
+        return float(self._row["unsure_way"])
+
+    @property
+    def unsure_turn(self) -> float:
+        """What was turned since then, rad."""
+        return float(self._row["unsure_turn"])
+
+    @property
+    def is_sure(self) -> bool:
+        """Whether the newest scan confirmed the pose."""
+        return bool(self._row["is_sure"])
+
+    def since(self, then: Pose) -> Pose:
+        """Return where the robot is now, by the wheels, that was there at the newest scan."""
+        moved = moved_since(self.state, self._reckoning.belief, then.x, then.y, then.theta)
+        return Pose(*moved)
+
+    def restart(self) -> None:
+        """Go on at the origin of another submap."""
+        self._row["here"] = 0.0
+
+    def jump(self) -> None:
+        """Go on at the origin of another submap, where the robot was put down."""
+        self._go_on_from(np.zeros(3))
+
+    def take_up(self, here: Floats, way: float) -> None:
+        """Go on about ``here``, [3], after what another process did; ``way`` was driven by then."""
+        self._go_on_from(here)
+        self._row["way"], self._row["spread"] = way, _TAKEN_UP_SPREAD
+
+    def keep(self) -> None:
+        """The newest scan is kept as a keyframe."""
+        self.keep_at(self._row["here"])
+
+    def keep_at(self, pose: Floats) -> None:
+        """The newest keyframe was taken at ``pose`` [3], newest submap's frame."""
+        self._row["keyframe"] = pose
+
+    @property
+    def is_apart(self) -> bool:
+        """Whether the newest scan was taken so far from the newest keyframe as to be kept."""
+        return bool(is_apart_from_keyframe(self.state))
+
+    @property
+    def misses(self) -> int:
+        """Scans since one confirmed the pose."""
+        return int(self._row["misses"])
+
+    def try_at(self, pose: Floats, better: float = 1.0) -> None:
+        """Be at ``pose`` [3] if the newest scan confirms it; else stay where it was.
+
+        Where the scan confirms both, it must agree ``better`` times as well with ``pose``.
+        """
+        before, parts = self.state.copy(), self.following
+        least = better * self.met * self.close if self.is_sure else 0.0
+        self._row["here"], self._row["spread"] = pose, _FOUND_SPREAD
+        reckoned, points = self._row["reckoned"].copy(), self._row["points"]
+        follow(self.state, parts.belief, reckoned, parts.surfels, parts.points, points)
+        if not self.is_sure or self.met * self.close < least:
+            self.state[:] = before
+
+    def _go_on_from(self, here: Floats) -> None:
+        self._row["here"], self._row["spread"] = here, 0.0
+        self._row["unsure_way"] = self._row["unsure_turn"] = 0.0
+        reckoned = self._reckoning.pose
+        self._row["reckoned"] = reckoned.x, reckoned.y, reckoned.theta
+
+
+def not_following(beams: LidarBeams) -> Following:
+    """Return what kernels get that follow no scans: a localizer needs none."""
+    return Following(
+        np.zeros(1, FOLLOWER),
+        unknown_belief(),
+        ReckonedPath.empty(),
+        unknown_noise(),
+        no_latency(),
+        np.zeros(1, FINDING),
+        SurfelGrid(CELL).arrays,
+        beams,
+        np.empty((0, POINT)),
+        room_for_sums(0),
+        np.empty(0, np.float32),
+        np.empty((SWEEP_WORK, 0)),
+    )

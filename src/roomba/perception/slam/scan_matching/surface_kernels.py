@@ -1,0 +1,154 @@
+"""Compiled: from the ranges of a scan to points on surfaces, and the ways these face."""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from roomba.perception.matching.beams import LidarBeams, is_all_around
+
+Floats = NDArray[np.float64]
+
+X: Final = 0
+Y: Final = 1
+NORMAL_X: Final = 2
+NORMAL_Y: Final = 3
+POINT: Final = 4
+"""Columns of a point: x, y, m, and its surface's unit normal towards the lidar; 0, 0: not known."""
+
+_HALF_SPAN: Final = 0.07
+"""m; so far to each side a surface is looked at, at least, to know how it faces."""
+_SPAN_IN_DEVIATIONS: Final = 10.0
+"""The same, in deviations of a range: a noisy lidar needs more of a surface."""
+_MOST_BESIDE: Final = 10
+_LEAST_BESIDE: Final = 2
+_LEAST_POINTS: Final = 3
+_SUMS: Final = 6
+_STRAIGHT: Final = 0.009
+"""m; root mean square off a line, above which points are not of one plane surface."""
+_STRAIGHT_IN_DEVIATIONS: Final = 1.8
+"""The same, in deviations of a range; the larger one counts."""
+_GRAZING: Final = 0.12
+"""Cosine between a beam and a normal; below it the two points lie on different things."""
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def room_for_sums(beams: int) -> Floats:
+    """Return the room that :func:`surface_points` works in."""
+    return np.empty((beams + 2 * _MOST_BESIDE + 1, _SUMS))
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def surface_points(
+    ranges: NDArray[np.float32], lidar: LidarBeams, deviation: float, points: Floats, sums: Floats
+) -> int:
+    """Fill ``points`` [beams, POINT] from the beams that met something; return how many.
+
+    Robot's frame, m. ``ranges`` is float32 [beams], m, ``deviation`` the standard deviation of one,
+    m. The kernel works in ``sums``, which is :func:`room_for_sums`.
+    """
+    beams, directions, mount = ranges.size, lidar.directions, lidar.mount
+    half_span = max(_HALF_SPAN, _SPAN_IN_DEVIATIONS * deviation)
+    straight = max(_STRAIGHT, _STRAIGHT_IN_DEVIATIONS * deviation)
+    turn_cosine, turn_sine = math.cos(mount[2]), math.sin(mount[2])
+    step = _angle_between(directions, beams)
+    _add_up(ranges, lidar, step, sums)
+    count = 0
+    for beam in range(beams):
+        length = ranges[beam]
+        if not lidar.nearest <= length < lidar.farthest:
+            continue
+        along_x = turn_cosine * directions[beam, 0] - turn_sine * directions[beam, 1]
+        along_y = turn_sine * directions[beam, 0] + turn_cosine * directions[beam, 1]
+        beside = math.ceil(half_span / max(length * step, 1e-6))
+        beside = min(max(beside, _LEAST_BESIDE), _MOST_BESIDE)
+        normal_x, normal_y = 0.0, 0.0
+        for side in range(3):
+            first = beam if side == 2 else beam - beside
+            last = beam if side == 1 else beam + beside
+            is_plane, x, y = _normal(sums, first, last, straight)
+            if is_plane:
+                normal_x = turn_cosine * x - turn_sine * y
+                normal_y = turn_sine * x + turn_cosine * y
+                facing = -(normal_x * along_x + normal_y * along_y)
+                if facing < 0.0:
+                    normal_x, normal_y, facing = -normal_x, -normal_y, -facing
+                if facing >= _GRAZING:
+                    break
+                normal_x, normal_y = 0.0, 0.0
+        points[count, X] = mount[0] + length * along_x
+        points[count, Y] = mount[1] + length * along_y
+        points[count, NORMAL_X], points[count, NORMAL_Y] = normal_x, normal_y
+        count += 1
+    return count
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _angle_between(directions: Floats, beams: int) -> float:
+    """Return the angle between two neighbouring beams, rad; 1.0 for a single one."""
+    if beams < 2:
+        return 1.0
+    cross = directions[0, 0] * directions[1, 1] - directions[0, 1] * directions[1, 0]
+    return abs(math.asin(min(max(cross, -1.0), 1.0)))
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _add_up(ranges: NDArray[np.float32], lidar: LidarBeams, step: float, sums: Floats) -> None:
+    """Fill ``sums`` [beams + 2 * _MOST_BESIDE + 1, _SUMS], all around and on to both sides.
+
+    Of the ends of all beams before one, the first of which is ``_MOST_BESIDE`` before beam 0: how
+    many there are, and the sums of x, y, and of their squares and product, lidar's frame. Beyond
+    the ends of a fan that is not all around there are no beams.
+    """
+    beams, directions = ranges.size, lidar.directions
+    is_around = is_all_around(beams, step)
+    sums[0] = 0.0
+    for row in range(sums.shape[0] - 1):
+        place = row - _MOST_BESIDE
+        beam = place % beams
+        length = ranges[beam]
+        for column in range(_SUMS):
+            sums[row + 1, column] = sums[row, column]
+        if beam != place and not is_around:
+            continue
+        if not lidar.nearest <= length < lidar.farthest:
+            continue
+        x, y = length * directions[beam, 0], length * directions[beam, 1]
+        after = sums[row + 1]
+        after[0] += 1.0
+        after[1] += x
+        after[2] += y
+        after[3] += x * x
+        after[4] += x * y
+        after[5] += y * y
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _normal(sums: Floats, first: int, last: int, straight: float) -> tuple[bool, float, float]:
+    """Return whether beams ``first`` to ``last`` met one plane, and its normal, lidar's frame.
+
+    Points that are off a line by more than ``straight``, m, root mean square, are of no plane.
+    """
+    before, after = sums[first + _MOST_BESIDE], sums[last + _MOST_BESIDE + 1]
+    count = after[0] - before[0]
+    if count < _LEAST_POINTS:
+        return False, 0.0, 0.0
+    share = 1.0 / count
+    x, y = (after[1] - before[1]) * share, (after[2] - before[2]) * share
+    xx = (after[3] - before[3]) * share - x * x
+    xy = (after[4] - before[4]) * share - x * y
+    yy = (after[5] - before[5]) * share - y * y
+    half, middle = 0.5 * (xx - yy), 0.5 * (xx + yy)
+    spread = math.sqrt(half * half + xy * xy)
+    if max(middle - spread, 0.0) > straight * straight:
+        return False, 0.0, 0.0
+    if spread == 0.0:
+        return True, 0.0, 1.0
+    # Along the line, by half the angle of (half, xy).
+    cosine = math.sqrt(max(0.5 * (1.0 + half / spread), 0.0))
+    sine = math.copysign(math.sqrt(max(0.5 * (1.0 - half / spread), 0.0)), xy)
+    return True, -sine, cosine

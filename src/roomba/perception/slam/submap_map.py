@@ -1,0 +1,158 @@
+"""The map that grows: keyframes in submaps, the surfels that scans are matched to, the drawing."""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.configuration.localization import LocalizationConfig
+from roomba.configuration.mapping import MappingConfig
+from roomba.perception.matching.beams import LidarBeams
+from roomba.perception.slam.drawing.submap_drawing import SubmapDrawing
+from roomba.perception.slam.finishing.finish import finish
+from roomba.perception.slam.mapper_state import LidarNumbers, MapperState
+from roomba.perception.slam.scan_matching.surfels import SurfelGrid
+from roomba.perception.slam.submaps.submap import KeptSubmap, Keyframe, moved
+from roomba.perception.slam.submaps.submap_graph import SubmapGraph
+
+Floats = NDArray[np.float64]
+
+_SPARE: Final = 4.0
+"""m; the farthest that a robot gets from the beginning of a submap."""
+_FARTHEST: Final = 30.0
+"""m; what is farther is drawn, but nothing is matched to it."""
+
+
+class SubmapMap:
+    """Submaps in their ``graph``, and how they are ``drawn``.
+
+    Scans are matched to ``surfels``, frame of the newest submap: those of it and of the submaps
+    ``beside`` it, by their numbers. ``version`` changes whenever the map does. The lidar must be
+    told before a scan is kept: see :meth:`use`.
+    """
+
+    def __init__(
+        self, config: MappingConfig, localization: LocalizationConfig, start: Floats
+    ) -> None:
+        """Begin with an empty submap at ``start``, float64 [3], map frame."""
+        self._config = config
+        self.graph = SubmapGraph(config, localization, start)
+        self.drawn = SubmapDrawing(config, self.graph)
+        self.surfels = SurfelGrid(0.0)
+        self.beside: list[int] = []
+        self.version = 0
+
+    def take_over(self, state: MapperState, here: Floats) -> None:
+        """Go on with what another mapper knew; the robot is about ``here`` [3], map frame.
+
+        It is whole once the lidar is told, and all is drawn anew: :meth:`use`, :meth:`redraw`.
+        """
+        self.graph.take_over(state.submaps, state.poses, state.links)
+        self.drawn.phase, self.version = state.phase, state.version
+        self.beside = self.graph.near(here)
+
+    def state(self, lidar: LidarNumbers, way: float, *, is_lost: bool) -> MapperState:
+        """Return all of it, with what the mapper knows beside it."""
+        graph = self.graph
+        submaps = tuple(KeptSubmap(each.way, tuple(each.keyframes)) for each in graph.submaps)
+        return MapperState(
+            submaps,
+            graph.poses.copy(),
+            tuple(graph.links),
+            way,
+            self.drawn.phase,
+            lidar,
+            self.version,
+            is_lost,
+        )
+
+    def use(self, lidar: LidarBeams) -> None:
+        """Take the scans of a lidar from now on: makes ``surfels`` anew."""
+        reach = min(lidar.farthest, _FARTHEST) + _SPARE
+        self.graph.use_reach(reach)
+        self.drawn.use(lidar)
+        self.surfels = SurfelGrid(reach)
+        self._fill_surfels(sorted({*self.beside, self._newest}))
+
+    def keep(self, points: Floats, here: Floats) -> None:
+        """Keep a scan, points [n, 4], robot's frame, taken at ``here`` [3], newest one's frame."""
+        frame = Keyframe(points.astype(np.float32), here)
+        self.graph.newest.keyframes.append(frame)
+        self.surfels.add(points, frame.pose)
+        self.drawn.add(frame)
+        self.version += 1
+
+    def is_newest_whole(self, here: Floats) -> bool:
+        """Whether a keyframe at ``here`` [3], newest submap's frame, belongs to another submap."""
+        is_far = math.hypot(here[0], here[1]) >= self._config.submap_way
+        return is_far or len(self.graph.newest.keyframes) >= self._config.submap_keyframes
+
+    def begin(self, here: Floats, way: float, range_noise: float) -> None:
+        """Begin a submap at ``here`` [3], newest one's frame, after ``way``, m, in all."""
+        self.close(range_noise)
+        self.graph.begin(here, way)
+        self._enter_newest([self._newest - 1])
+
+    def begin_piece(
+        self, here: Floats, way: float, unsure: tuple[float, float], range_noise: float
+    ) -> None:
+        """Begin a submap that scans are matched to, though none tells where it lies.
+
+        As :meth:`begin`; ``unsure`` is what was driven, m, and turned, rad, unconfirmed.
+        """
+        self.close(range_noise)
+        self.graph.begin_piece(here, way, *unsure)
+        self._enter_newest([])
+
+    def begin_at(self, pose: Floats, way: float, range_noise: float) -> None:
+        """Begin a submap at a reported pose [3], map frame, beside those that lie near."""
+        self.close(range_noise)
+        beside = self.graph.near(pose)
+        self.graph.begin_at(pose, way)
+        self._enter_newest(beside)
+
+    def close(self, range_noise: float) -> None:
+        """Link the newest submap: others may move thereby, and the map with them.
+
+        ``range_noise`` is the standard deviation of a range, m.
+        """
+        self.graph.use_noise(range_noise)
+        self.graph.close()
+        self.version += self.drawn.has_moved
+
+    def finish(self, range_noise: float) -> None:
+        """Bring all that was kept to agree, and draw it anew with walls along the axes."""
+        self.close(range_noise)
+        self.drawn.phase = finish(self.graph, self._config)
+        self.redraw()
+
+    def redraw(self) -> None:
+        """Draw all anew where it is thought to be now."""
+        self.drawn.redraw()
+        self.version += 1
+
+    def clouds(self) -> list[Floats]:
+        """Return the points of each keyframe that scans are matched to, [n, 4].
+
+        Newest submap's frame.
+        """
+        frames = self.graph.keyframes_beside([*self.beside, self._newest])
+        return [moved(frame.points, pose) for frame, pose in frames]
+
+    @property
+    def _newest(self) -> int:
+        return len(self.graph.submaps) - 1
+
+    def _enter_newest(self, beside: list[int]) -> None:
+        """Let scans be matched to these submaps, as seen from the newest one."""
+        self.drawn.begin_submap()
+        self.beside = beside
+        self._fill_surfels(beside)
+
+    def _fill_surfels(self, numbers: list[int]) -> None:
+        self.surfels.clear()
+        for frame, pose in self.graph.keyframes_beside(numbers):
+            self.surfels.add(np.asarray(frame.points, np.float64), pose)

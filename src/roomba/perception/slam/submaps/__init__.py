@@ -1,0 +1,1 @@
+"""Submaps, the links between them, and the pose graph that places them."""

@@ -1,0 +1,52 @@
+"""Loops that others must back: links that would move a part of the map far.
+
+In a building of rooms and corridors that look alike, one match says little about where it is. The
+next submap, seen from elsewhere, must be found in a place that agrees with it.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.angles import wrapped
+from roomba.perception.slam.submaps.pose_graph import Link, composed, relative_to
+
+Floats = NDArray[np.float64]
+
+_FAR: Final = 2.0
+"""m; a link that moves its child farther than this must be backed."""
+NEIGHBOURS: Final = 3
+"""Submaps; a link is backed by one of another child that is so few submaps away."""
+_SAME_PLACE: Final = 0.4
+_SAME_HEADING: Final = 0.08
+"""m, rad; two links agree that place a child so nearly alike."""
+
+
+def is_far(link: Link, poses: Floats) -> bool:
+    """Whether a link would move its child far, the submaps lying at ``poses``, [n, 3]."""
+    here = _told(link, poses)
+    return math.hypot(*(here[:2] - poses[link.child, :2])) > _FAR
+
+
+def is_backed(link: Link, others: list[Link], poses: Floats) -> bool:
+    """Whether another child nearby was found where this link says that it must lie, too."""
+    moved = _told(link, poses)
+    for other in others:
+        if not 0 < abs(other.child - link.child) <= NEIGHBOURS:
+            continue
+        step = relative_to(poses[link.child][None], poses[other.child][None])
+        expected = composed(moved[None], step)[0]
+        off = _told(other, poses) - expected
+        if math.hypot(off[0], off[1]) < _SAME_PLACE and abs(wrapped(off[2])) < _SAME_HEADING:
+            return True
+    return False
+
+
+def _told(link: Link, poses: Floats) -> Floats:
+    """Return where a link says that its child lies, [3], map frame."""
+    told: Floats = composed(poses[link.parent][None], link.relative[None])[0]
+    return told

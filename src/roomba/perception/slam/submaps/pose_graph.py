@@ -1,0 +1,252 @@
+"""The pose graph: the poses that agree best, in least squares, with measurements between them.
+
+The Gauss-Newton method on the sum of squared, weighted errors (Lu and Milios, "Globally
+consistent range scan alignment", 1997). The first pose stays where it is. Homes have some dozens
+of submaps: few normal equations are solved as a dense matrix, many as a sparse one.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.angles import wrap_angles
+
+Floats = NDArray[np.float64]
+Indices = NDArray[np.int64]
+
+_ROUNDS: Final = 30
+_SETTLED: Final = 1e-5
+"""m and rad; corrections that are smaller end the search."""
+_DOUBTED: Final = 9.0
+"""Squared error, in deviations, of which a link loses three quarters of its weight."""
+_LAST_ROUNDS: Final = 8
+"""Rounds, at most, once that error is as small as it becomes."""
+_STRICTER: Final = 0.1
+"""That error is larger at first, so that links can pull far off poses together, and becomes so many
+times less each round (graduated non-convexity: Yang et al., RA-L 2020)."""
+_DENSE: Final = 600
+"""Numbers to solve for; with more a sparse matrix is quicker."""
+_HELD: Final = 1e-6
+"""1/m2; a pose that no link holds stays where it is."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Link:
+    """A measurement: the pose of ``child`` in the frame of ``parent``.
+
+    ``relative`` is float64 [3], x, y, theta; ``information`` float64 [3, 3], the inverse of its
+    covariance. A link that ``may_be_wrong`` loses weight when all others contradict it.
+    """
+
+    parent: int
+    child: int
+    relative: Floats
+    information: Floats
+    may_be_wrong: bool = True
+
+
+def relative_to(parents: Floats, children: Floats) -> Floats:
+    """Return poses, float64 [n, 3], in the frames of others, [n, 3] as well."""
+    away = children - parents
+    cosine, sine = np.cos(parents[:, 2]), np.sin(parents[:, 2])
+    return np.column_stack(
+        (
+            cosine * away[:, 0] + sine * away[:, 1],
+            cosine * away[:, 1] - sine * away[:, 0],
+            wrap_angles(away[:, 2]),
+        )
+    )
+
+
+def composed(parents: Floats, relative: Floats) -> Floats:
+    """Return where poses, float64 [n, 3], lie that are given in the frames of others, [n, 3]."""
+    cosine, sine = np.cos(parents[:, 2]), np.sin(parents[:, 2])
+    return np.column_stack(
+        (
+            parents[:, 0] + cosine * relative[:, 0] - sine * relative[:, 1],
+            parents[:, 1] + sine * relative[:, 0] + cosine * relative[:, 1],
+            wrap_angles(parents[:, 2] + relative[:, 2]),
+        )
+    )
+
+
+def inverse(pose: Floats) -> Floats:
+    """Return the pose [3] that undoes one, [3]."""
+    undone: Floats = relative_to(pose[None], np.zeros((1, 3)))[0]
+    return undone
+
+
+def optimised(poses: Floats, links: list[Link], known: int = 0) -> Floats:
+    """Return ``poses``, float64 [n, 3], moved so that they agree best with the links.
+
+    For the first ``known`` links they were optimised before. Raises ValueError for a link between
+    poses that do not exist.
+    """
+    if len(links) <= known:
+        return poses.copy()
+    measured = _Measurements.of(links)
+    ends = measured.parents, measured.children
+    if min(end.min() for end in ends) < 0 or max(end.max() for end in ends) >= len(poses):
+        raise ValueError(f"expected links between poses 0 to {len(poses) - 1}, got others")
+    result = poses.copy()
+    tolerance, left = math.inf, _LAST_ROUNDS
+    for _ in range(_ROUNDS):
+        errors = _errors(result, measured)
+        worst = float(errors.square[known:][measured.doubted[known:]].max(initial=0.0))
+        tolerance = max(_DOUBTED, min(_STRICTER * tolerance, worst))
+        weighted = _weighted(measured, errors, tolerance)
+        step = _step(result, measured, errors, weighted)
+        result[1:] += step
+        result[:, 2] = wrap_angles(result[:, 2])
+        is_settled = not len(step) or np.abs(step).max() < _SETTLED
+        left -= tolerance == _DOUBTED
+        if (is_settled and tolerance == _DOUBTED) or left == 0:
+            break
+    return result
+
+
+def covariance_of(poses: Floats, links: list[Link], index: int) -> Floats:
+    """Return the covariance of one of ``poses``, float64 [n, 3], against the first one, [3, 3].
+
+    m2 and rad2, map frame, as the links tell it that the others do not contradict. Raises
+    ValueError if no link holds it.
+    """
+    if not index:
+        return np.zeros((3, 3))
+    if not links:
+        raise ValueError("expected links that hold the pose, got none")
+    measured = _Measurements.of(links)
+    errors = _errors(poses, measured)
+    slopes = _slopes(poses, measured, errors.predicted)
+    matrix = _normal_equations(measured, slopes, _weighted(measured, errors, _DOUBTED))
+    columns = []
+    for axis in range(3):
+        unit = np.zeros(poses.size)
+        unit[3 * index + axis] = 1.0
+        columns.append(_solved(matrix, unit)[3 * index : 3 * index + 3])
+    covariance: Floats = np.array(columns)
+    if not covariance.max() < 0.1 / _HELD:
+        raise ValueError("expected links that hold the pose, got none")
+    return 0.5 * (covariance + covariance.T)
+
+
+class _Measurements(NamedTuple):
+    """Links as arrays: ``parents``, ``children`` and ``doubted`` are [m], ``relative`` [m, 3],
+    ``information`` [m, 3, 3].
+    """
+
+    parents: Indices
+    children: Indices
+    relative: Floats
+    information: Floats
+    doubted: NDArray[np.bool_]
+
+    @staticmethod
+    def of(links: list[Link]) -> _Measurements:
+        return _Measurements(
+            np.array([link.parent for link in links]),
+            np.array([link.child for link in links]),
+            np.array([link.relative for link in links]),
+            np.array([link.information for link in links]),
+            np.array([link.may_be_wrong for link in links]),
+        )
+
+
+class _Errors(NamedTuple):
+    """By how much each link is off, [m, 3], what the poses ``predicted`` that it measures, [m, 3],
+    and the ``square`` of the error in deviations, [m].
+    """
+
+    error: Floats
+    predicted: Floats
+    square: Floats
+
+
+class _Matrix(NamedTuple):
+    """A sparse matrix: the sum of ``values`` [k] at ``rows`` and ``columns``, int64 [k] each."""
+
+    rows: Indices
+    columns: Indices
+    values: Floats
+
+
+def _errors(poses: Floats, measured: _Measurements) -> _Errors:
+    predicted = relative_to(poses[measured.parents], poses[measured.children])
+    error = predicted - measured.relative
+    error[:, 2] = wrap_angles(error[:, 2])
+    square = (error[:, None] @ measured.information @ error[:, :, None])[:, 0, 0]
+    return _Errors(error, predicted, square)
+
+
+def _weighted(measured: _Measurements, errors: _Errors, tolerance: float) -> Floats:
+    """Return the information [m, 3, 3] of the links, less of those that others contradict."""
+    trust = (tolerance / (tolerance + errors.square)) ** 2
+    weighted: Floats = measured.information * np.where(measured.doubted, trust, 1.0)[:, None, None]
+    return weighted
+
+
+def _step(poses: Floats, measured: _Measurements, errors: _Errors, weighted: Floats) -> Floats:
+    """Return the correction of all poses but the first, float64 [n - 1, 3]."""
+    slopes = _slopes(poses, measured, errors.predicted)
+    gradient = np.zeros((len(poses), 3))
+    for of_end, nodes in zip(slopes, (measured.parents, measured.children), strict=True):
+        pull = of_end.transpose(0, 2, 1) @ (weighted @ errors.error[:, :, None])
+        np.add.at(gradient, nodes, pull[:, :, 0])
+    matrix = _normal_equations(measured, slopes, weighted)
+    return _solved(matrix, -gradient.reshape(-1)).reshape(-1, 3)[1:]
+
+
+def _normal_equations(
+    measured: _Measurements, slopes: tuple[Floats, Floats], weighted: Floats
+) -> _Matrix:
+    axes = np.arange(3)
+    ends = tuple(zip(slopes, (measured.parents, measured.children), strict=True))
+    rows, columns, values = [], [], []
+    for of_end, nodes in ends:
+        for others, beside in ends:
+            block = of_end.transpose(0, 2, 1) @ (weighted @ others)
+            row = (3 * nodes[:, None] + axes)[:, :, None]
+            column = (3 * beside[:, None] + axes)[:, None, :]
+            rows.append(np.broadcast_to(row, block.shape).ravel())
+            columns.append(np.broadcast_to(column, block.shape).ravel())
+            values.append(block.ravel())
+    return _Matrix(np.concatenate(rows), np.concatenate(columns), np.concatenate(values))
+
+
+def _solved(sums: _Matrix, right: Floats) -> Floats:
+    """Return the solution of the normal equations, float64 [n], whose first three are 0."""
+    size = right.size
+    solution = np.zeros(size)
+    if size <= _DENSE:
+        matrix = np.zeros((size, size))
+        np.add.at(matrix, (sums.rows, sums.columns), sums.values)
+        left = matrix[3:, 3:]
+        left[np.diag_indices(size - 3)] += _HELD
+        solution[3:] = np.linalg.solve(left, right[3:])
+        return solution
+    # Here, for only large maps need it, and it takes 40 MB.
+    from scipy.sparse import csc_matrix, identity
+    from scipy.sparse.linalg import spsolve
+
+    sparse = csc_matrix((sums.values, (sums.rows, sums.columns)), shape=(size, size))[3:, 3:]
+    sparse = (sparse + _HELD * identity(size - 3, format="csc")).tocsc()
+    solution[3:] = spsolve(sparse, right[3:], permc_spec="MMD_AT_PLUS_A")
+    return solution
+
+
+def _slopes(poses: Floats, measured: _Measurements, predicted: Floats) -> tuple[Floats, Floats]:
+    """Return how predictions change with the poses of parents and of children, [m, 3, 3] each."""
+    headings = poses[measured.parents, 2]
+    cosine, sine, count = np.cos(headings), np.sin(headings), len(headings)
+    of_child, of_parent = np.zeros((count, 3, 3)), np.zeros((count, 3, 3))
+    of_child[:, 0, 0], of_child[:, 0, 1] = cosine, sine
+    of_child[:, 1, 0], of_child[:, 1, 1] = -sine, cosine
+    of_child[:, 2, 2] = 1.0
+    of_parent[:] = -of_child
+    of_parent[:, 0, 2], of_parent[:, 1, 2] = predicted[:, 1], -predicted[:, 0]
+    return of_parent, of_child

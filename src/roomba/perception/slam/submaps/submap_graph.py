@@ -1,0 +1,226 @@
+"""The graph of submaps: links tie them together, and its solution places them on the map."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.configuration.localization import LocalizationConfig
+from roomba.configuration.mapping import MappingConfig
+from roomba.perception.slam.submaps.agreement import NEIGHBOURS, is_backed, is_far
+from roomba.perception.slam.submaps.linking import Linker
+from roomba.perception.slam.submaps.pose_graph import (
+    Link,
+    composed,
+    covariance_of,
+    inverse,
+    optimised,
+    relative_to,
+)
+from roomba.perception.slam.submaps.submap import KeptSubmap, Keyframe, Submap, moved
+
+Floats = NDArray[np.float64]
+
+CLOUD: Final = 1500
+"""Points of a submap that are matched to others."""
+_OF_PEOPLE: Final = np.diag([0.05**-2, 0.05**-2, 0.05**-2])
+"""1/m2, 1/rad2; information of a link to a reported pose."""
+_OF_A_PIECE: Final = (0.5, 0.1)
+_SHARE_OF_PIECE: Final = 0.1
+"""m, rad: how unsure a link is over which no scan led, and by this share of what was driven and
+turned there."""
+_RECENT: Final = 40
+"""Links that may back a new one."""
+_REFINEMENTS: Final = 2
+"""Times that all links are looked for anew when the map is finished."""
+
+
+class SubmapGraph:
+    """``submaps`` and their ``poses``, float64 [n, 3], map frame; the newest is the last one.
+
+    ``links`` are what was measured between them. The points of a submap are within ``reach``, m, of
+    its origin; ``range_deviation``, m, is that of a range.
+    """
+
+    def __init__(
+        self, config: MappingConfig, localization: LocalizationConfig, start: Floats
+    ) -> None:
+        """Begin with an empty submap at ``start``, float64 [3]."""
+        self._config, self._localization = config, localization
+        self._linker: Linker | None = None
+        self.reach, self.range_deviation = 0.0, 0.0
+        self.submaps = [Submap(0.0)]
+        self.poses = start[None].copy()
+        self.links: list[Link] = []
+        self._waiting: list[Link] = []
+
+    def take_over(
+        self, submaps: tuple[KeptSubmap, ...], poses: Floats, links: tuple[Link, ...]
+    ) -> None:
+        """Go on with the submaps, one or more, of a graph that another process had."""
+        self.submaps = [Submap(each.way, list(each.keyframes)) for each in submaps]
+        for whole in self.submaps[:-1]:
+            whole.close(CLOUD)
+        self.poses, self.links = poses.copy(), list(links)
+
+    def use_reach(self, reach: float) -> None:
+        """Take how far the points of a submap are from its origin at most, m."""
+        self.reach = reach
+        self._linker = Linker(self._config, reach)
+        self._linker.use_noise(self.range_deviation)
+
+    def use_noise(self, deviation: float) -> None:
+        """Go by the standard deviation of a range, m."""
+        self.range_deviation = deviation
+        if self._linker is not None:
+            self._linker.use_noise(deviation)
+
+    @property
+    def newest(self) -> Submap:
+        """The submap that the robot is in."""
+        return self.submaps[-1]
+
+    def placed(self, relative: Floats) -> Floats:
+        """Return a pose in the newest submap, [3], in the map's frame."""
+        placed: Floats = composed(self.poses[-1:], relative[None])[0]
+        return placed
+
+    def begin(self, relative: Floats, way: float) -> None:
+        """Begin a submap at a pose of the newest one, [3]; ``way`` is what was driven in all, m."""
+        information = self._driven(way - self.newest.way)
+        count = len(self.submaps)
+        self.links.append(Link(count - 1, count, relative.copy(), information, False))
+        self._add(self.placed(relative), way)
+
+    def begin_piece(
+        self, relative: Floats, way: float, unsure_way: float, unsure_turn: float
+    ) -> None:
+        """Begin a submap at a pose of the newest one, [3].
+
+        No scan confirmed what was driven, m, and turned, rad, before it.
+        """
+        count = len(self.submaps)
+        away = _OF_A_PIECE[0] + _SHARE_OF_PIECE * unsure_way
+        turn = _OF_A_PIECE[1] + _SHARE_OF_PIECE * unsure_turn
+        information = np.diag([away**-2, away**-2, turn**-2])
+        self.links.append(Link(count - 1, count, relative.copy(), information, False))
+        self._add(self.placed(relative), way)
+
+    def begin_at(self, pose: Floats, way: float) -> None:
+        """Begin a submap at a reported pose, map frame, [3]."""
+        parent = int(np.argmin(np.hypot(*(self.poses[:, :2] - pose[:2]).T)))
+        relative = relative_to(self.poses[parent : parent + 1], pose[None])[0]
+        self.links.append(Link(parent, len(self.submaps), relative, _OF_PEOPLE, False))
+        self._add(pose, way)
+
+    def covariance(self) -> Floats:
+        """Return that of the newest submap's pose against the first one, float64 [3, 3].
+
+        m2 and rad2, map frame.
+        """
+        return covariance_of(self.poses, self.links, len(self.poses) - 1)
+
+    def close(self) -> None:
+        """Link the newest submap to all that show the same walls, and let all agree."""
+        child = len(self.submaps) - 1
+        self.newest.close(CLOUD)
+        known = len(self.links)
+        self.links += self._agreeing(self._links_of(child, self.links), child)
+        self.poses = optimised(self.poses, self.links, known)
+
+    def link_anew(self) -> None:
+        """Look for all links anew, near where submaps lie by the present ones."""
+        for _ in range(_REFINEMENTS):
+            known = self.links
+            self.links = [link for link in known if not link.may_be_wrong]
+            children = range(1, len(self.submaps))
+            found = [link for child in children for link in self._links_of(child, known)]
+            self.links += [
+                link
+                for link in found
+                if not is_far(link, self.poses) or is_backed(link, found, self.poses)
+            ]
+            self.poses = optimised(self.poses, self.links)
+
+    def lay(self, number: int, poses: Floats) -> None:
+        """Let a submap lie so that its keyframes are at ``poses``, float64 [n, 3], map frame."""
+        submap = self.submaps[number]
+        origin = composed(poses[:1], inverse(submap.keyframes[0].pose)[None])
+        self.poses[number] = origin[0]
+        relative = relative_to(np.repeat(origin, len(poses), axis=0), poses)
+        submap.keyframes = [
+            Keyframe(frame.points, pose)
+            for frame, pose in zip(submap.keyframes, relative, strict=True)
+        ]
+        submap.close(CLOUD)
+        if self._linker is not None:
+            self._linker.forget(number)
+
+    def keyframes(self) -> Iterator[tuple[Keyframe, Floats]]:
+        """Go through all keyframes and their poses, [3], map frame, in the order of time."""
+        for submap, pose in zip(self.submaps, self.poses, strict=True):
+            yield from zip(submap.keyframes, submap.poses(pose), strict=True)
+
+    def keyframes_beside(self, numbers: list[int]) -> Iterator[tuple[Keyframe, Floats]]:
+        """Go through the keyframes of some submaps; their poses, [3], are in the newest one."""
+        for number in numbers:
+            relative = relative_to(self.poses[-1:], self.poses[number : number + 1])[0]
+            submap = self.submaps[number]
+            yield from zip(submap.keyframes, submap.poses(relative), strict=True)
+
+    def cloud(self) -> Floats:
+        """Return points of all submaps, float64 [n, 4], map frame."""
+        poses = zip(self.submaps, self.poses, strict=True)
+        return np.concatenate([moved(submap.cloud, pose) for submap, pose in poses])
+
+    def newest_keyframe(self) -> tuple[int, Floats]:
+        """Return how many keyframes there are, and the pose of the newest, [3], map frame.
+
+        Raises ValueError without one.
+        """
+        count = sum(len(submap.keyframes) for submap in self.submaps)
+        if not count:
+            raise ValueError("expected a map with a keyframe or more, got an empty one")
+        last = max(index for index, submap in enumerate(self.submaps) if submap.keyframes)
+        pose: Floats = self.submaps[last].poses(self.poses[last])[-1]
+        return count, pose
+
+    def near(self, pose: Floats) -> list[int]:
+        """Return the numbers of the submaps that lie near a pose, [3], map frame."""
+        away = np.hypot(*(self.poses[:, :2] - pose[:2]).T)
+        found: list[int] = np.flatnonzero(away < self._config.link_radius).tolist()
+        return found
+
+    def _add(self, pose: Floats, way: float) -> None:
+        self.poses = np.vstack((self.poses, pose))
+        self.submaps.append(Submap(way))
+
+    def _links_of(self, child: int, known: list[Link]) -> list[Link]:
+        if self._linker is None:
+            return []
+        return self._linker.links_to(child, child, self.submaps, self.poses, known)
+
+    def _agreeing(self, found: list[Link], child: int) -> list[Link]:
+        """Return those links that others back, if they must, and older ones that these back."""
+        agreeing = [link for link in found if not is_far(link, self.poses)]
+        waiting = self._waiting + [link for link in found if is_far(link, self.poses)]
+        loops = [link for link in self.links[-_RECENT:] if link.may_be_wrong]
+        backed = [is_backed(link, waiting + loops + agreeing, self.poses) for link in waiting]
+        agreeing += [link for link, yes in zip(waiting, backed, strict=True) if yes]
+        self._waiting = [
+            link
+            for link, yes in zip(waiting, backed, strict=True)
+            if not yes and link.child > child - NEIGHBOURS
+        ]
+        return agreeing
+
+    def _driven(self, way: float) -> Floats:
+        """Return the information of a link that follows from having driven so far, m."""
+        numbers = self._localization
+        deviations = np.array([numbers.way_noise, numbers.way_noise, numbers.turn_noise])
+        information: Floats = np.diag((deviations * math.sqrt(max(way, 0.1))) ** -2.0)
+        return information
