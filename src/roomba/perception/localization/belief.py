@@ -30,7 +30,10 @@ BELIEF: Final = np.dtype(
         ("pose", "f8", (3,)),  # x, y, theta, map
         ("covariance", "f8", (3, 3)),  # of these, m2 and rad2
         ("reckoned", "f8", (3,)),  # x, y, theta, own
-        ("spread", "f8", (3,)),  # variances ahead, left, of the turn, not yet asked for
+        ("spread", "f8", (3,)),  # variances ahead, left, of the turn, since the newest scan
+        ("reckoned_spread", "f8", (3,)),  # the same, up to that scan
+        ("off", "f8", (3,)),  # what that scan corrected: ahead, left, m, and of theta
+        ("odometry_scale", "f8", (3,)),  # times its variances that dead reckoning is off, learned
         ("odometry", "f8", (3,)),  # the wheels' newest, in their frame
         ("stamp", "f8"),  # of these; -inf: none came yet
         ("turning", "f8"),  # what the gyro said then, rad/s; nan: nothing
@@ -81,6 +84,7 @@ def unknown_belief() -> Rows:
     """Return the initial belief: at the origin, without variance."""
     belief = np.zeros(1, BELIEF)
     belief["stamp"] = belief["seen"] = -np.inf
+    belief["odometry_scale"] = 1.0
     belief["turning"], belief["still_since"] = np.nan, np.inf
     return belief
 

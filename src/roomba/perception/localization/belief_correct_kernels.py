@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from roomba.angles import wrapped
 from roomba.perception.localization.belief import AGREE, EVIDENCE, SHORT, THROUGH, Row, Rows
+from roomba.perception.localization.belief_trust_kernels import learn_trust, note_correction
 from roomba.perception.matching.beams import LidarBeams
 from roomba.perception.matching.field_kernels import Field, Place
 from roomba.perception.matching.fit_kernels import AGREEING, LOOKED_AT, judge
@@ -109,6 +110,7 @@ def match_ends(
     scales = _WIDE if is_unsure else _NARROW
     variance = _beam_variance(numbers[0], place, count)
     match_in(field, place, ends, count, prior, after, scales, variance, pose, work, lanes)
+    note_correction(belief, prior)
     pose[2] = wrapped(pose[2])
     covariance[:] = after
 
@@ -155,6 +157,8 @@ def judge_ends(
         belief.agree < max(_LEAST, belief.usual_agree - _WORSE)
         or belief.through > belief.usual_through + _THROUGH
     )
+    if not belief.is_doubtful:
+        learn_trust(belief)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

@@ -112,6 +112,8 @@ def _go(
     belief.spread[0] += of_way
     belief.spread[1] += of_side
     belief.spread[2] += variance
+    scale = belief.odometry_scale
+    of_way, of_side, variance = scale[0] * of_way, scale[1] * of_side, scale[2] * variance
     carry(belief.pose, belief.covariance, ahead, aside, turn, of_way, of_side, variance)
 
 

@@ -57,23 +57,26 @@ class Doubt:
         """
         is_still = self.sight.is_still(stamp, reckoned, view)
         here = where_known(pose, self._config, is_still=is_still)
-        if is_still and not self._is_elsewhere(now, view, reckoned, here, field):
-            return None
+        if is_still:
+            is_soon = self._comparison is None and 0.0 <= now - self._compared < _COMPARED_EVERY
+            if is_soon or not self.is_elsewhere(now, view, reckoned, here, field):
+                return None
         return here
 
-    def _is_elsewhere(
+    def is_elsewhere(
         self, now: float, view: ScanView, reckoned: Pose, here: Expectation, field: SurfaceField
-    ) -> bool:
-        """Compare the place with all others, a piece at each scan; tell if it must be another."""
+    ) -> bool | None:
+        """Compare the place with all others, a piece at each scan; tell if it must be another.
+
+        None: it goes on at the next scan. ``now`` is in s.
+        """
         if self._comparison is None:
-            if 0.0 <= now - self._compared < _COMPARED_EVERY:
-                return False
             self._comparison = Relocation(
                 field, self._config, self._body_radius, view, reckoned, here
             )
         comparison = self._comparison
         comparison.advance()
         if comparison.verdict is Verdict.SEARCHING:
-            return False
+            return None
         self._comparison, self._compared = None, now
         return comparison.verdict is Verdict.FOUND and not comparison.hypotheses[0].is_expected

@@ -25,6 +25,7 @@ from roomba.perception.localization.dead_reckoning import DeadReckoning
 from roomba.perception.localization.doubt import Doubt
 from roomba.perception.localization.estimate import Estimate, Knowledge
 from roomba.perception.localization.expecting import searched_for, where_told
+from roomba.perception.localization.near_search import best_near
 from roomba.perception.localization.recent_sight_kernels import Sights
 from roomba.perception.localization.relocation import Expectation, Hypothesis, Relocation, Verdict
 from roomba.perception.localization.tracker import Tracker
@@ -46,6 +47,13 @@ _FAIR_AGREE: Final = 0.7
 _FAIR_THROUGH: Final = 0.12
 """The same of a pose with more evidence than a report. On its station a robot has 0.98
 and 0.02 or better on the map of its home, and at most 0.57 on those of 15 other homes.
+"""
+_TOLD_AGREE: Final = 0.5
+"""Share of beams with which a pose that was told is gone by until the comparison is done."""
+_NEAR_WORSE: Final = 0.2
+_NEAR_THROUGH: Final = 0.06
+"""Shares of beams, of those that agree and those through walls, that may be worse than usual where
+a scan fits near to where the robot was thought to be.
 """
 _HELP: Final = (
     "carry it to its station, or tell where it is (in RViz: 2D Pose Estimate), "
@@ -92,6 +100,7 @@ class Localizer:
         self._searching_since = self._tried = self._told_since = -math.inf
         self._has_clock = False
         self._told: Expectation | None = None
+        self._compared: Expectation | None = None
         self._relocation: Relocation | None = None
         self._forgotten = ""
         self._expectation: Expectation | None = None
@@ -137,7 +146,9 @@ class Localizer:
     @property
     def is_calm(self) -> bool:
         """Whether the place is known and nothing waits to be done: the belief says it all."""
-        if self._is_lifted or self._forgotten or self._told is not None or self._map is None:
+        if self._is_lifted or self._forgotten or self._map is None:
+            return False
+        if self._told is not None or self._compared is not None:
             return False
         return bool(is_calm(self.belief, self.numbers, self._now))
 
@@ -210,13 +221,15 @@ class Localizer:
         """Expect the robot at a reported pose, with deviations in m and rad; scans confirm it."""
         spread = np.diag([deviation[0] ** 2, deviation[0] ** 2, deviation[1] ** 2])
         self._tracker = self._tracker_at(pose, spread)
-        self._relocation, self._forgotten = None, ""
+        self._relocation = self._compared = None
+        self._doubt.drop()
+        self._forgotten = ""
         self._told, self._told_since = where_told(pose, deviation, self._config), self._now
         self._needed = _GOOD_AGREE, _GOOD_THROUGH
 
     def forget(self, reason: str) -> None:
         """Trust no pose any more; look for the robot in the whole map."""
-        self._told = self._relocation = None
+        self._told = self._compared = self._relocation = None
         self._doubt.drop()
         self._forgotten, self._expectation = reason, None
         self._verdict = Verdict.SEARCHING
@@ -287,7 +300,8 @@ class Localizer:
         was_just_told = self._now - self._told_since <= self._config.scan_timeout
         if unsure > self._config.lost_deviation and not was_just_told:
             return Knowledge.LOST, f"{self._why_unsure()}, for too long; {_HELP}"
-        if self._is_late or self._is_blind or unsure > self._config.known_deviation:
+        is_sure = unsure <= self._config.known_deviation and self._compared is None
+        if self._is_late or self._is_blind or not is_sure:
             return Knowledge.ROUGH, f"{self._why_unsure()}; going by wheels and gyro"
         return Knowledge.KNOWN, ""
 
@@ -312,6 +326,8 @@ class Localizer:
             return "the lidar sends no scans"
         if self._told is not None:
             return "the pose was told, and no scan has confirmed it yet"
+        if self._compared is not None:
+            return "the pose was told, fits in part, and is being compared with all others"
         return "what is in sight does not tell the place: a bare corridor, or next to nothing"
 
     def _follow(
@@ -336,11 +352,17 @@ class Localizer:
             return
         if self._told is not None:
             self._check_told(self._told, fit)
+        elif self._compared is not None:
+            self._compare_told(self._compared, view, reckoned)
         elif tracker.is_doubtful:
             self._reconsider(stamp, view, reckoned)
 
     def _reconsider(self, stamp: float, view: ScanView, reckoned: Pose) -> None:
         """Forget the pose, unless what is in sight says that the home changed, and not the pose."""
+        # Where all is as it was seen a moment ago, it is the home that changed.
+        is_still = self._doubt.sight.is_still(stamp, reckoned, view)
+        if not is_still and self._is_found_near(view, reckoned):
+            return
         pose = self._tracker.pose
         expected = self._doubt.expected(self._now, stamp, view, reckoned, pose, self.field)
         if expected is not None:
@@ -348,13 +370,49 @@ class Localizer:
             # What the place looks like may have changed as well.
             self._expectation = expected
 
+    def _is_found_near(self, view: ScanView, reckoned: Pose) -> bool:
+        """Go on at a place near by that a scan fits as well as usual, if there is one."""
+        since = reckoned.inverse().compose(self._reckoning.pose)
+        here = self._tracker.pose.compose(since.inverse())
+        found = best_near(view, self.field, here, self._config.beam_deviation)
+        if found is None:
+            return False
+        pose, fit = found
+        is_usual = (
+            fit.agree >= float(self._row["usual_agree"]) - _NEAR_WORSE
+            and fit.through <= float(self._row["usual_through"]) + _NEAR_THROUGH
+        )
+        lead = fit.evidence - view.fit(self.field, np.array([here.x, here.y, here.theta])).evidence
+        if not is_usual or lead < self._config.needed_evidence:
+            return False
+        self._tracker = self._tracker_at(pose.compose(since), _FOUND_SPREAD.copy())
+        self._tracker.trust(fit)
+        return True
+
     def _check_told(self, told: Expectation, fit: Fit) -> None:
-        """Take what was told if the scan fits well there; else compare it with the map."""
+        """Take what was told if the scan fits well there; else compare it with the map.
+
+        Where it fits in part, as on a map of another day, it goes by what was told meanwhile.
+        """
         self._told = None
         least, most = self._needed
-        if fit.agree < least or fit.through > most:
-            self.forget("what the lidar sees does not fit well where it was told to be")
-            self._expectation = told
+        if fit.agree >= least and fit.through <= most:
+            return
+        if fit.agree >= _TOLD_AGREE:
+            self._compared = told
+        else:
+            self._forget_told(told)
+
+    def _compare_told(self, told: Expectation, view: ScanView, reckoned: Pose) -> None:
+        is_elsewhere = self._doubt.is_elsewhere(self._now, view, reckoned, told, self.field)
+        if is_elsewhere is not None:
+            self._compared = None
+        if is_elsewhere:
+            self._forget_told(told)
+
+    def _forget_told(self, told: Expectation) -> None:
+        self.forget("what the lidar sees does not fit well where it was told to be")
+        self._expectation = told
 
     def _begin_search(self, view: ScanView, reckoned: Pose) -> Relocation:
         """Begin to look for the robot in the whole map."""

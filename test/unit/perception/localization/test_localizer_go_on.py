@@ -69,7 +69,7 @@ def test_on_a_map_of_another_frame_it_is_where_it_was_put(off: Pose) -> None:
 
     # A reported pose alone is compared with all other places: here it fits but fairly.
     robot.localizer.told(AWAY.compose(robot.world.pose), DEVIATION)
-    assert Knowledge.SEARCHING in knowledge_of(robot)
+    assert Knowledge.ROUGH in knowledge_of(robot)
 
 
 def test_on_the_map_of_another_home_it_knows_no_place() -> None:

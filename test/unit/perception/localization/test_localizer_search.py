@@ -10,6 +10,7 @@ from fixtures.located import (
     CONFIG,
     FURNISHED,
     LIDAR,
+    MOVED,
     SQUARE,
     START,
     TWO_ROOMS,
@@ -274,3 +275,14 @@ def test_wrong_all_along_it_finds_that_out_though_it_was_not_carried() -> None:
         robot.look()
     assert robot.estimate.knowledge is Knowledge.KNOWN
     assert robot.error < WORST_ERROR
+
+
+def test_told_where_a_scan_fits_in_part_it_goes_on_while_places_are_compared() -> None:
+    robot = Located(MOVED, START)
+    states = set()
+    for _ in steps(3.0):
+        robot.look()
+        states.add(robot.estimate.knowledge)
+        assert robot.error < 2.0 * WORST_ERROR
+    assert states == {Knowledge.ROUGH, Knowledge.KNOWN}
+    assert robot.estimate.knowledge is Knowledge.KNOWN

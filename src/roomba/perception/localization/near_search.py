@@ -1,0 +1,93 @@
+"""Looking around a pose for where a scan fits: wheels slipped, or a turn was not told."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.geometry import Pose, wrap_angle
+from roomba.perception.localization.search_kernels import score_heading
+from roomba.perception.matching.match_kernels import match
+from roomba.perception.matching.scan_view import Fit, ScanView
+from roomba.perception.matching.surface_field import SurfaceField
+
+_WAY: Final = 0.6
+_TURN: Final = 0.7
+"""m, rad; so far to each side it looks."""
+_STEP: Final = 0.12
+_TURN_STEP: Final = 0.07
+"""m, rad; between poses that are tried: a match finds its way from half of that."""
+_WIDTH: Final = 0.35
+"""m; a beam that ends farther than this from a surface adds nothing."""
+_BEAMS: Final = 48
+_MATCHED: Final = 8
+"""Beams that are compared, and poses that are matched."""
+_SCALES: Final = np.array([0.40, 0.30, 0.20, 0.10, 0.05, 0.05])
+"""m; beams that end farther off than this lose weight, round by round."""
+_SPREAD: Final = np.diag([0.3**2, 0.3**2, 0.2**2])
+"""m2, rad2; of a pose that is tried."""
+_LEAST_ROOM: Final = 0.05
+"""m; nearer than this to a surface no robot's middle is."""
+
+
+def best_near(
+    view: ScanView, field: SurfaceField, pose: Pose, deviation: float
+) -> tuple[Pose, Fit] | None:
+    """Return the pose around ``pose``, map frame, that a scan fits best, and how well it fits.
+
+    ``deviation`` is that of a beam, m. None where nothing around has room for a robot.
+    """
+    spots = _spots(field, pose)
+    if not len(spots) or not len(view):
+        return None
+    chosen = np.unique(np.linspace(0, len(view) - 1, _BEAMS).astype(np.int64))
+    scores, headings = np.zeros(len(spots), np.float32), np.zeros(len(spots), np.float32)
+    for turn in np.arange(-_TURN, _TURN + 1e-9, _TURN_STEP):
+        score_heading(
+            field.values,
+            field.place,
+            view.ends,
+            chosen,
+            spots,
+            pose.theta + float(turn),
+            _WIDTH,
+            scores,
+            headings,
+        )
+    best = np.argsort(-scores, kind="stable")[:_MATCHED]
+    starts = np.column_stack((spots[best], headings[best].astype(np.float64)))
+    tried = [_matched(view, field, start, deviation) for start in starts]
+    return max(tried, key=lambda each: each[1].evidence)
+
+
+def _matched(
+    view: ScanView, field: SurfaceField, start: NDArray[np.float64], deviation: float
+) -> tuple[Pose, Fit]:
+    pose, covariance = start.copy(), _SPREAD.copy()
+    match(
+        field.values,
+        field.place,
+        view.ends,
+        len(view),
+        start,
+        covariance,
+        _SCALES,
+        deviation * deviation,
+        pose,
+    )
+    return Pose(float(pose[0]), float(pose[1]), wrap_angle(float(pose[2]))), view.fit(field, pose)
+
+
+def _spots(field: SurfaceField, pose: Pose) -> NDArray[np.float64]:
+    """Return a lattice of places around a pose that have room, float64 [n, 2], m."""
+    side = np.arange(-_WAY, _WAY + 1e-9, _STEP)
+    x, y = (each.ravel() for each in np.meshgrid(pose.x + side, pose.y + side))
+    frame = field.frame
+    columns = np.floor((x - frame.origin_x) / frame.resolution).astype(np.int64)
+    rows = np.floor((y - frame.origin_y) / frame.resolution).astype(np.int64)
+    inside = (rows >= 0) & (rows < frame.rows) & (columns >= 0) & (columns < frame.columns)
+    x, y, rows, columns = x[inside], y[inside], rows[inside], columns[inside]
+    has_room = field.values[rows, columns] >= _LEAST_ROOM
+    return np.column_stack((x[has_room], y[has_room]))
