@@ -126,7 +126,7 @@ def robot_with_page(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RosGra
 
 @pytest.fixture(scope="module")
 def shared_robot(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RosGraph]:
-    """The whole robot, launched once for a module whose tests leave it as it was."""
+    """The whole robot by roslaunch, once for a module whose tests leave it as it was."""
     with RosGraph(tmp_path_factory.mktemp("robot")) as own:
-        own.launch()
+        own.roslaunch()
         yield own

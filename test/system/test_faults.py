@@ -31,7 +31,7 @@ ENDED = 3.0
 def shared_robot(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RosGraph]:
     """The whole robot, twice as fast as real time; nodes that were ended are back after a test."""
     with RosGraph(tmp_path_factory.mktemp("robot")) as own:
-        own.launch("speed:=2")
+        own.roslaunch("speed:=2")
         yield own
 
 
@@ -142,7 +142,7 @@ def test_at_a_faster_clock_it_walks_and_ctrl_c_ends_it_without_violence(tmp_path
     """Row 9 for the whole stack: each node ends by itself, and roslaunch has to kill none."""
     with RosGraph(tmp_path) as graph:
         # `./roomba run` waits 1.8 s for them; here the machine may be a busy one.
-        launch = graph.launch(f"speed:={FAST}", "--sigint-timeout=20")
+        launch = graph.roslaunch(f"speed:={FAST}", "--sigint-timeout=20")
         run_forked(lambda: walk_fast(graph))
         pids = [graph.pid(node) for node in LAUNCHED]
         launch.send_to_leader(signal.SIGINT)

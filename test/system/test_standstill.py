@@ -39,7 +39,7 @@ def shared_robot(
 ) -> Iterator[RosGraph]:
     """The whole robot; nodes that were ended are back after a test."""
     with RosGraph(tmp_path_factory.mktemp("robot")) as own:
-        own.launch(f"speed:={request.param}")
+        own.roslaunch(f"speed:={request.param}")
         yield own
 
 
