@@ -13,7 +13,7 @@ from roomba.world.engine.fall_kernels import let_dirt_fall
 from roomba.world.engine.ground_kernels import feel_ground, ground_at
 from roomba.world.engine.lidar.projection import ScanBuffers
 from roomba.world.engine.lidar.scan_kernels import is_scan_due, scan
-from roomba.world.engine.lidar.sweep_kernels import sweep
+from roomba.world.engine.lidar.sweep_kernels import Surroundings, sweep
 from roomba.world.engine.state.arrays import Row, Rows, State
 from roomba.world.engine.state.compilation import entry, part
 from roomba.world.engine.station_kernels import sense_station
@@ -49,8 +49,8 @@ def advance(
             let_dirt_fall(state.dirt, home, world, int(row.crumb))
             for robot in range(world.robots_at, world.robots_end):
                 if row.is_swept > 0.0:
-                    scans = state.made, state.underway, state.ranges
-                    sweep(state.solid, home, world, robot, row, quantiles, scans, dt)
+                    around = Surroundings(state.solid, home, world, robot, row, quantiles)
+                    sweep(around, (state.made, state.underway, state.ranges), dt)
                 elif is_scan_due(world, state.solid.robots[robot], row.scan_period):
                     scan(
                         state.solid,

@@ -8,7 +8,7 @@ time of its first beam.
 from __future__ import annotations
 
 import math
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +17,7 @@ from roomba.angles import wrapped
 from roomba.world.engine.lidar.ray_kernels import ray_to_cells, ray_to_movable
 from roomba.world.engine.state.arrays import Row, Solid
 from roomba.world.engine.state.compilation import part
-from roomba.world.engine.state.random_kernels import next_bits
+from roomba.world.engine.state.random_kernels import hashed, next_bits
 
 Floats = NDArray[np.float32]
 
@@ -29,23 +29,27 @@ _UNIT_16: Final = 1.0 / (1 << 16)
 _UNIT_20: Final = 1.0 / (1 << 20)
 
 
+class Surroundings(NamedTuple):
+    """Where a robot's lidar measures, and by which numbers."""
+
+    solid: Solid
+    home: Row
+    world: Row
+    robot: int
+    numbers: Row
+    quantiles: Floats
+    """See :func:`~roomba.world.engine.state.random_kernels.normal_quantiles`."""
+
+
 @part
-def sweep(
-    solid: Solid,
-    home: Row,
-    world: Row,
-    robot: int,
-    numbers: Row,
-    quantiles: Floats,
-    scans: tuple[Floats, Floats, Floats],
-    dt: float,
-) -> None:
+def sweep(around: Surroundings, scans: tuple[Floats, Floats, Floats], dt: float) -> None:
     """Measure what is due in the step of ``dt`` s that ends now; deliver what has waited.
 
     ``scans``, float32 [robots, beams] each: the sweep that is made, one that is on the line, and
     the newest that arrived.
     """
-    body = solid.robots[robot]
+    world, robot, numbers = around.world, around.robot, around.numbers
+    body = around.solid.robots[robot]
     made, underway, arrived = scans
     beams = made.shape[1]
     while True:
@@ -55,7 +59,7 @@ def sweep(
         if numbers.time_increment > 0.0:
             due = math.floor((world.time - body.sweep_start + _SLACK) / numbers.time_increment) + 1
             due = min(due, beams)
-        measure_beams(solid, home, world, robot, numbers, quantiles, made, due, dt)
+        measure_beams(around, made, due, dt)
         if due < beams:
             break
         # The delay is no longer than the period: what was on the line has arrived by now.
@@ -97,22 +101,13 @@ def deliver(body: Row, robot: int, underway: Floats, arrived: Floats) -> None:
 
 
 @part
-def measure_beams(
-    solid: Solid,
-    home: Row,
-    world: Row,
-    robot: int,
-    numbers: Row,
-    quantiles: Floats,
-    ranges: Floats,
-    due: int,
-    dt: float,
-) -> None:
+def measure_beams(around: Surroundings, ranges: Floats, due: int, dt: float) -> None:
     """Measure the beams from the next one to before ``due``, each where the robot was at its time.
 
     Between the poses before and after the step the body goes along an arc.
     """
-    body = solid.robots[robot]
+    world, numbers = around.world, around.numbers
+    body = around.solid.robots[around.robot]
     turn = wrapped(body.theta - body.before_theta)
     chord_x, chord_y = body.x - body.before_x, body.y - body.before_y
     for beam in range(int(body.next_beam), due):
@@ -125,18 +120,8 @@ def measure_beams(
         x = body.before_x + cosine * chord_x - sine * chord_y
         y = body.before_y + sine * chord_x + cosine * chord_y
         theta = body.before_theta + share * turn
-        ranges[robot, beam] = measure(
-            solid, home, world, robot, numbers, quantiles, beam, x, y, theta
-        )
+        ranges[around.robot, beam] = measure(around, beam, x, y, theta)
     body.next_beam = due
-
-
-@part
-def hashed(bits: np.uint32) -> np.uint32:
-    """Return Wellons' "lowbias32" of 32 bits."""
-    bits = np.uint32(np.uint32(bits ^ (bits >> np.uint32(16))) * np.uint32(0x7FEB352D))
-    bits = np.uint32(np.uint32(bits ^ (bits >> np.uint32(15))) * np.uint32(0x846CA68B))
-    return np.uint32(bits ^ (bits >> np.uint32(16)))
 
 
 @part
@@ -169,21 +154,21 @@ def is_seen(found: float, facing: float, reflected: float, numbers: Row, fading:
 
 
 @part
-def ray(
-    solid: Solid,
-    home: Row,
-    world: Row,
-    robot: int,
-    numbers: Row,
-    x: float,
-    y: float,
-    angle: float,
-) -> tuple[float, float, bool]:
+def ray(around: Surroundings, x: float, y: float, angle: float) -> tuple[float, float, bool]:
     """Return the exact range, m, the cosine to the normal, and whether it is the home's own."""
+    solid, numbers = around.solid, around.numbers
     cosine, sine = math.cos(angle), math.sin(angle)
-    found, facing = ray_to_cells(solid.cells, home, x, y, cosine, sine, numbers.max_range)
+    found, facing = ray_to_cells(solid.cells, around.home, x, y, cosine, sine, numbers.max_range)
     nearer, square = ray_to_movable(
-        solid, world, robot, x, y, cosine, sine, numbers.lidar_height, numbers.radius
+        solid,
+        around.world,
+        around.robot,
+        x,
+        y,
+        cosine,
+        sine,
+        numbers.lidar_height,
+        numbers.radius,
     )
     if nearer < found:
         return nearer, square, False
@@ -191,20 +176,42 @@ def ray(
 
 
 @part
-def measure(
-    solid: Solid,
-    home: Row,
-    world: Row,
-    robot: int,
-    numbers: Row,
-    quantiles: Floats,
-    beam: int,
+def is_echo(
+    around: Surroundings,
     x: float,
     y: float,
-    theta: float,
-) -> float:
+    angle: float,
+    met: tuple[float, float, bool],
+    fading: float,
+) -> bool:
+    """Tell whether enough light comes back of what a ray met (see :func:`ray`)."""
+    home, numbers = around.home, around.numbers
+    found, facing, is_home = met
+    reflected = numbers.movable
+    if is_home:
+        # A little inside of what was met: its face may lie on the border of two patches.
+        into = found + 0.01
+        end_x, end_y = x + into * math.cos(angle), y + into * math.sin(angle)
+        reflected = reflectivity(end_x - home.left, end_y - home.bottom, numbers)
+    return is_seen(found, facing, reflected, numbers, fading)
+
+
+@part
+def with_noise(found: float, facing: float, numbers: Row, chance: float) -> float:
+    """Return a range, m, as it is told: ``chance`` is a normal random number."""
+    sigma = numbers.range_noise + numbers.noise_growth * found * found
+    sigma *= 1.0 + numbers.grazing_noise * (1.0 / max(facing, _FLATTEST) - 1.0)
+    found += sigma * chance
+    if numbers.range_step > 0.0:
+        found = numbers.range_step * math.floor(found / numbers.range_step + 0.5)
+    return found
+
+
+@part
+def measure(around: Surroundings, beam: int, x: float, y: float, theta: float) -> float:
     """Return what one beam measures from a pose, m: inf without an echo, -inf too near."""
-    body = solid.robots[robot]
+    numbers, quantiles = around.numbers, around.quantiles
+    body = around.solid.robots[around.robot]
     if body.lidar_blocked > 0.0:
         return math.inf
     key = np.uint32(body.sweep_key & np.uint64(0xFFFFFFFF))
@@ -213,11 +220,11 @@ def measure(
     third = hashed(np.uint32(second ^ np.uint32(0xC2B2AE35)))
     aside = numbers.angle_rounding * (float(second & np.uint32(65535)) * _UNIT_16 - 0.5)
     angle = theta + numbers.first_angle + beam * numbers.beam_step + aside
-    found, facing, is_home = ray(solid, home, world, robot, numbers, x, y, angle)
+    found, facing, is_home = ray(around, x, y, angle)
     last, body.last_range = body.last_range, found
     if numbers.spot > 0.0 and abs(found - last) > numbers.edge:
-        right, _, _ = ray(solid, home, world, robot, numbers, x, y, angle - numbers.spot)
-        left, _, _ = ray(solid, home, world, robot, numbers, x, y, angle + numbers.spot)
+        right, _, _ = ray(around, x, y, angle - numbers.spot)
+        left, _, _ = ray(around, x, y, angle + numbers.spot)
         if abs(left - right) > numbers.edge and left + right < math.inf:
             # The spot lies on both sides of an edge: as much of either as chance has it.
             share = float(second >> np.uint32(16)) * _UNIT_16
@@ -228,20 +235,10 @@ def measure(
         if float(first >> np.uint32(12)) * _UNIT_20 < numbers.misses:
             return math.inf
         if numbers.white_reach > 0.0:
-            # A little inside of what was met: its face may lie on the border of two patches.
-            into = found + 0.01
-            end_x, end_y = x + into * math.cos(angle), y + into * math.sin(angle)
-            reflected = numbers.movable
-            if is_home:
-                reflected = reflectivity(end_x - home.left, end_y - home.bottom, numbers)
             fading = float(quantiles[third & np.uint32(4095)])
-            if not is_seen(found, facing, reflected, numbers, fading):
+            if not is_echo(around, x, y, angle, (found, facing, is_home), fading):
                 return math.inf
-        sigma = numbers.range_noise + numbers.noise_growth * found * found
-        sigma *= 1.0 + numbers.grazing_noise * (1.0 / max(facing, _FLATTEST) - 1.0)
-        found += sigma * float(quantiles[first & np.uint32(4095)])
-        if numbers.range_step > 0.0:
-            found = numbers.range_step * math.floor(found / numbers.range_step + 0.5)
+        found = with_noise(found, facing, numbers, float(quantiles[first & np.uint32(4095)]))
     if found < numbers.min_range:
         return -math.inf
     return found if found < numbers.max_range else math.inf

@@ -65,6 +65,14 @@ def next_exponential(owner: Row) -> float:
     return -math.log(1.0 - next_uniform(owner))
 
 
+@part
+def hashed(bits: np.uint32) -> np.uint32:
+    """Return Wellons' "lowbias32" of 32 bits."""
+    bits = np.uint32(np.uint32(bits ^ (bits >> np.uint32(16))) * np.uint32(0x7FEB352D))
+    bits = np.uint32(np.uint32(bits ^ (bits >> np.uint32(15))) * np.uint32(0x846CA68B))
+    return np.uint32(bits ^ (bits >> np.uint32(16)))
+
+
 @scan_part
 def add_noise(
     ranges: NDArray[np.float32],
@@ -76,15 +84,12 @@ def add_noise(
 ) -> None:
     """Add normal noise of ``sigma`` m to a row of ranges, and lose the share ``misses`` of them.
 
-    A lost range is inf; infinite ones stay so. Each beam has its own hash of ``key`` (Wellons'
-    "lowbias32"): 12 bits choose the noise and 20 whether it is lost.
+    A lost range is inf; infinite ones stay so. Each beam has its own hash of ``key``: 12 bits
+    choose the noise and 20 whether it is lost.
     """
     lost = np.uint32(misses * np.float32(1 << 20))
     for beam in range(ranges.shape[1]):
-        bits = np.uint32(key + np.uint32(beam) * np.uint32(0x9E3779B9))
-        bits = np.uint32(np.uint32(bits ^ (bits >> np.uint32(16))) * np.uint32(0x7FEB352D))
-        bits = np.uint32(np.uint32(bits ^ (bits >> np.uint32(15))) * np.uint32(0x846CA68B))
-        bits = np.uint32(bits ^ (bits >> np.uint32(16)))
+        bits = hashed(np.uint32(key + np.uint32(beam) * np.uint32(0x9E3779B9)))
         noisy = ranges[row, beam] + sigma * quantiles[bits & np.uint32(4095)]
         is_lost = np.uint32(bits >> np.uint32(12)) < lost
         ranges[row, beam] = np.float32(math.inf) if is_lost else noisy
