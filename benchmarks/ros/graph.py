@@ -11,7 +11,6 @@ import time
 import xmlrpc.client
 from collections.abc import Callable
 from pathlib import Path
-from types import TracebackType
 from typing import Any
 
 from benchmarks.contestants import REPOSITORY, ContestantError
@@ -47,12 +46,7 @@ class Graph:
         """Start nothing yet."""
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         """End every program that still runs."""
         for program in reversed(self._programs):
             _end(program)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import csv
 import math
 from pathlib import Path
-from types import TracebackType
 from typing import Any, Final, Protocol
 
 import genpy
@@ -39,12 +38,7 @@ class RowFile(Protocol):
     def __enter__(self) -> RowFile:
         """Return itself."""
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         """Finish the file."""
 
     def write(self, row: Row) -> None:

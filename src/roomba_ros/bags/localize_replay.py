@@ -15,8 +15,9 @@ from roomba.geometry import Pose
 from roomba.grid import OccupancyMap
 from roomba.perception.localization.estimate import Estimate
 from roomba.perception.localization.localizer import Localizer
+from roomba.robot.readings import ScanReading
 from roomba_ros.bags.localize_recording import Heard, MessageKind
-from roomba_ros.bags.recorded_drive import LATEST, RecordedDrive
+from roomba_ros.bags.recorded_sensors import RecordedSensors
 from roomba_ros.convert.common import pose_of_odometry
 from roomba_ros.convert.errors import MessageError
 from roomba_ros.convert.localization import told_pose_of
@@ -26,6 +27,8 @@ _ROW_PERIOD: Final = 0.045
 """s; as often as the live node tells its pose, with something left for clocks that tremble."""
 _SILENCE: Final = 0.25
 """s; without odometry for so long the other messages tell that time passes."""
+_LATEST: Final = 1.0
+"""s; a scan that odometry is so far behind is of a time that it knows nothing of."""
 _GIVEN_DEVIATION: Final = (0.1, 0.1)
 """m, rad; deviations of a start that was typed."""
 
@@ -46,7 +49,7 @@ class Row:
     map_to_odometry: Pose
 
 
-class Replay(RecordedDrive):
+class Replay:
     """Feeds a localizer; ``notes`` says what was left out, and why."""
 
     def __init__(
@@ -61,10 +64,13 @@ class Replay(RecordedDrive):
 
         ``base`` is the frame of the robot's body, to which ``mounts`` lead.
         """
-        super().__init__(mounts, base)
+        self.scans = 0
+        """Scans that were taken in."""
         self.start = "given" if start is not None else "searched for in the whole map"
         self.was_told = False
         """Whether it begins at a pose that was recorded."""
+        self._sensors = RecordedSensors(mounts, base)
+        self._scan: tuple[float, ScanReading] | None = None
         self._map, self._config = occupancy, config
         self._begin, self._deviation = start, _GIVEN_DEVIATION
         self._localizer: Localizer | None = None
@@ -73,13 +79,18 @@ class Replay(RecordedDrive):
         self._reckoned = Pose()
         self._is_told = start is not None
 
+    @property
+    def notes(self) -> list[str]:
+        """What is worth knowing of what was heard."""
+        return self._sensors.notes
+
     def hear(self, heard: Heard) -> Row | None:
         """Take in a message; return what is known then, if it is time to tell."""
         message = heard.message
         if heard.kind is MessageKind.ODOMETRY:
             self._hear_odometry(heard.stamp, message)
         elif heard.kind is MessageKind.GYRO:
-            self._hear_gyro(heard.stamp, message)
+            self._sensors.hear_gyro(heard.stamp, message)
         elif heard.kind is MessageKind.SCAN:
             self._hear_scan(heard.stamp, message)
         elif heard.kind is MessageKind.LIFTED and self._localizer is not None:
@@ -93,12 +104,12 @@ class Replay(RecordedDrive):
         try:
             pose = pose_of_odometry(message)
         except MessageError:
-            self._leave_out("messages of odometry with numbers that are not finite")
+            self._sensors.leave_out("messages of odometry with numbers that are not finite")
             return
         if self._localizer is None:
             self._localizer = self._begun(stamp, pose)
         self._stamp = stamp
-        self._localizer.move(stamp, pose, self._turning_at(stamp))
+        self._localizer.move(stamp, pose, self._sensors.turning_at(stamp))
         step = self._reckoned.inverse().compose(self._localizer.reckoned)
         self._reckoned = self._localizer.reckoned
         self._way += math.hypot(step.x, step.y)
@@ -126,7 +137,7 @@ class Replay(RecordedDrive):
             return
         if self._scan is not None:
             self._see(self._localizer)
-        scan = self._scan_of(message)
+        scan = self._sensors.scan_of(message)
         if scan is not None:
             self._scan = (stamp, scan)
         if stamp <= self._stamp:
@@ -136,8 +147,8 @@ class Replay(RecordedDrive):
         if self._scan is None:
             return
         (stamp, scan), self._scan = self._scan, None
-        if stamp > self._stamp + LATEST:
-            self._leave_out("scans of times without odometry")
+        if stamp > self._stamp + _LATEST:
+            self._sensors.leave_out("scans of times without odometry")
             return
         localizer.see(stamp, scan.ranges, scan.lidar)
         self.scans += 1
@@ -150,7 +161,7 @@ class Replay(RecordedDrive):
         try:
             self._begin, self._deviation = told_pose_of(message)
         except MessageError as error:
-            self._remarks.append(f"the recorded start is of no use: {error}")
+            self._sensors.remark(f"the recorded start is of no use: {error}")
             return
         self.start, self.was_told = "as recorded", True
         if self._localizer is not None:

@@ -1,11 +1,10 @@
-"""The common part of replays of a recorded drive: gyro, lidars, and notes."""
+"""What the messages of a recorded gyro and lidar measured, and notes of what was left out."""
 
 from __future__ import annotations
 
 from collections import Counter
-from typing import Any, Final
 
-from sensor_msgs.msg import LaserScan
+from sensor_msgs.msg import Imu, LaserScan
 
 from roomba.robot.readings import ScanReading
 from roomba_ros.convert.errors import MessageError
@@ -14,20 +13,14 @@ from roomba_ros.convert.mounts import Mount, Mounts
 from roomba_ros.convert.readings import turning_of
 from roomba_ros.convert.scan import ScanDecoder
 
-LATEST: Final = 1.0
-"""s; a scan that odometry is so far behind is of a time that it knows nothing of."""
 
-
-class RecordedDrive:
-    """Keeps what was heard of gyro and mounts; ``notes`` says what was left out, and why."""
+class RecordedSensors:
+    """Decodes gyro and scans; ``notes`` says what was left out, and why."""
 
     def __init__(self, mounts: Mounts, base: str) -> None:
         """``base`` is the frame of the robot's body, to which ``mounts`` lead."""
-        self.scans = 0
-        """Scans that were taken in."""
         self._mounts, self._base = mounts, base
         self._gyro: tuple[float, float] | None = None
-        self._scan: tuple[float, ScanReading] | None = None
         self._decoder = ScanDecoder(lambda frame: self._mount(frame, "lidar"))
         self._frames: dict[str, Mount] = {}
         self._left_out: Counter[str] = Counter()
@@ -43,42 +36,47 @@ class RecordedDrive:
         ]
         return [*self._remarks, *left_out]
 
-    def _turning_at(self, stamp: float) -> float | None:
+    def turning_at(self, stamp: float) -> float | None:
         """Return the gyro's newest sample, rad/s, if it is of about that time."""
         if self._gyro is None or abs(self._gyro[0] - stamp) > SAME_TIME:
             return None
         return self._gyro[1]
 
-    def _hear_gyro(self, stamp: float, message: Any) -> None:
+    def hear_gyro(self, stamp: float, message: Imu) -> None:
+        """Keep a sample of the gyro, recorded at ``stamp``, s."""
         try:
             turning = turning_of(message).turning
         except MessageError as error:
-            self._leave_out("messages of the gyro", str(error))
+            self.leave_out("messages of the gyro", str(error))
             return
         is_upside_down = self._mount(message.header.frame_id, "gyro").is_upside_down
         self._gyro = (stamp, -turning if is_upside_down else turning)
 
-    def _scan_of(self, message: LaserScan) -> ScanReading | None:
+    def scan_of(self, message: LaserScan) -> ScanReading | None:
         """Return a scan; None, and a note, for one that cannot be used."""
         try:
             return self._decoder.decode(message)
         except MessageError as error:
-            self._leave_out("scans that cannot be used", str(error))
+            self.leave_out("scans that cannot be used", str(error))
             return None
+
+    def leave_out(self, what: str, reason: str = "") -> None:
+        """Count a message that is left out; of the reasons the first one is noted."""
+        self._left_out[what] += 1
+        self._first_reasons.setdefault(what, f" (the first: {reason})" if reason else "")
+
+    def remark(self, note: str) -> None:
+        """Add a note."""
+        self._remarks.append(note)
 
     def _mount(self, frame: str, sensor: str) -> Mount:
         """Return where a sensor is mounted: in the middle, and looking ahead, if nothing tells."""
         if frame not in self._frames:
             mount = self._mounts.mount(self._base, frame)
             if mount is None and sensor == "lidar":
-                self._remarks.append(
+                self.remark(
                     f"no transform from {self._base!r} to {frame!r} was recorded: "
                     "the lidar is taken to be in the middle of the robot, and to look ahead"
                 )
             self._frames[frame] = mount or Mount()
         return self._frames[frame]
-
-    def _leave_out(self, what: str, reason: str = "") -> None:
-        """Count a message that is left out; of the reasons the first one is noted."""
-        self._left_out[what] += 1
-        self._first_reasons.setdefault(what, f" (the first: {reason})" if reason else "")
