@@ -9,6 +9,7 @@ import pytest
 from fixtures.lockstep import Lockstep
 from roomba_robot.msg import Localization
 
+from roomba.configuration.nodes import HearingConfig
 from roomba.geometry import Pose, Twist
 from roomba.perception.localization.estimate import Knowledge
 from roomba.robot.readings import Readings
@@ -27,7 +28,7 @@ def ros() -> Iterator[Lockstep]:
 
 
 def place() -> HeardPlace:
-    heard = HeardPlace(TICK)
+    heard = HeardPlace(TICK, HearingConfig())
     heard.start()
     return heard
 

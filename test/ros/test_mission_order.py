@@ -11,6 +11,7 @@ from roomba_robot.msg import CleanGoal, DockGoal, VacuumState
 
 from roomba.configuration.docking import DockingConfig
 from roomba.configuration.mission import MissionConfig
+from roomba.configuration.nodes import DeadlinesConfig, PeriodsConfig
 from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose
 from roomba.mission.cleaning.cleaning import Cleaning
@@ -72,10 +73,10 @@ class Rig:
             DirtMap(HOME.map),
             AWAY,
         )
-        self.orders = MissionOrders(lambda: None)
+        self.orders = MissionOrders(lambda: None, DeadlinesConfig())
         monkeypatch.setattr(Publisher, "state", self.world.state)
         monkeypatch.setattr(rospy, "Publisher", Publisher)
-        topics = MissionTopics(MISSION_CONFIG, MagicMock())
+        topics = MissionTopics(MISSION_CONFIG, PeriodsConfig(), MagicMock())
         topics.start()
         drive = MagicMock(is_taken=False)
         self.round = MissionRound(self.orders, topics, drive, Mission.tick)

@@ -2,6 +2,7 @@
 
 import pytest
 
+from roomba.configuration.nodes import PaceConfig
 from roomba_ros.runtime.pace import Pace
 
 TICK, SPEED = 0.05, 5.0
@@ -17,7 +18,12 @@ class Wall:
         self.events: list[tuple[float, float]] = []
         self.dead: set[str] = set()
         self.pace = Pace(
-            TICK, SPEED, lambda part: part not in self.dead, lambda: self.now, self.sleep
+            TICK,
+            SPEED,
+            PaceConfig(),
+            lambda part: part not in self.dead,
+            lambda: self.now,
+            self.sleep,
         )
 
     def sleep(self, seconds: float) -> None:
@@ -106,7 +112,7 @@ def test_who_does_not_come_back_for_a_minute_counts_no_more() -> None:
 
 def test_what_was_asked_for_to_be_slow_stays_so() -> None:
     wall = Wall()
-    wall.pace = Pace(TICK, 0.5, lambda part: False, lambda: wall.now, wall.sleep)
+    wall.pace = Pace(TICK, 0.5, PaceConfig(), lambda part: False, lambda: wall.now, wall.sleep)
     wall.pace.heard(PART, 8.1)
     assert wall.ticks(100, robot=8.1) == pytest.approx(100 * TICK / 0.5)
 

@@ -11,6 +11,7 @@ from roomba_robot.msg import Bumper, Localization
 from rospy import Time
 from sensor_msgs.msg import LaserScan
 
+from roomba.configuration.nodes import HearingConfig
 from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose, Twist
 from roomba.grid import FREE, GridFrame, OccupancyMap
@@ -31,7 +32,7 @@ def ros() -> Iterator[Lockstep]:
 
 
 def heard_senses() -> HeardSenses:
-    senses = HeardSenses(CONFIG, "odom", "scan", "bumper")
+    senses = HeardSenses(CONFIG, HearingConfig(), "odom", "scan", "bumper")
     senses.start()
     return senses
 

@@ -20,14 +20,8 @@ from roomba.storage.pictures_folder import ANGLES, PictureFolder, nearest_angle
 from roomba_ros.convert.common import image_message, picture_of, pose_of
 from roomba_ros.runtime.calls import call_service
 from roomba_ros.runtime.node import frame_id, run_node
+from roomba_ros.runtime.parameters import read_nodes_config
 from roomba_ros.runtime.subscriptions import subscribe
-
-_TRAVELLED = 0.1
-"""m; a picture taken farther away than this is old."""
-_TURNED = 0.3
-"""rad; and so is one taken with another heading."""
-_REST = 1.0
-"""s of wall time between two pictures, at least: a picture is much work, on a fast clock too."""
 
 
 class TurnCameraService:
@@ -38,13 +32,15 @@ class TurnCameraService:
     Services: ``turn_camera`` (TurnCamera: the newest picture of the angle nearest to the wish).
     Calls: ``camera/capture`` (TurnCamera) of the robot's camera.
     Subscribes: ``pose`` (PoseStamped).
-    Parameters: ``~picture_folder`` (default: ``roomba_robot/Images`` in the ROS home folder).
+    Parameters: ``~picture_folder`` (default: ``roomba_robot/Images`` in the ROS home folder),
+    ``nodes_config``.
     """
 
     period = 3.0
 
     def start(self) -> None:
         """Connect."""
+        self._config = read_nodes_config().pictures
         own = rospy.get_namespace().strip("/")
         default = Path(rospkg.get_ros_home()) / "roomba_robot" / own / "Images"
         self._folder = PictureFolder(Path(rospy.get_param("~picture_folder", "") or default))
@@ -60,7 +56,7 @@ class TurnCameraService:
     def tick(self, now: float) -> None:
         """Take a first picture of each angle at once, later one that is not up to date."""
         pose = self._pose
-        if pose is None or time.monotonic() < self._taken + _REST:
+        if pose is None or time.monotonic() < self._taken + self._config.rest:
             return
         old = [angle for angle in self._round if self._is_old(angle, pose)]
         wanted = [angle for angle in old if angle not in self._pictured] or old[:1]
@@ -82,7 +78,8 @@ class TurnCameraService:
         if last is None:
             return True
         turned = abs(wrap_angle(pose.theta - last.theta))
-        return pose.distance_to(last.x, last.y) > _TRAVELLED or turned > _TURNED
+        travelled = pose.distance_to(last.x, last.y)
+        return travelled > self._config.travelled or turned > self._config.turned
 
     def _take(self, angle: int) -> NDArray[np.uint8]:
         pose = self._pose

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Final
-
 from roomba.configuration.robot import RobotConfig
 from roomba.perception.floors.recognition import (
     FloorPlace,
@@ -13,9 +11,6 @@ from roomba.perception.floors.recognition import (
 )
 from roomba.storage.map_store import StoredMap
 from roomba_ros.localization.topics import LocalizationTopics
-
-_TIMEOUT: Final = 20.0
-"""s; when no floor was recognised by then, it is a new one."""
 
 
 class FloorSearch:
@@ -27,10 +22,11 @@ class FloorSearch:
         config: RobotConfig,
         place: LocalizationTopics,
         floors: dict[str, StoredMap],
+        longest: float,
     ) -> None:
-        """Begin at ``now``, s of the ROS clock."""
+        """Begin at ``now``, s of the ROS clock; after ``longest`` s it is a new floor."""
         self.floors = floors
-        self._place, self._since = place, now
+        self._place, self._since, self._longest = place, now, longest
         known = {name: FloorRecord(each.occupancy, each.station) for name, each in floors.items()}
         self._recognition = FloorRecognition(known, config.localization, config.body.radius)
 
@@ -44,5 +40,5 @@ class FloorSearch:
 
     def has_failed(self, now: float) -> bool:
         """Whether the robot was never on this floor, as far as can be told."""
-        is_late = not 0.0 <= now - self._since <= _TIMEOUT
+        is_late = not 0.0 <= now - self._since <= self._longest
         return is_late or self._recognition.verdict is FloorVerdict.NEW

@@ -11,23 +11,20 @@ from typing import Final
 
 import rospy
 
+from roomba.configuration.nodes import PlacingConfig
 from roomba.geometry import Pose
 from roomba_ros.runtime.parameters import read_seed_parameters
 
 PARAMETER: Final = "map_to_odometry"
 """Name of the parameter: [x, y, theta] of the odometry's frame in the map, m and rad."""
-_PERIOD: Final = 1.0
-"""s of wall time between two times that it is written."""
-_DEVIATION: Final = (0.05, 0.05)
-_KEPT_DEVIATION: Final = (0.10, 0.05)
-"""m, rad; how unsure a pose of the parameters is, and a kept one: it drifted since."""
 
 
 class KeptPose:
     """Writes the pose in a thread of its own: a master that hangs must not stop the robot."""
 
-    def __init__(self) -> None:
-        """Keep nothing yet."""
+    def __init__(self, period: float, placing: PlacingConfig) -> None:
+        """Keep nothing yet; it is written each ``period`` s of wall time."""
+        self._period, self._placing = period, placing
         self._newest: Pose | None = None
         self._written: Pose | None = None
         self.was_found = False
@@ -54,15 +51,15 @@ class KeptPose:
         kept = rospy.get_param(PARAMETER, None)
         self.was_found = _is_pose(kept)
         if self.was_found:
-            return Pose(*kept).compose(odometry), _KEPT_DEVIATION
+            return Pose(*kept).compose(odometry), self._placing.kept
         # Read now, not at the start: the simulator puts the robot where its home wants it.
         start = read_seed_parameters()
         began = Pose(start.initial_post_x, start.initial_post_y, start.initial_post_theta)
-        return began.compose(odometry), _DEVIATION
+        return began.compose(odometry), self._placing.start
 
     def _write(self) -> None:
         while not rospy.is_shutdown():
-            time.sleep(_PERIOD)
+            time.sleep(self._period)
             newest = self._newest
             if newest is None or newest == self._written:
                 continue

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Final
-
 import rospy
 from geometry_msgs.msg import PoseArray, PoseStamped, PoseWithCovarianceStamped
 from roomba_robot.msg import Localization, RobotPosition
 from tf2_msgs.msg import TFMessage
 
+from roomba.configuration.nodes import PeriodsConfig
 from roomba.geometry import Pose
 from roomba.perception.localization.estimate import Estimate, Knowledge
 from roomba.perception.localization.localizer import Localizer
@@ -21,11 +20,6 @@ from roomba_ros.convert.localization import (
 )
 from roomba_ros.runtime.node import frame_id
 
-_POSITION_TICKS: Final = 2
-_CLOUD_TICKS: Final = 10
-_STATE_TICKS: Final = 20
-"""Ticks between two positions, two clouds, and two states that did not change."""
-
 
 class PlaceTopics:
     """Tells where the robot is.
@@ -36,8 +30,9 @@ class PlaceTopics:
     ``/tf`` (map -> odom, 10 Hz).
     """
 
-    def __init__(self) -> None:
+    def __init__(self, periods: PeriodsConfig) -> None:
         """Connect nothing yet."""
+        self._periods = periods
         self._ticks = 0
         self._said: tuple[Knowledge, str] | None = None
         self._map_frame, self._odom_frame = "map", frame_id("odom")
@@ -60,7 +55,7 @@ class PlaceTopics:
         """
         self._pose.publish(pose_message(stamp or now, estimate.pose, self._map_frame))
         self._ticks += 1
-        if self._ticks % _POSITION_TICKS == 0:
+        if self._ticks % self._periods.position_ticks == 0:
             self._position.publish(RobotPosition(estimate.pose.x, estimate.pose.y))
             pose = covariance_pose_message(stamp or now, estimate, self._map_frame)
             self._amcl_pose.publish(pose)
@@ -68,14 +63,14 @@ class PlaceTopics:
             self._transforms.publish(
                 [transform_message(now, odometry, self._map_frame, self._odom_frame)]
             )
-        if self._ticks % _CLOUD_TICKS == 0 and self._cloud.get_num_connections() > 0:
+        if self._ticks % self._periods.cloud_ticks == 0 and self._cloud.get_num_connections() > 0:
             self._cloud.publish(poses_message(now, localizer.hypotheses, self._map_frame))
         self._tell_state(now, estimate)
 
     def _tell_state(self, now: float, estimate: Estimate) -> None:
         said = (estimate.knowledge, estimate.reason)
         before = self._said
-        if said != before or self._ticks % _STATE_TICKS == 0:
+        if said != before or self._ticks % self._periods.state_ticks == 0:
             self._said = said
             self._state.publish(localization_message(now, estimate, self._map_frame))
         if before is not None and said[0] is before[0]:

@@ -11,6 +11,7 @@ from geometry_msgs.msg import PoseWithCovarianceStamped
 from nav_msgs.msg import OccupancyGrid
 from std_srvs.srv import Empty, EmptyRequest, EmptyResponse
 
+from roomba.configuration.nodes import NodesConfig
 from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose, Twist
 from roomba.grid import OccupancyMap
@@ -26,8 +27,6 @@ from roomba_ros.localization.place_topics import PlaceTopics
 from roomba_ros.runtime.subscriptions import subscribe
 from roomba_ros.senses.body_topics import BodyTopics
 
-_PLACED: Final = (0.05, 0.05)
-"""m, rad; how unsure a place on another map is before a scan confirms it."""
 _HEARD: Final = ("odom", "imu", "scan", "wheel_drop", "bumper", "cliff")
 
 
@@ -39,9 +38,9 @@ class LocalizationTopics:
     Services: ``global_localization`` (Empty: forget the place, look for it in the whole map).
     """
 
-    def __init__(self, config: RobotConfig) -> None:
+    def __init__(self, config: RobotConfig, nodes: NodesConfig) -> None:
         """Connect nothing yet."""
-        self._config = config
+        self._config, self._placing = config, nodes.placing
         self._body = BodyTopics(config, *_HEARD)
         self._localizer: Localizer | None = None
         self._keeper: PlaceKeeper | None = None
@@ -51,8 +50,8 @@ class LocalizationTopics:
         self._told: tuple[Pose, tuple[float, float]] | None = None
         self._new_map: OccupancyMap | None = None
         self._is_asked = False
-        self._kept = KeptPose()
-        self._place = PlaceTopics()
+        self._kept = KeptPose(nodes.memory.pose, nodes.placing)
+        self._place = PlaceTopics(nodes.periods)
         self.mapper: Mapper | None = None
         """Knows the place instead of the localizer, while a map is being made."""
         self.is_mapping_held = False
@@ -96,15 +95,18 @@ class LocalizationTopics:
         self,
         occupancy: OccupancyMap,
         at: Pose | None,
-        deviation: tuple[float, float] = _PLACED,
+        deviation: tuple[float, float] | None = None,
     ) -> None:
         """Go on with another map on which the robot is ``at`` a pose, m and rad unsure.
 
-        None: at the same as before. The place stays known.
+        ``at`` None: at the same as before; ``deviation`` None: as sure as on any other map. The
+        place stays known.
         """
         with self._tick_lock:
             if self._localizer is not None:
-                self._localizer.go_on(occupancy, None if at is None else (at, deviation))
+                self._localizer.go_on(
+                    occupancy, None if at is None else (at, deviation or self._placing.on_map)
+                )
 
     def map_with(self, mapper: Mapper | None) -> None:
         """Let a mapper know the place from now on; None: the localizer again."""

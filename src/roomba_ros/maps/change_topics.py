@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Final
-
 import rospy
 from roomba_robot.msg import MapUpdate
 
@@ -15,9 +13,6 @@ from roomba.storage.map_store import MapStoreError
 from roomba_ros.convert.mapping import update_message
 from roomba_ros.localization.topics import LocalizationTopics
 
-_PERIOD: Final = 0.4
-"""s between two scans that are looked through for changes."""
-
 
 class ChangeTopics:
     """Detects changes against the map by scans, and offers them.
@@ -25,9 +20,9 @@ class ChangeTopics:
     Publishes: ``map/update`` (MapUpdate, latched).
     """
 
-    def __init__(self, place: LocalizationTopics, config: MapChangesConfig) -> None:
-        """Connect nothing yet."""
-        self._place, self._config = place, config
+    def __init__(self, place: LocalizationTopics, config: MapChangesConfig, period: float) -> None:
+        """Connect nothing yet; a scan is looked through each ``period`` s."""
+        self._place, self._config, self._period = place, config, period
         self._changes: MapChanges | None = None
         self._seen = -1.0
         self._offered: tuple[Change, ...] = ()
@@ -47,7 +42,7 @@ class ChangeTopics:
         seen, changes = self._place.seen, self._changes
         if changes is None or seen is None or estimate.knowledge is not Knowledge.KNOWN:
             return
-        if not 0.0 <= seen.stamp - self._seen < _PERIOD:
+        if not 0.0 <= seen.stamp - self._seen < self._period:
             self._seen = seen.stamp
             changes.see(seen.stamp, seen.ranges, seen.lidar.arrays(), estimate.pose)
         if is_docked:

@@ -6,11 +6,11 @@ The map is saved while it grows, and resumed by the next process if this one is 
 from __future__ import annotations
 
 import threading
-from typing import Final
 
 import rospy
 
 from roomba.configuration.mapping import MappingConfig
+from roomba.configuration.nodes import PlacingConfig
 from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose
 from roomba.grid import OccupancyMap
@@ -19,9 +19,6 @@ from roomba.perception.slam.mapper import Mapper
 from roomba_ros.localization.topics import LocalizationTopics
 from roomba_ros.maps.map_memory import MapMemory
 from roomba_ros.runtime.background import Background
-
-_FINISHED_DEVIATION: Final = (0.03, 0.02)
-"""m, rad; how unsure the place on the whole map is before a scan confirms it."""
 
 
 class MapMaker:
@@ -36,12 +33,13 @@ class MapMaker:
         self,
         config: RobotConfig,
         mapping: MappingConfig,
+        placing: PlacingConfig,
         place: LocalizationTopics,
         background: Background,
         memory: MapMemory,
     ) -> None:
         """Begin nothing yet."""
-        self._config, self._mapping = config, mapping
+        self._config, self._mapping, self._placing = config, mapping, placing
         self._place, self._background, self._memory = place, background, memory
         self._mapper: Mapper | None = None
         self._told = (-1.0, -1)
@@ -144,7 +142,7 @@ class MapMaker:
         if self._station_from_start is not None:
             # To be whole the map was turned a little.
             self.station = mapper.start.compose(self._station_from_start)
-        self._place.go_on(whole, mapper.pose, _FINISHED_DEVIATION)
+        self._place.go_on(whole, mapper.pose, self._placing.on_finished)
         self._place.map_with(None)
         self._mapper, self._finishes = None, False
         return whole

@@ -10,6 +10,7 @@ from typing import Final
 
 import rospy
 
+from roomba.configuration.nodes import MemoryConfig
 from roomba.geometry import Pose
 from roomba.perception.slam.mapper_state import MapperState
 from roomba.storage.map_store import MapStore, MapStoreError, StoredMap
@@ -25,14 +26,6 @@ from roomba_ros.runtime.background import Background
 FOLDER: Final = ".being_made"
 """In the maps' folder, where no map's name can be."""
 _WHOLE: Final = "whole"
-_PERIOD: Final = 3.0
-"""s of the ROS clock between two times that it is written, at least."""
-_WALL_PER_BYTE: Final = 1e-6
-"""s of wall time; the same for a large one: 1 MB/s is enough for any disk."""
-_MOST_TAKEN_UP: Final = 5
-_GOES_WELL: Final = 20.0
-"""A map with which this node ended so often, each time within so many s of wall time, is dropped:
-it may be the reason."""
 
 
 class MapMemory:
@@ -41,9 +34,9 @@ class MapMemory:
     It counts in the run of the robot that it is of, and no later.
     """
 
-    def __init__(self, background: Background) -> None:
+    def __init__(self, config: MemoryConfig, background: Background) -> None:
         """Read nothing yet."""
-        self._background = background
+        self._config, self._background = config, background
         self._kept = (-1, False)
         self._saved = self._saved_wall = -math.inf
         self._bytes = 0
@@ -68,7 +61,7 @@ class MapMemory:
             kept = load_mapper(self._path)
             if kept is None or kept.run != self._run:
                 return None
-            if kept.taken_up >= _MOST_TAKEN_UP:
+            if kept.taken_up >= self._config.most_taken_up:
                 raise MapperFileError(f"with it this node ended {kept.taken_up} times in a row")
             self._taken_up = kept.taken_up + 1
             save_mapper(replace(kept, taken_up=self._taken_up), self._path)
@@ -82,11 +75,11 @@ class MapMemory:
 
         Once also that it went well with it.
         """
-        went_well = self._taken_up > 0 and time.monotonic() - self._since >= _GOES_WELL
+        went_well = self._taken_up > 0 and time.monotonic() - self._since >= self._config.goes_well
         is_news = (version, is_lost) != self._kept or went_well
-        if not is_news or 0.0 <= now - self._saved < _PERIOD:
+        if not is_news or 0.0 <= now - self._saved < self._config.map:
             return False
-        return time.monotonic() - self._saved_wall >= _WALL_PER_BYTE * self._bytes
+        return time.monotonic() - self._saved_wall >= self._config.map_wall_per_byte * self._bytes
 
     def keep(
         self,
@@ -99,7 +92,7 @@ class MapMemory:
         wall = time.monotonic()
         self._saved, self._saved_wall = now, wall
         self._kept = state.version, state.is_lost
-        if wall - self._since >= _GOES_WELL:
+        if wall - self._since >= self._config.goes_well:
             self._taken_up = 0
         kept = KeptMap(state, self._run, station, station_from_start, self._taken_up)
         self._background.do(

@@ -7,6 +7,7 @@ from typing import Final
 import rospy
 from roomba_robot.msg import DockStatus
 
+from roomba.configuration.nodes import NodesConfig
 from roomba.configuration.robot import RobotConfig
 from roomba.errors import ConfigError
 from roomba.perception.localization.estimate import Estimate
@@ -38,15 +39,24 @@ class MapTopics:
     those of :class:`MapShelf`.
     """
 
-    def __init__(self, config: RobotConfig, place: LocalizationTopics, rooms: RoomTopics) -> None:
+    def __init__(
+        self,
+        config: RobotConfig,
+        nodes: NodesConfig,
+        place: LocalizationTopics,
+        rooms: RoomTopics,
+    ) -> None:
         """Connect nothing yet."""
-        self._config, self._place = config, place
+        self._config, self._nodes, self._place = config, nodes, place
         self._background = Background()
-        self._memory = MapMemory(self._background)
+        self._memory = MapMemory(nodes.memory, self._background)
         mapping = read_mapping_config()
-        self._maker = MapMaker(config, mapping, place, self._background, self._memory)
+        self._maker = MapMaker(
+            config, mapping, nodes.placing, place, self._background, self._memory
+        )
         rooms.is_growing = lambda: self._maker.is_growing
-        self._shelf, self._changes = MapShelf(rooms), ChangeTopics(place, mapping.changes)
+        self._shelf = MapShelf(rooms)
+        self._changes = ChangeTopics(place, mapping.changes, nodes.periods.changes)
         self._own = OwnMap(place, rooms, self._shelf, self._changes, self._memory, self._background)
         self._services = MapServices(self._own, self._maker, self._shelf, self._changes, place)
         self._trouble = ""
@@ -130,7 +140,11 @@ class MapTopics:
     def _recognise(self, now: float) -> None:
         """Go on with the map of this floor, as soon as it is clear which one it is."""
         search = self._search = self._search or FloorSearch(
-            now, self._config, self._place, self._shelf.load_all()
+            now,
+            self._config,
+            self._place,
+            self._shelf.load_all(),
+            self._nodes.deadlines.floor,
         )
         place = search.tick()
         if place is not None:

@@ -19,8 +19,6 @@ from roomba_ros.runtime.subscriptions import subscribe
 
 _STOP_REPEATS: Final = 5
 """Ticks for which a stop is repeated before the drive is left to others."""
-_ENDING: Final = 2.5
-"""s; how long a cancelled walk, or looking around, may still drive."""
 
 
 class MissionDrive:
@@ -32,9 +30,9 @@ class MissionDrive:
     Subscribes: ``cmd_vel`` (Twist: what others want, which counts above the mission's).
     """
 
-    def __init__(self, config: RobotConfig) -> None:
-        """Connect nothing yet."""
-        self._config = config
+    def __init__(self, config: RobotConfig, ending: float) -> None:
+        """Connect nothing yet; a cancelled walk, or looking around, may drive ``ending`` s more."""
+        self._config, self._ending = config, ending
         self._stops_left = 0
         self._looks = False
         self._others_may_until = -math.inf
@@ -59,7 +57,7 @@ class MissionDrive:
 
     def take(self) -> None:
         """Let all walks end: the mission is about to drive."""
-        self._others_may_until = self._now + _ENDING
+        self._others_may_until = self._now + self._ending
         self._others_drove = -math.inf
         for publisher in self._cancels:
             publisher.publish(GoalID())
@@ -78,7 +76,7 @@ class MissionDrive:
     def drive(self, twist: Twist | None, *, looks_around: bool) -> None:
         """Ask for a twist; None: leave the drive to others, after a stop."""
         if looks_around:
-            self._others_may_until = self._now + _ENDING
+            self._others_may_until = self._now + self._ending
         if looks_around or self._looks:
             self._look_around.publish(looks_around)
         self._looks = looks_around

@@ -25,6 +25,7 @@ from visualization_msgs.msg import MarkerArray
 
 from roomba.configuration.docking import DockingConfig
 from roomba.configuration.mission import MissionConfig
+from roomba.configuration.nodes import DeadlinesConfig
 from roomba.configuration.robot import RobotConfig
 from roomba.errors import RoombaError, RoomsError
 from roomba.geometry import Pose
@@ -52,10 +53,6 @@ GROWING: Final = "growing"
 """The digest of maps that are being made."""
 MOST_FINE_CELLS: Final = 40_000_000
 """Of a map that is cleaned: 4,000 m2, its walls and surroundings included."""
-_MAPPING_DEADLINE: Final = 3.0
-"""s of wall time that a map without a load time waits to be told whole or growing."""
-_ROOMS_DEADLINE: Final = 3.0
-"""s of wall time that a context waits for the map's rooms; later ones make a new context."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -89,11 +86,13 @@ class HomeTopics:
         robot: RobotConfig,
         mission: MissionConfig,
         docking: DockingConfig,
+        deadlines: DeadlinesConfig,
         background: Background,
         folder: Path,
     ) -> None:
         """Connect nothing yet; zones are saved in ``folder``."""
         self._robot, self._mission, self._docking = robot, mission, docking
+        self._deadlines = deadlines
         self._background, self._folder = background, folder
         self._lock = threading.Lock()
         self._map: OccupancyMap | None = None
@@ -145,12 +144,12 @@ class HomeTopics:
     def tick(self) -> None:
         """Let the first context be made as soon as all that it takes was heard."""
         held = self._held
-        if held is not None and time.monotonic() > held[0] + _MAPPING_DEADLINE:
+        if held is not None and time.monotonic() > held[0] + self._deadlines.mapping:
             self._take_held()
         with self._lock:
             is_first = self._tried == self._wanted == 0 and not self.missing
             waits = self._outlines is None
-            is_late = time.monotonic() > self._map_came + _ROOMS_DEADLINE
+            is_late = time.monotonic() > self._map_came + self._deadlines.rooms
             if is_first and (is_late or not waits):
                 self._make()
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import time
 from pathlib import Path
-from typing import Final
 
 import rospy
 
+from roomba.configuration.nodes import MemoryConfig
 from roomba.mission.cleaning.checkpoint import CheckpointError
 from roomba.mission.inputs.senses import Senses
 from roomba.mission.mission import Mission
@@ -23,22 +23,17 @@ from roomba.storage.checkpoint import (
 )
 from roomba_ros.runtime.background import Background
 
-_PERIOD: Final = 2.0
-"""s of wall time between two checkpoints of a phase."""
-_MOST_TAKEN_UP: Final = 5
-_GOES_WELL: Final = 20.0
-"""An errand with which this node ended so often, each time within so many s of wall time, is
-dropped: it may be the reason."""
-
 
 class MissionMemory:
     """Of one robot in one map: files by the map's digest in the robot's own ``folder``."""
 
-    def __init__(self, folder: Path, digest: str, background: Background) -> None:
+    def __init__(
+        self, folder: Path, digest: str, config: MemoryConfig, background: Background
+    ) -> None:
         """Read and write nothing yet."""
         self._checkpoint = folder / f"{digest[:16]}.json"
         self._dirt = folder / f"{digest[:16]}.npz"
-        self._background = background
+        self._config, self._background = config, background
         self._not_forgotten = f"the errand is not forgotten in {self._checkpoint.name}"
         self._run = str(rospy.get_param("/run_id", ""))
         self._saved = 0.0
@@ -64,7 +59,7 @@ class MissionMemory:
             if found is None:
                 return False
             values, taken_up = found
-            if taken_up >= _MOST_TAKEN_UP:
+            if taken_up >= self._config.most_taken_up:
                 raise CheckpointError(f"with it this node ended {taken_up} times in a row")
             self._taken_up = taken_up + 1
             save_checkpoint(values, self._run, self._checkpoint, self._taken_up)
@@ -78,10 +73,10 @@ class MissionMemory:
     def keep(self, mission: Mission, senses: Senses) -> None:
         """Remember the errand, if it is time to; forget it when there is none."""
         phase, wall = mission.state.phase, time.monotonic()
-        if phase is self._phase and wall - self._saved < _PERIOD:
+        if phase is self._phase and wall - self._saved < self._config.errand:
             return
         self._phase, self._saved = phase, wall
-        taken_up = self._taken_up if wall - self._since < _GOES_WELL else 0
+        taken_up = self._taken_up if wall - self._since < self._config.goes_well else 0
         values = mission.checkpoint(senses)
         if values is not None:
             self._is_there = True

@@ -35,14 +35,13 @@ from roomba_ros.runtime.parameters import (
     folder_of,
     read_docking_config,
     read_mission_config,
+    read_nodes_config,
     read_robot_config,
     read_thing_config,
 )
 from roomba_ros.senses.senses import HeardSenses
 
 NAME = "mission_node"
-_FINISH_PERIOD = 5.0
-"""s of wall time; period of asking for the whole map while it waits for that."""
 _NEEDED = ("odom", "battery_state", "dock_status")
 """The body's topics without which nothing can be begun."""
 _HEARD = (*_NEEDED, "scan", "bumper", "cliff", "wheel_drop", "ir_omni", "dirt_detect", "bin_level")
@@ -72,9 +71,10 @@ class MissionNode:
     :class:`MissionOrders`, :class:`MissionDrive` and :class:`MissionTopics` say. Of the body it
     hears ``odom``, ``scan``, ``bumper``, ``cliff``, ``wheel_drop``, ``battery_state``,
     ``dock_status``, ``ir_omni``, ``dirt_detect`` and ``bin_level``.
-    Parameters: ``robot_config``, ``mission_config``, ``docking_config``, ``things_config`` (paths
-    of configuration files; by default the shipped ones), ``~memory_folder`` (default:
-    roomba_robot/mission in the ROS home folder, and in it a folder for each robot's namespace),
+    Parameters: ``robot_config``, ``mission_config``, ``docking_config``, ``things_config``,
+    ``nodes_config`` (paths of configuration files; by default the shipped ones),
+    ``~memory_folder`` (default: roomba_robot/mission in the ROS home folder, and in it a folder for
+    each robot's namespace),
     ``~zones_folder`` (default: roomba_robot/zones there), ``robot_max_speed`` (m/s; it may change
     at any time).
     """
@@ -83,7 +83,7 @@ class MissionNode:
 
     def start(self) -> None:
         """Read the configuration and connect."""
-        self._config = read_robot_config()
+        self._config, self._nodes = read_robot_config(), read_nodes_config()
         self._mission_config = read_mission_config(self._config)
         self._parameters = LiveSeedParameters()
         self.period = self._config.timing.tick
@@ -101,18 +101,19 @@ class MissionNode:
         self._growing: tuple[_HeardMap, GrowingMap] | None = None
         self._newer: KnownHome | None = None
         self._memory: MissionMemory | None = None
-        self._finished = -_FINISH_PERIOD
-        self._senses = HeardSenses(self._config, *_HEARD)
+        self._finished = -self._nodes.periods.finish
+        self._senses = HeardSenses(self._config, self._nodes.hearing, *_HEARD)
         self._context = HomeTopics(
             self._config,
             self._mission_config,
             docking,
+            self._nodes.deadlines,
             self._background,
             folder_of("~zones_folder", "zones"),
         )
-        self._drive = MissionDrive(self._config)
-        self._orders = MissionOrders(self._drive.take)
-        self._topics = MissionTopics(self._mission_config, self._background)
+        self._drive = MissionDrive(self._config, self._nodes.deadlines.ending)
+        self._orders = MissionOrders(self._drive.take, self._nodes.deadlines)
+        self._topics = MissionTopics(self._mission_config, self._nodes.periods, self._background)
         self._round = MissionRound(self._orders, self._topics, self._drive, self._step)
         for part in (
             self._background,
@@ -241,7 +242,7 @@ class MissionNode:
     def _memory_by(self, digest: str) -> MissionMemory:
         robot = rospy.get_namespace().strip("/") or "robot"
         folder = folder_of("~memory_folder", "mission") / robot
-        return MissionMemory(folder, digest, self._background)
+        return MissionMemory(folder, digest, self._nodes.memory, self._background)
 
     def _step(self, mission: Mission, senses: Senses) -> MissionStep:
         if self._context.is_changing and mission.state.drives:
@@ -259,7 +260,7 @@ class MissionNode:
         explored = ended.exploration
         is_explored = explored is not None and explored.outcome is CleanOutcome.COMPLETED
         since = time.monotonic() - self._finished
-        if is_explored or (is_waited_for and since > _FINISH_PERIOD):
+        if is_explored or (is_waited_for and since > self._nodes.periods.finish):
             self._finished = time.monotonic()
             whole = rospy.ServiceProxy("map/finish", Trigger)
             self._background.do("the map is not finished", lambda: call_service(whole))

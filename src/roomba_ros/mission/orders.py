@@ -15,6 +15,7 @@ from roomba_robot.msg import VacuumState
 from std_msgs.msg import Empty, String
 from std_srvs.srv import Trigger, TriggerRequest, TriggerResponse
 
+from roomba.configuration.nodes import DeadlinesConfig
 from roomba.errors import RoombaError
 from roomba.mission.inputs.senses import Senses
 from roomba.mission.mission import Mission
@@ -24,10 +25,6 @@ from roomba_ros.mission.goals import GOALS, Ended, MissionGoal
 from roomba_ros.runtime.action_goal import server_of
 from roomba_ros.runtime.subscriptions import subscribe
 
-SENSES_DEADLINE: Final = 6.0
-"""s of wall time after which goals are taken, and rejected, though nothing is known yet."""
-_ANSWER_DEADLINE: Final = 5.0
-"""s of wall time that a service waits for a tick; a long plan may hold one up."""
 _OVERTAKEN: Final = "a newer goal took over"
 _DONE: Final = {
     Event.PAUSE: "paused",
@@ -65,15 +62,15 @@ class MissionOrders:
     Services: ``pause``, ``resume``, ``stop``, ``empty_bin``, ``locate`` (Trigger).
     """
 
-    def __init__(self, takes_drive: Callable[[], None]) -> None:
+    def __init__(self, takes_drive: Callable[[], None], deadlines: DeadlinesConfig) -> None:
         """Connect nothing yet; ``takes_drive`` is called when the mission is about to drive."""
-        self._takes_drive = takes_drive
+        self._takes_drive, self._answer_within = takes_drive, deadlines.answer
         self._asked: deque[MissionGoal | Order | Cancel] = deque()
         self._goal: MissionGoal | None = None
         self._answers: list[Callable[[], object]] = []
         self._emergency: str | None = None
         self._serves = False
-        self._serves_by = time.monotonic() + SENSES_DEADLINE
+        self._serves_by = time.monotonic() + deadlines.senses
 
     def start(self) -> None:
         """Connect; goals are taken from the first :meth:`serve` on."""
@@ -199,10 +196,11 @@ class MissionOrders:
         order = Order(event)
         self.ask(order)
         try:
-            return TriggerResponse(*order.answer.get(timeout=_ANSWER_DEADLINE))
+            return TriggerResponse(*order.answer.get(timeout=self._answer_within))
         except queue.Empty:
             return TriggerResponse(
-                False, f"no answer within {_ANSWER_DEADLINE:g} s; see vacuum/state, and try again"
+                False,
+                f"no answer within {self._answer_within:g} s; see vacuum/state, and try again",
             )
 
     def _on_locate(self, _: TriggerRequest) -> TriggerResponse:

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from roomba_robot.msg import VacuumState
 
 from roomba.configuration.mission import MissionConfig
+from roomba.configuration.nodes import PeriodsConfig
 from roomba.mission.inputs.senses import Senses
 from roomba.mission.mission import Mission
 from roomba.mission.phases.machine import VACUUM_STATES
@@ -25,11 +26,6 @@ from roomba_ros.runtime.background import Background
 
 STARTING: Final = "starting"
 """The phase that is told until there is a mission."""
-_STATE_PERIOD: Final = 1.0
-"""s of the robot's clock between two states that did not change."""
-_MAP_PERIOD: Final = 1.0
-_MAP_WALL_PERIOD: Final = 0.5
-"""s of the robot's clock, and of wall time, between two maps of the same kind at least."""
 
 
 class MissionTopics:
@@ -38,9 +34,11 @@ class MissionTopics:
     while it cleans and has subscribers, and at the end of a clean).
     """
 
-    def __init__(self, config: MissionConfig, background: Background) -> None:
+    def __init__(
+        self, config: MissionConfig, periods: PeriodsConfig, background: Background
+    ) -> None:
         """Connect nothing yet."""
-        self._config, self._background = config, background
+        self._config, self._periods, self._background = config, periods, background
         self._said: tuple[object, ...] = ()
         self._told = self._mapped = -math.inf
         self._mapped_wall = 0.0
@@ -80,7 +78,7 @@ class MissionTopics:
         return state
 
     def _is_due(self, now: float, said: tuple[object, ...]) -> bool:
-        if said == self._said and 0.0 <= now - self._told < _STATE_PERIOD:
+        if said == self._said and 0.0 <= now - self._told < self._periods.mission_state:
             return False
         self._said, self._told = said, now
         return True
@@ -100,7 +98,8 @@ class MissionTopics:
         cleans = mission.cleaning is not None and mission.state.drives
         has_ended, self._cleaned = self._cleaned and not cleans, cleans
         since, since_wall = now - self._mapped, time.monotonic() - self._mapped_wall
-        is_due = not 0.0 <= since < _MAP_PERIOD and since_wall >= _MAP_WALL_PERIOD
+        periods = self._periods
+        is_due = not 0.0 <= since < periods.mission_map and since_wall >= periods.mission_map_wall
         if not (has_ended or (cleans and is_due)):
             return
         self._mapped, self._mapped_wall = now, time.monotonic()

@@ -24,7 +24,11 @@ from roomba_ros.localization.topics import LocalizationTopics
 from roomba_ros.maps.map_topics import MapTopics
 from roomba_ros.rooms.topics import RoomTopics
 from roomba_ros.runtime.node import run_node
-from roomba_ros.runtime.parameters import LiveSeedParameters, read_robot_config
+from roomba_ros.runtime.parameters import (
+    LiveSeedParameters,
+    read_nodes_config,
+    read_robot_config,
+)
 from roomba_ros.runtime.subscriptions import subscribe
 
 _AHEAD = 10.0
@@ -57,7 +61,7 @@ class PositionPubNode:
     def start(self) -> None:
         """Read parameters and connect."""
         self._parameters = LiveSeedParameters()
-        self._config = read_robot_config()
+        self._config, nodes = read_robot_config(), read_nodes_config()
         self.period = self._config.timing.tick
         self._loop = PositionLoop(self._config.control, self._config.body)
         self._setpoint = Setpoint(self._config.control.stream_timeout)
@@ -66,11 +70,11 @@ class PositionPubNode:
         self._stops_left = 0
         self._look_asked = -math.inf
         self._heading = (-math.inf, 0.0)
-        self._place = LocalizationTopics(self._config)
+        self._place = LocalizationTopics(self._config, nodes)
         self._place.start()
         self._rooms = RoomTopics()
         self._rooms.start()
-        self._maps = MapTopics(self._config, self._place, self._rooms)
+        self._maps = MapTopics(self._config, nodes, self._place, self._rooms)
         self._maps.start()
         self._command = rospy.Publisher("cmd_vel", TwistMessage, queue_size=1, tcp_nodelay=True)
         self._wishes = subscribe(

@@ -6,15 +6,8 @@ import time
 from collections.abc import Callable
 from typing import Final, NamedTuple
 
-_LATEST: Final = 0.5
-"""s of wall time; farther behind than this the simulation goes on slower than asked for."""
-_MOST_BEHIND: Final = 0.12
-"""s of the robot's clock; a robot that thinks of longer ago is waited for. One that keeps up is two
-ticks behind at most; at 0.3 s a turn on the spot ends no more: it swings to and fro."""
-_LONGEST_HOLD: Final = 2.0
-"""s of wall time; a node that is silent for longer is not waited for any more."""
-_LONGEST_ABSENCE: Final = 60.0
-"""s of wall time; a part that was not heard for longer does not come back."""
+from roomba.configuration.nodes import PaceConfig
+
 _LOOK: Final = 0.001
 """s of wall time between two looks whether it caught up."""
 
@@ -41,6 +34,7 @@ class Pace:
         self,
         tick: float,
         speed: float,
+        config: PaceConfig,
         is_there: Callable[[str], bool],
         monotonic: Callable[[], float] = time.monotonic,
         sleep: Callable[[float], None] = time.sleep,
@@ -50,7 +44,7 @@ class Pace:
         ``is_there`` tells whether a node that was heard still runs. A dead node is not waited for,
         but for a minute the clock goes no faster than real time until it is heard again.
         """
-        self._tick, self._speed = tick, speed
+        self._tick, self._speed, self._config = tick, speed, config
         self._monotonic, self._sleep, self._is_there = monotonic, sleep, is_there
         self._due = monotonic() + tick / speed
         self._heard: dict[str, _Heard] = {}
@@ -77,7 +71,7 @@ class Pace:
             self._sleep(wait)
         while self._must_hold(now) and not ended():
             self._sleep(_LOOK)
-        if self._monotonic() - self._due > _LATEST:
+        if self._monotonic() - self._due > self._config.latest:
             self.is_late = True
             self._due = self._monotonic()
         self._due += self._tick / self._speed_now()
@@ -89,8 +83,8 @@ class Pace:
 
     def _is_missed(self, part: str) -> bool:
         silence = self._monotonic() - self._heard[part].advanced
-        is_gone = silence > _LONGEST_HOLD or not self._is_there(part)
-        return is_gone and silence < _LONGEST_ABSENCE
+        is_gone = silence > self._config.longest_hold or not self._is_there(part)
+        return is_gone and silence < self._config.longest_absence
 
     def _must_hold(self, now: float) -> bool:
         """Whether a part is to be waited for; not if its clock is another one, or was set.
@@ -100,12 +94,11 @@ class Pace:
         advanced = [
             heard.advanced
             for part, heard in list(self._heard.items())
-            if _is_late(now - heard.stamp)
+            if self._is_late(now - heard.stamp)
             and heard.answered <= self._ticked
             and self._is_there(part)
         ]
-        return bool(advanced) and self._monotonic() - max(advanced) < _LONGEST_HOLD
+        return bool(advanced) and self._monotonic() - max(advanced) < self._config.longest_hold
 
-
-def _is_late(behind: float) -> bool:
-    return _MOST_BEHIND < behind < 10.0 * _LONGEST_HOLD
+    def _is_late(self, behind: float) -> bool:
+        return self._config.most_behind < behind < 10.0 * self._config.longest_hold

@@ -13,6 +13,7 @@ from roomba.configuration.docking import DockingConfig
 from roomba.configuration.frozen import load_config
 from roomba.configuration.mapping import MappingConfig
 from roomba.configuration.mission import MissionConfig, load_mission_config
+from roomba.configuration.nodes import NodesConfig
 from roomba.configuration.robot import RobotConfig, load_robot_config
 from roomba.configuration.rooms import RoomsConfig
 from roomba.configuration.seed import SEED_SPELLINGS, SeedParameters, parse_seed_parameters
@@ -63,6 +64,11 @@ def read_docking_config() -> DockingConfig:
 def read_rooms_config() -> RoomsConfig:
     """Return the configuration named by the parameter ``rooms_config``, or the shipped one."""
     return load_config(RoomsConfig, _configuration_file("rooms"))
+
+
+def read_nodes_config() -> NodesConfig:
+    """Return the configuration named by the parameter ``nodes_config``, or the shipped one."""
+    return load_config(NodesConfig, _configuration_file("nodes"))
 
 
 def read_thing_config() -> ThingConfig:

@@ -13,6 +13,7 @@ from geometry_msgs.msg import PoseStamped
 from roomba_robot.msg import Localization
 
 from roomba.clock import ClockJumps, is_recent
+from roomba.configuration.nodes import HearingConfig
 from roomba.geometry import Pose, Twist
 from roomba.perception.localization.estimate import Knowledge
 from roomba.robot.readings import Readings
@@ -20,10 +21,6 @@ from roomba_ros.convert.localization import knowledge_of
 from roomba_ros.convert.readings import StampedPose, stamped_pose_of
 from roomba_ros.runtime.subscriptions import subscribe
 
-OLDEST_POSE: Final = 0.5
-_SILENCE: Final = 0.4
-"""s of the robot's clock, and of wall time, after which a pose counts no more: its sender is
-silent. Both, because a fast clock runs on while all nodes work."""
 _KEPT: Final = 40
 """Readings that are remembered: two seconds of them."""
 
@@ -36,9 +33,9 @@ class HeardPlace:
     Subscribes: ``pose``, ``localization``.
     """
 
-    def __init__(self, tick: float) -> None:
+    def __init__(self, tick: float, config: HearingConfig) -> None:
         """Connect nothing yet; the wheels tell about the way every ``tick`` s."""
-        self._tick = tick
+        self._tick, self._config = tick, config
         self._lock = threading.Lock()
         self._way: deque[Readings] = deque(maxlen=_KEPT)
         self._jumps = ClockJumps()
@@ -82,7 +79,7 @@ class HeardPlace:
             return None
         newest = self._way[-1]
         if now >= newest.time:
-            ahead = min(now - newest.time, OLDEST_POSE)
+            ahead = min(now - newest.time, self._config.oldest_pose)
             odometry = moved(newest.odometry, newest.twist, ahead)
         else:
             odometry = self._odometry_at(now)
@@ -100,7 +97,8 @@ class HeardPlace:
     def is_silent(self, now: float) -> bool:
         """Whether the place is not told any more."""
         stamp = -math.inf if self._corrected is None else self._corrected.stamp
-        return time.monotonic() > self._heard + _SILENCE and not now - OLDEST_POSE <= stamp
+        is_old = not now - self._config.oldest_pose <= stamp
+        return time.monotonic() > self._heard + self._config.silence and is_old
 
     def _correct(self) -> None:
         """Find out where the odometry's frame is in the map, if a pose is new."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from roomba.configuration.nodes import HearingConfig
 from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose
 from roomba.mission.inputs.senses import Senses
@@ -20,9 +21,10 @@ class HeardSenses:
     Subscribes: what :class:`HeardPlace` hears, and the ``topics`` of :class:`BodyTopics`.
     """
 
-    def __init__(self, config: RobotConfig, *topics: str) -> None:
+    def __init__(self, config: RobotConfig, hearing: HearingConfig, *topics: str) -> None:
         """Connect nothing yet."""
-        self._body, self.place = BodyTopics(config, *topics), HeardPlace(config.timing.tick)
+        self._body = BodyTopics(config, *topics)
+        self.place = HeardPlace(config.timing.tick, hearing)
         self._scans = ScanSelection(config.timing)
         self._readings: Readings | None = None
         self._scan: ScanReading | None = None

@@ -21,8 +21,6 @@ from roomba_ros.runtime.node import frame_id, told_to_end
 
 _DISC_HEIGHT = 0.25
 """m; how high round things that were put down are."""
-_PERIOD = 0.2
-"""s of wall time between two pictures of the stream."""
 
 
 class CameraTopics:
@@ -35,8 +33,11 @@ class CameraTopics:
     that of the camera looking ahead).
     """
 
-    def __init__(self, simulator: Simulator, config: CameraConfig, lock: threading.Lock) -> None:
-        """Connect; ``lock`` guards the simulator."""
+    def __init__(
+        self, simulator: Simulator, config: CameraConfig, period: float, lock: threading.Lock
+    ) -> None:
+        """Connect; a picture each ``period`` s of wall time; ``lock`` guards the simulator."""
+        self._period = period
         self._simulator, self._config, self._lock = simulator, config, lock
         self._scene = Scene.of(simulator.home)
         self._camera = Camera(self._scene, config)
@@ -62,7 +63,7 @@ class CameraTopics:
 
     def _stream(self) -> None:
         while not told_to_end():
-            time.sleep(_PERIOD)
+            time.sleep(self._period)
             pictures = self._image, self._compressed, self._depth
             if any(publisher.get_num_connections() for publisher in (*pictures, *self._infos)):
                 try:

@@ -38,7 +38,11 @@ from roomba_ros.localization import kept_pose
 from roomba_ros.runtime import progress
 from roomba_ros.runtime.node import frame_id, give_up, leave, register, require_master, told_to_end
 from roomba_ros.runtime.pace import Pace
-from roomba_ros.runtime.parameters import LiveSeedParameters, read_simulated_config
+from roomba_ros.runtime.parameters import (
+    LiveSeedParameters,
+    read_nodes_config,
+    read_simulated_config,
+)
 from roomba_ros.runtime.subscriptions import subscribe, tell_refusals
 from roomba_ros.runtime.ticker import Ticker
 from roomba_ros.simulation.camera_topics import CameraTopics
@@ -78,6 +82,7 @@ class HomeSimNode:
         """Load the home, put the robot in it, connect; raises RoombaError."""
         self._parameters = LiveSeedParameters()
         self._config = _config_with_sensors(read_simulated_config())
+        self._nodes = read_nodes_config()
         self._timing = self._config.timing
         self.period = self._timing.tick
         self._nanoseconds = round(self._timing.tick * 1e9)
@@ -93,7 +98,7 @@ class HomeSimNode:
         self._jumps = ClockJumps(last=self._now(), longest=_LONGEST_STEP)
         self._ticks = 0
         self._told = 0.0
-        self._pace = Pace(self._timing.tick, self._speed, self._is_there)
+        self._pace = Pace(self._timing.tick, self._speed, self._nodes.pace, self._is_there)
         self._odom_frame, self._base_frame = frame_id("odom"), frame_id("base_link")
         self._connect()
 
@@ -199,7 +204,9 @@ class HomeSimNode:
         self._sensors = SensorTopics(
             self._config, self._simulator, self._parameters.values.robot_name
         )
-        self._camera = CameraTopics(self._simulator, self._config.camera, self._lock)
+        self._camera = CameraTopics(
+            self._simulator, self._config.camera, self._nodes.periods.pictures, self._lock
+        )
         self._services = SimServices(self._simulator, self._lock)
         subscribe("cmd_vel_out", TwistMessage, twist_of, self._on_command, tcp_nodelay=True)
         self._parts = {

@@ -31,14 +31,16 @@ from roomba_ros.convert.readings import (
 )
 from roomba_ros.convert.values import speed_of
 from roomba_ros.runtime.node import run_node
-from roomba_ros.runtime.parameters import LiveSeedParameters, read_robot_config
+from roomba_ros.runtime.parameters import (
+    LiveSeedParameters,
+    read_nodes_config,
+    read_robot_config,
+)
 from roomba_ros.runtime.subscriptions import subscribe
 
 EMERGENCY_PARAMETER: Final = "emergency_stop"
 """Why the drive is held; kept by the master, so that a node that was killed holds it again."""
 _NO_REASON: Final = "no reason was given"
-_SPEED_PERIOD: Final = 0.1
-"""s of the ROS clock between two messages of the speed."""
 
 
 class SpeedPubNode:
@@ -61,7 +63,7 @@ class SpeedPubNode:
         self._parameters = LiveSeedParameters(guardian=True)
         self._lock, self._keeping = threading.Lock(), threading.Lock()
         self._reason = ""
-        config = read_robot_config()
+        config, self._told_every = read_robot_config(), read_nodes_config().periods.speed
         body, self.period = config.body, config.timing.tick
         self._loop = SpeedLoop(body, self._parameters.values.robot_max_speed)
         self._hazards = Hazards()
@@ -106,7 +108,7 @@ class SpeedPubNode:
             rospy.loginfo("the drive is held: %s", hold.value)
 
     def _tell_speed(self, now: float) -> None:
-        is_due = not 0.0 <= now - self._speed_told < _SPEED_PERIOD - 0.5 * self.period
+        is_due = not 0.0 <= now - self._speed_told < self._told_every - 0.5 * self.period
         if self._speed is not None and is_due:
             self._speed_told = now
             self._speed_publisher.publish(self._speed)

@@ -34,6 +34,7 @@ from roomba_ros.runtime.node import require_master, run_node
 from roomba_ros.runtime.parameters import (
     LiveSeedParameters,
     read_mission_config,
+    read_nodes_config,
     read_robot_config,
     read_thing_config,
 )
@@ -42,21 +43,7 @@ from roomba_ros.senses.senses import HeardSenses
 from roomba_ros.walking.walk_goals import MoveBaseGoal, WalkGoal, WalkToPointGoal, checked_goal
 
 NAME = "walk_to_point_action_server_node"
-SENSES_DEADLINE = 6.0
-"""s of wall time after which goals are taken, and rejected, though map and pose are not there."""
 _HEARD = ("odom", "scan", "bumper", "cliff")
-_STANDSTILL = 0.02
-"""m/s; a robot that is slower stands."""
-_AIMED = 0.05
-"""rad; tolerance of the final heading."""
-_NOT_TURNING = 0.2
-"""rad/s; a robot that turns slower than this keeps its heading."""
-_LONGEST_TURN = 6.0
-"""s; limit of the turn at the goal; half a turn takes two."""
-_HEARD_BY = 0.3
-"""s; after this a setpoint has reached its subscriber, on a busy machine too."""
-_LONGEST_BRAKING = 1.0
-"""s; after this a robot whose walk was cancelled counts as standing, without odometry too."""
 
 
 @dataclass
@@ -92,7 +79,8 @@ class WalkToPointActionServer:
     :class:`HeardSenses` hears, of the body ``odom``, ``scan``, ``bumper`` and ``cliff``.
     Services: ``make_plan`` (GetPlan: the path to a point, without walking it).
     Parameters: ``robot_max_speed``, ``min_cordinate``, ``max_cordinate``, ``robot_config``,
-    ``mission_config``, ``things_config`` (obstacles are noticed and remembered as on a clean).
+    ``nodes_config``, ``mission_config``, ``things_config`` (obstacles are noticed and remembered
+    as on a clean).
     """
 
     period: float
@@ -100,7 +88,7 @@ class WalkToPointActionServer:
     def start(self) -> None:
         """Read parameters and connect."""
         self._parameters = LiveSeedParameters()
-        self._config = read_robot_config()
+        self._config, self._nodes = read_robot_config(), read_nodes_config()
         self.period = self._config.timing.tick
         self._lookout = Lookout(self._config, read_thing_config())
         things = self._lookout.look_beside(SurfaceField.unknown())
@@ -110,7 +98,7 @@ class WalkToPointActionServer:
         self._planning = threading.Lock()
         self._planner: PathPlanner | None = None
         self._newer_map: tuple[PathPlanner, SurfaceField] | None = None
-        self._senses = HeardSenses(self._config, *_HEARD)
+        self._senses = HeardSenses(self._config, self._nodes.hearing, *_HEARD)
         self._goals: deque[WalkGoal] = deque()
         self._cancels: deque[tuple[str, str]] = deque()
         self._job: _Job | None = None
@@ -136,7 +124,7 @@ class WalkToPointActionServer:
             "move_base_simple/goal", PoseStamped, checked_goal, self._on_simple_goal, queue_size=5
         )
         self._serves = False
-        self._serves_by = time.monotonic() + SENSES_DEADLINE
+        self._serves_by = time.monotonic() + self._nodes.deadlines.senses
 
     def tick(self, now: float) -> None:
         """Look around, take new goals, obey cancels, and walk on."""
@@ -234,7 +222,7 @@ class WalkToPointActionServer:
             cancelled = self._cancels.popleft()
             job = self._job
             if job is not None and job.goal.identity == cancelled:
-                job.rest_by = rospy.get_time() + _LONGEST_BRAKING
+                job.rest_by = rospy.get_time() + self._nodes.walk_end.longest_braking
 
     def _walk_on(self, job: _Job, senses: Senses) -> None:
         if job.rest_by is not None:
@@ -259,7 +247,7 @@ class WalkToPointActionServer:
             self._tell_feedback(job, senses, step.distance_left)
             return
         if step.state is WalkState.ARRIVED and job.goal.heading is not None:
-            job.turned_by = senses.now + _LONGEST_TURN
+            job.turned_by = senses.now + self._nodes.walk_end.longest_turn
             return
         self._job = None
         time_spent = job.walk.time_spent(senses.now)
@@ -274,7 +262,8 @@ class WalkToPointActionServer:
         wanted = job.goal.heading
         assert wanted is not None
         wrong = wrap_angle(wanted - senses.pose.theta)
-        is_there = abs(wrong) < _AIMED and abs(senses.twist.angular) < _NOT_TURNING
+        end = self._nodes.walk_end
+        is_there = abs(wrong) < end.aimed and abs(senses.twist.angular) < end.not_turning
         if not is_there and senses.now < turned_by:
             self._change_heading.publish(wanted)
             self._tell_feedback(job, senses, 0.0)
@@ -291,15 +280,16 @@ class WalkToPointActionServer:
 
         The speed is freed after that arrived: else the robot would drive to the old one.
         """
+        end = self._nodes.walk_end
         if job.free_at is None:
             self._change_speed.publish(0.0)
-            if abs(senses.twist.linear) <= _STANDSTILL or senses.now >= rest_by:
-                job.free_at = senses.now + _HEARD_BY
+            if abs(senses.twist.linear) <= end.standstill or senses.now >= rest_by:
+                job.free_at = senses.now + end.heard_by
             return
         if senses.knowledge.is_usable:
             self._change_position.publish(RobotPosition(senses.pose.x, senses.pose.y))
         # By a clock that was set back it is not waited for.
-        if job.free_at - _HEARD_BY <= senses.now < job.free_at:
+        if job.free_at - end.heard_by <= senses.now < job.free_at:
             return
         self._change_speed.publish(self._parameters.values.robot_max_speed)
         self._job = None

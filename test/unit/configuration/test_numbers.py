@@ -14,7 +14,14 @@ import pytest
 import yaml
 
 SOURCE = Path(__file__).resolve().parents[3] / "src"
-PARTS = ("roomba/control", "roomba/mission", "roomba/planning", "roomba/robot", "roomba/world")
+PARTS = (
+    "roomba/control",
+    "roomba/mission",
+    "roomba/planning",
+    "roomba/robot",
+    "roomba/world",
+    "roomba_ros",
+)
 """Whose numbers are told, with all folders in them."""
 _TOLD = yaml.safe_load(Path(__file__).with_name("numbers_that_stay.yaml").read_text("utf-8"))
 REASONS: dict[str, str] = _TOLD["reasons"]

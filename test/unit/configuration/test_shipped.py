@@ -12,6 +12,7 @@ from roomba.configuration.docking import DockingConfig
 from roomba.configuration.frozen import Frozen, load_config
 from roomba.configuration.mapping import MappingConfig
 from roomba.configuration.mission import MissionConfig
+from roomba.configuration.nodes import NodesConfig
 from roomba.configuration.robot import RobotConfig
 from roomba.configuration.rooms import RoomsConfig
 from roomba.configuration.simulation import SimulationConfig
@@ -23,6 +24,7 @@ MODELS: dict[str, type[Frozen]] = {
     "docking": DockingConfig,
     "mapping": MappingConfig,
     "mission": MissionConfig,
+    "nodes": NodesConfig,
     "robot": RobotConfig,
     "rooms": RoomsConfig,
     "simulation": SimulationConfig,

@@ -1,0 +1,153 @@
+"""Numbers of the ROS nodes alone: deadlines, periods, what is kept: ``configuration/nodes.yaml``.
+
+A node is one process among several: what it waits for, and how often it tells what it knows, is
+no matter of the robot's brain, which runs without ROS as well.
+"""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from roomba.configuration.frozen import AtLeastOne, Frozen, Positive
+
+Unsure = tuple[Positive, Positive]
+"""Standard deviations of a place and a heading, m and rad."""
+
+
+class HearingConfig(Frozen):
+    """When the place is not told any more; both, as a fast clock runs on while all nodes work."""
+
+    oldest_pose: Positive = 0.5
+    """s of the robot's clock; an older pose counts no more,"""
+    silence: Positive = 0.4
+    """and s of wall time, in which none was heard."""
+
+
+class DeadlinesConfig(Frozen):
+    """How long is waited for others: s of wall time."""
+
+    senses: Positive = 6.0
+    """Then goals are taken, and rejected, though map, pose or senses are not there."""
+    answer: Positive = 5.0
+    """For the tick that answers a service; a long plan may hold one up."""
+    mapping: Positive = 3.0
+    """For being told whether a map without a load time is whole or grows."""
+    rooms: Positive = 3.0
+    """For the map's rooms; rooms that come later make a new planning context."""
+    floor: Positive = 20.0
+    """s of the robot's clock; a floor that was not recognised by then is a new one."""
+    ending: Positive = 2.5
+    """s of the robot's clock; so long a cancelled walk, or looking around, may still drive."""
+
+
+class WalkEndConfig(Frozen):
+    """How a walk ends on ROS: the turn to the heading that was asked for, and a cancel."""
+
+    aimed: Positive = 0.05
+    """rad; tolerance of the final heading."""
+    not_turning: Positive = 0.2
+    """rad/s; a robot that turns slower keeps its heading."""
+    longest_turn: Positive = 6.0
+    """s; limit of the turn at the goal; half a turn takes two."""
+    standstill: Positive = 0.02
+    """m/s; a cancelled walk stands when it is slower,"""
+    longest_braking: Positive = 1.0
+    """or after so many s, without odometry too."""
+    heard_by: Positive = 0.3
+    """s; after this a setpoint has reached its subscriber, on a busy machine too."""
+
+
+class PeriodsConfig(Frozen):
+    """How often something is told or asked for: s of the robot's clock, or ticks."""
+
+    position_ticks: AtLeastOne = 2
+    """Ticks between two positions, covariances and transforms."""
+    cloud_ticks: AtLeastOne = 10
+    """Ticks between two clouds of hypotheses."""
+    state_ticks: AtLeastOne = 20
+    """Ticks between two states of the localization that did not change."""
+    speed: Positive = 0.1
+    """Between two messages of the speed."""
+    mission_state: Positive = 1.0
+    """Between two states of the mission that did not change."""
+    mission_map: Positive = 1.0
+    """Between two maps of the same kind that the mission tells,"""
+    mission_map_wall: Positive = 0.5
+    """and s of wall time between them."""
+    changes: Positive = 0.4
+    """Between two scans that are looked through for changes of the map."""
+    finish: Positive = 5.0
+    """s of wall time from one wish for the whole map to the next, while the mission waits."""
+    pictures: Positive = 0.2
+    """s of wall time between two pictures of the simulated camera's stream."""
+
+
+class MemoryConfig(Frozen):
+    """What is kept for a node that is killed: how often it is written, and when it is dropped."""
+
+    pose: Positive = 1.0
+    """s of wall time between two poses that the master keeps."""
+    errand: Positive = 2.0
+    """s of wall time between two checkpoints of a phase."""
+    map: Positive = 3.0
+    """s of the robot's clock between two writings of the map that is being made,"""
+    map_wall_per_byte: Positive = 1e-6
+    """and s of wall time for each of its bytes: 1 MB/s is enough for any disk."""
+    most_taken_up: AtLeastOne = 5
+    """What a node ended with so often, each time within ``goes_well``, is dropped: it may be the
+    reason."""
+    goes_well: Positive = 20.0
+    """s of wall time after which what was taken up is no danger."""
+
+
+class PlacingConfig(Frozen):
+    """How unsure a place is that was not found by scans: m and rad."""
+
+    start: Unsure = (0.05, 0.05)
+    """A start pose of the parameters."""
+    kept: Unsure = (0.10, 0.05)
+    """A pose that the master kept: it drifted since."""
+    on_map: Unsure = (0.05, 0.05)
+    """A place on another map of the same floor."""
+    on_finished: Unsure = (0.03, 0.02)
+    """The place on the map when it was made whole."""
+
+
+class PaceConfig(Frozen):
+    """How the simulation waits for the robot's nodes: s of wall time."""
+
+    latest: Positive = 0.5
+    """Farther behind, the simulation goes on slower than asked for."""
+    most_behind: Positive = 0.12
+    """s of the robot's clock; a robot that thinks of longer ago is waited for. One that keeps up is
+    two ticks behind at most; at 0.3 s a turn on the spot ends no more: it swings to and fro."""
+    longest_hold: Positive = 2.0
+    """A node that is silent for longer is not waited for any more."""
+    longest_absence: Positive = 60.0
+    """A part that was not heard for longer does not come back."""
+
+    in_order: ClassVar = ("longest_hold <= longest_absence",)
+
+
+class PicturesConfig(Frozen):
+    """When a kept picture of an angle is old, and how often one is taken."""
+
+    travelled: Positive = 0.1
+    """m from where it was taken."""
+    turned: Positive = 0.3
+    """rad from the heading at which it was taken."""
+    rest: Positive = 1.0
+    """s of wall time between two pictures, at least: one is much work, on a fast clock too."""
+
+
+class NodesConfig(Frozen):
+    """All of ``configuration/nodes.yaml``; every part has the shipped file's values by default."""
+
+    hearing: HearingConfig = HearingConfig()
+    deadlines: DeadlinesConfig = DeadlinesConfig()
+    walk_end: WalkEndConfig = WalkEndConfig()
+    periods: PeriodsConfig = PeriodsConfig()
+    memory: MemoryConfig = MemoryConfig()
+    placing: PlacingConfig = PlacingConfig()
+    pace: PaceConfig = PaceConfig()
+    pictures: PicturesConfig = PicturesConfig()
