@@ -21,6 +21,7 @@ from roomba.history.recorder import HistoryKeeper
 from roomba.ui.web.api import DriveWish, api_of
 from roomba.ui.web.feed import Feed
 from roomba.ui.web.guard import Guard
+from roomba.ui.web.past import Replays, history_api
 
 STATIC: Final = Path(__file__).parent / "static"
 _MOST_BODY: Final = 65536
@@ -35,9 +36,12 @@ _POLICY: Final = (
 def create_app(robot: ObservedRobot, guard: Guard, keeper: HistoryKeeper | None = None) -> FastAPI:
     """Return the application for a robot; what changes anything needs the guard's token.
 
-    The keeper keeps its runs in the history.
+    The keeper keeps its runs in the history, which the page shows then.
     """
     feed = Feed(robot, keeper)
+    replays = (
+        None if keeper is None else Replays(keeper.history, lambda run: create_app(run, guard))
+    )
 
     @contextlib.asynccontextmanager
     async def life(_: FastAPI) -> AsyncIterator[None]:
@@ -46,14 +50,19 @@ def create_app(robot: ObservedRobot, guard: Guard, keeper: HistoryKeeper | None 
             yield
         finally:
             looking.cancel()
+            if replays is not None:
+                await replays.end()
 
     app = FastAPI(title="roomba_robot", lifespan=life, docs_url=None, redoc_url=None)
     app.include_router(api_of(robot))
 
     @app.websocket("/live")
     async def live(socket: WebSocket) -> None:
-        await _serve_viewer(socket, feed, robot, guard)
+        await _serve_viewer(socket, feed, robot, guard, has_history=keeper is not None)
 
+    if keeper is not None and replays is not None:
+        app.include_router(history_api(keeper.history))
+        app.mount("/replay", replays)
     app.mount("/", StaticFiles(directory=STATIC, html=True), name="page")
     app.add_middleware(GuardedRequests, guard=guard)
     return app
@@ -103,9 +112,10 @@ def _with_policy(send: Send) -> Send:
 
     async def sending(message: Any) -> None:
         if message["type"] == "http.response.start":
+            own = [] if _has_policy(message) else [(b"content-security-policy", _POLICY.encode())]
             message["headers"] = [
                 *message["headers"],
-                (b"content-security-policy", _POLICY.encode()),
+                *own,
                 (b"x-content-type-options", b"nosniff"),
                 (b"referrer-policy", b"no-referrer"),
                 (b"cache-control", b"no-cache"),
@@ -115,17 +125,24 @@ def _with_policy(send: Send) -> Send:
     return sending
 
 
+def _has_policy(message: Any) -> bool:
+    """Whether a response binds a browser more tightly itself."""
+    return any(name == b"content-security-policy" for name, _ in message["headers"])
+
+
 # ---------------------------------------------------------------- viewers
 
 
-async def _serve_viewer(socket: WebSocket, feed: Feed, robot: ObservedRobot, guard: Guard) -> None:
+async def _serve_viewer(
+    socket: WebSocket, feed: Feed, robot: ObservedRobot, guard: Guard, *, has_history: bool
+) -> None:
     """Show a viewer all that changes, until it goes."""
     host = socket.headers.get("host")
     if not (guard.is_host(host) and guard.is_origin(socket.headers.get("origin"), host)):
         await socket.close(4403)
         return
     await socket.accept()
-    hearing = asyncio.create_task(_hear(socket, robot, guard))
+    hearing = asyncio.create_task(_hear(socket, robot, guard, has_history))
     showing = asyncio.create_task(_show(socket, feed))
     try:
         await asyncio.wait((hearing, showing), return_when=asyncio.FIRST_COMPLETED)
@@ -157,7 +174,7 @@ async def _show(socket: WebSocket, feed: Feed) -> None:
         await socket.send_text(_text(feed.state))
 
 
-async def _hear(socket: WebSocket, robot: ObservedRobot, guard: Guard) -> None:
+async def _hear(socket: WebSocket, robot: ObservedRobot, guard: Guard, has_history: bool) -> None:
     """Take a viewer's stream of drives by hand, which begins with the token."""
     may_drive = False
     while True:
@@ -166,7 +183,8 @@ async def _hear(socket: WebSocket, robot: ObservedRobot, guard: Guard) -> None:
             kind = told.get("type") if isinstance(told, dict) else None
             if kind == "hello":
                 may_drive = guard.is_token(str(told.get("token", "")), time.monotonic())
-                await socket.send_text(_text({"type": "welcome", "may_change": may_drive}))
+                welcome = {"type": "welcome", "may_change": may_drive, "history": has_history}
+                await socket.send_text(_text(welcome))
             elif kind == "drive" and may_drive:
                 wish = DriveWish(linear=told.get("linear"), angular=told.get("angular"))
                 await asyncio.to_thread(robot.drive, wish.linear, wish.angular)

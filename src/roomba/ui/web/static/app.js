@@ -2,7 +2,9 @@
 import * as draw from "./map/draw.js";
 import * as gestures from "./map/gestures.js";
 import * as actions from "./panels/actions.js";
+import * as charts from "./panels/charts.js";
 import * as drive from "./panels/drive.js";
+import * as history from "./panels/history.js";
 import * as keys from "./panels/keys.js";
 import * as offer from "./panels/offer.js";
 import * as replay from "./panels/replay.js";
@@ -14,5 +16,5 @@ import { connect } from "./link.js";
 
 draw.begin();
 gestures.begin(offer.tapped, zones.drawn);
-for (const panel of [status, actions, rooms, zones, drive, tools, keys, replay]) panel.begin();
+for (const panel of [status, actions, rooms, zones, drive, tools, keys, replay, charts, history]) panel.begin();
 connect();

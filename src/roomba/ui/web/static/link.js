@@ -19,11 +19,13 @@ function token() {
   return sessionStorage.getItem("token") ?? "";
 }
 const TOKEN = token();
+/** Where this page lies on its server: a run of the history lies in a folder of its own. */
+export const BASE = new URL(".", location.href).pathname;
 
 /** Connect, and stay connected. */
 export function connect() {
   const scheme = location.protocol === "https:" ? "wss" : "ws";
-  socket = new WebSocket(`${scheme}://${location.host}/live`);
+  socket = new WebSocket(`${scheme}://${location.host}${BASE}live`);
   socket.binaryType = "arraybuffer";
   socket.onopen = () => {
     attempts = 0;
@@ -59,7 +61,10 @@ function take(message) {
       set("trail", before.concat(message.points).slice(-20000));
       break;
     }
-    case "welcome": set("mayChange", message.may_change); break;
+    case "welcome":
+      set("mayChange", message.may_change);
+      set("hasHistory", message.history);
+      break;
     case "refused": refuse(message.reason); break;
   }
 }
@@ -76,7 +81,7 @@ export function refuse(reason) {
 /** Ask the robot for something; what it refuses is shown. Returns whether it obeys. */
 export async function wish(path, body, method = "POST") {
   try {
-    const answer = await fetch(`/api/v1/${path}`, {
+    const answer = await fetch(`${BASE}api/v1/${path}`, {
       method,
       headers: { "Content-Type": "application/json", Authorization: `Bearer ${TOKEN}` },
       body: JSON.stringify(body ?? {}),
@@ -88,6 +93,18 @@ export async function wish(path, body, method = "POST") {
     refuse("The robot's program does not answer. The page connects again by itself.");
   }
   return false;
+}
+
+/** Return what the server has at a path, or null; what is wrong is shown. */
+export async function ask(path) {
+  try {
+    const answer = await fetch(`${BASE}api/v1/${path}`), told = await answer.json();
+    if (answer.ok) return told;
+    refuse(told.detail);
+  } catch {
+    refuse("The robot's program does not answer. The page connects again by itself.");
+  }
+  return null;
 }
 
 /** Send a twist, m/s and rad/s, at once. */

@@ -1,0 +1,135 @@
+"""The history on the page: its runs as JSON, reports as documents, and each run again."""
+
+from __future__ import annotations
+
+import contextlib
+import re
+from collections import OrderedDict
+from collections.abc import Callable
+from typing import Any, Final
+
+from fastapi import APIRouter, FastAPI, HTTPException, Query
+from fastapi.responses import HTMLResponse, JSONResponse, RedirectResponse
+from starlette.types import ASGIApp, Receive, Scope, Send
+
+from roomba.client.observed import ObservedRobot
+from roomba.client.plain import known
+from roomba.errors import RoombaError
+from roomba.history.database import History, KeptRun
+from roomba.history.replay import RecordedRobot
+from roomba.history.report.document import comparison_of, report_of
+from roomba.history.run import Recording
+from roomba.history.totals import totals_by_week
+
+REPORT_POLICY: Final = (
+    "default-src 'none'; style-src 'unsafe-inline'; img-src data:; base-uri 'none'; "
+    "form-action 'none'; frame-ancestors 'none'"
+)
+"""What a report may do: it has its style inside, pictures as data, and no scripts."""
+_MOST_RUNS: Final = 500
+_MOST_OPEN: Final = 4
+"""Runs that are played at the same time; of more the one that was opened first ends."""
+
+
+def history_api(history: History) -> APIRouter:
+    """Return the routes of a history."""
+    api = APIRouter(prefix="/api/v1/history")
+
+    @api.get("", summary="The runs, the newest first, and totals by week")
+    def runs(limit: int = Query(default=_MOST_RUNS, ge=1, le=_MOST_RUNS)) -> dict[str, Any]:
+        found = _asked(lambda: history.runs(limit))
+        weeks = totals_by_week(run.figures for run in found)
+        return {
+            "runs": [_run_values(run) for run in found],
+            "weeks": [{name: getattr(week, name) for name in week.__slots__} for week in weeks],
+        }
+
+    @api.get("/compare.html", summary="Two runs in one report", response_class=HTMLResponse)
+    def compare(one: int, other: int) -> HTMLResponse:
+        first, second = _asked(lambda: (_whole(history, one), _whole(history, other)))
+        return _document(comparison_of(first, second))
+
+    @api.get("/{number}/report.html", summary="The report of a run", response_class=HTMLResponse)
+    def report(number: int) -> HTMLResponse:
+        run, recording = _asked(lambda: _whole(history, number))
+        others = _asked(lambda: history.runs(home=run.figures.source.home))
+        return _document(report_of(run, recording, others))
+
+    return api
+
+
+def _run_values(run: KeptRun) -> dict[str, Any]:
+    figures = run.figures
+    numbers = ("covered", "wanted", "fraction", "duration", "distance", "dirt", "energy")
+    return {
+        "number": run.number,
+        "began": figures.began,
+        "program": figures.source.program,
+        "home": figures.source.home,
+        "kind": figures.kind,
+        "outcome": figures.outcome,
+        "message": figures.message,
+        **{name: known(getattr(figures, name)) for name in numbers},
+        "missed": len(figures.missed),
+        "is_recorded": bool(run.is_recorded),
+    }
+
+
+def _whole(history: History, number: int) -> tuple[KeptRun, Recording | None]:
+    run = history.run(number)
+    return run, history.recording(number) if run.is_recorded else None
+
+
+def _document(text: str) -> HTMLResponse:
+    return HTMLResponse(text, headers={"content-security-policy": REPORT_POLICY})
+
+
+def _asked(ask: Callable[[], Any]) -> Any:
+    """Return what the history answers; what it does not have is 404 with its sentence."""
+    try:
+        return ask()
+    except RoombaError as refusal:
+        raise HTTPException(404, str(refusal)) from refusal
+
+
+class Replays:
+    """Serves ``/NUMBER/…``: the page over each run that is opened, as an application of its own."""
+
+    def __init__(self, history: History, app_of: Callable[[ObservedRobot], FastAPI]) -> None:
+        """Open nothing yet; ``app_of`` makes the application for a recorded robot."""
+        self._history, self._app_of = history, app_of
+        self._open: OrderedDict[int, tuple[ASGIApp, contextlib.AsyncExitStack]] = OrderedDict()
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Pass a request on to the run that it names."""
+        root = scope.get("root_path", "")
+        named = re.match(r"/(\d{1,9})(/?)", scope["path"].removeprefix(root))
+        if named is None:
+            await JSONResponse({"detail": "expected /replay/NUMBER/"}, 404)(scope, receive, send)
+        elif not named[2]:
+            await RedirectResponse(f"{scope['path']}/")(scope, receive, send)
+        else:
+            try:
+                app = await self._opened(int(named[1]))
+            except RoombaError as refusal:
+                await JSONResponse({"detail": str(refusal)}, 404)(scope, receive, send)
+                return
+            await app({**scope, "root_path": f"{root}/{named[1]}"}, receive, send)
+
+    async def _opened(self, number: int) -> ASGIApp:
+        if number not in self._open:
+            run = self._history.run(number)
+            robot = RecordedRobot(run.figures, self._history.recording(number))
+            app, life = self._app_of(robot), contextlib.AsyncExitStack()
+            await life.enter_async_context(app.router.lifespan_context(app))
+            self._open[number] = (app, life)
+            if len(self._open) > _MOST_OPEN:
+                _, (_, oldest) = self._open.popitem(last=False)
+                await oldest.aclose()
+        return self._open[number][0]
+
+    async def end(self) -> None:
+        """Close all."""
+        for _, life in self._open.values():
+            await life.aclose()
+        self._open.clear()

@@ -1,0 +1,46 @@
+/** Live charts of the last minutes: battery, rate of dirt, speed. */
+import { chart } from "../chart.js";
+import { $, put } from "../dom.js";
+import { get, on } from "../store.js";
+
+const KEPT = 600, STEP = 1; // s of the robot's clock that are shown, and between two points
+const WINDOW = 20; // s over which the rate of dirt is the mean
+
+let points = []; // [time, battery in %, g that were picked up so far, speed]
+
+/** Follow the robot, whether the charts are seen or not. */
+export function begin() {
+  on("state", follow);
+  $("charts").ontoggle = show;
+}
+
+function follow() {
+  const state = get("state");
+  if (!state) return;
+  const last = points.at(-1);
+  if (last && (state.time < last.time || state.time - last.time > KEPT)) points = [];
+  const before = points.at(-1);
+  if (before && state.time - before.time < STEP) return;
+  const taken = before ? before.taken + Math.max(0, state.dirt - before.dirt) : 0;
+  points.push({ time: state.time, battery: 100 * (state.vacuum.battery ?? 0), dirt: state.dirt, taken, speed: state.speed });
+  while (points[0].time < state.time - KEPT) points.shift();
+  show();
+}
+
+function show() {
+  if (!$("charts").open || !points.length) return;
+  const now = points.at(-1), rates = points.map((point) => [point.time, rate(point)]);
+  line("battery", points.map(({ time, battery }) => [time, battery]), `Battery ${now.battery.toFixed(0)} %`, 100);
+  line("rate", rates, `Dirt ${rates.at(-1)[1].toFixed(2)} g/min`);
+  line("speed", points.map(({ time, speed }) => [time, speed]), `Speed ${now.speed.toFixed(2)} m/s`);
+}
+
+function rate(point) {
+  const from = points.find(({ time }) => time >= point.time - WINDOW);
+  return point.time > from.time ? 60 * (point.taken - from.taken) / (point.time - from.time) : 0;
+}
+
+function line(name, values, title, highest) {
+  put($(`chart-${name}-title`), title);
+  chart($(`chart-${name}`), values, `${title}, the last ten minutes`, highest);
+}

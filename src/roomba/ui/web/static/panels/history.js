@@ -1,0 +1,99 @@
+/** The history: every run with its report, two compared, each again, totals by week, the home's dirt. */
+import { chart } from "../chart.js";
+import { $ } from "../dom.js";
+import { BASE, ask } from "../link.js";
+import { get, on } from "../store.js";
+import { duration } from "../words.js";
+
+let runs = [], compared = [];
+
+/** Connect the buttons. */
+export function begin() {
+  $("history-open").onclick = open;
+  $("history-close").onclick = close;
+  $("history-home").onchange = show;
+  $("history-compare").onclick = () => {
+    const [one, other] = [...compared].sort((a, b) => a - b);
+    window.open(`${BASE}api/v1/history/compare.html?one=${one}&other=${other}`, "_blank", "noopener");
+  };
+  on("hasHistory", () => { $("history-open").hidden = !get("hasHistory"); });
+}
+
+async function open() {
+  const told = await ask("history");
+  if (!told) return;
+  ({ runs } = told);
+  compared = [];
+  const homes = [...new Set(runs.map((run) => run.home))], here = runs[0]?.home;
+  $("history-home").replaceChildren(...homes.map((home) => new Option(home, home, home === here, home === here)));
+  $("history-weeks").replaceChildren(...told.weeks.map(week));
+  $("history").hidden = false;
+  for (const part of document.querySelectorAll("main > :not(#history)")) part.inert = true;
+  $("history-title").focus();
+  show();
+}
+
+function close() {
+  $("history").hidden = true;
+  for (const part of document.querySelectorAll("main > *")) part.inert = false;
+  $("history-open").focus();
+}
+
+function show() {
+  const home = $("history-home").value, cleans = runs.filter((run) => run.home === home && run.kind === "clean" && run.dirt !== null);
+  $("history-empty").hidden = runs.length > 0;
+  $("history-runs").replaceChildren(...runs.map(row));
+  $("history-few").hidden = cleans.length > 1;
+  $("history-dirt").toggleAttribute("hidden", cleans.length < 2);
+  chart($("history-dirt"), cleans.map((run) => [run.began, run.dirt]).reverse(), `Dirt of ${home}: g that each of ${cleans.length} cleans picked up`);
+  showCompared();
+}
+
+function showCompared() {
+  $("history-compare").disabled = compared.length !== 2;
+  for (const box of document.querySelectorAll("#history-runs input"))
+    box.disabled = compared.length === 2 && !box.checked;
+}
+
+function row(run) {
+  const line = document.createElement("tr"), box = document.createElement("input");
+  box.type = "checkbox";
+  box.setAttribute("aria-label", `Compare run ${run.number}`);
+  box.onchange = () => {
+    compared = box.checked ? [...compared, run.number] : compared.filter((one) => one !== run.number);
+    showCompared();
+  };
+  const links = document.createElement("span");
+  links.className = "links";
+  links.append(link("Report", `${BASE}api/v1/history/${run.number}/report.html`, `Report of run ${run.number}`, true));
+  if (run.is_recorded) links.append(link("Again", `${BASE}replay/${run.number}/`, `Run ${run.number} again`, false));
+  const share = run.fraction === null ? "–" : `${(100 * run.fraction).toFixed(1)} %`;
+  const cells = [box, run.number, new Date(1000 * run.began).toLocaleString([], { dateStyle: "short", timeStyle: "short" }),
+    run.home, run.outcome, share, `${run.missed}`, known(run.duration, duration), known(run.dirt, (dirt) => `${dirt.toFixed(1)} g`), links];
+  line.append(...cells.map(cell));
+  return line;
+}
+
+function week(totals) {
+  const line = document.createElement("tr");
+  line.append(...[totals.week, totals.runs, `${totals.covered.toFixed(1)} m²`, duration(totals.duration),
+    `${totals.distance.toFixed(0)} m`, `${totals.dirt.toFixed(1)} g`, `${totals.energy.toFixed(1)} Wh`].map(cell));
+  return line;
+}
+
+function known(value, say) { return value === null ? "–" : say(value); }
+
+function cell(content) {
+  const place = document.createElement("td");
+  place.append(content);
+  return place;
+}
+
+function link(text, address, label, isOutside) {
+  const anchor = document.createElement("a");
+  anchor.textContent = text;
+  anchor.href = address;
+  anchor.setAttribute("aria-label", label);
+  if (isOutside) Object.assign(anchor, { target: "_blank", rel: "noopener" });
+  return anchor;
+}

@@ -1,0 +1,116 @@
+"""The history behind the page: runs as JSON, reports as documents, each run again."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+from fastapi.testclient import TestClient
+from numpy.typing import NDArray
+from starlette.testclient import WebSocketTestSession
+from unit.history.made import made_figures, made_recording
+
+from roomba.history.database import History
+from roomba.history.recorder import HistoryKeeper
+from roomba.history.replay import RecordedRobot
+from roomba.history.run import Source
+from roomba.ui.web.app import create_app
+from roomba.ui.web.guard import Guard
+
+HOST = {"Host": "127.0.0.1"}
+
+
+@pytest.fixture
+def history(tmp_path: Path) -> History:
+    history = History(tmp_path)
+    history.add(made_figures(), made_recording())
+    history.add(made_figures())
+    return history
+
+
+@pytest.fixture
+def client(history: History) -> Iterator[TestClient]:
+    robot = RecordedRobot(made_figures(), made_recording())
+    keeper = HistoryKeeper(history, Source("play", "box"), lambda _: None)
+    app = create_app(robot, Guard("token"), keeper)
+    with TestClient(app, base_url="http://127.0.0.1") as client:
+        yield client
+
+
+def test_the_runs_are_told(client: TestClient) -> None:
+    told = client.get("/api/v1/history").json()
+    assert [run["number"] for run in told["runs"]] == [2, 1]
+    assert [run["is_recorded"] for run in told["runs"]] == [False, True]
+    assert told["runs"][0]["energy"] is None
+    assert told["runs"][0]["fraction"] == pytest.approx(11.0 / 12.0)
+    assert told["weeks"][0]["runs"] == 2
+    assert [run["number"] for run in client.get("/api/v1/history?limit=1").json()["runs"]] == [2]
+
+
+def test_a_report_has_a_policy_of_its_own(client: TestClient) -> None:
+    answer = client.get("/api/v1/history/1/report.html")
+    assert "11.00 m² of 12.00 m²" in answer.text
+    policies = answer.headers.get_list("content-security-policy")
+    assert len(policies) == 1
+    assert "default-src 'none'" in policies[0]
+    assert "style-src 'unsafe-inline'" in policies[0]
+    other = client.get("/api/v1/history/compare.html?one=1&other=2")
+    assert "Runs 1 and 2 compared" in other.text
+    assert "unsafe-inline" not in client.get("/").headers["content-security-policy"]
+
+
+def test_what_there_is_not_is_said(client: TestClient) -> None:
+    assert client.get("/api/v1/history/9/report.html").status_code == 404
+    assert "number of a run, got 9" in client.get("/api/v1/history/9/report.html").text
+    assert client.get("/replay/9/").status_code == 404
+    assert "found none" in client.get("/replay/2/").json()["detail"]
+    assert client.get("/replay/none").status_code == 404
+
+
+def test_a_run_is_played_under_an_address_of_its_own(client: TestClient) -> None:
+    assert client.get("/replay/1", follow_redirects=False).headers["location"] == "/replay/1/"
+    assert "<title>" in client.get("/replay/1/").text
+    state = client.get("/replay/1/api/v1/state").json()
+    assert state["pose"][:2] == [0.5, 1.5]
+    token = {"Authorization": "Bearer token"}
+    moved = client.post("/replay/1/api/v1/replay", json={"at": 20.0}, headers=token)
+    assert moved.json()["at"] == 20.0
+    assert client.get("/replay/1/api/v1/state").json()["pose"][0] == pytest.approx(1.5)
+    refused = client.post("/replay/1/api/v1/clean", json={}, headers=token)
+    assert refused.status_code == 409
+    assert "nothing is driven" in refused.json()["detail"]
+    assert client.post("/replay/1/api/v1/replay", json={"at": 1.0}).status_code == 401
+    with client.websocket_connect("/replay/1/live", headers=HOST) as socket:
+        kinds = {socket.receive_json()["type"]}
+        assert kinds <= {"home", "state", "trail"}
+
+
+def test_many_runs_can_be_opened_one_after_the_other(client: TestClient, history: History) -> None:
+    numbers = [history.add(made_figures(), made_recording()) for _ in range(6)]
+    for number in (*numbers, numbers[0]):
+        assert client.get(f"/replay/{number}/api/v1/state").status_code == 200
+
+
+def test_the_feed_starts_the_trail_anew_when_another_time_is_chosen() -> None:
+    robot = RecordedRobot(made_figures(), made_recording())
+    app = create_app(robot, Guard("token"))
+    with (
+        TestClient(app, base_url="http://127.0.0.1") as client,
+        client.websocket_connect("/live", headers=HOST) as socket,
+    ):
+        robot.seek(40.0)
+        assert _next_whole(socket)[-1, 0] == pytest.approx(2.5)
+        robot.seek(10.0)
+        assert _next_whole(socket)[-1, 0] == pytest.approx(1.0)
+
+
+def _next_whole(socket: WebSocketTestSession) -> NDArray[np.float64]:
+    """Return the next trail of many places that takes the place of all before, m."""
+    while True:
+        text = socket.receive().get("text")
+        told = {} if text is None else json.loads(text)
+        if told.get("type") == "trail" and told["whole"] and len(told["points"]) > 5:
+            return np.array(told["points"])

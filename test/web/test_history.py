@@ -1,0 +1,115 @@
+"""The history on the page: a run of the robot appears, is reported, compared, and seen again."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from fixtures.waiting import wait_until
+from playwright.sync_api import Browser
+from unit.history.made import made_figures, made_recording
+from web.conftest import SIZES, Opened
+from web.test_page import CONTRASTS, CONTROLS, DEADLINE
+
+from roomba.commands.play.command import live_client
+from roomba.history.database import History
+from roomba.history.recorder import HistoryKeeper
+from roomba.history.run import Source
+from roomba.ui.web.app import create_app
+from roomba.ui.web.guard import Guard, new_token
+from roomba.ui.web.server import PageServer, listen
+
+
+@pytest.fixture
+def history(tmp_path: Path) -> History:
+    """Two runs of a box, of which one can be seen again."""
+    history = History(tmp_path)
+    history.add(made_figures())
+    history.add(made_figures(), made_recording())
+    return history
+
+
+@pytest.fixture(params=list(SIZES))
+def opened(request: pytest.FixtureRequest, browser: Browser, history: History) -> Iterator[Opened]:
+    """The page of a live robot, whose runs are kept."""
+    robot = live_client("studio", seed=1, speed=10.0, knows_map=True)
+    keeper = HistoryKeeper(history, Source("play", "studio", 1), lambda text: pytest.fail(text))
+    guard = Guard(new_token())
+    server = PageServer(create_app(robot, guard, keeper), listen("127.0.0.1", 0, is_fixed=True))
+    robot.start()
+    server.start()
+    width, height = SIZES[request.param]
+    context = browser.new_context(viewport={"width": width, "height": height})
+    page = context.new_page()
+    errors: list[str] = []
+    page.on("pageerror", lambda error: errors.append(str(error)))
+    page.goto(f"{server.address}#token={guard.token}")
+    opened = Opened(page, robot, server, guard)
+    opened.wait_for_phase("docked")
+    yield opened
+    context.close()
+    server.stop()
+    robot.end()
+    assert errors == []
+
+
+def test_a_run_that_ended_is_looked_back_at(opened: Opened, history: History) -> None:
+    page = opened.page
+    page.get_by_role("button", name="Clean all").click()
+    opened.wait_for_phase("cleaning")
+    page.locator("#charts summary").click()
+    page.wait_for_function(
+        """() => {
+            const points = document.querySelector("#chart-speed .line")?.getAttribute("points");
+            return (points ?? "").split(" ").length > 5;
+        }"""
+    )
+    assert "m/s" in page.inner_text("#chart-speed-title")
+    page.get_by_role("button", name="Stop", exact=True).click()
+    wait_until(lambda: len(history.runs()) == 3, DEADLINE, "the run in the history")
+    page.get_by_role("button", name="History").click()
+    rows = page.locator("#history-runs tr")
+    rows.nth(2).wait_for()
+    kept = history.runs()[0]
+    assert kept.figures.outcome == "stopped"
+    assert rows.first.locator("td").nth(1).inner_text() == str(kept.number)
+    assert rows.first.locator("td").nth(3).inner_text() == "studio"
+    assert page.locator("#history-weeks tr").count() == 2
+    page.get_by_role("link", name=f"Run {kept.number} again").click()
+    page.wait_for_selector("#timeline:not([hidden])")
+    assert page.inner_text("#headline").startswith("Recorded: ")
+
+
+def test_reports_open_and_two_are_compared(opened: Opened) -> None:
+    page = opened.page
+    page.get_by_role("button", name="History").click()
+    with page.context.expect_page() as shown:
+        page.get_by_role("link", name="Report of run 2").click()
+    report = shown.value
+    assert report.inner_text("h1").startswith("Run 2: box")
+    background = "() => getComputedStyle(document.querySelector('section')).borderRadius"
+    assert report.evaluate(background) == "8px"
+    compare = page.get_by_role("button", name="Compare two")
+    assert compare.is_disabled()
+    page.get_by_role("checkbox", name="Compare run 1").check()
+    page.get_by_role("checkbox", name="Compare run 2").check()
+    with page.context.expect_page() as shown:
+        compare.click()
+    assert shown.value.inner_text("h1") == "Runs 1 and 2 compared"
+    assert page.locator("#history-dirt .mark").count() == 2
+    page.get_by_role("button", name="Back to the map").press("Enter")
+    assert not page.locator("#history").is_visible()
+    assert page.evaluate("() => document.activeElement.id") == "history-open"
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_it_can_be_read_and_touched(opened: Opened, scheme: str) -> None:
+    page = opened.page
+    page.emulate_media(color_scheme="dark" if scheme == "dark" else "light")
+    page.get_by_role("button", name="History").click()
+    page.locator("#history-runs tr").first.wait_for()
+    assert [(text, ratio) for text, ratio in page.evaluate(CONTRASTS) if ratio < 4.5] == []
+    for identity, name, width, height in page.evaluate(CONTROLS):
+        assert name, identity
+        assert min(width, height) >= 24, (identity, name)
