@@ -176,7 +176,6 @@ TESTED_BY: dict[str, tuple[str, str]] = {
 
 LARGE_FOLDERS = {
     "benchmarks/peers": "one script a peer",
-    "src/roomba/commands/pictures": "one file a picture",
     "src/roomba/commands/sim": "one command: its options, runs, figures and what they are told in",
     "test/fixtures": "one file a fixture",
     "test/ros": "one file a node",

@@ -13,20 +13,10 @@ from pathlib import Path
 
 import cv2
 
-from roomba.commands.pictures.battery import picture_of_battery, picture_of_levels
-from roomba.commands.pictures.bumper import picture_of_bumper
-from roomba.commands.pictures.camera import picture_of_depth
 from roomba.commands.pictures.cleaning import picture_of_cleaning
-from roomba.commands.pictures.dirt import picture_of_dirt
-from roomba.commands.pictures.edge import picture_of_edge
-from roomba.commands.pictures.faults import picture_of_faults
 from roomba.commands.pictures.layers import picture_of_layers
-from roomba.commands.pictures.lidar import picture_of_lidar
 from roomba.commands.pictures.localization import picture_of_localization, picture_of_relocation
 from roomba.commands.pictures.mapping import picture_of_map_errors, picture_of_mapping
-from roomba.commands.pictures.motion import picture_of_motion
-from roomba.commands.pictures.moving import picture_of_moving
-from roomba.commands.pictures.odometry import picture_of_odometry
 from roomba.commands.pictures.page import (
     picture_of_page,
     picture_of_phone,
@@ -34,7 +24,17 @@ from roomba.commands.pictures.page import (
     picture_of_report,
 )
 from roomba.commands.pictures.rooms import picture_of_rooms
-from roomba.commands.pictures.station import picture_of_station
+from roomba.commands.pictures.sensors.battery import picture_of_battery, picture_of_levels
+from roomba.commands.pictures.sensors.bumper import picture_of_bumper
+from roomba.commands.pictures.sensors.camera import picture_of_depth
+from roomba.commands.pictures.sensors.dirt import picture_of_dirt
+from roomba.commands.pictures.sensors.edge import picture_of_edge
+from roomba.commands.pictures.sensors.faults import picture_of_faults
+from roomba.commands.pictures.sensors.lidar import picture_of_lidar
+from roomba.commands.pictures.sensors.motion import picture_of_motion
+from roomba.commands.pictures.sensors.moving import picture_of_moving
+from roomba.commands.pictures.sensors.odometry import picture_of_odometry
+from roomba.commands.pictures.sensors.station import picture_of_station
 from roomba.commands.pictures.tour import VIEWS, picture_of_home, picture_of_view, picture_of_walk
 from roomba.commands.spelling import spelled
 from roomba.errors import RoombaError

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
 from numpy.typing import NDArray
 
-from roomba.commands.pictures.drives import DriveRecording
+from roomba.commands.pictures.sensors.drives import DriveRecording
 from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.geometry import Pose, Twist
 from roomba.plots.style import BLUE, INK, drawn, empty_figure, stacked

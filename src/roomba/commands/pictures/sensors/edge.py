@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from roomba.commands.pictures.drives import STEP, DriveRecording
+from roomba.commands.pictures.sensors.drives import STEP, DriveRecording
 from roomba.configuration.robot import RobotConfig
 from roomba.control.speed_loop import Hazards, SpeedLoop
 from roomba.geometry import Pose, Twist

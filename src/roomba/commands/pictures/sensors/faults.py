@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.figure import Figure
 
-from roomba.commands.pictures.drives import STEP, DriveRecording
+from roomba.commands.pictures.sensors.drives import STEP, DriveRecording
 from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.geometry import Pose, Twist
 from roomba.plots.style import BLUE, INK, ORANGE, drawn, empty_figure, side_by_side

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.figure import Figure
 
-from roomba.commands.pictures.drives import STEP, DriveRecording, Floats, follow
+from roomba.commands.pictures.sensors.drives import STEP, DriveRecording, Floats, follow
 from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.geometry import Pose
 from roomba.plots.style import (
