@@ -27,7 +27,7 @@ from std_srvs.srv import Trigger
 
 @pytest.fixture(scope="module")
 def shared_robot(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RosGraph]:
-    """The whole robot without a map, twelve times as fast as real time."""
+    """The whole robot without a map, faster than real time."""
     folder = tmp_path_factory.mktemp("robot")
     with RosGraph(folder) as own:
         own.launch(f"home:={mapping_home(folder)}", "map:=none", SPEED)

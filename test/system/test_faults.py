@@ -66,6 +66,48 @@ def newest_odometry(probe: Probe) -> Odometry:
     return probe.next("/odom", Odometry)
 
 
+# Those with a graph of their own come first: a robot that others share would work all the while.
+
+
+def test_at_a_faster_clock_it_walks_and_ctrl_c_ends_it_without_violence(tmp_path: Path) -> None:
+    """Row 9 for the whole stack: each node ends by itself, and roslaunch has to kill none."""
+    with RosGraph(tmp_path) as graph:
+        # `./roomba run` waits 1.8 s for them; here the machine may be a busy one.
+        launch = graph.roslaunch(f"speed:={FAST}", "--sigint-timeout=20")
+        run_forked(lambda: walk_fast(graph))
+        pids = [graph.pid(node) for node in LAUNCHED]
+        launch.send_to_leader(signal.SIGINT)
+        promised(lambda: launch.status is not None, ENDED, "it has ended")
+        assert not [pid for pid in pids if alive(pid)]
+        assert "escalating" not in launch.output
+
+
+def walk_fast(graph: RosGraph) -> None:
+    """Walk to the farthest corner; begin to walk back."""
+    probe = Probe(graph)
+    walker = Walker()
+    probe.position()
+    begin, robot_begin = time.monotonic(), rospy.get_time()
+    walker.send(3.0, 4.0)
+    walker.arrives(40.0)
+    assert 10.0 <= walker.time_spent < 15.0
+    # A busy machine may be slower than asked for.
+    passed = (rospy.get_time() - robot_begin) / (time.monotonic() - begin)
+    assert passed < 1.3 * FAST
+    assert passed > 1.0 or "too slow for speed" in graph.programs[0].output
+    walker.send(0.0, 0.0)
+    wait_until(lambda: probe.speed() > 0.45, 15.0, "full speed")
+
+
+def test_a_wrong_argument_ends_the_launch_with_a_clear_line(tmp_path: Path) -> None:
+    """Rows 18 and 19; test_home_sim_node.py goes through the arguments."""
+    with RosGraph(tmp_path) as graph:
+        program = graph.start_launch("robot_max_speed:=-0.5")
+        program.ends(40.0)
+        fatal = [line for line in program.output.splitlines() if "FATAL" in line]
+        assert any("robot_max_speed" in line for line in fatal), program.output
+
+
 def test_a_killed_server_stops_the_robot_at_once_and_its_goal_ends(shared_robot: RosGraph) -> None:
     """Row 10; and the server is back and walks again."""
     probe, walker = walking(shared_robot)
@@ -136,42 +178,3 @@ def test_a_bad_top_speed_changes_nothing(shared_robot: RosGraph, bad: object) ->
     x, y = probe.position()
     walker.send(0.5 * x, 0.5 * y)
     walker.arrives(40.0)
-
-
-def test_at_a_faster_clock_it_walks_and_ctrl_c_ends_it_without_violence(tmp_path: Path) -> None:
-    """Row 9 for the whole stack: each node ends by itself, and roslaunch has to kill none."""
-    with RosGraph(tmp_path) as graph:
-        # `./roomba run` waits 1.8 s for them; here the machine may be a busy one.
-        launch = graph.roslaunch(f"speed:={FAST}", "--sigint-timeout=20")
-        run_forked(lambda: walk_fast(graph))
-        pids = [graph.pid(node) for node in LAUNCHED]
-        launch.send_to_leader(signal.SIGINT)
-        promised(lambda: launch.status is not None, ENDED, "it has ended")
-        assert not [pid for pid in pids if alive(pid)]
-        assert "escalating" not in launch.output
-
-
-def walk_fast(graph: RosGraph) -> None:
-    """Walk to the farthest corner; begin to walk back."""
-    probe = Probe(graph)
-    walker = Walker()
-    probe.position()
-    begin, robot_begin = time.monotonic(), rospy.get_time()
-    walker.send(3.0, 4.0)
-    walker.arrives(40.0)
-    assert 10.0 <= walker.time_spent < 15.0
-    # A busy machine may be slower than asked for.
-    passed = (rospy.get_time() - robot_begin) / (time.monotonic() - begin)
-    assert passed < 1.3 * FAST
-    assert passed > 1.0 or "too slow for speed" in graph.programs[0].output
-    walker.send(0.0, 0.0)
-    wait_until(lambda: probe.speed() > 0.45, 15.0, "full speed")
-
-
-def test_a_wrong_argument_ends_the_launch_with_a_clear_line(tmp_path: Path) -> None:
-    """Rows 18 and 19; test_home_sim_node.py goes through the arguments."""
-    with RosGraph(tmp_path) as graph:
-        program = graph.start_launch("robot_max_speed:=-0.5")
-        program.ends(40.0)
-        fatal = [line for line in program.output.splitlines() if "FATAL" in line]
-        assert any("robot_max_speed" in line for line in fatal), program.output
