@@ -52,6 +52,7 @@ TESTED_BY: dict[str, tuple[str, str]] = {
     "roomba/gym/": ("unit/gym/test_single.py", "one environment, tested by stepping it"),
     "roomba/headless/body": ("unit/robot/test_parts.py", "the robot's parts are tested in it"),
     "roomba/headless/burst_kernels": ("unit/headless/test_burst.py", PART),
+    "roomba/headless/live/camera": ("unit/headless/live/test_client.py", LIVE),
     "roomba/headless/live/floor_plan": ("unit/headless/live/test_client.py", LIVE),
     "roomba/headless/live/observation": ("unit/headless/live/test_client.py", LIVE),
     "roomba/headless/live/robot": ("unit/headless/live/test_client.py", LIVE),

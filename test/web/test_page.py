@@ -256,3 +256,19 @@ def test_every_control_has_a_name_and_is_large_enough_to_touch(opened: Opened) -
     for identity, name, width, height in controls:
         assert name, identity
         assert min(width, height) >= 24, (identity, name)
+
+
+def test_the_camera_shows_what_it_sees_at_an_angle(opened: Opened) -> None:
+    page = opened.page
+    page.locator("#camera summary").click()
+    looks = """(side) => {
+        const image = document.getElementById("camera-picture");
+        return image.naturalWidth > 100 && image.alt.includes(side);
+    }"""
+    page.wait_for_function(looks, arg="ahead", timeout=60_000)
+    page.select_option("#camera-angle", "30")
+    page.wait_for_function(looks, arg="30° to the left", timeout=60_000)
+    refused = opened.page.context.request.post(
+        f"{opened.server.address}api/v1/camera", data={"angle": 0.0}
+    )
+    assert refused.status == 401

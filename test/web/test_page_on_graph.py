@@ -68,6 +68,11 @@ def test_a_person_cleans_pauses_edits_and_stops(robot_with_page: RosGraph) -> No
     with open_page(robot_with_page) as page:
         wait_for_phase(page, "docked")
         page.locator("#rooms button").first.wait_for(timeout=WORKS_WITHIN)
+        page.locator("#camera summary").click()
+        page.wait_for_function(
+            "() => document.getElementById('camera-picture').naturalWidth > 100",
+            timeout=WORKS_WITHIN,
+        )
         page.locator("#rooms button").first.click()
         page.get_by_role("button", name="Clean 1 room").click()
         wait_for_phase(page, "cleaning")

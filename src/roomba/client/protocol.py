@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -326,6 +326,7 @@ class RobotClient(Protocol):
         """Return the names of the rooms; RobotUnavailableError when there are none yet."""
 
 
+@runtime_checkable
 class CameraClient(Protocol):
     """The robot's camera as its users see it."""
 

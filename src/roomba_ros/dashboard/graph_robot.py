@@ -7,9 +7,11 @@ import threading
 import time
 from typing import Any, Final
 
+import numpy as np
 import rospy
 from geometry_msgs.msg import Point as PointMessage
 from geometry_msgs.msg import Twist as TwistMessage
+from numpy.typing import NDArray
 from roomba_robot.srv import (
     EmergencyStop,
     InjectFault,
@@ -32,7 +34,7 @@ from roomba.client.protocol import (
 from roomba.configuration.robot import RobotConfig
 from roomba.geometry import STANDSTILL, Twist
 from roomba.vocabulary import CleanMode, FanLevel
-from roomba_ros.client.ros_client import RosRobot
+from roomba_ros.client.ros_client import RosCamera, RosRobot
 from roomba_ros.convert.common import twist_message
 from roomba_ros.convert.page import zone_message_of
 from roomba_ros.dashboard.page_topics import PageTopics
@@ -50,7 +52,8 @@ class GraphRobot:
 
     Publishes: ``cmd_vel`` (Twist, while it is driven by hand), and what :class:`RosRobot` does.
     Calls: ``emergency_stop``, ``set_zone``, ``remove_zone``, ``rooms/rename``, ``rooms/join``,
-    ``rooms/split``, ``sim/spill``, ``sim/inject_fault``, and what :class:`RosRobot` does.
+    ``rooms/split``, ``sim/spill``, ``sim/inject_fault``, ``turn_camera``, and what
+    :class:`RosRobot` does.
     """
 
     def __init__(self, config: RobotConfig) -> None:
@@ -67,6 +70,7 @@ class GraphRobot:
         """Connect."""
         self._parameters = LiveSeedParameters()
         self._topics.start()
+        self._camera = RosCamera()
         self._vacuum.start()
         kinds = {
             "emergency_stop": EmergencyStop,
@@ -143,6 +147,10 @@ class GraphRobot:
     def layer(self, name: view.LayerName) -> view.GridLayer | None:
         """Return the newest grid of a layer."""
         return self._topics.layer(name)
+
+    def picture(self, degrees: float) -> NDArray[np.uint8]:
+        """Return the newest picture of the angle nearest to one, uint8 [height, width, 3] RGB."""
+        return self._camera.picture(degrees)
 
     # ---------------------------------------------------------------- commands
 

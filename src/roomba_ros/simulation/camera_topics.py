@@ -6,7 +6,6 @@ import math
 import threading
 import time
 
-import numpy as np
 import rospy
 from roomba_robot.srv import TurnCamera, TurnCameraRequest, TurnCameraResponse
 from sensor_msgs.msg import CameraInfo, CompressedImage, Image
@@ -18,9 +17,6 @@ from roomba.world.simulator import Simulator
 from roomba_ros.convert.common import image_message
 from roomba_ros.convert.sensors import camera_info_message, compressed_message, depth_message
 from roomba_ros.runtime.node import frame_id, told_to_end
-
-_DISC_HEIGHT = 0.25
-"""m; how high round things that were put down are."""
 
 
 class CameraTopics:
@@ -91,9 +87,7 @@ class CameraTopics:
 
     def _place(self, camera: Camera) -> None:
         """Let the camera see things where they are now."""
-        camera.place_things(self._simulator.things)
-        height = np.full((len(self._simulator.discs), 1), _DISC_HEIGHT)
-        camera.place_discs(np.hstack([self._simulator.discs, height]))
+        camera.place_all(self._simulator.things, self._simulator.discs)
 
     def _on_capture(self, request: TurnCameraRequest) -> TurnCameraResponse:
         angle, most = request.turn_degrees, self._config.max_pan

@@ -4,12 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+import numpy as np
+from numpy.typing import NDArray
+
 from roomba.client import view
 from roomba.client.observed import SPILL
 from roomba.client.protocol import RequestRefusedError, RobotUnavailableError
 from roomba.errors import RoombaError
 from roomba.geometry import STANDSTILL, Pose, Twist
 from roomba.headless.cleaner import HeadlessMission
+from roomba.headless.live.camera import LiveCamera
 from roomba.headless.live.floor_plan import FloorPlan, made
 from roomba.headless.live.observation import Observation
 from roomba.headless.live.robot import LiveRobot
@@ -29,6 +33,7 @@ class LiveClient:
         """Start nothing yet."""
         self._observation = Observation(home, robot, FloorPlan(rooms))
         self._live = LiveRobot(robot, speed, self._observation.observe)
+        self._camera = LiveCamera(home, robot.robot.camera)
         body = robot.robot.body
         self._limits = view.PageLimits(body.max_speed, body.max_angular_speed)
 
@@ -61,6 +66,10 @@ class LiveClient:
         if name is view.LayerName.COVERAGE:
             return self._observation.coverage()
         return self._live.carry_out(self._observation.dirt)
+
+    def picture(self, degrees: float) -> NDArray[np.uint8]:
+        """Return what the camera sees at an angle to the left, uint8 [height, width, 3] RGB."""
+        return self._camera.picture(self._live.carry_out, degrees)
 
     # ---------------------------------------------------------------- commands
 

@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
+import io
 import math
 from collections.abc import Callable
-from typing import Annotated, Any, Literal, TypeVar
+from typing import Annotated, Any, Final, Literal, TypeVar
 
-from fastapi import APIRouter, HTTPException
+from fastapi import APIRouter, HTTPException, Response
+from PIL import Image
 from pydantic import BaseModel, ConfigDict, Field
 
 from roomba.client.observed import ObservedRobot, Timeline
 from roomba.client.plain import home_of, replay_of, state_of
-from roomba.client.protocol import RequestRefusedError, RobotUnavailableError
+from roomba.client.protocol import CameraClient, RequestRefusedError, RobotUnavailableError
 from roomba.client.view import LONGEST_NAME, MOST_CORNERS, MOST_PASSES, CleanOrder, ZoneView
 
 _Value = TypeVar("_Value")
+_QUALITY: Final = 85
+"""Percent, of JPEG."""
 Coordinate = Annotated[float, Field(ge=-1000.0, le=1000.0, allow_inf_nan=False)]
 Name = Annotated[str, Field(min_length=1, max_length=LONGEST_NAME)]
 
@@ -88,6 +92,12 @@ class PlaceWish(Wish):
     y: Coordinate
 
 
+class CameraWish(Wish):
+    """An angle of the camera, degrees, positive to the left."""
+
+    angle: float = Field(default=0.0, ge=-180.0, le=180.0, allow_inf_nan=False)
+
+
 class ReplayWish(Wish):
     """A time of a recording, s, whether it goes on, and its seconds per second."""
 
@@ -110,6 +120,7 @@ def api_of(robot: ObservedRobot) -> APIRouter:
     _add_edits(api, robot)
     _add_play(api, robot)
     _add_replay(api, robot)
+    _add_camera(api, robot)
     return api
 
 
@@ -191,6 +202,19 @@ def _add_edits(api: APIRouter, robot: ObservedRobot) -> None:
     @api.post("/rooms/split", summary="Cut a room along a line")
     def split_room(wish: RoomCut) -> Answer:
         return _obeyed(lambda: robot.split_room(wish.name, wish.start, wish.end))
+
+
+def _add_camera(api: APIRouter, robot: ObservedRobot) -> None:
+    """Add the camera, if it has one; a picture of a home from inside needs the token, too."""
+    if not isinstance(robot, CameraClient):
+        return
+
+    @api.post("/camera", summary="What the camera sees, as JPEG", response_class=Response)
+    def picture(wish: CameraWish) -> Response:
+        pixels = _asked(lambda: robot.picture(wish.angle))
+        packed = io.BytesIO()
+        Image.fromarray(pixels, "RGB").save(packed, "JPEG", quality=_QUALITY)
+        return Response(packed.getvalue(), media_type="image/jpeg")
 
 
 def _add_replay(api: APIRouter, robot: ObservedRobot) -> None:

@@ -16,7 +16,7 @@ from fastapi.staticfiles import StaticFiles
 from starlette.types import ASGIApp, Receive, Scope, Send
 
 from roomba.client.observed import ObservedRobot
-from roomba.client.protocol import RequestRefusedError, RobotUnavailableError
+from roomba.client.protocol import CameraClient, RequestRefusedError, RobotUnavailableError
 from roomba.history.recorder import HistoryKeeper
 from roomba.ui.web.api import DriveWish, api_of
 from roomba.ui.web.feed import Feed
@@ -53,12 +53,13 @@ def create_app(robot: ObservedRobot, guard: Guard, keeper: HistoryKeeper | None 
             if replays is not None:
                 await replays.end()
 
+    abilities = {"history": keeper is not None, "camera": isinstance(robot, CameraClient)}
     app = FastAPI(title="roomba_robot", lifespan=life, docs_url=None, redoc_url=None)
     app.include_router(api_of(robot))
 
     @app.websocket("/live")
     async def live(socket: WebSocket) -> None:
-        await _serve_viewer(socket, feed, robot, guard, has_history=keeper is not None)
+        await _serve_viewer(socket, feed, robot, guard, abilities)
 
     if keeper is not None and replays is not None:
         app.include_router(history_api(keeper.history))
@@ -134,7 +135,7 @@ def _has_policy(message: Any) -> bool:
 
 
 async def _serve_viewer(
-    socket: WebSocket, feed: Feed, robot: ObservedRobot, guard: Guard, *, has_history: bool
+    socket: WebSocket, feed: Feed, robot: ObservedRobot, guard: Guard, abilities: dict[str, bool]
 ) -> None:
     """Show a viewer all that changes, until it goes."""
     host = socket.headers.get("host")
@@ -142,7 +143,7 @@ async def _serve_viewer(
         await socket.close(4403)
         return
     await socket.accept()
-    hearing = asyncio.create_task(_hear(socket, robot, guard, has_history))
+    hearing = asyncio.create_task(_hear(socket, robot, guard, abilities))
     showing = asyncio.create_task(_show(socket, feed))
     try:
         await asyncio.wait((hearing, showing), return_when=asyncio.FIRST_COMPLETED)
@@ -174,7 +175,9 @@ async def _show(socket: WebSocket, feed: Feed) -> None:
         await socket.send_text(_text(feed.state))
 
 
-async def _hear(socket: WebSocket, robot: ObservedRobot, guard: Guard, has_history: bool) -> None:
+async def _hear(
+    socket: WebSocket, robot: ObservedRobot, guard: Guard, abilities: dict[str, bool]
+) -> None:
     """Take a viewer's stream of drives by hand, which begins with the token."""
     may_drive = False
     while True:
@@ -183,7 +186,7 @@ async def _hear(socket: WebSocket, robot: ObservedRobot, guard: Guard, has_histo
             kind = told.get("type") if isinstance(told, dict) else None
             if kind == "hello":
                 may_drive = guard.is_token(str(told.get("token", "")), time.monotonic())
-                welcome = {"type": "welcome", "may_change": may_drive, "history": has_history}
+                welcome = {"type": "welcome", "may_change": may_drive, **abilities}
                 await socket.send_text(_text(welcome))
             elif kind == "drive" and may_drive:
                 wish = DriveWish(linear=told.get("linear"), angular=told.get("angular"))

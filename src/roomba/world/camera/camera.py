@@ -31,6 +31,10 @@ SUPERSAMPLING = 2
 """Samples per pixel in each direction, unless asked otherwise."""
 
 
+_DISC_HEIGHT = 0.25
+"""m; how high round things that were put down are."""
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Picture:
     """``colour`` uint8 [height, width, 3] RGB, and ``depth`` float32 [height, width] in metres."""
@@ -76,6 +80,16 @@ class Camera:
         them. Raises PictureError for another shape, or if a number is not finite.
         """
         self._scene.moving.place_discs(self._boxes.shapes, discs)
+
+    def place_all(self, things: NDArray[np.float64], round_things: NDArray[np.float64]) -> None:
+        """Show what moves and what was put down as they are now, in the pictures to come.
+
+        ``things`` are as for :meth:`place_things`; ``round_things`` is float64 [n, 3]: x, y in the
+        map frame and radius, m. Raises PictureError as those two.
+        """
+        self.place_things(things)
+        height = np.full((len(round_things), 1), _DISC_HEIGHT)
+        self.place_discs(np.hstack([round_things, height]))
 
     def picture(
         self, pose: Pose, pan: float, dirt: NDArray[np.int32], dirt_frame: GridFrame

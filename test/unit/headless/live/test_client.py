@@ -188,3 +188,13 @@ def test_without_a_map_it_explores_and_finds_rooms() -> None:
         assert np.count_nonzero(layer.cells == 1) > np.count_nonzero(first.cells == 1)
     finally:
         client.end()
+
+
+def test_its_camera_looks_to_both_sides(client: LiveClient) -> None:
+    ahead, left = client.picture(0.0), client.picture(30.0)
+    assert ahead.shape == left.shape
+    assert ahead.shape[2] == 3
+    assert ahead.std() > 5.0
+    assert np.abs(ahead.astype(int) - left).mean() > 5.0
+    with pytest.raises(RequestRefusedError, match="from -30 to 30 degrees"):
+        client.picture(90.0)

@@ -2,6 +2,7 @@
 import * as draw from "./map/draw.js";
 import * as gestures from "./map/gestures.js";
 import * as actions from "./panels/actions.js";
+import * as camera from "./panels/camera.js";
 import * as charts from "./panels/charts.js";
 import * as drive from "./panels/drive.js";
 import * as history from "./panels/history.js";
@@ -16,5 +17,5 @@ import { connect } from "./link.js";
 
 draw.begin();
 gestures.begin(offer.tapped, zones.drawn);
-for (const panel of [status, actions, rooms, zones, drive, tools, keys, replay, charts, history]) panel.begin();
+for (const panel of [status, actions, rooms, zones, drive, tools, keys, replay, camera, charts, history]) panel.begin();
 connect();

@@ -64,6 +64,7 @@ function take(message) {
     case "welcome":
       set("mayChange", message.may_change);
       set("hasHistory", message.history);
+      set("hasCamera", message.camera);
       break;
     case "refused": refuse(message.reason); break;
   }
@@ -104,6 +105,20 @@ export async function ask(path) {
   } catch {
     refuse("The robot's program does not answer. The page connects again by itself.");
   }
+  return null;
+}
+
+/** Return what the camera sees at an angle, degrees, as a picture; null when it does not. */
+export async function picture(angle) {
+  try {
+    const answer = await fetch(`${BASE}api/v1/camera`, {
+      method: "POST",
+      headers: { "Content-Type": "application/json", Authorization: `Bearer ${TOKEN}` },
+      body: JSON.stringify({ angle }),
+    });
+    if (answer.ok) return await answer.blob();
+    refuse((await answer.json()).detail);
+  } catch { /* the state line tells that the program does not answer */ }
   return null;
 }
 
