@@ -1,0 +1,171 @@
+"""What a clean cannot reach: shut doors, stairs, things, and being shut in."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from fixtures.driven_cleans import FENCE, HERE, cleaning, context, drive, finish
+from fixtures.missions import DEN, TWO_ROOMS, WALL_X
+
+from roomba.geometry import Pose
+from roomba.mission.cleaning.request import MissReason
+from roomba.perception.swept.coverage_bits import SWEPT
+from roomba.planning.path.costmap import RoundObstacle
+from roomba.planning.path.planner import NoPathError
+
+
+def test_what_is_behind_a_shut_door_is_told_and_looked_for_once_more() -> None:
+    clean = cleaning(place=context(TWO_ROOMS))
+    finish(clean, FENCE)
+    behind = clean.missed(FENCE, True)[0]
+    assert behind.reason is MissReason.SHUT
+    assert behind.room == DEN
+    assert behind.area > 2.0
+    assert clean.wants_another_look([])
+    # Opened by now, it is cleaned, too.
+    assert finish(clean, []) >= 1
+    assert clean.coverage.fraction > 0.99
+    assert not clean.wants_another_look([])
+
+
+def test_a_door_that_stays_shut_is_looked_for_only_once() -> None:
+    clean = cleaning(place=context(TWO_ROOMS))
+    finish(clean, FENCE)
+    assert clean.wants_another_look([])
+    finish(clean, FENCE)
+    clean.cut_off()
+    assert not clean.wants_another_look([])
+
+
+def test_with_all_reached_nothing_is_looked_for_again() -> None:
+    clean = cleaning()
+    assert not clean.wants_another_look([])
+    finish(clean, [])
+    assert not clean.wants_another_look([])
+
+
+def test_behind_stairs_it_is_not_looked_for_again() -> None:
+    clean = cleaning(place=context(TWO_ROOMS))
+    finish(clean, FENCE)
+    assert not clean.wants_another_look(FENCE)
+
+
+def test_cut_off_what_is_left_is_looked_for_again() -> None:
+    clean = cleaning()
+    for _ in range(40):
+        if clean.next_path(HERE, []) is None:
+            break
+        clean.cut_off()
+    assert clean.stage is None
+    assert clean.wants_another_look([])
+    assert finish(clean, []) >= 1
+    assert clean.coverage.fraction > 0.99
+
+
+def test_below_a_thing_it_is_told_as_missed_for_that_thing() -> None:
+    thing = (1.2, 0.6, 0.1)
+    clean = cleaning()
+    finish(clean, [thing])
+    (missed,) = clean.missed([thing], True)
+    assert missed.reason is MissReason.THING
+    assert np.hypot(missed.x - 1.2, missed.y - 0.6) < 0.12
+    assert missed.area < 0.15
+
+
+LARGE: list[RoundObstacle] = [
+    (1.2 + 0.35 * float(np.cos(a)), 0.6 + 0.35 * float(np.sin(a)), 0.02)
+    for a in np.arange(0.0, 6.3, 0.1)
+]
+"""A large round thing, as the lidar sees it."""
+
+
+def test_below_a_large_thing_it_is_not_looked_for_again() -> None:
+    clean = cleaning()
+    finish(clean, LARGE, Pose(0.6, 1.2, 0.0))
+    missed = clean.missed(LARGE, True)[0]
+    assert missed.area > 0.5
+    assert missed.reason is MissReason.THING
+    assert not clean.wants_another_look([])
+
+
+def test_a_path_on_which_something_stands_is_planned_anew_now_and_then() -> None:
+    clean = cleaning()
+    points = clean.next_path(HERE, [])
+    assert points is not None
+    here = drive(clean, points, 0.4)
+    assert not clean.plans_anew(100.0, 3.0), "so near to the end that is not worth it"
+    assert clean.plans_anew(100.0, 20.0)
+    missed = clean.left
+    again = clean.next_path(here, [(1.2, 0.6, 0.1)])
+    assert again is not None
+    assert again[0] == pytest.approx((here.x, here.y))
+    length = [float(np.hypot(*np.diff(way, axis=0).T).sum()) for way in (points, again)]
+    assert length[1] < 0.9 * length[0]
+    drive(clean, again)
+    assert clean.left < 0.1 * missed
+    assert not clean.plans_anew(105.0, 20.0), "it was planned only just"
+    assert clean.plans_anew(200.0, 20.0)
+
+
+def test_planned_anew_at_the_end_it_comes_to_an_end() -> None:
+    clean = cleaning()
+    here, now = HERE, 0.0
+    for _ in range(60):
+        points = clean.next_path(here, [])
+        if points is None:
+            break
+        here = drive(clean, points)
+        now += 100.0
+        clean.plans_anew(now, 20.0)
+    assert clean.stage is None
+    assert clean.coverage.fraction > 0.995
+
+
+def test_with_no_way_home_it_cleans_where_it_is() -> None:
+    clean = cleaning(place=context(TWO_ROOMS))
+    # The door shut behind it.
+    here = Pose(2.8, 1.2, 0.0)
+    points = clean.next_path(here, FENCE)
+    assert points is not None
+    assert points[:, 0].min() > WALL_X
+    drive(clean, points)
+    den = clean.coverage.wanted & context(TWO_ROOMS).in_room(DEN)
+    assert np.count_nonzero(clean.clean & den) > 0.9 * np.count_nonzero(den)
+
+
+def test_shut_in_it_says_so_a_few_times_before_it_gives_up() -> None:
+    clean = cleaning()
+    cage = [
+        (2.5 + 0.3 * float(np.cos(a)), 0.5 + 0.3 * float(np.sin(a)), 0.05)
+        for a in np.arange(0.0, 6.2, 0.2)
+    ]
+    refused = 0
+    while refused < 50:
+        try:
+            assert clean.next_path(Pose(2.5, 0.5, 0.0), cage) is None
+            break
+        except NoPathError:
+            refused += 1
+    assert 2 <= refused < 50
+    # Let out by then, it goes on; what was left out is looked for again.
+    assert clean.wants_another_look([])
+    assert finish(clean, []) >= 1
+    assert clean.coverage.fraction > 0.99
+
+
+def test_let_out_again_it_goes_on_where_it_was() -> None:
+    clean = cleaning(place=context(TWO_ROOMS))
+    points = clean.next_path(HERE, [])
+    assert points is not None
+    drive(clean, points, 0.3)
+    assert clean.plans_anew(100.0, 20.0)
+    # In the den, which is clean, when the door shuts behind it.
+    den = clean.coverage.wanted & context(TWO_ROOMS).in_room(DEN)
+    clean.coverage.cells[den] |= np.uint8(SWEPT)
+    clean.coverage.count_again()
+    here = Pose(2.8, 1.2, 0.0)
+    for _ in range(3):
+        with pytest.raises(NoPathError):
+            clean.next_path(here, FENCE)
+    assert finish(clean, [], here) >= 1
+    assert clean.coverage.fraction > 0.99
