@@ -6,7 +6,7 @@ from typing import Annotated
 
 from pydantic import Field
 
-from roomba.configuration.frozen import Frozen, NotNegative, Positive
+from roomba.configuration.frozen import Frozen, NotNegative, Positive, Ratio
 
 Count = Annotated[int, Field(ge=1, le=1000)]
 
@@ -31,6 +31,13 @@ class ThingConfig(Frozen):
         More it does not become: seen through, it is gone within ``most / loss`` scans.
     ``enough``
         With so much it is a thing.
+    ``spot_radius``
+        A thing's cell counts as a disc of this size around where the beams end in it: as thick as a
+        leg of a chair, and those of neighbouring cells leave no gap for any body.
+    ``newest``
+        Share of the newest beam in that place.
+    ``next_to``
+        As near to a surface of the map a point is mapped: about a cell.
     """
 
     margin: Positive = 0.09
@@ -42,3 +49,6 @@ class ThingConfig(Frozen):
     loss: Count = 3
     most: Count = 24
     enough: Count = 6
+    spot_radius: Positive = 0.02
+    newest: Ratio = 0.2
+    next_to: Positive = 0.04

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from roomba.configuration.mapping import FloorsConfig
 from roomba.configuration.robot import RobotConfig
 from roomba.perception.floors.recognition import (
     FloorPlace,
@@ -20,6 +21,7 @@ class FloorSearch:
         self,
         now: float,
         config: RobotConfig,
+        expected: FloorsConfig,
         place: LocalizationTopics,
         floors: dict[str, StoredMap],
         longest: float,
@@ -28,7 +30,9 @@ class FloorSearch:
         self.floors = floors
         self._place, self._since, self._longest = place, now, longest
         known = {name: FloorRecord(each.occupancy, each.station) for name, each in floors.items()}
-        self._recognition = FloorRecognition(known, config.localization, config.body.radius)
+        self._recognition = FloorRecognition(
+            known, config.localization, expected, config.body.radius
+        )
 
     def tick(self) -> FloorPlace | None:
         """Look a little further; return the floor, and the place on it, once it is clear."""

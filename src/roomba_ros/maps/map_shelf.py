@@ -7,11 +7,12 @@ from typing import Final
 
 import rospy
 
+from roomba.configuration.mapping import FloorsConfig
 from roomba.errors import RoombaError
 from roomba.grid import OccupancyMap
 from roomba.perception.floors.carry_over import carry_over
 from roomba.perception.floors.recognition import FloorRecord
-from roomba.perception.floors.same_floor import LEAST_FLOOR, LEAST_WALLS, match_floors
+from roomba.perception.floors.same_floor import match_floors
 from roomba.storage.map_bound import map_digest
 from roomba.storage.map_store import MapStore, MapStoreError, StoredMap
 from roomba.storage.rooms import save_rooms
@@ -29,9 +30,9 @@ class MapShelf:
     ``~zones_folder`` (as the mission node has it).
     """
 
-    def __init__(self, rooms: RoomTopics) -> None:
+    def __init__(self, rooms: RoomTopics, config: FloorsConfig) -> None:
         """Read nothing yet."""
-        self._rooms = rooms
+        self._rooms, self._config = rooms, config
 
     def start(self) -> None:
         """Read the parameters."""
@@ -73,15 +74,16 @@ class MapShelf:
         """
         assert stored.rooms is not None
         old = self._old(name)
-        match = match_floors(_floor_of(stored), _floor_of(old))
+        match = match_floors(_floor_of(stored), _floor_of(old), self._config)
         if not match.is_same:
             raise MapStoreError(
                 f"expected the floor of the map {name!r} that is saved already, got another one "
                 f"(of the walls {100 * match.walls:.0f} % agree where at least "
-                f"{100 * LEAST_WALLS:.0f} % should, of the floor {100 * match.floor:.0f} % of "
-                f"{100 * LEAST_FLOOR:.0f} %); {_INSTEAD}"
+                f"{100 * self._config.least_walls:.0f} % should, of the floor "
+                f"{100 * match.floor:.0f} % of {100 * self._config.least_floor:.0f} %); {_INSTEAD}"
             )
-        carried = carry_over(stored.rooms, old.rooms, old.zones, match.old_in_new)
+        least = self._config.same_room
+        carried = carry_over(stored.rooms, old.rooms, old.zones, least, match.old_in_new)
         zones = stored.zones if stored.zones.all else carried.zones
         return StoredMap(stored.occupancy, stored.station, carried.rooms, zones)
 

@@ -51,11 +51,12 @@ class MapTopics:
         self._background = Background()
         self._memory = MapMemory(nodes.memory, self._background)
         mapping = read_mapping_config()
+        self._floors = mapping.floors
         self._maker = MapMaker(
             config, mapping, nodes.placing, place, self._background, self._memory
         )
         rooms.is_growing = lambda: self._maker.is_growing
-        self._shelf = MapShelf(rooms)
+        self._shelf = MapShelf(rooms, mapping.floors)
         self._changes = ChangeTopics(place, mapping.changes, nodes.periods.changes)
         self._own = OwnMap(place, rooms, self._shelf, self._changes, self._memory, self._background)
         self._services = MapServices(self._own, self._maker, self._shelf, self._changes, place)
@@ -142,6 +143,7 @@ class MapTopics:
         search = self._search = self._search or FloorSearch(
             now,
             self._config,
+            self._floors,
             self._place,
             self._shelf.load_all(),
             self._nodes.deadlines.floor,

@@ -17,6 +17,10 @@ SOURCE = Path(__file__).resolve().parents[3] / "src"
 PARTS = (
     "roomba/control",
     "roomba/mission",
+    "roomba/perception/floors",
+    "roomba/perception/rooms",
+    "roomba/perception/swept",
+    "roomba/perception/things",
     "roomba/planning",
     "roomba/robot",
     "roomba/world",

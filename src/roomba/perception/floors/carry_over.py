@@ -15,9 +15,6 @@ from roomba.perception.rooms.rooms import Rooms
 from roomba.perception.rooms.zones import Zones
 from roomba.raster.carried import carried
 
-_LEAST_SHARE: Final = 0.5
-"""Share of the smaller of two rooms' floor; with less in common they are different rooms."""
-
 Overlaps = NDArray[np.float64]
 """[new rooms, old rooms]: how much of the floor they share, m2; 0 where too little."""
 
@@ -36,10 +33,11 @@ _SAME: Final = Pose()
 
 
 def carry_over(
-    new: Rooms, old: Rooms | None, zones: Zones, old_in_new: Pose = _SAME
+    new: Rooms, old: Rooms | None, zones: Zones, least: float, old_in_new: Pose = _SAME
 ) -> CarriedOver:
     """Return ``new`` rooms with the names of the ``old`` ones that they overlap most, and zones.
 
+    Rooms are the same that have at least a share ``least`` of the smaller one's floor in common.
     ``old_in_new`` is where the old map's frame lies in the new one, in which rooms and zones are.
     Names go one to one, so that rooms share as much floor with their namesakes as can be; a room
     that is new keeps "Room n", or gets one that is not taken. Zones are places: they stay.
@@ -47,7 +45,7 @@ def carry_over(
     there = _moved(zones, old_in_new)
     if old is None:
         return CarriedOver(new, there, ())
-    partners = _best_partners(_overlaps(new, old, old_in_new))
+    partners = _best_partners(_overlaps(new, old, least, old_in_new))
     names = tuple(_names(new.names, old.names, partners))
     lost = tuple(name for label, name in enumerate(old.names) if label not in partners)
     return CarriedOver(replace(new, names=names), there, lost)
@@ -71,7 +69,7 @@ def _moved(zones: Zones, old_in_new: Pose) -> Zones:
     )
 
 
-def _overlaps(new: Rooms, old: Rooms, old_in_new: Pose) -> Overlaps:
+def _overlaps(new: Rooms, old: Rooms, least: float, old_in_new: Pose) -> Overlaps:
     """Return the floor that rooms share, as far as they share enough to be the same."""
     there = carried(old.labels, old.frame, new.frame, old_in_new)
     shape = len(new.names) + 1, len(old.names) + 1
@@ -80,7 +78,7 @@ def _overlaps(new: Rooms, old: Rooms, old_in_new: Pose) -> Overlaps:
     shared = counts[1:, 1:] * new.frame.resolution**2
     of_new = np.bincount(new.labels.ravel(), minlength=shape[0])[1:] * new.frame.resolution**2
     of_old = np.bincount(old.labels.ravel(), minlength=shape[1])[1:] * old.frame.resolution**2
-    enough = _LEAST_SHARE * np.minimum(of_new[:, None], of_old[None, :])
+    enough = least * np.minimum(of_new[:, None], of_old[None, :])
     return np.where(shared >= enough, shared, 0.0)
 
 

@@ -28,9 +28,6 @@ from roomba.raster.regions import dilated, numbered_regions
 
 Mask = NDArray[np.bool_]
 
-_NEW_WAY: Final = 0.05
-_NEW_TURN: Final = 0.2
-"""m, rad; a scan from nearer to the last one says nothing new."""
 _NEAR: Final = np.ones((5, 5), np.bool_)
 """Cells; changed cells as near to each other are one change."""
 
@@ -155,10 +152,20 @@ class MapChanges:
         if last is None:
             return True
         turned = abs(wrap_angle(pose.theta - last.theta))
-        return pose.distance_to(last.x, last.y) >= _NEW_WAY or turned >= _NEW_TURN
+        return (
+            pose.distance_to(last.x, last.y) >= self._config.new_way
+            or turned >= self._config.new_turn
+        )
 
     def _finish_look(self, now: float, pose: Pose) -> None:
-        score_look(self._sheet, self._scores)
+        config = self._config
+        score_look(
+            self._sheet,
+            self._scores,
+            config.least_beams,
+            config.solid_share,
+            config.open_share,
+        )
         self._look_began, self._look_from = now, pose
         self._known = None
         self.looks += 1

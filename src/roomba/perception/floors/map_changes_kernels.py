@@ -18,11 +18,6 @@ MOST: Final = 5
 """The largest score of a cell, so that a change is noticed soon also after a long time."""
 NO_BOUNDS: Final = np.array([2**40, -1, 2**40, -1])
 """First and last row and column with counts, while there are none."""
-_LEAST: Final = 2
-"""The fewest beams in a cell that count."""
-_SOLID_SHARE: Final = 0.25
-"""Share of a cell's beams that must end in it: with noise many end in the next cell."""
-_OPEN_SHARE: Final = 0.1
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -58,19 +53,22 @@ def count_scan(
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def score_look(cells: CountArrays, scores: NDArray[np.int8]) -> None:
+def score_look(
+    cells: CountArrays, scores: NDArray[np.int8], least: int, solid_share: float, open_share: float
+) -> None:
     """Add the counts of a look to the scores, int8 [rows, columns], and begin a new one.
 
-    A cell where enough beams ended gets 1 more, one that nearly all passed 1 less.
+    A cell where ``least`` beams, and ``solid_share`` of all, ended gets 1 more; one in which less
+    than ``open_share`` ended 1 less.
     """
     for row in range(cells.bounds[0], cells.bounds[1] + 1):
         for column in range(cells.bounds[2], cells.bounds[3] + 1):
             ended, through = int(cells.hits[row, column]), int(cells.passes[row, column])
             cells.hits[row, column] = cells.passes[row, column] = 0
-            if ended + through < _LEAST:
+            if ended + through < least:
                 continue
-            if ended >= _LEAST and ended >= _SOLID_SHARE * (ended + through):
+            if ended >= least and ended >= solid_share * (ended + through):
                 scores[row, column] = min(scores[row, column] + 1, MOST)
-            elif ended < _OPEN_SHARE * (ended + through):
+            elif ended < open_share * (ended + through):
                 scores[row, column] = max(scores[row, column] - 1, -MOST)
     cells.bounds[:] = NO_BOUNDS

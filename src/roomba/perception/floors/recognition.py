@@ -10,26 +10,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import Enum
-from typing import Final
 
 from roomba.configuration.localization import LocalizationConfig
+from roomba.configuration.mapping import FloorsConfig
 from roomba.geometry import Pose
 from roomba.grid import OccupancyMap
 from roomba.perception.localization.relocation import Expectation, Relocation, Verdict
 from roomba.perception.matching.scan_view import Fit, ScanView
 from roomba.perception.matching.surface_field import SurfaceField
-
-_STATION_RADIUS: Final = 0.3
-_STATION_TURN: Final = 0.3
-"""m, rad; around its station, where the robot is expected to wake."""
-_STATION_EVIDENCE: Final = 6.0
-"""Evidence for that: less than believing a place needs, so that it never decides alone."""
-_NEW_EVIDENCE: Final = -0.11
-"""Of each beam, for a new floor: as if 7 of 10 beams agreed with a map and 3 did not at all.
-
-In homes that are known, with noise, a beam has -0.001 to -0.013; with some furniture moved, -0.05.
-The best place in a furnished home that the robot never was in has -0.15 to -0.30.
-"""
 
 
 class FloorVerdict(Enum):
@@ -74,12 +62,16 @@ class FloorRecognition:
     """
 
     def __init__(
-        self, floors: Mapping[str, FloorRecord], config: LocalizationConfig, body_radius: float
+        self,
+        floors: Mapping[str, FloorRecord],
+        config: LocalizationConfig,
+        expected: FloorsConfig,
+        body_radius: float,
     ) -> None:
         """``floors`` by name; ``body_radius``, m, tells where the robot can stand."""
         self._floors = dict(floors)
         self._fields = {name: SurfaceField.of(each.occupancy) for name, each in floors.items()}
-        self._config, self._body_radius = config, body_radius
+        self._config, self._expected, self._body_radius = config, expected, body_radius
         self._searches: dict[str, Relocation] = {}
         self._reckoned = Pose()
         self._beams = 0
@@ -144,12 +136,17 @@ class FloorRecognition:
 
     @property
     def _new_evidence(self) -> float:
-        return _NEW_EVIDENCE * self._beams
+        return self._expected.new_evidence * self._beams
 
     def _begin(self, view: ScanView, reckoned: Pose) -> None:
         """Search all floors for where the first scan was taken; their stations are tried first."""
         for name, floor in self._floors.items():
-            docked = Expectation(floor.station, _STATION_RADIUS, _STATION_TURN, _STATION_EVIDENCE)
+            docked = Expectation(
+                floor.station,
+                self._expected.station_radius,
+                self._expected.station_turn,
+                self._expected.station_evidence,
+            )
             self._searches[name] = Relocation(
                 self._fields[name], self._config, self._body_radius, view, reckoned, docked
             )

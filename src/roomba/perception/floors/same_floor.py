@@ -19,6 +19,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.configuration.mapping import FloorsConfig
 from roomba.geometry import Pose
 from roomba.grid import FREE, OCCUPIED, GridFrame, OccupancyMap
 from roomba.perception.floors.recognition import FloorRecord
@@ -28,11 +29,6 @@ from roomba.raster.distance import distance_to_nearest
 
 Floats = NDArray[np.float64]
 
-LEAST_WALLS: Final = 0.73
-LEAST_FLOOR: Final = 0.6
-"""Shares that maps of the same floor have in common, or more."""
-_NEAR: Final = 0.08
-"""m; walls so near to each other are the same: those of neighbouring cells."""
 _TURNS: Final = (0.0, 0.05, -0.05)
 """rad; a docked robot stands a little askew, and matching follows that so far and no farther."""
 _SPREAD: Final = np.diag([0.3**2, 0.3**2, 0.2**2])
@@ -43,19 +39,18 @@ _VARIANCE: Final = 0.05**2
 
 @dataclass(frozen=True, slots=True)
 class FloorMatch:
-    """How well two maps fit: shares 0..1, see above; ``old_in_new`` puts the old on the new one."""
+    """How well two maps fit: shares 0..1, see above; ``old_in_new`` puts the old on the new one.
+
+    ``is_same``: they show the same floor.
+    """
 
     walls: float
     floor: float
     old_in_new: Pose
-
-    @property
-    def is_same(self) -> bool:
-        """Whether they show the same floor."""
-        return self.walls >= LEAST_WALLS and self.floor >= LEAST_FLOOR
+    is_same: bool
 
 
-def match_floors(new: FloorRecord, old: FloorRecord) -> FloorMatch:
+def match_floors(new: FloorRecord, old: FloorRecord, config: FloorsConfig) -> FloorMatch:
     """Return how well two maps fit, laid on each other as well as can be near their stations."""
     station = new.station
     starts = [Pose(station.x, station.y, station.theta + turn) for turn in _TURNS]
@@ -65,7 +60,9 @@ def match_floors(new: FloorRecord, old: FloorRecord) -> FloorMatch:
     ends = np.zeros((len(walls), 4))
     ends[:, :2] = _moved(walls, old.station.inverse())
     back = old.station.inverse()
-    found = [_compared(new, old, _aligned(field, ends, start).compose(back)) for start in starts]
+    found = [
+        _compared(new, old, _aligned(field, ends, start).compose(back), config) for start in starts
+    ]
     return max(found, key=lambda each: each.walls * each.floor)
 
 
@@ -77,20 +74,27 @@ def _aligned(field: SurfaceField, ends: Floats, start: Pose) -> Pose:
     return Pose(*pose.tolist())
 
 
-def _compared(new: FloorRecord, old: FloorRecord, old_in_new: Pose) -> FloorMatch:
-    agree, compared = _agreeing(_moved(_walls(old.occupancy), old_in_new), new.occupancy)
-    also, more = _agreeing(_moved(_walls(new.occupancy), old_in_new.inverse()), old.occupancy)
+def _compared(
+    new: FloorRecord, old: FloorRecord, old_in_new: Pose, config: FloorsConfig
+) -> FloorMatch:
+    new_in_old, near = old_in_new.inverse(), config.same_wall
+    agree, compared = _agreeing(_moved(_walls(old.occupancy), old_in_new), new.occupancy, near)
+    also, more = _agreeing(_moved(_walls(new.occupancy), new_in_old), old.occupancy, near)
     floor = _moved(_middles(old.occupancy.frame, old.occupancy.values == FREE), old_in_new)
     free = int(np.count_nonzero(_values_at(new.occupancy, floor) == FREE))
     smaller = min(len(floor), int(np.count_nonzero(new.occupancy.values == FREE)))
-    return FloorMatch((agree + also) / max(compared + more, 1), free / max(smaller, 1), old_in_new)
+    walls_share, floor_share = (agree + also) / max(compared + more, 1), free / max(smaller, 1)
+    is_same = walls_share >= config.least_walls and floor_share >= config.least_floor
+    return FloorMatch(walls_share, floor_share, old_in_new, is_same)
 
 
-def _agreeing(walls: Floats, occupancy: OccupancyMap) -> tuple[int, int]:
-    """Return how many of these points are at walls of a map, and of how many it says anything."""
+def _agreeing(walls: Floats, occupancy: OccupancyMap, near: float) -> tuple[int, int]:
+    """Return how many of these points are within ``near`` m of walls of a map, and of how many it
+    says anything.
+    """
     occupied = occupancy.values == OCCUPIED
     away = distance_to_nearest(occupied) * occupancy.frame.resolution
-    is_near = _at(away, occupancy.frame, walls, np.inf) <= _NEAR
+    is_near = _at(away, occupancy.frame, walls, np.inf) <= near
     is_floor = _values_at(occupancy, walls) == FREE
     return int(np.count_nonzero(is_near)), int(np.count_nonzero(is_near | is_floor))
 

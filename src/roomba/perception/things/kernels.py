@@ -32,18 +32,15 @@ LAYER: Final = np.dtype(
         ("loss", "i8"),
         ("most", "i8"),
         ("enough", "i8"),
+        ("spot_radius", "f8"),  # m
+        ("newest", "f8"),
+        ("next_to", "f8"),  # m
         ("count", "i8"),  # cells that are listed
         ("scan", "i8"),  # number of the newest scan, from 1
         ("version", "i8"),  # another one when a thing came or went
     ]
 )
 """The numbers of :class:`roomba.perception.things.layer.ThingConfig`, and what changes."""
-
-SPOT_RADIUS: Final = 0.02
-"""m; a thing's cell counts as a disc of this size around where the beams end in it: as thick as a
-leg of a chair, and those of neighbouring cells leave no gap for any body."""
-_NEWEST: Final = 0.2
-"""Share of the newest beam in that place."""
 
 
 class Things(NamedTuple):
@@ -134,8 +131,8 @@ def _add_ends(
             things.listed[layer.count] = cell
             layer.count += 1
             things.spots[cell, 0], things.spots[cell, 1] = end_x, end_y
-        things.spots[cell, 0] += np.float32(_NEWEST * (end_x - things.spots[cell, 0]))
-        things.spots[cell, 1] += np.float32(_NEWEST * (end_y - things.spots[cell, 1]))
+        things.spots[cell, 0] += np.float32(layer.newest * (end_x - things.spots[cell, 0]))
+        things.spots[cell, 1] += np.float32(layer.newest * (end_y - things.spots[cell, 1]))
         after = min(before + gain, layer.most)
         things.evidence[cell] = after
         has_come = has_come or before < layer.enough <= after
@@ -219,7 +216,7 @@ def first_blocked(
     """
     layer = things.layer[0]
     nearest = math.inf
-    reach = radius + SPOT_RADIUS
+    reach = radius + layer.spot_radius
     for leg in range(stations.size - 1):
         if stations[leg + 1] < first or stations[leg] > min(last, nearest):
             continue

@@ -16,7 +16,6 @@ from roomba.perception.matching.match_kernels import beam_ends
 from roomba.perception.matching.surface_field import SurfaceField
 from roomba.perception.things.kernels import (
     LAYER,
-    SPOT_RADIUS,
     Things,
     first_blocked,
     forget_around,
@@ -26,8 +25,6 @@ from roomba.perception.things.kernels import (
 RoundObstacle = tuple[float, float, float]
 """x, y and radius of a round thing, m, map frame."""
 
-_NEXT_TO: Final = 0.04
-"""m; about a cell."""
 _MOST_CELLS: Final = 4096
 """Cells that may have evidence: 10 m2 of a usual map, more than stands about in a home."""
 
@@ -85,7 +82,7 @@ class ThingLayer:
         """Return round things, one for each cell with so much evidence, m, map frame."""
         cells = self.cells(least)
         spots = self.arrays.spots[cells[:, 0] * self._columns + cells[:, 1]]
-        return [(x, y, SPOT_RADIUS) for x, y in spots.tolist()]
+        return [(x, y, self.config.spot_radius) for x, y in spots.tolist()]
 
     def first_blocked(
         self,
@@ -113,7 +110,7 @@ class ThingLayer:
     def is_mapped(self, x: float, y: float) -> bool:
         """Whether the map shows a surface at a point, m, or next to it."""
         off, _, _ = look(self._field, self._place, x, y)
-        return bool(off < _NEXT_TO)
+        return bool(off < self.config.next_to)
 
     def forget(self) -> None:
         """Begin anew with nothing."""

@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from roomba.configuration.mapping import FloorsConfig
 from roomba.files.shipped import HOMES
 from roomba.geometry import Pose
 from roomba.grid import OCCUPIED, GridFrame, OccupancyMap
@@ -19,6 +20,7 @@ from roomba.perception.rooms.zones import Zone, ZoneKind, Zones
 from roomba.world.layers.layer import load_home
 
 FRAME = GridFrame(0.05, -1.0, 2.0, 40, 80)
+SHARE = FloorsConfig().same_room
 ZONES = Zones((Zone("bowl", ZoneKind.WALL, ((0.0, 2.5), (1.0, 2.5))),))
 
 
@@ -33,7 +35,7 @@ def rooms_of(*columns: tuple[int, int, str], frame: GridFrame = FRAME) -> Rooms:
 def test_the_same_rooms_keep_their_names_and_zones_stay() -> None:
     old = rooms_of((0, 30, "kitchen"), (30, 60, "hall"), (60, 80, "bath"))
     new = rooms_of((0, 30, "Room 2"), (60, 80, "Room 3"), (30, 60, "Room 1"))
-    carried = carry_over(new, old, ZONES)
+    carried = carry_over(new, old, ZONES, SHARE)
     assert carried.rooms.names == ("kitchen", "bath", "hall")
     assert np.array_equal(carried.rooms.labels, new.labels)
     assert carried.zones == ZONES
@@ -42,7 +44,7 @@ def test_the_same_rooms_keep_their_names_and_zones_stay() -> None:
 
 def test_without_rooms_before_all_is_new() -> None:
     new = rooms_of((0, 30, "Room 1"))
-    carried = carry_over(new, None, ZONES)
+    carried = carry_over(new, None, ZONES, SHARE)
     assert carried.rooms is new
     assert carried.zones == ZONES
 
@@ -50,14 +52,24 @@ def test_without_rooms_before_all_is_new() -> None:
 def test_a_room_that_is_new_gets_a_number_that_is_free() -> None:
     old = rooms_of((0, 30, "Room 2"), (30, 60, "Room 1"))
     new = rooms_of((0, 30, "Room 1"), (30, 60, "Room 2"), (60, 70, "Room 3"), (70, 80, "Room 4"))
-    assert carry_over(new, old, ZONES).rooms.names == ("Room 2", "Room 1", "Room 3", "Room 4")
+    assert carry_over(new, old, ZONES, SHARE).rooms.names == (
+        "Room 2",
+        "Room 1",
+        "Room 3",
+        "Room 4",
+    )
     new = rooms_of((60, 70, "Room 1"), (30, 60, "Room 2"), (70, 80, "Room 3"), (0, 30, "Room 4"))
-    assert carry_over(new, old, ZONES).rooms.names == ("Room 4", "Room 1", "Room 3", "Room 2")
+    assert carry_over(new, old, ZONES, SHARE).rooms.names == (
+        "Room 4",
+        "Room 1",
+        "Room 3",
+        "Room 2",
+    )
 
 
 def test_a_room_that_is_gone_is_told() -> None:
     old = rooms_of((0, 30, "kitchen"), (30, 60, "hall"))
-    carried = carry_over(rooms_of((0, 30, "Room 1")), old, ZONES)
+    carried = carry_over(rooms_of((0, 30, "Room 1")), old, ZONES, SHARE)
     assert carried.rooms.names == ("kitchen",)
     assert carried.lost == ("hall",)
 
@@ -65,12 +77,12 @@ def test_a_room_that_is_gone_is_told() -> None:
 def test_of_two_parts_the_larger_keeps_the_name() -> None:
     old = rooms_of((0, 60, "living room"))
     new = rooms_of((0, 20, "Room 1"), (20, 60, "Room 2"))
-    assert carry_over(new, old, ZONES).rooms.names == ("Room 1", "living room")
+    assert carry_over(new, old, ZONES, SHARE).rooms.names == ("Room 1", "living room")
 
 
 def test_two_that_became_one_have_the_name_of_the_larger() -> None:
     old = rooms_of((0, 20, "kitchen"), (20, 60, "hall"))
-    carried = carry_over(rooms_of((0, 60, "Room 1")), old, ZONES)
+    carried = carry_over(rooms_of((0, 60, "Room 1")), old, ZONES, SHARE)
     assert carried.rooms.names == ("hall",)
     assert carried.lost == ("kitchen",)
 
@@ -79,14 +91,14 @@ def test_who_overlaps_most_may_have_to_take_another_so_that_both_keep_a_name() -
     """The first overlaps "a" by 22 columns and "b" by 20; the second overlaps "a" alone, by 18."""
     old = rooms_of((0, 40, "a"), (40, 60, "b"))
     new = rooms_of((18, 60, "Room 1"), (0, 18, "Room 2"))
-    carried = carry_over(new, old, ZONES)
+    carried = carry_over(new, old, ZONES, SHARE)
     assert carried.rooms.names == ("b", "a")
     assert carried.lost == ()
 
 
 def test_a_corner_in_common_makes_no_namesake() -> None:
     old = rooms_of((0, 40, "kitchen"))
-    carried = carry_over(rooms_of((25, 60, "Room 1")), old, ZONES)
+    carried = carry_over(rooms_of((25, 60, "Room 1")), old, ZONES, SHARE)
     assert carried.rooms.names == ("Room 1",)
     assert carried.lost == ("kitchen",)
 
@@ -108,7 +120,7 @@ def test_a_home_on_another_grid_a_little_off_keeps_all_names(name: str) -> None:
     values = np.full(wider.shape, OCCUPIED, np.int8)
     values[40:-40, 48:-40] = home.map.values
     new = segment(OccupancyMap(wider, values))
-    carried = carry_over(new, named, Zones())
+    carried = carry_over(new, named, Zones(), SHARE)
     assert carried.lost == ()
     assert set(carried.rooms.names) == set(named.names)
     for label, room in enumerate(carried.rooms.names, 1):
@@ -125,17 +137,17 @@ def test_rooms_and_zones_of_another_frame_are_where_they_were() -> None:
     frame = GridFrame(0.05, corner.x - 0.017, corner.y + 0.017, FRAME.columns, FRAME.rows)
     labels = np.zeros(frame.shape, np.int16)
     labels[:30], labels[30:60], labels[60:] = 3, 1, 2
-    carried = carry_over(Rooms(frame, labels, ("a", "b", "c")), old, ZONES, old_in_new)
+    carried = carry_over(Rooms(frame, labels, ("a", "b", "c")), old, ZONES, SHARE, old_in_new)
     assert carried.rooms.names == ("hall", "bath", "kitchen")
     assert carried.lost == ()
     (zone,) = carried.zones.all
     assert (zone.name, zone.kind) == ("bowl", ZoneKind.WALL)
     assert np.array(zone.points) == pytest.approx(np.array([[2.5, -2.0], [2.5, -1.0]]))
     # As if it were the same frame they would lie elsewhere.
-    assert carry_over(Rooms(frame, labels, ("a", "b", "c")), old, ZONES).zones == ZONES
-    assert carry_over(Rooms(frame, labels, ("a", "b", "c")), None, ZONES, old_in_new).zones.all == (
-        zone,
-    )
+    assert carry_over(Rooms(frame, labels, ("a", "b", "c")), old, ZONES, SHARE).zones == ZONES
+    assert carry_over(
+        Rooms(frame, labels, ("a", "b", "c")), None, ZONES, SHARE, old_in_new
+    ).zones.all == (zone,)
 
 
 @st.composite
@@ -161,7 +173,7 @@ def divisions(draw: st.DrawFn) -> Rooms:
 def test_no_name_is_there_twice_and_none_is_lost_whose_room_is_there(
     old: Rooms, new: Rooms
 ) -> None:
-    carried = carry_over(new, old, ZONES).rooms
+    carried = carry_over(new, old, ZONES, SHARE).rooms
     assert len(set(carried.names)) == len(new.names)
     for index, name in enumerate(old.names):
         mine = old.labels == index + 1
@@ -177,7 +189,7 @@ def test_no_name_is_there_twice_and_none_is_lost_whose_room_is_there(
 @settings(max_examples=100)
 def test_names_share_as_much_floor_as_can_be(old: Rooms, new: Rooms) -> None:
     """Compared with all ways to pair them, tried one after the other."""
-    carried = carry_over(new, old, ZONES)
+    carried = carry_over(new, old, ZONES, SHARE)
     shares = np.zeros((len(new.names), len(old.names)))
     for row, column in np.ndindex(shares.shape):
         mine, its = new.labels == row + 1, old.labels == column + 1

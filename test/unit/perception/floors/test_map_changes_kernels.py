@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from numpy.typing import NDArray
 
+from roomba.configuration.mapping import MapChangesConfig
 from roomba.perception.floors.map_changes_kernels import (
     MOST,
     NO_BOUNDS,
@@ -44,7 +45,8 @@ def test_a_look_moves_scores_by_one_for_what_most_of_its_beams_say(
             expected[at] = max(score - 1, -MOST)
     bounds = bounds_of((hits > 0) | (passes > 0))
     cells = CountArrays(hits.copy(), passes.copy(), np.array([0.0, 0.0, CELL]), bounds)
-    score_look(cells, scores)
+    changes = MapChangesConfig()
+    score_look(cells, scores, changes.least_beams, changes.solid_share, changes.open_share)
     assert np.array_equal(scores, expected)
     assert not cells.hits.any()
     assert not cells.passes.any()

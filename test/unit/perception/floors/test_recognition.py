@@ -19,6 +19,7 @@ from fixtures.located import (
     free_poses,
 )
 
+from roomba.configuration.mapping import FloorsConfig
 from roomba.files.shipped import HOMES
 from roomba.geometry import Pose, Twist, wrap_angle
 from roomba.perception.floors.recognition import (
@@ -67,7 +68,7 @@ def recognised(
     floors: Mapping[str, FloorRecord], home: Home, pose: Pose, seed: int = 0
 ) -> FloorRecognition:
     """Look around in a home, with noise, until it is decided or all is seen."""
-    recognition = FloorRecognition(floors, CONFIG.localization, CONFIG.body.radius)
+    recognition = FloorRecognition(floors, CONFIG.localization, FloorsConfig(), CONFIG.body.radius)
     eye, random = Eye(home), np.random.default_rng(seed)
     for turn in TURNS:
         move = Pose(0.0, 0.0, turn)
@@ -163,7 +164,7 @@ def test_a_room_that_looks_the_same_from_four_sides_is_no_place() -> None:
 
 
 def test_without_floors_every_floor_is_new() -> None:
-    recognition = FloorRecognition({}, CONFIG.localization, CONFIG.body.radius)
+    recognition = FloorRecognition({}, CONFIG.localization, FloorsConfig(), CONFIG.body.radius)
     assert recognition.verdict is FloorVerdict.NEW
     recognition.see(LIDAR.view(Eye(SQUARE).scan(Pose(1.0, 1.2, 0.3))), RECKONED)
     recognition.advance()
@@ -173,7 +174,7 @@ def test_without_floors_every_floor_is_new() -> None:
 
 def test_a_scan_with_next_to_nothing_in_it_says_nothing() -> None:
     recognition = FloorRecognition(
-        {"room": floor_of(FURNISHED)}, CONFIG.localization, CONFIG.body.radius
+        {"room": floor_of(FURNISHED)}, CONFIG.localization, FloorsConfig(), CONFIG.body.radius
     )
     ranges = np.full(LIDAR.beams, np.inf, np.float32)
     ranges[: CONFIG.localization.least_beams - 1] = 1.0
@@ -196,7 +197,9 @@ def test_driving_off_the_station_it_stays_known_and_its_pose_follows() -> None:
     """In the simulator, by the wheels' odometry."""
     home = shipped("flat")
     world = Simulator(home, CONFIG, seed=3)
-    recognition = FloorRecognition(stored(*STORED), CONFIG.localization, CONFIG.body.radius)
+    recognition = FloorRecognition(
+        stored(*STORED), CONFIG.localization, FloorsConfig(), CONFIG.body.radius
+    )
     now = world.step(Twist(), 0.1)
     for _ in range(8):
         assert shown(recognition, world.ranges, now.odometry) is FloorVerdict.KNOWN

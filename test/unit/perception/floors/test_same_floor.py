@@ -12,19 +12,23 @@ import pytest
 from fixtures.located import FURNISHED, MOVED
 
 from roomba.commands.sim.homes import with_doors_shut
-from roomba.configuration.mapping import MappingConfig
+from roomba.configuration.mapping import FloorsConfig, MappingConfig
 from roomba.files.shipped import HOMES
 from roomba.geometry import Pose, wrap_angle
 from roomba.grid import FREE, OCCUPIED, UNKNOWN, GridFrame, OccupancyMap
 from roomba.headless.cleaner import HeadlessMission
 from roomba.perception.floors.recognition import FloorRecord
-from roomba.perception.floors.same_floor import match_floors
+from roomba.perception.floors.same_floor import FloorMatch, match_floors
 from roomba.world.home.home import Home
 from roomba.world.layers.layer import load_home
 
 NAMES = ("apartment", "empty", "family", "flat", "lshape", "studio")
 TURNED = Pose(4.0, -3.0, math.pi / 2)
 """Where the frame of a map lies in that of the same map turned by a quarter."""
+
+
+def matched(new: FloorRecord, old: FloorRecord) -> FloorMatch:
+    return match_floors(new, old, FloorsConfig())
 
 
 @cache
@@ -72,7 +76,7 @@ def is_at(found: Pose, expected: Pose) -> bool:
 @pytest.mark.parametrize("off", [Pose(), Pose(0.05, -0.04, 0.06), Pose(-0.03, 0.05, -0.07)])
 def test_a_home_is_itself_though_the_robot_docked_askew(name: str, off: Pose) -> None:
     home = shipped(name)
-    match = match_floors(floor_of(home, off), floor_of(home))
+    match = matched(floor_of(home, off), floor_of(home))
     assert match.is_same
     assert match.walls > 0.99
     assert match.floor > 0.99
@@ -82,10 +86,10 @@ def test_a_home_is_itself_though_the_robot_docked_askew(name: str, off: Pose) ->
 @pytest.mark.parametrize("name", ["family", "flat", "lshape"])
 def test_a_home_in_another_frame_is_laid_on_itself(name: str) -> None:
     home = shipped(name)
-    match = match_floors(turned(floor_of(home, Pose(-0.03, 0.05, -0.09))), floor_of(home))
+    match = matched(turned(floor_of(home, Pose(-0.03, 0.05, -0.09))), floor_of(home))
     assert match.is_same
     assert is_at(match.old_in_new, TURNED)
-    match = match_floors(floor_of(home), turned(floor_of(home)))
+    match = matched(floor_of(home), turned(floor_of(home)))
     assert match.is_same
     assert is_at(match.old_in_new, TURNED.inverse())
 
@@ -93,21 +97,21 @@ def test_a_home_in_another_frame_is_laid_on_itself(name: str) -> None:
 def test_a_station_that_was_moved_makes_no_other_home_of_the_same_frame() -> None:
     home = shipped("flat")
     moved = Pose(home.station.x + 2.0, home.station.y, home.station.theta + 1.0)
-    match = match_floors(FloorRecord(home.map, moved), floor_of(home))
+    match = matched(FloorRecord(home.map, moved), floor_of(home))
     assert match.is_same
     assert is_at(match.old_in_new, Pose())
 
 
 @pytest.mark.parametrize(("one", "other"), list(itertools.permutations(NAMES, 2)))
 def test_two_homes_are_not_the_same(one: str, other: str) -> None:
-    match = match_floors(floor_of(shipped(one)), floor_of(shipped(other)))
+    match = matched(floor_of(shipped(one)), floor_of(shipped(other)))
     assert not match.is_same
     assert match.walls < 0.71
 
 
 @pytest.mark.parametrize("name", ["studio", "lshape"])
 def test_a_home_that_was_mapped_again_is_itself(name: str) -> None:
-    match = match_floors(made(name, 1), made(name, 2))
+    match = matched(made(name, 1), made(name, 2))
     assert match.is_same
     assert match.walls > 0.95
     assert is_at(match.old_in_new, Pose())
@@ -116,18 +120,18 @@ def test_a_home_that_was_mapped_again_is_itself(name: str) -> None:
 def test_a_home_with_its_doors_shut_is_itself_and_no_other() -> None:
     part, whole = made("family", 1, shut=True), floor_of(shipped("family"))
     assert part.occupancy.free_area < 0.7 * whole.occupancy.free_area
-    assert match_floors(part, whole).is_same
-    assert match_floors(whole, part).is_same
+    assert matched(part, whole).is_same
+    assert matched(whole, part).is_same
     for other in NAMES:
         if other != "family":
-            assert not match_floors(part, floor_of(shipped(other))).is_same
-            assert not match_floors(floor_of(shipped(other)), part).is_same
+            assert not matched(part, floor_of(shipped(other))).is_same
+            assert not matched(floor_of(shipped(other)), part).is_same
 
 
 def test_moved_furniture_makes_no_other_home() -> None:
     before = FloorRecord(standing(FURNISHED), FURNISHED.station)
     after = FloorRecord(standing(MOVED), FURNISHED.station)
-    match = match_floors(after, before)
+    match = matched(after, before)
     assert match.is_same
     assert match.walls < 0.95
 
@@ -140,7 +144,7 @@ def test_maps_that_have_next_to_nothing_in_common_are_not_the_same() -> None:
     west[:, middle:] = UNKNOWN
     east[:, : middle - 3] = UNKNOWN
     one, other = (OccupancyMap(home.map.frame, half) for half in (west, east))
-    match = match_floors(FloorRecord(one, home.station), FloorRecord(other, home.station))
+    match = matched(FloorRecord(one, home.station), FloorRecord(other, home.station))
     assert match.floor < 0.2
     assert not match.is_same
 
@@ -149,9 +153,9 @@ def test_a_map_without_anything_on_it_is_no_floor() -> None:
     home = shipped("studio")
     for value in (UNKNOWN, FREE, OCCUPIED):
         nothing = OccupancyMap(home.map.frame, np.full_like(home.map.values, value))
-        assert not match_floors(FloorRecord(nothing, home.station), floor_of(home)).is_same
-        assert not match_floors(floor_of(home), FloorRecord(nothing, home.station)).is_same
-        assert not match_floors(
+        assert not matched(FloorRecord(nothing, home.station), floor_of(home)).is_same
+        assert not matched(floor_of(home), FloorRecord(nothing, home.station)).is_same
+        assert not matched(
             FloorRecord(nothing, home.station), FloorRecord(nothing, home.station)
         ).is_same
 
@@ -165,6 +169,6 @@ def test_coarser_cells_make_no_other_home() -> None:
         ),
         np.repeat(np.repeat(values, 2, axis=0), 2, axis=1),
     )
-    match = match_floors(FloorRecord(fine, home.station), floor_of(home))
+    match = matched(FloorRecord(fine, home.station), floor_of(home))
     assert match.is_same
     assert match.floor > 0.99

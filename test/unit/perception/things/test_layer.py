@@ -18,7 +18,6 @@ from roomba.geometry import Pose, Twist
 from roomba.grid import UNKNOWN, GridFrame, OccupancyMap
 from roomba.perception.matching.scan_view import LidarModel
 from roomba.perception.matching.surface_field import SurfaceField
-from roomba.perception.things.kernels import SPOT_RADIUS
 from roomba.perception.things.layer import ThingLayer
 from roomba.world.home.home import Home
 from roomba.world.simulator import Simulator
@@ -68,7 +67,7 @@ def test_three_scans_show_a_thing_and_two_do_not() -> None:
     assert layer.version == 1
     for x, y, radius in layer.obstacles():
         assert math.hypot(x - 3.0, y - 2.6) < 0.15 + 0.05
-        assert radius == SPOT_RADIUS
+        assert radius == ThingConfig().spot_radius
 
 
 @pytest.mark.parametrize(("scans", "needed"), [(1, 3), (2, 2), (3, 2), (4, 2), (9, 2)])
