@@ -15,7 +15,9 @@ import yaml
 
 SOURCE = Path(__file__).resolve().parents[3] / "src"
 PARTS = (
+    "roomba/client",
     "roomba/control",
+    "roomba/headless",
     "roomba/mission",
     "roomba/perception/floors",
     "roomba/perception/rooms",
@@ -23,6 +25,7 @@ PARTS = (
     "roomba/perception/things",
     "roomba/planning",
     "roomba/robot",
+    "roomba/ui",
     "roomba/world",
     "roomba_ros",
 )
