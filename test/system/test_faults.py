@@ -1,4 +1,4 @@
-"""What must not go wrong, done to a running robot. Row numbers are those of the fault list."""
+"""Faults done to a running robot: nodes that end, are killed, or are told nonsense."""
 
 import math
 import os
@@ -70,7 +70,7 @@ def newest_odometry(probe: Probe) -> Odometry:
 
 
 def test_at_a_faster_clock_it_walks_and_ctrl_c_ends_it_without_violence(tmp_path: Path) -> None:
-    """Row 9 for the whole stack: each node ends by itself, and roslaunch has to kill none."""
+    """Ctrl-C while it walks: each node ends by itself, and roslaunch has to kill none."""
     with RosGraph(tmp_path) as graph:
         # `./roomba run` waits 1.8 s for them; here the machine may be a busy one.
         launch = graph.roslaunch(f"speed:={FAST}", "--sigint-timeout=20")
@@ -100,7 +100,7 @@ def walk_fast(graph: RosGraph) -> None:
 
 
 def test_a_wrong_argument_ends_the_launch_with_a_clear_line(tmp_path: Path) -> None:
-    """Rows 18 and 19; test_home_sim_node.py goes through the arguments."""
+    """A negative top speed; test_home_sim_node.py goes through the arguments."""
     with RosGraph(tmp_path) as graph:
         program = graph.start_launch("robot_max_speed:=-0.5")
         program.ends(40.0)
@@ -109,7 +109,7 @@ def test_a_wrong_argument_ends_the_launch_with_a_clear_line(tmp_path: Path) -> N
 
 
 def test_a_killed_server_stops_the_robot_at_once_and_its_goal_ends(shared_robot: RosGraph) -> None:
-    """Row 10; and the server is back and walks again."""
+    """The walk has an outcome, and the server comes back and walks again."""
     probe, walker = walking(shared_robot)
     old = shared_robot.pid(SERVER)
     killed = newest_odometry(probe).header.stamp.to_sec()
@@ -124,7 +124,7 @@ def test_a_killed_server_stops_the_robot_at_once_and_its_goal_ends(shared_robot:
 
 
 def test_a_server_told_to_end_ends_and_the_robot_stops(shared_robot: RosGraph) -> None:
-    """Row 9."""
+    """SIGINT or SIGTERM in the middle of a walk: the walk has an outcome, nothing drives on."""
     for number in (signal.SIGINT, signal.SIGTERM):
         probe, walker = walking(shared_robot)
         pid = shared_robot.signal(SERVER, number)
@@ -149,7 +149,7 @@ def alive(pid: int) -> bool:
 
 
 def test_a_killed_position_node_keeps_the_pose(shared_robot: RosGraph) -> None:
-    """Row 11."""
+    """It comes back where the robot is, not at the origin."""
     probe, walker = at_home(shared_robot)
     walker.send(1.2, 1.6)
     walker.arrives(40.0)
@@ -161,7 +161,7 @@ def test_a_killed_position_node_keeps_the_pose(shared_robot: RosGraph) -> None:
 
 
 def test_a_walk_outlives_the_position_node(shared_robot: RosGraph) -> None:
-    """Row 11: the node comes back with the pose, and the walk goes on to its goal."""
+    """The node comes back with the pose, and the walk goes on to its goal."""
     probe, walker = walking(shared_robot)
     shared_robot.signal("position_pub_node", signal.SIGKILL)
     walker.arrives(40.0)
@@ -170,7 +170,7 @@ def test_a_walk_outlives_the_position_node(shared_robot: RosGraph) -> None:
 
 @pytest.mark.parametrize("bad", [-9.0, 0.0, "fast"])
 def test_a_bad_top_speed_changes_nothing(shared_robot: RosGraph, bad: object) -> None:
-    """Row 28."""
+    """The parameter of a running robot is put back to its old value, and walks go on."""
     probe = Probe(shared_robot)
     shared_robot.set_param("/robot_max_speed", bad)
     wait_until(lambda: shared_robot.param("/robot_max_speed") == 0.5, 10.0, "it is put back")
