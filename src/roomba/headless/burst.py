@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from typing import Final
 
@@ -61,7 +62,7 @@ class Burst:
         steady = brain.mission.steady(senses)
         if steady is None:
             return self._rows[:0]
-        start = senses.pose.x, senses.pose.y
+        start, next_look = (senses.pose.x, senses.pose.y), self._next_look
         self._begin(steady)
         ticks = run(
             self._burst,
@@ -73,14 +74,21 @@ class Burst:
             self._rows,
         )
         rows = self._rows[:ticks].copy()
-        is_left = bool(self._burst[0]["is_left"])
-        self._has_ended = 0 < ticks < len(self._rows) and not is_left
         if ticks:
             self._end(np.vstack((start, rows[:-1, BELIEVED][:, :2])))
+            has_looked = self._next_look != next_look
+            is_done = bool(self._burst[0]["is_left"]) or has_looked
+            self._has_ended = ticks < len(self._rows) and not is_done
             # A scan that was kept may have moved the map below it.
             believed = brain.pose
             rows[-1, BELIEVED] = believed.x, believed.y, believed.theta
         return rows
+
+    @property
+    def _next_look(self) -> float:
+        """When a map that grows is looked at again, s."""
+        growing = self._brain.growing
+        return math.inf if growing is None else growing.next_look
 
     @property
     def _may_run(self) -> bool:
@@ -95,9 +103,7 @@ class Burst:
         """Copy the state of the classes into the burst."""
         brain, row = self._brain, self._burst[0]
         mission, last = brain.mission, brain.mission.last
-        until = (
-            steady.until if brain.growing is None else min(steady.until, brain.growing.next_look)
-        )
+        until = min(steady.until, self._next_look)
         capacity = brain.robot.battery.capacity
         row["drives"], row["limit"] = steady.driver is not None, steady.limit
         row["until"] = until - _EARLY

@@ -144,6 +144,8 @@ class Brain:
 
     def look(self, scan: ScanReading | None) -> None:
         """Look in a scan, if there is one, for things that the map does not show."""
+        if scan is None:
+            return
         estimate = self.keeper.place.estimate
         self._mapped.lookout.look(scan, estimate.pose, estimate.knowledge)
 

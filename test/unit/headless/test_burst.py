@@ -153,6 +153,24 @@ def test_a_scan_worth_keeping_ends_it_and_is_on_the_map() -> None:
     assert here == pytest.approx([pose.x, pose.y, pose.theta])
 
 
+def test_after_a_look_at_the_map_that_grows_the_next_one_follows_at_once() -> None:
+    robot = under_way(is_mapped=False)
+    burst, followed = burst_of(robot), 0
+    for _ in range(60):
+        growing, kept = robot.brain.growing, len(robot.mapper.trajectory)
+        assert growing is not None
+        due = growing.next_look
+        rows = burst.run()
+        is_kept = len(robot.mapper.trajectory) > kept
+        has_looked = len(rows) > 0 and growing.next_look != due
+        if has_looked and not is_kept and is_steady(robot):
+            assert len(burst.run())
+            followed += 1
+        elif not len(rows):
+            robot.tick()
+    assert followed > 3
+
+
 def test_what_is_swept_in_it_is_counted_as_if_counted_anew() -> None:
     robot = under_way(is_mapped=True)
     until(robot, lambda: robot.seen.time > 60.0)
