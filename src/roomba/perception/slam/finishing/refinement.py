@@ -15,7 +15,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.perception.slam.finishing.refinement_kernels import Scans, match_to_group
+from roomba.perception.slam.finishing.refinement_kernels import Scans, match_to_group, nearby_visits
 from roomba.perception.slam.scan_matching.surfels import SurfelGrid
 from roomba.perception.slam.scan_matching.tolerances import tolerances_of
 from roomba.perception.slam.submaps.pose_graph import Link, optimised, relative_to
@@ -26,13 +26,8 @@ Floats = NDArray[np.float64]
 _SIZE: Final = 10
 _STRIDE: Final = 5
 """Keyframes of a group, and from the first of one to the first of the next."""
-_NEARBY: Final = 2.0
-"""m; from a keyframe to the middle of a group that it is matched to."""
-_APART: Final = 25
-"""Keyframes; groups that are farther away in time are of another visit."""
 _MOST_VISITS: Final = 5
-_BETWEEN: Final = 12
-"""Keyframes; groups that are nearer to each other in time say the same."""
+"""Groups of other visits that a keyframe is matched to, at most."""
 _ROUNDS: Final = 2
 _SETTLED: Final = 0.002
 """m; when no keyframe moved farther, all agree."""
@@ -111,18 +106,13 @@ def _asked(poses: Floats) -> dict[int, list[int]]:
     asked: dict[int, list[int]] = defaultdict(list)
     firsts = np.arange(0, len(poses) - _SIZE + 1, _STRIDE)
     middles = firsts + _SIZE // 2
-    for frame in range(len(poses)):
+    visits = np.empty((len(poses), _MOST_VISITS), np.int64)
+    nearby_visits(np.ascontiguousarray(poses), middles, visits)
+    for frame, groups in enumerate(visits.tolist()):
         before = (frame // _STRIDE - _SIZE // _STRIDE) * _STRIDE
         if before >= 0:
             asked[before].append(frame)
-        away = np.hypot(*(poses[middles, :2] - poses[frame, :2]).T)
-        others = np.flatnonzero((away <= _NEARBY) & (np.abs(middles - frame) > _APART))
-        chosen: list[int] = []
-        for index in others[np.argsort(away[others], kind="stable")].tolist():
-            middle = int(middles[index])
-            if all(abs(middle - other) > _BETWEEN for other in chosen):
-                chosen.append(middle)
-                asked[int(firsts[index])].append(frame)
-            if len(chosen) == _MOST_VISITS:
-                break
+        for group in groups:
+            if group >= 0:
+                asked[int(firsts[group])].append(frame)
     return asked

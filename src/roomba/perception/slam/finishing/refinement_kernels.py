@@ -1,4 +1,4 @@
-"""Compiled: keyframes of a finished drive are matched to a group of others."""
+"""Compiled: keyframes of a finished drive are matched to groups of others nearby."""
 
 from __future__ import annotations
 
@@ -27,6 +27,12 @@ from roomba.perception.slam.scan_matching.tolerances import Tolerances
 Floats = NDArray[np.float64]
 Numbers = NDArray[np.int64]
 
+_NEARBY: Final = 2.0
+"""m; from a keyframe to the middle of a group that it is matched to."""
+_APART: Final = 25
+"""Keyframes; groups that are farther away in time are of another visit."""
+_BETWEEN: Final = 12
+"""Keyframes; groups that are nearer to each other in time say the same."""
 _ROUNDS: Final = 5
 _POINTS: Final = 120
 """Of a keyframe, about so many are matched: neighbouring beams err alike."""
@@ -51,6 +57,39 @@ class Scans(NamedTuple):
     points: Floats
     firsts: Numbers
     poses: Floats
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def nearby_visits(poses: Floats, middles: Numbers, visits: Numbers) -> None:
+    """Fill ``visits`` [keyframes, n] with the groups of other visits nearest to each keyframe.
+
+    ``poses`` is float64 [keyframes, 3], map frame; ``middles`` [groups] are the middle keyframes of
+    groups. Nearest come first; -1 where there are no more.
+    """
+    visits[:] = -1
+    near, away = np.empty(middles.size, np.int64), np.empty(middles.size)
+    for frame in range(poses.shape[0]):
+        count = 0
+        for group in range(middles.size):
+            middle = middles[group]
+            off_x = poses[middle, 0] - poses[frame, 0]
+            off_y = poses[middle, 1] - poses[frame, 1]
+            if abs(off_x) > _NEARBY or abs(middle - frame) <= _APART:
+                continue
+            distance = math.hypot(off_x, off_y)
+            if distance <= _NEARBY:
+                near[count], away[count] = group, distance
+                count += 1
+        chosen = 0
+        for place in np.argsort(away[:count], kind="mergesort"):
+            is_new = True
+            for other in visits[frame, :chosen]:
+                is_new = is_new and abs(middles[near[place]] - middles[other]) > _BETWEEN
+            if is_new:
+                visits[frame, chosen] = near[place]
+                chosen += 1
+            if chosen == visits.shape[1]:
+                break
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
