@@ -69,3 +69,23 @@ def test_a_lidar_without_returns_is_noticed(lost: int, level: Level) -> None:
 def test_a_full_bin_wants_to_be_emptied() -> None:
     full = replace(seen(), in_bin=99.0)
     assert part("bin", health_of(full, WHOLE, 100.0, HEALTH)).message == "full: empty it"
+
+
+@pytest.mark.parametrize(
+    ("name", "changed", "level"),
+    [
+        ("battery", {"low_battery": 0.6}, Level.WARN),
+        ("battery", {"low_battery": 0.6, "empty_battery": 0.55}, Level.ERROR),
+        ("battery", {"hot_battery": 20.0}, Level.WARN),
+        ("bin", {"full_bin": 0.3}, Level.WARN),
+        ("lidar", {"most_misses": 0.05}, Level.WARN),
+    ],
+)
+def test_from_when_on_a_part_is_in_need_is_configured(
+    name: str, changed: dict[str, float], level: Level
+) -> None:
+    ranges = WHOLE.copy()
+    ranges[:36] = np.inf
+    half = replace(seen(level=0.5), in_bin=40.0)
+    assert part(name, health_of(half, ranges, 100.0, HEALTH)).level is Level.OK
+    assert part(name, health_of(half, ranges, 100.0, HealthConfig(**changed))).level is level

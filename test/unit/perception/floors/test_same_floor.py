@@ -172,3 +172,10 @@ def test_coarser_cells_make_no_other_home() -> None:
     match = matched(FloorRecord(fine, home.station), floor_of(home))
     assert match.is_same
     assert match.floor > 0.99
+
+
+@pytest.mark.parametrize("changed", [{}, {"least_walls": 1.0}, {"least_floor": 1.0}])
+def test_how_much_maps_must_have_in_common_is_configured(changed: dict[str, float]) -> None:
+    before = FloorRecord(standing(FURNISHED), FURNISHED.station)
+    after = FloorRecord(standing(MOVED), FURNISHED.station)
+    assert match_floors(after, before, FloorsConfig(**changed)).is_same is (changed == {})

@@ -8,7 +8,11 @@ from fixtures.rooms import room_home
 from fixtures.worlds import drive
 from numpy.typing import NDArray
 
-from roomba.configuration.simulation import SimulatedSurroundings
+from roomba.configuration.simulation import (
+    SimulatedRobotConfig,
+    SimulatedSurroundings,
+    SimulationConfig,
+)
 from roomba.world.home.home import DirtSource
 from roomba.world.simulator import Simulator
 
@@ -67,3 +71,12 @@ def test_how_much_has_fallen_does_not_depend_on_the_step() -> None:
         brought.append((world.brought_in, world.dirt.micrograms.tobytes()))
     assert brought[0] == brought[1] == brought[2]
     assert brought[0][0] > 0
+
+
+def test_crumbs_are_as_large_as_configured() -> None:
+    surroundings = SimulatedSurroundings(crumb=700)
+    config = SimulatedRobotConfig(simulation=SimulationConfig(surroundings=surroundings))
+    sources = [DirtSource("one", 2.0, 2.0, 0.3, 0.0, 30.0)]
+    fell = fallen(Simulator(room_home(sources=sources), config), 1.0)
+    assert fell.sum() == pytest.approx(30e6, rel=0.1)
+    assert not (fell % 700).any()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+import pytest
 import shapely
 from fixtures.straight_ways import connected_to
 from hypothesis import assume, given, settings
@@ -13,7 +14,7 @@ from hypothesis.extra.numpy import arrays
 
 from roomba.configuration.coverage import CoverageConfig
 from roomba.grid import FREE, UNKNOWN, GridFrame, OccupancyMap
-from roomba.planning.coverage.floor.floor import CoverageFloor
+from roomba.planning.coverage.floor.floor import CoverageFloor, fine_frame
 from roomba.planning.path.costmap import Mask, RoundObstacle
 
 CONFIG = CoverageConfig()
@@ -142,3 +143,10 @@ def enters(
             return True
         was_free = is_free
     return False
+
+
+@pytest.mark.parametrize(("cell", "parts"), [(0.01, 5), (0.025, 2), (0.05, 1)])
+def test_floor_is_counted_on_cells_as_configured(cell: float, parts: int) -> None:
+    frame = fine_frame(GridFrame(0.05, 1.0, 2.0, 8, 6), cell)
+    assert frame.shape == (8 * parts, 6 * parts)
+    assert frame.resolution == pytest.approx(0.05 / parts)

@@ -140,3 +140,22 @@ def test_a_patch_is_swept_from_twenty_cells_on(columns: int, expected: int) -> N
     left = np.zeros((9, 40), np.bool_)
     left[4, 5 : 5 + columns] = True
     assert len(swaths(left, np.ones_like(left), 3.0, CONFIG)) == expected
+
+
+@pytest.mark.parametrize(
+    ("changed", "expected"), [({"speck": 20}, 0), ({"speck": 19}, 1), ({"speck": 0}, 1)]
+)
+def test_the_least_patch_is_configured(changed: dict[str, int], expected: int) -> None:
+    left = np.zeros((9, 40), np.bool_)
+    left[4, 5:24] = True
+    config = CONFIG.model_copy(update=changed)
+    assert len(swaths(left, np.ones_like(left), 3.0, config)) == expected
+
+
+@pytest.mark.parametrize(("cost", "expected"), [(30.0, 1), (0.0, 4)])
+def test_what_another_swath_costs_is_configured(cost: float, expected: int) -> None:
+    """Without a price for turning it would sweep a strip across, as that is less way."""
+    left = np.zeros((9, 40), np.bool_)
+    left[4, 5:29] = True
+    config = CONFIG.model_copy(update={"swath_cost": cost})
+    assert len(swaths(left, np.ones_like(left), 3.0, config)) == expected
