@@ -38,7 +38,7 @@ class Raw(NamedTuple):
     data: bytes
 
 
-class _Run(NamedTuple):
+class _ClockRun(NamedTuple):
     """A part of a bag in which the clock went on: its borders, and what to add to times, ns."""
 
     begin: _Place
@@ -46,7 +46,7 @@ class _Run(NamedTuple):
     shift: int
 
 
-_WHOLE: Final = _Run((-1, -1), (2**63, 0), 0)
+_WHOLE: Final = _ClockRun((-1, -1), (2**63, 0), 0)
 
 
 class BagFile:
@@ -141,7 +141,7 @@ class BagFile:
             topic = connections[0].topic
             self._note(f"{topic}: the bag is damaged, {skips} s are missing: {reason}")
 
-    def _found_runs(self) -> list[_Run]:
+    def _found_runs(self) -> list[_ClockRun]:
         """Return the runs of a bag: another one begins where the recorder's clock was set back."""
         if not self.is_of_ros_1:
             return [_WHOLE]
@@ -156,7 +156,7 @@ class BagFile:
             if time < earlier and max(rows[number : number + _LASTING], key=_TIME)[1] < earlier:
                 runs[-1] = runs[-1]._replace(end=place)
                 shift = newest + usual - time
-                runs.append(_Run(place, _WHOLE.end, shift))
+                runs.append(_ClockRun(place, _WHOLE.end, shift))
                 self._note("the recorder's clock was set back on the way: the time goes on there")
             newest = max(newest, time + shift)
         return runs

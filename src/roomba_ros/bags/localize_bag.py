@@ -32,7 +32,7 @@ from roomba.files.shipped import CONFIGURATION
 from roomba.geometry import Pose
 from roomba.grid import FREE, OccupancyMap
 from roomba_ros.bags.localize_files import OUTPUT_TOPICS, RowBag, RowFile, RowTable
-from roomba_ros.bags.localize_recording import MessageKind, Recording, RecordingError
+from roomba_ros.bags.localize_recording import MessageKind, RecordedBag, RecordingError
 from roomba_ros.bags.localize_replay import Replay
 from roomba_ros.bags.localize_report import LocalizationSummary, Tally, lines_of
 from roomba_ros.convert.mounts import Mounts, usable_transforms
@@ -77,7 +77,7 @@ def main(arguments: list[str] | None = None) -> int:
         _check_files(options)
         occupancy = load_map(options.map)
         start = _start(options.start, occupancy)
-        with Recording(options.bag) as recording:
+        with RecordedBag(options.bag) as recording:
             summary = _localize(options, recording, occupancy, start)
         _tell(options, summary)
     except UsageError as error:
@@ -177,7 +177,7 @@ def _start(numbers: list[float] | None, occupancy: OccupancyMap) -> Pose | None:
 
 
 def _localize(
-    options: argparse.Namespace, recording: Recording, occupancy: OccupancyMap, start: Pose | None
+    options: argparse.Namespace, recording: RecordedBag, occupancy: OccupancyMap, start: Pose | None
 ) -> LocalizationSummary:
     """Go through the recording, and write down what was found."""
     topics = _topics(options, recording, start)
@@ -215,7 +215,7 @@ def _localize(
     return summary
 
 
-def _topics(options: argparse.Namespace, recording: Recording, start: Pose | None) -> _Topics:
+def _topics(options: argparse.Namespace, recording: RecordedBag, start: Pose | None) -> _Topics:
     """Return what is read of the recording; raises RecordingError if too little is there."""
     scan = recording.require(options.scan_topic, MessageKind.SCAN, "--scan-topic")
     odometry = recording.require(options.odom_topic, MessageKind.ODOMETRY, "--odom-topic")
@@ -250,7 +250,7 @@ def _topics(options: argparse.Namespace, recording: Recording, start: Pose | Non
     return _Topics(kinds, own_poses, told, base or "base_link", frame or "odom")
 
 
-def _mounts(recording: Recording, topics: _Topics) -> tuple[Mounts, bool]:
+def _mounts(recording: RecordedBag, topics: _Topics) -> tuple[Mounts, bool]:
     """Return where the sensors are, and whether the map -> odometry transform was recorded."""
     mounts = Mounts()
     for message in recording.first(["/tf_static"], _MOUNT_MESSAGES):
@@ -290,7 +290,7 @@ def _remarks(options: argparse.Namespace, occupancy: OccupancyMap, start: Pose |
     return [f"the start ({x:g}, {y:g}) is not on free floor of {options.map}"]
 
 
-def _how_to_play(recording: Recording, topics: _Topics, *, has_map_transform: bool) -> list[str]:
+def _how_to_play(recording: RecordedBag, topics: _Topics, *, has_map_transform: bool) -> list[str]:
     """Return what to leave out of the recording to play it beside what was written."""
     if not has_map_transform and not recording.types.keys() & set(OUTPUT_TOPICS):
         return []

@@ -97,7 +97,7 @@ class _Index:
     topics: NDArray[np.int64]
 
 
-class Recording:
+class RecordedBag:
     """A bag that is open for reading; a context.
 
     It is read by its chunks, as :mod:`rosbag` finds them: that module itself would keep an object
@@ -123,7 +123,7 @@ class Recording:
         self._broken = self._late = 0
         self._why_broken = ""
 
-    def __enter__(self) -> Recording:
+    def __enter__(self) -> RecordedBag:
         """Return itself."""
         return self
 
