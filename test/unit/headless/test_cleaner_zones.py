@@ -1,0 +1,98 @@
+"""A robot that cleans keeps out of its zones, also of those that are set meanwhile."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from fixtures.headless_cleans import BODY, assert_all_clean, begun
+from fixtures.missions import FLOOR_TOO_LITTLE, HOME, TWO_ROOMS, WALL_X, floor_clean, until
+
+from roomba.configuration.docking import DockingConfig
+from roomba.headless.cleaner import HeadlessMission
+from roomba.headless.records import CleanRecord
+from roomba.mission.cleaning.request import (
+    CleanOutcome,
+)
+from roomba.mission.inputs.planning_context import PlanningContext
+from roomba.perception.rooms.zones import Zone, ZoneKind, Zones
+
+
+def zoned(robot: HeadlessMission, *zones: Zone) -> PlanningContext:
+    home = robot.simulator.home
+    return PlanningContext(
+        home.map,
+        home.station,
+        robot.robot,
+        robot.config,
+        DockingConfig(),
+        robot.context.rooms,
+        Zones(zones),
+    )
+
+
+def no_go(left: float, bottom: float, right: float, top: float) -> Zone:
+    corners = ((left, bottom), (right, bottom), (right, top), (left, top))
+    return Zone("rug", ZoneKind.NO_GO, corners)
+
+
+def inside_by(record: CleanRecord, since: float, area: tuple[float, ...]) -> float:
+    """Return how far the body's rim ever came into an area after a time, m."""
+    rows = record.poses[record.poses[:, 0] > since]
+    dx = np.maximum(np.maximum(area[0] - rows[:, 1], rows[:, 1] - area[2]), 0.0)
+    dy = np.maximum(np.maximum(area[1] - rows[:, 2], rows[:, 2] - area[3]), 0.0)
+    return BODY - float(np.hypot(dx, dy).min())
+
+
+AREA = (1.9, 1.5, 3.0, 2.5)
+
+
+def test_a_zone_from_the_beginning_is_never_entered() -> None:
+    robot = HeadlessMission(HOME, zones=Zones((no_go(*AREA),)))
+    record = robot.clean()
+    assert_all_clean(robot, record)
+    assert inside_by(record, 0.0, AREA) < 0.0
+    bare = HeadlessMission(HOME).context
+    assert record.result.wanted < np.count_nonzero(bare.coverable()) * 1e-4 - 0.9
+
+
+@pytest.mark.parametrize("after", [20.0, 60.0, 100.0])
+def test_a_zone_set_while_it_cleans_is_not_entered_any_more(after: float) -> None:
+    robot = begun(after)
+    pose = robot.simulator.pose
+    # A corner of the room in which it does not stand.
+    left, right = (2.0, 3.0) if pose.x < 1.4 else (0.9, 1.4) if pose.y > 1.0 else (0.0, 1.0)
+    area = (left, 1.7, right, 2.5) if pose.y < 1.25 else (left, 0.0, right, 0.7)
+    robot.mission.use_context(zoned(robot, no_go(*area)))
+    since = robot.seen.time
+    record = robot.run()
+    assert record.result.outcome is CleanOutcome.COMPLETED
+    assert robot.is_home
+    assert inside_by(record, since, area) < 0.002
+    floor = zoned(robot, no_go(*area)).coverable()
+    assert floor_clean(robot, floor) >= FLOOR_TOO_LITTLE
+
+
+def test_a_zone_that_is_set_around_it_is_left() -> None:
+    robot = begun()
+    until(robot, lambda: robot.simulator.pose.x > 2.4)
+    pose = robot.simulator.pose
+    area = (pose.x - 0.3, pose.y - 0.3, pose.x + 0.3, pose.y + 0.3)
+    robot.mission.use_context(zoned(robot, no_go(*area)))
+    since = robot.seen.time
+    record = robot.run()
+    assert record.result.outcome is CleanOutcome.COMPLETED
+    assert robot.is_home
+    assert inside_by(record, since + 10.0, area) < 0.002
+
+
+def test_a_virtual_wall_before_the_rest_leaves_it_out() -> None:
+    robot = begun(10.0, HeadlessMission(TWO_ROOMS))
+    wall = Zone("wall", ZoneKind.WALL, ((WALL_X, 0.0), (WALL_X, 2.4)))
+    context = zoned(robot, wall)
+    robot.mission.use_context(context)
+    record = robot.run()
+    assert record.result.outcome is CleanOutcome.COMPLETED
+    assert robot.is_home
+    assert record.poses[:, 1].max() < WALL_X
+    assert record.result.missed == ()
+    assert floor_clean(robot, context.coverable()) >= FLOOR_TOO_LITTLE
