@@ -43,10 +43,10 @@ LONG = 100.0
 
 @pytest.fixture(scope="module")
 def shared_robot(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RosGraph]:
-    """The whole robot in two little rooms, eight times as fast as real time."""
+    """The whole robot in two little rooms, twelve times as fast as real time."""
     folder = tmp_path_factory.mktemp("robot")
     with RosGraph(folder) as own:
-        own.launch(f"home:={tiny_home(folder)}", "speed:=8")
+        own.launch(f"home:={tiny_home(folder)}", "speed:=12")
         yield own
 
 

@@ -109,7 +109,7 @@ def test_a_robot_whose_lidar_is_blocked_says_so_and_walks_slowly(shared_robot: R
     assert 0.1 < fastest < 0.2
     hands.inject("lidar_blocked", 0.0)
     hands.until(Localization.KNOWN, 30.0)
-    assert hands.is_at(1.0, 0.3)
+    wait_until(lambda: hands.is_at(1.0, 0.3), 30.0, "it is where it walked")
 
 
 def test_a_robot_carried_away_on_its_walk_finds_itself_and_arrives(shared_robot: RosGraph) -> None:
@@ -121,5 +121,7 @@ def test_a_robot_carried_away_on_its_walk_finds_itself_and_arrives(shared_robot:
     hands.until(Localization.KNOWN, 30.0)
     walker.arrives(60.0)
     # The simulation's truth: the beams of the lidar fit the map there, and the goal is reached.
-    assert hands.is_at(3.0, 4.0)
-    assert hands.probe.next("/localization", Localization).agreement > 0.9
+    wait_until(lambda: hands.is_at(3.0, 4.0), 30.0, "it is at the goal")
+    wait_until(
+        lambda: hands.probe.next("/localization", Localization).agreement > 0.9, 30.0, "it fits"
+    )
