@@ -54,7 +54,7 @@ TESTED_BY: dict[str, tuple[str, str]] = {
     "roomba/headless/burst_kernels": ("unit/headless/test_burst.py", PART),
     "roomba/headless/live/camera": ("unit/headless/live/test_client.py", LIVE),
     "roomba/headless/live/floor_plan": ("unit/headless/live/test_client.py", LIVE),
-    "roomba/headless/live/observation": ("unit/headless/live/test_client.py", LIVE),
+    "roomba/headless/live/snapshots": ("unit/headless/live/test_client.py", LIVE),
     "roomba/headless/live/robot": ("unit/headless/live/test_client.py", LIVE),
     "roomba/headless/burst_place_kernels": ("unit/headless/test_burst.py", PART),
     "roomba/headless/burst_state": ("unit/headless/test_burst.py", VALUES),

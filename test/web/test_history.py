@@ -15,7 +15,7 @@ from web.test_page import CONTRASTS, CONTROLS, DEADLINE
 from roomba.commands.play.command import live_client
 from roomba.history.database import History
 from roomba.history.recorder import HistoryKeeper
-from roomba.history.run import Source
+from roomba.history.run import RunSource
 from roomba.ui.web.app import create_app
 from roomba.ui.web.guard import Guard, new_token
 from roomba.ui.web.server import PageServer, listen
@@ -34,7 +34,7 @@ def history(tmp_path: Path) -> History:
 def opened(request: pytest.FixtureRequest, browser: Browser, history: History) -> Iterator[Opened]:
     """The page of a live robot, whose runs are kept."""
     robot = live_client("studio", seed=1, speed=10.0, knows_map=True)
-    keeper = HistoryKeeper(history, Source("play", "studio", 1), lambda text: pytest.fail(text))
+    keeper = HistoryKeeper(history, RunSource("play", "studio", 1), lambda text: pytest.fail(text))
     guard = Guard(new_token())
     server = PageServer(create_app(robot, guard, keeper), listen("127.0.0.1", 0, is_fixed=True))
     robot.start()

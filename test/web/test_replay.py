@@ -15,7 +15,7 @@ from roomba.commands.sim.kept_run import StateSamples, figures_of, recording_of
 from roomba.commands.sim.runs import run_trial
 from roomba.commands.sim.trial import Trial
 from roomba.history.replay import RecordedRobot
-from roomba.history.run import Recording, RunFigures, Source
+from roomba.history.run import RunFigures, RunRecording, RunSource
 from roomba.ui.web.app import create_app
 from roomba.ui.web.guard import Guard, new_token
 from roomba.ui.web.server import PageServer, listen
@@ -32,11 +32,11 @@ DRAG = """(at) => {
 
 
 @pytest.fixture(scope="module")
-def recorded() -> tuple[RunFigures, Recording]:
+def recorded() -> tuple[RunFigures, RunRecording]:
     """A real clean of the studio."""
     samples = StateSamples()
     run = run_trial(Trial(home="studio", seed=1), (samples,))
-    source = Source("sim", run.home.name, 1)
+    source = RunSource("sim", run.home.name, 1)
     return figures_of(run.figures, source), recording_of(run, samples)
 
 
@@ -46,7 +46,7 @@ class Replayed:
 
     page: Page
     robot: RecordedRobot
-    recording: Recording
+    recording: RunRecording
 
     def drag_to(self, at: float) -> None:
         self.page.evaluate(DRAG, at)
@@ -63,7 +63,7 @@ class Replayed:
 
 @pytest.fixture(params=list(SIZES))
 def replayed(
-    request: pytest.FixtureRequest, browser: Browser, recorded: tuple[RunFigures, Recording]
+    request: pytest.FixtureRequest, browser: Browser, recorded: tuple[RunFigures, RunRecording]
 ) -> Iterator[Replayed]:
     robot = RecordedRobot(*recorded)
     guard = Guard(new_token())

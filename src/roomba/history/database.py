@@ -16,7 +16,7 @@ from typing import Any, Final
 
 from roomba.client.protocol import MissedFloor
 from roomba.errors import RoombaError
-from roomba.history.run import Recording, RunFigures, Source
+from roomba.history.run import RunFigures, RunRecording, RunSource
 from roomba.history.run_file import packed, unpacked
 
 LAST: Final = "last"
@@ -84,7 +84,7 @@ class History:
         self.path = folder / _NAME
         self.set_aside: Path | None = None
 
-    def add(self, figures: RunFigures, recording: Recording | None = None) -> int:
+    def add(self, figures: RunFigures, recording: RunRecording | None = None) -> int:
         """Keep a run, and return its number; it is on the disk then."""
         content = None if recording is None else packed(figures, recording)
         with self._opened() as database, _transaction(database):
@@ -126,7 +126,7 @@ class History:
             raise HistoryError(f"expected the number of a run, or {LAST}, got {word!r}")
         return self.run(int(word))
 
-    def recording(self, number: int) -> Recording:
+    def recording(self, number: int) -> RunRecording:
         """Return what was recorded of a run."""
         with self._opened() as database:
             row = database.execute(
@@ -257,7 +257,7 @@ def _figures_of(database: sqlite3.Connection, number: int, row: dict[str, Any]) 
     missed = database.execute(
         "SELECT area, x, y, room, reason FROM missed WHERE run = ? ORDER BY area DESC", (number,)
     )
-    source = Source(
+    source = RunSource(
         row["program"], row["home"], row["seed"], row["repeat"], json.loads(row["configuration"])
     )
     return RunFigures(

@@ -15,7 +15,15 @@ from roomba.client.view import GridLayer, HomeView, LayerName, RobotView
 from roomba.errors import RoombaError
 from roomba.geometry import wrap_angle
 from roomba.history.database import History
-from roomba.history.run import TRACE, TRACE_STEP, CellLayer, Recording, RunFigures, Source, Word
+from roomba.history.run import (
+    TRACE,
+    TRACE_STEP,
+    CellLayer,
+    RunFigures,
+    RunRecording,
+    RunSource,
+    Word,
+)
 
 BEGINS: Final = ("undocking", "cleaning", "exploring")
 """Phases in which a run has begun."""
@@ -32,19 +40,19 @@ Layers = Callable[[LayerName], GridLayer | None]
 class RunRecorder:
     """Follows one robot from look to look; a run that ended is returned by the look that saw it."""
 
-    def __init__(self, source: Source) -> None:
+    def __init__(self, source: RunSource) -> None:
         """Begin between two runs."""
         self._source = source
-        self._run: _Run | None = None
+        self._run: _RunUnderWay | None = None
         self._last: CleanReport | None = None
 
     def look(
         self, view: RobotView, home: HomeView, layer: Layers
-    ) -> tuple[RunFigures, Recording] | None:
+    ) -> tuple[RunFigures, RunRecording] | None:
         """Take a look; return the run that it was the end of."""
         report, self._last = self._last, view.last
         if self._run is None and view.vacuum.phase in BEGINS:
-            self._run = _Run(view)
+            self._run = _RunUnderWay(view)
         if self._run is None:
             return None
         self._run.take(view)
@@ -61,7 +69,7 @@ class RunRecorder:
 class HistoryKeeper:
     """Keeps the runs of a robot that is looked at; trouble with the history is told, once each."""
 
-    def __init__(self, history: History, source: Source, tell: Callable[[str], None]) -> None:
+    def __init__(self, history: History, source: RunSource, tell: Callable[[str], None]) -> None:
         """Begin between two runs."""
         self.history = history
         self._recorder = RunRecorder(source)
@@ -85,7 +93,7 @@ class HistoryKeeper:
         self._told = trouble
 
 
-class _Run:
+class _RunUnderWay:
     """A run under way."""
 
     def __init__(self, view: RobotView) -> None:
@@ -116,7 +124,7 @@ class _Run:
         sweeps = float(vacuum.wanted > 0.0 and vacuum.phase in _SWEEPS)
         self._rows.append((now, *view.pose, view.speed, battery, view.dirt, *progress, sweeps))
 
-    def figures(self, source: Source, report: CleanReport) -> RunFigures:
+    def figures(self, source: RunSource, report: CleanReport) -> RunFigures:
         """Return what was achieved."""
         explores = any(word.phase == "exploring" for word in self._words)
         return RunFigures(
@@ -135,7 +143,7 @@ class _Run:
             report.missed,
         )
 
-    def recording(self, home: HomeView, layer: Layers) -> Recording:
+    def recording(self, home: HomeView, layer: Layers) -> RunRecording:
         """Return what was seen."""
         trace = np.array(self._rows, np.float32).reshape(-1, len(TRACE))
         layers = {}
@@ -145,4 +153,4 @@ class _Run:
                 layers[name.value] = CellLayer(
                     grid.resolution, grid.origin_x, grid.origin_y, grid.cells.copy()
                 )
-        return Recording(trace, tuple(self._words), home_of(home), layers)
+        return RunRecording(trace, tuple(self._words), home_of(home), layers)

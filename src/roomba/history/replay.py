@@ -21,7 +21,7 @@ from roomba.client.protocol import (
 )
 from roomba.geometry import wrap_angle
 from roomba.grid import GridFrame
-from roomba.history.run import TRACE, Recording, RunFigures
+from roomba.history.run import TRACE, RunFigures, RunRecording
 from roomba.history.run_file import RunFileError
 from roomba.perception.swept.visits import Visits
 
@@ -39,7 +39,7 @@ _NO_POINTS: Final[NDArray[np.float32]] = np.empty((0, 2), np.float32)
 class RecordedRobot:
     """Plays a recording; its methods may be called from any thread. Commands are refused."""
 
-    def __init__(self, figures: RunFigures, recording: Recording, speed: float = 10.0) -> None:
+    def __init__(self, figures: RunFigures, recording: RunRecording, speed: float = 10.0) -> None:
         """Begin at the first row, standing; raises RunFileError for a recording of nothing."""
         if not len(recording.trace) or not recording.words:
             raise RunFileError("expected a recording with at least one row, got none")
@@ -197,7 +197,7 @@ class RecordedRobot:
 class _Coverage:
     """What was swept up to a row of a trace; rows that follow are added, others begin anew."""
 
-    def __init__(self, recording: Recording, tool: float) -> None:
+    def __init__(self, recording: RunRecording, tool: float) -> None:
         self._trace = recording.trace
         self._sweeps = recording.column("sweeps") > 0.5
         cells = recording.layers.get("map")

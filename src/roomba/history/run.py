@@ -25,7 +25,7 @@ Floats = NDArray[np.float32]
 
 
 @dataclass(frozen=True, slots=True)
-class Source:
+class RunSource:
     """What is run: ``program`` is sim, play or ros; ``seed`` is None where there is none.
 
     ``repeat`` is the command that repeats it, and ``configuration`` plain values that differ from
@@ -47,7 +47,7 @@ class RunFigures:
     NaN. ``missed`` has the largest area first.
     """
 
-    source: Source
+    source: RunSource
     kind: str
     began: float
     outcome: str
@@ -94,7 +94,7 @@ class Word:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Recording:
+class RunRecording:
     """What was seen of a run: ``trace`` is float32 [n, columns of TRACE], ``words`` by time.
 
     ``home`` are the plain values of the home as a page shows it; ``layers`` are those of

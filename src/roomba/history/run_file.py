@@ -18,9 +18,9 @@ from roomba.history.run import (
     CELL_LAYERS,
     TRACE,
     CellLayer,
-    Recording,
     RunFigures,
-    Source,
+    RunRecording,
+    RunSource,
     Word,
 )
 
@@ -33,7 +33,7 @@ class RunFileError(RoombaError):
     """A file of a run that cannot be used; the message names it and says why."""
 
 
-def write_run(figures: RunFigures, recording: Recording, path: Path) -> None:
+def write_run(figures: RunFigures, recording: RunRecording, path: Path) -> None:
     """Write a run into a file; raises RunFileError when the disk refuses."""
     try:
         write_whole(path, packed(figures, recording))
@@ -41,7 +41,7 @@ def write_run(figures: RunFigures, recording: Recording, path: Path) -> None:
         raise RunFileError(f"{path}: cannot be written: {error.strerror}") from error
 
 
-def read_run(path: Path) -> tuple[RunFigures, Recording]:
+def read_run(path: Path) -> tuple[RunFigures, RunRecording]:
     """Return the run of a file; raises RunFileError."""
     try:
         if path.stat().st_size > _LARGEST:
@@ -53,7 +53,7 @@ def read_run(path: Path) -> tuple[RunFigures, Recording]:
         raise RunFileError(f"{path}: {error}") from error
 
 
-def packed(figures: RunFigures, recording: Recording) -> bytes:
+def packed(figures: RunFigures, recording: RunRecording) -> bytes:
     """Return a run as bytes."""
     about = {
         "version": VERSION,
@@ -74,7 +74,7 @@ def packed(figures: RunFigures, recording: Recording) -> bytes:
     return file.getvalue()
 
 
-def unpacked(content: bytes) -> tuple[RunFigures, Recording]:
+def unpacked(content: bytes) -> tuple[RunFigures, RunRecording]:
     """Return the run of some bytes; raises RunFileError."""
     try:
         with np.load(io.BytesIO(content), allow_pickle=False) as arrays:
@@ -93,7 +93,7 @@ def unpacked(content: bytes) -> tuple[RunFigures, Recording]:
                 if name in about["layers"]
             }
             words = tuple(Word(**word) for word in about["words"])
-            return _figures(about["figures"]), Recording(trace, words, about["home"], layers)
+            return _figures(about["figures"]), RunRecording(trace, words, about["home"], layers)
     except UNREADABLE as error:
         raise RunFileError(f"expected a recorded run, found something else: {error!r}") from error
 
@@ -118,6 +118,6 @@ def _figures(values: dict[str, Any]) -> RunFigures:
     known: dict[str, Any] = {
         name: math.nan if value is None else value for name, value in values.items()
     }
-    known["source"] = Source(**known["source"])
+    known["source"] = RunSource(**known["source"])
     known["missed"] = tuple(MissedFloor(**miss) for miss in known["missed"])
     return RunFigures(**known)

@@ -10,7 +10,7 @@ from roomba.errors import ConfigError
 from roomba.history.database import History
 from roomba.history.folder import history_folder
 from roomba.history.recorder import HistoryKeeper
-from roomba.history.run import Source
+from roomba.history.run import RunSource
 from roomba.ui.web.app import create_app
 from roomba.ui.web.guard import Guard, new_token
 from roomba.ui.web.server import DEFAULT_PORT, PageServer, listen
@@ -57,7 +57,7 @@ class DashboardNode:
 
 def _keeper() -> HistoryKeeper:
     home = str(rospy.get_param("~home", "home"))
-    source = Source("ros", home, None, shlex.join(["./roomba", "run", f"home:={home}"]))
+    source = RunSource("ros", home, None, shlex.join(["./roomba", "run", f"home:={home}"]))
     return HistoryKeeper(History(history_folder()), source, rospy.logwarn)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from unit.history.made import made_figures, made_recording
 
-from roomba.history.run import Recording, RunFigures
+from roomba.history.run import RunFigures, RunRecording
 
 
 @pytest.fixture
@@ -14,5 +14,5 @@ def figures() -> RunFigures:
 
 
 @pytest.fixture
-def recording() -> Recording:
+def recording() -> RunRecording:
     return made_recording()

@@ -8,9 +8,9 @@ from roomba.client.protocol import MissedFloor
 from roomba.history.run import (
     TRACE,
     CellLayer,
-    Recording,
     RunFigures,
-    Source,
+    RunRecording,
+    RunSource,
     Word,
 )
 
@@ -18,7 +18,7 @@ from roomba.history.run import (
 def made_figures() -> RunFigures:
     """Twelve m2, of which one is left."""
     return RunFigures(
-        Source("sim", "box", 7, "./roomba sim --home box --seed 7", {"battery": 0.5}),
+        RunSource("sim", "box", 7, "./roomba sim --home box --seed 7", {"battery": 0.5}),
         "clean",
         1_700_000_000.0,
         "completed",
@@ -34,7 +34,7 @@ def made_figures() -> RunFigures:
     )
 
 
-def made_recording() -> Recording:
+def made_recording() -> RunRecording:
     """Sixty seconds: docked, cleaning, docked."""
     times = np.arange(0.0, 60.5, 0.5)
     trace = np.zeros((len(times), len(TRACE)), np.float32)
@@ -72,4 +72,4 @@ def made_recording() -> Recording:
         "furniture": [],
     }
     layers = {"map": CellLayer(0.05, 0.0, 0.0, cells), "coverage": CellLayer(0.05, 0.0, 0.0, swept)}
-    return Recording(trace, words, home, layers)
+    return RunRecording(trace, words, home, layers)

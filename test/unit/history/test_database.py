@@ -13,23 +13,23 @@ import numpy as np
 import pytest
 
 from roomba.history.database import MIGRATIONS, History, HistoryError
-from roomba.history.run import Recording, RunFigures
+from roomba.history.run import RunFigures, RunRecording
 
 WRITER = """
 import sys
 from dataclasses import replace
 from pathlib import Path
 from roomba.history.database import History
-from roomba.history.run import RunFigures, Source
+from roomba.history.run import RunFigures, RunSource
 history = History(Path(sys.argv[1]))
 for number in range(25):
-    source = Source(sys.argv[2], "box", number)
+    source = RunSource(sys.argv[2], "box", number)
     history.add(RunFigures(source, "clean", 0.0, "completed", "", *[1.0] * 7))
 """
 
 
 def test_a_run_comes_back_as_it_was(
-    tmp_path: Path, figures: RunFigures, recording: Recording
+    tmp_path: Path, figures: RunFigures, recording: RunRecording
 ) -> None:
     number = History(tmp_path).add(figures, recording)
     (kept,) = History(tmp_path).runs()
@@ -102,7 +102,7 @@ def test_a_damaged_file_is_set_aside_and_told(
 
 
 def test_an_older_version_is_brought_up_to_date(
-    tmp_path: Path, figures: RunFigures, recording: Recording
+    tmp_path: Path, figures: RunFigures, recording: RunRecording
 ) -> None:
     history = History(tmp_path)
     with sqlite3.connect(history.path) as old:

@@ -14,10 +14,10 @@ from roomba.client.protocol import CleanReport, ErrandOutcome, MissedFloor, Vacu
 from roomba.client.view import GridLayer, HomeView, LayerName, RobotView
 from roomba.history.database import History
 from roomba.history.recorder import HistoryKeeper, RunRecorder
-from roomba.history.run import Recording, RunFigures, Source
+from roomba.history.run import RunFigures, RunRecording, RunSource
 
 HOME = HomeView(1, "box", (0.0, 0.0, 0.0), (), (), (), 0.16, 0.18)
-SOURCE = Source("play", "box", 3)
+SOURCE = RunSource("play", "box", 3)
 REPORT = CleanReport(
     ErrandOutcome.COMPLETED,
     "",
@@ -45,7 +45,7 @@ def view(time: float, phase: str, last: CleanReport | None = None) -> RobotView:
     return RobotView(time, pose, "", 0.2, 0.0, "", vacuum, NO_POINTS, NO_POINTS, last)
 
 
-def run_of(recorder: RunRecorder, report: CleanReport) -> Iterator[tuple[RunFigures, Recording]]:
+def run_of(recorder: RunRecorder, report: CleanReport) -> Iterator[tuple[RunFigures, RunRecording]]:
     """Look ten times a second at a robot that leaves its station at 5 s and is back at 45 s."""
     for tenth in range(600):
         time = tenth / 10.0

@@ -12,12 +12,12 @@ from roomba.client.observed import ObservedRobot, Timeline
 from roomba.client.protocol import RequestRefusedError
 from roomba.client.view import CleanOrder, GridLayer, LayerName
 from roomba.history.replay import RecordedRobot
-from roomba.history.run import TRACE, Recording, RunFigures
+from roomba.history.run import TRACE, RunFigures, RunRecording
 from roomba.history.run_file import RunFileError
 
 
 @pytest.fixture
-def robot(figures: RunFigures, recording: Recording) -> RecordedRobot:
+def robot(figures: RunFigures, recording: RunRecording) -> RecordedRobot:
     return RecordedRobot(figures, recording, speed=50.0)
 
 
@@ -94,7 +94,9 @@ def test_home_and_map_are_those_of_the_run(robot: RecordedRobot) -> None:
     assert robot.layer(LayerName.DIRT) is None
 
 
-def test_a_robot_that_was_carried_does_not_glide(figures: RunFigures, recording: Recording) -> None:
+def test_a_robot_that_was_carried_does_not_glide(
+    figures: RunFigures, recording: RunRecording
+) -> None:
     recording.trace[60:, TRACE.index("y")] = 3.0
     recording.trace[:, TRACE.index("battery")] = -1.0
     robot = RecordedRobot(figures, recording)
@@ -103,7 +105,7 @@ def test_a_robot_that_was_carried_does_not_glide(figures: RunFigures, recording:
     assert math.isnan(robot.robot().vacuum.battery)
 
 
-def test_nothing_cannot_be_played(figures: RunFigures, recording: Recording) -> None:
-    empty = Recording(recording.trace[:0], recording.words, recording.home, recording.layers)
+def test_nothing_cannot_be_played(figures: RunFigures, recording: RunRecording) -> None:
+    empty = RunRecording(recording.trace[:0], recording.words, recording.home, recording.layers)
     with pytest.raises(RunFileError, match="at least one row"):
         RecordedRobot(figures, empty)

@@ -8,11 +8,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from roomba.history.run import Recording, RunFigures
+from roomba.history.run import RunFigures, RunRecording
 from roomba.history.run_file import RunFileError, packed, read_run, write_run
 
 
-def test_a_run_is_read_back(tmp_path: Path, figures: RunFigures, recording: Recording) -> None:
+def test_a_run_is_read_back(tmp_path: Path, figures: RunFigures, recording: RunRecording) -> None:
     path = tmp_path / "one.run"
     write_run(figures, recording, path)
     read, recorded = read_run(path)
@@ -33,7 +33,7 @@ def test_what_is_no_run_is_refused(tmp_path: Path, content: bytes) -> None:
 
 
 def test_half_a_file_and_another_version_are_refused(
-    tmp_path: Path, figures: RunFigures, recording: Recording
+    tmp_path: Path, figures: RunFigures, recording: RunRecording
 ) -> None:
     content = packed(figures, recording)
     path = tmp_path / "half.run"

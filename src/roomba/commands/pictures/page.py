@@ -17,7 +17,7 @@ from roomba.errors import RoombaError
 from roomba.history.database import KeptRun
 from roomba.history.replay import RecordedRobot
 from roomba.history.report.document import report_of
-from roomba.history.run import Recording, RunFigures, Source
+from roomba.history.run import RunFigures, RunRecording, RunSource
 from roomba.plots.canvas import Picture
 from roomba.ui.web.app import create_app
 from roomba.ui.web.guard import Guard, new_token
@@ -47,11 +47,11 @@ def picture_of_phone(home: Home) -> Picture:
     return _picture(home, {"width": 390, "height": 844}, "dark")
 
 
-def _recorded_clean(home: Home) -> tuple[RunFigures, Recording]:
+def _recorded_clean(home: Home) -> tuple[RunFigures, RunRecording]:
     """Return a clean with three things that the map does not show."""
     samples = StateSamples()
     run = run_trial(Trial(home=home.name, seed=1, things=3), (samples,))
-    source = Source("sim", home.name, 1, f"./roomba sim --home {home.name} --seed 1 --things 3")
+    source = RunSource("sim", home.name, 1, f"./roomba sim --home {home.name} --seed 1 --things 3")
     return figures_of(run.figures, source), recording_of(run, samples)
 
 

@@ -25,7 +25,7 @@ from roomba.headless.live.robot import SPEEDS
 from roomba.history.database import History
 from roomba.history.folder import history_folder
 from roomba.history.recorder import HistoryKeeper
-from roomba.history.run import Source
+from roomba.history.run import RunSource
 
 PROGRAM: Final = spelled("play")
 
@@ -45,7 +45,7 @@ def main(arguments: list[str] | None = None) -> int:
     except RoombaError as error:
         print(f"{PROGRAM}: {error}", file=sys.stderr)
         return 2
-    source = Source("play", wanted.home, wanted.seed, _repeat(arguments))
+    source = RunSource("play", wanted.home, wanted.seed, _repeat(arguments))
     keeper = HistoryKeeper(History(history_folder()), source, _warn)
     client.start()
     try:

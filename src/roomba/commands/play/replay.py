@@ -13,7 +13,7 @@ from roomba.errors import RoombaError
 from roomba.history.database import LAST, History
 from roomba.history.folder import history_folder
 from roomba.history.replay import RecordedRobot
-from roomba.history.run import Recording, RunFigures
+from roomba.history.run import RunFigures, RunRecording
 from roomba.history.run_file import read_run
 
 PROGRAM: Final = spelled("replay")
@@ -35,7 +35,7 @@ def main(arguments: list[str] | None = None) -> int:
     return 0
 
 
-def _run_of(word: str, history: History) -> tuple[RunFigures, Recording]:
+def _run_of(word: str, history: History) -> tuple[RunFigures, RunRecording]:
     if word == LAST or word.isdecimal():
         run = history.named(word)
         return run.figures, history.recording(run.number)

@@ -15,7 +15,7 @@ from roomba.files.atomic import write_whole
 from roomba.history.database import LAST, History, KeptRun
 from roomba.history.folder import history_folder
 from roomba.history.report.document import comparison_of, report_of
-from roomba.history.run import Recording
+from roomba.history.run import RunRecording
 from roomba.history.run_file import write_run
 
 PROGRAM: Final = spelled("report")
@@ -75,7 +75,7 @@ def _list(history: History) -> None:
         print(f"{len(runs) - _LISTED} older runs are in --csv.")
 
 
-def _recording(history: History, run: KeptRun) -> Recording | None:
+def _recording(history: History, run: KeptRun) -> RunRecording | None:
     return history.recording(run.number) if run.is_recorded else None
 
 

@@ -24,9 +24,9 @@ from roomba.history.run import (
     TRACE_STEP,
     CellLayer,
     Floats,
-    Recording,
     RunFigures,
-    Source,
+    RunRecording,
+    RunSource,
     Word,
 )
 from roomba.mission.cleaning.checkpoint import request_values
@@ -83,13 +83,13 @@ def keep_run(run: Run, samples: StateSamples, repeat: str) -> int:
     """Keep a run in the history; return its number. Raises RoombaError."""
     trial = run.trial
     configuration = {"request": request_values(trial.request), "battery": trial.battery}
-    source = Source("sim", run.home.name, trial.seed, repeat, configuration)
+    source = RunSource("sim", run.home.name, trial.seed, repeat, configuration)
     return History(history_folder()).add(
         figures_of(run.figures, source), recording_of(run, samples)
     )
 
 
-def figures_of(figures: Figures, source: Source) -> RunFigures:
+def figures_of(figures: Figures, source: RunSource) -> RunFigures:
     """Return the figures: what is covered and wanted are true areas, of floor that can be."""
     return RunFigures(
         source,
@@ -111,7 +111,7 @@ def figures_of(figures: Figures, source: Source) -> RunFigures:
     )
 
 
-def recording_of(run: Run, samples: StateSamples) -> Recording:
+def recording_of(run: Run, samples: StateSamples) -> RunRecording:
     """Return what was seen: true poses, and the state as of the last look at it."""
     began = float(run.trajectory[0, 0])
     words = tuple(
@@ -125,7 +125,7 @@ def recording_of(run: Run, samples: StateSamples) -> Recording:
         "map": _layer(run.home.map.frame, known_cells(run.home.map)),
         "coverage": _layer(visits.frame, visits.counts),
     }
-    return Recording(_trace(run, samples), words, samples.home, layers)
+    return RunRecording(_trace(run, samples), words, samples.home, layers)
 
 
 def _trace(run: Run, samples: StateSamples) -> Floats:

@@ -15,8 +15,8 @@ from roomba.geometry import STANDSTILL, Pose, Twist
 from roomba.headless.cleaner import HeadlessMission
 from roomba.headless.live.camera import LiveCamera
 from roomba.headless.live.floor_plan import FloorPlan, made
-from roomba.headless.live.observation import Observation
 from roomba.headless.live.robot import LiveRobot
+from roomba.headless.live.snapshots import Snapshots
 from roomba.mission.cleaning.request import CleanRequest
 from roomba.mission.phases.machine import Event, Phase
 from roomba.perception.rooms.rooms import Rooms
@@ -31,8 +31,8 @@ class LiveClient:
         self, home: Home, robot: HeadlessMission, rooms: Rooms | None, speed: float
     ) -> None:
         """Start nothing yet."""
-        self._observation = Observation(home, robot, FloorPlan(rooms))
-        self._live = LiveRobot(robot, speed, self._observation.observe)
+        self._snapshots = Snapshots(home, robot, FloorPlan(rooms))
+        self._live = LiveRobot(robot, speed, self._snapshots.observe)
         self._camera = LiveCamera(home, robot.robot.camera)
         body = robot.robot.body
         self._limits = view.PageLimits(body.max_speed, body.max_angular_speed)
@@ -53,19 +53,19 @@ class LiveClient:
 
     def robot(self) -> view.RobotView:
         """Return the newest state."""
-        return self._observation.robot()
+        return self._snapshots.robot()
 
     def home(self) -> view.HomeView:
         """Return what seldom changes."""
-        return self._observation.home()
+        return self._snapshots.home()
 
     def layer(self, name: view.LayerName) -> view.GridLayer | None:
         """Return a copy of a layer as it is now."""
         if name is view.LayerName.MAP:
-            return self._observation.map()
+            return self._snapshots.map()
         if name is view.LayerName.COVERAGE:
-            return self._observation.coverage()
-        return self._live.carry_out(self._observation.dirt)
+            return self._snapshots.coverage()
+        return self._live.carry_out(self._snapshots.dirt)
 
     def picture(self, degrees: float) -> NDArray[np.uint8]:
         """Return what the camera sees at an angle to the left, uint8 [height, width, 3] RGB."""
@@ -79,7 +79,7 @@ class LiveClient:
 
         def begin(robot: HeadlessMission) -> None:
             robot.mission.clean(request, robot.senses())
-            self._observation.begin_coverage()
+            self._snapshots.begin_coverage()
 
         self._obey(begin)
 
@@ -186,7 +186,7 @@ class LiveClient:
 
     def _edit(self, change: Callable[[FloorPlan], FloorPlan]) -> None:
         """Let the mission go on with other rooms and zones."""
-        seen = self._observation
+        seen = self._snapshots
         self._obey(lambda robot: seen.use(robot, change(seen.plan)))
 
     # ---------------------------------------------------------------- to play with
@@ -209,7 +209,7 @@ class LiveClient:
 
         def obey(robot: HeadlessMission) -> None:
             command(robot)
-            self._observation.look(robot)
+            self._snapshots.look(robot)
 
         try:
             self._live.carry_out(obey)

@@ -16,7 +16,7 @@ from roomba.history.report import words
 from roomba.history.report.chart import chart_svg
 from roomba.history.report.picture import floor_svg
 from roomba.history.report.style import STYLE
-from roomba.history.run import Recording, RunFigures
+from roomba.history.run import RunFigures, RunRecording
 from roomba.history.totals import totals_by_week
 
 _RATE_WINDOW: Final = 20.0
@@ -33,7 +33,7 @@ _DIFFERENCES: Final = (
 )
 
 
-def report_of(run: KeptRun, recording: Recording | None, others: Iterable[KeptRun] = ()) -> str:
+def report_of(run: KeptRun, recording: RunRecording | None, others: Iterable[KeptRun] = ()) -> str:
     """Return the report of a run; ``others`` are the runs of its home, for what changed."""
     figures = run.figures
     title = f"Run {run.number}: {figures.source.home}, {words.moment(figures.began)}"
@@ -50,7 +50,7 @@ def report_of(run: KeptRun, recording: Recording | None, others: Iterable[KeptRu
 
 
 def comparison_of(
-    one: tuple[KeptRun, Recording | None], other: tuple[KeptRun, Recording | None]
+    one: tuple[KeptRun, RunRecording | None], other: tuple[KeptRun, RunRecording | None]
 ) -> str:
     """Return a report of two runs side by side."""
     first, second = one[0], other[0]
@@ -106,7 +106,7 @@ def _table(names: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     )
 
 
-def _floor(run: RunFigures, recording: Recording | None) -> str:
+def _floor(run: RunFigures, recording: RunRecording | None) -> str:
     if recording is None:
         return _section("Floor", "<p>The recording of this run is no longer kept.</p>")
     share = words.share(run.fraction)
@@ -129,7 +129,7 @@ def _missed(missed: Sequence[MissedFloor]) -> str:
     return _section("Missed", _table(("Number", "Room", "Area", "Why"), rows))
 
 
-def _charts(recording: Recording | None) -> str:
+def _charts(recording: RunRecording | None) -> str:
     if recording is None or len(recording.trace) < 2:
         return ""
     times = recording.column("time").astype(np.float64)

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from roomba.client.protocol import MissedFloor
-from roomba.history.run import CellLayer, Recording
+from roomba.history.run import CellLayer, RunRecording
 
 _MAP: Final = ((0, 0, 0, 0), (252, 250, 245, 255), (112, 104, 94, 255))
 """RGBA of floor that is unknown, free and occupied."""
@@ -26,7 +26,7 @@ _JUMP: Final = 1.0
 """m between two rows of a trace; a robot that went farther was carried."""
 
 
-def floor_svg(recording: Recording, missed: Sequence[MissedFloor], title: str) -> str:
+def floor_svg(recording: RunRecording, missed: Sequence[MissedFloor], title: str) -> str:
     """Return the picture, one unit a centimetre; the numbers are those of ``missed``, from 1."""
     left, bottom, right, top = _bounds(recording)
     parts = [
@@ -47,7 +47,7 @@ def floor_svg(recording: Recording, missed: Sequence[MissedFloor], title: str) -
     return "".join((*parts, "</svg>"))
 
 
-def _bounds(recording: Recording) -> tuple[float, float, float, float]:
+def _bounds(recording: RunRecording) -> tuple[float, float, float, float]:
     """Return lowest x and y, highest x and y, m, of what is known and was driven."""
     found = [recording.trace[:, 1:3]] if len(recording.trace) else [np.zeros((1, 2))]
     layer = recording.layers.get("map")
@@ -87,7 +87,7 @@ def _ring(ring: Sequence[Sequence[float]]) -> str:
     return f'<polygon class="ring" points="{points}"/>'
 
 
-def _path(recording: Recording) -> list[str]:
+def _path(recording: RunRecording) -> list[str]:
     """Return the way as lines, broken where the robot was carried."""
     points = recording.trace[:, 1:3].astype(np.float64)
     steps = np.hypot(*np.diff(points, axis=0).T) if len(points) > 1 else np.empty(0)
@@ -101,7 +101,7 @@ def _path(recording: Recording) -> list[str]:
     ]
 
 
-def _station(recording: Recording) -> str:
+def _station(recording: RunRecording) -> str:
     x, y, theta = recording.home.get("station", (0.0, 0.0, 0.0))
     x, y = 100 * (x + 0.15 * math.cos(theta)), -100 * (y + 0.15 * math.sin(theta))
     return f'<path class="station" d="M{x - 12:.0f} {y:.0f}h24M{x:.0f} {y - 12:.0f}v24"/>'

@@ -18,7 +18,7 @@ from roomba.errors import RoombaError
 from roomba.history.database import History, KeptRun
 from roomba.history.replay import RecordedRobot
 from roomba.history.report.document import comparison_of, report_of
-from roomba.history.run import Recording
+from roomba.history.run import RunRecording
 from roomba.history.totals import totals_by_week
 
 REPORT_POLICY: Final = (
@@ -75,7 +75,7 @@ def _run_values(run: KeptRun) -> dict[str, Any]:
     }
 
 
-def _whole(history: History, number: int) -> tuple[KeptRun, Recording | None]:
+def _whole(history: History, number: int) -> tuple[KeptRun, RunRecording | None]:
     run = history.run(number)
     return run, history.recording(number) if run.is_recorded else None
 

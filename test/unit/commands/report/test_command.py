@@ -12,13 +12,13 @@ import pytest
 from roomba.commands.report.command import main
 from roomba.commands.sim.command import main as sim
 from roomba.history.database import History
-from roomba.history.run import RunFigures, Source
+from roomba.history.run import RunFigures, RunSource
 from roomba.history.run_file import read_run
 
 
 def figures(home: str, covered: float) -> RunFigures:
     numbers = (100.0, covered, 20.0, 30.0, 4.0, 5.0, 6.0)
-    return RunFigures(Source("play", home, 1), "clean", 1e9, "completed", "", *numbers)
+    return RunFigures(RunSource("play", home, 1), "clean", 1e9, "completed", "", *numbers)
 
 
 @pytest.fixture

@@ -11,7 +11,7 @@ import pytest
 
 from roomba.history.database import KeptRun
 from roomba.history.report.document import comparison_of, report_of
-from roomba.history.run import Recording, RunFigures
+from roomba.history.run import RunFigures, RunRecording
 
 VOID = ("meta", "link", "br", "img", "input")
 
@@ -57,7 +57,7 @@ def kept(figures: RunFigures) -> KeptRun:
     return KeptRun(12, figures, True)
 
 
-def test_the_figures_are_those_of_the_run(kept: KeptRun, recording: Recording) -> None:
+def test_the_figures_are_those_of_the_run(kept: KeptRun, recording: RunRecording) -> None:
     read = Read(report_of(kept, recording))
     assert read.open == []
     assert read.title.startswith("Run 12: box, ")
@@ -73,7 +73,7 @@ def test_the_figures_are_those_of_the_run(kept: KeptRun, recording: Recording) -
     assert ["1", "hall", "1.00 m²", "a thing <stood> in the way"] in read.rows
 
 
-def test_it_stands_alone(kept: KeptRun, recording: Recording) -> None:
+def test_it_stands_alone(kept: KeptRun, recording: RunRecording) -> None:
     document = report_of(kept, recording)
     read = Read(document)
     assert read.addresses
@@ -83,7 +83,7 @@ def test_it_stands_alone(kept: KeptRun, recording: Recording) -> None:
     assert kept.figures.source.repeat in document
 
 
-def test_the_floor_is_drawn_where_it_is(kept: KeptRun, recording: Recording) -> None:
+def test_the_floor_is_drawn_where_it_is(kept: KeptRun, recording: RunRecording) -> None:
     document = report_of(kept, recording)
     svg = ElementTree.fromstring(re.findall(r"<svg.*?</svg>", document)[0])
     space = "{http://www.w3.org/2000/svg}"
@@ -104,7 +104,7 @@ def test_the_floor_is_drawn_where_it_is(kept: KeptRun, recording: Recording) -> 
 
 def test_weeks_and_the_dirt_of_the_home_are_told(
     kept: KeptRun,
-    recording: Recording,
+    recording: RunRecording,
 ) -> None:
     later = replace(kept.figures, began=kept.figures.began + 7 * 86400.0, dirt=6.5)
     read = Read(report_of(kept, recording, [kept, KeptRun(13, later, False)]))
@@ -119,7 +119,7 @@ def test_a_run_without_a_recording_is_told(kept: KeptRun) -> None:
     assert "no longer kept" in document
 
 
-def test_two_runs_are_compared(kept: KeptRun, recording: Recording) -> None:
+def test_two_runs_are_compared(kept: KeptRun, recording: RunRecording) -> None:
     other = KeptRun(15, replace(kept.figures, covered=11.5, distance=20.0, missed=()), True)
     read = Read(comparison_of((kept, recording), (other, recording)))
     assert read.open == []

@@ -16,7 +16,7 @@ from unit.history.made import made_figures, made_recording
 from roomba.history.database import History
 from roomba.history.recorder import HistoryKeeper
 from roomba.history.replay import RecordedRobot
-from roomba.history.run import Source
+from roomba.history.run import RunSource
 from roomba.ui.web.app import create_app
 from roomba.ui.web.guard import Guard
 
@@ -34,7 +34,7 @@ def history(tmp_path: Path) -> History:
 @pytest.fixture
 def client(history: History) -> Iterator[TestClient]:
     robot = RecordedRobot(made_figures(), made_recording())
-    keeper = HistoryKeeper(history, Source("play", "box"), lambda _: None)
+    keeper = HistoryKeeper(history, RunSource("play", "box"), lambda _: None)
     app = create_app(robot, Guard("token"), keeper)
     with TestClient(app, base_url="http://127.0.0.1") as client:
         yield client

@@ -21,7 +21,7 @@ from roomba.perception.swept.visits import Visits
 from roomba.world.home.home import Home
 
 
-class Observation:
+class Snapshots:
     """The newest snapshots; they may be read from any thread, all else is for the robot's own."""
 
     def __init__(self, home: Home, robot: HeadlessMission, plan: FloorPlan) -> None:
