@@ -118,6 +118,37 @@ class Timeline(Protocol):
         """Return the places up to now, m."""
 
 
+@dataclass(frozen=True, slots=True)
+class MapsView:
+    """Names of the saved maps, and of the one that the robot goes by; empty if it is not saved."""
+
+    names: tuple[str, ...]
+    selected: str
+
+
+@runtime_checkable
+class MapKeeper(Protocol):
+    """What a robot that keeps maps of its own can do beside.
+
+    What it would change of its map is in :attr:`roomba.client.view.HomeView.changes`.
+    """
+
+    def maps(self) -> MapsView:
+        """Return the saved maps."""
+
+    def save_map(self, name: str) -> None:
+        """Save the map by a name."""
+
+    def load_map(self, name: str) -> None:
+        """Go by a saved map."""
+
+    def remove_map(self, name: str) -> None:
+        """Forget a saved map."""
+
+    def change_map(self, *, is_accepted: bool) -> None:
+        """Change the map as it is offered, or leave it and do not ask again."""
+
+
 class Playground(Protocol):
     """What can be done to a simulated home and robot, for teaching."""
 

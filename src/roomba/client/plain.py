@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import asdict
 from typing import Any
 
 from roomba.client.observed import TimelineView
@@ -86,6 +87,7 @@ def home_of(view: HomeView) -> Json:
             {"name": zone.name, "kind": zone.kind, "points": zone.points} for zone in view.zones
         ],
         "furniture": view.furniture,
+        "changes": [asdict(change) for change in view.changes],
     }
 
 

@@ -77,11 +77,25 @@ class ZoneView:
 
 
 @dataclass(frozen=True, slots=True)
+class ChangeView:
+    """A thing that ``appeared`` in the home, or is gone: its middle, length along x and width, m,
+    and area, m2."""
+
+    appeared: bool
+    x: float
+    y: float
+    length: float
+    width: float
+    area: float
+
+
+@dataclass(frozen=True, slots=True)
 class HomeView:
     """What seldom changes; ``version`` grows by one when it does.
 
     ``station`` is x, y and heading of the docked robot; ``furniture`` are outlines of what the
     map shows as such. ``radius`` is the robot's and ``tool`` the width of its brush, m.
+    ``changes`` are what the robot offers to change of its map.
     """
 
     version: int
@@ -92,6 +106,7 @@ class HomeView:
     furniture: tuple[tuple[Point, ...], ...]
     radius: float
     tool: float
+    changes: tuple[ChangeView, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, eq=False)

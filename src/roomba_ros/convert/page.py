@@ -8,12 +8,20 @@ from geometry_msgs.msg import Point as PointMessage
 from geometry_msgs.msg import Polygon
 from nav_msgs.msg import OccupancyGrid, Path
 from numpy.typing import NDArray
-from roomba_robot.msg import CleanActionResult, ExploreActionResult, Room, RoomArray, ZoneArray
+from roomba_robot.msg import (
+    CleanActionResult,
+    ExploreActionResult,
+    MapUpdate,
+    Room,
+    RoomArray,
+    ZoneArray,
+)
 from roomba_robot.msg import Zone as ZoneMessage
 
 from roomba.client.protocol import CleanReport, ErrandOutcome, MissedFloor
 from roomba.client.view import (
     MOST_PATH,
+    ChangeView,
     Point,
     RoomView,
     ZoneView,
@@ -119,6 +127,24 @@ def _reason_of(message: CleanActionResult | ExploreActionResult) -> str:
     """Return what the goal's status says of an errand that did not succeed."""
     status = message.status
     return "" if status.status == GoalStatus.SUCCEEDED else str(status.text)
+
+
+def changes_of(message: MapUpdate) -> tuple[ChangeView, ...]:
+    """Return what the robot offers to change of its map."""
+    for change in message.changes:
+        middle, size = change.middle, (change.length, change.width, change.area)
+        require_finite("a change of the map", middle.x, middle.y, *size)
+    return tuple(
+        ChangeView(
+            change.appeared,
+            change.middle.x,
+            change.middle.y,
+            change.length,
+            change.width,
+            change.area,
+        )
+        for change in message.changes
+    )
 
 
 def zone_message_of(zone: ZoneView) -> ZoneMessage:

@@ -37,6 +37,7 @@ from roomba.vocabulary import CleanMode, FanLevel
 from roomba_ros.client.ros_client import RosCamera, RosRobot
 from roomba_ros.convert.common import twist_message
 from roomba_ros.convert.page import zone_message_of
+from roomba_ros.dashboard.graph_maps import GraphMaps
 from roomba_ros.dashboard.page_topics import PageTopics
 from roomba_ros.runtime.calls import call_service
 from roomba_ros.runtime.parameters import LiveSeedParameters
@@ -47,13 +48,13 @@ _STOPS: Final = 3
 """Times that a stop is sent before the drive is left to others."""
 
 
-class GraphRobot:
+class GraphRobot(GraphMaps):
     """Observes topics; commands by actions, services and ``cmd_vel``.
 
     Publishes: ``cmd_vel`` (Twist, while it is driven by hand), and what :class:`RosRobot` does.
     Calls: ``emergency_stop``, ``set_zone``, ``remove_zone``, ``rooms/rename``, ``rooms/join``,
     ``rooms/split``, ``sim/spill``, ``sim/inject_fault``, ``turn_camera``, and what
-    :class:`RosRobot` does.
+    :class:`RosRobot` and :class:`GraphMaps` do.
     """
 
     def __init__(self, config: RobotConfig) -> None:
@@ -69,6 +70,7 @@ class GraphRobot:
     def start(self) -> None:
         """Connect."""
         self._parameters = LiveSeedParameters()
+        super().start()
         self._topics.start()
         self._camera = RosCamera()
         self._vacuum.start()

@@ -18,6 +18,7 @@ from roomba_robot.msg import (
     CleanActionResult,
     ExploreActionResult,
     Localization,
+    MapUpdate,
     RoomArray,
     ZoneArray,
 )
@@ -26,7 +27,7 @@ from std_msgs.msg import Float32, String
 from tf2_msgs.msg import TFMessage
 
 from roomba.client.protocol import CleanReport, RobotUnavailableError
-from roomba.client.view import GridLayer, HomeView, LayerName, RoomView, ZoneView
+from roomba.client.view import ChangeView, GridLayer, HomeView, LayerName, RoomView, ZoneView
 from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose
 from roomba.grid import OccupancyMap
@@ -35,6 +36,7 @@ from roomba_ros.convert.client import doubt_of
 from roomba_ros.convert.common import pose_in_map
 from roomba_ros.convert.mounts import Mounts, transforms_of
 from roomba_ros.convert.page import (
+    changes_of,
     clean_report_of,
     covered_cells_of,
     dirt_cells_of,
@@ -59,7 +61,7 @@ class PageTopics:
 
     Subscribes: ``pose``, ``localization``, ``speed``, ``bin_level``, ``emergency_stop``, ``scan``,
     ``plan``, ``map``, ``coverage_map``, ``dirt_map``, ``rooms``, ``zones``, ``station_pose``,
-    ``clean/result``, ``explore/result``, ``/tf_static``.
+    ``map/update``, ``clean/result``, ``explore/result``, ``/tf_static``.
     """
 
     def __init__(self, config: RobotConfig) -> None:
@@ -93,6 +95,7 @@ class PageTopics:
         subscribe("station_pose", PoseStamped, pose_in_map, self._on_station)
         subscribe("rooms", RoomArray, room_views_of, self._on_rooms)
         subscribe("zones", ZoneArray, zone_views_of, self._on_zones)
+        subscribe("map/update", MapUpdate, changes_of, self._on_changes)
         subscribe("clean/result", CleanActionResult, clean_report_of, self._on_report)
         subscribe("explore/result", ExploreActionResult, exploration_report_of, self._on_report)
         layers: tuple[tuple[str, LayerName, Callable[[Any], OccupancyMap]], ...] = (
@@ -163,6 +166,9 @@ class PageTopics:
 
     def _on_zones(self, zones: tuple[ZoneView, ...]) -> None:
         self._change(zones=zones)
+
+    def _on_changes(self, changes: tuple[ChangeView, ...]) -> None:
+        self._change(changes=changes)
 
     def _change(self, **changes: Any) -> None:
         with self._lock:

@@ -11,7 +11,7 @@ from fastapi import APIRouter, HTTPException, Response
 from PIL import Image
 from pydantic import BaseModel, ConfigDict, Field
 
-from roomba.client.observed import ObservedRobot, Timeline
+from roomba.client.observed import MapKeeper, ObservedRobot, Timeline
 from roomba.client.plain import home_of, replay_of, state_of
 from roomba.client.protocol import CameraClient, RequestRefusedError, RobotUnavailableError
 from roomba.client.view import LONGEST_NAME, MOST_CORNERS, MOST_PASSES, CleanOrder, ZoneView
@@ -92,6 +92,18 @@ class PlaceWish(Wish):
     y: Coordinate
 
 
+class MapName(Wish):
+    """A saved map."""
+
+    name: Name
+
+
+class ChangeWish(Wish):
+    """Whether the map shall be changed as it is offered."""
+
+    accept: bool
+
+
 class CameraWish(Wish):
     """An angle of the camera, degrees, positive to the left."""
 
@@ -121,6 +133,7 @@ def api_of(robot: ObservedRobot) -> APIRouter:
     _add_play(api, robot)
     _add_replay(api, robot)
     _add_camera(api, robot)
+    _add_maps(api, robot)
     return api
 
 
@@ -202,6 +215,33 @@ def _add_edits(api: APIRouter, robot: ObservedRobot) -> None:
     @api.post("/rooms/split", summary="Cut a room along a line")
     def split_room(wish: RoomCut) -> Answer:
         return _obeyed(lambda: robot.split_room(wish.name, wish.start, wish.end))
+
+
+def _add_maps(api: APIRouter, robot: ObservedRobot) -> None:
+    """Add the maps of a robot that keeps maps of its own."""
+    if not isinstance(robot, MapKeeper):
+        return
+
+    @api.get("/maps", summary="The saved maps")
+    def maps() -> dict[str, Any]:
+        found = _asked(robot.maps)
+        return {"names": found.names, "selected": found.selected}
+
+    @api.post("/maps/save", summary="Save the map by a name")
+    def save(wish: MapName) -> Answer:
+        return _obeyed(lambda: robot.save_map(wish.name))
+
+    @api.post("/maps/load", summary="Go by a saved map")
+    def load(wish: MapName) -> Answer:
+        return _obeyed(lambda: robot.load_map(wish.name))
+
+    @api.delete("/maps/{name}", summary="Forget a saved map")
+    def remove(name: str) -> Answer:
+        return _obeyed(lambda: robot.remove_map(name))
+
+    @api.post("/maps/change", summary="Change the map as it is offered, or leave it")
+    def change(wish: ChangeWish) -> Answer:
+        return _obeyed(lambda: robot.change_map(is_accepted=wish.accept))
 
 
 def _add_camera(api: APIRouter, robot: ObservedRobot) -> None:

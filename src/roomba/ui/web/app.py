@@ -15,7 +15,7 @@ from fastapi.responses import JSONResponse
 from fastapi.staticfiles import StaticFiles
 from starlette.types import ASGIApp, Receive, Scope, Send
 
-from roomba.client.observed import ObservedRobot
+from roomba.client.observed import MapKeeper, ObservedRobot
 from roomba.client.protocol import CameraClient, RequestRefusedError, RobotUnavailableError
 from roomba.history.recorder import HistoryKeeper
 from roomba.ui.web.api import DriveWish, api_of
@@ -53,7 +53,11 @@ def create_app(robot: ObservedRobot, guard: Guard, keeper: HistoryKeeper | None 
             if replays is not None:
                 await replays.end()
 
-    abilities = {"history": keeper is not None, "camera": isinstance(robot, CameraClient)}
+    abilities = {
+        "history": keeper is not None,
+        "camera": isinstance(robot, CameraClient),
+        "maps": isinstance(robot, MapKeeper),
+    }
     app = FastAPI(title="roomba_robot", lifespan=life, docs_url=None, redoc_url=None)
     app.include_router(api_of(robot))
 

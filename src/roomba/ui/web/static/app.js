@@ -7,6 +7,7 @@ import * as charts from "./panels/charts.js";
 import * as drive from "./panels/drive.js";
 import * as history from "./panels/history.js";
 import * as keys from "./panels/keys.js";
+import * as maps from "./panels/maps.js";
 import * as offer from "./panels/offer.js";
 import * as replay from "./panels/replay.js";
 import * as rooms from "./panels/rooms.js";
@@ -17,5 +18,5 @@ import { connect } from "./link.js";
 
 draw.begin();
 gestures.begin(offer.tapped, zones.drawn);
-for (const panel of [status, actions, rooms, zones, drive, tools, keys, replay, camera, charts, history]) panel.begin();
+for (const panel of [status, actions, rooms, zones, drive, tools, keys, replay, maps, camera, charts, history]) panel.begin();
 connect();

@@ -65,6 +65,7 @@ function take(message) {
       set("mayChange", message.may_change);
       set("hasHistory", message.history);
       set("hasCamera", message.camera);
+      set("hasMaps", message.maps);
       break;
     case "refused": refuse(message.reason); break;
   }

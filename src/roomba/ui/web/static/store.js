@@ -2,7 +2,7 @@
 
 /** @type {Record<string, any>} */
 const values = {
-  link: "connecting", age: 0, state: null, home: null, mayChange: false, hasHistory: false, hasCamera: false,
+  link: "connecting", age: 0, state: null, home: null, mayChange: false, hasHistory: false, hasCamera: false, hasMaps: false,
   trail: [], chosen: [], drawing: null, selection: null,
   layers: { coverage: true, trail: true, scan: false, dirt: false, furniture: true, rooms: true, zones: true, path: true },
 };

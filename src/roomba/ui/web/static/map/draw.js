@@ -95,6 +95,7 @@ function draw(state, pose) {
     if (layers.furniture) home.furniture.forEach(drawFurniture);
     if (layers.rooms) drawRooms(home);
     if (layers.zones) home.zones.forEach(drawZone);
+    (home.changes ?? []).forEach(drawChange);
     drawStation(home);
   }
   drawDraft(get("drawing"));
@@ -172,6 +173,18 @@ function drawZone(zone) {
     context.fillStyle = dark.matches ? "rgb(255 176 102 / 22%)" : "rgb(179 74 0 / 16%)";
     context.fill();
   }
+}
+
+/** Draw the outline of a thing that appeared, or is gone. */
+function drawChange({ appeared, x, y, length, width }) {
+  const [left, right, low, high] = [x - length / 2, x + length / 2, y - width / 2, y + width / 2];
+  trace([[left, low], [right, low], [right, high], [left, high]], true);
+  context.strokeStyle = dark.matches ? "#ffb066" : "#b34a00";
+  context.lineWidth = 2;
+  context.setLineDash([6, 4]);
+  context.stroke();
+  context.setLineDash([]);
+  label(appeared ? "new" : "gone", ...toScreen(x, y), context.strokeStyle, true);
 }
 
 function drawDraft(drawing) {
