@@ -88,6 +88,10 @@ TESTED_BY: dict[str, tuple[str, str]] = {
         "unit/perception/localization/test_belief_kernels.py",
         "the belief and its kernels are one",
     ),
+    "roomba/perception/localization/belief_trust_kernels": (
+        "unit/perception/localization/test_odometry_trust.py",
+        PART,
+    ),
     "roomba/perception/localization/estimate": (
         "unit/perception/localization/test_belief_kernels.py",
         VALUES,
@@ -177,6 +181,7 @@ TESTED_BY: dict[str, tuple[str, str]] = {
 
 LARGE_FOLDERS = {
     "benchmarks/peers": "one script a peer",
+    "src/roomba/configuration": "one file a part of the robot",
     "src/roomba/commands/sim": "one command: its options, runs, figures and what they are told in",
     "test/fixtures": "one file a fixture",
     "test/ros": "one file a node",
