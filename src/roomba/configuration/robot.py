@@ -49,7 +49,7 @@ class TimingConfig(Frozen):
     ``scan_period``
         From one scan that the robot looks at to the next; those between are left out.
     ``map_period``
-        From one look at a map that grows to the next.
+        From one drawing of a map that grows to the next.
     """
 
     tick: Positive = 0.05

@@ -233,6 +233,7 @@ class HeadlessMission:
         while not self.brain.is_ready:
             self.body.act(self.brain.decide())
             self.brain.sense(self.readings())
+            self.rows.append(self.row())
 
     # ---------------------------------------------------------------- what others may look at
 

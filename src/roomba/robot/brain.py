@@ -85,7 +85,7 @@ class Brain:
         robot, belief = self.robot, (self.robot.localization, self.robot.gyro)
         if isinstance(self._known, MappingConfig):
             self.mapper = Mapper(self._known, *belief, start)
-            self.growing = GrowingMap(self.mapper, robot.timing.map_period)
+            self.growing = GrowingMap(self.mapper, robot.timing)
             return self.mapper
         self.localizer = Localizer(
             self._known, *belief, robot.body.radius, start, stride=robot.scan_stride
@@ -151,27 +151,26 @@ class Brain:
 
     def use_newer_map(self) -> None:
         """Begin a mission on the first map, or let it go on with a newer one."""
-        mission = self._mapped.mission
-        if mission is None:
-            self._begin()
-        elif self.growing is not None:
+        mission, newer = self._mapped.mission, None
+        if self.growing is not None:
             newer = self.growing.newer(self.readings.time, mission)
-            if newer is not None:
-                self._use(newer)
+        elif mission is None and isinstance(self._known, OccupancyMap):
+            newer = self._known
+        if newer is None:
+            return
+        if mission is None:
+            self._begin(newer)
+        else:
+            self._use(newer)
 
     def use_rooms(self, rooms: Rooms | None, zones: Zones) -> None:
         """Go on with other rooms and zones; raises RoombaError while there is no map."""
         self._rooms, self._zones = rooms, zones
         self.mission.use_context(self._context(self.mission.context.occupancy))
 
-    def _begin(self) -> None:
-        """Begin the mission, as soon as there is a map."""
-        if not isinstance(self._known, MappingConfig):
-            context = self._context(self._known)
-        elif self.mapper is not None and self.mapper.version:
-            context = self._context(self.mapper.occupancy())
-        else:
-            return
+    def _begin(self, occupancy: OccupancyMap) -> None:
+        """Begin the mission on the first map."""
+        context = self._context(occupancy)
         self._mapped.begin(context, self._surfaces(context), self.senses())
 
     def _use(self, occupancy: OccupancyMap) -> None:

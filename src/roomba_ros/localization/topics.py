@@ -45,6 +45,7 @@ class LocalizationTopics:
         self._localizer: Localizer | None = None
         self._keeper: PlaceKeeper | None = None
         self._newest: Readings | None = None
+        self._heard: list[Readings] = []
         self._lock = threading.Lock()
         self._tick_lock = threading.RLock()
         self._told: tuple[Pose, tuple[float, float]] | None = None
@@ -112,12 +113,19 @@ class LocalizationTopics:
         """Let a mapper know the place from now on; None: the localizer again."""
         with self._tick_lock:
             self.mapper, self.is_mapping_held = mapper, False
-            newest, keeper, localizer = self._newest, self._keeper, self._localizer
-            if newest is None or keeper is None or localizer is None:
+            keeper, localizer = self._keeper, self._localizer
+            if keeper is None or localizer is None:
                 return
             keeper.place = mapper or localizer
             if mapper is not None:
-                mapper.move(newest.time, newest.odometry)
+                self._begin_map(mapper)
+
+    def _begin_map(self, mapper: Mapper) -> None:
+        """Let a map begin with what was heard last, and with what is in sight."""
+        for readings in self._heard:
+            mapper.move(readings.time, readings.odometry, readings.turning)
+        if self.seen is not None:
+            mapper.see(self.seen.stamp, self.seen.ranges, self.seen.lidar)
 
     def look_around(self, now: float) -> Twist | None:
         """Return what is to be driven to find the place; None while that does not help."""
@@ -128,6 +136,7 @@ class LocalizationTopics:
 
     def _tick(self, now: float) -> Estimate | None:
         told = self._body.take()
+        self._heard = told or self._heard[-1:]
         if self._localizer is None and told:
             self._begin(told[0])
         localizer, keeper, mapper = self._localizer, self._keeper, self.mapper

@@ -15,6 +15,7 @@ from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose
 from roomba.grid import OccupancyMap
 from roomba.perception.localization.estimate import Knowledge
+from roomba.perception.slam.map_drawing import MapDrawing
 from roomba.perception.slam.mapper import Mapper
 from roomba_ros.localization.topics import LocalizationTopics
 from roomba_ros.maps.map_memory import MapMemory
@@ -42,7 +43,7 @@ class MapMaker:
         self._config, self._mapping, self._placing = config, mapping, placing
         self._place, self._background, self._memory = place, background, memory
         self._mapper: Mapper | None = None
-        self._told = (-1.0, -1)
+        self._drawing: MapDrawing | None = None
         self._lock = threading.Lock()
         self._whole: OccupancyMap | None = None
         self._finishes = False
@@ -111,14 +112,9 @@ class MapMaker:
 
     def grown(self, now: float) -> OccupancyMap | None:
         """Return the map as it is by now, if it is time to tell it."""
-        mapper = self._mapper
-        if mapper is None or self._finishes or not mapper.version:
+        if self._drawing is None or self._finishes:
             return None
-        told, version = self._told
-        if mapper.version == version or 0.0 <= now - told < self._config.timing.map_period:
-            return None
-        self._told = (now, mapper.version)
-        return mapper.occupancy()
+        return self._drawing.draw(now)
 
     def finish(self) -> None:
         """Make the map whole, in the background; the robot should stand meanwhile."""
@@ -144,13 +140,14 @@ class MapMaker:
             self.station = mapper.start.compose(self._station_from_start)
         self._place.go_on(whole, mapper.pose, self._placing.on_finished)
         self._place.map_with(None)
-        self._mapper, self._finishes = None, False
+        self._mapper = self._drawing = None
+        self._finishes = False
         return whole
 
     def _map_with(self, mapper: Mapper) -> None:
         self._mapper = mapper
         self._place.map_with(mapper)
-        self._told = (-1.0, -1)
+        self._drawing = MapDrawing(mapper, self._config.timing)
 
     def _finish(self, mapper: Mapper) -> None:
         try:

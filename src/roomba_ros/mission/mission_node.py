@@ -3,20 +3,17 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import rospy
 from std_srvs.srv import Trigger
 
-from roomba.configuration.robot import RobotConfig
 from roomba.geometry import STANDSTILL
-from roomba.grid import OccupancyMap
 from roomba.mission.cleaning.request import CleanOutcome
 from roomba.mission.inputs.senses import Senses
 from roomba.mission.mission import Mission, MissionStep
 from roomba.mission.phases.machine import Phase
 from roomba.perception.localization.estimate import Knowledge
-from roomba.robot.growing_map import GrowingMap
 from roomba.robot.mapped_mission import MappedMission
 from roomba_ros.convert.mission import names_of
 from roomba_ros.mission.drive import MissionDrive
@@ -46,22 +43,6 @@ _NEEDED = ("odom", "battery_state", "dock_status")
 """The body's topics without which nothing can be begun."""
 _HEARD = (*_NEEDED, "scan", "bumper", "cliff", "wheel_drop", "ir_omni", "dirt_detect", "bin_level")
 _SILENT = "no message tells its place; is position_pub_node running?"
-
-
-@dataclass(eq=False)
-class _HeardMap:
-    """The map that is being made, as far as it was heard; ``version`` counts what was."""
-
-    home: KnownHome
-    version: int = 1
-
-    def occupancy(self) -> OccupancyMap:
-        """Return the newest."""
-        return self.home.context.occupancy
-
-    def occupancy_around(self, x: float, y: float, reach: float) -> OccupancyMap:
-        """Return all of it."""
-        return self.occupancy()
 
 
 class MissionNode:
@@ -98,7 +79,6 @@ class MissionNode:
         )
         self._background = Background()
         self._home: KnownHome | None = None
-        self._growing: tuple[_HeardMap, GrowingMap] | None = None
         self._newer: KnownHome | None = None
         self._memory: MissionMemory | None = None
         self._finished = -self._nodes.periods.finish
@@ -176,7 +156,7 @@ class MissionNode:
         mission, before = self._mapped.mission, self._home
         if mission is not None and before is not None:
             if before.context.is_growing:
-                self._grow(now, mission, senses, before, home)
+                self._grow(mission, senses, before, home)
                 return
             if home.digest == before.digest:
                 self._newer = None
@@ -188,27 +168,19 @@ class MissionNode:
         self._home, self._newer = home, None
         self._begin(home, senses)
 
-    def _grow(
-        self, now: float, mission: Mission, senses: Senses, before: KnownHome, home: KnownHome
-    ) -> None:
+    def _grow(self, mission: Mission, senses: Senses, before: KnownHome, home: KnownHome) -> None:
         """Let the mission go on with more of the map, when that makes a difference to it."""
         if home.context.occupancy is before.context.occupancy:
             mission.use_context(home.context)
-        elif home.context.is_growing and not self._is_wanted(now, mission, before, home):
+        elif home.context.is_growing and not (
+            home.is_edit_of(before) or mission.wants_map(home.context.occupancy)
+        ):
             return
         else:
             self._mapped.go_on(home.context, home.field)
             if home.digest != before.digest:
                 self._remember_by(home, mission, senses)
         self._home, self._newer = home, None
-
-    def _is_wanted(self, now: float, mission: Mission, before: KnownHome, home: KnownHome) -> bool:
-        """Whether more of the map makes a difference to the mission, or comes with an edit."""
-        heard, growing = self._growing = self._growing or _growing_map(self._config, before)
-        if heard.home is not home:
-            heard.home, heard.version = home, heard.version + 1
-        is_wanted = growing.newer(now, mission) is not None
-        return is_wanted or home.is_edit_of(before)
 
     def _remember_by(self, home: KnownHome, mission: Mission, senses: Senses) -> None:
         """Remember by the whole map, now that there is one, what is under way."""
@@ -220,7 +192,6 @@ class MissionNode:
     def _begin(self, home: KnownHome, senses: Senses) -> None:
         """Begin a mission for a map; it goes on with what was under way there."""
         mission = self._mapped.begin(home.context, home.field, senses)
-        self._growing = None
         self._memory = self._memory_by(home.digest)
         if not home.context.is_growing:
             self._memory.recall_dirt(mission.dirt)
@@ -270,11 +241,6 @@ class MissionNode:
         self._memory.keep(mission, senses)
         if has_learned:
             self._memory.keep_dirt(mission.dirt)
-
-
-def _growing_map(config: RobotConfig, home: KnownHome) -> tuple[_HeardMap, GrowingMap]:
-    heard = _HeardMap(home)
-    return heard, GrowingMap(heard, config.timing.map_period)
 
 
 def main() -> None:
