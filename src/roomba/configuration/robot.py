@@ -19,7 +19,6 @@ from roomba.configuration.body import (
     HealthConfig,
 )
 from roomba.configuration.frozen import Frozen, Positive, read_yaml, validated
-from roomba.configuration.lidars import SIMULATION, with_model
 from roomba.configuration.localization import LocalizationConfig
 from roomba.configuration.loops import (
     ControlConfig,
@@ -28,6 +27,7 @@ from roomba.configuration.loops import (
     WalkConfig,
 )
 from roomba.configuration.sensors import (
+    SIMULATION,
     CameraConfig,
     CliffConfig,
     DirtSensorConfig,
@@ -35,6 +35,7 @@ from roomba.configuration.sensors import (
     LidarConfig,
     StationConfig,
     WheelsConfig,
+    with_model,
 )
 
 UNKNOWN: Final = "unknown; what is true of the simulated robot alone stands under simulation:"

@@ -20,9 +20,14 @@ from roomba.configuration.frozen import (
     read_yaml,
     validated,
 )
-from roomba.configuration.lidars import LIDAR, SIMULATION, lidar_file, with_model
 from roomba.configuration.robot import UNKNOWN, RobotConfig
-from roomba.configuration.sensors import LidarConfig
+from roomba.configuration.sensors import (
+    LIDAR,
+    SIMULATION,
+    LidarConfig,
+    lidar_file,
+    with_model,
+)
 
 Sensors = Literal["ideal", "noisy"]
 _SIMPLE_ERRORS: Final = frozenset({"noise", "misses", "dark", "shiny"})

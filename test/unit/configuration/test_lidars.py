@@ -7,9 +7,8 @@ from pathlib import Path
 import pytest
 
 from roomba.configuration.frozen import load_config
-from roomba.configuration.lidars import LIDARS, lidar_file, lidar_models
 from roomba.configuration.robot import load_robot_config
-from roomba.configuration.sensors import LidarConfig
+from roomba.configuration.sensors import LIDARS, LidarConfig, lidar_file, lidar_models
 from roomba.configuration.simulation import (
     SimulatedLidar,
     SimulatedRobotConfig,

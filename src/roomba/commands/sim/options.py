@@ -12,7 +12,7 @@ from typing import Any, Final, NoReturn
 
 from roomba.commands.sim.trial import MOST_THINGS, RANDOM, Trial, UsageError
 from roomba.commands.spelling import spelled
-from roomba.configuration.lidars import lidar_models
+from roomba.configuration.sensors import lidar_models
 from roomba.geometry import Pose
 from roomba.mission.cleaning.request import MOST_PASSES, CleanRefusedError, CleanRequest
 from roomba.vocabulary import CleanMode, FanLevel

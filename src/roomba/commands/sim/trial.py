@@ -29,7 +29,7 @@ class Trial:
     ``home`` is a name or a path as :func:`roomba.world.layers.layer.load_home` takes it, or RANDOM.
     ``seed`` decides about noise, where ``things`` stand, and a random home. ``sensors`` replaces
     what the configuration file ``config`` says, ``lidar`` the lidar by one of the names of
-    :func:`roomba.configuration.lidars.lidar_models`. ``station`` is the pose of the docked robot
+    :func:`roomba.configuration.sensors.lidar_models`. ``station`` is the pose of the docked robot
     in place of the home's own. ``battery`` is its charge at the start, 0..1. ``bin`` is how much
     its dust bin takes, g, in place of what the configuration says; ``empties_bin_after`` s of
     standing with a full one it is emptied.
