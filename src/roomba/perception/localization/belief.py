@@ -29,6 +29,10 @@ BELIEF: Final = np.dtype(
     [
         ("pose", "f8", (3,)),  # x, y, theta, map
         ("covariance", "f8", (3, 3)),  # of these, m2 and rad2
+        ("map_spread", "f8", (3, 3)),  # covariance by the map's errors where it is, m2 and rad2
+        ("wall_offset", "f8", (2,)),  # of walls against the map's: beams times m, and beams
+        ("unlike", "f8"),  # 0..1, how much else is in sight than at the newest scan
+        ("walls_apart", "f8", (2,)),  # of single walls: sum of squares, m2, and walls
         ("reckoned", "f8", (3,)),  # x, y, theta, own
         ("spread", "f8", (3,)),  # variances ahead, left, of the turn, since the newest scan
         ("reckoned_spread", "f8", (3,)),  # the same, up to that scan

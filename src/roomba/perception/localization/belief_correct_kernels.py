@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from roomba.angles import wrapped
 from roomba.perception.localization.belief import AGREE, EVIDENCE, SHORT, THROUGH, Row, Rows
 from roomba.perception.localization.belief_trust_kernels import learn_trust, note_correction
+from roomba.perception.localization.map_spread_kernels import map_spread
 from roomba.perception.matching.beams import LidarBeams
 from roomba.perception.matching.field_kernels import Field, Place
 from roomba.perception.matching.fit_kernels import AGREEING, LOOKED_AT, judge
@@ -37,6 +38,14 @@ _THROUGH: Final = 0.15
 """Share of beams that go through walls more than usual, at which the pose is doubted."""
 _LEAST: Final = 0.35
 """The least share of beams that must agree, even where fewer are usual."""
+_OF_MAP: Final = 0.1
+"""Share of the newest scan in what the map's errors are taken for."""
+_OF_WALLS: Final = 0.02
+"""Share of new surroundings in how far walls are taken to be off."""
+_LEAST_BEAMS: Final = 50.0
+"""Beams from which on it is known how far all walls are off alike."""
+_LEAST_WALLS: Final = 20.0
+"""Walls from which on how far they are off is known."""
 _STILL: Final = (0.0005**2, 0.0005**2, 0.0003**2)
 """m2, rad2; the least variance, of the map's errors, which more scans do not reduce."""
 
@@ -111,8 +120,34 @@ def match_ends(
     variance = _beam_variance(numbers[0], place, count)
     match_in(field, place, ends, count, prior, after, scales, variance, pose, work, lanes)
     note_correction(belief, prior)
+    _note_map_errors(belief, field, place, ends, count)
     pose[2] = wrapped(pose[2])
     covariance[:] = after
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _note_map_errors(belief: Row, field: Field, place: Place, ends: Floats, count: int) -> None:
+    """Take what a scan that was just matched tells of the map's errors."""
+    spread, told = np.empty((3, 3)), np.empty(4)
+    apart = belief.walls_apart
+    # A wall lies anywhere in its cell, whatever the few walls in sight say.
+    of_cell = place[2] * place[2] / 12.0
+    wall_variance = max(apart[0] / max(apart[1], _LEAST_WALLS), of_cell)
+    unlearned = of_cell * _LEAST_BEAMS / (_LEAST_BEAMS + belief.wall_offset[1])
+    if not map_spread(
+        field, place, ends, count, belief.pose, wall_variance, unlearned, spread, told
+    ):
+        return
+    for row in range(3):
+        for column in range(3):
+            more = spread[row, column] - belief.map_spread[row, column]
+            belief.map_spread[row, column] += _OF_MAP * more
+    # The same walls from the same place tell nothing new.
+    kept = 1.0 - _OF_WALLS * belief.unlike
+    for index in range(2):
+        belief.wall_offset[index] = kept * belief.wall_offset[index] + belief.unlike * told[index]
+        apart[index] = kept * apart[index] + belief.unlike * told[2 + index]
+    belief.unlike = 0.0
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

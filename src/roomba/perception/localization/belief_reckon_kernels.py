@@ -33,6 +33,11 @@ _LONGEST_STEP: Final = 1.0
 """s; the longest time between two samples over which the gyro is integrated."""
 
 
+_SAME_WAY: Final = 1.0
+_SAME_TURN: Final = 1.0
+"""m, rad; motion after which the map's errors of what is seen are others than before."""
+
+
 @njit(cache=True, nogil=True, error_model="numpy")
 def reckon(
     beliefs: Rows,
@@ -115,6 +120,22 @@ def _go(
     scale = belief.odometry_scale
     of_way, of_side, variance = scale[0] * of_way, scale[1] * of_side, scale[2] * variance
     carry(belief.pose, belief.covariance, ahead, aside, turn, of_way, of_side, variance)
+    _leave_surroundings(belief, way, turn)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _leave_surroundings(belief: Row, way: float, turn: float) -> None:
+    """Be as much less sure as other walls, with other errors of the map, come in sight.
+
+    The pose that fits the map best is off by these errors; they are alike where the same is seen
+    (a Gauss-Markov process over way and turn).
+    """
+    unlike = way / _SAME_WAY + abs(turn) / _SAME_TURN
+    belief.unlike = min(1.0, belief.unlike + unlike)
+    share = min(1.0, 2.0 * unlike)
+    for row in range(3):
+        for column in range(3):
+            belief.covariance[row, column] += share * belief.map_spread[row, column]
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

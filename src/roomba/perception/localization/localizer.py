@@ -55,6 +55,10 @@ _NEAR_THROUGH: Final = 0.06
 """Shares of beams, of those that agree and those through walls, that may be worse than usual where
 a scan fits near to where the robot was thought to be.
 """
+_LEAST_OFFSET: Final = 0.15
+"""Cells of the map; walls that are off by less stay where they are."""
+_LEAST_OFFSET_BEAMS: Final = 100.0
+"""Beams that must say so, each scan as far as it shows something new."""
 _HELP: Final = (
     "carry it to its station, or tell where it is (in RViz: 2D Pose Estimate), "
     "or let it look around (global_localization)"
@@ -87,6 +91,7 @@ class Localizer:
         """
         self._map = occupancy
         self.field = SurfaceField.of(occupancy) if occupancy else SurfaceField.unknown()
+        self._walls_moved = 0.0
         self.view: ScanView | None = None
         self._config, self._body_radius = config, body_radius
         self.belief = unknown_belief()
@@ -189,8 +194,7 @@ class Localizer:
             and np.array_equal(occupancy.values, self._map.values)
         ):
             return
-        self._map, self.field = occupancy, SurfaceField.of(occupancy)
-        self._doubt.drop()
+        self._use_field_of(occupancy)
         estimate = self.estimate
         if self._forgotten:
             # A search goes on in the new map, with the time that is left of it.
@@ -208,14 +212,18 @@ class Localizer:
         if at is None and self._forgotten:
             self.use_map(occupancy)
             return
-        self._map, self.field = occupancy, SurfaceField.of(occupancy)
-        self._doubt.drop()
+        self._use_field_of(occupancy)
         if at is None:
             tracker = self._tracker
             self._tracker = self._tracker_at(tracker.pose, tracker.covariance)
         else:
             self.told(*at)
             self._needed = _FAIR_AGREE, _FAIR_THROUGH
+
+    def _use_field_of(self, occupancy: OccupancyMap) -> None:
+        self._map, self.field = occupancy, SurfaceField.of(occupancy)
+        self._walls_moved, self._row["wall_offset"] = 0.0, 0.0
+        self._doubt.drop()
 
     def told(self, pose: Pose, deviation: tuple[float, float]) -> None:
         """Expect the robot at a reported pose, with deviations in m and rad; scans confirm it."""
@@ -240,7 +248,9 @@ class Localizer:
         """What is known now."""
         tracker = self._tracker
         knowledge, reason = self._knowledge()
-        covariance = _ANYWHERE if self._forgotten or self._is_lifted else tracker.covariance
+        covariance = tracker.covariance + tracker.map_spread
+        if self._forgotten or self._is_lifted:
+            covariance = _ANYWHERE
         agreement = 0.0 if self._is_blind else tracker.agreement
         return Estimate(tracker.pose, covariance, knowledge, agreement, reason)
 
@@ -346,6 +356,7 @@ class Localizer:
             self._needed = _GOOD_AGREE, _GOOD_THROUGH
         tracker.see(view)
         fit = tracker.judge(view) if tells_places_apart else None
+        self._learn_walls()
         if since is not None:
             tracker.pose = tracker.pose.compose(since)
         if fit is None:
@@ -369,6 +380,18 @@ class Localizer:
             self.forget("the scan does not fit the map here any more")
             # What the place looks like may have changed as well.
             self._expectation = expected
+
+    def _learn_walls(self) -> None:
+        """Move the map's surfaces to where in its cells the walls are, as scans show them."""
+        off, beams = self._row["wall_offset"].tolist()
+        cell = self.field.frame.resolution
+        if beams < _LEAST_OFFSET_BEAMS or abs(off) < _LEAST_OFFSET * cell * beams:
+            return
+        most = 0.5 * cell
+        moved = max(-most, min(most, self._walls_moved - off / beams))
+        self.field.raise_by(moved - self._walls_moved)
+        self._walls_moved = moved
+        self._row["wall_offset"][0] = 0.0
 
     def _is_found_near(self, view: ScanView, reckoned: Pose) -> bool:
         """Go on at a place near by that a scan fits as well as usual, if there is one."""

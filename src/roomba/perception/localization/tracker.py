@@ -61,6 +61,12 @@ class Tracker:
         self._covariance[:] = covariance
 
     @property
+    def map_spread(self) -> NDArray[np.float64]:
+        """Covariance of the pose by the map's errors, float64 [3, 3]: a copy."""
+        spread: NDArray[np.float64] = self._belief["map_spread"].copy()
+        return spread
+
+    @property
     def fit(self) -> Fit | None:
         """How well the last scan fits, if there was one that tells."""
         return Fit(*self._fit.tolist()) if self._belief["is_judged"] else None

@@ -25,6 +25,8 @@ _SLACK_SHARE: Final = 0.01
 """m, and share of the range: how far from the expected surface a beam may end to agree with it."""
 _SPREAD: Final = 0.03
 """m; standard deviation of where beams that agree end: noise of range, pose and map."""
+_FINE_CELL: Final = 0.05
+"""m; by what the cells of a map are larger, a wall may be farther off."""
 _CHANCE: Final = 0.03
 """Likelihood, against that of a perfect hit, of a beam that ends anywhere else."""
 _BEHIND: Final = 0.01
@@ -44,6 +46,8 @@ _IS_THROUGH: Final = 7
 """Rows of beams, by number: how far off the beam may end, m, and whether it met a surface early."""
 _TOUCH: Final = 0.005
 """m; a ray that is this near to a surface has met it."""
+_GRAZED: Final = 0.35
+"""Cells of a coarse map; a ray meets a wall only so deep in it: walls are thinner than cells."""
 _LEAST_STEP: Final = 0.02
 """m; a ray that grazes a surface goes on by at least this."""
 _SHARE: Final = 0.1
@@ -73,10 +77,11 @@ def judge(
     x = pose[0] + cosine * mount[0] - sine * mount[1]
     y = pose[1] + sine * mount[0] + cosine * mount[1]
     looked_at = rays = 0
+    coarse = max(0.0, place[2] - _FINE_CELL)
     for index in range(0, count, stride):
         off_x, off_y = ends[index, 0] - mount[0], ends[index, 1] - mount[1]
         length = math.sqrt(off_x * off_x + off_y * off_y)
-        slack = _SLACK + _SLACK_SHARE * length
+        slack = _SLACK + coarse + _SLACK_SHARE * length
         lanes[_SLACK_THERE, looked_at], lanes[_IS_THROUGH, looked_at] = slack, 0.0
         if length > slack:
             lanes[_ALONG, rays] = cosine * ends[index, 2] - sine * ends[index, 3]
@@ -97,7 +102,7 @@ def judge(
         turned_x, turned_y = cosine * end_x - sine * end_y, sine * end_x + cosine * end_y
         off, _, _ = look(field, place, pose[0] + turned_x, pose[1] + turned_y)
         fit[AGREEING if abs(off) <= lanes[_SLACK_THERE, number] else SHORT] += 1.0
-        share = off / _SPREAD
+        share = off / (_SPREAD + 0.5 * coarse)
         fit[EVIDENCE] += _SHARE * math.log(
             _CHANCE + (1.0 - _CHANCE) * math.exp(-0.5 * share * share)
         )
@@ -114,12 +119,13 @@ def _trace(field: Field, place: Place, x: float, y: float, lanes: Floats, rays: 
     if rows < 2 or columns < 2:
         return
     cells = field.ravel()
+    touch = _TOUCH - (_GRAZED * place[2] if place[2] > _FINE_CELL + _TOUCH else 0.0)
     while rays > 0:
         _stride(cells, rows, columns, place, x, y, lanes, rays)
         left = 0
         for ray in range(rays):
             there, most = lanes[_DISTANCE, ray], lanes[_MOST, ray]
-            has_met = there < _TOUCH
+            has_met = there < touch
             # It made a step too many, perhaps a little into what it met.
             if has_met and lanes[_WAY, ray] - _LEAST_STEP + min(there, 0.0) < most:
                 lanes[_IS_THROUGH, int(lanes[_NUMBER, ray])] = 1.0

@@ -37,6 +37,10 @@ class SurfaceField:
         metres = np.clip(cells, -far, far) * occupancy.frame.resolution
         return SurfaceField(occupancy.frame, np.ascontiguousarray(metres, np.float32))
 
+    def raise_by(self, distance: float) -> None:
+        """Move all surfaces so far, m, into what is solid."""
+        self.values[:] += np.float32(distance)
+
     @staticmethod
     def near(occupancy: OccupancyMap, farthest: float) -> SurfaceField:
         """Return the field of a map as :meth:`of` does, but nowhere more than ``farthest``, m.
