@@ -21,6 +21,8 @@ from roomba.ui.web.app import create_app
 from roomba.ui.web.guard import Guard
 
 HOST = {"Host": "127.0.0.1"}
+_MOST_MESSAGES = 300
+"""Ten times a second there is one at least."""
 
 
 @pytest.fixture
@@ -109,8 +111,9 @@ def test_the_feed_starts_the_trail_anew_when_another_time_is_chosen() -> None:
 
 def _next_whole(socket: WebSocketTestSession) -> NDArray[np.float64]:
     """Return the next trail of many places that takes the place of all before, m."""
-    while True:
+    for _ in range(_MOST_MESSAGES):
         text = socket.receive().get("text")
         told = {} if text is None else json.loads(text)
         if told.get("type") == "trail" and told["whole"] and len(told["points"]) > 5:
             return np.array(told["points"])
+    raise AssertionError(f"expected a whole trail within {_MOST_MESSAGES} messages")
