@@ -1,4 +1,9 @@
-"""Compiled: counting, for each cell of a grid, how many beams went through and how many ended."""
+"""Compiled: occupancy counts of a grid, how many beams passed each cell and how many ended in it.
+
+A beam is a straight line from the lidar to the point that it met, map frame. It passes the cells on
+that line, and ends in the cell just behind the surface. A cell is occupied or free by the share of
+the two counts.
+"""
 
 from __future__ import annotations
 
@@ -56,11 +61,11 @@ def draw(
     into_edge: float = _INTO,
     times: int = 1,
 ) -> None:
-    """Count a scan, ``points`` [n, 4] in the robot's frame, seen from ``pose`` [3].
+    """Count the beams of a scan taken at ``pose`` [3], x, y, m, theta, rad, map frame.
 
-    ``lidar`` is x, y of the lidar in the robot's frame; ``into_edge`` is how far behind the surface
-    a beam is counted, cells, where the way that it faces is not known. -1 ``times`` undoes it; the
-    bounds stay.
+    ``points`` is float32 [n, POINT], robot's frame; ``lidar`` is x, y, m, of the lidar in it.
+    ``into_edge``, cells, is how far behind a point its beam ends where the normal is not known. A
+    scan counts ``times``; -1 takes it away again, but the bounds stay.
     """
     per_metre = 1.0 / cells.place[2]
     rows, columns = cells.hits.shape

@@ -1,10 +1,10 @@
-"""Bringing all keyframes of a finished drive to agree, each for itself.
+"""Refinement of all keyframe poses of a finished drive.
 
-Within a submap keyframes lie as they were followed, with errors of centimetres on noisy lidars.
-Here
-each one is matched to groups of keyframes: to the one just before it and to those that were taken
-nearby at other times. A sparse graph of all keyframes then agrees best with all that (as in Lu and
-Milios, "Globally consistent range scan alignment", 1997), and all of it is done again from there.
+Within a submap keyframes lie as they were tracked, with errors of centimetres on noisy lidars. Each
+keyframe is therefore matched to groups of keyframes: to the group just before it, and to groups
+that were taken nearby on other visits. The matches are links of a sparse pose graph of all
+keyframes, which is solved in least squares (Lu and Milios, "Globally consistent range scan
+alignment", 1997). The stage runs twice, the second time from the poses of the first.
 """
 
 from __future__ import annotations
@@ -45,11 +45,12 @@ def refined(
     range_deviation: float,
     point_deviation: float,
 ) -> Floats:
-    """Return better poses of all keyframes, float64 [n, 3], map frame, the first one kept.
+    """Return better poses of all keyframes, float64 [n, 3], m and rad, map frame.
 
-    ``steps`` are the links from one keyframe to the next of another submap, by the number of the
-    latter. ``half_width``, m, is how far a scan reaches; the deviations are those of a range and of
-    a point in a match, m.
+    ``poses``, [n, 3], are the present ones; the first one stays. ``steps`` are the links from one
+    keyframe to the next where that is of another submap, by the number of the latter.
+    ``half_width``, m, is how far the points of a group reach. The deviations, m, are the standard
+    deviations of a range and of a point in a match.
     """
     if len(keyframes) < 2 * _SIZE:
         return poses

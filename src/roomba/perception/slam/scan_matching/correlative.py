@@ -1,10 +1,10 @@
-"""Finding where points lie on others within a wide window, however bad the guess.
+"""Correlative scan matching in a wide window, by branch and bound.
 
-The points of a place are spread out to a grid of likelihoods; above it lie grids of the greatest
-likelihood in blocks of 2, 4, 8 ... cells. Poses are searched from the coarsest grid down, and what
-cannot beat the best one found so far is left out: branch and bound, so that the best pose of the
-window is found (Hess et al., "Real-time loop closure in 2D LIDAR SLAM", ICRA 2016; Olson,
-"Real-time correlative scan matching", ICRA 2009).
+The points of a place make a likelihood field: a grid of how likely a surface is in each cell.
+Coarser grids above it hold the maximum over blocks of 2, 4, 8 ... cells, which bounds the score of
+all shifts within a block. The search goes from coarse to fine and prunes blocks whose bound does
+not exceed the best score, so that it finds the best pose of the window (Hess et al., "Real-time
+loop closure in 2D LIDAR SLAM", ICRA 2016; Olson, "Real-time correlative scan matching", ICRA 2009).
 """
 
 from __future__ import annotations
@@ -76,17 +76,7 @@ class CorrelativeMatcher:
         ``points`` are float64 [n, 2 or more], x, y, m. None if no pose has a mean likelihood of
         more than ``least``, 0..1.
         """
-        stride = max(1, -(-len(points) // _MOST_POINTS))
-        few = np.ascontiguousarray(points[::stride, :2])
-        if not len(few):
-            return None
-        found, nothing = np.empty(4), np.zeros(3)
-        if not _search(
-            self._levels, self._corner, _CELL, few, around, window, turn, _TURN_STEP, least,
-            nothing, found,
-        ):  # fmt: skip
-            return None
-        return CorrelativeMatch(found[:3].copy(), float(found[3]))
+        return self._best(points, around, window, turn, least, np.zeros(3))
 
     def is_unique(
         self,
@@ -100,14 +90,28 @@ class CorrelativeMatcher:
 
         In a corridor that looks alike all along one does.
         """
+        beside = np.array([*(match.pose[:2] - around[:2]), _ANOTHER])
+        return self._best(points, around, window, turn, _NEARLY * match.score, beside) is None
+
+    def _best(
+        self,
+        points: Floats,
+        around: Floats,
+        window: float,
+        turn: float,
+        least: float,
+        beside: Floats,
+    ) -> CorrelativeMatch | None:
+        """Return the best pose in a window, as :meth:`best`; ``beside`` is as in ``_search``."""
         stride = max(1, -(-len(points) // _MOST_POINTS))
         few = np.ascontiguousarray(points[::stride, :2])
         found = np.empty(4)
-        beside = np.array([*(match.pose[:2] - around[:2]), _ANOTHER])
-        return not _search(
-            self._levels, self._corner, _CELL, few, around, window, turn, _TURN_STEP,
-            _NEARLY * match.score, beside, found,
-        )  # fmt: skip
+        if not len(few) or not _search(
+            self._levels, self._corner, _CELL, few, around, window, turn, _TURN_STEP, least, beside,
+            found,
+        ):  # fmt: skip
+            return None
+        return CorrelativeMatch(found[:3].copy(), float(found[3]))
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -174,9 +178,13 @@ def _search(
     beside: Floats,
     found: Floats,
 ) -> bool:
-    """Fill ``found`` [4] with the best pose and its score; tell if one is better than ``least``.
+    """Fill ``found`` [4] with the best pose, x, y, m, theta, rad, and its score, 0..1.
 
-    Shifts that are less than ``beside[2]``, m, off ``beside[:2]`` do not count.
+    ``levels`` is uint8 [levels, rows, columns], the finest grid first, whose lower left corner is
+    ``corner`` [2], m, and whose cells are ``cell``, m. ``points`` [n, 2], m, are placed at
+    ``around`` [3] and up to ``window``, m, and ``turn``, rad, beside it, in steps of a cell and
+    ``turn_step``, rad. Shifts that are less than ``beside[2]``, m, off ``beside[:2]`` do not count.
+    Returns whether a score exceeds ``least``.
     """
     top = levels.shape[0] - 1
     beside_x, beside_y, beside_square = beside[0] / cell, beside[1] / cell, (beside[2] / cell) ** 2

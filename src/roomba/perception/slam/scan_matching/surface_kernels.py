@@ -1,4 +1,9 @@
-"""Compiled: from the ranges of a scan to points on surfaces, and the ways these face."""
+"""Compiled: from the ranges of a scan to points with surface normals.
+
+The normal of a point follows from a line fit to its neighbours in the scan: by total least squares,
+over the beams to both sides of it, or to one side where the others met another surface. Running
+sums over the beams give each fit in constant time.
+"""
 
 from __future__ import annotations
 
