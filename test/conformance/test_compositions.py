@@ -7,12 +7,15 @@ import pytest
 from fixtures.compositions import COMPOSITIONS, REFERENCE, Case, Outcome, assert_same
 from fixtures.missions import HOME, TWO_ROOMS
 from fixtures.rooms import room_home
+from fixtures.worlds import NOISY
 from hypothesis import Phase as Stage
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from roomba.configuration.body import BodyConfig
 from roomba.geometry import Pose
+from roomba.headless.cleaner import HeadlessMission
+from roomba.mission.cleaning.request import CleanRequest
 from roomba.mission.phases.machine import Phase
 from roomba.world.random.home import random_home
 
@@ -27,6 +30,10 @@ CASES = {
     "explore": Case(TWO_ROOMS, is_mapped=False, explores=True),
     "explore, ideal, slowly": Case(
         TWO_ROOMS, sensors="ideal", is_mapped=False, explores=True, speed=0.2
+    ),
+    "clean with a lidar that turns": Case(HOME, lidar="neato", seed=2),
+    "explore with a lidar that turns": Case(
+        TWO_ROOMS, lidar="lds_01", is_mapped=False, explores=True
     ),
     "clean while mapping": Case(TWO_ROOMS, is_mapped=False, seed=2),
     "charge on the way": Case(HOME, charge=0.09, charge_at=60.0, seconds=300.0),
@@ -48,6 +55,15 @@ def test_it_does_the_same(composition: str, name: str, references: dict[str, Out
     way = np.hypot(*np.diff(reference.poses[:, 1:3], axis=0).T).sum()
     assert way > 3.0
     assert_same(COMPOSITIONS[composition](case), reference)
+
+
+def test_bursts_run_with_a_lidar_that_turns() -> None:
+    robot = HeadlessMission(HOME, NOISY.with_lidar("neato"), seed=2)
+    robot.mission.clean(CleanRequest(), robot.senses())
+    while robot.seen.time < 60.0:
+        robot.advance()
+    # Without bursts it would be a piece for each tick.
+    assert len(robot.rows) < 0.25 * len(robot.passed)
 
 
 def test_a_charge_is_one_of_the_cases() -> None:
@@ -81,6 +97,7 @@ def cases(draw: st.DrawFn) -> Case:
     return Case(
         room_home(width, depth, (box,), station=Pose(0.2, 0.5 * depth, np.pi)),
         sensors=draw(st.sampled_from(("noisy", "ideal"))),
+        lidar=draw(st.sampled_from((None, "neato", "lds_01", "rplidar_a1"))),
         seed=draw(st.integers(0, 1000)),
         is_mapped=is_mapped,
         explores=not is_mapped and draw(st.booleans()),

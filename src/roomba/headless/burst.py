@@ -18,6 +18,7 @@ from roomba.headless.rows import BELIEVED, PASSED
 from roomba.mission.driving.progress_kernels import PROGRESS
 from roomba.mission.steady import Steady
 from roomba.perception.localization.recent_sight import RecentSight
+from roomba.perception.matching.sweep import SWEEP_WORK
 from roomba.perception.slam.following.scan_follower import not_following
 from roomba.perception.swept.coverage_map import CoverageMap
 from roomba.robot.brain import Brain
@@ -46,9 +47,12 @@ class Burst:
         row["step"], row["steps"] = timing.world_step, timing.steps_per_tick
         row["apart"] = brain.keeper.scans.apart
         row["stride"], row["is_mapping"] = brain.robot.scan_stride, brain.mapper is not None
+        row["is_late"] = body.has_late_scans
         row["bin_capacity"] = brain.robot.brush.bin_capacity * MICROGRAMS_PER_GRAM
         self._has_ended = False
         self._nowhere = _nowhere(brain)
+        count = body.lidar.beams
+        self._sweep = np.empty(count, np.float32), np.empty((SWEEP_WORK, max(count, 3)))
         self._not_following = not_following(brain.beams_of(body.lidar))
 
     def run(self) -> Floats:
@@ -94,8 +98,7 @@ class Burst:
     def _may_run(self) -> bool:
         if len(self._rows) == 0 or self._brain.walking.is_under_way:
             return False
-        # A burst takes all beams as measured at once, where the robot is now.
-        return not self._body.has_late_scans and self._brain.keeper.place.is_calm
+        return self._brain.keeper.place.is_calm
 
     # ---------------------------------------------------------------- taking over
 
@@ -145,7 +148,9 @@ class Burst:
             following = brain.mapper.following
         place = brain.localizer or brain.mapper
         assert place is not None
-        return PlaceParts(place.belief, place.numbers, place.path, beams, sights, following)
+        return PlaceParts(
+            place.belief, place.numbers, place.path, beams, sights, following, *self._sweep
+        )
 
     def _sight(self) -> Sight:
         things = self._brain.things
@@ -207,7 +212,9 @@ class Burst:
         """Process the rest of the newest scan."""
         brain, scan = self._brain, None
         if self._burst[0]["is_left"]:
-            scan = replace(self._body.newest_scan(), stamp=now)
+            scan = self._body.newest_scan()
+            late = scan.stamp + float(self._burst[0]["clock"])
+            scan = replace(scan, stamp=late if self._body.has_late_scans else now)
         if brain.localizer is not None:
             brain.localizer.resumed(now)
             if scan is not None:

@@ -9,11 +9,12 @@ from numba import njit
 from numpy.typing import NDArray
 
 from roomba.headless.burst_state import PlaceParts, Sight, World
-from roomba.perception.localization.belief_correct_kernels import correct, is_calm
+from roomba.perception.localization.belief_correct_kernels import correct, correct_late, is_calm
 from roomba.perception.localization.belief_reckon_kernels import reckon_on
 from roomba.perception.localization.recent_sight_kernels import note_sight
 from roomba.perception.matching.match_kernels import beam_ends
 from roomba.perception.matching.pose_kernels import beyond
+from roomba.perception.matching.sweep import at_once
 from roomba.perception.slam.following.follow_kernels import moved_since
 from roomba.perception.slam.following.scan_kernels import IS_DONE, IS_LEFT, take_scan
 from roomba.perception.things.kernels import note
@@ -45,12 +46,13 @@ def follow(burst: Any, world: World, place: PlaceParts, sight: Sight, now: float
     )
     is_new = robot.scans != burst.scans
     burst.scans = robot.scans
-    if is_new and not 0.0 <= now - burst.seen_at < burst.apart:
-        burst.seen_at = now
+    stamp = robot.scan_stamp + burst.clock if burst.is_late else now
+    if is_new and not 0.0 <= stamp - burst.seen_at < burst.apart:
+        burst.seen_at = stamp
         ranges = world.state.ranges[0]
         if burst.is_mapping:
-            return map_on(burst, place, sight, ranges, now)
-        return localize(burst, place, sight, ranges, now)
+            return map_on(burst, place, sight, ranges, stamp)
+        return localize(burst, place, sight, ranges, stamp, now)
     if burst.is_mapping:
         return True
     return bool(is_calm(place.belief, place.numbers, now))
@@ -58,15 +60,33 @@ def follow(burst: Any, world: World, place: PlaceParts, sight: Sight, now: float
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def localize(
-    burst: Any, place: PlaceParts, sight: Sight, ranges: NDArray[np.float32], now: float
+    burst: Any,
+    place: PlaceParts,
+    sight: Sight,
+    ranges: NDArray[np.float32],
+    stamp: float,
+    now: float,
 ) -> bool:
-    """Correct a localizer's place by a scan; tell whether it is sure of it."""
+    """Correct a localizer's place by a scan of a time, s; tell whether it is sure of it now."""
     belief, beams = place.belief, place.beams
-    count = correct(belief, place.numbers, sight.field, sight.place, beams, ranges, now)
+    reckoned = place.work[0, :3]
+    if burst.is_late:
+        at_once(ranges, beams, place.path, stamp, place.still, place.work)
+        count = correct_late(
+            belief, place.numbers, sight.field, sight.place, beams, place.still, place.path,
+            stamp, reckoned,
+        )  # fmt: skip
+    else:
+        count = correct(belief, place.numbers, sight.field, sight.place, beams, ranges, stamp)
+        reckoned[:] = belief[0].reckoned
     if not is_calm(belief, place.numbers, now):
         burst.is_left = True
         return False
-    note_sight(place.sights, now, belief[0].reckoned, beams.ends, count)
+    note_sight(place.sights, stamp, reckoned, beams.ends, count)
+    if burst.is_late:
+        count = beam_ends(
+            ranges, beams.directions, beams.mount, beams.nearest, beams.farthest, beams.ends
+        )
     pose = belief[0].pose
     note(sight.things, sight.field, sight.place, beams, ranges, count, pose, burst.stride)
     return True
@@ -74,11 +94,11 @@ def localize(
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def map_on(
-    burst: Any, place: PlaceParts, sight: Sight, ranges: NDArray[np.float32], now: float
+    burst: Any, place: PlaceParts, sight: Sight, ranges: NDArray[np.float32], stamp: float
 ) -> bool:
-    """Follow a mapper's place by a scan; tell whether that is all that is to be done with it."""
+    """Follow a mapper's place by a scan of a time, s; tell whether nothing is left to be done."""
     following = place.following
-    left = take_scan(following, now, ranges)
+    left = take_scan(following, stamp, ranges)
     if left != IS_DONE:
         burst.is_left, burst.is_followed = True, left != IS_LEFT
         return False

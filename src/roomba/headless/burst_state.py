@@ -28,6 +28,7 @@ BURST: Final = np.dtype(
         ("stride", "i8"),  # scans that such a one stands for
         ("bin_capacity", "f8"),  # micrograms
         ("is_mapping", "?"),  # whether the place is a mapper's
+        ("is_late", "?"),  # whether scans are older than the tick at which they come
         # what ends it
         ("drives", "?"),  # along a path; else it stands on its station
         ("limit", "f8"),  # m/s
@@ -76,7 +77,10 @@ class World(NamedTuple):
 
 
 class PlaceParts(NamedTuple):
-    """What knows the place: ``sights`` counts for a localizer, ``following`` for a mapper."""
+    """What knows the place: ``sights`` counts for a localizer, ``following`` for a mapper.
+
+    In ``still``, float32 [beams], and ``work``, [SWEEP_WORK, beams], late scans are put together.
+    """
 
     belief: Rows
     numbers: Rows
@@ -84,6 +88,8 @@ class PlaceParts(NamedTuple):
     beams: LidarBeams
     sights: Sights
     following: Following
+    still: NDArray[np.float32]
+    work: Floats
 
 
 class Sight(NamedTuple):

@@ -20,6 +20,8 @@ from roomba.perception.matching.fit_kernels import EVIDENCE as ALL_EVIDENCE
 from roomba.perception.matching.fit_kernels import SHORT as ALL_SHORT
 from roomba.perception.matching.fit_kernels import THROUGH as ALL_THROUGH
 from roomba.perception.matching.match_kernels import MATCH_WORK, beam_ends, match_in
+from roomba.perception.matching.pose_kernels import beyond, seen_from
+from roomba.perception.matching.reckoned_path import ReckonedPath, pose_at
 
 Floats = NDArray[np.float64]
 
@@ -75,6 +77,35 @@ def correct(
         match_ends(beliefs, numbers, field, place, lidar.ends, count, lidar.lanes)
         if count >= numbers[0].least_beams:
             judge_ends(beliefs, numbers, field, place, lidar.ends, count, lidar.mount, lidar.lanes)
+    return count
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def correct_late(
+    beliefs: Rows,
+    numbers: Rows,
+    field: Field,
+    place: Place,
+    lidar: LidarBeams,
+    ranges: NDArray[np.float32],
+    path: ReckonedPath,
+    stamp: float,
+    reckoned: Floats,
+) -> int:
+    """Correct the pose as :func:`correct` does, by a scan that was taken a little ago.
+
+    ``reckoned`` [3] is filled with where ``path`` had the robot then; a scan from before all of
+    ``path`` tells nothing.
+    """
+    belief, pose = beliefs[0], beliefs[0].pose
+    if not pose_at(path, stamp, reckoned):
+        belief.beams = 0
+        return 0
+    back = seen_from(belief.reckoned, reckoned)
+    pose[0], pose[1], pose[2] = beyond(pose[0], pose[1], pose[2], back[0], back[1], back[2])
+    count = correct(beliefs, numbers, field, place, lidar, ranges, stamp)
+    on = seen_from(reckoned, belief.reckoned)
+    pose[0], pose[1], pose[2] = beyond(pose[0], pose[1], pose[2], on[0], on[1], on[2])
     return count
 
 

@@ -171,13 +171,15 @@ class Localizer:
     def reconsider(self, stamp: float, ranges: NDArray[np.float32], lidar: LidarModel) -> None:
         """Finish what kernels left of a scan that they corrected the pose by: it is not calm now.
 
-        As of :meth:`see`; it was taken just now.
+        As of :meth:`see`.
         """
-        self.view = view = lidar.view(ranges)
+        self.view = view = lidar.view(lidar.at_once(stamp, ranges, self.path))
         self._is_blind = len(view) == 0
         if self._is_blind:
             return
-        reckoned = self._reckoning.pose
+        reckoned = self._reckoning.at(stamp)
+        if reckoned is None:
+            return
         if len(view) >= self._config.least_beams and self._tracker.is_doubtful:
             self._reconsider(stamp, view, reckoned)
         self._doubt.note(stamp, reckoned, view)
