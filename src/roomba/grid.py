@@ -80,7 +80,10 @@ class GridFrame:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class OccupancyMap:
-    """What is known of a floor: int8 [rows, columns]; 0 free, 100 occupied, -1 unknown."""
+    """What is known of a floor: int8 [rows, columns]; 0 free, 100 occupied, -1 unknown.
+
+    Between them: how much of a cell is occupied, in percent.
+    """
 
     frame: GridFrame
     values: NDArray[np.int8]
@@ -96,6 +99,12 @@ class OccupancyMap:
     def solid(self) -> NDArray[np.bool_]:
         """Cells that no body may enter: all that is not known to be free, bool [rows, columns]."""
         solid: NDArray[np.bool_] = self.values != FREE
+        return solid
+
+    @property
+    def likely_solid(self) -> NDArray[np.bool_]:
+        """Cells of which no less than half is solid, or not known: bool [rows, columns]."""
+        solid: NDArray[np.bool_] = (self.values >= OCCUPIED // 2) | (self.values < FREE)
         return solid
 
     @property

@@ -48,6 +48,10 @@ class Burst:
         row["apart"] = brain.keeper.scans.apart
         row["stride"], row["is_mapping"] = brain.robot.scan_stride, brain.mapper is not None
         row["is_late"] = body.has_late_scans
+        home = body.simulator.home
+        axes, row["is_turned"] = home.axes, home.turned is not None
+        row["axes"] = axes.x, axes.y, math.cos(axes.theta), math.sin(axes.theta)
+        row["turn"] = axes.theta
         row["bin_capacity"] = brain.robot.brush.bin_capacity * MICROGRAMS_PER_GRAM
         self._has_ended = False
         self._nowhere = _nowhere(brain)

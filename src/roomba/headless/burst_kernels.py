@@ -12,6 +12,7 @@ from typing import Any
 
 from numba import njit
 
+from roomba.angles import wrapped
 from roomba.control.tracking_kernels import track
 from roomba.headless.burst_place_kernels import believed, follow
 from roomba.headless.burst_state import Drive, Floats, Floor, PlaceParts, Rows, Sight, World
@@ -58,8 +59,9 @@ def run(
         now = world.state.worlds[0].time + burst.clock
         is_settled = follow(burst, world, place, sight, now)
         x, y, theta = believed(burst, place)
-        sweep_truth(burst, robot, floor)
-        write_down(rows[ticks], now - burst.clock, robot, x, y, theta)
+        true = told(burst, robot)
+        sweep_truth(burst, robot, floor, true[0], true[1])
+        write_down(rows[ticks], now - burst.clock, robot, true, x, y, theta)
         ticks += 1
         if not is_settled:
             break
@@ -146,16 +148,27 @@ def account(burst: Any, robot: Any, floor: Floor, now: float, x: float, y: float
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def sweep_truth(burst: Any, robot: Any, floor: Floor) -> None:
-    """Note what floor the tool really passed over, with room for its dust."""
+def told(burst: Any, robot: Any) -> tuple[float, float, float]:
+    """Return the true pose, x, y, theta, in the frame in which poses are told."""
+    if not burst.is_turned:
+        return robot.x, robot.y, robot.theta
+    left, bottom, cosine, sine = burst.axes[0], burst.axes[1], burst.axes[2], burst.axes[3]
+    return (
+        left + cosine * robot.x - sine * robot.y,
+        bottom + sine * robot.x + cosine * robot.y,
+        wrapped(robot.theta + burst.turn),
+    )
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def sweep_truth(burst: Any, robot: Any, floor: Floor, x: float, y: float) -> None:
+    """Note what floor the tool, now at a place, really passed over, with room for its dust."""
     if robot.in_bin >= burst.bin_capacity:
         burst.true_at[0] = burst.true_at[1] = math.nan
         return
-    at_x, at_y = from_where(burst.true_at, robot.x, robot.y)
-    burst.truth_swept += sweep(
-        floor.true_cells, floor.true_place, at_x, at_y, robot.x, robot.y, floor.radius
-    )
-    burst.true_at[0], burst.true_at[1] = robot.x, robot.y
+    at_x, at_y = from_where(burst.true_at, x, y)
+    burst.truth_swept += sweep(floor.true_cells, floor.true_place, at_x, at_y, x, y, floor.radius)
+    burst.true_at[0], burst.true_at[1] = x, y
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -168,10 +181,18 @@ def from_where(last: Floats, x: float, y: float) -> tuple[float, float]:
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def write_down(row: Floats, now: float, robot: Any, x: float, y: float, theta: float) -> None:
+def write_down(
+    row: Floats,
+    now: float,
+    robot: Any,
+    true: tuple[float, float, float],
+    x: float,
+    y: float,
+    theta: float,
+) -> None:
     """Fill a row with what is so after a tick."""
     row[TIME] = now
-    row[1], row[2], row[3] = robot.x, robot.y, robot.theta
+    row[1], row[2], row[3] = true
     row[4], row[5], row[6] = x, y, theta
     row[7], row[8], row[9] = robot.odometry_x, robot.odometry_y, robot.odometry_theta
     row[GYRO] = robot.gyro

@@ -29,6 +29,9 @@ BURST: Final = np.dtype(
         ("bin_capacity", "f8"),  # micrograms
         ("is_mapping", "?"),  # whether the place is a mapper's
         ("is_late", "?"),  # whether scans are older than the tick at which they come
+        ("is_turned", "?"),  # whether poses are told in another frame than the world's
+        ("axes", "f8", (4,)),  # where the world's lies in it: x, y, cosine and sine of the turn
+        ("turn", "f8"),  # rad
         # what ends it
         ("drives", "?"),  # along a path; else it stands on its station
         ("limit", "f8"),  # m/s

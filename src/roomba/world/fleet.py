@@ -59,8 +59,10 @@ class Fleet:
         ``seeds`` has one for each world (default 0, 1, ...). ``starts`` is float64 [robots, 3]:
         x, y, theta, map frame; by default the first robot of a world stands at the station, others
         at free places found by the seed. ``threads``: at most so many work (default: all cores).
+        A home that was turned is taken in its own axes, and so are all places in it.
         Raises HomeError where a body does not fit, ValueError for other numbers that make no sense.
         """
+        homes = [home.exact for home in homes]
         _check_counts(homes, robots_per_home, seeds, threads)
         _check_speed(max_speed)
         self.config = config or SimulatedRobotConfig()

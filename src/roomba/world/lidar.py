@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from roomba.configuration.sensors import LidarConfig
+from roomba.geometry import Pose
 from roomba.grid import GridFrame
 from roomba.world.engine.layout import joined_edges, seen_by_lidar
 from roomba.world.engine.lidar.edges import LidarEdges, lidar_edges
@@ -21,6 +22,7 @@ from roomba.world.engine.lidar.projection import (
 from roomba.world.engine.state.arrays import HOME, Edges, Rows
 from roomba.world.engine.state.compilation import entry
 from roomba.world.home.home import Home
+from roomba.world.home.turned import placed
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -33,11 +35,15 @@ class Lidar:
     _home: Rows
     _arrays: Edges
     _buffers: ScanBuffers
+    _axes: Pose | None = None
+    """Where the grid lies in the frame of the poses, if it is turned there."""
 
     @staticmethod
     def of(home: Home, config: LidarConfig | None = None) -> Lidar:
         """Return the lidar of a home."""
-        return Lidar.on_grid(seen_by_lidar(home), home.frame, config)
+        exact = home.exact
+        lidar = Lidar.on_grid(seen_by_lidar(exact), exact.frame, config)
+        return lidar if home.turned is None else replace(lidar, _axes=home.axes)
 
     @staticmethod
     def on_grid(
@@ -70,6 +76,9 @@ class Lidar:
         poses = np.ascontiguousarray(poses, np.float64)
         if poses.ndim != 2 or poses.shape[1] != 3:
             raise ValueError(f"expected poses of shape [poses, 3], got {poses.shape}")
+        if self._axes is not None:
+            poses = placed(poses, self._axes.inverse())
+            poses[:, 2] -= self._axes.theta
         x_min, x_max, y_min, y_max = self.frame.extent
         x, y = poses[:, 0], poses[:, 1]
         inside = (x >= x_min) & (x < x_max) & (y >= y_min) & (y < y_max)

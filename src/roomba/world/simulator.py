@@ -1,5 +1,8 @@
 """The simulated world: one robot in one home, a step at a time.
 
+Places are told in the home's frame: of one that was turned, in the turned one. Its ``dirt`` and
+``numbers`` are in the home's own axes, as the world is.
+
 Seeded: the same home, configuration, seed and commands give the same trace, bit for bit. It is a
 fleet of one, so the same compiled code runs a robot alone and a thousand.
 """
@@ -21,6 +24,7 @@ from roomba.world.engine.state.arrays import Fault, Infrared, Rows, State
 from roomba.world.fleet import Fleet
 from roomba.world.home.dirt import MICROGRAMS_PER_GRAM, DirtField
 from roomba.world.home.home import Home
+from roomba.world.home.turned import placed
 from roomba.world.power import BatteryState, battery_state, noise_level
 
 
@@ -132,7 +136,8 @@ class Simulator:
         self.start = start or home.station
         config = config or SimulatedRobotConfig()
         max_speed = config.body.max_speed if max_speed is None else max_speed
-        starts = np.array([[self.start.x, self.start.y, self.start.theta]], np.float64)
+        own = home.own(self.start)
+        starts = np.array([[own.x, own.y, own.theta]], np.float64)
         self._fleet = Fleet(
             [home], config, seeds=[seed], max_speed=max_speed, starts=starts, threads=1
         )
@@ -150,7 +155,7 @@ class Simulator:
     def pose(self) -> Pose:
         """Where the body stands, in the map frame."""
         x, y, theta = self._fleet.poses[0].tolist()
-        return Pose(x, y, theta)
+        return self.home.told(Pose(x, y, theta))
 
     @property
     def max_speed(self) -> float:
@@ -191,12 +196,17 @@ class Simulator:
     @property
     def things(self) -> NDArray[np.float64]:
         """Where the home's moving things are, float64 [things, 4]: x, y, theta, present."""
-        return self._fleet.things(0)
+        things = self._fleet.things(0)
+        if self.home.turned is None:
+            return things
+        things[:, 2] += self.home.axes.theta
+        return placed(things, self.home.axes)
 
     @property
     def discs(self) -> NDArray[np.float64]:
         """Round things that were put down, float64 [discs, 3]: x, y, radius, m."""
-        return self._fleet.discs(0)
+        discs = self._fleet.discs(0)
+        return discs if self.home.turned is None else placed(discs, self.home.axes)
 
     def step(self, wanted: Twist, dt: float) -> Observation:
         """Let ``dt`` s pass with the command ``wanted``; return the observation after it.
@@ -220,7 +230,7 @@ class Simulator:
         under = amount_under_disc(self.dirt.micrograms, self.dirt.place, now["x"], now["y"], radius)
         return Observation(
             time=self.time,
-            pose=Pose(now["x"], now["y"], now["theta"]),
+            pose=self.home.told(Pose(now["x"], now["y"], now["theta"])),
             twist=Twist(now["ground_linear"], now["ground_angular"]),
             odometry=Pose(now["odometry_x"], now["odometry_y"], now["odometry_theta"]),
             odometry_twist=Twist(now["odometry_linear"], now["odometry_angular"]),
@@ -306,17 +316,19 @@ class Simulator:
 
     def spill(self, x: float, y: float, radius: float, grams: float) -> None:
         """Spill crumbs around a point of the map frame; raises ValueError as DirtField.spread."""
-        self._fleet.worlds["brought_in"] += self.dirt.spread(x, y, radius, grams)
+        own = self.home.own(Pose(x, y, 0.0))
+        self._fleet.worlds["brought_in"] += self.dirt.spread(own.x, own.y, radius, grams)
 
     def place_obstacle(self, x: float, y: float, radius: float) -> None:
         """Stand a round thing on the floor that no map knows; ValueError as Fleet.put_discs."""
-        self._fleet.put_discs(0, np.array([[x, y, radius]]))
+        own = self.home.own(Pose(x, y, 0.0))
+        self._fleet.put_discs(0, np.array([[own.x, own.y, radius]]))
 
     def place_chair(self, pose: Pose) -> None:
         """Stand a chair's four legs on the floor around a pose; ValueError as Fleet.put_discs."""
         half = 0.5 * _CHAIR
         corners = [
-            pose.compose(Pose(ahead, aside, 0.0))
+            self.home.own(pose).compose(Pose(ahead, aside, 0.0))
             for ahead in (-half, half)
             for aside in (-half, half)
         ]
@@ -332,7 +344,7 @@ class Simulator:
 
     def put(self, pose: Pose) -> None:
         """Put the robot down somewhere else; raises HomeError where it does not fit."""
-        self._fleet.put(0, pose)
+        self._fleet.put(0, self.home.own(pose))
 
     def save(self) -> dict[str, NDArray[np.generic]]:
         """Return a copy of all that can change."""

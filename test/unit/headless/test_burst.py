@@ -23,6 +23,7 @@ from roomba.mission.cleaning.request import CleanRequest
 from roomba.mission.phases.machine import Event, Phase
 from roomba.perception.localization.estimate import Knowledge
 from roomba.world.engine.state.arrays import Fault
+from roomba.world.home.turned import turned_home
 
 TICK: Final = NOISY.timing.tick
 
@@ -199,3 +200,16 @@ def test_pushed_aside_the_ordinary_classes_decide() -> None:
     assert driver.tracker.off_path(robot.brain.pose) < robot.config.driving.off_path
     robot.run()
     assert robot.is_home
+
+
+def test_truth_is_told_in_the_frame_of_a_turned_home() -> None:
+    robot = HeadlessMission(turned_home(HOME, 0.4), seed=1)
+    robot.mission.clean(CleanRequest(), robot.senses())
+    until(robot, in_phase(robot, Phase.CLEANING))
+    until(robot, lambda: robot.seen.time > 30.0 and is_steady(robot))
+    rows, seen = burst_of(robot).run(), robot.seen
+    assert len(rows) > 2
+    assert rows[-1, TRUE] == pytest.approx([seen.pose.x, seen.pose.y, seen.pose.theta])
+    assert np.hypot(*(rows[:, TRUE] - rows[:, BELIEVED])[:, :2].T).max() < 0.05
+    for x, y in rows[:, TRUE][:, :2].tolist():
+        assert robot.truth.swept[robot.truth.frame.cell_of(x, y)]

@@ -81,6 +81,7 @@ def options_of(arguments: list[str] | None) -> MapOptions:
         sensors=given.sensors,
         station=None if given.station is None else Pose(*given.station),
         config=given.config,
+        turned=given.turned,
     )
     if given.config is not None and not given.config.is_file():
         raise UsageError(f"--config: expected a file like robot.yaml, got {given.config}")
@@ -136,6 +137,13 @@ def _parser() -> Parser:
         nargs=3,
         metavar=("X", "Y", "THETA"),
         help="pose of the docked robot (default: as the layer says, else it is found)",
+    )
+    where.add_argument(
+        "--turned",
+        type=_finite,
+        default=0.0,
+        metavar="DEGREES",
+        help="turn the home, counter-clockwise about the origin of its map, with its station",
     )
     where.add_argument("--seed", type=_seed, default=0, metavar="N")
     how = parser.add_argument_group("circumstances")

@@ -189,6 +189,8 @@ def _again(trial: Trial) -> str:
         words += ["--things", str(trial.things)]
     if trial.shut_doors:
         words.append("--shut-doors")
+    if trial.turned:
+        words += ["--turned", f"{trial.turned:g}"]
     if trial.battery != usual.battery:
         words += ["--battery", f"{trial.battery:g}"]
     if trial.bin is not None:

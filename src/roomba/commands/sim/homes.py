@@ -1,7 +1,8 @@
-"""The home of a trial: of a file or made by the seed, its doors shut if that is asked for."""
+"""The home of a trial: of a file or made by the seed; its doors shut, turned, if so asked."""
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import shapely
@@ -14,6 +15,7 @@ from roomba.grid import FREE
 from roomba.perception.rooms.rooms import Rooms, segment
 from roomba.world.home.home import Home, MovingKind
 from roomba.world.home.raster import covered_cells, outline
+from roomba.world.home.turned import turned_home
 from roomba.world.layers.layer import load_home
 from roomba.world.random.home import random_home
 
@@ -26,7 +28,8 @@ def home_of(trial: Trial, body: BodyConfig) -> Home:
         home = random_home(trial.seed, body)
     else:
         home = load_home(trial.home, HOMES, body, trial.station)
-    return with_doors_shut(home) if trial.shut_doors else home
+    home = with_doors_shut(home) if trial.shut_doors else home
+    return turned_home(home, math.radians(trial.turned)) if trial.turned else home
 
 
 def with_doors_shut(home: Home) -> Home:

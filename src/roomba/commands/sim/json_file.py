@@ -75,6 +75,7 @@ def _about(trial: Trial, home: str) -> dict[str, Any]:
         "request": request_values(trial.request),
         "no_go": [list(zone) for zone in trial.no_go],
         "shut_doors": trial.shut_doors,
+        "turned_degrees": trial.turned,
         "battery": trial.battery,
     }
 

@@ -57,6 +57,7 @@ def options_of(arguments: list[str] | None) -> SimOptions:
         config=given.config,
         bin=given.bin,
         empties_bin_after=given.empty_after,
+        turned=given.turned,
     )
     return SimOptions(
         trial, given.homes, given.json, given.plot, given.bag, given.quiet, given.keep
@@ -106,6 +107,14 @@ def _add_place(parser: argparse.ArgumentParser) -> None:
         nargs=3,
         metavar=("X", "Y", "THETA"),
         help="pose of the docked robot (default: as the layer says, else it is found)",
+    )
+    where.add_argument(
+        "--turned",
+        type=_finite,
+        default=0.0,
+        metavar="DEGREES",
+        help="turn the home, counter-clockwise about the origin of its map, with its station; all "
+        "other places are in the turned frame",
     )
     where.add_argument("--seed", type=_whole(0, _MOST_SEED), default=0, metavar="N")
     where.add_argument(

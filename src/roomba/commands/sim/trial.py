@@ -32,7 +32,8 @@ class Trial:
     :func:`roomba.configuration.sensors.lidar_models`. ``station`` is the pose of the docked robot
     in place of the home's own. ``battery`` is its charge at the start, 0..1. ``bin`` is how much
     its dust bin takes, g, in place of what the configuration says; ``empties_bin_after`` s of
-    standing with a full one it is emptied.
+    standing with a full one it is emptied. ``turned`` is by how many degrees, counter-clockwise,
+    the home is turned about the origin of its map; ``station`` turns with it.
     """
 
     home: str = "flat"
@@ -48,6 +49,7 @@ class Trial:
     config: Path | None = None
     bin: float | None = None
     empties_bin_after: float = 120.0
+    turned: float = 0.0
 
     def with_seed(self, seed: int) -> Trial:
         """Return the same with another seed."""

@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
+import math
+from dataclasses import replace
 from pathlib import Path
 from typing import Final
+
+import numpy as np
 
 from roomba.commands.sim.trial import RANDOM, Trial
 from roomba.files.home_layer import MAP_NAME
 from roomba.files.occupancy_map import load_map
 from roomba.files.shipped import HOMES
+from roomba.geometry import Pose
 from roomba.perception.rooms.zones import Zone, ZoneKind, Zones
 from roomba.storage.zones import load_zones
+from roomba.world.home.turned import placed
 
 ZONES_NAME: Final = "zones.yaml"
 """The file of a home's zones in its folder."""
@@ -27,7 +33,15 @@ def zones_of(trial: Trial) -> Zones:
         )
         for number, (left, bottom, right, top) in enumerate(trial.no_go)
     )
-    return Zones((*of_home.all, *asked))
+    return Zones((*(_turned(zone, trial.turned) for zone in of_home.all), *asked))
+
+
+def _turned(zone: Zone, degrees: float) -> Zone:
+    """Return a zone of a home's folder where it lies in the turned home."""
+    if not degrees:
+        return zone
+    points = placed(np.array(zone.points), Pose(0.0, 0.0, math.radians(degrees)))
+    return replace(zone, points=tuple((x, y) for x, y in points.tolist()))
 
 
 def zones_of_home(name_or_path: str) -> Zones:

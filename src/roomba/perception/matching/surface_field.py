@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.grid import GridFrame, OccupancyMap
+from roomba.grid import FREE, OCCUPIED, GridFrame, OccupancyMap
 from roomba.perception.matching.field_kernels import fill_near_surfaces
 from roomba.raster.distance import distance_to_nearest
 
@@ -20,7 +20,8 @@ class SurfaceField:
     ``values`` is float32 [rows, columns], m: positive on free floor, negative inside what is not
     known to be free. Between middles it is bilinear, so that a wall's surface lies where the wall's
     cells end and not in their middles, to a fraction of a cell (a likelihood field, Thrun, Burgard
-    and Fox, "Probabilistic Robotics", 6.4, but for its sign).
+    and Fox, "Probabilistic Robotics", 6.4, but for its sign). Through cells that are solid in part,
+    as slanted walls make them, it goes where their shares say.
     """
 
     frame: GridFrame
@@ -29,13 +30,15 @@ class SurfaceField:
     @staticmethod
     def of(occupancy: OccupancyMap) -> SurfaceField:
         """Return the field of a map; where a map has no surface at all it is far everywhere."""
-        solid = occupancy.solid
+        solid = occupancy.likely_solid
         outside = distance_to_nearest(solid)
         inside = distance_to_nearest(~solid)
         cells = np.where(solid, 0.5 - inside, outside - 0.5)
         far = float(max(solid.shape))
         metres = np.clip(cells, -far, far) * occupancy.frame.resolution
-        return SurfaceField(occupancy.frame, np.ascontiguousarray(metres, np.float32))
+        values = np.ascontiguousarray(metres, np.float32)
+        _use_shares(values, occupancy)
+        return SurfaceField(occupancy.frame, values)
 
     def raise_by(self, distance: float) -> None:
         """Move all surfaces so far, m, into what is solid."""
@@ -52,7 +55,8 @@ class SurfaceField:
         cells = np.sqrt(np.arange(most**2 + 1)).astype(np.float32)
         metres = np.minimum((cells - 0.5) * resolution, farthest, dtype=np.float32)
         values = np.empty(occupancy.frame.shape, np.float32)
-        fill_near_surfaces(occupancy.solid, metres, values)
+        fill_near_surfaces(occupancy.likely_solid, metres, values)
+        _use_shares(values, occupancy)
         return SurfaceField(occupancy.frame, values)
 
     @staticmethod
@@ -66,3 +70,14 @@ class SurfaceField:
         frame = self.frame
         half = 0.5 * frame.resolution
         return np.array([frame.origin_x + half, frame.origin_y + half, frame.resolution])
+
+
+def _use_shares(values: NDArray[np.float32], occupancy: OccupancyMap) -> None:
+    """Let surfaces go through cells that are partly solid: as far off the middle as that says.
+
+    Other cells than those beside a surface are what their map does not know for sure.
+    """
+    resolution = occupancy.frame.resolution
+    partly = (occupancy.values > FREE) & (occupancy.values < OCCUPIED)
+    partly &= np.abs(values) <= resolution
+    values[partly] = (0.5 - occupancy.values[partly] / OCCUPIED) * resolution

@@ -24,6 +24,7 @@ from roomba.world.camera.scene.arrays import SceneArrays, ViewTables, Workspace
 from roomba.world.camera.scene.scene import Scene
 from roomba.world.camera.scene.texture_atlas import tone
 from roomba.world.camera.view import aligned, view_tables, whole_lanes, workspace
+from roomba.world.home.turned import placed
 
 __all__ = ["Camera", "Picture", "Scene"]
 
@@ -70,7 +71,7 @@ class Camera:
         rad, in the map frame; and 1, or 0 for what is not there. Raises PictureError for another
         shape, or if a number is not finite.
         """
-        self._scene.moving.place_things(self._boxes.shapes, poses)
+        self._scene.moving.place_things(self._boxes.shapes, self._own(poses, turns=True))
 
     def place_discs(self, discs: NDArray[np.float64]) -> None:
         """Show these round bodies, such as other robots, in the pictures to come.
@@ -79,7 +80,7 @@ class Camera:
         Upright cylinders from the floor up; the robot that carries the camera must not be one of
         them. Raises PictureError for another shape, or if a number is not finite.
         """
-        self._scene.moving.place_discs(self._boxes.shapes, discs)
+        self._scene.moving.place_discs(self._boxes.shapes, self._own(discs, turns=False))
 
     def place_all(self, things: NDArray[np.float64], round_things: NDArray[np.float64]) -> None:
         """Show what moves and what was put down as they are now, in the pictures to come.
@@ -97,8 +98,8 @@ class Camera:
         """Return what the robot sees: uint8 [height, width, 3], RGB.
 
         ``pose`` is the body's in the map frame, ``pan`` the camera's turn to the left, rad.
-        ``dirt`` is micrograms per cell of ``dirt_frame``. Raises PictureError if a number is
-        not finite or the dirt does not fit its frame.
+        ``dirt`` is micrograms per cell of ``dirt_frame``, in the home's own axes. Raises
+        PictureError if a number is not finite or the dirt does not fit its frame.
         """
         if self._smooth is not None:
             return self._smooth.taken(self._shot(pose, pan, dirt, dirt_frame))
@@ -121,6 +122,16 @@ class Camera:
             return picture
         return Picture(self._smooth.taken(shot), picture.depth)
 
+    def _own(self, rows: NDArray[np.float64], turns: bool) -> NDArray[np.float64]:
+        """Return rows x, y, ... in the axes of the scene; their third number may be an angle."""
+        axes = self._scene.axes
+        if axes is None or rows.ndim != 2 or rows.shape[1] < 3:
+            return rows
+        rows = placed(rows, axes.inverse())
+        if turns:
+            rows[:, 2] -= axes.theta
+        return rows
+
     def _shot(
         self, pose: Pose, pan: float, dirt: NDArray[np.int32], dirt_frame: GridFrame
     ) -> _Shot:
@@ -133,6 +144,8 @@ class Camera:
             raise PictureError(
                 f"expected dirt of the frame's shape {dirt_frame.shape}, got {dirt.shape}"
             )
+        if self._scene.axes is not None:
+            pose = self._scene.axes.inverse().compose(pose)
         lens = pose.compose(Pose(self.config.mount_forward, 0.0, pan))
         return (
             self._scene.arrays._replace(boxes=self._boxes),

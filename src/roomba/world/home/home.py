@@ -194,6 +194,19 @@ class MovingThing:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class TurnedFrom:
+    """What a turned home is made of: the same ``home`` in its own axes, exact.
+
+    These axes lie at ``axes`` in the turned home's frame, where the cells without floor are
+    ``drop``, bool [rows, columns].
+    """
+
+    home: Home
+    axes: Pose
+    drop: NDArray[np.bool_]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Home:
     """The truth about a home.
 
@@ -203,7 +216,8 @@ class Home:
     that stand up to the ceiling. ``station`` is the pose of the docked robot, its nose to the
     station. What is ``moving`` is not solid and in no other list: not among ``furniture``, and a
     door whose leaf moves is open in ``doors``. ``stairs`` lead down: floor on the map, a drop to
-    a robot.
+    a robot. A home that was ``turned`` by :mod:`roomba.world.home.turned` has slanted walls: its
+    grids show them as well as cells can, and ``exact`` is the home without their steps.
     """
 
     name: str
@@ -219,6 +233,25 @@ class Home:
     dirt_sources: tuple[DirtSource, ...] = ()
     moving: tuple[MovingThing, ...] = ()
     wall_height: float = 2.4
+    turned: TurnedFrom | None = None
+
+    @property
+    def exact(self) -> Home:
+        """What bodies meet and sensors see: the home in its own axes, which lie at ``axes``."""
+        return self if self.turned is None else self.turned.home
+
+    @property
+    def axes(self) -> Pose:
+        """Where the axes of ``exact`` lie in this home's frame."""
+        return Pose() if self.turned is None else self.turned.axes
+
+    def told(self, pose: Pose) -> Pose:
+        """Return a pose of the frame of ``exact`` in this home's frame."""
+        return pose if self.turned is None else self.turned.axes.compose(pose)
+
+    def own(self, pose: Pose) -> Pose:
+        """Return a pose of this home's frame in that of ``exact``."""
+        return pose if self.turned is None else self.turned.axes.inverse().compose(pose)
 
     @property
     def frame(self) -> GridFrame:
@@ -228,7 +261,7 @@ class Home:
     @property
     def drop(self) -> NDArray[np.bool_]:
         """Cells without floor, since stairs begin there: bool [rows, columns]."""
-        return cells_in(self.frame, self.stairs)
+        return cells_in(self.frame, self.stairs) if self.turned is None else self.turned.drop
 
     def room_at(self, x: float, y: float) -> Room | None:
         """Return the room in which a point lies, the first of several; None outside of all."""

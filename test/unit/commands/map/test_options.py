@@ -22,11 +22,12 @@ def test_without_words_the_flat_is_explored() -> None:
 
 def test_all_words_are_understood(tmp_path: Path) -> None:
     words = f"--map some.yaml --station 1 -2.5 -1e-3 --seed 7 --sensors ideal --json {tmp_path}/a"
-    words += f" --plot {tmp_path}/b.png --out {tmp_path}/new --quiet"
+    words += f" --plot {tmp_path}/b.png --out {tmp_path}/new --quiet --turned 45"
     options = options_of(words.split())
     assert options.trial.home == "some.yaml"
     assert options.trial.station == Pose(1.0, -2.5, -0.001)
     assert (options.trial.seed, options.trial.sensors) == (7, "ideal")
+    assert options.trial.turned == 45.0
     assert options.output.json == f"{tmp_path}/a"
     assert options.output.plot == tmp_path / "b.png"
     assert options.output.out == tmp_path / "new"

@@ -30,6 +30,7 @@ def test_everything_that_can_be_asked_for_arrives(tmp_path: Path) -> None:
     config.write_text("sensors: ideal\n", encoding="utf-8")
     words = "--home studio --station -1e-05 2 -3.1 --seed 7 --sensors ideal --things 3 --passes 2 "
     words += "--fan strong --battery 0.5 --shut-doors --no-go 0 0 1 1 --no-go -2 -2 -1 -1 --quiet "
+    words += "--turned -17.5 "
     words += f"--json --plot {tmp_path}/a.png --bag {tmp_path}/a.bag --config {config}"
     options = options_of(words.split())
     assert options.trial == Trial(
@@ -43,6 +44,7 @@ def test_everything_that_can_be_asked_for_arrives(tmp_path: Path) -> None:
         battery=0.5,
         station=Pose(-1e-05, 2.0, -3.1),
         config=config,
+        turned=-17.5,
     )
     assert options.json == "-"
     assert options.quiet

@@ -15,11 +15,14 @@ from roomba.commands.sim.command import main
 from roomba.commands.sim.json_file import TIMES, run_as_json
 from roomba.commands.sim.runs import Run, TrialSetup, run_trial
 from roomba.commands.sim.trial import Trial, UsageError
-from roomba.files.occupancy_map import save_map
+from roomba.commands.sim.zones import zones_of
+from roomba.files.occupancy_map import load_map, save_map
 from roomba.geometry import Pose
 from roomba.grid import FREE, OCCUPIED, GridFrame, OccupancyMap
 from roomba.mission.cleaning.request import CleanRequest
+from roomba.perception.rooms.zones import Zone, ZoneKind, Zones
 from roomba.perception.swept.coverage_map import GRANTED
+from roomba.storage.zones import save_zones
 from roomba.vocabulary import CleanMode
 
 KEYS = {
@@ -144,6 +147,31 @@ def test_a_part_of_the_floor_is_wanted(room: Path) -> None:
     assert frame.centre_of(0, int(columns.min()))[0] >= 1.0
     assert frame.centre_of(0, int(columns.max()))[0] <= 1.4
     assert rows.size > 1000
+
+
+def test_a_turned_room_is_cleaned_in_the_turned_frame(room: Path) -> None:
+    trial = Trial(home=str(room), seed=5, station=Pose(0.3, 0.8, math.pi), turned=30.0)
+    run = run_trial(trial)
+    station = Pose(0.0, 0.0, math.radians(30.0)).compose(Pose(0.3, 0.8, math.pi))
+    assert run.figures.docked
+    assert run.figures.fraction > 0.9
+    for x, y in ((run.home.station.x, run.home.station.y), run.trajectory[-1, 1:3].tolist()):
+        assert station.distance_to(x, y) < 0.03
+    for x, y in run.trajectory[:, 1:3].tolist():
+        assert run.home.map.values[run.home.frame.cell_of(x, y)] == FREE
+
+
+def test_zones_of_a_folder_turn_with_the_home(tmp_path: Path) -> None:
+    save_room(tmp_path / "map.yaml")
+    bowl = Zone("bowl", ZoneKind.WALL, ((1.0, 0.2), (1.0, 0.9)))
+    save_zones(Zones((bowl,)), load_map(tmp_path / "map.yaml"), tmp_path / "zones.yaml")
+    asked = ((0.0, 0.0, 0.5, 0.5),)
+    plain, turned = (
+        zones_of(Trial(home=str(tmp_path), turned=angle, no_go=asked)).all for angle in (0.0, 90.0)
+    )
+    assert plain[0] == bowl
+    assert np.array(turned[0].points) == pytest.approx(np.array([[-0.2, 1.0], [-0.9, 1.0]]))
+    assert turned[1] == plain[1]
 
 
 def test_the_battery_begins_as_asked_for(room: Path) -> None:

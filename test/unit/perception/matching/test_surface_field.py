@@ -11,6 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 from numpy.typing import NDArray
+from shapely.affinity import rotate
 
 from roomba.grid import FREE, OCCUPIED, UNKNOWN, GridFrame, OccupancyMap
 from roomba.perception.matching.surface_field import SurfaceField
@@ -115,3 +116,43 @@ def test_kernels_are_told_where_the_first_middle_is() -> None:
     assert field.place == pytest.approx([*field.frame.centre_of(0, 0), 0.1])
     assert field.values.dtype == np.float32
     assert field.values.flags.c_contiguous
+
+
+@given(st.floats(-math.pi, math.pi), st.floats(-0.3, 0.3))
+@settings(max_examples=30, deadline=None)
+def test_a_slanted_wall_lies_where_the_shares_of_its_cells_say(angle: float, off: float) -> None:
+    frame = GridFrame(0.05, -1.0, -1.0, 40, 40)
+    normal = np.array([math.cos(angle), math.sin(angle)])
+    wall = rotate(shapely.box(off, -9.0, off + 9.0, 9.0), angle, (0.0, 0.0), use_radians=True)
+    x, y = np.meshgrid(*frame.centres())
+    cells = shapely.box(x - 0.025, y - 0.025, x + 0.025, y + 0.025)
+    share = shapely.area(shapely.intersection(cells, wall)) / frame.resolution**2
+    values = np.ceil(OCCUPIED * share - 1e-9).clip(FREE, OCCUPIED).astype(np.int8)
+    field = SurfaceField.of(OccupancyMap(frame, values))
+    along = np.linspace(-0.6, 0.6, 200)
+    points = off * normal + along[:, None] * np.array([-normal[1], normal[0]])
+    inside = np.abs(points).max(axis=1) < 0.9
+    found = np.array([bilinear(field, *point) for point in points[inside].tolist()])
+    assert np.abs(found).max() < 0.012
+    assert abs(float(found.mean())) < 0.004
+
+
+def bilinear(field: SurfaceField, x: float, y: float) -> float:
+    """Return the field between its middles, in the plainest way."""
+    left, bottom, size = field.place.tolist()
+    u, v = (x - left) / size, (y - bottom) / size
+    column, row = math.floor(u), math.floor(v)
+    u, v = u - column, v - row
+    low = (1.0 - u) * field.values[row, column] + u * field.values[row, column + 1]
+    high = (1.0 - u) * field.values[row + 1, column] + u * field.values[row + 1, column + 1]
+    return float((1.0 - v) * low + v * high)
+
+
+def test_what_a_map_does_not_know_for_sure_is_no_wall() -> None:
+    values = np.zeros((9, 20), np.int8)
+    values[:, 0] = OCCUPIED
+    sure = SurfaceField.of(OccupancyMap(GridFrame(0.1, 0.0, 0.0, 9, 20), values)).values
+    unsure = values.copy()
+    unsure[4, 10] = 30
+    field = SurfaceField.of(OccupancyMap(GridFrame(0.1, 0.0, 0.0, 9, 20), unsure))
+    assert field.values.tolist() == sure.tolist()

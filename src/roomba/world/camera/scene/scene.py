@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 
+from roomba.geometry import Pose
 from roomba.grid import UNKNOWN
 from roomba.raster.distance import distance_to_nearest
 from roomba.world.camera.scene.arrays import (
@@ -94,6 +95,8 @@ class Scene:
 
     arrays: SceneArrays
     moving: MovingBoxes
+    axes: Pose | None = None
+    """Where the axes of ``arrays`` lie in the frame in which poses are told, if they are turned."""
 
     def boxes(self) -> Boxes:
         """Return boxes of which some can be placed, as they stand at first."""
@@ -102,6 +105,8 @@ class Scene:
     @staticmethod
     def of(home: Home) -> Scene:
         """Compile a home: under half a second for a flat."""
+        if home.turned is not None:
+            return replace(Scene.of(home.exact), axes=home.axes)
         frame = home.frame
         # The first surfaces are the floor's, whose grid has bytes for numbers.
         looks = _Looks()

@@ -1,0 +1,174 @@
+"""A home turned by any angle: slanted walls for the robot, exact ones for the world.
+
+The world goes on in the home's own axes, so lidar, contact and camera stay exact and as fast as
+they are; poses are told in the turned frame. The grids of that frame are what a map of slanted
+walls is: steps. Cells that a wall touches are not free, and tell how much of them is solid.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.geometry import Pose
+from roomba.grid import OCCUPIED, UNKNOWN, GridFrame, OccupancyMap
+from roomba.world.home.home import (
+    DirtSource,
+    Furniture,
+    Home,
+    Move,
+    MovingThing,
+    Room,
+    TurnedFrom,
+)
+
+Floats = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+_SAMPLES: Final = 9
+"""In each direction of a cell."""
+_TO_SIDE: Final = 0.499
+"""Cells; from the middle to the outermost samples."""
+
+
+def turned_home(home: Home, angle: float) -> Home:
+    """Return a home turned counter-clockwise by ``angle``, rad, about the origin of its frame.
+
+    Its doors and carpets are those of ``exact`` alone, since rectangles lie along the axes. Raises
+    ValueError for a home that is turned already.
+    """
+    if home.turned is not None:
+        raise ValueError("expected a home in its own axes, got one that is turned already")
+    axes, own = Pose(0.0, 0.0, angle), home.frame
+    frame = turned_frame(own, angle)
+    values = _in_middles(home.map.values, UNKNOWN, own, frame, angle)
+    share = _share(home.map.values == OCCUPIED, False, own, frame, angle)
+    grades = np.ceil(OCCUPIED * share).astype(np.int8)
+    return replace(
+        home,
+        map=OccupancyMap(frame, np.where(share > 0.0, grades, values)),
+        solid=_covered(home.solid, True, own, frame, angle),
+        walls=_covered(home.walls, False, own, frame, angle),
+        station=axes.compose(home.station),
+        rooms=tuple(_room(room, axes) for room in home.rooms),
+        furniture=tuple(_furniture(piece, axes) for piece in home.furniture),
+        doors=(),
+        carpets=(),
+        stairs=(),
+        dirt_sources=tuple(_dirt_source(source, axes) for source in home.dirt_sources),
+        moving=tuple(_moving(thing, axes) for thing in home.moving),
+        turned=TurnedFrom(home, axes, _in_middles(home.drop, False, own, frame, angle)),
+    )
+
+
+def turned_frame(frame: GridFrame, angle: float) -> GridFrame:
+    """Return a grid along the axes, of the same cell size, that holds all of a turned one."""
+    x_min, x_max, y_min, y_max = frame.extent
+    corners = placed(
+        np.array([[x_min, y_min], [x_max, y_min], [x_max, y_max], [x_min, y_max]]),
+        Pose(0.0, 0.0, angle),
+    )
+    size = frame.resolution
+    low = np.floor(corners.min(axis=0) / size + 1e-6)
+    high = np.ceil(corners.max(axis=0) / size - 1e-6)
+    columns, rows = (high - low).astype(int).tolist()
+    return GridFrame(size, float(low[0] * size), float(low[1] * size), rows, columns)
+
+
+def placed(rows: Floats, axes: Pose) -> Floats:
+    """Return rows x, y, ... of the frame at ``axes`` in the frame that ``axes`` is in.
+
+    float64 [n, 2 or more]; what follows x and y stays as it is.
+    """
+    cosine, sine = math.cos(axes.theta), math.sin(axes.theta)
+    moved = rows.copy()
+    moved[:, 0] = axes.x + cosine * rows[:, 0] - sine * rows[:, 1]
+    moved[:, 1] = axes.y + sine * rows[:, 0] + cosine * rows[:, 1]
+    return moved
+
+
+# ---------------------------------------------------------------- grids
+
+
+def _covered(cells: Mask, beyond: bool, own: GridFrame, frame: GridFrame, angle: float) -> Mask:
+    """Return the cells of ``frame`` that ``cells`` of ``own`` touch."""
+    return _share(cells, beyond, own, frame, angle) > 0.0
+
+
+def _share(cells: Mask, beyond: bool, own: GridFrame, frame: GridFrame, angle: float) -> Floats:
+    """Return how much of each cell of ``frame`` lies on ``cells`` of ``own``, 0..1."""
+    offsets = np.linspace(-_TO_SIDE, _TO_SIDE, _SAMPLES)
+    counts = np.zeros(frame.shape, np.int64)
+    for up in offsets.tolist():
+        for aside in offsets.tolist():
+            counts += _looked_up(cells, beyond, own, frame, angle, (up, aside))
+    share: Floats = counts / _SAMPLES**2
+    return share
+
+
+def _in_middles(
+    values: NDArray[Any], beyond: int, own: GridFrame, frame: GridFrame, angle: float
+) -> NDArray[Any]:
+    """Return what ``values`` of ``own`` are in the middles of the cells of ``frame``."""
+    return _looked_up(values, beyond, own, frame, angle, (0.0, 0.0))
+
+
+def _looked_up(
+    values: NDArray[Any],
+    beyond: int,
+    own: GridFrame,
+    frame: GridFrame,
+    angle: float,
+    offset: tuple[float, float],
+) -> NDArray[Any]:
+    """Return the values at places of all cells of ``frame``, ``offset`` cells off their middles."""
+    columns, rows = np.arange(frame.columns) + offset[1], np.arange(frame.rows) + offset[0]
+    x, y = frame.centres(rows, columns)
+    cosine, sine = math.cos(angle), math.sin(angle)
+    own_x = cosine * x[None, :] + sine * y[:, None]
+    own_y = cosine * y[:, None] - sine * x[None, :]
+    column = np.floor((own_x - own.origin_x) / own.resolution).astype(np.int64)
+    row = np.floor((own_y - own.origin_y) / own.resolution).astype(np.int64)
+    padded = np.pad(values, 1, constant_values=beyond)
+    found: NDArray[Any] = padded[
+        np.clip(row + 1, 0, own.rows + 1), np.clip(column + 1, 0, own.columns + 1)
+    ]
+    return found
+
+
+# ---------------------------------------------------------------- what is told by outlines
+
+
+def _room(room: Room, axes: Pose) -> Room:
+    return replace(room, outline=tuple(_point(axes, x, y) for x, y in room.outline))
+
+
+def _furniture(piece: Furniture, axes: Pose) -> Furniture:
+    return replace(
+        piece,
+        pose=axes.compose(piece.pose),
+        boxes=tuple(box.placed_at(axes) for box in piece.boxes),
+    )
+
+
+def _dirt_source(source: DirtSource, axes: Pose) -> DirtSource:
+    x, y = _point(axes, source.x, source.y)
+    return replace(source, x=x, y=y)
+
+
+def _moving(thing: MovingThing, axes: Pose) -> MovingThing:
+    moves = tuple(_move(move, axes) for move in thing.script.moves)
+    return replace(thing, pose=axes.compose(thing.pose), script=replace(thing.script, moves=moves))
+
+
+def _move(move: Move, axes: Pose) -> Move:
+    return replace(move, pose=axes.compose(move.pose))
+
+
+def _point(axes: Pose, x: float, y: float) -> tuple[float, float]:
+    point = axes.compose(Pose(x, y, 0.0))
+    return point.x, point.y
