@@ -66,6 +66,9 @@ class WrittenRobot:
         return GridLayer(1, 0.05, 0.0, 0.0, np.ones((3, 4), np.uint8))
 
     def __getattr__(self, name: str) -> Any:
+        if name in ("timeline", "maps"):
+            raise AttributeError(f"this robot is no recording, and keeps no maps: {name}")
+
         def command(*arguments: Any) -> None:
             if self.refusal:
                 raise RequestRefusedError(self.refusal)
