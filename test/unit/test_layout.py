@@ -76,32 +76,36 @@ TESTED_BY: dict[str, tuple[str, str]] = {
     "roomba/mission/phases/step": ("unit/mission/phases/test_phases.py", VALUES),
     "roomba/mission/steady": ("unit/headless/test_burst.py", MISSION),
     "roomba/mission/transitions": ("unit/mission/test_mission.py", MISSION),
-    "roomba/perception/localization/belief": (
-        "unit/perception/localization/test_belief_kernels.py",
+    "roomba/perception/localization/belief/belief": (
+        "unit/perception/localization/belief/test_belief_kernels.py",
         "the belief and its kernels are one",
     ),
-    "roomba/perception/localization/belief_correct_kernels": (
-        "unit/perception/localization/test_belief_kernels.py",
+    "roomba/perception/localization/belief/correct_kernels": (
+        "unit/perception/localization/belief/test_belief_kernels.py",
         "the belief and its kernels are one",
     ),
-    "roomba/perception/localization/belief_reckon_kernels": (
-        "unit/perception/localization/test_belief_kernels.py",
+    "roomba/perception/localization/belief/reckon_kernels": (
+        "unit/perception/localization/belief/test_belief_kernels.py",
         "the belief and its kernels are one",
     ),
-    "roomba/perception/localization/belief_trust_kernels": (
-        "unit/perception/localization/test_odometry_trust.py",
+    "roomba/perception/localization/belief/map_spread_kernels": (
+        "unit/perception/localization/belief/test_map_errors.py",
+        PART,
+    ),
+    "roomba/perception/localization/belief/trust_kernels": (
+        "unit/perception/localization/belief/test_odometry_trust.py",
         PART,
     ),
     "roomba/perception/localization/estimate": (
-        "unit/perception/localization/test_belief_kernels.py",
+        "unit/perception/localization/belief/test_belief_kernels.py",
         VALUES,
     ),
     "roomba/perception/localization/recent_sight_kernels": (
         "unit/perception/localization/test_recent_sight.py",
         PART,
     ),
-    "roomba/perception/localization/search_kernels": (
-        "unit/perception/localization/test_place_search.py",
+    "roomba/perception/localization/search/search_kernels": (
+        "unit/perception/localization/search/test_place_search.py",
         PART,
     ),
     "roomba/perception/matching/beams": ("unit/perception/matching/test_match_kernels.py", VALUES),
@@ -181,7 +185,6 @@ TESTED_BY: dict[str, tuple[str, str]] = {
 
 LARGE_FOLDERS = {
     "benchmarks/peers": "one script a peer",
-    "src/roomba/configuration": "one file a part of the robot",
     "src/roomba/commands/sim": "one command: its options, runs, figures and what they are told in",
     "test/fixtures": "one file a fixture",
     "test/ros": "one file a node",

@@ -9,8 +9,8 @@ from numba import njit
 from numpy.typing import NDArray
 
 from roomba.headless.burst_state import PlaceParts, Sight, World
-from roomba.perception.localization.belief_correct_kernels import correct, correct_late, is_calm
-from roomba.perception.localization.belief_reckon_kernels import reckon_on
+from roomba.perception.localization.belief.correct_kernels import correct, correct_late, is_calm
+from roomba.perception.localization.belief.reckon_kernels import reckon_on
 from roomba.perception.localization.recent_sight_kernels import note_sight
 from roomba.perception.matching.match_kernels import beam_ends
 from roomba.perception.matching.pose_kernels import beyond

@@ -15,7 +15,7 @@ from roomba.control.speed_loop import Hazards
 from roomba.geometry import Pose, Twist
 from roomba.headless.body import SimulatedBody
 from roomba.mission.docking.beams import StationBeams
-from roomba.perception.localization.belief import unknown_belief
+from roomba.perception.localization.belief.belief import unknown_belief
 from roomba.perception.localization.estimate import Estimate, Knowledge
 from roomba.perception.matching.scan_view import LidarModel
 from roomba.robot.command import Command

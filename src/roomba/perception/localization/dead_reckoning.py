@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from roomba.configuration.localization import LocalizationConfig
 from roomba.configuration.sensors import GyroConfig
 from roomba.geometry import Pose
-from roomba.perception.localization.belief import Rows, numbers_of, unknown_belief
-from roomba.perception.localization.belief_reckon_kernels import reckon_on
+from roomba.perception.localization.belief.belief import Rows, numbers_of, unknown_belief
+from roomba.perception.localization.belief.reckon_kernels import reckon_on
 from roomba.perception.matching.reckoned_path import ReckonedPath, pose_at
 
 

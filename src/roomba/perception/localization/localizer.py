@@ -18,16 +18,16 @@ from roomba.configuration.localization import LocalizationConfig
 from roomba.configuration.sensors import GyroConfig
 from roomba.geometry import Pose
 from roomba.grid import OccupancyMap
-from roomba.perception.localization.belief import numbers_of, unknown_belief
-from roomba.perception.localization.belief_correct_kernels import ASTRAY, deviation, is_calm
-from roomba.perception.localization.belief_reckon_kernels import SET_BACK
+from roomba.perception.localization.belief.belief import numbers_of, unknown_belief
+from roomba.perception.localization.belief.correct_kernels import ASTRAY, deviation, is_calm
+from roomba.perception.localization.belief.reckon_kernels import SET_BACK
 from roomba.perception.localization.dead_reckoning import DeadReckoning
 from roomba.perception.localization.doubt import Doubt
 from roomba.perception.localization.estimate import Estimate, Knowledge
 from roomba.perception.localization.expecting import searched_for, where_told
-from roomba.perception.localization.near_search import best_near
 from roomba.perception.localization.recent_sight_kernels import Sights
 from roomba.perception.localization.relocation import Expectation, Hypothesis, Relocation, Verdict
+from roomba.perception.localization.search.near_search import best_near
 from roomba.perception.localization.tracker import Tracker
 from roomba.perception.matching.scan_view import Fit, LidarModel, ScanView
 from roomba.perception.matching.surface_field import SurfaceField
@@ -69,7 +69,7 @@ class Localizer:
     """Keeps the estimate; tell it what the sensors say in the order of time.
 
     ``view`` is the newest scan. While it :attr:`is_calm`, kernels may do its work on ``belief``,
-    ``path`` and ``numbers`` (see :mod:`roomba.perception.localization.belief_correct_kernels`), and
+    ``path`` and ``numbers`` (see :mod:`roomba.perception.localization.belief.correct_kernels`), and
     on ``sights`` (see :mod:`roomba.perception.localization.recent_sight_kernels`), until it has
     :meth:`resumed`.
     """

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from roomba.configuration.localization import LocalizationConfig
 from roomba.geometry import Pose, wrap_angle
-from roomba.perception.localization.place_search import PlaceSearch
+from roomba.perception.localization.search.place_search import PlaceSearch
 from roomba.perception.matching.match_kernels import match
 from roomba.perception.matching.scan_view import Fit, ScanView
 from roomba.perception.matching.surface_field import SurfaceField

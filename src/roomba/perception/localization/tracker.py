@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 from roomba.configuration.localization import LocalizationConfig
 from roomba.configuration.sensors import GyroConfig
 from roomba.geometry import Pose
-from roomba.perception.localization.belief import AGREE, Rows, numbers_of, unknown_belief
-from roomba.perception.localization.belief_correct_kernels import judge_ends, match_ends, trust
-from roomba.perception.localization.belief_reckon_kernels import carry
+from roomba.perception.localization.belief.belief import AGREE, Rows, numbers_of, unknown_belief
+from roomba.perception.localization.belief.correct_kernels import judge_ends, match_ends, trust
+from roomba.perception.localization.belief.reckon_kernels import carry
 from roomba.perception.matching.fit_kernels import JUDGE_LANES
 from roomba.perception.matching.scan_view import Fit, ScanView
 from roomba.perception.matching.surface_field import SurfaceField

@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 from numba import njit
 
-from roomba.perception.localization.belief import Row, Rows
+from roomba.perception.localization.belief.belief import Row, Rows
 from roomba.perception.matching.pose_kernels import is_apart
 from roomba.perception.slam.following.follow_kernels import LEAST_POINTS
 

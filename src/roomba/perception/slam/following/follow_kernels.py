@@ -10,8 +10,8 @@ from numba import njit
 from numpy.typing import NDArray
 
 from roomba.angles import wrapped
-from roomba.perception.localization.belief import Row, Rows
-from roomba.perception.localization.belief_reckon_kernels import compose
+from roomba.perception.localization.belief.belief import Row, Rows
+from roomba.perception.localization.belief.reckon_kernels import compose
 from roomba.perception.matching.pose_kernels import beyond, seen_from
 from roomba.perception.slam.scan_matching.surfel_kernels import (
     ALIGN_WORK,

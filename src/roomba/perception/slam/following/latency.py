@@ -13,7 +13,7 @@ import numpy as np
 from numba import njit
 
 from roomba.angles import wrapped
-from roomba.perception.localization.belief import Row, Rows
+from roomba.perception.localization.belief.belief import Row, Rows
 from roomba.perception.matching.reckoned_path import ReckonedPath, pose_at
 
 _STEP: Final = 0.05

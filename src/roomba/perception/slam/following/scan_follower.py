@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from roomba.configuration.mapping import MappingConfig
 from roomba.geometry import Pose
-from roomba.perception.localization.belief import Rows, unknown_belief
+from roomba.perception.localization.belief.belief import Rows, unknown_belief
 from roomba.perception.localization.dead_reckoning import DeadReckoning
 from roomba.perception.matching.beams import LidarBeams
 from roomba.perception.matching.range_noise import unknown_noise

@@ -10,7 +10,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from roomba.angles import wrapped
-from roomba.perception.localization.belief import Rows
+from roomba.perception.localization.belief.belief import Rows
 from roomba.perception.matching.beams import LidarBeams
 from roomba.perception.matching.pose_kernels import is_apart
 from roomba.perception.matching.range_noise import measure_noise

@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.perception.localization.search_kernels import cells_with_room, score_heading
+from roomba.perception.localization.search.search_kernels import cells_with_room, score_heading
 from roomba.perception.matching.surface_field import SurfaceField
 
 STEP: Final = 0.15

@@ -26,15 +26,15 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from roomba.geometry import Pose, Twist, wrap_angle
-from roomba.perception.localization.belief import (
+from roomba.perception.localization.belief.belief import (
     ADAPTING,
     SMOOTHING,
     numbers_of,
     share_of,
     unknown_belief,
 )
-from roomba.perception.localization.belief_correct_kernels import correct, deviation, is_calm
-from roomba.perception.localization.belief_reckon_kernels import (
+from roomba.perception.localization.belief.correct_kernels import correct, deviation, is_calm
+from roomba.perception.localization.belief.reckon_kernels import (
     LEFT_OUT,
     WAS_SET_BACK,
     WENT_ON,

@@ -10,9 +10,9 @@ from numba import njit
 from numpy.typing import NDArray
 
 from roomba.angles import wrapped
-from roomba.perception.localization.belief import AGREE, EVIDENCE, SHORT, THROUGH, Row, Rows
-from roomba.perception.localization.belief_trust_kernels import learn_trust, note_correction
-from roomba.perception.localization.map_spread_kernels import map_spread
+from roomba.perception.localization.belief.belief import AGREE, EVIDENCE, SHORT, THROUGH, Row, Rows
+from roomba.perception.localization.belief.map_spread_kernels import map_spread
+from roomba.perception.localization.belief.trust_kernels import learn_trust, note_correction
 from roomba.perception.matching.beams import LidarBeams
 from roomba.perception.matching.field_kernels import Field, Place
 from roomba.perception.matching.fit_kernels import AGREEING, LOOKED_AT, judge

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.geometry import Pose, wrap_angle
-from roomba.perception.localization.search_kernels import score_heading
+from roomba.perception.localization.search.search_kernels import score_heading
 from roomba.perception.matching.match_kernels import match
 from roomba.perception.matching.scan_view import Fit, ScanView
 from roomba.perception.matching.surface_field import SurfaceField

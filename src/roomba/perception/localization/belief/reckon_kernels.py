@@ -9,7 +9,7 @@ from numba import njit
 
 from roomba.angles import wrapped
 from roomba.configuration.body import FASTEST_SPEED
-from roomba.perception.localization.belief import Row, Rows
+from roomba.perception.localization.belief.belief import Row, Rows
 from roomba.perception.matching.reckoned_path import ReckonedPath, forget_path, remember
 
 LEFT_OUT: Final = 0

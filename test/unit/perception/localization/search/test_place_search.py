@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 from roomba.geometry import Pose, wrap_angle
 from roomba.grid import FREE, OCCUPIED, GridFrame, OccupancyMap
-from roomba.perception.localization import place_search
-from roomba.perception.localization.place_search import BEAMS, STEP, TURN, PlaceSearch
-from roomba.perception.localization.search_kernels import score_heading
+from roomba.perception.localization.search import place_search
+from roomba.perception.localization.search.place_search import BEAMS, STEP, TURN, PlaceSearch
+from roomba.perception.localization.search.search_kernels import score_heading
 from roomba.perception.matching.surface_field import SurfaceField
 from roomba.world.home.home import Home
 

@@ -10,7 +10,7 @@ from fixtures.located import CONFIG, FURNISHED, LIDAR, START, Eye, Located, step
 
 from roomba.geometry import Pose, Twist, wrap_angle
 from roomba.perception.localization.estimate import Knowledge
-from roomba.perception.localization.near_search import best_near
+from roomba.perception.localization.search.near_search import best_near
 from roomba.perception.matching.surface_field import SurfaceField
 
 HERE = Pose(1.4, 2.6, 0.7)

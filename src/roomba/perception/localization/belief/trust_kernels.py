@@ -14,7 +14,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from roomba.angles import wrapped
-from roomba.perception.localization.belief import Row
+from roomba.perception.localization.belief.belief import Row
 
 _LEARNING: Final = 0.02
 """Share of the newest scan in how far off dead reckoning is."""

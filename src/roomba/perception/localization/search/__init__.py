@@ -1,0 +1,1 @@
+"""The robot looked for on the map: near a guess, or everywhere."""
