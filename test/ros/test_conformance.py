@@ -15,8 +15,9 @@ from roomba.world.layers.layer import load_home
 
 BEGIN = 5.0
 """s; by then all nodes are ready."""
-THING = (1.0, 0.75, 0.10)
-"""x, y and radius, m, of something that the map of HOME does not show."""
+THING = (1.03, 0.77, 0.10)
+"""x, y and radius, m, of something that the map of HOME does not show; ways around it do not lead
+along the sides of the dirt map's cells, where the last bits decide which one counts a grain."""
 STUDIO = load_home("studio", HOMES, SimulatedRobotConfig().body)
 IDEAL = {
     "clean": Case(HOME, sensors="ideal", begin=BEGIN),

@@ -7,13 +7,12 @@ import math
 from pathlib import Path
 from typing import Any, Final, Protocol
 
-import genpy
 import rosbag
 from tf2_msgs.msg import TFMessage
 
 from roomba.perception.localization.estimate import Knowledge
 from roomba_ros.bags.localize_replay import Row
-from roomba_ros.convert.common import pose_message, transform_message
+from roomba_ros.convert.common import pose_message, stamp_of, transform_message
 from roomba_ros.convert.localization import covariance_pose_message, localization_message
 
 _COLUMNS: Final = (
@@ -118,4 +117,4 @@ class RowBag:
             self._put("/localization", localization_message(stamp, estimate, _MAP_FRAME), row)
 
     def _put(self, topic: str, message: Any, row: Row) -> None:
-        self._bag.write(topic, message, genpy.Time.from_sec(row.arrival))
+        self._bag.write(topic, message, stamp_of(row.arrival))

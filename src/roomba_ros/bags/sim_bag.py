@@ -12,7 +12,6 @@ import sys
 from pathlib import Path
 from typing import Any, Final
 
-import genpy
 import numpy as np
 import rosbag
 from numpy.typing import NDArray
@@ -30,6 +29,7 @@ from roomba_ros.convert.common import (
     odometry_message,
     path_message,
     pose_message,
+    stamp_of,
     transform_message,
 )
 from roomba_ros.convert.sensors import battery_message, scan_message
@@ -79,7 +79,7 @@ class SimBag:
         """Write what the robot would tell now."""
         seen, config = robot.seen, self._scene.config
         now, believed = seen.time, robot.localizer.estimate.pose
-        self._put("/clock", Clock(genpy.Time.from_sec(now)), now)
+        self._put("/clock", Clock(stamp_of(now)), now)
         drift = believed.compose(seen.odometry.inverse())
         self._put(
             "/tf",
@@ -116,7 +116,7 @@ class SimBag:
         self._put("/coverage_map", map_message(now, coverage_on_map(self._scene), _MAP), now)
 
     def _put(self, topic: str, message: Any, now: float) -> None:
-        self._bag.write(topic, message, genpy.Time.from_sec(max(now, _EARLIEST)))
+        self._bag.write(topic, message, stamp_of(max(now, _EARLIEST)))
 
 
 def coverage_on_map(setup: TrialSetup) -> OccupancyMap:

@@ -25,7 +25,16 @@ MOST_CELLS = 20_000_000
 
 def header(now: float, frame_id: str) -> Header:
     """Return a header for a time, s, in a frame."""
-    return Header(stamp=genpy.Time.from_sec(now), frame_id=frame_id)
+    return Header(stamp=stamp_of(now), frame_id=frame_id)
+
+
+def stamp_of(now: float) -> genpy.Time:
+    """Return a time, s, as a stamp, rounded to nanoseconds: ``from_sec`` cuts the rest off.
+
+    A stamp that was read is written as it was.
+    """
+    seconds, nanoseconds = divmod(round(1e9 * now), 1_000_000_000)
+    return genpy.Time(seconds, nanoseconds)
 
 
 def quaternion_of(theta: float) -> Quaternion:

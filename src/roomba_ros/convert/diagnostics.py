@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-import genpy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+
+from roomba_ros.convert.common import stamp_of
 
 
 def refused_message(
@@ -25,5 +26,5 @@ def refused_message(
         values=[KeyValue(topic, str(count)) for topic, count in sorted(counts.items())],
     )
     message = DiagnosticArray(status=[status])
-    message.header.stamp = genpy.Time.from_sec(now)
+    message.header.stamp = stamp_of(now)
     return message

@@ -7,6 +7,8 @@ from typing import Final
 import rospy
 from std_msgs.msg import Time
 
+from roomba_ros.convert.common import stamp_of
+
 NODES: Final = ("speed_pub_node", "walk_to_point_action_server_node", "mission_node")
 """Nodes that drive, so the simulation waits for them; ``/pose`` tells it of position_pub_node."""
 _PERIOD: Final = 0.1
@@ -33,4 +35,4 @@ class Progress:
         """Tell that all is done up to a time of the ROS clock, s."""
         if self._publisher is not None and not 0.0 <= now - self._told < 0.99 * _PERIOD:
             self._told = now
-            self._publisher.publish(rospy.Time.from_sec(now))
+            self._publisher.publish(stamp_of(now))

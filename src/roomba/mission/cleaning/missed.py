@@ -40,10 +40,11 @@ def missed_floor(
 ) -> tuple[Missed, ...]:
     """Return the patches of ``least`` m2 or more of what is ``left``, the largest first.
 
-    ``left`` is bool over the context's frame. ``edges`` are those of the ``obstacles`` where the
-    floor ends. ``is_over``: the clean went on to its end.
+    ``left`` is bool over the context's frame. A strip of single cells along a swath is no place
+    that was missed: a fraction of a cell decides about it. ``edges`` are those of the ``obstacles``
+    where the floor ends. ``is_over``: the clean went on to its end.
     """
-    patches = patches_of(left, context.frame, least)
+    patches = [patch for patch in patches_of(left, context.frame, least) if is_broad(patch.cells)]
     reachable = _reachable(context, obstacles)
     before_edges = _reachable(context, edges) if edges else None
 
@@ -58,6 +59,12 @@ def missed_floor(
         Missed(patch.area, patch.x, patch.y, context.room_at(patch.x, patch.y), reason(patch))
         for patch in patches
     )
+
+
+def is_broad(cells: Mask) -> bool:
+    """Whether cells, bool [rows, columns], are two by two wide somewhere."""
+    upper, lower = cells[1:], cells[:-1]
+    return bool((upper[:, 1:] & upper[:, :-1] & lower[:, 1:] & lower[:, :-1]).any())
 
 
 def is_hidden(patch: Patch, context: PlanningContext, things: Sequence[RoundObstacle]) -> bool:

@@ -41,11 +41,17 @@ class NarrowFloor:
     fine: Mask
 
     def place_near(self, there: Point) -> Point:
-        """Return the point of the cell of ``places`` around ``there`` that is nearest to it, m."""
+        """Return the point of the cell of ``places`` around ``there`` that is nearest to it, m.
+
+        Around where the robot stands there may be no such cell: then of all cells, of which there
+        must be some.
+        """
         row, column = self.frame.cell_of(*there)
         parts = self.fine_frame.rows // self.frame.rows
         window = self.fine[row * parts : (row + 1) * parts, column * parts : (column + 1) * parts]
         cells = np.argwhere(window) + np.array((row * parts, column * parts))
+        if len(cells) == 0:
+            cells = np.argwhere(self.fine)
         x, y = self.fine_frame.centres(cells[:, 0], cells[:, 1])
         nearest = int(np.argmin(np.hypot(x - there[0], y - there[1])))
         return float(x[nearest]), float(y[nearest])

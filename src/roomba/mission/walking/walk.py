@@ -11,6 +11,8 @@ import math
 from dataclasses import dataclass
 from enum import Enum
 
+import numpy as np
+
 from roomba.clock import LONGEST_TICK, ClockJumps
 from roomba.configuration.loops import WalkConfig
 from roomba.mission.driving.obstacles import Obstacles
@@ -220,10 +222,13 @@ class Walk:
 
     def _plan_to_look(self, senses: Senses) -> Path:
         """Return the same, or a way to where something stood that was seen: it may have gone."""
+        here = (senses.pose.x, senses.pose.y)
         try:
             return self._plan(senses)
         except NoPathError:
-            here = (senses.pose.x, senses.pose.y)
+            if math.dist(here, self.goal) <= self._config.arrival_tolerance:
+                # It stands there, beside its station perhaps, where a body should not be.
+                return Path(np.array([here]))
             return self._planner.plan(here, self.goal, self._obstacles.felt(senses.now))
 
 

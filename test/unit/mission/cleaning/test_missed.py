@@ -56,6 +56,17 @@ def test_what_can_be_reached_is_left_over_or_was_not_its_turn() -> None:
     assert reason([IN_THE_HALL], [IN_THE_HALL]) is MissReason.LEFT_OVER
 
 
+def test_a_strip_of_single_cells_along_a_swath_is_no_place_that_was_missed() -> None:
+    row, column = SITE.frame.cell_of(0.9, 1.0)
+    left = np.zeros(SITE.frame.shape, np.bool_)
+    left[row, column : column + 60] = True
+    left[row : row + 60, column] = True
+    assert missed_floor(left, 0.004, SITE, [], [], is_over=True) == ()
+    left[row + 1, column + 30 : column + 32] = True
+    (missed,) = missed_floor(left, 0.004, SITE, [], [], is_over=True)
+    assert missed.area == pytest.approx(np.count_nonzero(left) * SITE.frame.resolution**2)
+
+
 def test_next_to_a_thing_it_is_that_thing_and_next_to_an_edge_the_floor_ends() -> None:
     x, y, _ = IN_THE_HALL
     rows, columns = np.indices(SITE.frame.shape)

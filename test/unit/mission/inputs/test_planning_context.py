@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 import shapely
@@ -136,3 +138,17 @@ def test_in_a_map_that_grows_paths_keep_farther_away() -> None:
     fence = [(1.2, 1.25 + side, 0.05) for side in (*away.tolist(), *(-away).tolist())]
     assert len(context().paths.plan(*ends, fence).points)
     assert len(grows.paths.plan(*ends, fence).points)
+
+
+def test_around_a_robot_that_stands_too_near_a_wall_the_nearest_narrow_place_is_another_cells() -> (
+    None
+):
+    home = context()
+    narrow = home.narrow_floor((0.85, 1.25), [])
+    row, column = np.argwhere(~narrow.places)[0]
+    beside = narrow.frame.centre_of(int(row), int(column))
+    x, y = narrow.fine_frame.centres(*np.nonzero(narrow.fine))
+    nearest = float(np.hypot(x - beside[0], y - beside[1]).min())
+    assert math.dist(narrow.place_near(beside), beside) == pytest.approx(nearest)
+    inside = narrow.frame.centre_of(*np.argwhere(narrow.places)[0].tolist())
+    assert narrow.frame.cell_of(*narrow.place_near(inside)) == narrow.frame.cell_of(*inside)

@@ -143,6 +143,21 @@ def stuck_walk() -> tuple[Walk, Senses]:
     return Walk(planner, CONFIG.walk, obstacles, (4.0, 3.0), senses), senses
 
 
+def test_where_it_stands_it_has_arrived_though_no_way_leads_there() -> None:
+    home = room_home(blocks=FURNITURE)
+    planner = PathPlanner(home.map, CONFIG.body.radius, 0.04, 0.01)
+    things = ThingLayer(SurfaceField.of(home.map))
+    obstacles = Obstacles(things, CONFIG.walk, CONFIG.body, MissionConfig().driving)
+    beside = Senses(100.0, Pose(1.2 - CONFIG.body.radius, 1.0, 0.0))
+    goal = (beside.pose.x + 0.01, beside.pose.y)
+    with pytest.raises(NoPathError):
+        planner.plan((0.5, 1.0), goal)
+    walk = Walk(planner, CONFIG.walk, obstacles, goal, beside)
+    assert walk.tick(beside, 0.5).state is WalkState.ARRIVED
+    with pytest.raises(NoPathError):
+        Walk(planner, CONFIG.walk, obstacles, (goal[0] + 0.1, goal[1]), beside)
+
+
 def test_a_robot_that_does_not_move_gives_up_with_the_reason() -> None:
     walk, senses = stuck_walk()
     for tick in range(20 * 200):
