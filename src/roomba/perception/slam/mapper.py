@@ -226,10 +226,6 @@ class Mapper:
         """Return the map as it is now; raises ValueError before the first scan."""
         return self._map.drawn.occupancy()
 
-    def occupancy_around(self, x: float, y: float, reach: float) -> OccupancyMap:
-        """Return what lies up to ``reach`` m off a place of the map as it is now."""
-        return self._map.drawn.around(x, y, reach)
-
     def finish(self) -> OccupancyMap:
         """Link all submaps anew, turn the map to its walls, and return it.
 

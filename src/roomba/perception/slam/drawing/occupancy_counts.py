@@ -71,26 +71,6 @@ class OccupancyCounts:
         )
         return OccupancyMap(frame, np.pad(values, _MARGIN, constant_values=UNKNOWN))
 
-    def around(self, x: float, y: float, reach: float, share: float, least: int) -> OccupancyMap:
-        """Return what lies up to ``reach`` m off a place, as far as the grid goes."""
-        size = self._resolution
-        row = math.floor((y - reach - self._phase[1]) / size) - self._row
-        column = math.floor((x - reach - self._phase[0]) / size) - self._column
-        cells = math.ceil(2.0 * reach / size) + 1
-        rows, columns = self._arrays.hits.shape
-        first_row, last_row = np.clip((row, row + cells), 0, rows).tolist()
-        first_column, last_column = np.clip((column, column + cells), 0, columns).tolist()
-        window = np.array([first_row, last_row - 1, first_column, last_column - 1])
-        values = np.empty((last_row - first_row, last_column - first_column), np.int8)
-        occupancy(self._arrays._replace(bounds=window), share, least, values)
-        frame = GridFrame(
-            size,
-            self._phase[0] + (self._column + first_column) * size,
-            self._phase[1] + (self._row + first_row) * size,
-            *values.shape,
-        )
-        return OccupancyMap(frame, values)
-
     def _lay(
         self, hits: Counts, passes: Counts, offsets: Offsets, bounds: NDArray[np.int64]
     ) -> None:

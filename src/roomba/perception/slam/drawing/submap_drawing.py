@@ -57,12 +57,6 @@ class SubmapDrawing:
         self._redraw_moved()
         return self._counts.occupancy(self._config.occupied_share, self._config.occupied_beams)
 
-    def around(self, x: float, y: float, reach: float) -> OccupancyMap:
-        """Return what lies up to ``reach``, m, off a place, m, of the map as it is now."""
-        self._redraw_moved()
-        config = self._config
-        return self._counts.around(x, y, reach, config.occupied_share, config.occupied_beams)
-
     def redraw(self) -> None:
         """Draw all keyframes into new occupancy counts, where they are thought to be now."""
         self._counts = OccupancyCounts(self._config.resolution, self.phase)

@@ -135,22 +135,6 @@ def test_a_scan_without_points_shows_where_the_lidar_was() -> None:
     assert made.frame.contains(1.0, 2.0)
 
 
-@given(st.floats(-1.0, 6.0), st.floats(-1.0, 5.0), st.floats(0.05, 3.0))
-@settings(max_examples=40)
-def test_a_part_of_it_is_cut_out_of_the_whole(x: float, y: float, reach: float) -> None:
-    counts = OccupancyCounts(0.05, (0.01, 0.02))
-    points = points_of(Eye(FURNISHED).scan(START)).astype(np.float32)
-    counts.draw(points, CENTRE, row(START), 3.0)
-    whole, part = counts.occupancy(0.3, 1), counts.around(x, y, reach, 0.3, 1)
-    away = [(x + dx, y + dy) for dx in (-0.99 * reach, 0.3, 0.0) for dy in (0.0, 0.99 * reach)]
-    for at in away:
-        if whole.frame.contains(*at) and abs(at[0] - x) < reach and abs(at[1] - y) < reach:
-            assert part.frame.contains(*at)
-            assert value_at(part, *at) == value_at(whole, *at)
-    left, right, low, high = part.frame.extent
-    assert max(x - left, right - x, y - low, high - y) < max(reach, 0.0) + 0.11
-
-
 def test_a_scan_that_is_erased_leaves_the_others() -> None:
     first, second = np.array([0.0, 0.0, 0.0]), np.array([0.3, 2.0, 1.0])
     both_counts = OccupancyCounts(0.05), OccupancyCounts(0.05)
