@@ -1,5 +1,6 @@
 import math
 import time
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import cv2
@@ -58,56 +59,63 @@ def test_it_takes_a_picture_when_there_is_none_and_keeps_it(
     assert asked == [0.0, -30.0, 15.0, 30.0]
 
 
+class Journey:
+    """A robot whose clock is 30 times as fast as real time."""
+
+    def __init__(self, graph: RosGraph) -> None:
+        graph.set_param("/use_sim_time", True)
+        self._probe = Probe(graph)
+        self._now, self._pose = 2.0, PoseStamped()
+        self._pose.pose.orientation.w = 1.0
+        self._clock = rospy.Publisher("/clock", Clock, queue_size=1, latch=True)
+        self._clock.publish(rospy.Time(self._now))
+
+    def goes_on(self, metres: float) -> None:
+        """Drive so far in 3 s of its clock, which is when the node looks again."""
+        self._now += 3.0
+        self._pose.pose.position.x += metres
+        self._probe.send("/pose", self._pose)
+        self._clock.publish(rospy.Time(self._now))
+
+
 def test_while_it_travels_it_keeps_the_newest_picture_of_each_angle(
     graph: RosGraph, tmp_path: Path
 ) -> None:
-    probe = Probe(graph)
+    graph.configure_nodes(pictures={"rest": 0.05})
+    journey = Journey(graph)
     asked = offer_camera()
     start(graph, tmp_path / "Images")
-    message = PoseStamped()
-    message.pose.orientation.w = 1.0
 
     def has_travelled() -> bool:
-        message.pose.position.x += 0.1
-        probe.send("/pose", message)
+        journey.goes_on(1.0)
         return len(asked) >= 8
 
-    wait_until(has_travelled, 20.0, "eight pictures", pause=0.2)
+    wait_until(has_travelled, 20.0, "eight pictures", pause=0.1)
     assert asked[:5] == [float(angle) for angle in ANGLES]
     assert asked[5:8] == [-30.0, -15.0, 0.0]
     assert {path.name for path in (tmp_path / "Images").glob("*.png")} == {
         f"{angle}.png" for angle in ANGLES
     }
     standing = len(asked)
-    # A robot that stands for 4 s tells its pose five times a second.
+    # A robot that stands for a minute.
     for _ in range(20):
-        probe.send("/pose", message)
-        time.sleep(0.2)
+        journey.goes_on(0.0)
+        time.sleep(0.1)
     assert len(asked) <= standing + 5
 
 
 def test_on_a_fast_clock_it_takes_no_more_than_one_a_second(
     graph: RosGraph, tmp_path: Path
 ) -> None:
-    graph.set_param("/use_sim_time", True)
-    clock = graph.run("rostopic", "pub", "-r", "10", "/clock", "rosgraph_msgs/Clock", "clock: 1")
-    probe = Probe(graph)
+    journey = Journey(graph)
     asked = offer_camera()
     start(graph, tmp_path / "Images")
-    clock.clean_up()
-    now, began = 2.0, time.monotonic()
-    message = PoseStamped()
-    message.pose.orientation.w = 1.0
+    began = time.monotonic()
 
     def has_travelled() -> bool:
-        nonlocal now
-        now += 3.0
-        message.pose.position.x += 1.0
-        probe.send("/pose", message)
-        probe.send("/clock", Clock(rospy.Time(now)))
-        return now > 100.0 and len(asked) > 6
+        journey.goes_on(1.0)
+        return len(asked) > 6
 
-    # The clock of a simulation that is 30 times as fast as real time.
     wait_until(has_travelled, 30.0, "two pictures more than the first of each angle", pause=0.1)
     assert len(asked) <= 5 + (time.monotonic() - began)
 
@@ -122,23 +130,25 @@ def test_what_is_no_angle_is_an_error_of_the_service(graph: RosGraph, tmp_path: 
             service(wrong)
 
 
-def test_a_picture_missing_or_corrupt_is_named(graph: RosGraph, tmp_path: Path) -> None:
-    """Without a camera there is nothing to replace it by: the service names the file."""
+def test_without_a_camera_the_last_good_picture_counts_and_what_is_missing_is_named(
+    graph: RosGraph, tmp_path: Path
+) -> None:
+    """The good one outlived a crash; there is nothing to replace a bad one by."""
     Probe(graph)
     (tmp_path / "15.png").write_bytes(b"not a picture")
-    service = start(graph, tmp_path)
-    with pytest.raises(rospy.ServiceException, match=r"/0\.png: no picture yet"):
-        service(0.0)
-    with pytest.raises(rospy.ServiceException, match=r"/15\.png: expected a PNG picture"):
-        service(15.0)
-
-
-def test_the_last_good_picture_survives_a_crash(graph: RosGraph, tmp_path: Path) -> None:
-    Probe(graph)
     cv2.imwrite(str(tmp_path / "30.png"), picture(77))
     (tmp_path / ".30.png.unfinished-0").write_bytes(b"half a pic")
-    service = start(graph, tmp_path)
-    assert set(service(30.0).image.data) == {77}
+    start(graph, tmp_path)
+    # At once: for each the camera is waited for.
+    with ThreadPoolExecutor() as calls:
+        answers = {
+            angle: calls.submit(rospy.ServiceProxy("/turn_camera", TurnCamera), angle)
+            for angle in (0.0, 15.0, 30.0)
+        }
+    assert set(answers[30.0].result().image.data) == {77}
+    for angle, words in ((0.0, r"/0\.png: no picture yet"), (15.0, "/15.png: expected a PNG")):
+        with pytest.raises(rospy.ServiceException, match=words):
+            answers[angle].result()
 
 
 def test_a_corrupt_picture_is_taken_again(graph: RosGraph, tmp_path: Path) -> None:

@@ -23,6 +23,8 @@ from roomba_ros.runtime.action_client import ActionClient
 
 SCRIPT = "walk_to_point_action_server.py"
 SERVER = "/walk_to_point_action_server_node"
+SOON = {"senses": 0.5}
+"""s of wall time after which it takes goals though nothing tells it map and pose."""
 
 
 def serving(graph: RosGraph) -> bool:
@@ -31,6 +33,7 @@ def serving(graph: RosGraph) -> bool:
 
 def test_a_second_server_is_refused_by_name_and_by_topic(graph: RosGraph) -> None:
     """One server walks the robot: a second one ends with an error, and the first goes on."""
+    graph.configure_nodes(deadlines=SOON)
     first = graph.rosrun(SCRIPT)
     wait_until(lambda: serving(graph), 30.0)
     for arguments in ((), ("__name:=another_server",)):
@@ -42,6 +45,7 @@ def test_a_second_server_is_refused_by_name_and_by_topic(graph: RosGraph) -> Non
 
 
 def test_a_server_that_died_is_no_rival(graph: RosGraph) -> None:
+    graph.configure_nodes(deadlines=SOON)
     first = graph.rosrun(SCRIPT)
     wait_until(lambda: serving(graph), 30.0)
     graph.signal(SERVER.strip("/"), signal.SIGKILL)
@@ -52,6 +56,7 @@ def test_a_server_that_died_is_no_rival(graph: RosGraph) -> None:
 
 
 def test_without_map_and_pose_a_goal_is_rejected_with_the_reason(graph: RosGraph) -> None:
+    graph.configure_nodes(deadlines=SOON)
     graph.rosrun(SCRIPT)
     Probe(graph)
     walker = Walker()

@@ -75,7 +75,7 @@ def test_a_replay_shows_the_same_run(bag: Path, graph: RosGraph, clock: tuple[st
     heard: list[tuple[float, float]] = []
     rospy.Subscriber("/position", RobotPosition, lambda m: heard.append((m.pos_x, m.pos_y)))
     probe.hear("/position", RobotPosition)
-    player = graph.run("rosbag", "play", "-d", "2", "-r", "2", "-q", str(bag), *clock)
+    player = graph.run("rosbag", "play", "-d", "2", "-r", "4", "-q", str(bag), *clock)
     assert player.ends(60.0) == 0
     recorded = positions(bag)
     wait_until(lambda: heard[-1:] == recorded[-1:], 10.0, "the end of the run")

@@ -66,7 +66,7 @@ def bag(tmp_path: Path) -> Path:
 
 def play(graph: RosGraph, bag: Path, map_wish: str, listener: Listener) -> None:
     """Play a bag to a new position node, and go on with the clock after its end."""
-    options = ("--clock", "-k", "-q", "--pause", "-r", "2")
+    options = ("--clock", "-k", "-q", "--pause", "-r", "4")
     player = graph.run("rosbag", "play", *options, str(bag), "__name:=player")
     node = graph.rosrun("position_pub_node.py", f"_map:={map_wish}")
     pause = rospy.ServiceProxy("/player/pause_playback", SetBool)
