@@ -32,23 +32,37 @@ def own_history(tmp_path_factory: pytest.TempPathFactory) -> None:
 
 TESTS = Path(__file__).resolve().parent
 LONGEST_FIRST = (
-    "test_clean.py",
-    "test_map_topics.py",
+    "test_standstill.py",
+    "test_conformance.py",
     "test_faults.py",
+    "test_map_topics.py",
     "test_turn_camera.py",
-    "test_map_kept.py",
-    "test_bags.py",
-    "test_foreign_robot.py",
-    "test_explore.py",
-    "test_walk_to_point_action_server.py",
+    "test_clean.py",
     "test_seed.py",
+    "test_bags.py",
+    "test_map_kept.py",
     "test_menu.py",
+    "test_refused_messages.py",
+    "test_home_sim_sensors.py",
+    "test_walk_to_point_action_server.py",
+    "test_foreign_robot.py",
     "test_walk.py",
-    "test_localize.py",
+    "test_mission_node.py",
+    "test_home_sim_node.py",
+    "test_speed_pub_node.py",
     "test_localization.py",
-    "test_map_bag.py",
+    "test_namespaces.py",
+    "test_position_pub_node.py",
+    "test_control_node.py",
+    "test_explore.py",
+    "test_ros_interface.py",
+    "test_localize.py",
+    "test_page.py",
+    "test_pictures.py",
+    "test_page_on_graph.py",
 )
-"""Files that take longest, so that no worker is left with one when the others have ended."""
+"""Files that take longest, so that no worker is left with one when the others have ended; those
+that wait and those that compute by turns."""
 
 
 SLOW = (

@@ -18,8 +18,6 @@ from roomba.files.shipped import HOMES
 from roomba.storage.map_store import MapStore, StoredMap
 from roomba.world.layers.layer import load_home
 
-pytestmark = pytest.mark.xdist_group("graph")
-
 
 def store_of(folder: Path) -> MapStore:
     return MapStore(folder / "ros_home" / "roomba_robot" / "maps")

@@ -7,7 +7,6 @@ import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-import pytest
 from fixtures.graph import RosGraph
 from fixtures.waiting import wait_until
 from playwright.sync_api import Page, sync_playwright
@@ -15,7 +14,6 @@ from playwright.sync_api import Page, sync_playwright
 from roomba.history.database import History, KeptRun
 from roomba.history.folder import history_folder
 
-pytestmark = pytest.mark.xdist_group("graph")
 WORKS_WITHIN = 60_000
 """ms of wall time for what the robot does by its own clock."""
 
