@@ -27,20 +27,17 @@ OPEN_FLOOR = (1.5, 2.0)
 """m; a place with a metre of floor around."""
 TIMES = 2
 """How often each cause is tried."""
-MOST_TRIALS = 12
-"""One in which the machine was late by a tick of the robot is tried again."""
-TICK = 0.05
-"""s of the robot's clock."""
+MOST_TRIALS = 20
+"""One in which the machine was late is tried again."""
+LATE = 0.025
+"""s of the robot's clock: half a tick, as a machine that is later may cost a whole one."""
 
 
-@pytest.fixture(scope="module", params=["2"], ids=lambda speed: f"speed {speed}")
+@pytest.fixture(scope="module", params=["1"], ids=lambda speed: f"speed {speed}")
 def shared_robot(
     request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
 ) -> Iterator[RosGraph]:
-    """The whole robot, twice as fast as real time, which leaves its nodes half as long.
-
-    Nodes that were ended are back after a test.
-    """
+    """The whole robot; nodes that were ended are back after a test."""
     with RosGraph(tmp_path_factory.mktemp("robot")) as own:
         own.launch(f"speed:={request.param}")
         yield own
@@ -262,7 +259,7 @@ def test_it_stands_within_half_a_second(shared_robot: RosGraph, case: str) -> No
         drive.rest.machine.latest = 0.0
         with cause(drive) as since:
             seconds = drive.rest.seconds(since)
-            if drive.rest.machine.latest * speed < TICK:
+            if drive.rest.machine.latest * speed < LATE:
                 took.append(round(seconds, 3))
         if len(took) == TIMES:
             break
