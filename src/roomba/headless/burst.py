@@ -226,10 +226,11 @@ class Burst:
         elif brain.mapper is not None:
             brain.mapper.resumed()
             if scan is not None and self._burst[0]["is_followed"]:
-                brain.mapper.finish_scan(scan.stamp)
+                brain.mapper.finish_scan(scan.stamp, scan.ranges)
             elif scan is not None:
                 brain.mapper.see(scan.stamp, scan.ranges, scan.lidar)
-        brain.look(scan)
+        if scan is not None:
+            brain.look()
 
 
 def _place_of(place: tuple[float, float] | None) -> tuple[float, float]:

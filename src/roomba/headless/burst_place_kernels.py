@@ -13,7 +13,7 @@ from roomba.perception.localization.belief.correct_kernels import correct, corre
 from roomba.perception.localization.belief.reckon_kernels import reckon_on
 from roomba.perception.localization.recent_sight_kernels import note_sight
 from roomba.perception.matching.match_kernels import beam_ends
-from roomba.perception.matching.pose_kernels import beyond
+from roomba.perception.matching.pose_kernels import beyond, pose_then
 from roomba.perception.matching.sweep import at_once
 from roomba.perception.slam.following.follow_kernels import moved_since
 from roomba.perception.slam.following.scan_kernels import IS_DONE, IS_LEFT, take_scan
@@ -83,12 +83,9 @@ def localize(
         burst.is_left = True
         return False
     note_sight(place.sights, stamp, reckoned, beams.ends, count)
-    if burst.is_late:
-        count = beam_ends(
-            ranges, beams.directions, beams.mount, beams.nearest, beams.farthest, beams.ends
-        )
-    pose = belief[0].pose
-    note(sight.things, sight.field, sight.place, beams, ranges, count, pose, burst.stride)
+    still, at = place.still if burst.is_late else ranges, burst.seen_from
+    at[0], at[1], at[2] = pose_then(belief[0].pose, belief[0].reckoned, reckoned)
+    note(sight.things, sight.field, sight.place, beams, still, count, at, burst.stride)
     return True
 
 
@@ -104,11 +101,10 @@ def map_on(
         return False
     submap, here, at = burst.submap, following.follower[0].here, burst.at_scan
     at[0], at[1], at[2] = beyond(submap[0], submap[1], submap[2], here[0], here[1], here[2])
-    seen_from = burst.seen_from
-    seen_from[0], seen_from[1], seen_from[2] = believed(burst, place)
     beams = place.beams
+    still = ranges if beams.time_increment == 0.0 else following.still
     count = beam_ends(
-        ranges, beams.directions, beams.mount, beams.nearest, beams.farthest, beams.ends
+        still, beams.directions, beams.mount, beams.nearest, beams.farthest, beams.ends
     )
-    note(sight.things, sight.field, sight.place, beams, ranges, count, seen_from, burst.stride)
+    note(sight.things, sight.field, sight.place, beams, still, count, at, burst.stride)
     return True

@@ -53,7 +53,7 @@ BURST: Final = np.dtype(
         ("seen_at", "f8"),  # s; when the last one that was looked at came
         ("submap", "f8", (3,)),  # m, rad; where a mapper follows it
         ("at_scan", "f8", (3,)),  # a mapper's place at that one
-        ("seen_from", "f8", (3,)),  # and by now
+        ("seen_from", "f8", (3,)),  # where the newest scan was taken, as a localizer has it
         ("last", "f8", (3,)),  # time, s, and place, m, as believed, when the last tick began
         ("way", "f8"),  # m; driven between these, as believed
         ("sweeps", "?"),  # whether what is driven over counts

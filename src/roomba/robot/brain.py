@@ -33,7 +33,7 @@ from roomba.robot.command import Command
 from roomba.robot.growing_map import GrowingMap
 from roomba.robot.mapped_mission import MappedMission, fan_of
 from roomba.robot.place import Place, PlaceKeeper
-from roomba.robot.readings import Readings, ScanReading, senses_of
+from roomba.robot.readings import Readings, senses_of
 from roomba.robot.walking import Walking
 
 _BESIDE_SURFACES: Final = 0.3
@@ -102,7 +102,8 @@ class Brain:
     def sense(self, readings: Readings) -> None:
         """Find out where the robot is, what stands in its way, and what its map is by now."""
         self._readings = readings
-        self.look(self.keeper.follow(readings))
+        if self.keeper.follow(readings) is not None:
+            self.look()
         self.use_newer_map()
 
     def decide(self) -> Command:
@@ -142,12 +143,10 @@ class Brain:
             mission.command(Event.PAUSE, senses)
         return walk
 
-    def look(self, scan: ScanReading | None) -> None:
-        """Look in a scan, if there is one, for things that the map does not show."""
-        if scan is None:
-            return
-        estimate = self.keeper.place.estimate
-        self._mapped.lookout.look(scan, estimate.pose, estimate.knowledge)
+    def look(self) -> None:
+        """Look in the newest scan for things that the map does not show."""
+        place = self.keeper.place
+        self._mapped.lookout.look(place.placed, place.estimate.knowledge)
 
     def use_newer_map(self) -> None:
         """Begin a mission on the first map, or let it go on with a newer one."""

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from roomba.configuration.robot import RobotConfig
 from roomba.configuration.things import ThingConfig
-from roomba.geometry import Pose
 from roomba.perception.localization.estimate import Knowledge
 from roomba.perception.matching.beams import LidarBeams
-from roomba.perception.matching.scan_view import LidarModel
+from roomba.perception.matching.scan_view import LidarModel, PlacedScan
 from roomba.perception.matching.surface_field import SurfaceField
 from roomba.perception.things.layer import ThingLayer
-from roomba.robot.readings import ScanReading
 
 
 class Lookout:
@@ -27,10 +25,10 @@ class Lookout:
         self.things = ThingLayer(field, self._config)
         return self.things
 
-    def look(self, scan: ScanReading | None, pose: Pose, knowledge: Knowledge) -> None:
-        """Look in a scan, if there is one, taken at a pose of the map; only if that is known."""
+    def look(self, scan: PlacedScan | None, knowledge: Knowledge) -> None:
+        """Look in a scan, if there is one where it was taken; only if the place is known."""
         if scan is not None and self.things is not None and knowledge is Knowledge.KNOWN:
-            self.things.see(scan.ranges, self.beams_of(scan.lidar), pose, self._stride)
+            self.things.see(scan.ranges, self.beams_of(scan.lidar), scan.pose, self._stride)
 
     def beams_of(self, lidar: LidarModel) -> LidarBeams:
         """Return a lidar as kernels know it, made anew only when it is another one."""

@@ -13,7 +13,7 @@ from roomba.geometry import Pose, Twist
 from roomba.mission.exploring.look_around import SearchDrive
 from roomba.perception.localization.estimate import Estimate
 from roomba.perception.localization.localizer import Localizer
-from roomba.perception.matching.scan_view import LidarModel
+from roomba.perception.matching.scan_view import LidarModel, PlacedScan
 from roomba.robot.readings import Readings, ScanReading
 
 
@@ -22,6 +22,9 @@ class Place(Protocol):
 
     belief: NDArray[np.void]
     """What is reckoned by wheels and gyro, BELIEF [1]."""
+
+    placed: PlacedScan | None
+    """The newest scan where it was taken, if that is known."""
 
     @property
     def estimate(self) -> Estimate:

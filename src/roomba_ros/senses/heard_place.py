@@ -8,6 +8,7 @@ import time
 from collections import deque
 from typing import Final
 
+import numpy as np
 import rospy
 from geometry_msgs.msg import PoseStamped
 from roomba_robot.msg import Localization
@@ -16,6 +17,7 @@ from roomba.clock import ClockJumps, is_recent
 from roomba.configuration.nodes import HearingConfig
 from roomba.geometry import Pose, Twist
 from roomba.perception.localization.estimate import Knowledge
+from roomba.perception.matching.reckoned_path import ReckonedPath, forget_path, remember
 from roomba.robot.readings import Readings
 from roomba_ros.convert.localization import knowledge_of
 from roomba_ros.convert.readings import StampedPose, stamped_pose_of
@@ -38,6 +40,8 @@ class HeardPlace:
         self._tick, self._config = tick, config
         self._lock = threading.Lock()
         self._way: deque[Readings] = deque(maxlen=_KEPT)
+        self.path = ReckonedPath.empty()
+        """Where the wheels had the robot in the last seconds."""
         self._jumps = ClockJumps()
         self._pose: StampedPose | None = None
         self._heard = 0.0
@@ -66,6 +70,10 @@ class HeardPlace:
         """Take what the wheels say next."""
         if self._jumps.at(readings.time):
             self._way.clear()
+            forget_path(self.path)
+        if not self._way or readings.time > self._way[-1].time:
+            at = readings.odometry
+            remember(self.path, readings.time, np.array([at.x, at.y, at.theta]))
         self._way.append(readings)
         self._correct()
 

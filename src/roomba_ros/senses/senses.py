@@ -8,6 +8,7 @@ from roomba.configuration.nodes import HearingConfig
 from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose
 from roomba.mission.inputs.senses import Senses
+from roomba.perception.matching.scan_view import PlacedScan
 from roomba.robot.lookout import Lookout
 from roomba.robot.place import ScanSelection
 from roomba.robot.readings import Readings, ScanReading, senses_of
@@ -57,9 +58,11 @@ class HeardSenses:
 
     def show(self, lookout: Lookout) -> None:
         """Let things be looked for in the scan that came last, if it is one to be looked at."""
-        pose = None if self._scan is None else self.place.at(self._scan.stamp)
-        if pose is not None:
-            lookout.look(self._scan, pose, self.place.knowledge[0])
+        scan = self._scan
+        pose = None if scan is None else self.place.at(scan.stamp)
+        if scan is not None and pose is not None:
+            still = scan.lidar.at_once(scan.stamp, scan.ranges, self.place.path)
+            lookout.look(PlacedScan(pose, still, scan.lidar), self.place.knowledge[0])
 
     @property
     def pose(self) -> Pose | None:

@@ -20,6 +20,7 @@ from roomba.headless.body import SimulatedBody
 from roomba.mission.cleaning.request import CleanRequest
 from roomba.mission.inputs.senses import Battery
 from roomba.mission.phases.machine import Phase
+from roomba.perception.matching.surface_field import SurfaceField
 from roomba.planning.path.planner import NoPathError
 from roomba.robot.brain import Brain
 from roomba.robot.command import Command
@@ -151,3 +152,42 @@ def test_a_walk_that_has_no_way_leaves_the_errand_alone() -> None:
     assert not robot.walking.is_under_way
     with pytest.raises(RoombaError, match="there was none"):
         _ = robot.walking.newest
+
+
+@pytest.mark.parametrize("lidar", ["lds_01", "neato"])
+def test_by_a_lidar_that_turns_a_thing_is_seen_where_it_stands(lidar: str) -> None:
+    robot, body = turning(HOME.map, lidar)
+    x, y, radius = 1.3, 2.0, 0.05
+    body.simulator.place_obstacle(x, y, radius)
+    turn(robot, body)
+    seen = np.array(robot.things.obstacles())
+    assert len(seen) > 0
+    assert (np.hypot(seen[:, 0] - x, seen[:, 1] - y) < radius + 0.06).all()
+
+
+@pytest.mark.parametrize("known", [HOME.map, MappingConfig()], ids=["mapped", "mapping"])
+def test_a_scan_is_placed_where_its_beams_meet_the_walls(
+    known: OccupancyMap | MappingConfig,
+) -> None:
+    robot, body = turning(known, "neato")
+    turn(robot, body)
+    placed = robot.keeper.place.placed
+    assert placed is not None
+    at = np.array([placed.pose.x, placed.pose.y, placed.pose.theta])
+    fit = placed.lidar.view(placed.ranges).fit(SurfaceField.of(HOME.map), at)
+    assert fit.agree > 0.97
+
+
+def turning(known: OccupancyMap | MappingConfig, lidar: str) -> tuple[Brain, SimulatedBody]:
+    """Return a robot that turns on the spot on the floor, and its body."""
+    robot = NOISY.with_lidar(lidar)
+    mission, docking = MissionConfig(), DockingConfig()
+    body = SimulatedBody(HOME, robot, 1, None, ON_FLOOR)
+    return Brain(known, STATION, robot, mission, docking, start=ON_FLOOR), body
+
+
+def turn(robot: Brain, body: SimulatedBody) -> None:
+    robot.sense(body.read())
+    for _ in range(120):
+        body.act(Command(Twist(0.0, 1.5)))
+        robot.sense(body.read())

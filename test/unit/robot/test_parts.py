@@ -17,7 +17,7 @@ from roomba.headless.body import SimulatedBody
 from roomba.mission.docking.beams import StationBeams
 from roomba.perception.localization.belief.belief import unknown_belief
 from roomba.perception.localization.estimate import Estimate, Knowledge
-from roomba.perception.matching.scan_view import LidarModel
+from roomba.perception.matching.scan_view import LidarModel, PlacedScan
 from roomba.robot.command import Command
 from roomba.robot.place import PlaceKeeper
 from roomba.robot.readings import Readings, ScanReading, senses_of
@@ -30,6 +30,7 @@ class Noted:
     """A place that writes down what it is told."""
 
     is_calm = True
+    placed: PlacedScan | None = None
 
     def __init__(self) -> None:
         self.belief = unknown_belief()

@@ -29,7 +29,8 @@ from roomba.perception.localization.recent_sight_kernels import Sights
 from roomba.perception.localization.relocation import Expectation, Hypothesis, Relocation, Verdict
 from roomba.perception.localization.search.near_search import best_near
 from roomba.perception.localization.tracker import Tracker
-from roomba.perception.matching.scan_view import Fit, LidarModel, ScanView
+from roomba.perception.matching.pose_kernels import pose_then
+from roomba.perception.matching.scan_view import Fit, LidarModel, PlacedScan, ScanView
 from roomba.perception.matching.surface_field import SurfaceField
 
 _ANYWHERE: Final = np.diag([100.0**2, 100.0**2, math.pi**2])
@@ -68,7 +69,8 @@ _HELP: Final = (
 class Localizer:
     """Keeps the estimate; tell it what the sensors say in the order of time.
 
-    ``view`` is the newest scan. While it :attr:`is_calm`, kernels may do its work on ``belief``,
+    ``view`` is the newest scan; ``placed`` is that scan where it was taken on the map, None if that
+    is not known. While it :attr:`is_calm`, kernels may do its work on ``belief``,
     ``path`` and ``numbers`` (see :mod:`roomba.perception.localization.belief.correct_kernels`), and
     on ``sights`` (see :mod:`roomba.perception.localization.recent_sight_kernels`), until it has
     :meth:`resumed`.
@@ -93,6 +95,7 @@ class Localizer:
         self.field = SurfaceField.of(occupancy) if occupancy else SurfaceField.unknown()
         self._walls_moved = 0.0
         self.view: ScanView | None = None
+        self.placed: PlacedScan | None = None
         self._config, self._body_radius = config, body_radius
         self.belief = unknown_belief()
         self._row, self.numbers = self.belief[0], numbers_of(config, gyro, stride)
@@ -132,7 +135,9 @@ class Localizer:
 
     def see(self, stamp: float, ranges: NDArray[np.float32], lidar: LidarModel) -> None:
         """Take a scan, float32 [beams], m; raises ValueError for another number of beams."""
-        self.view = view = lidar.view(lidar.at_once(stamp, ranges, self.path))
+        still = lidar.at_once(stamp, ranges, self.path)
+        self.view = view = lidar.view(still)
+        self.placed = None
         reckoned = self._reckoning.at(stamp)
         self._row["beams"] = len(view)
         self._is_blind = len(view) == 0
@@ -147,6 +152,7 @@ class Localizer:
             if self._relocation is None:
                 self._relocation = self._begin_search(view, reckoned)
             self._search_on(self._relocation, view, reckoned)
+        self.placed = PlacedScan(self._pose_then(reckoned), still, lidar)
 
     @property
     def is_calm(self) -> bool:
@@ -173,7 +179,9 @@ class Localizer:
 
         As of :meth:`see`.
         """
-        self.view = view = lidar.view(lidar.at_once(stamp, ranges, self.path))
+        still = lidar.at_once(stamp, ranges, self.path)
+        self.view = view = lidar.view(still)
+        self.placed = None
         self._is_blind = len(view) == 0
         if self._is_blind:
             return
@@ -183,6 +191,7 @@ class Localizer:
         if len(view) >= self._config.least_beams and self._tracker.is_doubtful:
             self._reconsider(stamp, view, reckoned)
         self._doubt.note(stamp, reckoned, view)
+        self.placed = PlacedScan(self._pose_then(reckoned), still, lidar)
 
     def pass_time(self, now: float) -> None:
         """Tell the time when no sensor does: silence counts, too."""
@@ -369,6 +378,12 @@ class Localizer:
             self._compare_told(self._compared, view, reckoned)
         elif tracker.is_doubtful:
             self._reconsider(stamp, view, reckoned)
+
+    def _pose_then(self, reckoned: Pose) -> Pose:
+        """Return where the robot was on the map when dead reckoning had it at ``reckoned``."""
+        pose, then = self._tracker.pose, np.array([reckoned.x, reckoned.y, reckoned.theta])
+        here = np.array([pose.x, pose.y, pose.theta])
+        return Pose(*pose_then(here, self._row["reckoned"], then))
 
     def _reconsider(self, stamp: float, view: ScanView, reckoned: Pose) -> None:
         """Forget the pose, unless what is in sight says that the home changed, and not the pose."""

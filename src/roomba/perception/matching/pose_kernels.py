@@ -38,6 +38,16 @@ def seen_from(pose: Floats, other: Floats) -> tuple[float, float, float]:
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
+def pose_then(pose: Floats, reckoned: Floats, then: Floats) -> tuple[float, float, float]:
+    """Return where a robot was on the map, x, y, theta, that is at ``pose`` [3] now.
+
+    Dead reckoning has it at ``reckoned`` [3] now, and had it at ``then`` [3].
+    """
+    back = seen_from(reckoned, then)
+    return beyond(pose[0], pose[1], pose[2], back[0], back[1], back[2])
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
 def is_apart(pose: Floats, other: Floats, way: float, turn: float) -> bool:
     """Whether two poses [3] are ``way``, m, apart or turned by ``turn``, rad, or more."""
     away = math.hypot(pose[0] - other[0], pose[1] - other[1])

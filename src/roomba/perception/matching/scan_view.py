@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -117,6 +117,17 @@ class LidarModel:
         ends = np.empty((self.beams, 4))
         count = beam_ends(ranges, self._directions, self.mount, self._nearest, self._farthest, ends)
         return ScanView(ends[:count], self.mount)
+
+
+class PlacedScan(NamedTuple):
+    """What a scan showed from ``pose``, map frame: ``ranges`` is float32 [beams], m.
+
+    They are as if all of them were measured at once, there.
+    """
+
+    pose: Pose
+    ranges: Ranges
+    lidar: LidarModel
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -19,7 +19,7 @@ from roomba.grid import OccupancyMap
 from roomba.perception.localization.dead_reckoning import DeadReckoning
 from roomba.perception.localization.estimate import Estimate
 from roomba.perception.matching.pose_kernels import beyond
-from roomba.perception.matching.scan_view import LidarModel
+from roomba.perception.matching.scan_view import LidarModel, PlacedScan
 from roomba.perception.slam.following.finding_back import FindingBack
 from roomba.perception.slam.following.follow_kernels import LEAST_POINTS
 from roomba.perception.slam.following.scan_follower import ScanFollower
@@ -35,7 +35,11 @@ Floats = NDArray[np.float64]
 
 
 class Mapper:
-    """Keeps a growing map, and the robot's place on it; call it in the order of time."""
+    """Keeps a growing map, and the robot's place on it; call it in the order of time.
+
+    ``at_scan`` is where the robot was at the newest scan that was followed, map frame; ``placed``
+    is the newest scan where it was taken, None if it could not be followed.
+    """
 
     def __init__(
         self,
@@ -52,6 +56,7 @@ class Mapper:
         self._follower = ScanFollower(config, self._reckoning, self._finding_back.state)
         self._map = SubmapMap(config, localization, _row_of(start))
         self.at_scan = start
+        self.placed: PlacedScan | None = None
         self._finished = -1
         self._lidar: LidarModel | None = None
         self._relocation = MapRelocation()
@@ -92,7 +97,7 @@ class Mapper:
 
         Raises ValueError for another number of beams than the lidar has.
         """
-        follower = self._follower
+        follower, self.placed = self._follower, None
         if self._relocation.is_lifted or not follower.find_reckoned(stamp):
             return
         if ranges.shape != (lidar.beams,):
@@ -106,9 +111,9 @@ class Mapper:
         if self._finding_back.is_without_hold(follower):
             self._begin_piece()
         follower.follow(stamp)
-        self.finish_scan(stamp)
+        self.finish_scan(stamp, ranges)
 
-    def finish_scan(self, stamp: float) -> None:
+    def finish_scan(self, stamp: float, ranges: NDArray[np.float32]) -> None:
         """Do what comes after the newest scan was followed: kernels left that, or :meth:`see`."""
         follower = self._follower
         if self.version and self._finding_back.is_due:
@@ -118,6 +123,9 @@ class Mapper:
         if self._is_keyframe(len(points)):
             self._keep(points)
         self.at_scan = self._place()
+        if self._lidar is not None:
+            still = follower.following.still if self._lidar.time_increment else ranges
+            self.placed = PlacedScan(self.at_scan, still, self._lidar)
 
     @property
     def version(self) -> int:
