@@ -26,11 +26,14 @@ from std_msgs.msg import String
 from tf2_msgs.msg import TFMessage
 
 from roomba.files.occupancy_map import save_map
-from roomba.geometry import Pose
+from roomba.geometry import Pose, Twist
 from roomba.headless.cleaner import HeadlessMission
 from roomba.plots.style import BLUE
 from roomba_ros.bags.localize_bag import main
+from roomba_ros.bags.localize_recording import Heard, MessageKind
+from roomba_ros.bags.localize_replay import Replay
 from roomba_ros.convert.common import mount_message, odometry_message, pose_message
+from roomba_ros.convert.mounts import Mounts
 from roomba_ros.convert.sensors import imu_message, scan_message, wheel_drop_message
 
 BEGAN = 1_700_000_000.0
@@ -216,6 +219,26 @@ def test_without_a_start_it_finds_its_place(
     assert done.rows[0]["state"] == "known"
     assert done.figures["found_after"] < 5.0
     assert "searched for in the whole map" in done.output
+
+
+def test_a_scan_waits_until_odometry_has_reached_its_last_beam() -> None:
+    replay = Replay(FURNISHED.map, CONFIG, Mounts(), "base_link", START)
+    scan = scan_message(BEGAN + 1.0, np.ones(360, np.float32), CONFIG.with_lidar("neato").lidar, "")
+    sweep = scan.time_increment * 359
+    assert sweep > 0.1
+
+    def hear(kind: MessageKind, stamp: float, message: Any) -> int:
+        replay.hear(Heard(stamp, kind, message, stamp, 0.0))
+        return replay.scans
+
+    def drive_on(stamp: float) -> int:
+        odometry = odometry_message(stamp, Pose(), Twist(0.0, 0.0), "odom", "base_link")
+        return hear(MessageKind.ODOMETRY, stamp, odometry)
+
+    assert drive_on(BEGAN + 0.9) == 0
+    assert hear(MessageKind.SCAN, BEGAN + 1.0, scan) == 0
+    assert drive_on(BEGAN + 1.05) == 0
+    assert drive_on(BEGAN + 1.01 + sweep) == 1
 
 
 @pytest.mark.parametrize("topic", ["/initialpose", "/amcl_pose"])

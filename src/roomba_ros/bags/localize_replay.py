@@ -15,7 +15,7 @@ from roomba.geometry import Pose
 from roomba.grid import OccupancyMap
 from roomba.perception.localization.estimate import Estimate
 from roomba.perception.localization.localizer import Localizer
-from roomba.robot.readings import ScanReading
+from roomba.recordings.waiting import StampedScan, WaitingScan
 from roomba_ros.bags.localize_recording import Heard, MessageKind
 from roomba_ros.bags.recorded_sensors import RecordedSensors
 from roomba_ros.convert.common import pose_of_odometry
@@ -70,7 +70,7 @@ class Replay:
         self.was_told = False
         """Whether it begins at a pose that was recorded."""
         self._sensors = RecordedSensors(mounts, base)
-        self._scan: tuple[float, ScanReading] | None = None
+        self._waiting = WaitingScan()
         self._map, self._config = occupancy, config
         self._begin, self._deviation = start, _GIVEN_DEVIATION
         self._localizer: Localizer | None = None
@@ -113,8 +113,7 @@ class Replay:
         step = self._reckoned.inverse().compose(self._localizer.reckoned)
         self._reckoned = self._localizer.reckoned
         self._way += math.hypot(step.x, step.y)
-        if self._scan is not None and self._scan[0] <= stamp:
-            self._see(self._localizer)
+        self._see(self._localizer, self._waiting.ready(stamp))
 
     def _begun(self, stamp: float, odometry: Pose) -> Localizer:
         config = self._config
@@ -132,25 +131,23 @@ class Replay:
         return localizer
 
     def _hear_scan(self, stamp: float, message: LaserScan) -> None:
-        """Keep a scan until odometry has reached its time, or the next scan comes."""
-        if self._localizer is None:
+        """Keep a scan until odometry has reached its last beam, or the next scan comes."""
+        localizer = self._localizer
+        if localizer is None:
             return
-        if self._scan is not None:
-            self._see(self._localizer)
         scan = self._sensors.scan_of(message)
         if scan is not None:
-            self._scan = (stamp, scan)
-        if stamp <= self._stamp:
-            self._see(self._localizer)
+            waited = self._waiting.put(StampedScan(stamp, scan.ranges, scan.lidar))
+            self._see(localizer, waited)
+        self._see(localizer, self._waiting.ready(self._stamp))
 
-    def _see(self, localizer: Localizer) -> None:
-        if self._scan is None:
+    def _see(self, localizer: Localizer, scan: StampedScan | None) -> None:
+        if scan is None:
             return
-        (stamp, scan), self._scan = self._scan, None
-        if stamp > self._stamp + _LATEST:
+        if scan.stamp > self._stamp + _LATEST:
             self._sensors.leave_out("scans of times without odometry")
             return
-        localizer.see(stamp, scan.ranges, scan.lidar)
+        localizer.see(*scan)
         self.scans += 1
 
     def _hear_told(self, message: PoseWithCovarianceStamped) -> None:

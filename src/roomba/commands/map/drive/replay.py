@@ -20,6 +20,7 @@ from roomba.perception.localization.estimate import Knowledge
 from roomba.perception.matching.scan_view import LidarModel
 from roomba.perception.slam.mapper import Mapper
 from roomba.recordings.readings import LidarScan, Odometry, Turning, Value
+from roomba.recordings.waiting import StampedScan, WaitingScan
 
 _LATEST: Final = 1.0
 """s; a scan that odometry is so far behind is of a time that it knows nothing of."""
@@ -49,7 +50,7 @@ class MapReplay:
         self._stamp = -math.inf
         self._at: Pose | None = None
         self._turning: tuple[float, float] | None = None
-        self._scan: tuple[float, LidarScan] | None = None
+        self._waiting = WaitingScan()
 
     @property
     def by_odometry(self) -> NDArray[np.float64]:
@@ -72,7 +73,7 @@ class MapReplay:
 
     def end(self) -> None:
         """Take in what waits for more odometry: there is none."""
-        self._see()
+        self._see(self._waiting.last())
 
     def finish(self) -> OccupancyMap:
         """Return the finished map; raises ValueError if nothing was seen."""
@@ -94,8 +95,7 @@ class MapReplay:
         if self._at is not None:
             self.way += here.distance_to(self._at.x, self._at.y)
         self._at = here
-        if self._scan is not None and self._scan[0] + self._scan[1].lidar.sweep <= stamp:
-            self._see()
+        self._see(self._waiting.ready(stamp))
 
     def _turning_at(self, stamp: float) -> float | None:
         """Return the gyro's newest sample, rad/s, if it is of about that time."""
@@ -108,15 +108,13 @@ class MapReplay:
         if not math.isfinite(self._stamp):
             self.left_out["scans before the first odometry"] += 1
             return
-        self._see()
-        self._scan = (stamp, scan)
-        if stamp + scan.lidar.sweep <= self._stamp:
-            self._see()
+        self._see(self._waiting.put(StampedScan(stamp, scan.ranges, scan.lidar)))
+        self._see(self._waiting.ready(self._stamp))
 
-    def _see(self) -> None:
-        if self._scan is None:
+    def _see(self, scan: StampedScan | None) -> None:
+        if scan is None:
             return
-        (stamp, scan), self._scan = self._scan, None
+        stamp = scan.stamp
         if stamp > self._stamp + _LATEST:
             self.left_out["scans of times without odometry"] += 1
             return
