@@ -95,6 +95,29 @@ def walk_fast(graph: RosGraph) -> None:
     wait_until(lambda: probe.speed() > 0.45, 15.0, "full speed")
 
 
+def test_at_a_faster_clock_a_killed_server_comes_back_and_walks_again(tmp_path: Path) -> None:
+    """The walk after that is like any other: as quick, and to its goal."""
+    with RosGraph(tmp_path) as graph:
+        graph.launch(f"speed:={FAST}")
+        run_forked(lambda: walk_again(graph))
+
+
+def walk_again(graph: RosGraph) -> None:
+    """Walk, kill the server on the way, and walk to the same goal by the one that came back."""
+    probe, walker = walking(graph)
+    old = graph.signal(SERVER, signal.SIGKILL)
+    stands(probe)
+    is_back(graph, SERVER, old)
+    assert walker.ends(30.0) in (GoalStatus.LOST, GoalStatus.ABORTED)
+    left = math.dist(probe.position(), (3.0, 4.0))
+    assert left > 1.0
+    walker.send(3.0, 4.0)
+    walker.arrives(40.0)
+    assert math.dist(probe.position(), (3.0, 4.0)) < 0.05
+    # At 0.5 m/s, with what turns and the start take.
+    assert walker.time_spent < 2.0 * left + 6.0
+
+
 def test_a_wrong_argument_ends_the_launch_with_a_clear_line(tmp_path: Path) -> None:
     """A negative top speed; test_home_sim_node.py goes through the arguments."""
     with RosGraph(tmp_path) as graph:
