@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from fixtures.compositions import COMPOSITIONS, REFERENCE, Case, Outcome, assert_same
@@ -14,9 +16,11 @@ from hypothesis import strategies as st
 
 from roomba.configuration.body import BodyConfig
 from roomba.geometry import Pose
+from roomba.headless.body import SimulatedBody
 from roomba.headless.cleaner import HeadlessMission
 from roomba.mission.cleaning.request import CleanRequest
 from roomba.mission.phases.machine import Phase
+from roomba.robot.readings import Readings
 from roomba.world.random.home import random_home
 
 THING = (1.0, 0.75, 0.10)
@@ -84,6 +88,22 @@ def test_in_random_homes_as_well(seed: int) -> None:
     home = random_home(seed, BodyConfig())
     case = Case(home, seed=seed, seconds=150.0)
     assert_same(COMPOSITIONS["bursts"](case), REFERENCE(case))
+
+
+def test_wheels_that_are_a_nanometre_off_lead_along_the_same_path(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    case = Case(HOME, things=((1.03, 0.77, 0.10),), seed=3, speed=0.2, begin=5.0, seconds=170.0)
+    reference, plain = REFERENCE(case), SimulatedBody.read
+
+    def read(body: SimulatedBody) -> Readings:
+        readings = plain(body)
+        odometry = readings.odometry
+        off = 1e-9 if readings.time >= case.begin else 0.0
+        return replace(readings, odometry=replace(odometry, x=odometry.x + off))
+
+    monkeypatch.setattr(SimulatedBody, "read", read)
+    assert_same(REFERENCE(case), reference, within=1e-4)
 
 
 @st.composite

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import pytest
-from fixtures.compositions import REFERENCE, Case, Outcome, assert_same, assert_same_end
+from fixtures.compositions import REFERENCE, Case, Outcome, assert_same
 from fixtures.forked import run_forked
 from fixtures.missions import HOME, TWO_ROOMS
 from fixtures.node_compositions import in_lockstep
@@ -18,27 +18,27 @@ BEGIN = 5.0
 THING = (1.03, 0.77, 0.10)
 """x, y and radius, m, of something that the map of HOME does not show; ways around it do not lead
 along the sides of the dirt map's cells, where the last bits decide which one counts a grain."""
+UNTOUCHED = 1
+"""Seed of a clean while mapping in which nothing is touched. A touch makes 1e-6 m of 1e-11 m within
+two seconds, and then the encoders count a tick more or less, 0.2 mm: with noise a run in which
+something is touched parts from there on, as it does from itself with a start that is 1e-9 m off."""
 STUDIO = load_home("studio", HOMES, SimulatedRobotConfig().body)
 IDEAL = {
     "clean": Case(HOME, sensors="ideal", begin=BEGIN),
     "clean around a thing": Case(HOME, sensors="ideal", things=(THING,), seed=3, begin=BEGIN),
     "begin to clean a studio": Case(STUDIO, sensors="ideal", seconds=100.0, begin=BEGIN),
+    "clean while mapping": Case(TWO_ROOMS, sensors="ideal", is_mapped=False, begin=BEGIN),
     "walk": Case(HOME, sensors="ideal", goal=(2.6, 2.1), begin=BEGIN),
 }
 NOISY = {
     "clean": Case(TWO_ROOMS, begin=BEGIN),
     "walk": Case(TWO_ROOMS, goal=(3.0, 2.0), begin=BEGIN),
+    "clean slowly around a thing": Case(HOME, things=(THING,), seed=3, speed=0.2, begin=BEGIN),
+    "clean while mapping": Case(TWO_ROOMS, is_mapped=False, seed=UNTOUCHED, begin=BEGIN),
     "walk around a thing": Case(HOME, goal=(1.4, 0.4), things=(THING,), seed=3, begin=BEGIN),
 }
 EDGE = 0.002
 """Share of the swept floor; noise amplifies the last bits of stamps to tenths of a millimetre."""
-MAPPED = 218.0
-"""s; by then the whole map of TWO_ROOMS is made by a robot that cleans there and sees exactly."""
-TURNED = 250.0
-"""s; by then no turn of the slow clean ends so that the last bits decide in which tick."""
-SURE = 30.0
-"""s; for so long a map that is made of noisy scans does not amplify the last bits, in which stamps
-of two clocks differ: one scan more or less is kept in it afterwards."""
 
 
 @pytest.mark.parametrize("name", IDEAL)
@@ -53,19 +53,6 @@ def test_with_noise_they_do_so_as_well(name: str, tmp_path: Path) -> None:
 
     def compare() -> None:
         assert_same(in_lockstep(case, tmp_path), REFERENCE(case), ticks=1, edge=EDGE)
-
-    run_forked(compare)
-
-
-def test_with_noise_a_turn_may_end_a_tick_later_and_they_come_to_the_same_end(
-    tmp_path: Path,
-) -> None:
-    case = Case(HOME, things=(THING,), seed=3, speed=0.2, begin=BEGIN)
-
-    def compare() -> None:
-        nodes, reference = in_lockstep(case, tmp_path), REFERENCE(case)
-        assert_same(nodes.until(TURNED), reference.until(TURNED))
-        assert_same_end(nodes, reference)
 
     run_forked(compare)
 
@@ -89,31 +76,6 @@ def test_with_little_charge_they_go_home(tmp_path: Path) -> None:
 def assert_charging(nodes: Outcome, reference: Outcome) -> None:
     assert nodes.phase is reference.phase is Phase.CHARGING
     assert nodes.hits == reference.hits == 0
-
-
-def test_while_they_make_the_map_they_clean_all_the_same(tmp_path: Path) -> None:
-    case = Case(TWO_ROOMS, sensors="ideal", is_mapped=False, begin=BEGIN)
-
-    def compare() -> None:
-        nodes, reference = in_lockstep(case, tmp_path), REFERENCE(case)
-        assert_same(nodes.until(MAPPED), reference.until(MAPPED))
-        # On the whole map the nodes go by their localizer; headless the mapper goes on.
-        assert_same_end(nodes, reference, duration=0.001)
-
-    run_forked(compare)
-
-
-def test_with_noise_they_do_so_until_the_maps_differ_and_come_to_the_same_end(
-    tmp_path: Path,
-) -> None:
-    case = Case(TWO_ROOMS, is_mapped=False, seed=2, begin=BEGIN)
-
-    def compare() -> None:
-        nodes, reference = in_lockstep(case, tmp_path), REFERENCE(case)
-        assert_same(nodes.until(SURE), reference.until(SURE))
-        assert_same_end(nodes, reference)
-
-    run_forked(compare)
 
 
 def test_the_same_seed_gives_the_same_trace_and_another_one_another(tmp_path: Path) -> None:

@@ -17,9 +17,11 @@ from roomba.headless.burst_state import BURST, Drive, Floor, PlaceParts, Sight, 
 from roomba.headless.rows import BELIEVED, PASSED
 from roomba.mission.driving.progress_kernels import PROGRESS
 from roomba.mission.steady import Steady
+from roomba.perception.localization.localizer import Localizer
 from roomba.perception.localization.recent_sight import RecentSight
 from roomba.perception.matching.sweep import SWEEP_WORK
 from roomba.perception.slam.following.scan_follower import not_following
+from roomba.perception.slam.mapper import Mapper
 from roomba.perception.swept.coverage_map import CoverageMap
 from roomba.robot.brain import Brain
 from roomba.world.home.dirt import MICROGRAMS_PER_GRAM
@@ -46,7 +48,7 @@ class Burst:
         timing, row = brain.robot.timing, self._burst[0]
         row["step"], row["steps"] = timing.world_step, timing.steps_per_tick
         row["apart"] = brain.keeper.scans.apart
-        row["stride"], row["is_mapping"] = brain.robot.scan_stride, brain.mapper is not None
+        row["stride"] = brain.robot.scan_stride
         row["is_late"] = body.has_late_scans
         home = body.simulator.home
         axes, row["is_turned"] = home.axes, home.turned is not None
@@ -99,6 +101,11 @@ class Burst:
         return math.inf if growing is None else growing.next_look
 
     @property
+    def _mapper(self) -> Mapper | None:
+        """What makes the map, until that is whole."""
+        return self._brain.mapper if self._brain.localizer is None else None
+
+    @property
     def _may_run(self) -> bool:
         if len(self._rows) == 0 or self._brain.walking.is_under_way:
             return False
@@ -131,10 +138,12 @@ class Burst:
         row["things_version"] = brain.things.version
         row["clock"] = brain.readings.time - self._body.simulator.time
         row["scans"], row["seen_at"] = self._body.scans, brain.keeper.scans.seen_at
-        if brain.mapper is not None:
-            at = brain.mapper.at_scan
+        mapper = self._mapper
+        row["is_mapping"] = mapper is not None
+        if mapper is not None:
+            at = mapper.at_scan
             row["at_scan"] = at.x, at.y, at.theta
-            row["submap"] = brain.mapper.submap_pose
+            row["submap"] = mapper.submap_pose
         row["last"], row["way"] = (last.now, last.pose.x, last.pose.y), 0.0
         row["sweeps"] = mission.sweeps
         cleaning = mission.cleaning
@@ -148,10 +157,10 @@ class Burst:
         sights, following = _NO_SIGHTS, self._not_following
         if brain.localizer is not None:
             sights = brain.localizer.sights(self._body.lidar.beams)
-        if brain.mapper is not None:
-            following = brain.mapper.following
-        place = brain.localizer or brain.mapper
-        assert place is not None
+        if self._mapper is not None:
+            following = self._mapper.following
+        place = brain.keeper.place
+        assert isinstance(place, Localizer | Mapper)
         return PlaceParts(
             place.belief, place.numbers, place.path, beams, sights, following, *self._sweep
         )

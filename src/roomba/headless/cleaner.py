@@ -263,14 +263,14 @@ class HeadlessMission:
 
     @property
     def localizer(self) -> Localizer:
-        """What knows its place on a known map; raises RoombaError without one."""
+        """What knows its place on a known or whole map; raises RoombaError without one."""
         if self.brain.localizer is None:
             raise RoombaError("a robot that makes its map has a mapper, no localizer")
         return self.brain.localizer
 
     @property
     def mapper(self) -> Mapper:
-        """What makes its map; raises RoombaError on a known one."""
+        """What makes its map, until it is whole; raises RoombaError on a known one."""
         if self.brain.mapper is None:
             raise RoombaError("only a robot that makes its map has a mapper: give a MappingConfig")
         return self.brain.mapper

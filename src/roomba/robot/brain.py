@@ -11,6 +11,7 @@ from typing import Final
 from roomba.configuration.docking import DockingConfig
 from roomba.configuration.mapping import MappingConfig
 from roomba.configuration.mission import MissionConfig
+from roomba.configuration.nodes import PlacingConfig
 from roomba.configuration.robot import RobotConfig
 from roomba.control.speed_loop import SpeedLoop
 from roomba.errors import RoombaError
@@ -178,7 +179,7 @@ class Brain:
         self._mapped.go_on(context, self._surfaces(context))
 
     def finish_map(self) -> None:
-        """Take the map that is being made for whole, and go on with it."""
+        """Take the map that is made for whole, and go on with it, by a localizer."""
         growing, mapper = self.growing, self.mapper
         if growing is None or mapper is None or growing.is_whole:
             return
@@ -186,7 +187,17 @@ class Brain:
         occupancy = mapper.finish()
         # To be whole the map was turned a little.
         self._station = mapper.start
+        self._localize_on(occupancy, mapper.pose)
         self._use(occupancy)
+
+    def _localize_on(self, occupancy: OccupancyMap, here: Pose) -> None:
+        """Let a localizer know the place from now on, which is ``here`` on its map."""
+        robot, readings = self.robot, self.readings
+        belief = robot.localization, robot.gyro, robot.body.radius, here
+        localizer = Localizer(None, *belief, stride=robot.scan_stride)
+        localizer.move(readings.time, readings.odometry, readings.turning)
+        localizer.go_on(occupancy, (here, PlacingConfig().on_finished))
+        self.localizer = self.keeper.place = localizer
 
     def _safely(self, twist: Twist, cruise: float) -> Twist:
         """Return what the wheels get when a twist is wanted, at ``cruise`` m/s at most."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from roomba.configuration.robot import TimingConfig
 from roomba.grid import OccupancyMap
 from roomba.mission.mission import Mission
@@ -22,8 +24,8 @@ class GrowingMap:
 
     @property
     def next_look(self) -> float:
-        """When it is drawn next if it does not grow before, s."""
-        return self._drawing.due_at
+        """When it is drawn next if it does not grow before, s; infinite once it is whole."""
+        return math.inf if self.is_whole else self._drawing.due_at
 
     def newer(self, now: float, mission: Mission | None) -> OccupancyMap | None:
         """Return the newest map at ``now``, s, once, if it makes a difference to the mission.

@@ -46,6 +46,7 @@ class LocalizationTopics:
         self._keeper: PlaceKeeper | None = None
         self._newest: Readings | None = None
         self._heard: list[Readings] = []
+        self._heard_from = Pose()
         self._lock = threading.Lock()
         self._tick_lock = threading.RLock()
         self._told: tuple[Pose, tuple[float, float]] | None = None
@@ -143,8 +144,12 @@ class LocalizationTopics:
         if localizer is None or keeper is None:
             return None
         self._hear_map(localizer)
-        for readings in told:
+        for index, readings in enumerate(told):
             self._follow(keeper, localizer, readings)
+            if index == 0:
+                self._heard_from = localizer.estimate.pose
+        if not told:
+            self._heard_from = localizer.estimate.pose
         self._hear_people(localizer)
         localizer.pass_time(now)
         knower = mapper or localizer
@@ -161,6 +166,11 @@ class LocalizationTopics:
         """Where the robot is by what was told and its wheels, map frame: before there is a map."""
         assert self._localizer is not None
         return self._localizer.estimate.pose
+
+    @property
+    def place_heard_from(self) -> Pose:
+        """Where it was at the first of the readings with which a map begins, map frame."""
+        return self._heard_from
 
     @property
     def known_place(self) -> Pose | None:

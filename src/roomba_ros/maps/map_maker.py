@@ -62,7 +62,8 @@ class MapMaker:
         config = self._config
         self._memory.forget()
         self._memory.forget_whole()
-        self._map_with(Mapper(self._mapping, config.localization, config.gyro, self._place.place))
+        here = self._place.place_heard_from
+        self._map_with(Mapper(self._mapping, config.localization, config.gyro, here))
         self.station = self._station_from_start = None
         rospy.loginfo("the robot begins a map of its own")
 
@@ -75,7 +76,9 @@ class MapMaker:
         if kept is None:
             return False
         config = self._config
-        here = self._place.place if kept.station is None or not self.is_docked else kept.station
+        here = self._place.place_heard_from
+        if kept.station is not None and self.is_docked:
+            here = kept.station
         self._map_with(
             Mapper.taken_up(self._mapping, config.localization, config.gyro, kept.state, here)
         )

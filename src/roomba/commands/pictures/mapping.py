@@ -74,7 +74,7 @@ def explored(home: Home, seed: int) -> tuple[list[Look], NDArray[np.float64]]:
     robot = _Observed(home, seed=seed)
     record = robot.explore()
     end = robot.looks[-1]
-    robot.looks.append(Look(end.time, record.occupancy, robot.mapper.pose, None))
+    robot.looks.append(Look(end.time, record.occupancy, robot.brain.pose, None))
     return robot.looks, record.believed
 
 

@@ -69,7 +69,7 @@ _DOUBTED_MORE: Final = 1.2
 """Times that it is thought to be off by more after a scan that confirms nothing."""
 _MOST_OFF: Final = 200.0
 """Times its variance that one scan makes it off at most: a jump says nothing of the usual."""
-_ROUNDS: Final = 6
+_ROUNDS: Final = 5
 _STRIDE: Final = 2
 """Each such point follows the robot; keyframes have all of them."""
 _FAR_REACH: Final = 3

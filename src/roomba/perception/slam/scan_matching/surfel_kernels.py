@@ -35,8 +35,6 @@ ALIGN_WORK: Final = 10
 
 _SAME_WAY: Final = 0.8
 """Cosine; surfaces that face farther apart are not the same."""
-_SETTLED: Final = 1e-4
-"""m and rad; a correction that is smaller ends the search."""
 
 
 class Surfels(NamedTuple):
@@ -135,15 +133,10 @@ def align(
                 gradient[row] += of_prior[row, column] * (pose[column] - prior[column])
         if not invert(total, solved):
             return False
-        most = 0.0
+        # No earlier end: it would make 0.1 mm of a difference in the last bit.
         for row in range(3):
-            step = 0.0
             for column in range(3):
-                step += solved[row, column] * gradient[column]
-            pose[row] -= step
-            most = max(most, abs(step))
-        if each >= scales.size - 1 and most < _SETTLED:
-            break
+                pose[row] -= solved[row, column] * gradient[column]
     covariance[:] = solved
     return True
 
