@@ -27,7 +27,8 @@ from roomba.perception.localization.estimate import Estimate, Knowledge
 from roomba.perception.localization.expecting import searched_for, where_told
 from roomba.perception.localization.recent_sight_kernels import Sights
 from roomba.perception.localization.relocation import Expectation, Hypothesis, Relocation, Verdict
-from roomba.perception.localization.search.near_search import best_near
+from roomba.perception.localization.search.near_search import best_near, matched
+from roomba.perception.localization.search.particle_search import ParticleSearch
 from roomba.perception.localization.tracker import Tracker
 from roomba.perception.matching.pose_kernels import pose_then
 from roomba.perception.matching.scan_view import Fit, LidarModel, PlacedScan, ScanView
@@ -41,6 +42,8 @@ _WAIT_BEFORE_MOVING: Final = 0.5
 """s; how long it waits for a scan that tells places apart before it moves to get one."""
 _SEARCHED_EVERY: Final = 1.0
 """s; after which a search that found nothing is tried anew."""
+_SEARCHED_WAY: Final = 1.0
+"""m; driven while places are compared, after which particles follow all that may be."""
 _GOOD_AGREE: Final = 0.95
 _GOOD_THROUGH: Final = 0.03
 """Shares of beams with which a pose that was told needs no comparison with all others."""
@@ -60,6 +63,8 @@ _LEAST_OFFSET: Final = 0.15
 """Cells of the map; walls that are off by less stay where they are."""
 _LEAST_OFFSET_BEAMS: Final = 100.0
 """Beams that must say so, each scan as far as it shows something new."""
+_MOST_OFFSET: Final = 2.0
+"""Cells that walls are off at most: some programs draw them thicker than they are."""
 _HELP: Final = (
     "carry it to its station, or tell where it is (in RViz: 2D Pose Estimate), "
     "or let it look around (global_localization)"
@@ -110,6 +115,8 @@ class Localizer:
         self._told: Expectation | None = None
         self._compared: Expectation | None = None
         self._relocation: Relocation | None = None
+        self._particles: ParticleSearch | None = None
+        self._searched_from: Pose | None = None
         self._forgotten = ""
         self._expectation: Expectation | None = None
         self._verdict = Verdict.SEARCHING
@@ -209,7 +216,7 @@ class Localizer:
         estimate = self.estimate
         if self._forgotten:
             # A search goes on in the new map, with the time that is left of it.
-            self._relocation = None
+            self._relocation = self._particles = None
             self._tracker = self._tracker_at(estimate.pose, _ANYWHERE.copy())
         else:
             self.told(estimate.pose, (estimate.position_deviation, estimate.heading_deviation))
@@ -240,7 +247,7 @@ class Localizer:
         """Expect the robot at a reported pose, with deviations in m and rad; scans confirm it."""
         spread = np.diag([deviation[0] ** 2, deviation[0] ** 2, deviation[1] ** 2])
         self._tracker = self._tracker_at(pose, spread)
-        self._relocation = self._compared = None
+        self._relocation = self._compared = self._particles = self._searched_from = None
         self._doubt.drop()
         self._forgotten = ""
         self._told, self._told_since = where_told(pose, deviation, self._config), self._now
@@ -249,6 +256,7 @@ class Localizer:
     def forget(self, reason: str) -> None:
         """Trust no pose any more; look for the robot in the whole map."""
         self._told = self._compared = self._relocation = None
+        self._particles = self._searched_from = None
         self._doubt.drop()
         self._forgotten, self._expectation = reason, None
         self._verdict = Verdict.SEARCHING
@@ -404,11 +412,24 @@ class Localizer:
         cell = self.field.frame.resolution
         if beams < _LEAST_OFFSET_BEAMS or abs(off) < _LEAST_OFFSET * cell * beams:
             return
-        most = 0.5 * cell
-        moved = max(-most, min(most, self._walls_moved - off / beams))
+        most = _MOST_OFFSET * cell
+        self._move_walls(max(-0.5 * cell, min(most, self._walls_moved - off / beams)))
+
+    def _move_walls(self, moved: float) -> None:
+        """Move the map's surfaces into what is solid: so far, m, from where the map has them."""
         self.field.raise_by(moved - self._walls_moved)
         self._walls_moved = moved
         self._row["wall_offset"][0] = 0.0
+
+    def _find_walls(self, view: ScanView, pose: Pose) -> Pose:
+        """Move the map's surfaces to where a scan fits best from about a pose; return it there."""
+        cell, tried = self.field.frame.resolution, []
+        for moved in (0.5 * cell * number for number in range(int(2 * _MOST_OFFSET) + 1)):
+            self._move_walls(moved)
+            tried.append((*matched(view, self.field, pose, self._config.beam_deviation), moved))
+        there, _, moved = max(tried, key=lambda each: each[1].evidence)
+        self._move_walls(moved)
+        return there
 
     def _is_found_near(self, view: ScanView, reckoned: Pose) -> bool:
         """Go on at a place near by that a scan fits as well as usual, if there is one."""
@@ -466,6 +487,8 @@ class Localizer:
         return Tracker(self.field, self._config, pose, covariance, self.belief, self.numbers)
 
     def _search_on(self, relocation: Relocation, view: ScanView, reckoned: Pose) -> None:
+        if self._is_found_on_the_way(view, reckoned):
+            return
         was_searching = relocation.verdict is Verdict.SEARCHING
         relocation.advance()
         relocation.see(view, reckoned)
@@ -474,13 +497,39 @@ class Localizer:
         if was_searching:
             self._tried = self._now
         self._verdict = relocation.verdict
-        if relocation.verdict is Verdict.FOUND:
-            self._found(relocation.hypotheses[0])
-        elif relocation.verdict is Verdict.NOWHERE and self._now - self._tried > _SEARCHED_EVERY:
+        if relocation.verdict is Verdict.FOUND and self._is_believed(relocation.hypotheses[0]):
+            place = relocation.hypotheses[0]
+            self._found(place.frame.compose(self._reckoning.pose), place.fit)
+        elif (
+            relocation.verdict is not Verdict.AMBIGUOUS
+            and self._now - self._tried > _SEARCHED_EVERY
+        ):
             self._relocation = None
 
-    def _found(self, place: Hypothesis) -> None:
-        pose = place.frame.compose(self._reckoning.pose)
+    def _is_believed(self, place: Hypothesis) -> bool:
+        """Whether the likeliest place is taken; where many look alike it must convince."""
+        return self._particles is None or place.is_expected or place.is_convincing
+
+    def _is_found_on_the_way(self, view: ScanView, reckoned: Pose) -> bool:
+        """Follow all places that may be, once it drove without finding one; go on where it is."""
+        start = self._searched_from = self._searched_from or reckoned
+        if self._particles is None:
+            if start.distance_to(reckoned.x, reckoned.y) < _SEARCHED_WAY:
+                return False
+            self._particles = ParticleSearch(self.field, self._body_radius)
+        self._particles.see(view, reckoned)
+        pose = self._particles.found
+        if pose is None:
+            return False
+        since = self._particles.reckoned.inverse().compose(reckoned)
+        there = self._find_walls(view, pose.compose(since))
+        fit = view.fit(self.field, np.array([there.x, there.y, there.theta]))
+        since = reckoned.inverse().compose(self._reckoning.pose)
+        self._found(there.compose(since), fit)
+        return True
+
+    def _found(self, pose: Pose, fit: Fit) -> None:
         self._tracker = self._tracker_at(pose, _FOUND_SPREAD.copy())
-        self._tracker.trust(place.fit)
-        self._relocation, self._forgotten = None, ""
+        self._tracker.trust(fit)
+        self._relocation = self._particles = self._searched_from = None
+        self._forgotten = ""

@@ -213,7 +213,7 @@ class Relocation:
     def _is_clear(self) -> bool:
         """Whether the best place is so much better than the next that it can be believed."""
         if len(self.hypotheses) == 1:
-            return True
+            return self.hypotheses[0].is_expected or self.hypotheses[0].is_convincing
         lead = self.hypotheses[0].evidence - self.hypotheses[1].evidence
         return lead > self._config.needed_evidence
 

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from fixtures.corridors import AHEAD, TELLING, coarse_and_thick, ranges_ahead
 from fixtures.located import (
     CONFIG,
     FURNISHED,
@@ -15,6 +16,7 @@ from fixtures.located import (
     START,
     TWO_ROOMS,
     WORST_ERROR,
+    Eye,
     Located,
     Ranges,
     look_until_known,
@@ -286,3 +288,24 @@ def test_told_where_a_scan_fits_in_part_it_goes_on_while_places_are_compared() -
         assert robot.error < 2.0 * WORST_ERROR
     assert states == {Knowledge.ROUGH, Knowledge.KNOWN}
     assert robot.estimate.knowledge is Knowledge.KNOWN
+
+
+def test_in_a_corridor_on_a_coarse_map_it_is_found_on_its_way_and_held() -> None:
+    """The lidar looks one way only, and walls are drawn 20 cm thicker than they are."""
+    localizer = Localizer(
+        coarse_and_thick(TELLING, 2), CONFIG.localization, CONFIG.gyro, CONFIG.body.radius, Pose()
+    )
+    eye, pose, odometry, known = Eye(TELLING), Pose(4.0, 0.9, 0.0), Pose(), []
+    localizer.move(0.0, odometry, None)
+    localizer.forget("no start was given")
+    for number in range(1, 240):
+        pose = pose.compose(Pose(0.1, 0.0, 0.0))
+        odometry = odometry.compose(Pose(0.102, 0.0, 0.0005))
+        localizer.move(0.2 * number, odometry, None)
+        localizer.see(0.2 * number, ranges_ahead(TELLING, pose, eye), AHEAD)
+        estimate = localizer.estimate
+        if estimate.knowledge.is_usable:
+            known.append(estimate.pose.distance_to(pose.x, pose.y))
+    assert len(known) > 30
+    assert max(known) < 0.2
+    assert localizer.estimate.knowledge is Knowledge.KNOWN

@@ -58,20 +58,20 @@ def best_near(
         )
     best = np.argsort(-scores, kind="stable")[:_MATCHED]
     starts = np.column_stack((spots[best], headings[best].astype(np.float64)))
-    tried = [_matched(view, field, start, deviation) for start in starts]
+    tried = [matched(view, field, Pose(*start), deviation) for start in starts.tolist()]
     return max(tried, key=lambda each: each[1].evidence)
 
 
-def _matched(
-    view: ScanView, field: SurfaceField, start: NDArray[np.float64], deviation: float
-) -> tuple[Pose, Fit]:
-    pose, covariance = start.copy(), _SPREAD.copy()
+def matched(view: ScanView, field: SurfaceField, start: Pose, deviation: float) -> tuple[Pose, Fit]:
+    """Return where a scan fits best from a start on, and how well; ``deviation`` is a beam's, m."""
+    prior = np.array([start.x, start.y, start.theta])
+    pose, covariance = prior.copy(), _SPREAD.copy()
     match(
         field.values,
         field.place,
         view.ends,
         len(view),
-        start,
+        prior,
         covariance,
         _SCALES,
         deviation * deviation,

@@ -39,7 +39,7 @@ class PlaceSearch:
         self._field = field
         self._ends = ends
         self._chosen = np.unique(np.linspace(0, len(ends) - 1, BEAMS).astype(np.int64))
-        self._spots = _spots(field, 0.9 * body_radius)
+        self._spots = places_with_room(field, 0.9 * body_radius)
         self._headings = np.arange(-math.pi, math.pi, TURN)
         self._at = 0
         self._scores = np.zeros(len(self._spots), np.float32)
@@ -70,7 +70,7 @@ class PlaceSearch:
         return np.column_stack((self._spots[order], self._best[order].astype(np.float64)))
 
 
-def _spots(field: SurfaceField, room: float) -> NDArray[np.float64]:
+def places_with_room(field: SurfaceField, room: float) -> NDArray[np.float64]:
     """Return a lattice of places with so much room around, float64 [n, 2], m."""
     frame = field.frame
     stride = max(1, round(STEP / frame.resolution))
