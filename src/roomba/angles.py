@@ -21,6 +21,8 @@ wrapped: Final[Callable[[float], float]] = register_jitable(wrap_angle)
 
 def wrap_angles(angles: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the same directions in (-pi, pi], rad, in an array of the same shape."""
+    if ((angles > -math.pi) & (angles <= math.pi)).all():
+        return angles.copy()
     turns = np.where(np.abs(angles) > TWO_PI, np.fmod(angles, TWO_PI), angles)
     turns = np.where(turns > math.pi, turns - TWO_PI, turns)
     return np.where(turns > -math.pi, turns, turns + TWO_PI)

@@ -85,12 +85,11 @@ class Burst:
         )
         rows = self._rows[:ticks].copy()
         if ticks:
-            self._end(np.vstack((start, rows[:-1, BELIEVED][:, :2])))
+            believed = self._end(np.vstack((start, rows[:-1, BELIEVED][:, :2])))
             has_looked = self._next_look != next_look
             is_done = bool(self._burst[0]["is_left"]) or has_looked
             self._has_ended = ticks < len(self._rows) and not is_done
             # A scan that was kept may have moved the map below it.
-            believed = brain.pose
             rows[-1, BELIEVED] = believed.x, believed.y, believed.theta
         return rows
 
@@ -194,21 +193,27 @@ class Burst:
 
     # ---------------------------------------------------------------- handing back
 
-    def _end(self, places: Floats) -> None:
-        """Hand the state back to the classes; ticks began at ``places``, float64 [n, 2], m."""
+    def _end(self, places: Floats) -> Pose:
+        """Hand the state back to the classes; ticks began at ``places``, float64 [n, 2], m.
+
+        Returns where the robot takes itself to be.
+        """
         brain, row = self._brain, self._burst[0]
         mission = brain.mission
         self._tell_floor()
         self._body.scans = int(row["scans"])
         brain.keeper.scans.seen_at = float(row["seen_at"])
-        readings = self._body.read()
-        readings = replace(readings, time=readings.time + float(row["clock"]))
+        readings, clock = self._body.read(), float(row["clock"])
+        if clock != 0.0:
+            readings = replace(readings, time=readings.time + clock)
         brain.told(readings)
         self._finish_scan(readings.time)
         time, x, y = row["last"].tolist()
-        last = replace(brain.senses(), now=time, pose=Pose(x, y, 0.0))
+        senses = brain.senses()
+        last = replace(senses, now=time, pose=Pose(x, y, 0.0))
         mission.caught_up(last, places, float(row["way"]))
         brain.use_newer_map()
+        return senses.pose
 
     def _tell_floor(self) -> None:
         """Hand back what was swept."""

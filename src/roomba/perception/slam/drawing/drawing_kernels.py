@@ -34,6 +34,8 @@ _SURER: Final = 1.5
 """Times the share of beams that ended: so much more of them ended in that one."""
 _ROW_STEPS, _COLUMN_STEPS = (0, 1, 0, -1), (1, 0, -1, 0)
 _NOWHERE: Final = np.zeros((0, 0, 2), np.float32)
+MARGIN: Final = 1
+"""Cells of the unknown around what is known."""
 _MOST: Final = 60000
 """Counts are halved there: a cell never overflows."""
 
@@ -214,24 +216,31 @@ def _bound(cells: CountArrays, row: int, column: int) -> None:
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def occupancy(cells: CountArrays, share: float, least: int, values: NDArray[np.int8]) -> None:
-    """Fill ``values``, all within the bounds, from the counts.
+    """Fill ``values`` from the counts, with a margin of unknown cells around all in the bounds.
 
     Occupied where ``least`` beams or more, and ``share`` of all, ended, unless that is the edge of
     what stands in the cell beside it; free where beams went through; else unknown.
     """
-    rows, columns = values.shape
+    rows, columns = values.shape[0] - 2 * MARGIN, values.shape[1] - 2 * MARGIN
     first_row, first_column = cells.bounds[0], cells.bounds[2]
+    values[:] = UNKNOWN
     for row in range(rows):
+        line = values[MARGIN + row, MARGIN : MARGIN + columns]
+        hits = cells.hits[first_row + row, first_column : first_column + columns]
+        passes = cells.passes[first_row + row, first_column : first_column + columns]
+        # Most cells: without a branch several are done at once.
         for column in range(columns):
-            ended = int(cells.hits[first_row + row, first_column + column])
-            through = int(cells.passes[first_row + row, first_column + column])
+            line[column] = FREE if passes[column] > 0 else UNKNOWN
+        for column in range(columns):
+            ended = int(hits[column])
+            if ended == 0:
+                continue
+            through = int(passes[column])
             is_met = _is_met(ended, through, share, least)
-            if is_met and not _is_edge(cells, first_row + row, first_column + column, least):
-                values[row, column] = OCCUPIED
-            elif through > 0:
-                values[row, column] = FREE
-            else:
-                values[row, column] = OCCUPIED if ended > 0 else UNKNOWN
+            if through == 0 or (
+                is_met and not _is_edge(cells, first_row + row, first_column + column, least)
+            ):
+                line[column] = OCCUPIED
 
 
 @njit(cache=True, nogil=True, error_model="numpy", inline="always")

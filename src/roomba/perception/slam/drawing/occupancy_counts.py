@@ -8,9 +8,15 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.grid import UNKNOWN, GridFrame, OccupancyMap
+from roomba.grid import GridFrame, OccupancyMap
 from roomba.perception.slam.drawing import drawing_kernels
-from roomba.perception.slam.drawing.drawing_kernels import INTO_EDGE, Counts, draw, occupancy
+from roomba.perception.slam.drawing.drawing_kernels import (
+    INTO_EDGE,
+    MARGIN,
+    Counts,
+    draw,
+    occupancy,
+)
 
 Floats = NDArray[np.float64]
 Offsets = NDArray[np.float32]
@@ -21,8 +27,6 @@ _SHARE: Final = 0.25
 one takes long."""
 _NONE: Final = 2**40
 """The first row and column with counts, as long as there are none."""
-_MARGIN: Final = 1
-"""Cells of the unknown around what is known."""
 
 
 class OccupancyCounts:
@@ -59,17 +63,18 @@ class OccupancyCounts:
         first_row, last_row, first_column, last_column = self._arrays.bounds.tolist()
         if last_row < first_row:
             raise ValueError("expected counts of at least one scan, got an empty one")
-        values = np.empty((last_row - first_row + 1, last_column - first_column + 1), np.int8)
+        around = 1 + 2 * MARGIN
+        shape = last_row - first_row + around, last_column - first_column + around
+        values = np.empty(shape, np.int8)
         occupancy(self._arrays, share, least, values)
         size = self._resolution
         frame = GridFrame(
             size,
-            self._phase[0] + (self._column + first_column - _MARGIN) * size,
-            self._phase[1] + (self._row + first_row - _MARGIN) * size,
-            values.shape[0] + 2 * _MARGIN,
-            values.shape[1] + 2 * _MARGIN,
+            self._phase[0] + (self._column + first_column - MARGIN) * size,
+            self._phase[1] + (self._row + first_row - MARGIN) * size,
+            *shape,
         )
-        return OccupancyMap(frame, np.pad(values, _MARGIN, constant_values=UNKNOWN))
+        return OccupancyMap(frame, values)
 
     def _lay(
         self, hits: Counts, passes: Counts, offsets: Offsets, bounds: NDArray[np.int64]

@@ -27,6 +27,8 @@ from roomba.perception.slam.scan_matching.tolerances import Tolerances
 Floats = NDArray[np.float64]
 Numbers = NDArray[np.int64]
 
+SIZE: Final = 10
+"""Keyframes of a group."""
 _NEARBY: Final = 2.0
 """m; from a keyframe to the middle of a group that it is matched to."""
 _APART: Final = 25
@@ -57,6 +59,17 @@ class Scans(NamedTuple):
     points: Floats
     firsts: Numbers
     poses: Floats
+
+
+class Asked(NamedTuple):
+    """Groups of SIZE keyframes by their ``firsts`` and ``middles``, [groups], and the ``frames``
+    [n] to be matched to each, one group after the other, from ``starts`` [groups + 1] on.
+    """
+
+    firsts: Numbers
+    middles: Numbers
+    starts: Numbers
+    frames: Numbers
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -93,35 +106,39 @@ def nearby_visits(poses: Floats, middles: Numbers, visits: Numbers) -> None:
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def match_to_group(
+def match_to_groups(
     surfels: Surfels,
     scans: Scans,
-    group: Numbers,
-    middle: int,
-    frames: Numbers,
+    asked: Asked,
+    is_due: NDArray[np.bool_],
     tolerances: Tolerances,
     found: Floats,
     information: Floats,
 ) -> None:
-    """Match each of ``frames`` [n] to the keyframes of a ``group``, seen from the ``middle`` one.
+    """Match keyframes to the groups for which they are ``asked``, where a group ``is_due``.
 
-    Fills ``found`` [n, 3] with their poses in its frame, nan where there is none to tell, and
-    ``information`` [n, 3, 3] with how sure these are. Of ``surfels``
-    nothing stays.
+    Fills of these ``found`` [n, 3] with the keyframes' poses as seen from the middle keyframe of
+    the group, nan where there is none to tell, and ``information`` [n, 3, 3] with how sure these
+    are. Of ``surfels`` nothing stays.
     """
-    clear(surfels)
     work, pose = np.empty((ALIGN_WORK, 3)), np.empty(3)
-    for index in group:
-        pose[0], pose[1], pose[2] = seen_from(scans.poses[middle], scans.poses[index])
-        points = scans.points[scans.firsts[index] : scans.firsts[index + 1]]
-        add_points(surfels, points, len(points), pose)
-    for place in range(frames.size):
-        frame = frames[place]
-        pose[0], pose[1], pose[2] = seen_from(scans.poses[middle], scans.poses[frame])
-        points = scans.points[scans.firsts[frame] : scans.firsts[frame + 1]]
-        is_found = _match(surfels, points, pose, tolerances, found[place], information[place], work)
-        if not is_found:
-            found[place] = math.nan
+    for group in range(is_due.size):
+        if not is_due[group] or asked.starts[group] == asked.starts[group + 1]:
+            continue
+        first, middle = asked.firsts[group], asked.middles[group]
+        clear(surfels)
+        for index in range(first, first + SIZE):
+            pose[0], pose[1], pose[2] = seen_from(scans.poses[middle], scans.poses[index])
+            points = scans.points[scans.firsts[index] : scans.firsts[index + 1]]
+            add_points(surfels, points, len(points), pose)
+        for place in range(asked.starts[group], asked.starts[group + 1]):
+            frame = asked.frames[place]
+            pose[0], pose[1], pose[2] = seen_from(scans.poses[middle], scans.poses[frame])
+            points = scans.points[scans.firsts[frame] : scans.firsts[frame + 1]]
+            if not _match(
+                surfels, points, pose, tolerances, found[place], information[place], work
+            ):
+                found[place] = math.nan
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

@@ -9,6 +9,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from roomba.angles import wrapped
 from roomba.configuration.mapping import MappingConfig
 from roomba.perception.matching.match_kernels import invert
 from roomba.perception.slam.scan_matching.correlative import CorrelativeMatcher, is_in_reach
@@ -45,6 +46,9 @@ _LIKELY: Final = 0.45
 """Mean likelihood of points, 0..1, from which a pose of a wide window is looked at closely."""
 _HARDLY: Final = 0.3
 """m; a link with a larger standard deviation was made without a scan that confirmed it."""
+_SAME: Final = 0.005
+_SAME_TURN: Final = 0.002
+"""m, rad; a link that is off by less is not looked for again."""
 _KEPT: Final = 40
 """Submaps whose grids of likelihoods are kept: some 2 MB each."""
 
@@ -71,13 +75,19 @@ class Linker:
     def links_to(
         self, child: int, last: int, submaps: list[Submap], poses: Floats, links: list[Link]
     ) -> list[Link]:
-        """Return the links of a submap to those before ``last`` that lie near."""
+        """Return the links of a submap to those before ``last`` that lie near.
+
+        One of ``links`` that tells where the submaps lie by now would be found again: it is kept.
+        """
         found = []
         windows, turns = self._windows(child, poses, links)
+        known = {each.parent: each for each in links if each.child == child and each.may_be_wrong}
         for parent in self._candidates(child, last, poses, windows):
-            link = self._link(
-                parent, child, submaps, poses, float(windows[parent]), float(turns[parent])
-            )
+            link = known.get(parent)
+            if link is None or not _is_so(link, poses):
+                link = self._link(
+                    parent, child, submaps, poses, float(windows[parent]), float(turns[parent])
+                )
             if link is not None:
                 found.append(link)
         return found
@@ -181,6 +191,12 @@ class Linker:
         information = np.empty((3, 3))
         invert(match.covariance + least, information)
         return information
+
+
+def _is_so(link: Link, poses: Floats) -> bool:
+    """Whether submaps lie as a link tells."""
+    off = relative_to(poses[link.parent][None], poses[link.child][None])[0] - link.relative
+    return math.hypot(off[0], off[1]) < _SAME and abs(wrapped(off[2])) < _SAME_TURN
 
 
 def _ways(submap: int, poses: Floats, links: list[Link], drift: float) -> tuple[Floats, Floats]:

@@ -50,29 +50,52 @@ class Link:
     may_be_wrong: bool = True
 
 
+class Measurements(NamedTuple):
+    """Links as arrays: ``parents``, ``children`` and ``doubted`` are [m], ``relative`` [m, 3],
+    ``information`` [m, 3, 3].
+    """
+
+    parents: Indices
+    children: Indices
+    relative: Floats
+    information: Floats
+    doubted: NDArray[np.bool_]
+
+    def beside(self, others: Measurements) -> Measurements:
+        """Return these links, and then others."""
+        return Measurements(*(np.concatenate(both) for both in zip(self, others, strict=True)))
+
+    @staticmethod
+    def of(links: list[Link]) -> Measurements:
+        """Return links as arrays."""
+        return Measurements(
+            np.array([link.parent for link in links]),
+            np.array([link.child for link in links]),
+            np.array([link.relative for link in links]),
+            np.array([link.information for link in links]),
+            np.array([link.may_be_wrong for link in links]),
+        )
+
+
 def relative_to(parents: Floats, children: Floats) -> Floats:
     """Return poses, float64 [n, 3], in the frames of others, [n, 3] as well."""
     away = children - parents
     cosine, sine = np.cos(parents[:, 2]), np.sin(parents[:, 2])
-    return np.column_stack(
-        (
-            cosine * away[:, 0] + sine * away[:, 1],
-            cosine * away[:, 1] - sine * away[:, 0],
-            wrap_angles(away[:, 2]),
-        )
-    )
+    relative = np.empty(away.shape)
+    relative[:, 0] = cosine * away[:, 0] + sine * away[:, 1]
+    relative[:, 1] = cosine * away[:, 1] - sine * away[:, 0]
+    relative[:, 2] = wrap_angles(away[:, 2])
+    return relative
 
 
 def composed(parents: Floats, relative: Floats) -> Floats:
     """Return where poses, float64 [n, 3], lie that are given in the frames of others, [n, 3]."""
     cosine, sine = np.cos(parents[:, 2]), np.sin(parents[:, 2])
-    return np.column_stack(
-        (
-            parents[:, 0] + cosine * relative[:, 0] - sine * relative[:, 1],
-            parents[:, 1] + sine * relative[:, 0] + cosine * relative[:, 1],
-            wrap_angles(parents[:, 2] + relative[:, 2]),
-        )
-    )
+    placed = np.empty(relative.shape)
+    placed[:, 0] = parents[:, 0] + cosine * relative[:, 0] - sine * relative[:, 1]
+    placed[:, 1] = parents[:, 1] + sine * relative[:, 0] + cosine * relative[:, 1]
+    placed[:, 2] = wrap_angles(parents[:, 2] + relative[:, 2])
+    return placed
 
 
 def inverse(pose: Floats) -> Floats:
@@ -89,7 +112,11 @@ def optimised(poses: Floats, links: list[Link], known: int = 0) -> Floats:
     """
     if len(links) <= known:
         return poses.copy()
-    measured = _Measurements.of(links)
+    return brought_to_agree(poses, Measurements.of(links), known)
+
+
+def brought_to_agree(poses: Floats, measured: Measurements, known: int = 0) -> Floats:
+    """Return what :func:`optimised` does, for links as arrays; there must be some."""
     ends = measured.parents, measured.children
     if min(end.min() for end in ends) < 0 or max(end.max() for end in ends) >= len(poses):
         raise ValueError(f"expected links between poses 0 to {len(poses) - 1}, got others")
@@ -120,7 +147,7 @@ def covariance_of(poses: Floats, links: list[Link], index: int) -> Floats:
         return np.zeros((3, 3))
     if not links:
         raise ValueError("expected links that hold the pose, got none")
-    measured = _Measurements.of(links)
+    measured = Measurements.of(links)
     errors = _errors(poses, measured)
     slopes = _slopes(poses, measured, errors.predicted)
     matrix = _normal_equations(measured, slopes, _weighted(measured, errors, _DOUBTED))
@@ -133,28 +160,6 @@ def covariance_of(poses: Floats, links: list[Link], index: int) -> Floats:
     if not covariance.max() < 0.1 / _HELD:
         raise ValueError("expected links that hold the pose, got none")
     return 0.5 * (covariance + covariance.T)
-
-
-class _Measurements(NamedTuple):
-    """Links as arrays: ``parents``, ``children`` and ``doubted`` are [m], ``relative`` [m, 3],
-    ``information`` [m, 3, 3].
-    """
-
-    parents: Indices
-    children: Indices
-    relative: Floats
-    information: Floats
-    doubted: NDArray[np.bool_]
-
-    @staticmethod
-    def of(links: list[Link]) -> _Measurements:
-        return _Measurements(
-            np.array([link.parent for link in links]),
-            np.array([link.child for link in links]),
-            np.array([link.relative for link in links]),
-            np.array([link.information for link in links]),
-            np.array([link.may_be_wrong for link in links]),
-        )
 
 
 class _Errors(NamedTuple):
@@ -175,7 +180,7 @@ class _Matrix(NamedTuple):
     values: Floats
 
 
-def _errors(poses: Floats, measured: _Measurements) -> _Errors:
+def _errors(poses: Floats, measured: Measurements) -> _Errors:
     predicted = relative_to(poses[measured.parents], poses[measured.children])
     error = predicted - measured.relative
     error[:, 2] = wrap_angles(error[:, 2])
@@ -183,14 +188,14 @@ def _errors(poses: Floats, measured: _Measurements) -> _Errors:
     return _Errors(error, predicted, square)
 
 
-def _weighted(measured: _Measurements, errors: _Errors, tolerance: float) -> Floats:
+def _weighted(measured: Measurements, errors: _Errors, tolerance: float) -> Floats:
     """Return the information [m, 3, 3] of the links, less of those that others contradict."""
     trust = (tolerance / (tolerance + errors.square)) ** 2
     weighted: Floats = measured.information * np.where(measured.doubted, trust, 1.0)[:, None, None]
     return weighted
 
 
-def _step(poses: Floats, measured: _Measurements, errors: _Errors, weighted: Floats) -> Floats:
+def _step(poses: Floats, measured: Measurements, errors: _Errors, weighted: Floats) -> Floats:
     """Return the correction of all poses but the first, float64 [n - 1, 3]."""
     slopes = _slopes(poses, measured, errors.predicted)
     gradient = np.zeros((len(poses), 3))
@@ -202,7 +207,7 @@ def _step(poses: Floats, measured: _Measurements, errors: _Errors, weighted: Flo
 
 
 def _normal_equations(
-    measured: _Measurements, slopes: tuple[Floats, Floats], weighted: Floats
+    measured: Measurements, slopes: tuple[Floats, Floats], weighted: Floats
 ) -> _Matrix:
     axes = np.arange(3)
     ends = tuple(zip(slopes, (measured.parents, measured.children), strict=True))
@@ -239,7 +244,7 @@ def _solved(sums: _Matrix, right: Floats) -> Floats:
     return solution
 
 
-def _slopes(poses: Floats, measured: _Measurements, predicted: Floats) -> tuple[Floats, Floats]:
+def _slopes(poses: Floats, measured: Measurements, predicted: Floats) -> tuple[Floats, Floats]:
     """Return how predictions change with the poses of parents and of children, [m, 3, 3] each."""
     headings = poses[measured.parents, 2]
     cosine, sine, count = np.cos(headings), np.sin(headings), len(headings)

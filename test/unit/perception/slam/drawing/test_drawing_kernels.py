@@ -12,7 +12,12 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from roomba.grid import FREE, OCCUPIED, UNKNOWN
-from roomba.perception.slam.drawing.drawing_kernels import CountArrays, draw, occupancy
+from roomba.perception.slam.drawing.drawing_kernels import (
+    MARGIN,
+    CountArrays,
+    draw,
+    occupancy,
+)
 
 CELL = 0.05
 SIZE = 60
@@ -43,9 +48,10 @@ def values_of(
 ) -> tuple[NDArray[np.int8], int, int]:
     """All that is known, and its first row and column."""
     first_row, last_row, first_column, last_column = made.bounds.tolist()
-    values = np.empty((last_row - first_row + 1, last_column - first_column + 1), np.int8)
+    shape = last_row - first_row + 1 + 2 * MARGIN, last_column - first_column + 1 + 2 * MARGIN
+    values = np.empty(shape, np.int8)
     occupancy(made, share, least, values)
-    return values, first_row, first_column
+    return values[MARGIN:-MARGIN, MARGIN:-MARGIN], first_row, first_column
 
 
 @given(st.floats(0.15, 1.2), st.floats(-math.pi, math.pi), st.booleans())

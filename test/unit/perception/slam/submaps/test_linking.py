@@ -75,6 +75,22 @@ def test_two_views_of_a_room_are_linked_exactly(off: Pose) -> None:
     assert turned < 0.004
 
 
+@pytest.mark.parametrize(("off", "is_kept"), [(0.002, True), (0.02, False)])
+def test_a_link_that_tells_where_submaps_lie_is_not_looked_for_again(
+    off: float, is_kept: bool
+) -> None:
+    thought = [HERE, THERE]
+    submaps, chain = [submap(HERE), submap(THERE, seed=1)], driven(thought)
+    relative = chain[0].relative + np.array([off, 0.0, 0.0])
+    before = Link(0, 1, relative, KNOWN)
+    (link,) = linked(submaps, thought, [*chain, before])
+    assert (link is before) == is_kept
+    # What was driven is no match of what was seen.
+    (matched,) = linked(submaps, thought, chain)
+    assert matched is not chain[0]
+    assert error(matched, HERE, THERE)[0] < 0.008
+
+
 def test_no_link_is_surer_than_beams_that_err_alike() -> None:
     thought = [HERE, THERE]
     (link,) = linked([submap(HERE), submap(THERE, seed=1)], thought, driven(thought))
