@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +13,10 @@ from roomba.geometry import STANDSTILL, Pose, Twist
 from roomba.mission.docking.beams import StationBeams
 from roomba.mission.inputs.senses import Battery, Senses
 from roomba.perception.localization.estimate import Knowledge
-from roomba.perception.matching.scan_view import LidarModel
+
+if TYPE_CHECKING:
+    # It comes with compiled code, which a node that takes no scans need not load.
+    from roomba.perception.matching.scan_view import LidarModel
 
 
 @dataclass(frozen=True, slots=True, eq=False)

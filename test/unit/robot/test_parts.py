@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
 from dataclasses import replace
 
 import numpy as np
@@ -140,3 +143,15 @@ def test_only_both_wheels_in_the_air_mean_that_it_is_held() -> None:
     for left, right in ((True, False), (False, True), (True, True)):
         keeper.follow(Readings(1.0, Pose(), dropped_left=left, dropped_right=right))
     assert place.lifts == [False, False, True]
+
+
+def test_what_a_body_tells_needs_no_compiled_code() -> None:
+    """A node that takes no scans starts by half the memory."""
+    program = "import roomba.robot.readings, sys; print('numba' in sys.modules)"
+    told = subprocess.run(
+        [sys.executable, "-c", program],
+        check=True,
+        capture_output=True,
+        env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)},
+    )
+    assert told.stdout.strip() == b"False"
