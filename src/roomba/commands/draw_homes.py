@@ -16,19 +16,27 @@ import numpy as np
 import shapely
 
 from roomba.configuration.body import BodyConfig
-from roomba.files.home_layer import LAYER_NAME, MAP_NAME, read_layer
+from roomba.files.home_layer import LAYER_NAME, MAP_NAME, WallEntry, read_layer
 from roomba.files.occupancy_map import save_map
 from roomba.files.shipped import HOMES
 from roomba.grid import FREE, OCCUPIED, UNKNOWN, GridFrame, OccupancyMap
+from roomba.world.home.free_wall import touched_cells
 from roomba.world.home.home import Rectangle
 from roomba.world.home.raster import covered_cells, outline
 from roomba.world.layers.assembly import standing_cells
 from roomba.world.layers.parts import parts_of
 
-DRAWN = {"flat": 0.05, "studio": 0.05, "family": 0.05, "hall": 0.2}
+DRAWN = {
+    "flat": 0.05,
+    "studio": 0.05,
+    "family": 0.05,
+    "bay": 0.05,
+    "hall": 0.2,
+}
 """Homes with the cell size of their map, m; the hall's is coarse since it is 200 m wide."""
-MARGIN = {"flat": 2, "studio": 2, "family": 2, "hall": 0}
-"""Cells of unknown around the outer walls."""
+MARGIN = {"hall": 0}
+"""Cells of unknown around the outer walls, if not :data:`_USUAL_MARGIN`."""
+_USUAL_MARGIN = 2
 PICTURES = {"hall"}
 """Homes whose map is a PNG, which keeps a million equal pixels small."""
 
@@ -37,16 +45,32 @@ def drawn_map(name: str, homes: Path) -> OccupancyMap:
     """Return the map of a home of :data:`DRAWN` as its layer describes it."""
     layer, file = read_layer(homes / name / LAYER_NAME)
     assert layer.walls is not None, f"{file.path} names no walls"
-    walls = [Rectangle(*corners) for corners in layer.walls]
-    frame = _frame_around(walls, DRAWN[name], MARGIN[name])
+    bounds = [_bounds(wall, DRAWN[name]) for wall in layer.walls]
+    frame = _frame_around(bounds, DRAWN[name], MARGIN.get(name, _USUAL_MARGIN))
     parts = parts_of(layer, file, frame)
+    assert parts.walls is not None, "the layer names walls"
+    walls = parts.walls.areas
+    free = [wall for wall in parts.walls.free if wall.on_map]
     values = np.full(frame.shape, UNKNOWN, np.int8)
     values[covered_cells(frame, (shapely.Polygon(room.outline) for room in parts.rooms))] = FREE
     values[covered_cells(frame, (outline(wall) for wall in walls))] = OCCUPIED
     values[covered_cells(frame, (outline(door.opening) for door in parts.doors))] = FREE
+    values[touched_cells(frame, free)] = OCCUPIED
     mapped = (p for p in (*parts.furniture, *parts.moved) if p.on_map)
     values[standing_cells(frame, mapped, BodyConfig().height)] = OCCUPIED
     return OccupancyMap(frame, values)
+
+
+def _bounds(wall: WallEntry, resolution: float) -> Rectangle:
+    """Return what a wall lies in; of one off the grid, grown to whole cells."""
+    if wall.area is not None:
+        return Rectangle(*wall.area)
+    reach = 0.5 * (wall.thickness or 0.0)
+    points = np.array(wall.line if wall.arc is None else [wall.arc.centre], np.float64)
+    reach += 0.0 if wall.arc is None else wall.arc.radius
+    low = np.floor((points.min(axis=0) - reach) / resolution + 1e-6) * resolution
+    high = np.ceil((points.max(axis=0) + reach) / resolution - 1e-6) * resolution
+    return Rectangle(*low.tolist(), *high.tolist())
 
 
 def _frame_around(walls: list[Rectangle], resolution: float, margin: int) -> GridFrame:

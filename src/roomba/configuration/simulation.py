@@ -171,6 +171,12 @@ class SimulatedSurroundings(Frozen):
     """Reflectivity of what is no part of the home."""
     shiny_cosine: Ratio = 0.96
     """Cosine to the normal; a shiny surface is seen when it is met as squarely."""
+    glass: Ratio = 0.5
+    """Share of the beams that glass sends back where it is met squarely; all others pass."""
+    glass_cosine: Ratio = 0.98
+    """Cosine to the normal; glass is seen when it is met as squarely."""
+    clear: Ratio = 0.8
+    """Share of the light that is left, there and back, after a pane of glass or a mirror."""
     fading: NotNegative = 0.08
     """Share of the reach by which a faint echo comes and goes."""
     edge: Positive = 0.10

@@ -116,6 +116,60 @@ class DoorEntry(_Entry):
     open: bool = True
 
 
+class ArcEntry(_Entry):
+    """A part of a circle, counter-clockwise ``from`` one direction ``to`` another, rad."""
+
+    centre: Corner
+    radius: Length
+    first: Annotated[Number, Field(alias="from")]
+    last: Annotated[Number, Field(alias="to")]
+
+    @model_validator(mode="after")
+    def _goes_round_once(self) -> ArcEntry:
+        if not 0.0 < self.last - self.first < 2.0 * math.pi:
+            raise ValueError("expected 'to' above 'from' by less than a turn (6.28 rad)")
+        return self
+
+
+class WallEntry(_Entry):
+    """A wall of a form or a material of its own: exactly one of area, line and arc.
+
+    An ``area`` is a rectangle along the axes. A wall along a ``line`` or ``arc``, which is its
+    middle, is ``thickness`` m wide and stands where it is told, off the grid.
+    """
+
+    area: Corners | None = None
+    line: Annotated[list[Corner], Field(min_length=2)] | None = None
+    arc: ArcEntry | None = None
+    thickness: Length | None = None
+    material: Name | None = None
+    on_map: bool = True
+
+    @field_validator("line")
+    @classmethod
+    def _leads_on(cls, line: list[list[float]] | None) -> list[list[float]] | None:
+        if line is not None and any(before == after for before, after in pairwise(line)):
+            raise ValueError("expected points each another than the one before")
+        return line
+
+    @model_validator(mode="after")
+    def _has_one_form(self) -> WallEntry:
+        forms = [name for name in ("area", "line", "arc") if getattr(self, name) is not None]
+        if len(forms) != 1:
+            raise ValueError("expected exactly one of the keys area, line, arc")
+        if (self.thickness is None) != (self.area is not None):
+            raise ValueError("expected 'thickness' beside line or arc, and only there")
+        if self.area is not None and not self.on_map:
+            raise ValueError("expected 'on_map' beside line or arc: an area is drawn on the map")
+        if self.arc is not None and (self.thickness or 0.0) >= 2.0 * self.arc.radius:
+            raise ValueError("expected a thickness below twice the radius")
+        return self
+
+
+def _wall(value: Any) -> Any:
+    return {"area": value} if isinstance(value, list) else value
+
+
 class CarpetEntry(_Entry):
     """A carpet."""
 
@@ -220,7 +274,7 @@ class Layer(_Entry):
 
     wall_height: Length = 2.4
     station: StationEntry | None = None
-    walls: list[Corners] | None = None
+    walls: list[Annotated[WallEntry, BeforeValidator(_wall)]] | None = None
     rooms: list[RoomEntry] = []
     doors: list[DoorEntry] = []
     furniture: list[FurnitureEntry] = []

@@ -13,10 +13,12 @@ from roomba.plots.furniture import SHADOW
 from roomba.world.catalogue.furniture import STATION_KIND
 from roomba.world.home.home import Door, Furniture, Home, MovingKind, Rectangle
 from roomba.world.home.raster import footprint
+from roomba.world.home.surface import Finish
 
 WALL: Colour = (66, 68, 76)
 LEAF: Colour = (170, 120, 78)
 GLASS: Colour = (150, 196, 216)
+MIRROR: Colour = (176, 168, 214)
 STATION: Colour = (52, 54, 60)
 LIGHT: Colour = (72, 204, 128)
 LEAF_THICKNESS = 0.045
@@ -24,11 +26,23 @@ LEAF_THICKNESS = 0.045
 
 
 def draw_walls(canvas: Canvas, home: Home) -> None:
-    """Fill the walls, with a soft shadow at their feet."""
-    mask = upscaled(canvas, home.frame, home.walls)
+    """Fill the walls, with a soft shadow at their feet; slanted ones as the home's map shows them.
+
+    Those that stand free of the grid of a home that is not turned are drawn as they are.
+    """
+    exact = home.exact if home.axes.theta == 0.0 else home
+    mask = upscaled(canvas, exact.frame, exact.walls)
+    free = exact.free_walls.walls if exact.free_walls is not None else ()
+    for wall in free:
+        if wall.line:
+            canvas.fill_mask(mask, list(wall.outline))
     soft = softened(mask, 0.06 * canvas.scale)
     canvas.blend(SHADOW, (soft * 0.30).astype(np.uint8))
     canvas.blend(WALL, mask)
+    for wall in free:
+        if wall.line and wall.surface is not None and wall.surface.is_clear:
+            is_glass = wall.surface.finish is Finish.GLASS
+            canvas.line(list(wall.line), GLASS if is_glass else MIRROR, 0.04)
 
 
 def draw_openings(canvas: Canvas, home: Home) -> None:

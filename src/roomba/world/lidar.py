@@ -1,4 +1,8 @@
-"""The lidar alone: exact scans of a home's walls and furniture from any poses."""
+"""The lidar alone: exact scans of a home's walls and furniture from any poses.
+
+Through glass it sees, and a mirror is told where it stands; only :class:`.simulator.Simulator`
+follows a beam by way of a mirror.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +14,7 @@ from numpy.typing import NDArray
 from roomba.configuration.sensors import LidarConfig
 from roomba.geometry import Pose
 from roomba.grid import GridFrame
-from roomba.world.engine.layout import joined_edges, seen_by_lidar
+from roomba.world.engine.layout import faces_of, joined_edges, seen_by_lidar
 from roomba.world.engine.lidar.edges import LidarEdges, lidar_edges
 from roomba.world.engine.lidar.projection import (
     ScanBuffers,
@@ -19,9 +23,11 @@ from roomba.world.engine.lidar.projection import (
     end_scan,
     scan_walls,
 )
-from roomba.world.engine.state.arrays import HOME, Edges, Rows
+from roomba.world.engine.lidar.scan_kernels import scan_faces
+from roomba.world.engine.state.arrays import FACE, HOME, Edges, Rows
 from roomba.world.engine.state.compilation import entry
 from roomba.world.home.home import Home
+from roomba.world.home.surface import Finish
 from roomba.world.home.turned import placed
 
 
@@ -33,6 +39,7 @@ class Lidar:
     frame: GridFrame
     edges: LidarEdges
     _home: Rows
+    _faces: Rows
     _arrays: Edges
     _buffers: ScanBuffers
     _axes: Pose | None = None
@@ -43,6 +50,9 @@ class Lidar:
         """Return the lidar of a home."""
         exact = home.exact
         lidar = Lidar.on_grid(seen_by_lidar(exact), exact.frame, config)
+        faces = faces_of(exact)
+        lidar = replace(lidar, _faces=faces[faces["finish"] != Finish.GLASS])
+        lidar._home["clear_at"] = len(lidar._faces)
         return lidar if home.turned is None else replace(lidar, _axes=home.axes)
 
     @staticmethod
@@ -61,7 +71,8 @@ class Lidar:
         home["tile_columns"] = edges.tile_columns
         home["tile_size"] = edges.tile_cells * frame.resolution
         arrays = joined_edges([edges])
-        return Lidar(config, frame, edges, home, arrays, buffers_for(arrays, config.beams))
+        buffers, faces = buffers_for(arrays, config.beams), np.zeros(0, FACE)
+        return Lidar(config, frame, edges, home, faces, arrays, buffers)
 
     def scan(
         self, poses: NDArray[np.float64], out: NDArray[np.float32] | None = None
@@ -97,6 +108,7 @@ class Lidar:
             self._buffers,
             self._arrays,
             self._home,
+            self._faces,
             poses,
             self.frame.origin_x,
             self.frame.origin_y,
@@ -112,6 +124,7 @@ def _scan_all(
     buffers: ScanBuffers,
     edges: Edges,
     homes: Rows,
+    faces: Rows,
     poses: NDArray[np.float64],
     origin_x: float,
     origin_y: float,
@@ -124,4 +137,6 @@ def _scan_all(
         y = np.float32(poses[row, 1] - origin_y)
         theta = begin_scan(buffers.rays, buffers.fan, poses[row, 2], max_range)
         scan_walls(buffers, edges, homes[0], x, y, theta)
+        beams = ranges.shape[1]
+        scan_faces(faces, homes[0], poses[row, 0], poses[row, 1], buffers.fan, beams, theta)
         end_scan(buffers.fan, ranges, row, min_range, max_range)

@@ -20,6 +20,8 @@ from roomba.world.layers.layer import list_homes, load_home
 from roomba.world.lidar import Lidar
 
 FAR = LidarConfig(min_range=1e-6, max_range=1e3)
+OFF_GRID = {"bay"}
+"""Homes with walls off the grid, which test_free_walls.py looks at."""
 MOST_GRAZING = 1e-4
 """Share of the beams that may see past a corner which they just meet, or the other way round."""
 GRAZE = 2e-5
@@ -118,7 +120,7 @@ def test_beams_that_graze_corners_are_few() -> None:
     assert grazing < MOST_GRAZING * beams
 
 
-@pytest.mark.parametrize("name", list_homes(HOMES))
+@pytest.mark.parametrize("name", sorted(set(list_homes(HOMES)) - OFF_GRID))
 def test_it_sees_what_plain_geometry_sees_in_every_shipped_home(name: str) -> None:
     home = load_home(name, HOMES)
     config = LidarConfig()

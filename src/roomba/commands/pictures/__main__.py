@@ -49,6 +49,7 @@ _DOCUMENTS = _CHECKOUT if _CHECKOUT.is_dir() else Path("pictures")
 
 PICTURES: dict[str, tuple[str, Callable[[Home], Picture]]] = {
     "home": ("flat", picture_of_home),
+    "bay": ("bay", picture_of_home),
     "walk": ("flat", picture_of_walk),
     **{name: ("flat", functools.partial(picture_of_view, pose=VIEWS[name])) for name in VIEWS},
     "lidar": ("flat", picture_of_lidar),

@@ -15,7 +15,7 @@ from roomba.grid import FREE
 from roomba.perception.rooms.rooms import Rooms, segment
 from roomba.world.home.home import Home, MovingKind
 from roomba.world.home.raster import covered_cells, outline
-from roomba.world.home.turned import turned_home
+from roomba.world.home.turned import turned_home, with_steps
 from roomba.world.layers.layer import load_home
 from roomba.world.random.home import random_home
 
@@ -36,6 +36,8 @@ def with_doors_shut(home: Home) -> Home:
     """Return a home whose doors are shut and stay so; the map still shows them open."""
     if not home.doors:
         return home
+    if home.turned is not None:
+        return with_steps(with_doors_shut(home.exact))
     shut = covered_cells(home.frame, (outline(door.opening) for door in home.doors))
     return replace(
         home,

@@ -1,7 +1,7 @@
 """Compiled contact of the round body: how near solid things are, and how far it can go.
 
-Solid are the cells of the home (and all outside of it), moving things, round things that were put
-down, and other robots of the same world.
+Solid are the cells of the home (and all outside of it), walls free of them, moving things, round
+things that were put down, and other robots of the same world.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ import math
 from typing import Final
 
 from roomba.angles import wrapped
+from roomba.world.engine.lidar.face_kernels import way_to_face
 from roomba.world.engine.state.arrays import Row, Rows, Solid
 from roomba.world.engine.state.compilation import part
 
@@ -86,6 +87,24 @@ def near_cells(
 
 
 @part
+def near_faces(
+    solid: Solid, home: Row, x: float, y: float, reach: float, touch: float, theta: float
+) -> tuple[float, int]:
+    """Return the distance to the nearest face, at most ``reach``, and the bumper's halves.
+
+    Halves are those that are pressed by what is not farther than ``touch``; -1 asks for none.
+    """
+    nearest, pressed = reach, 0
+    for index in range(home.faces_at, home.faces_end):
+        to_x, to_y = way_to_face(solid.faces[index], x, y)
+        away = math.hypot(to_x, to_y)
+        nearest = min(nearest, away)
+        if away <= touch:
+            pressed |= halves(to_x, to_y, theta)
+    return nearest, pressed
+
+
+@part
 def near_things(
     solid: Solid, world: Row, x: float, y: float, reach: float, touch: float, theta: float
 ) -> tuple[float, int]:
@@ -155,7 +174,7 @@ def near_discs(
 
 @part
 def room_at(cells: Rows, home: Row, x: float, y: float) -> float:
-    """Return a distance, m, within which no cell around a point is solid; cheap and too small."""
+    """Return a distance, m, within which nothing of the home is solid; cheap and too small."""
     u = (x - home.left) / home.resolution
     v = (y - home.bottom) / home.resolution
     column, row = math.floor(u), math.floor(v)
@@ -177,6 +196,8 @@ def gap_at(
     distance = radius + way
     if room_at(solid.cells, home, x, y) <= distance:
         distance, _ = near_cells(solid.cells, home, x, y, distance, -1.0, 0.0)
+        if home.faces_end > home.faces_at:
+            distance, _ = near_faces(solid, home, x, y, distance, -1.0, 0.0)
     if world.things_end > world.things_at:
         distance, _ = near_things(solid, world, x, y, distance, -1.0, 0.0)
     distance, _ = near_discs(solid, world, robot, radius, x, y, distance, -1.0, 0.0)
@@ -268,8 +289,9 @@ def feel_bumper(solid: Solid, home: Row, world: Row, robot: int, radius: float) 
         x, y, theta = body.x, body.y, body.theta
         touch = radius + CONTACT_GAP
         _, by_cells = near_cells(solid.cells, home, x, y, touch, touch, theta)
+        _, by_faces = near_faces(solid, home, x, y, touch, touch, theta)
         _, by_things = near_things(solid, world, x, y, touch, touch, theta)
         _, by_discs = near_discs(solid, world, robot, radius, x, y, touch, touch, theta)
-        pressed = by_cells | by_things | by_discs
+        pressed = by_cells | by_faces | by_things | by_discs
     body.bumper_left = 1.0 if pressed & LEFT else 0.0
     body.bumper_right = 1.0 if pressed & RIGHT else 0.0

@@ -19,6 +19,7 @@ from roomba.world.engine.state.arrays import (
     CARPET,
     CELL,
     DROP,
+    FACE,
     FLOOR,
     HOME,
     SOURCE,
@@ -27,6 +28,7 @@ from roomba.world.engine.state.arrays import (
 )
 from roomba.world.home.dirt import MICROGRAMS_PER_GRAM, DirtField
 from roomba.world.home.home import Home, MovingThing, cells_in
+from roomba.world.home.surface import Finish
 
 _SECONDS_PER_HOUR = 3600.0
 
@@ -37,6 +39,7 @@ class Layout:
 
     homes: Rows
     cells: Rows
+    faces: Rows
     floors: NDArray[np.bool_]
     sources: Rows
     boxes: Rows
@@ -55,6 +58,8 @@ def layout_of(homes: Sequence[Home], config: SimulatedRobotConfig) -> Layout:
     cells_at = _starts([home.solid.size for home in homes])
     floors_at = _starts([field.micrograms.size for field in fields])
     tiles_at = _starts([len(part.starts) for part in edges])
+    faces = [faces_of(home) for home in homes]
+    faces_at = _starts([len(part) for part in faces])
     for number, (row, home, field, part) in enumerate(zip(rows, homes, fields, edges, strict=True)):
         frame, station = home.frame, home.station
         row["resolution"], row["left"], row["bottom"] = (
@@ -73,11 +78,15 @@ def layout_of(homes: Sequence[Home], config: SimulatedRobotConfig) -> Layout:
         row["tiles_at"], row["tile_columns"] = tiles_at[number], part.tile_columns
         row["tile_size"] = part.tile_cells * frame.resolution
         row["has_drops"] = bool(home.drop.any())
+        clear = np.count_nonzero(faces[number]["finish"] >= Finish.GLASS)
+        row["faces_at"], row["faces_end"] = faces_at[number], faces_at[number + 1]
+        row["clear_at"] = faces_at[number + 1] - clear
     crumb = config.simulation.surroundings.crumb / MICROGRAMS_PER_GRAM
     boxes = [[_boxes(thing, config) for thing in home.moving] for home in homes]
     return Layout(
         homes=rows,
         cells=np.concatenate([_cells(home) for home in homes]),
+        faces=np.concatenate(faces),
         floors=np.concatenate([field.floor.ravel() for field in fields]),
         sources=_rows(SOURCE, [row for home in homes for row in _sources(home, crumb)]),
         boxes=_rows(BOX, [row for of_home in boxes for of_thing in of_home for row in of_thing]),
@@ -90,6 +99,23 @@ def layout_of(homes: Sequence[Home], config: SimulatedRobotConfig) -> Layout:
 def seen_by_lidar(home: Home) -> NDArray[np.bool_]:
     """Return the cells that stop a beam of the lidar, bool [rows, columns]: all that is solid."""
     return home.solid
+
+
+def faces_of(home: Home) -> Rows:
+    """Return the faces of a home's walls that are free of its grid, FACE, the clear ones last."""
+    rows = [
+        (
+            *left_to_right[1],
+            *left_to_right[0],
+            float(Finish.MATT if wall.surface is None else wall.surface.finish),
+            -1.0 if wall.surface is None else wall.surface.reflectivity,
+        )
+        for wall in (home.free_walls.walls if home.free_walls is not None else ())
+        for left_to_right in itertools.pairwise((*wall.outline, wall.outline[0]))
+    ]
+    faces = _rows(FACE, rows)
+    order = np.argsort(faces["finish"] >= Finish.GLASS, kind="stable")
+    return np.asarray(faces[order])
 
 
 def room_around(solid: NDArray[np.bool_], resolution: float) -> NDArray[np.float32]:
@@ -121,7 +147,10 @@ def joined_edges(edges: Sequence[LidarEdges]) -> Edges:
 def _cells(home: Home) -> Rows:
     cells = np.zeros(home.solid.size, CELL)
     cells["solid"] = home.solid.ravel()
-    cells["room"] = room_around(home.solid, home.frame.resolution).ravel()
+    near = home.solid if home.free_walls is None else home.solid | home.free_walls.touched
+    cells["room"] = room_around(near, home.frame.resolution).ravel()
+    if home.surfaces is not None:
+        cells["surface"] = home.surfaces.ravel()
     ground = np.full(home.frame.shape, FLOOR, np.uint8)
     ground[cells_in(home.frame, [carpet.area for carpet in home.carpets])] = CARPET
     ground[home.drop] = DROP

@@ -75,6 +75,7 @@ def first_state(
         worlds=worlds,
         solid=Solid(
             cells=layout.cells,
+            faces=layout.faces,
             things=np.array(things, THING),
             boxes=layout.boxes,
             discs=np.zeros(len(seeds) * MOST_DISCS, DISC),
@@ -131,7 +132,7 @@ def starts_of(
     for home, seed in zip(homes, seeds, strict=True):
         taken = [(home.station.x, home.station.y, home.station.theta)]
         if robots_per_home > 1:
-            room = room_around(home.solid | home.drop, home.frame.resolution)
+            room = room_around(home.blocked, home.frame.resolution)
             rows, columns = np.nonzero(room > radius + 0.01)
             boxes = [box for thing in home.moving for box in thing.first_boxes]
             random = _generator(seed, _PLACES)

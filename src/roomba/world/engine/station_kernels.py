@@ -7,16 +7,20 @@ green to its right, and both are seen in the middle.
 from __future__ import annotations
 
 import math
+from typing import Final
 
 from roomba.angles import wrapped
-from roomba.world.engine.state.arrays import Infrared, Row, Rows
+from roomba.world.engine.lidar.face_kernels import ray_to_faces
+from roomba.world.engine.state.arrays import Infrared, Row, Solid
 from roomba.world.engine.state.compilation import part
+from roomba.world.home.surface import Finish
 
+_GLASS: Final = int(Finish.GLASS)
 _HALO, _RED, _GREEN = int(Infrared.HALO), int(Infrared.RED), int(Infrared.GREEN)
 
 
 @part
-def sense_station(cells: Rows, home: Row, body: Row, numbers: Row) -> None:
+def sense_station(solid: Solid, home: Row, body: Row, numbers: Row) -> None:
     """Receive the station's beams, and feel its contacts."""
     body.beams = 0
     body.docked = 0.0
@@ -30,11 +34,11 @@ def sense_station(cells: Rows, home: Row, body: Row, numbers: Row) -> None:
     if is_there and is_straight and body.lifted == 0.0:
         body.docked = 1.0
     if body.infrared_blocked == 0.0:
-        body.beams = seen_beams(cells, home, body, numbers)
+        body.beams = seen_beams(solid, home, body, numbers)
 
 
 @part
-def seen_beams(cells: Rows, home: Row, body: Row, numbers: Row) -> int:
+def seen_beams(solid: Solid, home: Row, body: Row, numbers: Row) -> int:
     """Return the beams, see Infrared, that reach the receiver on top of the body."""
     cosine, sine = math.cos(home.station_theta), math.sin(home.station_theta)
     front_x = home.station_x + numbers.station_ahead * cosine
@@ -50,14 +54,17 @@ def seen_beams(cells: Rows, home: Row, body: Row, numbers: Row) -> int:
             seen |= _RED
         if -numbers.beam_angle <= angle <= numbers.half_overlap:
             seen |= _GREEN
-    if seen != 0 and not is_in_sight(cells, home, front_x, front_y, body.x, body.y):
+    if seen != 0 and not is_in_sight(solid, home, front_x, front_y, body.x, body.y):
         seen = 0
     return seen
 
 
 @part
-def is_in_sight(cells: Rows, home: Row, from_x: float, from_y: float, x: float, y: float) -> bool:
-    """Tell whether no solid cell stands between the station's front and a point."""
+def is_in_sight(solid: Solid, home: Row, from_x: float, from_y: float, x: float, y: float) -> bool:
+    """Tell whether nothing of the home stands between the station's front and a point.
+
+    Glass lets the light through, and what a mirror shows is too faint.
+    """
     steps = math.ceil(2.0 * math.hypot(x - from_x, y - from_y) / home.resolution)
     # The front itself may lie in a cell of the station.
     for step in range(2, steps + 1):
@@ -65,6 +72,16 @@ def is_in_sight(cells: Rows, home: Row, from_x: float, from_y: float, x: float, 
         row = math.floor((from_y + share * (y - from_y) - home.bottom) / home.resolution)
         column = math.floor((from_x + share * (x - from_x) - home.left) / home.resolution)
         inside = 0 <= row < home.rows and 0 <= column < home.columns
-        if not inside or cells[home.cells_at + row * home.columns + column].solid:
+        if not inside or solid.cells[home.cells_at + row * home.columns + column].solid:
             return False
+    away = math.hypot(x - from_x, y - from_y)
+    if home.faces_end > home.faces_at and away > 0.0:
+        cosine, sine = (x - from_x) / away, (y - from_y) / away
+        for index in range(home.faces_at, home.faces_end):
+            if solid.faces[index].finish != _GLASS:
+                way, _, _ = ray_to_faces(
+                    solid.faces, index, index + 1, from_x, from_y, cosine, sine, -1
+                )
+                if way < away:
+                    return False
     return True

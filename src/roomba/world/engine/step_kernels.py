@@ -11,9 +11,10 @@ from roomba.world.engine.contact_kernels import feel_bumper
 from roomba.world.engine.drive_kernels import drive
 from roomba.world.engine.fall_kernels import let_dirt_fall
 from roomba.world.engine.ground_kernels import feel_ground, ground_at
+from roomba.world.engine.lidar.light_kernels import Surroundings
 from roomba.world.engine.lidar.projection import ScanBuffers
 from roomba.world.engine.lidar.scan_kernels import is_scan_due, scan
-from roomba.world.engine.lidar.sweep_kernels import Surroundings, sweep
+from roomba.world.engine.lidar.sweep_kernels import sweep
 from roomba.world.engine.state.arrays import Row, Rows, State
 from roomba.world.engine.state.compilation import entry, part
 from roomba.world.engine.station_kernels import sense_station
@@ -98,5 +99,5 @@ def step_robot(
         turn,
         dt,
     )
-    sense_station(solid.cells, home, body, numbers)
+    sense_station(solid, home, body, numbers)
     use_battery(body, numbers, ground, dt)

@@ -53,8 +53,11 @@ class DirtField:
 
     @classmethod
     def of(cls, home: Home, micrograms: NDArray[np.int32] | None = None) -> DirtField:
-        """Lay a field over the floor of a home; on its stairs lies nothing."""
-        return cls(home.frame, home.solid | home.drop, micrograms)
+        """Lay a field over the floor of a home.
+
+        On its stairs, and on cells that a wall free of the grid touches, lies nothing.
+        """
+        return cls(home.frame, home.blocked, micrograms)
 
     @property
     def total(self) -> int:

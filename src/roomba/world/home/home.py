@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from roomba.geometry import Pose
 from roomba.grid import GridFrame, OccupancyMap
+from roomba.world.home.free_wall import FreeWalls
 
 
 @dataclass(frozen=True, slots=True)
@@ -195,7 +196,7 @@ class MovingThing:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class TurnedFrom:
-    """What a turned home is made of: the same ``home`` in its own axes, exact.
+    """What a home with slanted walls is made of: the same ``home`` in its own axes, exact.
 
     These axes lie at ``axes`` in the turned home's frame, where the cells without floor are
     ``drop``, bool [rows, columns].
@@ -216,8 +217,11 @@ class Home:
     that stand up to the ceiling. ``station`` is the pose of the docked robot, its nose to the
     station. What is ``moving`` is not solid and in no other list: not among ``furniture``, and a
     door whose leaf moves is open in ``doors``. ``stairs`` lead down: floor on the map, a drop to
-    a robot. A home that was ``turned`` by :mod:`roomba.world.home.turned` has slanted walls: its
-    grids show them as well as cells can, and ``exact`` is the home without their steps.
+    a robot. A home that was ``turned`` by :mod:`roomba.world.home.turned`, or has ``free_walls``,
+    has slanted walls: its grids show them as well as cells can, and ``exact`` is the home without
+    their steps, in whose ``solid`` and ``walls`` they are not. ``surfaces``, of ``exact`` too, are
+    codes of what the cells' surfaces do to light, uint8 [rows, columns]: see
+    :class:`roomba.world.home.surface.Surface`; None if no material is given.
     """
 
     name: str
@@ -234,6 +238,14 @@ class Home:
     moving: tuple[MovingThing, ...] = ()
     wall_height: float = 2.4
     turned: TurnedFrom | None = None
+    free_walls: FreeWalls | None = None
+    surfaces: NDArray[np.uint8] | None = None
+
+    @property
+    def blocked(self) -> NDArray[np.bool_]:
+        """Cells on which no dirt lies and no robot stands: bool [rows, columns]."""
+        blocked = self.solid | self.drop
+        return blocked if self.free_walls is None else blocked | self.free_walls.touched
 
     @property
     def exact(self) -> Home:

@@ -8,6 +8,7 @@ walls is: steps. Cells that a wall touches are not free, and tell how much of th
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any, Final
 
@@ -16,6 +17,7 @@ from numpy.typing import NDArray
 
 from roomba.geometry import Pose
 from roomba.grid import OCCUPIED, UNKNOWN, GridFrame, OccupancyMap
+from roomba.world.home.free_wall import FreeWall, inside
 from roomba.world.home.home import (
     DirtSource,
     Furniture,
@@ -41,18 +43,14 @@ def turned_home(home: Home, angle: float) -> Home:
     Its doors and carpets are those of ``exact`` alone, since rectangles lie along the axes. Raises
     ValueError for a home that is turned already.
     """
-    if home.turned is not None:
+    if home.axes.theta != 0.0:
         raise ValueError("expected a home in its own axes, got one that is turned already")
+    home = home.exact
     axes, own = Pose(0.0, 0.0, angle), home.frame
     frame = turned_frame(own, angle)
-    values = _in_middles(home.map.values, UNKNOWN, own, frame, angle)
-    share = _share(home.map.values == OCCUPIED, False, own, frame, angle)
-    grades = np.ceil(OCCUPIED * share).astype(np.int8)
     return replace(
         home,
-        map=OccupancyMap(frame, np.where(share > 0.0, grades, values)),
-        solid=_covered(home.solid, True, own, frame, angle),
-        walls=_covered(home.walls, False, own, frame, angle),
+        **_grids(home, frame, angle),
         station=axes.compose(home.station),
         rooms=tuple(_room(room, axes) for room in home.rooms),
         furniture=tuple(_furniture(piece, axes) for piece in home.furniture),
@@ -63,6 +61,12 @@ def turned_home(home: Home, angle: float) -> Home:
         moving=tuple(_moving(thing, axes) for thing in home.moving),
         turned=TurnedFrom(home, axes, _in_middles(home.drop, False, own, frame, angle)),
     )
+
+
+def with_steps(home: Home) -> Home:
+    """Return a home as its map shows it: ``home`` is exact, and has walls free of its grid."""
+    turned = TurnedFrom(home, Pose(), home.drop)
+    return replace(home, **_grids(home, home.frame, 0.0), turned=turned)
 
 
 def turned_frame(frame: GridFrame, angle: float) -> GridFrame:
@@ -94,18 +98,40 @@ def placed(rows: Floats, axes: Pose) -> Floats:
 # ---------------------------------------------------------------- grids
 
 
-def _covered(cells: Mask, beyond: bool, own: GridFrame, frame: GridFrame, angle: float) -> Mask:
-    """Return the cells of ``frame`` that ``cells`` of ``own`` touch."""
-    return _share(cells, beyond, own, frame, angle) > 0.0
+def _grids(home: Home, frame: GridFrame, angle: float) -> dict[str, Any]:
+    """Return map, solid and walls of an exact home over ``frame``; what is exact alone is None."""
+    own, found = home.frame, home.free_walls
+    free = found.walls if found is not None else ()
+    mapped = [wall for wall in free if wall.on_map]
+    walls = [wall for wall in free if wall.line]
+    values = _in_middles(home.map.values, UNKNOWN, own, frame, angle)
+    share = _share(home.map.values == OCCUPIED, False, own, frame, angle, mapped)
+    grades = np.ceil(OCCUPIED * share).astype(np.int8)
+    return {
+        "map": OccupancyMap(frame, np.where(share > 0.0, grades, values)),
+        "solid": _share(home.solid, True, own, frame, angle, free) > 0.0,
+        "walls": _share(home.walls, False, own, frame, angle, walls) > 0.0,
+        "free_walls": None,
+        "surfaces": None,
+    }
 
 
-def _share(cells: Mask, beyond: bool, own: GridFrame, frame: GridFrame, angle: float) -> Floats:
-    """Return how much of each cell of ``frame`` lies on ``cells`` of ``own``, 0..1."""
+def _share(
+    cells: Mask,
+    beyond: bool,
+    own: GridFrame,
+    frame: GridFrame,
+    angle: float,
+    free: Sequence[FreeWall],
+) -> Floats:
+    """Return how much of each cell of ``frame`` lies on ``cells`` of ``own``, or on walls, 0..1."""
     offsets = np.linspace(-_TO_SIDE, _TO_SIDE, _SAMPLES)
     counts = np.zeros(frame.shape, np.int64)
     for up in offsets.tolist():
         for aside in offsets.tolist():
-            counts += _looked_up(cells, beyond, own, frame, angle, (up, aside))
+            x, y = _own_places(frame, angle, (up, aside))
+            found = _values_at(cells, beyond, own, x, y)
+            counts += (found | inside(free, x, y)) if free else found
     share: Floats = counts / _SAMPLES**2
     return share
 
@@ -114,25 +140,28 @@ def _in_middles(
     values: NDArray[Any], beyond: int, own: GridFrame, frame: GridFrame, angle: float
 ) -> NDArray[Any]:
     """Return what ``values`` of ``own`` are in the middles of the cells of ``frame``."""
-    return _looked_up(values, beyond, own, frame, angle, (0.0, 0.0))
+    return _values_at(values, beyond, own, *_own_places(frame, angle, (0.0, 0.0)))
 
 
-def _looked_up(
-    values: NDArray[Any],
-    beyond: int,
-    own: GridFrame,
-    frame: GridFrame,
-    angle: float,
-    offset: tuple[float, float],
-) -> NDArray[Any]:
-    """Return the values at places of all cells of ``frame``, ``offset`` cells off their middles."""
+def _own_places(
+    frame: GridFrame, angle: float, offset: tuple[float, float]
+) -> tuple[Floats, Floats]:
+    """Return x and y in a home's own axes of all cells, ``offset`` cells off their middles."""
     columns, rows = np.arange(frame.columns) + offset[1], np.arange(frame.rows) + offset[0]
     x, y = frame.centres(rows, columns)
     cosine, sine = math.cos(angle), math.sin(angle)
-    own_x = cosine * x[None, :] + sine * y[:, None]
-    own_y = cosine * y[:, None] - sine * x[None, :]
-    column = np.floor((own_x - own.origin_x) / own.resolution).astype(np.int64)
-    row = np.floor((own_y - own.origin_y) / own.resolution).astype(np.int64)
+    return (
+        cosine * x[None, :] + sine * y[:, None],
+        cosine * y[:, None] - sine * x[None, :],
+    )
+
+
+def _values_at(
+    values: NDArray[Any], beyond: int, own: GridFrame, x: Floats, y: Floats
+) -> NDArray[Any]:
+    """Return the values of the cells in which places lie."""
+    column = np.floor((x - own.origin_x) / own.resolution).astype(np.int64)
+    row = np.floor((y - own.origin_y) / own.resolution).astype(np.int64)
     padded = np.pad(values, 1, constant_values=beyond)
     found: NDArray[Any] = padded[
         np.clip(row + 1, 0, own.rows + 1), np.clip(column + 1, 0, own.columns + 1)

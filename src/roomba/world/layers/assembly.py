@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from roomba.geometry import Pose
 from roomba.grid import FREE, OCCUPIED, GridFrame, OccupancyMap
 from roomba.world.catalogue.furniture import FIXTURES, STATION_GAP, station_at
+from roomba.world.home.free_wall import FreeWall, FreeWalls, filled_cells, touched_cells
 from roomba.world.home.home import Box, Door, Furniture, Rectangle, cells_in
 from roomba.world.home.raster import (
     Mask,
@@ -22,7 +23,9 @@ from roomba.world.home.raster import (
     footprint,
     outline,
 )
+from roomba.world.home.surface import surface_of
 from roomba.world.layers.parts import Parts
+from roomba.world.layers.walls import Walls, pane_of
 
 STATION_REACH = 0.22
 """m; a wall nearer than this behind the station's front is what the station leans on."""
@@ -37,6 +40,7 @@ class FurnishedFloor:
     """The grids of a home: see :class:`roomba.world.home.home.Home`.
 
     ``moving`` are the cells that what moves covers, at the body's height, before it first moves.
+    The ``free`` walls are in none of the grids.
     """
 
     map: OccupancyMap
@@ -44,16 +48,23 @@ class FurnishedFloor:
     walls: Mask
     drop: Mask
     moving: Mask
+    free: FreeWalls | None = None
+    surfaces: NDArray[np.uint8] | None = None
+
+    @property
+    def standing(self) -> Mask:
+        """Cells of which anything stands on a part."""
+        return self.solid if self.free is None else self.solid | self.free.touched
 
     @property
     def bare(self) -> Mask:
         """Floor on which dirt can lie, under what moves too."""
-        return ~self.solid & ~self.drop
+        return ~self.standing & ~self.drop
 
     @property
     def taken(self) -> Mask:
         """Where no robot can stand at the start."""
-        return self.solid | self.drop | self.moving
+        return ~self.bare | self.moving
 
 
 def furnished_floor(occupancy: OccupancyMap, parts: Parts, body_height: float) -> FurnishedFloor:
@@ -63,25 +74,77 @@ def furnished_floor(occupancy: OccupancyMap, parts: Parts, body_height: float) -
     moves may be on the map where it stands at first, but is not solid. Stairs are floor on the map.
     """
     frame = occupancy.frame
-    open_map = OccupancyMap(frame, _with_doors_open(occupancy, parts.doors))
-    walls = _walls(open_map, parts)
-    mapped = standing_cells(frame, (p for p in parts.furniture if p.on_map), body_height)
+    clear = {piece.name for piece in parts.furniture if _is_clear(parts, piece)}
+    opaque = [piece for piece in parts.furniture if piece.name not in clear]
+    free = [
+        *(parts.walls.free if parts.walls is not None else ()),
+        *_panes((p for p in parts.furniture if p.name in clear), parts, body_height),
+    ]
+    mapped = standing_cells(frame, (p for p in opaque if p.on_map), body_height)
     moved = standing_cells(frame, (p for p in parts.moved if p.on_map), body_height)
-    hidden = standing_cells(frame, (p for p in parts.furniture if not p.on_map), body_height)
+    hidden = standing_cells(frame, (p for p in opaque if not p.on_map), body_height)
     shut = _areas(frame, [door.opening for door in parts.doors if not door.is_open])
+    open_map = OccupancyMap(frame, _with_doors_open(occupancy, parts.doors))
+    if free:
+        open_map = _without(open_map, free, parts)
+    walls = _walls(open_map, parts)
     # The map's picture may show a piece that moves; where nothing else stands, floor is below it.
     uncovered = moved & ~walls & (open_map.values == OCCUPIED)
     values = open_map.values.copy()
     values[mapped | moved] = OCCUPIED
     return FurnishedFloor(
         OccupancyMap(frame, values),
-        solid=(open_map.solid & ~uncovered) | mapped | hidden | shut,
+        solid=(open_map.solid & ~uncovered) | mapped | hidden | shut | filled_cells(frame, free),
         walls=walls,
         drop=cells_in(frame, parts.stairs),
         moving=_covered_below(
             frame, (box for thing in parts.moving for box in thing.first_boxes), body_height
         ),
+        free=FreeWalls.on(frame, free) if free else None,
+        surfaces=_surfaces(frame, opaque, parts, body_height),
     )
+
+
+def _is_clear(parts: Parts, piece: Furniture) -> bool:
+    surface = surface_of(parts.materials.get(piece.name))
+    return surface is not None and surface.is_clear and piece.kind not in FIXTURES
+
+
+def _panes(pieces: Iterable[Furniture], parts: Parts, height: float) -> list[FreeWall]:
+    return [
+        pane_of(footprint(box), parts.materials[piece.name], piece.on_map)
+        for piece in pieces
+        for box in piece.boxes
+        if box.bottom < height
+    ]
+
+
+def _without(open_map: OccupancyMap, free: Sequence[FreeWall], parts: Parts) -> OccupancyMap:
+    """Return a map without walls that stand free of the grid, but for what else stands there."""
+    touched = touched_cells(open_map.frame, [wall for wall in free if wall.on_map])
+    areas = parts.walls.areas if parts.walls is not None else ()
+    openings = [door.opening for door in parts.doors]
+    others = _areas(open_map.frame, areas) & ~_areas(open_map.frame, openings)
+    values = open_map.values.copy()
+    values[touched & ~others] = FREE
+    return OccupancyMap(open_map.frame, values)
+
+
+def _surfaces(
+    frame: GridFrame, pieces: Sequence[Furniture], parts: Parts, height: float
+) -> NDArray[np.uint8] | None:
+    """Return the codes of what cells' surfaces do to light; None if no material says so."""
+    codes = np.zeros(frame.shape, np.uint8)
+    walls = parts.walls or Walls()
+    for area, material in zip(walls.areas, walls.materials, strict=True):
+        surface = surface_of(material)
+        if surface is not None:
+            codes[_areas(frame, [area])] = surface.code
+    for piece in pieces:
+        surface = surface_of(parts.materials.get(piece.name))
+        if surface is not None:
+            codes[standing_cells(frame, [piece], height)] = surface.code
+    return codes if codes.any() else None
 
 
 def standing_cells(frame: GridFrame, pieces: Iterable[Furniture], height: float) -> Mask:
@@ -101,7 +164,7 @@ def station_on(floor: FurnishedFloor, docked: Pose, body_radius: float) -> Furni
     for number in range(math.ceil(STATION_REACH / step) + 1):
         ahead = docked.compose(Pose(front + number * step, 0.0, 0.0))
         row, column = floor.map.frame.cell_of(ahead.x, ahead.y)
-        if floor.map.frame.contains(ahead.x, ahead.y) and floor.solid[row, column]:
+        if floor.map.frame.contains(ahead.x, ahead.y) and floor.standing[row, column]:
             depth = max(number * step, 0.02)
             break
     return station_at(docked, body_radius, depth)
@@ -145,7 +208,7 @@ def _walls(open_map: OccupancyMap, parts: Parts) -> Mask:
     """
     occupied = open_map.values == OCCUPIED
     if parts.walls is not None:
-        return np.asarray(occupied & _areas(open_map.frame, parts.walls))
+        return np.asarray(occupied & _areas(open_map.frame, parts.walls.areas))
     margin = open_map.frame.resolution
     covered = covered_cells(
         open_map.frame,

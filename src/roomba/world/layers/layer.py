@@ -21,6 +21,7 @@ from roomba.files.strict_yaml import YamlFile, suggestion
 from roomba.geometry import Pose
 from roomba.grid import OccupancyMap
 from roomba.world.home.home import DirtSource, Home
+from roomba.world.home.turned import with_steps
 from roomba.world.layers.assembly import (
     FurnishedFloor,
     furnished_floor,
@@ -77,7 +78,7 @@ def _assembled(
     station = station_on(floor, docked, body.radius)
     floor = with_station(floor, station, docked, body.radius)
     _check_dirt_on_floor(floor, parts, file)
-    return Home(
+    home = Home(
         name,
         floor.map,
         floor.solid,
@@ -91,7 +92,10 @@ def _assembled(
         dirt_sources=((_even_dirt(floor),) if parts.dirt_sources is None else parts.dirt_sources),
         moving=parts.moving,
         wall_height=parts.wall_height,
+        free_walls=floor.free,
+        surfaces=floor.surfaces,
     )
+    return home if floor.free is None else with_steps(home)
 
 
 def _found_station(floor: FurnishedFloor, file: YamlFile, body: BodyConfig) -> Pose:

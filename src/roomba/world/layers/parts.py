@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 
 import shapely
 from shapely.validation import explain_validity
@@ -26,6 +27,7 @@ from roomba.world.home.home import (
 from roomba.world.home.materials import CARPETS, FLOORS
 from roomba.world.layers.check import Checker
 from roomba.world.layers.moving import moving_things
+from roomba.world.layers.walls import Walls, walls_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,12 +35,12 @@ class Parts:
     """What a layer file adds to a map; None where it says nothing and a default is needed.
 
     ``furniture`` is what stays; ``moved`` are the pieces that are among the ``moving`` things, as
-    they stand at first.
+    they stand at first. ``materials`` are those that the layer gives pieces, by their names.
     """
 
     wall_height: float
     station: Pose | None
-    walls: tuple[Rectangle, ...] | None
+    walls: Walls | None
     rooms: tuple[Room, ...]
     furniture: tuple[Furniture, ...]
     doors: tuple[Door, ...]
@@ -47,6 +49,7 @@ class Parts:
     dirt_sources: tuple[DirtSource, ...] | None
     moved: tuple[Furniture, ...] = ()
     moving: tuple[MovingThing, ...] = ()
+    materials: Mapping[str, str] = field(default_factory=dict)
 
 
 def parts_of(layer: Layer, file: YamlFile, frame: GridFrame) -> Parts:
@@ -65,7 +68,7 @@ def parts_of(layer: Layer, file: YamlFile, frame: GridFrame) -> Parts:
     return Parts(
         layer.wall_height,
         _station(layer, check),
-        _rectangles("walls", layer.walls, check) if layer.walls is not None else None,
+        walls_of(layer, check),
         _rooms(layer, check),
         tuple(piece for piece in pieces if piece.name not in moved),
         tuple(replace(d, is_open=True) if d.name in swinging else d for d in doors),
@@ -81,6 +84,7 @@ def parts_of(layer: Layer, file: YamlFile, frame: GridFrame) -> Parts:
         _dirt_sources(layer, check),
         tuple(piece for piece in pieces if piece.name in moved),
         moving,
+        {piece.name: piece.material for piece in layer.furniture if piece.material is not None},
     )
 
 

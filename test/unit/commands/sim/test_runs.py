@@ -231,3 +231,12 @@ def test_a_station_in_a_wall_is_refused(room: Path, capsys: pytest.CaptureFixtur
     error = capsys.readouterr().err
     assert "expected" in error
     assert len(error.splitlines()) == 1
+
+
+@pytest.mark.parametrize("turned", [0.0, 30.0])
+def test_a_home_of_round_and_slanted_walls_is_cleaned_without_touching_them(turned: float) -> None:
+    run = run_trial(Trial(home="bay", seed=2, turned=turned))
+    assert run.figures.is_completed
+    assert run.figures.docked
+    assert run.figures.fraction > (0.995 if turned == 0.0 else 0.99)
+    assert run.figures.hits == 0

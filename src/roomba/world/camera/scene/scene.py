@@ -24,6 +24,7 @@ from roomba.world.camera.scene.arrays import (
     Walls,
 )
 from roomba.world.camera.scene.doors import door_boxes
+from roomba.world.camera.scene.free_walls import free_wall_boxes
 from roomba.world.camera.scene.light import WINDOW_KIND, lit
 from roomba.world.camera.scene.moving import (
     DISC_MATERIAL,
@@ -117,6 +118,7 @@ class Scene:
         fixed = [
             *_furniture_boxes(home),
             *((box, False) for box in door_boxes(home, walls)),
+            *((box, False) for box in free_wall_boxes(home)),
         ]
         moving = MovingBoxes.of(home.moving, len(fixed))
         boxes = [*fixed, *((box, False) for thing in home.moving for box in thing.boxes)]

@@ -8,6 +8,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.world.engine.lidar.light_kernels import Surroundings, look_through
 from roomba.world.engine.lidar.projection import (
     ScanBuffers,
     begin_scan,
@@ -16,7 +17,7 @@ from roomba.world.engine.lidar.projection import (
     scan_segment,
     scan_walls,
 )
-from roomba.world.engine.state.arrays import Edges, Row, Solid
+from roomba.world.engine.state.arrays import Edges, Row, Rows, Solid
 from roomba.world.engine.state.compilation import part, scan_part
 from roomba.world.engine.state.random_kernels import add_noise, next_bits
 
@@ -60,13 +61,39 @@ def scan(
     theta = begin_scan(buffers.rays, buffers.fan, body.theta, numbers.max_range)
     scan_walls(buffers, edges, home, x, y, theta)
     beams = ranges.shape[1]
+    scan_faces(solid.faces, home, body.x, body.y, buffers.fan, beams, theta)
     scan_things(solid, world, body, buffers.fan, beams, theta, numbers.lidar_height)
     scan_round_things(solid, world, robot, buffers.fan, beams, theta, numbers.radius)
     end_scan(buffers.fan, ranges, robot, numbers.min_range, numbers.max_range)
+    bits = next_bits(body) if numbers.noisy > 0.0 else np.uint64(0)
+    if home.faces_end > home.clear_at:
+        around = Surroundings(solid, home, world, robot, numbers, quantiles)
+        look_through(around, ranges, np.uint32(bits & np.uint64(0xFFFFFFFF)))
     if numbers.noisy > 0.0:
-        key = np.uint32(next_bits(body) >> np.uint64(32))
+        key = np.uint32(bits >> np.uint64(32))
         sigma, misses = np.float32(numbers.range_noise), np.float32(numbers.misses)
         add_noise(ranges, robot, key, quantiles, sigma, misses)
+
+
+@scan_part
+def scan_faces(
+    faces: Rows, home: Row, x: float, y: float, fan: Floats, beams: int, theta: np.float32
+) -> None:
+    """Put the faces of walls that are free of the grid into the depth buffer, but for clear ones.
+
+    The robot is at ``x``, ``y``, m, map frame.
+    """
+    for index in range(home.faces_at, home.clear_at):
+        face = faces[index]
+        scan_segment(
+            fan,
+            beams,
+            face.right_x - x,
+            face.right_y - y,
+            face.left_x - x,
+            face.left_y - y,
+            theta,
+        )
 
 
 @scan_part

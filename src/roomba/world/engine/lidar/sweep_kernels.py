@@ -8,14 +8,14 @@ time of its first beam.
 from __future__ import annotations
 
 import math
-from typing import Final, NamedTuple
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from roomba.angles import wrapped
-from roomba.world.engine.lidar.ray_kernels import ray_to_cells, ray_to_movable
-from roomba.world.engine.state.arrays import Row, Solid
+from roomba.world.engine.lidar.light_kernels import Met, Surroundings, is_echo, ray
+from roomba.world.engine.state.arrays import Row
 from roomba.world.engine.state.compilation import part
 from roomba.world.engine.state.random_kernels import hashed, next_bits
 
@@ -27,18 +27,6 @@ _FLATTEST: Final = 0.1
 """Cosine; no beam counts as more grazing than this."""
 _UNIT_16: Final = 1.0 / (1 << 16)
 _UNIT_20: Final = 1.0 / (1 << 20)
-
-
-class Surroundings(NamedTuple):
-    """Where a robot's lidar measures, and by which numbers."""
-
-    solid: Solid
-    home: Row
-    world: Row
-    robot: int
-    numbers: Row
-    quantiles: Floats
-    """See :func:`~roomba.world.engine.state.random_kernels.normal_quantiles`."""
 
 
 @part
@@ -125,78 +113,6 @@ def measure_beams(around: Surroundings, ranges: Floats, due: int, dt: float) -> 
 
 
 @part
-def reflectivity(x: float, y: float, numbers: Row) -> float:
-    """Return the share of light that the home gives back at a place, 0..1; below 0 it is shiny.
-
-    The same for each robot and run: the place alone decides, m from the grid's corner.
-    """
-    column, row = math.floor(x / numbers.patch), math.floor(y / numbers.patch)
-    bits = hashed(np.uint32(column * 73856093 + row * 19349663 + 12345))
-    chance = float(bits >> np.uint32(12)) * _UNIT_20
-    if chance < numbers.dark:
-        return float(numbers.black)
-    if chance < numbers.dark + numbers.shiny:
-        return -1.0
-    share = float(bits & np.uint32(4095)) / 4096.0
-    return float(numbers.dimmest + (numbers.white - numbers.dimmest) * share)
-
-
-@part
-def is_seen(found: float, facing: float, reflected: float, numbers: Row, fading: float) -> bool:
-    """Tell whether enough light comes back: as reflectivity times cosine over squared range.
-
-    White paint met squarely is seen from ``white_reach``; ``fading`` is a normal random number.
-    """
-    if reflected < 0.0:
-        return bool(facing > numbers.shiny_cosine)
-    reach = numbers.white_reach * math.sqrt(reflected / numbers.white * facing)
-    return bool(found < reach * (1.0 + numbers.fading * fading))
-
-
-@part
-def ray(around: Surroundings, x: float, y: float, angle: float) -> tuple[float, float, bool]:
-    """Return the exact range, m, the cosine to the normal, and whether it is the home's own."""
-    solid, numbers = around.solid, around.numbers
-    cosine, sine = math.cos(angle), math.sin(angle)
-    found, facing = ray_to_cells(solid.cells, around.home, x, y, cosine, sine, numbers.max_range)
-    nearer, square = ray_to_movable(
-        solid,
-        around.world,
-        around.robot,
-        x,
-        y,
-        cosine,
-        sine,
-        numbers.lidar_height,
-        numbers.radius,
-    )
-    if nearer < found:
-        return nearer, square, False
-    return found, facing, True
-
-
-@part
-def is_echo(
-    around: Surroundings,
-    x: float,
-    y: float,
-    angle: float,
-    met: tuple[float, float, bool],
-    fading: float,
-) -> bool:
-    """Tell whether enough light comes back of what a ray met (see :func:`ray`)."""
-    home, numbers = around.home, around.numbers
-    found, facing, is_home = met
-    reflected = numbers.movable
-    if is_home:
-        # A little inside of what was met: its face may lie on the border of two patches.
-        into = found + 0.01
-        end_x, end_y = x + into * math.cos(angle), y + into * math.sin(angle)
-        reflected = reflectivity(end_x - home.left, end_y - home.bottom, numbers)
-    return is_seen(found, facing, reflected, numbers, fading)
-
-
-@part
 def with_noise(found: float, facing: float, numbers: Row, chance: float) -> float:
     """Return a range, m, as it is told: ``chance`` is a normal random number."""
     sigma = numbers.range_noise + numbers.noise_growth * found * found
@@ -220,15 +136,22 @@ def measure(around: Surroundings, beam: int, x: float, y: float, theta: float) -
     third = hashed(np.uint32(second ^ np.uint32(0xC2B2AE35)))
     aside = numbers.angle_rounding * (float(second & np.uint32(65535)) * _UNIT_16 - 0.5)
     angle = theta + numbers.first_angle + beam * numbers.beam_step + aside
-    found, facing, is_home = ray(around, x, y, angle)
+    chance = 1.0
+    if numbers.noisy > 0.0:
+        chance = float(third >> np.uint32(12)) * _UNIT_20
+    met = ray(around, x, y, angle, chance)
+    found = met.way
     last, body.last_range = body.last_range, found
     if numbers.spot > 0.0 and abs(found - last) > numbers.edge:
-        right, _, _ = ray(around, x, y, angle - numbers.spot)
-        left, _, _ = ray(around, x, y, angle + numbers.spot)
+        right = ray(around, x, y, angle - numbers.spot, chance).way
+        left = ray(around, x, y, angle + numbers.spot, chance).way
         if abs(left - right) > numbers.edge and left + right < math.inf:
             # The spot lies on both sides of an edge: as much of either as chance has it.
             share = float(second >> np.uint32(16)) * _UNIT_16
             found = share * left + (1.0 - share) * right
+            farther = found - met.way
+            x, y = met.x + farther * math.cos(angle), met.y + farther * math.sin(angle)
+            met = Met(found, met.facing, met.what, x, y, met.light)
     if found > numbers.max_range:
         return math.inf
     if numbers.noisy > 0.0:
@@ -236,9 +159,9 @@ def measure(around: Surroundings, beam: int, x: float, y: float, theta: float) -
             return math.inf
         if numbers.white_reach > 0.0:
             fading = float(quantiles[third & np.uint32(4095)])
-            if not is_echo(around, x, y, angle, (found, facing, is_home), fading):
+            if not is_echo(around, met, fading):
                 return math.inf
-        found = with_noise(found, facing, numbers, float(quantiles[first & np.uint32(4095)]))
+        found = with_noise(found, met.facing, numbers, float(quantiles[first & np.uint32(4095)]))
     if found < numbers.min_range:
         return -math.inf
     return found if found < numbers.max_range else math.inf

@@ -47,6 +47,9 @@ HOME: Final = np.dtype(
         ("tile_columns", "i8"),
         ("tile_size", "f8"),
         ("has_drops", "f8"),  # 1 if there is a DROP anywhere
+        ("faces_at", "i8"),  # of walls free of the grid
+        ("clear_at", "i8"),  # the first of them that is glass or a mirror
+        ("faces_end", "i8"),
     ]
 )
 CELL: Final = np.dtype(
@@ -54,8 +57,19 @@ CELL: Final = np.dtype(
         ("room", "f4"),  # no solid cell is nearer than this to the cell's middle
         ("solid", "?"),
         ("ground", "u1"),
+        ("surface", "u1"),  # what it does to light, 0: as its place says
     ],
     align=True,
+)
+FACE: Final = np.dtype(
+    [
+        ("right_x", "f8"),  # its ends as seen from outside: the other side is not seen
+        ("right_y", "f8"),
+        ("left_x", "f8"),
+        ("left_y", "f8"),
+        ("finish", "f8"),  # as of roomba.world.home.surface.Finish
+        ("reflectivity", "f8"),  # below 0: as its place says
+    ]
 )
 EDGE: Final = np.dtype(
     [
@@ -254,6 +268,8 @@ class Solid(NamedTuple):
 
     cells: Rows
     """CELL: those of all homes, row by row."""
+    faces: Rows
+    """FACE: those of all homes."""
     things: Rows
     """THING"""
     boxes: Rows

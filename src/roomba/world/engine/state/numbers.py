@@ -99,6 +99,9 @@ def numbers_of(config: SimulatedRobotConfig) -> Rows:
         "white": around.white,
         "movable": around.movable,
         "shiny_cosine": around.shiny_cosine,
+        "glass": around.glass,
+        "glass_cosine": around.glass_cosine,
+        "clear": around.clear,
         "fading": around.fading,
         "edge": around.edge,
     }
