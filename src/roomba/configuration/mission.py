@@ -178,6 +178,10 @@ class ExploringConfig(Frozen):
     """m; about so far apart are the places of a frontier from which viewpoints are looked for."""
     same_frontier: Positive = 0.3
     """m; frontiers nearer to one that was given up are the same."""
+    most_returns: Annotated[int, Field(ge=0, le=100)] = 3
+    """Times that a frontier may come back where one vanished, as glass and mirrors make it do."""
+    patience: Positive = 120.0
+    """s; a frontier that it has not come to by then, and twice its way's time, is given up."""
     map_wait: Positive = 120.0
     """s; how long a clean waits for the whole map when all is seen."""
 

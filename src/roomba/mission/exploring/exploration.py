@@ -60,6 +60,8 @@ class Exploration:
         )
         self.goal: Frontier | None = None
         self.unseen: list[Point] = []
+        self._vanished: list[Point] = []
+        self._sought: tuple[Point, float] | None = None
         self.times_stuck = 0
         self.looked_again = False
         """Whether what stands in the way was looked for anew before the end."""
@@ -147,6 +149,20 @@ class Exploration:
         """Whether the robot was last sent to a frontier."""
         return self.goal is not None
 
+    def is_too_long(self, now: float) -> bool:
+        """Whether it has been on its way to this frontier for much longer than the way takes.
+
+        Ways that glass and mirrors show open and close, and lead nowhere. ``now`` is in s; ask at
+        each tick of the way.
+        """
+        if self.goal is None:
+            return False
+        place = self.goal.middle
+        if self._sought is None or math.dist(self._sought[0], place) > self._config.same_frontier:
+            self._sought = place, now
+        allowed = self._config.patience + 2.0 * self.goal.way / self._config.speed
+        return now - self._sought[1] > allowed
+
     def cut_off(self, *, is_stuck: bool = False) -> None:
         """No way leads to the frontier it was on its way to: give that up."""
         self.times_stuck += is_stuck
@@ -155,12 +171,24 @@ class Exploration:
         self.goal = None
 
     def _leave_behind(self, here: Pose, context: PlanningContext) -> None:
-        """Give the last frontier up if it was looked at from its viewpoint, and is still one."""
+        """Give the last frontier up if it was looked at from its viewpoint, and is still one.
+
+        Or if others at the same place vanished often before: what is seen through glass and by
+        mirrors comes and goes, and there is no end of it.
+        """
         goal, self.goal = self.goal, None
         if goal is None:
             return
+        if not self._is_left(context.known, goal.middle):
+            self._vanished.append(goal.middle)
+            near = [
+                p for p in self._vanished if math.dist(p, goal.middle) <= self._config.same_frontier
+            ]
+            if len(near) > self._config.most_returns:
+                self.unseen.append(goal.middle)
+            return
         off = math.dist(goal.viewpoint, (here.x, here.y))
-        if off <= self._config.viewpoint_tolerance and self._is_left(context.known, goal.middle):
+        if off <= self._config.viewpoint_tolerance:
             self.unseen.append(goal.middle)
 
     def _is_left(self, occupancy: OccupancyMap, middle: Point) -> bool:

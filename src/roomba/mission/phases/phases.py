@@ -49,6 +49,10 @@ def look_on(
 ) -> PhaseStep:
     """Drive on to a frontier; one where it got stuck is given up, the last time it fails."""
     assert drives.driver is not None
+    if exploration.is_too_long(senses.now):
+        exploration.cut_off()
+        drives.driver = None
+        return PhaseStep()
     step = drives.driver.tick(senses, limit)
     is_stuck = step.state is DriveState.STUCK
     if is_stuck and exploration.times_stuck >= most_stuck:

@@ -233,3 +233,33 @@ def test_a_gap_between_the_cells_of_the_map_is_passed_where_a_clean_passes_it() 
         assert floor.fits[floor.frame.cell_of(x, y)]
     # Where it cleans meanwhile it first cleans what is near.
     assert Exploration(CONFIG).next_path(HERE, context, fence, farthest=10.0) is None
+
+
+def test_what_vanishes_and_comes_back_has_an_end() -> None:
+    """As frontiers do that glass and mirrors show: seen and gone in turns."""
+    exploration = Exploration(CONFIG)
+    looks = 0
+    while exploration.next_path(HERE, HALL_SITE, []) is not None:
+        looks += 1
+        assert looks < 10 * CONFIG.most_returns
+        given_up = len(exploration.unseen)
+        assert exploration.next_path(HERE, ALL_SITE, []) is None
+        if looks <= CONFIG.most_returns:
+            assert given_up == len(exploration.unseen) == 0
+    assert looks > CONFIG.most_returns
+    assert min(math.dist(place, DOORWAY) for place in exploration.unseen) < 0.2
+
+
+def test_a_frontier_that_it_never_comes_to_is_given_up() -> None:
+    exploration = begun()
+    assert exploration.goal is not None
+    middle = exploration.goal.middle
+    allowed = CONFIG.patience + 2.0 * exploration.goal.way / CONFIG.speed
+    assert not exploration.is_too_long(100.0)
+    # Chosen anew on a map that has grown it is the same frontier.
+    assert exploration.next_path(HERE, HALL_SITE, []) is not None
+    assert not exploration.is_too_long(100.0 + allowed - 1.0)
+    assert exploration.is_too_long(100.0 + allowed + 1.0)
+    exploration.cut_off()
+    assert exploration.unseen == [middle]
+    assert not exploration.is_too_long(1e6)
