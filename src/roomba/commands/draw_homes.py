@@ -31,6 +31,7 @@ DRAWN = {
     "studio": 0.05,
     "family": 0.05,
     "bay": 0.05,
+    "loft": 0.05,
     "hall": 0.2,
 }
 """Homes with the cell size of their map, m; the hall's is coarse since it is 200 m wide."""

@@ -26,7 +26,7 @@ from roomba.world.home.raster import (
 )
 from roomba.world.layers.layer import list_homes, load_home
 
-NAMES = ["apartment", "bay", "empty", "family", "flat", "hall", "lshape", "studio"]
+NAMES = ["apartment", "bay", "empty", "family", "flat", "hall", "loft", "lshape", "studio"]
 RADIUS = BodyConfig().radius
 COMFORT = 0.04
 """m; wanted between body and walls on the way into every room."""
@@ -205,7 +205,7 @@ def test_hall_lets_the_body_stand_at_the_limits(homes: dict[str, Home]) -> None:
     assert np.count_nonzero(hall.solid & ~hall.walls) <= 4, "nothing but walls and the station"
 
 
-@pytest.mark.parametrize("name", ["flat", "studio", "family", "bay", "hall"])
+@pytest.mark.parametrize("name", ["flat", "studio", "family", "bay", "loft", "hall"])
 def test_map_is_what_the_layer_draws(name: str) -> None:
     drawn = drawn_map(name, HOMES)
     filed = load_map(HOMES / name / "map.yaml")
