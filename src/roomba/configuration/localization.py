@@ -1,4 +1,4 @@
-"""Numbers of knowing where the robot is."""
+"""Numbers of knowing where the robot is: the part ``localization`` of ``robot.yaml``."""
 
 from __future__ import annotations
 
@@ -6,7 +6,117 @@ from typing import Annotated, ClassVar
 
 from pydantic import Field
 
-from roomba.configuration.frozen import AtLeastOne, Frozen, Positive
+from roomba.configuration.frozen import AtLeastOne, Frozen, NotNegative, Positive, Ratio
+
+HalfTurn = Annotated[float, Field(gt=0.0, le=3.1416)]
+"""rad; to each side."""
+
+
+class ReckoningConfig(Frozen):
+    """Going by wheels and gyro between two scans: m, rad, s."""
+
+    settling: NotNegative = 0.3
+    """After a stop, until the gyro shows its bias alone."""
+    jolt: NotNegative = 0.05
+    """Tolerance of a step that seems faster than any robot: its time is not exact."""
+    longest_step: Positive = 1.0
+    """Between two samples over which the gyro is integrated."""
+    same_way: Positive = 1.0
+    same_turn: Positive = 1.0
+    """Motion after which the map's errors of what is seen are others than before."""
+
+
+class FitConfig(Frozen):
+    """How well a scan must fit the map: shares of beams that ``agree``, or go ``through`` walls."""
+
+    good_agree: Ratio = 0.95
+    good_through: Ratio = 0.03
+    """With these a pose that was told needs no comparison with all others."""
+    fair_agree: Ratio = 0.7
+    fair_through: Ratio = 0.12
+    """The same of a pose with more evidence than a report. On its station a robot has 0.98 and 0.02
+    or better on the map of its home, and at most 0.57 on those of 15 other homes."""
+    told_agree: Ratio = 0.5
+    """With this a pose that was told is gone by until the comparison is done."""
+    doubt_worse: Ratio = 0.45
+    doubt_through: Ratio = 0.15
+    """Worse than usual by so much, the pose is doubted;"""
+    doubt_agree: Ratio = 0.35
+    """and with less than this, even where less is usual."""
+    near_worse: Ratio = 0.2
+    near_through: Ratio = 0.06
+    """Worse than usual by so much at most at a place that is found near by."""
+    found_agree: Ratio = 0.7
+    found_through: Ratio = 0.15
+    """The least and the most of a place that is found on the whole map."""
+    carried_agree: Ratio = 0.75
+    carried_through: Ratio = 0.08
+    """The same of a place where the robot is not expected: it was carried there unnoticed."""
+
+    in_order: ClassVar = (
+        "told_agree <= fair_agree <= good_agree",
+        "good_through <= fair_through",
+        "found_agree <= carried_agree",
+        "carried_through <= found_through",
+    )
+
+
+class ExpectingConfig(Frozen):
+    """Where the robot is expected when places are compared: m, rad; evidence is a logarithm."""
+
+    told_radius: Positive = 0.5
+    told_turn: HalfTurn = 0.5
+    """Around a pose that was told,"""
+    here_radius: Positive = 0.04
+    here_turn: HalfTurn = 0.04
+    """and around one that was known;"""
+    drift: NotNegative = 0.01
+    """and so much more for each s of a search: the error of dead reckoning as it looks around."""
+    here_evidence: NotNegative = 14.0
+    """For that, more than believing a place needs: it stays unless another one is likelier."""
+    still_evidence: NotNegative = 60.0
+    """The same of a robot that sees what it saw before: it was not carried."""
+
+
+class SearchingConfig(Frozen):
+    """Looking for the robot, near by and on the whole map: m, rad, s; evidence is a logarithm."""
+
+    wait_before_moving: NotNegative = 0.5
+    """For a scan that tells places apart, before it moves to get one."""
+    again_after: NotNegative = 1.0
+    """A search that found nothing is tried anew;"""
+    compare_after: NotNegative = 1.0
+    """a place of which no better one was found is compared anew."""
+    follow_after: Positive = 1.0
+    """Driven while places are compared; then particles follow all that may be."""
+    near_way: Positive = 0.6
+    near_turn: HalfTurn = 0.7
+    """To each side, where it looks first: wheels that slip, a push."""
+    new_way: Positive = 0.12
+    new_turn: HalfTurn = 0.4
+    """Motion after which another scan counts."""
+    hopeless: Positive = 14.0
+    """A place that has so much less evidence than the best is dropped."""
+
+
+class RecentSightConfig(Frozen):
+    """What was seen a moment ago, by which it is told that nobody carried the robot: s, m."""
+
+    apart: NotNegative = 0.4
+    """Between two scans that are kept, of which there are twelve."""
+    newest: NotNegative = 1.0
+    """The least age of a scan to compare with: later ones may be from after it was carried."""
+    oldest: Positive = 6.0
+    """The greatest age: by then it may have driven elsewhere."""
+    slack: NotNegative = 0.10
+    slack_share: Ratio = 0.03
+    """m, and share of the range: how far from what was seen a beam may end and mean the same."""
+    least_same: Ratio = 0.4
+    """Share of all beams that must end where something was seen."""
+    most_other: Ratio = 0.2
+    """Share, of these and those that end where nothing was, that the latter may have."""
+
+    in_order: ClassVar = ("newest < oldest",)
 
 
 class LocalizationConfig(Frozen):
@@ -24,10 +134,19 @@ class LocalizationConfig(Frozen):
     gyro_drift: Positive = 0.001
     beam_deviation: Positive = 0.03
     known_deviation: Positive = 0.06
+    unsure_deviation: Positive = 0.08
+    """Above it a scan is matched from farther away."""
+    astray_deviation: Positive = 0.3
+    """Above it a pose is searched around, as one that was told is."""
     lost_deviation: Positive = 1.0
     least_beams: AtLeastOne = 30
     scan_timeout: Positive = 0.5
     search_timeout: Positive = 30.0
     needed_evidence: Annotated[float, Field(gt=0.0, le=12.0)] = 8.0
+    reckoning: ReckoningConfig = ReckoningConfig()
+    fit: FitConfig = FitConfig()
+    expecting: ExpectingConfig = ExpectingConfig()
+    searching: SearchingConfig = SearchingConfig()
+    recent_sight: RecentSightConfig = RecentSightConfig()
 
-    in_order: ClassVar = ("known_deviation < lost_deviation",)
+    in_order: ClassVar = ("known_deviation < lost_deviation", "astray_deviation < lost_deviation")

@@ -9,6 +9,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.configuration.localization import RecentSightConfig
 from roomba.control.path_tracker import PathTracker
 from roomba.geometry import Pose
 from roomba.headless.body import SimulatedBody
@@ -259,5 +260,5 @@ def _nowhere(brain: Brain) -> Drive:
     return Drive(tracker.state, tracker.course, np.zeros(1, PROGRESS))
 
 
-_NO_SIGHTS: Final = RecentSight().arrays
+_NO_SIGHTS: Final = RecentSight(RecentSightConfig()).arrays
 """A mapper doubts nothing."""

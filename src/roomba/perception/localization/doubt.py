@@ -7,7 +7,6 @@ carried. The place may have been wrong before, so it is compared with all others
 from __future__ import annotations
 
 import math
-from typing import Final
 
 from roomba.configuration.localization import LocalizationConfig
 from roomba.geometry import Pose
@@ -16,9 +15,6 @@ from roomba.perception.localization.recent_sight import RecentSight
 from roomba.perception.localization.relocation import Expectation, Relocation, Verdict
 from roomba.perception.matching.scan_view import ScanView
 from roomba.perception.matching.surface_field import SurfaceField
-
-_COMPARED_EVERY: Final = 1.0
-"""s; after a comparison that found no other place, before the next one."""
 
 
 class Doubt:
@@ -30,7 +26,7 @@ class Doubt:
     def __init__(self, config: LocalizationConfig, body_radius: float) -> None:
         """Begin with nothing seen."""
         self._config, self._body_radius = config, body_radius
-        self.sight = RecentSight()
+        self.sight = RecentSight(config.recent_sight)
         self._comparison: Relocation | None = None
         self._compared = -math.inf
 
@@ -58,7 +54,8 @@ class Doubt:
         is_still = self.sight.is_still(stamp, reckoned, view)
         here = where_known(pose, self._config, is_still=is_still)
         if is_still:
-            is_soon = self._comparison is None and 0.0 <= now - self._compared < _COMPARED_EVERY
+            since, again = now - self._compared, self._config.searching.compare_after
+            is_soon = self._comparison is None and 0.0 <= since < again
             if is_soon or not self.is_elsewhere(now, view, reckoned, here, field):
                 return None
         return here

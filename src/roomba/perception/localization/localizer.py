@@ -19,7 +19,7 @@ from roomba.configuration.sensors import GyroConfig
 from roomba.geometry import Pose
 from roomba.grid import OccupancyMap
 from roomba.perception.localization.belief.belief import numbers_of, unknown_belief
-from roomba.perception.localization.belief.correct_kernels import ASTRAY, deviation, is_calm
+from roomba.perception.localization.belief.correct_kernels import deviation, is_calm
 from roomba.perception.localization.belief.reckon_kernels import SET_BACK
 from roomba.perception.localization.dead_reckoning import DeadReckoning
 from roomba.perception.localization.doubt import Doubt
@@ -38,27 +38,6 @@ _ANYWHERE: Final = np.diag([100.0**2, 100.0**2, math.pi**2])
 """m2, rad2; of an unknown pose: so large that a reader of the covariance alone does not use it."""
 _FOUND_SPREAD: Final = np.diag([0.05**2, 0.05**2, 0.03**2])
 """m2, rad2; of a place that was found, before scans narrow it down."""
-_WAIT_BEFORE_MOVING: Final = 0.5
-"""s; how long it waits for a scan that tells places apart before it moves to get one."""
-_SEARCHED_EVERY: Final = 1.0
-"""s; after which a search that found nothing is tried anew."""
-_SEARCHED_WAY: Final = 1.0
-"""m; driven while places are compared, after which particles follow all that may be."""
-_GOOD_AGREE: Final = 0.95
-_GOOD_THROUGH: Final = 0.03
-"""Shares of beams with which a pose that was told needs no comparison with all others."""
-_FAIR_AGREE: Final = 0.7
-_FAIR_THROUGH: Final = 0.12
-"""The same of a pose with more evidence than a report. On its station a robot has 0.98
-and 0.02 or better on the map of its home, and at most 0.57 on those of 15 other homes.
-"""
-_TOLD_AGREE: Final = 0.5
-"""Share of beams with which a pose that was told is gone by until the comparison is done."""
-_NEAR_WORSE: Final = 0.2
-_NEAR_THROUGH: Final = 0.06
-"""Shares of beams, of those that agree and those through walls, that may be worse than usual where
-a scan fits near to where the robot was thought to be.
-"""
 _LEAST_OFFSET: Final = 0.15
 """Cells of the map; walls that are off by less stay where they are."""
 _LEAST_OFFSET_BEAMS: Final = 100.0
@@ -236,7 +215,7 @@ class Localizer:
             self._tracker = self._tracker_at(tracker.pose, tracker.covariance)
         else:
             self.told(*at)
-            self._needed = _FAIR_AGREE, _FAIR_THROUGH
+            self._needed = self._config.fit.fair_agree, self._config.fit.fair_through
 
     def _use_field_of(self, occupancy: OccupancyMap) -> None:
         self._map, self.field = occupancy, SurfaceField.of(occupancy)
@@ -251,7 +230,7 @@ class Localizer:
         self._doubt.drop()
         self._forgotten = ""
         self._told, self._told_since = where_told(pose, deviation, self._config), self._now
-        self._needed = _GOOD_AGREE, _GOOD_THROUGH
+        self._needed = self._config.fit.good_agree, self._config.fit.good_through
 
     def forget(self, reason: str) -> None:
         """Trust no pose any more; look for the robot in the whole map."""
@@ -281,7 +260,7 @@ class Localizer:
         if knowledge is not Knowledge.SEARCHING or self._is_lifted or sees_nothing:
             return False
         if self._relocation is None:
-            return self._now - self._searching_since > _WAIT_BEFORE_MOVING
+            return self._now - self._searching_since > self._config.searching.wait_before_moving
         return self._relocation.verdict is not Verdict.SEARCHING
 
     @property
@@ -369,10 +348,10 @@ class Localizer:
             since = reckoned.inverse().compose(self._reckoning.pose)
             tracker.pose = tracker.pose.compose(since.inverse())
         unsure = deviation(self._row["covariance"])
-        if self._told is None and unsure > ASTRAY:
+        if self._told is None and unsure > self._config.astray_deviation:
             spread = (unsure, math.sqrt(tracker.covariance[2, 2]))
             self._told = where_told(tracker.pose, spread, self._config)
-            self._needed = _GOOD_AGREE, _GOOD_THROUGH
+            self._needed = self._config.fit.good_agree, self._config.fit.good_through
         tracker.see(view)
         fit = tracker.judge(view) if tells_places_apart else None
         self._learn_walls()
@@ -435,13 +414,13 @@ class Localizer:
         """Go on at a place near by that a scan fits as well as usual, if there is one."""
         since = reckoned.inverse().compose(self._reckoning.pose)
         here = self._tracker.pose.compose(since.inverse())
-        found = best_near(view, self.field, here, self._config.beam_deviation)
+        found = best_near(view, self.field, here, self._config)
         if found is None:
             return False
-        pose, fit = found
+        (pose, fit), worse = found, self._config.fit
         is_usual = (
-            fit.agree >= float(self._row["usual_agree"]) - _NEAR_WORSE
-            and fit.through <= float(self._row["usual_through"]) + _NEAR_THROUGH
+            fit.agree >= float(self._row["usual_agree"]) - worse.near_worse
+            and fit.through <= float(self._row["usual_through"]) + worse.near_through
         )
         lead = fit.evidence - view.fit(self.field, np.array([here.x, here.y, here.theta])).evidence
         if not is_usual or lead < self._config.needed_evidence:
@@ -459,7 +438,7 @@ class Localizer:
         least, most = self._needed
         if fit.agree >= least and fit.through <= most:
             return
-        if fit.agree >= _TOLD_AGREE:
+        if fit.agree >= self._config.fit.told_agree:
             self._compared = told
         else:
             self._forget_told(told)
@@ -480,7 +459,9 @@ class Localizer:
         since = reckoned.inverse().compose(self._reckoning.pose)
         here = self._tracker.pose.compose(since.inverse())
         searched = self._now - self._searching_since
-        expectation = self._expectation and searched_for(self._expectation, here, searched)
+        expectation = self._expectation and searched_for(
+            self._expectation, here, searched, self._config
+        )
         return Relocation(self.field, self._config, self._body_radius, view, reckoned, expectation)
 
     def _tracker_at(self, pose: Pose, covariance: NDArray[np.float64]) -> Tracker:
@@ -500,21 +481,22 @@ class Localizer:
         if relocation.verdict is Verdict.FOUND and self._is_believed(relocation.hypotheses[0]):
             place = relocation.hypotheses[0]
             self._found(place.frame.compose(self._reckoning.pose), place.fit)
-        elif (
-            relocation.verdict is not Verdict.AMBIGUOUS
-            and self._now - self._tried > _SEARCHED_EVERY
-        ):
+            return
+        is_time = self._now - self._tried > self._config.searching.again_after
+        if relocation.verdict is not Verdict.AMBIGUOUS and is_time:
             self._relocation = None
 
     def _is_believed(self, place: Hypothesis) -> bool:
         """Whether the likeliest place is taken; where many look alike it must convince."""
-        return self._particles is None or place.is_expected or place.is_convincing
+        return self._particles is None or place.is_expected or place.is_convincing(
+            self._config.fit
+        )
 
     def _is_found_on_the_way(self, view: ScanView, reckoned: Pose) -> bool:
         """Follow all places that may be, once it drove without finding one; go on where it is."""
         start = self._searched_from = self._searched_from or reckoned
         if self._particles is None:
-            if start.distance_to(reckoned.x, reckoned.y) < _SEARCHED_WAY:
+            if start.distance_to(reckoned.x, reckoned.y) < self._config.searching.follow_after:
                 return False
             self._particles = ParticleSearch(self.field, self._body_radius)
         self._particles.see(view, reckoned)

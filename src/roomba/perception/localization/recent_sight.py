@@ -12,23 +12,13 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.configuration.localization import RecentSightConfig
 from roomba.geometry import Pose
 from roomba.perception.localization.recent_sight_kernels import KEPT, Sights, newest_of, note_sight
 from roomba.perception.matching.scan_view import ScanView
 
 _SECTORS: Final = 360
 """Directions that are told apart."""
-_OLD_ENOUGH: Final = 1.0
-"""s; the least age of a scan to compare with: later ones may be from after it was carried."""
-_TOO_OLD: Final = 6.0
-"""s; the greatest age: by then it may have driven elsewhere."""
-_SLACK: Final = 0.10
-_SLACK_SHARE: Final = 0.03
-"""m, and share of the range: how far from what was seen a beam may end and mean the same."""
-_LEAST_SAME: Final = 0.4
-"""Share of all beams that must end where something was seen."""
-_MOST_OTHER: Final = 0.2
-"""Share, of these and those that end where nothing was, that the latter may have."""
 
 
 class RecentSight:
@@ -37,8 +27,9 @@ class RecentSight:
     Kernels may go on with its ``arrays``.
     """
 
-    def __init__(self, beams: int = 0) -> None:
+    def __init__(self, config: RecentSightConfig, beams: int = 0) -> None:
         """Begin with nothing seen; there is room for scans of so many ``beams``, and for larger."""
+        self._config = config
         self._mount = np.zeros(3)
         self._ring = np.zeros(2, np.int64)
         self._stamps, self._places = np.zeros(KEPT), np.zeros((KEPT, 3))
@@ -48,7 +39,9 @@ class RecentSight:
     @property
     def arrays(self) -> Sights:
         """Return it as kernels know it: another one after scans of more beams."""
-        return Sights(self._ring, self._stamps, self._places, self._counts, self._ends)
+        return Sights(
+            self._ring, self._stamps, self._places, self._counts, self._ends, self._config.apart
+        )
 
     def reserve(self, beams: int) -> None:
         """Make room for scans of so many beams."""
@@ -68,14 +61,14 @@ class RecentSight:
         """Whether a newer scan shows what was seen there before it."""
         for number in range(int(self._ring[1])):
             kept = newest_of(self._ring, number)
-            if _OLD_ENOUGH <= stamp - self._stamps[kept] <= _TOO_OLD:
+            if self._config.newest <= stamp - self._stamps[kept] <= self._config.oldest:
                 before = ScanView(self._ends[kept, : self._counts[kept]], self._mount)
                 place = Pose(*self._places[kept].tolist())
-                return _is_same(before, view, place.inverse().compose(reckoned))
+                return _is_same(before, view, place.inverse().compose(reckoned), self._config)
         return False
 
 
-def _is_same(before: ScanView, view: ScanView, step: Pose) -> bool:
+def _is_same(before: ScanView, view: ScanView, step: Pose, config: RecentSightConfig) -> bool:
     """Whether a scan shows the same as one before it, taken a ``step`` further on.
 
     What lies behind what was seen then may be new: it was hidden.
@@ -87,12 +80,13 @@ def _is_same(before: ScanView, view: ScanView, step: Pose) -> bool:
     x = step.x + cosine * view.ends[:, 0] - sine * view.ends[:, 1] - before.mount[0]
     y = step.y + sine * view.ends[:, 0] + cosine * view.ends[:, 1] - before.mount[1]
     away, sector = np.hypot(x, y), _sectors(x, y)
-    slack = _SLACK + _SLACK_SHARE * away
+    slack = config.slack + config.slack_share * away
     is_before = away < nearest[sector] - slack
     is_behind = away > farthest[sector] + slack
     other = int(np.count_nonzero(is_before & np.isfinite(nearest[sector])))
     same = int(np.count_nonzero(~is_before & ~is_behind))
-    return same >= _LEAST_SAME * len(view) and other <= _MOST_OTHER * (same + other)
+    is_enough = same >= config.least_same * len(view)
+    return is_enough and other <= config.most_other * (same + other)
 
 
 def _outline(view: ScanView) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

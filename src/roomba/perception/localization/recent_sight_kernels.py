@@ -12,8 +12,6 @@ Floats = NDArray[np.float64]
 
 KEPT: Final = 12
 """Scans that are kept."""
-_APART: Final = 0.4
-"""s; between two scans that are kept."""
 
 
 class Sights(NamedTuple):
@@ -21,6 +19,7 @@ class Sights(NamedTuple):
 
     ``ring`` int64 [2] is where the next one goes and how many there are; ``stamps`` [KEPT] are s,
     ``places`` [KEPT, 3] of dead reckoning; of ``ends`` [KEPT, beams, 4] the first ``counts`` count.
+    Scans are kept that are ``apart``, s, or more.
     """
 
     ring: NDArray[np.int64]
@@ -28,6 +27,7 @@ class Sights(NamedTuple):
     places: Floats
     counts: NDArray[np.int64]
     ends: Floats
+    apart: float
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -39,7 +39,7 @@ def note_sight(sights: Sights, stamp: float, place: Floats, ends: Floats, count:
         if stamp < newest:
             # The clock was set back.
             ring[1] = 0
-        elif stamp - newest < _APART:
+        elif stamp - newest < sights.apart:
             return
     kept = ring[0]
     sights.stamps[kept], sights.counts[kept] = stamp, count

@@ -10,7 +10,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.configuration.localization import LocalizationConfig
+from roomba.configuration.localization import FitConfig, LocalizationConfig
 from roomba.geometry import Pose, wrap_angle
 from roomba.perception.localization.search.place_search import PlaceSearch
 from roomba.perception.matching.match_kernels import match
@@ -27,17 +27,6 @@ _ALIKE_TURN: Final = 0.2
 _FROM_AFAR: Final = np.array([0.40, 0.30, 0.20, 0.10, 0.05, 0.05, 0.05])
 _FROM_NEAR: Final = np.array([0.15, 0.10, 0.05, 0.05])
 """m; beams that end farther off than this lose weight, round by round."""
-_NEW_WAY: Final = 0.12
-_NEW_TURN: Final = 0.4
-"""m, rad; motion after which another scan counts."""
-_LEAST_AGREE: Final = 0.7
-_CONVINCING: Final = 0.75
-_MOST_THROUGH_THEN: Final = 0.08
-"""Shares of beams that agree, and that go through walls."""
-_MOST_THROUGH: Final = 0.15
-"""The least share of agreeing beams, and the largest of those through walls, of a found place."""
-_HOPELESS: Final = 14.0
-"""Evidence; a place that has so much less than the best is dropped."""
 
 
 class Verdict(Enum):
@@ -81,20 +70,18 @@ class Hypothesis:
     fit: Fit
     is_expected: bool = False
 
-    @property
-    def is_possible(self) -> bool:
+    def is_possible(self, needed: FitConfig) -> bool:
         """Whether the scan fits at all there."""
         if self.is_expected:
-            return self.fit.agree > 0.5 * _LEAST_AGREE
-        return self.fit.agree >= _LEAST_AGREE and self.fit.through <= _MOST_THROUGH
+            return self.fit.agree > 0.5 * needed.found_agree
+        return self.fit.agree >= needed.found_agree and self.fit.through <= needed.found_through
 
-    @property
-    def is_convincing(self) -> bool:
+    def is_convincing(self, needed: FitConfig) -> bool:
         """Whether so much of the scan fits that the robot was carried there without being lifted.
 
         Else furniture was moved where it is, and there another place may look a little likelier.
         """
-        return self.fit.agree >= _CONVINCING and self.fit.through <= _MOST_THROUGH_THEN
+        return self.fit.agree >= needed.carried_agree and self.fit.through <= needed.carried_through
 
 
 class Relocation:
@@ -125,10 +112,12 @@ class Relocation:
         """What is known by now."""
         if self._search is not None:
             return Verdict.SEARCHING
-        if not self.hypotheses or not self.hypotheses[0].is_possible:
+        needed = self._config.fit
+        if not self.hypotheses or not self.hypotheses[0].is_possible(needed):
             return Verdict.NOWHERE
         best = self.hypotheses[0]
-        if self._expectation is not None and not best.is_expected and not best.is_convincing:
+        is_elsewhere = self._expectation is not None and not best.is_expected
+        if is_elsewhere and not best.is_convincing(needed):
             return Verdict.NOWHERE
         return Verdict.FOUND if self._is_clear() else Verdict.AMBIGUOUS
 
@@ -194,8 +183,9 @@ class Relocation:
     def _sort(self) -> None:
         """Put the best first; leave out what is the same place, or has no hope."""
         kept: list[Hypothesis] = []
+        hopeless = self._config.searching.hopeless
         for hypothesis in sorted(self.hypotheses, key=lambda each: -each.evidence):
-            if kept and hypothesis.evidence < kept[0].evidence - _HOPELESS:
+            if kept and hypothesis.evidence < kept[0].evidence - hopeless:
                 break
             if not any(self._are_alike(hypothesis, other) for other in kept):
                 kept.append(hypothesis)
@@ -207,13 +197,14 @@ class Relocation:
         return near and abs(wrap_angle(first.theta - second.theta)) < _ALIKE_TURN
 
     def _is_new(self, reckoned: Pose) -> bool:
-        since = self._reckoned.inverse().compose(reckoned)
-        return math.hypot(since.x, since.y) > _NEW_WAY or abs(since.theta) > _NEW_TURN
+        since, new = self._reckoned.inverse().compose(reckoned), self._config.searching
+        return math.hypot(since.x, since.y) > new.new_way or abs(since.theta) > new.new_turn
 
     def _is_clear(self) -> bool:
         """Whether the best place is so much better than the next that it can be believed."""
         if len(self.hypotheses) == 1:
-            return self.hypotheses[0].is_expected or self.hypotheses[0].is_convincing
+            only = self.hypotheses[0]
+            return only.is_expected or only.is_convincing(self._config.fit)
         lead = self.hypotheses[0].evidence - self.hypotheses[1].evidence
         return lead > self._config.needed_evidence
 

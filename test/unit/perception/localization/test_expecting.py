@@ -30,7 +30,7 @@ def test_where_it_was_it_is_expected_closely_and_all_the_more_if_it_was_not_carr
 
 def test_the_longer_it_looks_around_the_wider() -> None:
     before = where_known(HERE, LOCALIZATION, is_still=False)
-    after = searched_for(before, Pose(3.0, 2.0, 0.5), 10.0)
+    after = searched_for(before, Pose(3.0, 2.0, 0.5), 10.0, LOCALIZATION)
     assert after.is_met(Pose(3.1, 2.0, 0.5))
     assert not after.is_met(HERE)
     assert after.evidence == before.evidence

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from fixtures.located import FURNISHED, LIDAR, MOVED, TWO_ROOMS, Eye, free_poses
+from fixtures.located import CONFIG, FURNISHED, LIDAR, MOVED, TWO_ROOMS, Eye, free_poses
 from numpy.random import default_rng
 
 from roomba.geometry import Pose
@@ -23,7 +23,7 @@ def reckoned(pose: Pose, start: Pose) -> Pose:
 def test_driving_on_it_sees_what_it_saw(home: Home) -> None:
     eye, random = Eye(home), default_rng(1)
     for pose in free_poses(home, 20, random):
-        sight = RecentSight()
+        sight = RecentSight(CONFIG.localization.recent_sight)
         sight.note(10.0, START, LIDAR.view(eye.scan(pose, random)))
         for step in (Pose(0.15, 0.05, 0.4), Pose(-0.2, 0.0, 2.0), Pose(0.0, 0.0, -3.0)):
             there = pose.compose(step)
@@ -37,7 +37,7 @@ def test_carried_away_it_sees_something_else(home: Home) -> None:
     poses = free_poses(home, 40, random)
     fooled = 0
     for pose, there in zip(poses[::2], poses[1::2], strict=True):
-        sight = RecentSight()
+        sight = RecentSight(CONFIG.localization.recent_sight)
         sight.note(10.0, START, LIDAR.view(eye.scan(pose, random)))
         fooled += sight.is_still(12.0, START, LIDAR.view(eye.scan(there, random)))
     assert fooled == 0
@@ -45,7 +45,7 @@ def test_carried_away_it_sees_something_else(home: Home) -> None:
 
 def test_what_it_saw_just_now_or_long_ago_tells_nothing() -> None:
     view = LIDAR.view(Eye(FURNISHED).scan(Pose(1.0, 1.0, 0.3)))
-    sight = RecentSight()
+    sight = RecentSight(CONFIG.localization.recent_sight)
     assert not sight.is_still(10.0, START, view)
     sight.note(10.0, START, view)
     assert not sight.is_still(10.5, START, view)
@@ -55,7 +55,7 @@ def test_what_it_saw_just_now_or_long_ago_tells_nothing() -> None:
 
 def test_a_clock_that_is_set_back_begins_anew() -> None:
     view = LIDAR.view(Eye(FURNISHED).scan(Pose(1.0, 1.0, 0.3)))
-    sight = RecentSight()
+    sight = RecentSight(CONFIG.localization.recent_sight)
     sight.note(1000.0, START, view)
     sight.note(10.0, START, view)
     assert sight.is_still(11.5, START, view)
@@ -65,9 +65,9 @@ def test_a_clock_that_is_set_back_begins_anew() -> None:
 def test_with_nothing_in_sight_nothing_is_the_same() -> None:
     scan = Eye(FURNISHED).scan(Pose(1.0, 1.0, 0.3))
     view, nothing = LIDAR.view(scan), LIDAR.view(scan * 0.0)
-    sight = RecentSight()
+    sight = RecentSight(CONFIG.localization.recent_sight)
     sight.note(10.0, START, nothing)
     assert not sight.is_still(12.0, START, view)
-    sight = RecentSight()
+    sight = RecentSight(CONFIG.localization.recent_sight)
     sight.note(10.0, START, view)
     assert not sight.is_still(12.0, START, nothing)

@@ -70,9 +70,19 @@ NUMBERS: Final = np.dtype(
         ("beam_variance", "f8"),  # m2, but for that of the map's cells
         ("least_beams", "f8"),
         ("known_deviation", "f8"),  # m
+        ("unsure_deviation", "f8"),
+        ("astray_deviation", "f8"),
         ("scan_timeout", "f8"),  # s
         ("newest_share", "f8"),  # of a scan, in what the fit is now
         ("adapting_share", "f8"),  # and in what is usual
+        ("doubt_worse", "f8"),  # shares of beams at which the pose is doubted: see FitConfig
+        ("doubt_through", "f8"),
+        ("doubt_agree", "f8"),
+        ("settling", "f8"),  # s, of the gyro after a stop, and so on: see ReckoningConfig
+        ("jolt", "f8"),
+        ("longest_step", "f8"),
+        ("same_way", "f8"),
+        ("same_turn", "f8"),
     ]
 )
 
@@ -106,9 +116,15 @@ def numbers_of(config: LocalizationConfig, gyro: GyroConfig, every: int = 1) -> 
         "beam_variance": config.beam_deviation**2,
         "least_beams": config.least_beams,
         "known_deviation": config.known_deviation,
+        "unsure_deviation": config.unsure_deviation,
+        "astray_deviation": config.astray_deviation,
         "scan_timeout": config.scan_timeout,
         "newest_share": share_of(SMOOTHING, every, _MOST_SMOOTHING),
         "adapting_share": share_of(ADAPTING, every, 1.0),
+        "doubt_worse": config.fit.doubt_worse,
+        "doubt_through": config.fit.doubt_through,
+        "doubt_agree": config.fit.doubt_agree,
+        **config.reckoning.model_dump(),
     }
     numbers = np.zeros(1, NUMBERS)
     for name, value in fields.items():

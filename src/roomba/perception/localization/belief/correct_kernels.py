@@ -25,21 +25,11 @@ from roomba.perception.matching.reckoned_path import ReckonedPath, pose_at
 
 Floats = NDArray[np.float64]
 
-ASTRAY: Final = 0.3
-"""m; a pose with a larger deviation is searched around, as a reported one is."""
 _NARROW: Final = np.array([0.10, 0.05, 0.05])
 _WIDE: Final = np.array([0.40, 0.30, 0.20, 0.10, 0.05, 0.05])
 """m; beams that end farther off than this lose weight, round by round."""
-_UNSURE: Final = 0.08
-"""m; a pose with a larger deviation is matched from farther away."""
 _STRIDE: Final = 8
 """Stride over the beams that are judged; of 360 these are enough to notice a wrong pose."""
-_WORSE: Final = 0.45
-"""Share of beams that agree less than usual, at which the pose is doubted."""
-_THROUGH: Final = 0.15
-"""Share of beams that go through walls more than usual, at which the pose is doubted."""
-_LEAST: Final = 0.35
-"""The least share of beams that must agree, even where fewer are usual."""
 _OF_MAP: Final = 0.1
 """Share of the newest scan in what the map's errors are taken for."""
 _OF_WALLS: Final = 0.02
@@ -115,7 +105,9 @@ def is_calm(beliefs: Rows, numbers: Rows, now: float) -> bool:
     belief, known = beliefs[0], numbers[0]
     if belief.is_doubtful or belief.beams == 0 or not now - belief.seen <= known.scan_timeout:
         return False
-    is_sure: bool = deviation(belief.covariance) <= min(known.known_deviation, ASTRAY)
+    is_sure: bool = deviation(belief.covariance) <= min(
+        known.known_deviation, known.astray_deviation
+    )
     return is_sure
 
 
@@ -146,7 +138,8 @@ def match_ends(
         for column in range(3):
             after[row, column] = covariance[row, column]
         after[row, row] += _STILL[row]
-    is_unsure = max(after[0, 0], after[1, 1]) > _UNSURE * _UNSURE
+    unsure = numbers[0].unsure_deviation
+    is_unsure = max(after[0, 0], after[1, 1]) > unsure * unsure
     scales = _WIDE if is_unsure else _NARROW
     variance = _beam_variance(numbers[0], place, count)
     match_in(field, place, ends, count, prior, after, scales, variance, pose, work, lanes)
@@ -220,8 +213,8 @@ def judge_ends(
     belief.usual_agree += adapting * (fit[AGREE] - belief.usual_agree)
     belief.usual_through += adapting * (fit[THROUGH] - belief.usual_through)
     belief.is_doubtful = (
-        belief.agree < max(_LEAST, belief.usual_agree - _WORSE)
-        or belief.through > belief.usual_through + _THROUGH
+        belief.agree < max(known.doubt_agree, belief.usual_agree - known.doubt_worse)
+        or belief.through > belief.usual_through + known.doubt_through
     )
     if not belief.is_doubtful:
         learn_trust(belief)

@@ -19,23 +19,12 @@ WAS_SET_BACK: Final = 2
 
 _STANDS: Final = 1e-4
 """m and rad; steps of the encoders below this count as standstill."""
-_SETTLING: Final = 0.3
-"""s; time after a stop from which on the gyro shows its bias alone."""
 SET_BACK: Final = 0.1
 """s; a stamp older than the last one by this is of a clock that was set back."""
 _ROUNDING: Final = 1e-6
 """s; rounding of a clock decides nothing: the same samples count at any time."""
 _UNSEEN: Final = 0.3
 """Deviation of the mean turning speed between two samples, as a share of its change."""
-_JOLT: Final = 0.05
-"""s; tolerance for a step that seems faster than any robot: its time is not exact."""
-_LONGEST_STEP: Final = 1.0
-"""s; the longest time between two samples over which the gyro is integrated."""
-
-
-_SAME_WAY: Final = 1.0
-_SAME_TURN: Final = 1.0
-"""m, rad; motion after which the map's errors of what is seen are others than before."""
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -65,10 +54,10 @@ def reckon(
         cosine, sine = math.cos(belief.odometry[2]), math.sin(belief.odometry[2])
         ahead, aside = cosine * off_x + sine * off_y, cosine * off_y - sine * off_x
         turn = wrapped(odometry_theta - belief.odometry[2])
-    if 0.0 < since < math.hypot(ahead, aside) / FASTEST_SPEED - _JOLT:
+    if 0.0 < since < math.hypot(ahead, aside) / FASTEST_SPEED - known.jolt:
         # No robot goes as fast: the counter of the wheels was reset.
         ahead = aside = turn = 0.0
-    elapsed = since if 0.0 < since <= _LONGEST_STEP and not is_first else 0.0
+    elapsed = since if 0.0 < since <= known.longest_step and not is_first else 0.0
     belief.odometry[0], belief.odometry[1] = odometry_x, odometry_y
     belief.odometry[2], belief.stamp = odometry_theta, stamp
     _go(belief, known, ahead, aside, turn, turning, elapsed)
@@ -120,17 +109,17 @@ def _go(
     scale = belief.odometry_scale
     of_way, of_side, variance = scale[0] * of_way, scale[1] * of_side, scale[2] * variance
     carry(belief.pose, belief.covariance, ahead, aside, turn, of_way, of_side, variance)
-    _leave_surroundings(belief, way, turn)
+    _leave_surroundings(belief, numbers, way, turn)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _leave_surroundings(belief: Row, way: float, turn: float) -> None:
+def _leave_surroundings(belief: Row, numbers: Row, way: float, turn: float) -> None:
     """Be as much less sure as other walls, with other errors of the map, come in sight.
 
     The pose that fits the map best is off by these errors; they are alike where the same is seen
     (a Gauss-Markov process over way and turn).
     """
-    unlike = way / _SAME_WAY + abs(turn) / _SAME_TURN
+    unlike = way / numbers.same_way + abs(turn) / numbers.same_turn
     belief.unlike = min(1.0, belief.unlike + unlike)
     share = min(1.0, 2.0 * unlike)
     for row in range(3):
@@ -146,7 +135,7 @@ def _learn_bias(belief: Row, numbers: Row, way: float, turn: float, turning: flo
         return
     belief.still_since = min(belief.still_since, belief.stamp)
     # Faster than any bias: the robot is being turned by hand.
-    is_settling = belief.stamp - belief.still_since < _SETTLING - _ROUNDING
+    is_settling = belief.stamp - belief.still_since < numbers.settling - _ROUNDING
     if is_settling or abs(turning) > 5.0 * numbers.worst_bias:
         return
     belief.samples += 1

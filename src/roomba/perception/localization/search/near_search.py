@@ -7,15 +7,13 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.configuration.localization import LocalizationConfig
 from roomba.geometry import Pose, wrap_angle
 from roomba.perception.localization.search.search_kernels import score_heading
 from roomba.perception.matching.match_kernels import match
 from roomba.perception.matching.scan_view import Fit, ScanView
 from roomba.perception.matching.surface_field import SurfaceField
 
-_WAY: Final = 0.6
-_TURN: Final = 0.7
-"""m, rad; so far to each side it looks."""
 _STEP: Final = 0.12
 _TURN_STEP: Final = 0.07
 """m, rad; between poses that are tried: a match finds its way from half of that."""
@@ -33,31 +31,32 @@ _LEAST_ROOM: Final = 0.05
 
 
 def best_near(
-    view: ScanView, field: SurfaceField, pose: Pose, deviation: float
+    view: ScanView, field: SurfaceField, pose: Pose, config: LocalizationConfig
 ) -> tuple[Pose, Fit] | None:
     """Return the pose around ``pose``, map frame, that a scan fits best, and how well it fits.
 
-    ``deviation`` is that of a beam, m. None where nothing around has room for a robot.
+    None where nothing around has room for a robot.
     """
-    spots = _spots(field, pose)
+    spots, turn = _spots(field, pose, config.searching.near_way), config.searching.near_turn
     if not len(spots) or not len(view):
         return None
     chosen = np.unique(np.linspace(0, len(view) - 1, _BEAMS).astype(np.int64))
     scores, headings = np.zeros(len(spots), np.float32), np.zeros(len(spots), np.float32)
-    for turn in np.arange(-_TURN, _TURN + 1e-9, _TURN_STEP):
+    for off in np.arange(-turn, turn + 1e-9, _TURN_STEP):
         score_heading(
             field.values,
             field.place,
             view.ends,
             chosen,
             spots,
-            pose.theta + float(turn),
+            pose.theta + float(off),
             _WIDTH,
             scores,
             headings,
         )
     best = np.argsort(-scores, kind="stable")[:_MATCHED]
     starts = np.column_stack((spots[best], headings[best].astype(np.float64)))
+    deviation = config.beam_deviation
     tried = [matched(view, field, Pose(*start), deviation) for start in starts.tolist()]
     return max(tried, key=lambda each: each[1].evidence)
 
@@ -80,9 +79,9 @@ def matched(view: ScanView, field: SurfaceField, start: Pose, deviation: float) 
     return Pose(float(pose[0]), float(pose[1]), wrap_angle(float(pose[2]))), view.fit(field, pose)
 
 
-def _spots(field: SurfaceField, pose: Pose) -> NDArray[np.float64]:
-    """Return a lattice of places around a pose that have room, float64 [n, 2], m."""
-    side = np.arange(-_WAY, _WAY + 1e-9, _STEP)
+def _spots(field: SurfaceField, pose: Pose, way: float) -> NDArray[np.float64]:
+    """Return a lattice of places up to ``way``, m, beside a pose that have room, [n, 2], m."""
+    side = np.arange(-way, way + 1e-9, _STEP)
     x, y = (each.ravel() for each in np.meshgrid(pose.x + side, pose.y + side))
     frame = field.frame
     columns = np.floor((x - frame.origin_x) / frame.resolution).astype(np.int64)

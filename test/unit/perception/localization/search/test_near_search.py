@@ -15,14 +15,13 @@ from roomba.perception.matching.surface_field import SurfaceField
 
 HERE = Pose(1.4, 2.6, 0.7)
 FIELD = SurfaceField.of(FURNISHED.map)
-DEVIATION = CONFIG.localization.beam_deviation
 
 
 @pytest.mark.parametrize("off", [Pose(0.0, 0.0, 0.6), Pose(0.45, -0.3, -0.4), Pose(-0.5, 0.5, 0.0)])
 def test_a_pose_that_is_off_by_half_a_metre_is_found(off: Pose) -> None:
     view = LIDAR.view(Eye(FURNISHED).scan(HERE))
     around = Pose(HERE.x + off.x, HERE.y + off.y, HERE.theta + off.theta)
-    found = best_near(view, FIELD, around, DEVIATION)
+    found = best_near(view, FIELD, around, CONFIG.localization)
     assert found is not None
     pose, fit = found
     assert pose.distance_to(HERE.x, HERE.y) < 0.01
@@ -33,16 +32,16 @@ def test_a_pose_that_is_off_by_half_a_metre_is_found(off: Pose) -> None:
 def test_the_heading_that_is_found_is_one_turn_at_most() -> None:
     here = Pose(HERE.x, HERE.y, math.pi - 0.1)
     view = LIDAR.view(Eye(FURNISHED).scan(here))
-    found = best_near(view, FIELD, Pose(here.x, here.y, -math.pi + 0.3), DEVIATION)
+    found = best_near(view, FIELD, Pose(here.x, here.y, -math.pi + 0.3), CONFIG.localization)
     assert found is not None
     assert found[0].theta == pytest.approx(here.theta, abs=0.01)
 
 
 def test_where_nothing_has_room_nothing_is_found() -> None:
     view = LIDAR.view(Eye(FURNISHED).scan(HERE))
-    assert best_near(view, FIELD, Pose(-5.0, -5.0, 0.0), DEVIATION) is None
+    assert best_near(view, FIELD, Pose(-5.0, -5.0, 0.0), CONFIG.localization) is None
     nothing = LIDAR.view(np.full(LIDAR.beams, np.inf, np.float32))
-    assert best_near(nothing, FIELD, HERE, DEVIATION) is None
+    assert best_near(nothing, FIELD, HERE, CONFIG.localization) is None
 
 
 def test_a_push_that_no_wheel_told_costs_no_search_of_the_whole_map() -> None:
