@@ -100,7 +100,7 @@ class SearchingConfig(Frozen):
 
 
 class RecentSightConfig(Frozen):
-    """What was seen a moment ago, by which it is told that nobody carried the robot: s, m."""
+    """What was seen a moment ago, which tells that the robot was not carried: s, m."""
 
     apart: NotNegative = 0.4
     """Between two scans that are kept, of which there are twelve."""

@@ -6,7 +6,7 @@ from typing import Annotated, ClassVar
 
 from pydantic import Field
 
-from roomba.configuration.frozen import AtLeastOne, Frozen, NotNegative, Positive, Ratio
+from roomba.configuration.frozen import AtLeastOne, Count, Frozen, NotNegative, Positive, Ratio
 
 
 class MapChangesConfig(Frozen):
@@ -67,6 +67,110 @@ class FloorsConfig(Frozen):
     """Share of the smaller of two rooms' floor; with less in common they are different rooms."""
 
 
+class FollowingConfig(Frozen):
+    """Following the robot from scan to scan, and finding it back: m, rad, s."""
+
+    least_points: AtLeastOne = 30
+    """Of a scan that counts."""
+    many_misses: AtLeastOne = 5
+    """Scans without a match, after which the next is matched from farther away."""
+    doubtful: Ratio = 0.85
+    """Of the usual agreement; a scan that agrees less is searched for around the robot."""
+    searched_way: Positive = 0.5
+    searched_turn: Positive = 0.8
+    """To each side,"""
+    searched_share: NotNegative = 0.2
+    """and by this share of what was driven and turned since a scan confirmed the pose,"""
+    searched_farthest: NotNegative = 4.0
+    """and by what it drives in that time at its pace, but no farther than this."""
+    pace_fades: Positive = 10.0
+    """After so long the fastest pace counts a third."""
+    likelihood: Ratio = 0.5
+    """Mean of points, from which a pose is looked at closely."""
+    better: Annotated[float, Field(ge=1.0, le=10.0)] = 1.2
+    """Times that a place found must agree better than the one that is thought to be right."""
+    given_up_after: AtLeastOne = 7
+    """Scans that show enough and confirm nothing,"""
+    piece_way: NotNegative = 0.6
+    piece_turn: NotNegative = 2.0
+    """and so much driven or turned: then the map goes on in a piece of its own."""
+    sure_deviation: Positive = 0.01
+    sure_heading: Positive = 0.005
+    unsure_deviation: Positive = 0.1
+    unsure_heading: Positive = 0.05
+    """What is told of the pose, against what was seen just now, with a match and without one."""
+
+
+class WindowsConfig(Frozen):
+    """How far submaps that are matched may lie off: m, rad."""
+
+    beside: Positive = 0.15
+    """From where they were thought to be, always."""
+    narrow: Positive = 0.35
+    """In a window that is no wider points find their surfaces by themselves."""
+    ambiguous: Positive = 1.5
+    """In a wider window nothing else may fit nearly as well."""
+    widest: Positive = 12.0
+    """No wider window is searched."""
+    turn: Positive = 0.1
+    turn_per_metre: NotNegative = 0.15
+    most_turn: NotNegative = 0.9
+    """rad, and rad/m of the window; how much submaps may be turned, the second at most this."""
+    most_far: Count = 6
+    far_apart: AtLeastOne = 3
+    """Of submaps that are near only if much is wrong so many are looked at, so many apart."""
+    likely: Ratio = 0.45
+    """Mean likelihood of points from which a pose of a wide window is looked at closely."""
+    hardly: Positive = 0.3
+    """A link with a larger standard deviation was made without a scan that confirmed it."""
+
+    in_order: ClassVar = ("beside <= narrow <= ambiguous <= widest",)
+
+
+class BackingConfig(Frozen):
+    """Loops that move a part of the map far, which another one must back: m, rad."""
+
+    far: Positive = 2.0
+    neighbours: AtLeastOne = 3
+    """Submaps; the other loop is of one that is so few away."""
+    same_place: Positive = 0.4
+    same_heading: Positive = 0.08
+    """Two loops agree that place a submap so nearly alike."""
+
+
+class PiecesConfig(Frozen):
+    """Standard deviations of links that no scan measured: m, rad."""
+
+    deviation: Positive = 0.5
+    heading_deviation: Positive = 0.1
+    """Of one to a piece of its own,"""
+    share: NotNegative = 0.1
+    """and by this share of what was driven and turned there."""
+    told_deviation: Positive = 0.05
+    told_heading_deviation: Positive = 0.05
+    """Of one to a pose that people told."""
+
+
+class RelocationConfig(Frozen):
+    """Finding a robot on its growing map after it was carried: m, rad."""
+
+    window: Positive = 3.0
+    """Around each submap's beginning."""
+    likelihood: Ratio = 0.85
+    """Mean of points, that a place must have."""
+    clearly: Ratio = 0.85
+    """Of the best place's likelihood, that others may have."""
+    elsewhere_way: Positive = 0.5
+    elsewhere_turn: Positive = 0.3
+    """Poses that are farther apart are of two places."""
+    moved: Positive = 0.25
+    turned: Positive = 0.5
+    """Driven or turned between two scans that are searched for."""
+    same_place: Positive = 0.2
+    same_heading: Positive = 0.1
+    """Two scans agree that were found so near to where they lie to each other."""
+
+
 class MappingConfig(Frozen):
     """Keyframes, submaps and their links: m, rad; the drawing: shares 0..1."""
 
@@ -88,5 +192,18 @@ class MappingConfig(Frozen):
     occupied_share: Ratio = 0.3
     occupied_beams: AtLeastOne = 2
     redrawn_shift: Positive = 0.01
+    farthest: Positive = 30.0
+    """What is farther is drawn, but nothing is matched to it."""
+    spare: Positive = 4.0
+    """The farthest that a robot gets from the beginning of a submap."""
+    search_reach: Positive = 12.0
+    """Points farther from a place are no help in looking for it: their bearing is less sure."""
+    oblique: Annotated[float, Field(gt=0.0, lt=45.0)] = 4.0
+    """Degrees; walls that are turned by more from the map's axes are so by design."""
+    following: FollowingConfig = FollowingConfig()
+    windows: WindowsConfig = WindowsConfig()
+    backing: BackingConfig = BackingConfig()
+    pieces: PiecesConfig = PiecesConfig()
+    relocation: RelocationConfig = RelocationConfig()
     changes: MapChangesConfig = MapChangesConfig()
     floors: FloorsConfig = FloorsConfig()

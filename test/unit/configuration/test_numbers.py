@@ -14,22 +14,6 @@ import pytest
 import yaml
 
 SOURCE = Path(__file__).resolve().parents[3] / "src"
-PARTS = (
-    "roomba/client",
-    "roomba/control",
-    "roomba/headless",
-    "roomba/mission",
-    "roomba/perception/floors",
-    "roomba/perception/rooms",
-    "roomba/perception/swept",
-    "roomba/perception/things",
-    "roomba/planning",
-    "roomba/robot",
-    "roomba/ui",
-    "roomba/world",
-    "roomba_ros",
-)
-"""Whose numbers are told, with all folders in them."""
 _TOLD = yaml.safe_load(Path(__file__).with_name("numbers_that_stay.yaml").read_text("utf-8"))
 REASONS: dict[str, str] = _TOLD["reasons"]
 STAYS: dict[str, dict[str, str]] = _TOLD["numbers"]
@@ -79,16 +63,9 @@ def numbers_in(folder: str) -> dict[str, str]:
 
 
 def folders() -> list[str]:
-    """Return all folders of the parts in which a module has a number of its own."""
-    found = {path.parent.relative_to(SOURCE) for part in PARTS for path in files_of(part)}
+    """Return all folders of the sources in which a module has a number of its own."""
+    found = {path.parent.relative_to(SOURCE) for path in SOURCE.rglob("*.py")}
     return sorted(str(folder) for folder in found if numbers_in(str(folder)))
-
-
-def files_of(part: str) -> list[Path]:
-    """Return the modules of a part; a part without any is a mistake."""
-    found = sorted((SOURCE / part).rglob("*.py"))
-    assert found, f"there is no {part}"
-    return found
 
 
 @pytest.mark.parametrize("folder", folders())

@@ -21,7 +21,6 @@ from roomba.perception.localization.estimate import Estimate
 from roomba.perception.matching.pose_kernels import beyond
 from roomba.perception.matching.scan_view import LidarModel, PlacedScan
 from roomba.perception.slam.following.finding_back import FindingBack
-from roomba.perception.slam.following.follow_kernels import LEAST_POINTS
 from roomba.perception.slam.following.scan_follower import ScanFollower
 from roomba.perception.slam.following.scan_kernels import Following
 from roomba.perception.slam.mapper_estimate import estimate_at, lost_estimate
@@ -49,17 +48,18 @@ class Mapper:
         start: Pose,
     ) -> None:
         """Begin at ``start``, which defines the map frame."""
+        self._config = config
         self._reckoning = DeadReckoning(localization, gyro)
         self.belief, self.numbers = self._reckoning.belief, self._reckoning.numbers
         self.path = self._reckoning.path
-        self._finding_back = FindingBack()
+        self._finding_back = FindingBack(config)
         self._follower = ScanFollower(config, self._reckoning, self._finding_back.state)
         self._map = SubmapMap(config, localization, _row_of(start))
         self.at_scan = start
         self.placed: PlacedScan | None = None
         self._finished = -1
         self._lidar: LidarModel | None = None
-        self._relocation = MapRelocation()
+        self._relocation = MapRelocation(config)
 
     @classmethod
     def taken_up(
@@ -184,7 +184,7 @@ class Mapper:
     def estimate(self) -> Estimate:
         """The estimate of the robot's pose."""
         if self._relocation.is_placed:
-            return estimate_at(self.pose, self._follower)
+            return estimate_at(self.pose, self._follower, self._config.following)
         return lost_estimate(self.pose)
 
     @property
@@ -267,7 +267,7 @@ class Mapper:
 
     def _is_keyframe(self, points: int) -> bool:
         if not self._map.graph.newest.keyframes:
-            return points >= LEAST_POINTS
+            return points >= self._config.following.least_points
         return self._follower.is_sure and self._follower.is_apart
 
     def _keep(self, points: Floats) -> None:

@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import math
+from functools import cache
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
+from roomba.configuration.mapping import FollowingConfig
 from roomba.geometry import Pose
 from roomba.perception.localization.estimate import Estimate, Knowledge
 from roomba.perception.slam.following.scan_follower import ScanFollower
 
-_SURE: Final = np.diag([0.01**2, 0.01**2, 0.005**2])
-_UNSURE: Final = np.diag([0.1**2, 0.1**2, 0.05**2])
-"""m2, rad2; of the pose against what was seen in the last metres."""
 _NOWHERE: Final = np.diag([100.0**2, 100.0**2, math.pi**2])
 _WAS_LIFTED: Final = (
     "the robot was lifted while it made its map: put it on its station, tell where it is (in RViz: "
@@ -22,14 +22,22 @@ _WAS_LIFTED: Final = (
 _NO_MATCH: Final = "what is in sight does not fit what was seen just now; going by wheels and gyro"
 
 
-def estimate_at(pose: Pose, follower: ScanFollower) -> Estimate:
+def estimate_at(pose: Pose, follower: ScanFollower, config: FollowingConfig) -> Estimate:
     """Return the estimate of a robot at ``pose``, map frame, that is followed from scan to scan."""
     agreement = follower.met * follower.close
     if follower.is_sure:
-        return Estimate(pose, _SURE, Knowledge.KNOWN, agreement, "")
-    return Estimate(pose, _UNSURE, Knowledge.ROUGH, agreement, _NO_MATCH)
+        sure = _spread(config.sure_deviation, config.sure_heading)
+        return Estimate(pose, sure, Knowledge.KNOWN, agreement, "")
+    unsure = _spread(config.unsure_deviation, config.unsure_heading)
+    return Estimate(pose, unsure, Knowledge.ROUGH, agreement, _NO_MATCH)
 
 
 def lost_estimate(pose: Pose) -> Estimate:
     """Return the estimate of a robot that was carried, and was at ``pose`` before."""
     return Estimate(pose, _NOWHERE, Knowledge.LOST, 0.0, _WAS_LIFTED)
+
+
+@cache
+def _spread(deviation: float, heading: float) -> NDArray[np.float64]:
+    """Return the covariance of a pose that is unsure by so much, m and rad."""
+    return np.diag([deviation**2, deviation**2, heading**2])

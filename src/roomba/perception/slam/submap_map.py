@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,11 +18,6 @@ from roomba.perception.slam.submaps.submap import KeptSubmap, Keyframe, moved
 from roomba.perception.slam.submaps.submap_graph import SubmapGraph
 
 Floats = NDArray[np.float64]
-
-_SPARE: Final = 4.0
-"""m; the farthest that a robot gets from the beginning of a submap."""
-_FARTHEST: Final = 30.0
-"""m; what is farther is drawn, but nothing is matched to it."""
 
 
 class SubmapMap:
@@ -71,7 +65,7 @@ class SubmapMap:
 
     def use(self, lidar: LidarBeams) -> None:
         """Take the scans of a lidar from now on: makes ``surfels`` anew."""
-        reach = min(lidar.farthest, _FARTHEST) + _SPARE
+        reach = min(lidar.farthest, self._config.farthest) + self._config.spare
         self.graph.use_reach(reach)
         self.drawn.use(lidar)
         self.surfels = SurfelGrid(reach)

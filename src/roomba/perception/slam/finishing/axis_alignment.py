@@ -10,8 +10,6 @@ from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 
-_NEAR: Final = math.radians(4.0)
-"""Walls at a larger angle to the axes are oblique by design."""
 _ALONG: Final = 0.995
 """Cosine; a wall that faces along an axis so well has one place on it."""
 _LEAST_POINTS: Final = 200
@@ -19,22 +17,23 @@ _LEAST_AGREEMENT: Final = 0.4
 """Length of the mean of directions; below it walls have no common direction."""
 
 
-def turn_of_walls(cloud: Floats) -> float:
+def turn_of_walls(cloud: Floats, oblique: float) -> float:
     """Return by how much the walls are turned from the axes, rad; 0 when most lie otherwise.
 
-    ``cloud`` is float64 [n, 4], points with normals.
+    ``cloud`` is float64 [n, 4], points with normals. Walls at a larger angle to the axes than
+    ``oblique``, rad, are so by design.
     """
     # For strided columns numpy's last bit depends on their place in memory.
     angles = np.arctan2(np.ascontiguousarray(cloud[:, 3]), np.ascontiguousarray(cloud[:, 2]))
     quarter = math.pi / 2.0
     off = np.remainder(angles + quarter / 2.0, quarter) - quarter / 2.0
-    near = off[np.abs(off) < _NEAR]
+    near = off[np.abs(off) < oblique]
     if len(near) < max(_LEAST_POINTS, len(off) // 3):
         return 0.0
     for _ in range(5):
         middle = float(np.median(near))
         # Of all: noise reaches beyond what is near, and half of it would pull.
-        near = off[np.abs(off - middle) < 0.5 * _NEAR]
+        near = off[np.abs(off - middle) < 0.5 * oblique]
     return float(near.mean())
 
 

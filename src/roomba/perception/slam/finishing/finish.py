@@ -23,7 +23,7 @@ def finish(graph: SubmapGraph, config: MappingConfig) -> tuple[float, float]:
     """
     graph.link_anew()
     refine_keyframes(graph, config.point_deviation)
-    return align_axes(graph, config.resolution)
+    return align_axes(graph, config.resolution, math.radians(config.oblique))
 
 
 def refine_keyframes(graph: SubmapGraph, point_deviation: float) -> None:
@@ -48,12 +48,13 @@ def refine_keyframes(graph: SubmapGraph, point_deviation: float) -> None:
         first = last
 
 
-def align_axes(graph: SubmapGraph, resolution: float) -> tuple[float, float]:
+def align_axes(graph: SubmapGraph, resolution: float, oblique: float) -> tuple[float, float]:
     """Turn all submaps around the first one, so that walls lie along the axes.
 
     Returns where, x and y, m, walls then lie between the cells of a grid of ``resolution``, m.
+    Walls that are turned by more than ``oblique``, rad, stay so.
     """
-    turn = turn_of_walls(graph.cloud())
+    turn = turn_of_walls(graph.cloud(), oblique)
     around = graph.poses[0, :2].copy()
     cosine, sine = math.cos(turn), math.sin(turn)
     back = np.array([[cosine, -sine], [sine, cosine]])

@@ -10,7 +10,6 @@ from numba import njit
 
 from roomba.perception.localization.belief.belief import Row, Rows
 from roomba.perception.matching.pose_kernels import is_apart
-from roomba.perception.slam.following.follow_kernels import LEAST_POINTS
 
 FINDING: Final = np.dtype(
     [
@@ -22,20 +21,19 @@ FINDING: Final = np.dtype(
         ("well_at", "f8", (3,)),  # where dead reckoning had the robot then
         ("misses", "i8"),  # scans in a row that show enough and confirm nothing
         ("doubts", "i8"),  # scans in a row that confirm less than is usual
+        # what does not change: see FollowingConfig
+        ("doubtful", "f8"),
+        ("pace_fades", "f8"),  # s
     ],
     align=True,
 )
-"""How well scans fit of late, one row."""
+"""How well scans fit of late, and the numbers of that, one row."""
 
 _AT_ONCE: Final = 2
 _EVERY: Final = 3
 """Of scans in a row that do not fit, the first ones are searched for, and then each such one."""
 _LEARNING: Final = 0.05
 """Share of the newest scan in how well scans usually agree."""
-_PACE_FADES: Final = 10.0
-"""s; after so long the fastest pace counts a third."""
-_DOUBTFUL: Final = 0.85
-"""A scan agrees badly that agrees less than by this share of what is usual."""
 _STANDS: Final = 0.03
 """m and rad; less than this is no motion of the wheels."""
 
@@ -48,7 +46,7 @@ def saw(findings: Rows, followers: Rows, stamp: float) -> None:
     elapsed = stamp - finding.stamp
     if elapsed > 0.0 and follower.is_sure:
         pace = (follower.way - finding.way) / elapsed
-        finding.pace = max(math.exp(-elapsed / _PACE_FADES) * finding.pace, pace)
+        finding.pace = max(math.exp(-elapsed / finding.pace_fades) * finding.pace, pace)
     finding.stamp, finding.way = stamp, follower.way
 
 
@@ -64,12 +62,12 @@ def is_due(findings: Rows) -> bool:
 def _count(finding: Row, follower: Row, stamp: float) -> None:
     """Count the scans in a row that confirm nothing, or less than is usual."""
     if not follower.is_sure:
-        finding.misses += follower.points >= LEAST_POINTS
+        finding.misses += follower.points >= follower.least_points
         return
     finding.misses = 0
     agreement = follower.met * follower.close
     stands = not is_apart(follower.reckoned, finding.well_at, _STANDS, _STANDS)
-    if agreement < _DOUBTFUL * finding.usual and stands:
+    if agreement < finding.doubtful * finding.usual and stands:
         finding.doubts += 1
         return
     finding.doubts = 0

@@ -45,6 +45,8 @@ FOLLOWER: Final = np.dtype(
         ("keyframe", "f8", (3,)),  # where the newest one was kept, in its submap
         # what does not change
         ("variance", "f8"),  # m2; of a point
+        ("least_points", "i8"),  # see FollowingConfig
+        ("many_misses", "i8"),
         ("least_met", "f8"),
         ("least_close", "f8"),
         ("keyframe_way", "f8"),  # m; a scan is kept that is so far from the newest keyframe,
@@ -55,10 +57,6 @@ FOLLOWER: Final = np.dtype(
 )
 """State and numbers of a follower, one row."""
 
-LEAST_POINTS: Final = 30
-"""The fewest points that count."""
-_MANY: Final = 5
-"""Misses after which a scan is matched from farther away."""
 _FIRST_SCALES: Final = (0.1, 0.05)
 """m; of the first rounds of a match."""
 _LEARNING: Final = 0.02
@@ -93,7 +91,7 @@ def follow(
         for column in range(3):
             covariance[row, column] = follower.spread[row, column]
         covariance[row, row] += _LEAST_SPREAD[row]
-    reach = _FAR_REACH if follower.misses >= _MANY else 1
+    reach = _FAR_REACH if follower.misses >= follower.many_misses else 1
     noise = follower.range_deviation
     scales[0], scales[1], scales[2] = _FIRST_SCALES[0], _FIRST_SCALES[1], last_scale(noise)
     tolerances = Tolerances(scales, follower.variance, in_plane(noise))
@@ -103,12 +101,12 @@ def follow(
     )  # fmt: skip
     is_solved = is_solved and math.isfinite(pose[0] + pose[1] + pose[2])
     follower.met = follower.close = 0.0
-    if is_solved and counts[ASKED] >= LEAST_POINTS:
+    if is_solved and counts[ASKED] >= follower.least_points:
         follower.met = counts[MATCHED] / counts[ASKED]
         follower.close = counts[CLOSE] / max(counts[MATCHED], 1.0)
     follower.is_sure = (
         is_solved
-        and counts[ASKED] >= LEAST_POINTS
+        and counts[ASKED] >= follower.least_points
         and follower.met >= follower.least_met
         and follower.close >= follower.least_close
     )

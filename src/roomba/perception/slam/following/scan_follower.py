@@ -52,6 +52,8 @@ class ScanFollower:
         self._noise, self._latency = unknown_noise(), no_latency()
         self._row = row = self.state[0]
         row["variance"] = config.point_deviation**2
+        row["least_points"] = config.following.least_points
+        row["many_misses"] = config.following.many_misses
         row["least_met"], row["least_close"] = config.least_met, config.least_close
         row["keyframe_way"], row["keyframe_turn"] = config.keyframe_way, config.keyframe_turn
         row["odometry_scale"] = 1.0

@@ -25,8 +25,6 @@ _CELL: Final = 0.05
 _LEVELS: Final = 6
 _BLUR: Final = 0.06
 """m; standard deviation of where a surface may be."""
-_REACH: Final = 12.0
-"""m; points farther from the place's origin are left out, their bearing being less sure."""
 _TURN_STEP: Final = 0.012
 """rad; a cell and a bit at the usual range of 5 m."""
 _MOST_POINTS: Final = 250
@@ -38,9 +36,9 @@ _NEARLY: Final = 0.8
 """Share of a match's score with which another place is not to be told from it."""
 
 
-def is_in_reach(points: Floats) -> bool:
-    """Whether some of the points of a place, [n, 2 or more], are near enough to be found."""
-    return bool((np.hypot(points[:, 0], points[:, 1]) < _REACH).any())
+def is_in_reach(points: Floats, reach: float) -> bool:
+    """Whether some of the points of a place, [n, 2 or more], are within ``reach``, m, of it."""
+    return bool((np.hypot(points[:, 0], points[:, 1]) < reach).any())
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -54,9 +52,12 @@ class CorrelativeMatch:
 class CorrelativeMatcher:
     """Finds points on those of one place, float64 [n, 2 or more], x, y, m, in its frame."""
 
-    def __init__(self, points: Floats) -> None:
-        """Make the grids; raises ValueError without a point in reach."""
-        near = points[np.hypot(points[:, 0], points[:, 1]) < _REACH, :2]
+    def __init__(self, points: Floats, reach: float) -> None:
+        """Make the grids; raises ValueError without a point within ``reach``, m, of the origin.
+
+        Farther points are left out: their bearing is less sure.
+        """
+        near = points[np.hypot(points[:, 0], points[:, 1]) < reach, :2]
         if not len(near):
             raise ValueError("expected points in reach, got none")
         room = 1 << (_LEVELS - 1)

@@ -7,41 +7,34 @@ next submap, seen from elsewhere, must be found in a place that agrees with it.
 from __future__ import annotations
 
 import math
-from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from roomba.angles import wrapped
+from roomba.configuration.mapping import BackingConfig
 from roomba.perception.slam.submaps.pose_graph import Link, composed, relative_to
 
 Floats = NDArray[np.float64]
 
-_FAR: Final = 2.0
-"""m; a link that moves its child farther than this must be backed."""
-NEIGHBOURS: Final = 3
-"""Submaps; a link is backed by one of another child that is so few submaps away."""
-_SAME_PLACE: Final = 0.4
-_SAME_HEADING: Final = 0.08
-"""m, rad; two links agree that place a child so nearly alike."""
 
-
-def is_far(link: Link, poses: Floats) -> bool:
+def is_far(link: Link, poses: Floats, config: BackingConfig) -> bool:
     """Whether a link would move its child far, the submaps lying at ``poses``, [n, 3]."""
     here = _told(link, poses)
-    return math.hypot(*(here[:2] - poses[link.child, :2])) > _FAR
+    return math.hypot(*(here[:2] - poses[link.child, :2])) > config.far
 
 
-def is_backed(link: Link, others: list[Link], poses: Floats) -> bool:
+def is_backed(link: Link, others: list[Link], poses: Floats, config: BackingConfig) -> bool:
     """Whether another child nearby was found where this link says that it must lie, too."""
     moved = _told(link, poses)
     for other in others:
-        if not 0 < abs(other.child - link.child) <= NEIGHBOURS:
+        if not 0 < abs(other.child - link.child) <= config.neighbours:
             continue
         step = relative_to(poses[link.child][None], poses[other.child][None])
         expected = composed(moved[None], step)[0]
         off = _told(other, poses) - expected
-        if math.hypot(off[0], off[1]) < _SAME_PLACE and abs(wrapped(off[2])) < _SAME_HEADING:
+        is_there = math.hypot(off[0], off[1]) < config.same_place
+        if is_there and abs(wrapped(off[2])) < config.same_heading:
             return True
     return False
 

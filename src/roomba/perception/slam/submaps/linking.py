@@ -27,25 +27,6 @@ _ROUNDS: Final = 8
 _COARSE_REACH: Final = 3
 """Cells of surfels; so far off a link is found at first."""
 _COARSE_STRIDE: Final = 3
-_BESIDE: Final = 0.15
-"""m; two submaps may always lie so far from where they were thought to be."""
-_NARROW: Final = 0.35
-"""m; in a window that is no wider points find their surfaces by themselves."""
-_WIDEST: Final = 12.0
-"""m; the widest window that is searched."""
-_TURN: Final = 0.1
-_TURN_PER_METRE: Final = 0.15
-_MOST_TURN: Final = 0.9
-"""rad, and rad/m; how much two submaps may be turned, by the width of the window, and at most."""
-_MOST_FAR: Final = 6
-_FAR_APART: Final = 3
-"""Of submaps that are near only if much is wrong, so many are looked at, so many numbers apart."""
-_AMBIGUOUS: Final = 1.5
-"""m; in a wider window nothing else may fit nearly as well."""
-_LIKELY: Final = 0.45
-"""Mean likelihood of points, 0..1, from which a pose of a wide window is looked at closely."""
-_HARDLY: Final = 0.3
-"""m; a link with a larger standard deviation was made without a scan that confirmed it."""
 _SAME: Final = 0.005
 _SAME_TURN: Final = 0.002
 """m, rad; a link that is off by less is not looked for again."""
@@ -94,23 +75,24 @@ class Linker:
 
     def _windows(self, child: int, poses: Floats, links: list[Link]) -> tuple[Floats, Floats]:
         """Return by how much each submap may lie off as seen from one, m and rad, [n] each."""
-        drift = self._config.drift
-        ways, unsure = _ways(child, poses, links, drift)
+        drift, config = self._config.drift, self._config.windows
+        ways, unsure = _ways(child, poses, links, drift, config.hardly)
         away = np.hypot(*(poses[:, :2] - poses[child, :2]).T)
-        windows = np.minimum(_BESIDE + drift * ways + unsure * away, _WIDEST)
-        return windows, _TURN + np.minimum(_TURN_PER_METRE * windows, _MOST_TURN) + unsure
+        windows = np.minimum(config.beside + drift * ways + unsure * away, config.widest)
+        turns = np.minimum(config.turn_per_metre * windows, config.most_turn)
+        return windows, config.turn + turns + unsure
 
     def _candidates(self, child: int, last: int, poses: Floats, windows: Floats) -> list[int]:
         """Return the submaps before ``last`` that lie near one, and some of those that may."""
-        radius = self._config.link_radius
+        radius, config = self._config.link_radius, self._config.windows
         away = np.hypot(*(poses[:last, :2] - poses[child, :2]).T)
         near = [index for index in np.flatnonzero(away <= radius).tolist() if index != child]
         far: list[int] = []
-        maybe = np.flatnonzero((away > radius) & (away <= radius - _NARROW + windows[:last]))
+        maybe = np.flatnonzero((away > radius) & (away <= radius - config.narrow + windows[:last]))
         for index in maybe[np.argsort(away[maybe], kind="stable")].tolist():
-            if len(far) == _MOST_FAR:
+            if len(far) == config.most_far:
                 break
-            if all(abs(index - other) >= _FAR_APART for other in (*far, child)):
+            if all(abs(index - other) >= config.far_apart for other in (*far, child)):
                 far.append(index)
         return sorted(near + far)
 
@@ -132,7 +114,8 @@ class Linker:
             return None
         thought = relative_to(poses[parent : parent + 1], poses[child : child + 1])[0]
         start: Floats | None = thought
-        if window > _NARROW:
+        narrow = self._config.windows.narrow
+        if window > narrow:
             start = self._found(parent, submaps[parent].cloud, cloud, thought, window, turn)
         if start is None:
             return None
@@ -141,7 +124,7 @@ class Linker:
         match = self._match(cloud, start)
         if match is None or not self._is_good(match):
             return None
-        if math.hypot(*(match.pose[:2] - thought[:2])) > max(window, _NARROW):
+        if math.hypot(*(match.pose[:2] - thought[:2])) > max(window, narrow):
             return None
         return Link(parent, child, match.pose, self._information(match))
 
@@ -155,16 +138,18 @@ class Linker:
         turn: float,
     ) -> Floats | None:
         """Return roughly the pose [3] of points in a submap, found in a wide window, or None."""
-        if not is_in_reach(there):
+        reach, config = self._config.search_reach, self._config.windows
+        if not is_in_reach(there, reach):
             return None
-        matcher = self._matchers.pop(parent, None) or CorrelativeMatcher(there)
+        matcher = self._matchers.pop(parent, None) or CorrelativeMatcher(there, reach)
         self._matchers[parent] = matcher
         if len(self._matchers) > _KEPT:
             self._matchers.pop(next(iter(self._matchers)))
-        found = matcher.best(cloud, thought, window, turn, _LIKELY)
+        found = matcher.best(cloud, thought, window, turn, config.likely)
         if found is None:
             return None
-        if window > _AMBIGUOUS and not matcher.is_unique(cloud, found, thought, window, turn):
+        may_be_another = window > config.ambiguous
+        if may_be_another and not matcher.is_unique(cloud, found, thought, window, turn):
             return None
         return found.pose
 
@@ -199,17 +184,19 @@ def _is_so(link: Link, poses: Floats) -> bool:
     return math.hypot(off[0], off[1]) < _SAME and abs(wrapped(off[2])) < _SAME_TURN
 
 
-def _ways(submap: int, poses: Floats, links: list[Link], drift: float) -> tuple[Floats, Floats]:
+def _ways(
+    submap: int, poses: Floats, links: list[Link], drift: float, hardly_known: float
+) -> tuple[Floats, Floats]:
     """Return how long the shortest chains of links are from one submap to each other one, m.
 
-    A link that is hardly known counts as the way over which as much drift comes about; how unsure
-    such ones leave the heading is returned as well, rad.
+    A link with a larger standard deviation than ``hardly_known``, m, counts as the way over which
+    as much drift comes about; how unsure such ones leave the heading is returned as well, rad.
     """
     joined = np.array([(link.parent, link.child) for link in links], np.int64).reshape(-1, 2)
     away = poses[joined[:, 0], :2] - poses[joined[:, 1], :2]
     unsure = np.array([link.information[0, 0] for link in links]).reshape(-1) ** -0.5
     turned = np.array([link.information[2, 2] for link in links]).reshape(-1) ** -0.5
-    hardly = unsure > _HARDLY
+    hardly = unsure > hardly_known
     lengths = np.hypot(away[:, 0], away[:, 1]) + np.where(hardly, unsure / drift, 0.0)
     ways, turns = np.full(len(poses), np.inf), np.zeros(len(poses))
     ways[submap] = 0.0

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from roomba.configuration.localization import LocalizationConfig
 from roomba.configuration.mapping import MappingConfig
-from roomba.perception.slam.submaps.agreement import NEIGHBOURS, is_backed, is_far
+from roomba.perception.slam.submaps.agreement import is_backed, is_far
 from roomba.perception.slam.submaps.linking import Linker
 from roomba.perception.slam.submaps.pose_graph import (
     Link,
@@ -27,12 +27,6 @@ Floats = NDArray[np.float64]
 
 CLOUD: Final = 1500
 """Points of a submap that are matched to others."""
-_OF_PEOPLE: Final = np.diag([0.05**-2, 0.05**-2, 0.05**-2])
-"""1/m2, 1/rad2; information of a link to a reported pose."""
-_OF_A_PIECE: Final = (0.5, 0.1)
-_SHARE_OF_PIECE: Final = 0.1
-"""m, rad: how unsure a link is over which no scan led, and by this share of what was driven and
-turned there."""
 _RECENT: Final = 40
 """Links that may back a new one."""
 _REFINEMENTS: Final = 2
@@ -104,9 +98,10 @@ class SubmapGraph:
         No scan confirmed what was driven, m, and turned, rad, before it.
         """
         count = len(self.submaps)
-        away = _OF_A_PIECE[0] + _SHARE_OF_PIECE * unsure_way
-        turn = _OF_A_PIECE[1] + _SHARE_OF_PIECE * unsure_turn
-        information = np.diag([away**-2, away**-2, turn**-2])
+        piece = self._config.pieces
+        away = piece.deviation + piece.share * unsure_way
+        turn = piece.heading_deviation + piece.share * unsure_turn
+        information = _information(away, turn)
         self.links.append(Link(count - 1, count, relative.copy(), information, False))
         self._add(self.placed(relative), way)
 
@@ -114,7 +109,9 @@ class SubmapGraph:
         """Begin a submap at a reported pose, map frame, [3]."""
         parent = int(np.argmin(np.hypot(*(self.poses[:, :2] - pose[:2]).T)))
         relative = relative_to(self.poses[parent : parent + 1], pose[None])[0]
-        self.links.append(Link(parent, len(self.submaps), relative, _OF_PEOPLE, False))
+        piece = self._config.pieces
+        information = _information(piece.told_deviation, piece.told_heading_deviation)
+        self.links.append(Link(parent, len(self.submaps), relative, information, False))
         self._add(pose, way)
 
     def covariance(self) -> Floats:
@@ -134,6 +131,7 @@ class SubmapGraph:
 
     def link_anew(self) -> None:
         """Look for all links anew, near where submaps lie by the present ones."""
+        backing = self._config.backing
         for _ in range(_REFINEMENTS):
             known = self.links
             self.links = [link for link in known if not link.may_be_wrong]
@@ -142,7 +140,8 @@ class SubmapGraph:
             self.links += [
                 link
                 for link in found
-                if not is_far(link, self.poses) or is_backed(link, found, self.poses)
+                if not is_far(link, self.poses, backing)
+                or is_backed(link, found, self.poses, backing)
             ]
             self.poses = optimised(self.poses, self.links)
 
@@ -206,15 +205,17 @@ class SubmapGraph:
 
     def _agreeing(self, found: list[Link], child: int) -> list[Link]:
         """Return those links that others back, if they must, and older ones that these back."""
-        agreeing = [link for link in found if not is_far(link, self.poses)]
-        waiting = self._waiting + [link for link in found if is_far(link, self.poses)]
+        backing = self._config.backing
+        agreeing = [link for link in found if not is_far(link, self.poses, backing)]
+        waiting = self._waiting + [link for link in found if is_far(link, self.poses, backing)]
         loops = [link for link in self.links[-_RECENT:] if link.may_be_wrong]
-        backed = [is_backed(link, waiting + loops + agreeing, self.poses) for link in waiting]
+        others = waiting + loops + agreeing
+        backed = [is_backed(link, others, self.poses, backing) for link in waiting]
         agreeing += [link for link, yes in zip(waiting, backed, strict=True) if yes]
         self._waiting = [
             link
             for link, yes in zip(waiting, backed, strict=True)
-            if not yes and link.child > child - NEIGHBOURS
+            if not yes and link.child > child - backing.neighbours
         ]
         return agreeing
 
@@ -224,3 +225,9 @@ class SubmapGraph:
         deviations = np.array([numbers.way_noise, numbers.way_noise, numbers.turn_noise])
         information: Floats = np.diag((deviations * math.sqrt(max(way, 0.1))) ** -2.0)
         return information
+
+
+def _information(deviation: float, heading_deviation: float) -> Floats:
+    """Return the information matrix of a pose that is known to so much, m and rad."""
+    information: Floats = np.diag([deviation**-2, deviation**-2, heading_deviation**-2])
+    return information

@@ -10,9 +10,11 @@ from fixtures.mapped import Floats
 from hypothesis import given
 from hypothesis import strategies as st
 
+from roomba.configuration.mapping import MappingConfig
 from roomba.perception.slam.finishing.axis_alignment import phase_of_walls, turn_of_walls
 from roomba.perception.slam.submaps.submap import moved
 
+OBLIQUE = math.radians(MappingConfig().oblique)
 CELL = 0.05
 
 
@@ -45,19 +47,19 @@ def walls(width: float = 4.0, height: float = 3.0, noise: float = 0.005) -> Floa
 @given(st.floats(-0.05, 0.05))
 def test_a_small_turn_is_told(turn: float) -> None:
     turned = moved(walls(), np.array([1.0, -2.0, turn]))
-    assert turn_of_walls(turned) == pytest.approx(turn, abs=0.0015)
+    assert turn_of_walls(turned, OBLIQUE) == pytest.approx(turn, abs=0.0015)
 
 
 @given(st.floats(-0.05, 0.05), st.sampled_from([1, 2, 3]))
 def test_a_quarter_of_a_turn_is_none(turn: float, quarters: int) -> None:
     turned = moved(walls(), np.array([0.0, 0.0, turn + quarters * math.pi / 2.0]))
-    assert turn_of_walls(turned) == pytest.approx(turn, abs=0.0015)
+    assert turn_of_walls(turned, OBLIQUE) == pytest.approx(turn, abs=0.0015)
 
 
 @pytest.mark.parametrize("degrees", [10.0, 30.0, 45.0, 80.0])
 def test_a_home_that_lies_across_is_left_alone(degrees: float) -> None:
     turned = moved(walls(), np.array([0.0, 0.0, math.radians(degrees)]))
-    assert turn_of_walls(turned) == 0.0
+    assert turn_of_walls(turned, OBLIQUE) == 0.0
 
 
 def test_it_is_the_same_to_the_last_bit_wherever_the_points_lie_in_memory() -> None:
@@ -66,7 +68,7 @@ def test_it_is_the_same_to_the_last_bit_wherever_the_points_lie_in_memory() -> N
     for size in range(1, 400):
         kept.append(np.empty(37 * size, np.uint8))
         here = cloud.copy()
-        turns.add(turn_of_walls(here))
+        turns.add(turn_of_walls(here, OBLIQUE))
         phases.add(phase_of_walls(here, CELL))
     assert (len(turns), len(phases)) == (1, 1)
 
@@ -76,12 +78,12 @@ def test_walls_across_do_not_turn_the_others() -> None:
     across = moved(walls(1.0, 1.0), np.array([1.0, 1.0, math.radians(45.0)]))
     aslant = moved(walls(0.6, 0.6), np.array([2.0, 1.0, math.radians(7.0)]))
     cloud = np.concatenate((moved(walls(), np.array([0.0, 0.0, 0.02])), across, aslant))
-    assert turn_of_walls(cloud) == pytest.approx(0.02, abs=0.0015)
+    assert turn_of_walls(cloud, OBLIQUE) == pytest.approx(0.02, abs=0.0015)
 
 
 def test_too_little_says_nothing() -> None:
-    assert turn_of_walls(np.zeros((0, 4))) == 0.0
-    assert turn_of_walls(moved(walls(), np.array([0.0, 0.0, 0.03]))[:150]) == 0.0
+    assert turn_of_walls(np.zeros((0, 4)), OBLIQUE) == 0.0
+    assert turn_of_walls(moved(walls(), np.array([0.0, 0.0, 0.03]))[:150], OBLIQUE) == 0.0
     assert phase_of_walls(np.zeros((0, 4)), CELL) == (0.0, 0.0)
     assert phase_of_walls(walls()[:150], CELL) == (0.0, 0.0)
 

@@ -11,13 +11,15 @@ from fixtures.mapped import FURNISHED, Floats, points_of, row
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from roomba.configuration.mapping import MappingConfig
 from roomba.geometry import Pose
 from roomba.perception.slam.scan_matching.correlative import CorrelativeMatcher
 from roomba.perception.slam.submaps.submap import moved
 
+REACH = MappingConfig().search_reach
 HERE = Pose(2.5, 1.2, 0.0)
 ROOM = moved(points_of(Eye(FURNISHED).scan(HERE)), row(HERE))
-MATCHER = CorrelativeMatcher(ROOM)
+MATCHER = CorrelativeMatcher(ROOM, REACH)
 
 
 def likelihood(points: Floats, pose: Floats) -> float:
@@ -66,7 +68,7 @@ def test_what_fits_nowhere_is_not_found() -> None:
 
 def test_a_place_without_points_is_refused() -> None:
     with pytest.raises(ValueError, match="points in reach"):
-        CorrelativeMatcher(np.full((3, 2), 100.0))
+        CorrelativeMatcher(np.full((3, 2), 100.0), REACH)
 
 
 def corridor(doors: list[float]) -> Floats:
@@ -83,10 +85,10 @@ def test_where_all_looks_alike_no_place_is_unique() -> None:
     around, around_window = np.zeros(3), 6.0
     seen = corridor(doors)[::2]
     seen = seen[np.abs(seen[:, 0]) < 4.0]
-    alike = CorrelativeMatcher(corridor(doors))
+    alike = CorrelativeMatcher(corridor(doors), REACH)
     across = np.column_stack((np.full(300, 1.5), np.linspace(1.0, 7.0, 300)))
     with_corner = np.concatenate((seen, across))
-    unlike = CorrelativeMatcher(np.concatenate((corridor(doors), across)))
+    unlike = CorrelativeMatcher(np.concatenate((corridor(doors), across)), REACH)
     for matcher, points, expected in ((alike, seen, False), (unlike, with_corner, True)):
         found = matcher.best(points, around, around_window, 0.2, 0.3)
         assert found is not None

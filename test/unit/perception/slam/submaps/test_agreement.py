@@ -18,6 +18,7 @@ from roomba.perception.slam.mapper import Mapper
 from roomba.perception.slam.submaps.agreement import is_backed, is_far
 from roomba.perception.slam.submaps.pose_graph import Link, composed, relative_to
 
+BACKING = MappingConfig().backing
 SURE = 1e4 * np.eye(3)
 CHAIN = np.column_stack((np.arange(12) * 3.0, np.zeros(12), np.zeros(12)))
 """Where twelve submaps lie, one each 3 m."""
@@ -31,20 +32,20 @@ def moved_by(child: int, x: float, y: float = 0.0, turn: float = 0.0, parent: in
 
 @pytest.mark.parametrize(("x", "far"), [(0.9, False), (-1.9, False), (2.1, True), (-4.0, True)])
 def test_a_link_is_far_that_moves_its_child_by_more_than_two_metres(x: float, far: bool) -> None:
-    assert is_far(moved_by(9, x), CHAIN) == far
+    assert is_far(moved_by(9, x), CHAIN, BACKING) == far
 
 
 def test_it_is_backed_by_another_child_that_was_found_where_it_must_lie() -> None:
     link = moved_by(9, 4.0, 1.0)
-    assert is_backed(link, [moved_by(8, 4.1, 1.1, parent=1)], CHAIN)
-    assert is_backed(link, [moved_by(11, 4.0, 1.0, parent=2)], CHAIN)
+    assert is_backed(link, [moved_by(8, 4.1, 1.1, parent=1)], CHAIN, BACKING)
+    assert is_backed(link, [moved_by(11, 4.0, 1.0, parent=2)], CHAIN, BACKING)
     # Turned around the ninth one, the seventh lies 6 m behind it on the turned line.
     turned = moved_by(9, 4.0, 1.0, 0.5)
     behind = composed(
         composed(CHAIN[0][None], turned.relative[None]),
         relative_to(CHAIN[9][None], CHAIN[7][None]),
     )[0]
-    assert is_backed(turned, [Link(0, 7, behind, SURE)], CHAIN)
+    assert is_backed(turned, [Link(0, 7, behind, SURE)], CHAIN, BACKING)
 
 
 @pytest.mark.parametrize(
@@ -59,7 +60,7 @@ def test_it_is_backed_by_another_child_that_was_found_where_it_must_lie() -> Non
 )
 def test_and_by_nothing_else(other: Link) -> None:
     link = moved_by(9, 4.0, 1.0)
-    assert not is_backed(link, [link, other], CHAIN)
+    assert not is_backed(link, [link, other], CHAIN, BACKING)
 
 
 LONG, WIDE, WALL = 12.0, 1.6, 0.4

@@ -138,7 +138,7 @@ def test_squaring_turns_walls_along_the_axes_and_keeps_submaps_together(
     poses = np.array([(0.5, 0.0, turn), (0.5, 0.0, turn), (1.5, 2.0, turn)])
     whole = KeptSubmap(0.0, (frame,))
     graph.take_over((whole, whole, KeptSubmap(0.0, ())), poses, ())
-    align_axes(graph, 0.05)
+    align_axes(graph, 0.05, math.radians(MAPPING.oblique))
     assert graph.poses[0, :2].tolist() == [0.5, 0.0]
     assert graph.poses[:, 2] == pytest.approx([left] * 3, abs=0.001)
     away = complex(*graph.poses[2, :2]) - 0.5
