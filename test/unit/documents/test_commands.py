@@ -1,0 +1,185 @@
+"""Every ``./roomba`` line of the documents is one that the command takes: parsed, not run."""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+import re
+import shlex
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+
+from roomba.errors import RoombaError
+
+ROOT = Path(__file__).parents[3]
+PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
+MODULES = {
+    "sim": "roomba.commands.sim.command",
+    "map": "roomba.commands.map.command",
+    "map --bag": "roomba.commands.map.drive.command",
+    "play": "roomba.commands.play.command",
+    "replay": "roomba.commands.play.replay",
+    "report": "roomba.commands.report.command",
+    "import": "roomba.commands.valetudo.import_command",
+    "export": "roomba.commands.valetudo.export_command",
+    "pictures": "roomba.commands.pictures.__main__",
+    "bench": "benchmarks.__main__",
+    "localize": "roomba_ros.bags.localize_bag",
+}
+"""The module whose ``main`` parses what follows a command; the others are told below."""
+PROGRAMS = {"rostopic", "rosservice", "roscore", "rosparam", "rosbag", "bash"}
+"""What ``./roomba exec`` runs of others, whose arguments are theirs."""
+MENTIONED = {"import valetudo", "map --bag"}
+"""What the text names without the rest of the line."""
+SUITES = {"lint", "unit", "conformance", "web", "contract", "ros", "system", "missions", "install"}
+
+
+class Parsed(Exception):  # noqa: N818 - it is no error
+    """The parser of a command took the arguments: the command is to do nothing."""
+
+
+def test_of_the_documents_are_all_commands() -> None:
+    lines = documented_lines()
+    assert len(lines) > 80
+    told = {line.split()[0] for line in lines}
+    assert told == commands_of_help()
+
+
+def documented_lines() -> list[str]:
+    """Return what follows ``./roomba`` in blocks and in the text, without comments, each once."""
+    found = []
+    for page in PAGES:
+        for line in page.read_text(encoding="utf-8").splitlines():
+            block = re.match(r"    \./roomba (.*)", line)
+            if block:
+                found.append(re.split(r"  +#| # |\s{4,}", block[1])[0].strip())
+                continue
+            found += re.findall(r"`\./roomba ([^`]+)`", line)
+    whole = [line.replace("\\|", "|") for line in found]
+    return sorted(set(whole))
+
+
+def commands_of_help() -> set[str]:
+    """Return the commands that ``./roomba help`` lists."""
+    script = (ROOT / "roomba").read_text(encoding="utf-8")
+    usage = script.split("<<'TEXT'")[1].split("\nTEXT")[0]
+    return set(re.findall(r"^  ([a-z]+)[ \[]", usage, re.MULTILINE))
+
+
+def is_whole(line: str) -> bool:
+    """Whether a line can be typed: it has no parts that may be left out, and more than a name."""
+    return not re.search(r"[\[\]…|]", line) and bool(line.split()[1:]) and line not in MENTIONED
+
+
+@pytest.mark.parametrize("line", documented_lines())
+def test_a_line_names_a_command(line: str) -> None:
+    assert line.split()[0] in commands_of_help()
+
+
+@pytest.mark.parametrize("line", [line for line in documented_lines() if is_whole(line)])
+def test_a_line_is_taken_by_its_parser(line: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    take(line, monkeypatch)
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "sim --hom flat",
+        "sim --seed x",
+        "map --seed 1 --bag-of drive.bag",
+        "map --bag drive.bag --home flat",
+        "run hoem:=flat",
+        "exec python examples/no_such_file.py",
+        "exec rosrun roomba_robot no_such_node.py",
+        "test no_such_suite",
+        "doctor --colour",
+        "control now",
+    ],
+)
+def test_what_is_wrong_is_refused(line: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    with pytest.raises((AssertionError, RoombaError, SystemExit)):
+        take(line, monkeypatch)
+
+
+def take(line: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Parse a line as ``./roomba`` would; raises what its parser raises, or AssertionError."""
+    command, *words = shlex.split(line)
+    if command == "map" and any(word.startswith("--bag") for word in words):
+        command = "map --bag"
+    if command == "run":
+        take_launch_arguments(words)
+    elif command == "exec":
+        take_program(*words)
+    elif command == "test":
+        take_suites(words)
+    elif command == "doctor":
+        assert set(words) <= {"--json"}
+    elif command in MODULES:
+        if command == "localize":
+            pytest.importorskip("roomba_robot.msg", reason="needs ROS, as the command does")
+        parse(importlib.import_module(MODULES[command]), words, monkeypatch)
+    else:
+        assert words == [], f"{command} takes no arguments"
+
+
+def parse(module: object, words: list[str], monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let a command's own parser take the words, and end there."""
+    parse_args = argparse.ArgumentParser.parse_args
+
+    def only_parse(
+        self: argparse.ArgumentParser, args: list[str] | None = None
+    ) -> argparse.Namespace:
+        parse_args(self, args)
+        raise Parsed
+
+    monkeypatch.setattr(argparse.ArgumentParser, "parse_args", only_parse)
+    main = getattr(module, "main")  # noqa: B009 - of any module
+    try:
+        status = main(words)
+    except Parsed:
+        return
+    raise AssertionError(f"it ended with {status} before it had parsed {words}")
+
+
+def take_launch_arguments(words: list[str]) -> None:
+    launch = ElementTree.parse(ROOT / "launch" / "roomba_robot.launch").getroot()
+    known = {arg.get("name") for arg in launch.iter("arg")}
+    for word in words:
+        name, sign, _ = word.partition(":=")
+        assert sign, f"expected name:=value, got {word}"
+        assert name in known, f"{name} is no argument of the launch file"
+
+
+def take_program(program: str, *words: str) -> None:
+    """Check a line of ``./roomba exec``: its files, modules, nodes and services are there."""
+    if program == "python" and words[0] == "-m":
+        assert words[1] == "pip" or file_of_module(words[1]).is_file()
+    elif program == "python" and words[0] != "FILE":
+        assert (ROOT / words[0]).is_file()
+    elif program == "rviz":
+        assert words[0] == "-d"
+        assert (ROOT / words[1]).is_file()
+    elif program == "rosrun":
+        assert words[0] == "roomba_robot"
+        assert (ROOT / "scripts" / words[1]).is_file()
+    elif program == "rosservice":
+        interface = (ROOT / "docs" / "ros_interface.md").read_text(encoding="utf-8")
+        assert words[0] == "call"
+        assert f"`{words[1]}`" in interface
+    else:
+        assert program == "python" or program in PROGRAMS
+
+
+def file_of_module(name: str) -> Path:
+    return ROOT.joinpath("src", *name.split(".")).with_suffix(".py")
+
+
+def take_suites(words: list[str]) -> None:
+    """Check that a line of ``./roomba test`` begins with suites or files, and then has options."""
+    rest = words[1:] if words[0] == "quick" else words
+    while rest and rest[0] in SUITES:
+        rest = rest[1:]
+    if rest and not rest[0].startswith("-"):
+        assert (ROOT / rest[0]).exists(), f"{rest[0]} is no suite and no file"
