@@ -488,9 +488,7 @@ class Localizer:
 
     def _is_believed(self, place: Hypothesis) -> bool:
         """Whether the likeliest place is taken; where many look alike it must convince."""
-        return self._particles is None or place.is_expected or place.is_convincing(
-            self._config.fit
-        )
+        return self._particles is None or place.is_expected or place.is_convincing(self._config.fit)
 
     def _is_found_on_the_way(self, view: ScanView, reckoned: Pose) -> bool:
         """Follow all places that may be, once it drove without finding one; go on where it is."""
