@@ -19,6 +19,7 @@ _COMMANDS: Final = {
     "map": "roomba.commands.map.command",
     "play": "roomba.commands.play.command",
     "replay": "roomba.commands.play.replay",
+    "status": "roomba.commands.status.command",
     "report": "roomba.commands.report.command",
     "import": "roomba.commands.valetudo.import_command",
     "export": "roomba.commands.valetudo.export_command",
@@ -40,6 +41,7 @@ usage: roomba COMMAND ...
                    recorded drive (see --help)
   play [ARGS]      a robot that lives in a home, on a web page: --home NAME, --speed N,
                    --map none (see --help)
+  status [ARGS]    what a robot with a page does now: --json, --watch
   report [RUN]     the runs that were kept: a list, or a report as HTML: --out FILE.html,
                    --compare A B, --csv FILE (see --help)
   replay [RUN|FILE.run]

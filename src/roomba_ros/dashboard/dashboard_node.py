@@ -6,6 +6,7 @@ import shlex
 
 import rospy
 
+from roomba.client.ports import DEFAULT_PORT
 from roomba.errors import ConfigError
 from roomba.history.database import History
 from roomba.history.folder import history_folder
@@ -13,7 +14,7 @@ from roomba.history.recorder import HistoryKeeper
 from roomba.history.run import RunSource
 from roomba.ui.web.app import create_app
 from roomba.ui.web.guard import Guard, new_token
-from roomba.ui.web.server import DEFAULT_PORT, PageServer, listen
+from roomba.ui.web.server import PageServer, listen
 from roomba_ros.dashboard.graph_robot import GraphRobot
 from roomba_ros.runtime.node import run_node
 from roomba_ros.runtime.parameters import read_robot_config

@@ -9,10 +9,11 @@ import sys
 import webbrowser
 
 from roomba.client.observed import ObservedRobot
+from roomba.client.ports import DEFAULT_PORT
 from roomba.history.recorder import HistoryKeeper
 from roomba.ui.web.app import create_app
 from roomba.ui.web.guard import Guard, new_token
-from roomba.ui.web.server import DEFAULT_PORT, PageServer, listen
+from roomba.ui.web.server import PageServer, listen
 
 
 def add_page_options(parser: argparse.ArgumentParser) -> None:

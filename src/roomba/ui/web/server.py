@@ -10,11 +10,9 @@ from typing import Final
 import uvicorn
 from fastapi import FastAPI
 
+from roomba.client.ports import PORTS
 from roomba.errors import RoombaError
 
-DEFAULT_PORT: Final = 8400
-_PORTS: Final = 20
-"""Ports that are tried, from the wanted one on."""
 _START: Final = 10.0
 """s of wall time within which the server must be up."""
 
@@ -28,7 +26,7 @@ def listen(host: str, port: int, *, is_fixed: bool) -> socket.socket:
 
     Raises ServerError when there is none.
     """
-    last = port if is_fixed or port == 0 else port + _PORTS - 1
+    last = port if is_fixed or port == 0 else port + len(PORTS) - 1
     for tried in range(port, last + 1):
         bound = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
         bound.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)

@@ -8,73 +8,17 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pytest
 from fastapi.routing import APIRoute
 from fastapi.testclient import TestClient
+from fixtures.written_robot import VIEW, WrittenRobot
 
-from roomba.client.protocol import (
-    RequestRefusedError,
-    RobotUnavailableError,
-    VacuumSnapshot,
-)
-from roomba.client.view import GridLayer, HomeView, LayerName, PageLimits, RobotView
 from roomba.ui.web.app import STATIC, create_app
 from roomba.ui.web.guard import Guard
 
 TOKEN = "the-token"
 HOST = {"Host": "127.0.0.1:8400"}
 AUTHORISED = {"Authorization": f"Bearer {TOKEN}"}
-VIEW = RobotView(
-    time=1.0,
-    pose=(1.0, 2.0, 0.5),
-    doubt="",
-    speed=0.2,
-    dirt=3.0,
-    held="",
-    vacuum=VacuumSnapshot("cleaning", "cleaning", "", "hall", 1.0, 4.0, 0.25, 60.0, float("nan")),
-    scan=np.array([[0.5, 0.25]], np.float32),
-    path=np.empty((0, 2), np.float32),
-    last=None,
-)
-HOME = HomeView(1, "den", (0.0, 0.0, 0.0), (), (), (), 0.17, 0.2)
-
-
-class WrittenRobot:
-    """Writes down commands; ``refusal`` is raised by each of them, ``is_gone`` by all looks."""
-
-    def __init__(self) -> None:
-        self.told: list[tuple[str, tuple[Any, ...]]] = []
-        self.refusal = ""
-        self.is_gone = False
-        self.view = VIEW
-
-    def limits(self) -> PageLimits:
-        return PageLimits(0.5, 4.25, 5, 200, 200, 80)
-
-    def robot(self) -> RobotView:
-        if self.is_gone:
-            raise RobotUnavailableError("the robot's program has ended")
-        return self.view
-
-    def home(self) -> HomeView:
-        return HOME
-
-    def layer(self, name: LayerName) -> GridLayer | None:
-        if name is not LayerName.MAP:
-            return None
-        return GridLayer(1, 0.05, 0.0, 0.0, np.ones((3, 4), np.uint8))
-
-    def __getattr__(self, name: str) -> Any:
-        if name in ("timeline", "maps"):
-            raise AttributeError(f"this robot is no recording, and keeps no maps: {name}")
-
-        def command(*arguments: Any) -> None:
-            if self.refusal:
-                raise RequestRefusedError(self.refusal)
-            self.told.append((name, arguments))
-
-        return command
 
 
 @pytest.fixture

@@ -1,0 +1,1 @@
+"""`./roomba status`: what a robot does, as its page's server tells it."""

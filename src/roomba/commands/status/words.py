@@ -1,0 +1,46 @@
+"""A robot's state in words, as a person reads it."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from roomba.ui.errand_progress import area_text, percent, to_go_text
+
+
+def lines_of(state: dict[str, Any]) -> list[tuple[str, str]]:
+    """Return what is worth knowing of a state of the API: names and values, in order."""
+    vacuum = state["vacuum"]
+    does = [vacuum["state"]]
+    if vacuum["phase"] != vacuum["state"]:
+        does.append(vacuum["phase"])
+    if vacuum["room"]:
+        does.append(f"in {vacuum['room']}")
+    lines = [("state", ", ".join(does)), ("battery", percent(_number(vacuum["battery"])))]
+    if vacuum["wanted"] > 0.0:
+        cleaned = [area_text(vacuum["covered"], vacuum["wanted"])]
+        to_go = to_go_text(vacuum["seconds_to_go"])
+        lines.append(("cleaned", ", ".join([*cleaned, to_go] if to_go else cleaned)))
+    x, y, heading = state["pose"]
+    lines.append(("dirt", f"{state['dirt']:.1f} g picked up since the bin was emptied"))
+    lines.append(("place", f"x {x:.2f} m, y {y:.2f} m, heading {math.degrees(heading):.0f}°"))
+    lines.append(("speed", f"{state['speed']:.2f} m/s"))
+    if state["last"] is not None:
+        lines.append(("last", _ended(state["last"])))
+    troubles = (vacuum["message"], state["held"] and f"held: {state['held']}", state["doubt"])
+    lines.extend(("trouble", trouble) for trouble in troubles if trouble)
+    return lines
+
+
+def _ended(last: dict[str, Any]) -> str:
+    """Return how the last errand ended."""
+    parts = [str(last["outcome"])]
+    if _number(last["wanted"]) > 0.0:
+        parts.append(area_text(_number(last["covered"]), last["wanted"]))
+    if last["message"]:
+        parts.append(last["message"])
+    return ", ".join(parts)
+
+
+def _number(value: float | None) -> float:
+    return math.nan if value is None else value
