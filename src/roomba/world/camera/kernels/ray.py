@@ -9,7 +9,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from roomba.world.camera.lanes.compilation import INLINE, INNER
-from roomba.world.camera.scene.arrays import ViewTables, Walls
+from roomba.world.camera.scene.arrays import ViewTables, WallGrid
 
 NEAR = 0.004
 """m; what is nearer than this to the lens is not seen."""
@@ -17,7 +17,7 @@ NEAR = 0.004
 
 @njit(**INLINE)
 def cast_wall(
-    walls: Walls, x: float, y: float, dx: float, dy: float
+    walls: WallGrid, x: float, y: float, dx: float, dy: float
 ) -> tuple[float, int, int, int]:
     """Return depth, m, axis crossed (0: x, 1: y), and the free cell (row, column) before a wall.
 
@@ -72,7 +72,7 @@ def cast_wall(
 
 @njit(**INNER)
 def cast_walls(
-    walls: Walls,
+    walls: WallGrid,
     view: ViewTables,
     x: float,
     y: float,

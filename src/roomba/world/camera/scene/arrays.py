@@ -45,7 +45,7 @@ class Lighting(NamedTuple):
     """On what stands there."""
 
 
-class Walls(NamedTuple):
+class WallGrid(NamedTuple):
     """The map's cells with a border of one cell of wall all around."""
 
     origin_x: float
@@ -107,7 +107,7 @@ class SceneArrays(NamedTuple):
 
     surfaces: Surfaces
     lighting: Lighting
-    walls: Walls
+    walls: WallGrid
     floor: FloorSurfaces
     boxes: Boxes
 

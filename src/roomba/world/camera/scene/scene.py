@@ -21,7 +21,7 @@ from roomba.world.camera.scene.arrays import (
     Lighting,
     SceneArrays,
     Surfaces,
-    Walls,
+    WallGrid,
 )
 from roomba.world.camera.scene.doors import door_boxes
 from roomba.world.camera.scene.free_walls import free_wall_boxes
@@ -152,7 +152,7 @@ class Scene:
                     octave=np.log2(drawn.scale),
                 ),
                 Lighting(frame.origin_x, frame.origin_y, light.cell, light.floor, light.air),
-                Walls(
+                WallGrid(
                     frame.origin_x,
                     frame.origin_y,
                     frame.resolution,
