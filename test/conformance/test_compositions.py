@@ -40,6 +40,9 @@ CASES = {
         TWO_ROOMS, lidar="lds_01", is_mapped=False, explores=True
     ),
     "clean while mapping": Case(TWO_ROOMS, is_mapped=False, seed=2),
+    "clean with worn wheels": Case(TWO_ROOMS, wheels="worn", seed=2),
+    "clean with worn wheels and a lidar that turns": Case(HOME, wheels="worn", lidar="neato"),
+    "explore with worn wheels": Case(TWO_ROOMS, wheels="worn", is_mapped=False, explores=True),
     "charge on the way": Case(HOME, charge=0.09, charge_at=60.0, seconds=300.0),
 }
 
@@ -118,6 +121,7 @@ def cases(draw: st.DrawFn) -> Case:
         room_home(width, depth, (box,), station=Pose(0.2, 0.5 * depth, np.pi)),
         sensors=draw(st.sampled_from(("noisy", "ideal"))),
         lidar=draw(st.sampled_from((None, "neato", "lds_01", "rplidar_a1"))),
+        wheels=draw(st.sampled_from(("factory", "worn"))),
         seed=draw(st.integers(0, 1000)),
         is_mapped=is_mapped,
         explores=not is_mapped and draw(st.booleans()),

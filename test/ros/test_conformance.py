@@ -29,6 +29,7 @@ IDEAL = {
     "begin to clean a studio": Case(STUDIO, sensors="ideal", seconds=100.0, begin=BEGIN),
     "clean while mapping": Case(TWO_ROOMS, sensors="ideal", is_mapped=False, begin=BEGIN),
     "walk": Case(HOME, sensors="ideal", goal=(2.6, 2.1), begin=BEGIN),
+    "clean with worn wheels": Case(HOME, sensors="ideal", wheels="worn", begin=BEGIN),
 }
 NOISY = {
     "clean": Case(TWO_ROOMS, begin=BEGIN),

@@ -53,6 +53,7 @@ TESTED_BY: dict[str, tuple[str, str]] = {
     "roomba/files/": ("unit/world/layers/test_layer.py", "read and written with what they hold"),
     "roomba/gym/": ("unit/gym/test_single.py", "one environment, tested by stepping it"),
     "roomba/headless/body": ("unit/robot/test_parts.py", "the robot's parts are tested in it"),
+    "roomba/headless/odometry_kernels": ("unit/headless/test_odometry.py", PART),
     "roomba/headless/burst_kernels": ("unit/headless/test_burst.py", PART),
     "roomba/headless/live/camera": ("unit/headless/live/test_client.py", LIVE),
     "roomba/headless/live/floor_plan": ("unit/headless/live/test_client.py", LIVE),
@@ -78,6 +79,14 @@ TESTED_BY: dict[str, tuple[str, str]] = {
     "roomba/mission/phases/step": ("unit/mission/phases/test_phases.py", VALUES),
     "roomba/mission/steady": ("unit/headless/test_burst.py", MISSION),
     "roomba/mission/transitions": ("unit/mission/test_mission.py", MISSION),
+    "roomba/perception/calibration/place_kernels": (
+        "unit/perception/localization/test_localizer.py",
+        PART,
+    ),
+    "roomba/perception/calibration/state": (
+        "unit/perception/calibration/test_kernels.py",
+        VALUES,
+    ),
     "roomba/perception/localization/belief/belief": (
         "unit/perception/localization/belief/test_belief_kernels.py",
         "the belief and its kernels are one",

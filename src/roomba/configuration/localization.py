@@ -119,6 +119,32 @@ class RecentSightConfig(Frozen):
     in_order: ClassVar = ("newest < oldest",)
 
 
+class CalibrationConfig(Frozen):
+    """How far wheels, gyro and lidar may be off what is told of them, and when that is corrected.
+
+    Deviations that are expected before anything was measured: ``scale`` of the wheels' way and turn
+    and of the gyro, shares; ``drift`` of the heading by unequal wheels, rad/m; the lidar's
+    ``shift``, m, and ``turn``, degrees. What is off by less than ``least_...``, in the same units,
+    is left alone. A correction is applied when it is ``sure`` times as large as its deviation.
+    Measured is over ``window_way``, m, or ``window_turn``, rad, as soon as either is driven. After
+    ``forgetting_way``, m, what was measured counts no more than what was expected.
+    """
+
+    scale: Positive = 0.02
+    drift: Positive = 0.1
+    shift: Positive = 0.02
+    turn: Positive = 1.5
+    least_scale: Positive = 0.01
+    least_gyro: Positive = 0.005
+    least_drift: Positive = 0.03
+    least_shift: Positive = 0.004
+    least_turn: Positive = 0.3
+    sure: AtLeastOne = 4
+    window_way: Positive = 1.0
+    window_turn: Positive = 1.5
+    forgetting_way: Positive = 20_000.0
+
+
 class LocalizationConfig(Frozen):
     """Knowing where the robot is: how much motion and scans are trusted, and when not at all.
 
@@ -143,6 +169,7 @@ class LocalizationConfig(Frozen):
     scan_timeout: Positive = 0.5
     search_timeout: Positive = 30.0
     needed_evidence: Annotated[float, Field(gt=0.0, le=12.0)] = 8.0
+    calibration: CalibrationConfig = CalibrationConfig()
     reckoning: ReckoningConfig = ReckoningConfig()
     fit: FitConfig = FitConfig()
     expecting: ExpectingConfig = ExpectingConfig()

@@ -30,6 +30,7 @@ from roomba.configuration.sensors import (
 )
 
 Sensors = Literal["ideal", "noisy"]
+Wheels = Literal["factory", "worn"]
 _SIMPLE_ERRORS: Final = frozenset({"noise", "misses", "dark", "shiny"})
 """Errors of a lidar that need no simulation beam by beam; dark and shiny things are only seen by
 one that has a reach."""
@@ -146,6 +147,23 @@ class SimulatedGyro(Frozen):
     most_acceleration: Positive = 19.6
 
 
+class SimulatedWear(Frozen):
+    """By how much worn parts are off at most, either way; a seed draws evenly within that.
+
+    ``wheel`` and ``base`` are shares of each wheel's radius and of the distance between both,
+    ``gyro`` one of what it tells; the lidar sits up to ``lidar_shift``, m, along either axis and
+    ``lidar_turn``, degrees, off. ``carpet_pull`` is how far carpets carry the robot along their
+    pile, m for each metre that its wheels roll there; all of a home have theirs alike.
+    """
+
+    wheel: Annotated[float, Field(ge=0.0, le=0.1)] = 0.02
+    base: Annotated[float, Field(ge=0.0, le=0.1)] = 0.02
+    gyro: Annotated[float, Field(ge=0.0, le=0.1)] = 0.015
+    lidar_shift: Annotated[float, Field(ge=0.0, le=0.1)] = 0.01
+    lidar_turn: Annotated[float, Field(ge=0.0, le=5.0)] = 1.0
+    carpet_pull: Annotated[float, Field(ge=0.0, le=0.1)] = 0.01
+
+
 class SimulatedStation(Frozen):
     """Within what of the docked pose the contacts touch: m and degrees."""
 
@@ -193,16 +211,20 @@ class SimulationConfig(Frozen):
     """All of ``configuration/simulation.yaml``; every part has the shipped file's values.
 
     ``sensors``: "noisy" ones have the errors given here, and wheels slip; "ideal" ones tell the
-    truth, and wheels slip by faults only.
+    truth, and wheels slip by faults only. The robot's ``condition`` is that in which it left the
+    factory, or "worn": then wheels, gyro and lidar are off as ``wear`` says, with ideal sensors,
+    too.
     """
 
     sensors: Sensors = "noisy"
+    condition: Wheels = "factory"
     brush: SimulatedBrush = SimulatedBrush()
     fan: SimulatedFan = SimulatedFan()
     battery: SimulatedBattery = SimulatedBattery()
     lidar: SimulatedLidar = SimulatedLidar()
     wheels: SimulatedWheels = SimulatedWheels()
     gyro: SimulatedGyro = SimulatedGyro()
+    wear: SimulatedWear = SimulatedWear()
     station: SimulatedStation = SimulatedStation()
     surroundings: SimulatedSurroundings = SimulatedSurroundings()
 
@@ -216,6 +238,11 @@ class SimulatedRobotConfig(RobotConfig):
         """Return the same robot with sensors of that kind."""
         simulation = self.simulation.model_copy(update={"sensors": sensors})
         return self.model_copy(update={"simulation": simulation})
+
+    def with_wheels(self, condition: Wheels) -> SimulatedRobotConfig:
+        """Return the same robot as it left the factory, or worn."""
+        simulation = self.simulation.model_copy(update={"condition": condition})
+        return self.model_copy(update={SIMULATION: simulation})
 
     def with_lidar(self, model: str) -> SimulatedRobotConfig:
         """Return the same robot with a lidar as sold, mounted as high; ConfigError for others."""

@@ -153,7 +153,8 @@ class Burst:
         row["is_left"] = row["is_followed"] = False
 
     def _place(self) -> PlaceParts:
-        brain, beams = self._brain, self._brain.beams_of(self._body.lidar)
+        brain = self._brain
+        beams = brain.beams_of(brain.keeper.lidar(self._body.lidar))
         sights, following = _NO_SIGHTS, self._not_following
         if brain.localizer is not None:
             sights = brain.localizer.sights(self._body.lidar.beams)
@@ -233,11 +234,13 @@ class Burst:
         if self._burst[0]["is_left"]:
             scan = self._body.newest_scan()
             late = scan.stamp + float(self._burst[0]["clock"])
-            scan = replace(scan, stamp=late if self._body.has_late_scans else now)
+            stamp = late if self._body.has_late_scans else now
+            scan = replace(scan, stamp=stamp, lidar=brain.keeper.lidar(scan.lidar))
         if brain.localizer is not None:
             brain.localizer.resumed(now)
             if scan is not None:
                 brain.localizer.reconsider(scan.stamp, scan.ranges, scan.lidar)
+                scan = brain.keeper.recalibrated(replace(scan, lidar=self._body.lidar))
         elif brain.mapper is not None:
             brain.mapper.resumed()
             if scan is not None and self._burst[0]["is_followed"]:

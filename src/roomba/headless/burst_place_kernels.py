@@ -9,7 +9,12 @@ from numba import njit
 from numpy.typing import NDArray
 
 from roomba.headless.burst_state import PlaceParts, Sight, World
-from roomba.perception.localization.belief.correct_kernels import correct, correct_late, is_calm
+from roomba.perception.localization.belief.correct_kernels import (
+    calibrate,
+    correct,
+    correct_late,
+    is_calm,
+)
 from roomba.perception.localization.belief.reckon_kernels import reckon_on
 from roomba.perception.localization.recent_sight_kernels import note_sight
 from roomba.perception.matching.match_kernels import beam_ends
@@ -79,7 +84,8 @@ def localize(
     else:
         count = correct(belief, place.numbers, sight.field, sight.place, beams, ranges, stamp)
         reckoned[:] = belief[0].reckoned
-    if not is_calm(belief, place.numbers, now):
+    calibrate(belief)
+    if belief[0].calibration.is_lidar_due or not is_calm(belief, place.numbers, now):
         burst.is_left = True
         return False
     note_sight(place.sights, stamp, reckoned, beams.ends, count)

@@ -22,6 +22,7 @@ from roomba.mission.inputs.senses import Senses
 from roomba.mission.mission import Mission
 from roomba.mission.phases.machine import Event, Phase
 from roomba.mission.walking.walk import Walk
+from roomba.perception.calibration.calibration import Calibration
 from roomba.perception.localization.localizer import Localizer
 from roomba.perception.matching.beams import LidarBeams
 from roomba.perception.matching.scan_view import LidarModel
@@ -76,6 +77,7 @@ class Brain:
         self.mapper: Mapper | None = None
         self.growing: GrowingMap | None = None
         self.keeper = PlaceKeeper(self._place(start or station), robot)
+        self.keeper.place.belief["calibration"]["base"] = robot.body.wheel_separation
         self._mapped = MappedMission(robot, mission, docking, self._max_speed)
         self.walking = Walking(robot)
         self._drive = SpeedLoop(robot.body, self._max_speed)
@@ -195,6 +197,7 @@ class Brain:
         robot, readings = self.robot, self.readings
         belief = robot.localization, robot.gyro, robot.body.radius, here
         localizer = Localizer(None, *belief, stride=robot.scan_stride)
+        Calibration.of(self.keeper.place.belief).take_up(localizer.belief)
         localizer.move(readings.time, readings.odometry, readings.turning)
         localizer.go_on(occupancy, (here, PlacingConfig().on_finished))
         self.localizer = self.keeper.place = localizer

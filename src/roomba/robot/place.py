@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Protocol
 
 import numpy as np
@@ -11,6 +12,7 @@ from numpy.typing import NDArray
 from roomba.configuration.robot import RobotConfig, TimingConfig
 from roomba.geometry import Pose, Twist
 from roomba.mission.exploring.look_around import SearchDrive
+from roomba.perception.calibration.lidar import CorrectedLidar, lidar_correction
 from roomba.perception.localization.estimate import Estimate
 from roomba.perception.localization.localizer import Localizer
 from roomba.perception.matching.scan_view import LidarModel, PlacedScan
@@ -74,6 +76,7 @@ class PlaceKeeper:
         """Begin with no scan."""
         self.place = place
         self.scans = ScanSelection(robot.timing)
+        self._lidars = CorrectedLidar()
         self._search = SearchDrive(robot.body, robot.looking_around)
 
     def follow(self, readings: Readings) -> ScanReading | None:
@@ -83,8 +86,22 @@ class PlaceKeeper:
         scan = readings.scan
         if scan is None or not self.scans.selects(scan):
             return None
-        self.place.see(scan.stamp, scan.ranges, scan.lidar)
-        return scan
+        self.place.see(scan.stamp, scan.ranges, self.lidar(scan.lidar))
+        return self.recalibrated(scan)
+
+    def lidar(self, told: LidarModel) -> LidarModel:
+        """Return a lidar as it is mounted, by what the robot measured of that."""
+        self._lidars.correction = lidar_correction(self.place.belief)
+        return self._lidars.of(told)
+
+    def recalibrated(self, scan: ScanReading) -> ScanReading:
+        """Go by the lidar's pose if it is known better by now; return a scan as the lidar is.
+
+        A robot that makes its map keeps the lidar where it is: the map is what the lidar saw.
+        """
+        if isinstance(self.place, Localizer):
+            self.place.go_by_lidar()
+        return replace(scan, lidar=self.lidar(scan.lidar))
 
     def look_around(self, now: float, *, touches: bool) -> Twist | None:
         """Return what is to be driven to find the place; None while that does not help.

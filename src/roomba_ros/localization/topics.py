@@ -15,6 +15,7 @@ from roomba.configuration.nodes import NodesConfig
 from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose, Twist
 from roomba.grid import OccupancyMap
+from roomba.perception.calibration.calibration import Calibration
 from roomba.perception.localization.estimate import Estimate, Knowledge
 from roomba.perception.localization.localizer import Localizer
 from roomba.perception.slam.mapper import Mapper
@@ -22,6 +23,7 @@ from roomba.robot.place import PlaceKeeper
 from roomba.robot.readings import Readings, ScanReading
 from roomba_ros.convert.common import map_of
 from roomba_ros.convert.localization import told_pose_of
+from roomba_ros.localization.calibration_topics import CalibrationTopics
 from roomba_ros.localization.kept_pose import KeptPose
 from roomba_ros.localization.place_topics import PlaceTopics
 from roomba_ros.runtime.subscriptions import subscribe
@@ -35,6 +37,7 @@ class LocalizationTopics:
 
     Subscribes: ``map``, ``initialpose``, and of :class:`BodyTopics` ``odom``, ``imu``, ``scan``,
     ``wheel_drop``, ``bumper``, ``cliff``.
+    Publishes: what :class:`PlaceTopics` and :class:`CalibrationTopics` tell.
     Services: ``global_localization`` (Empty: forget the place, look for it in the whole map).
     """
 
@@ -54,6 +57,7 @@ class LocalizationTopics:
         self._is_asked = False
         self._kept = KeptPose(nodes.memory.pose, nodes.placing)
         self._place = PlaceTopics(nodes.periods)
+        self._calibration = CalibrationTopics()
         self.mapper: Mapper | None = None
         """Knows the place instead of the localizer, while a map is being made."""
         self.is_mapping_held = False
@@ -69,6 +73,7 @@ class LocalizationTopics:
         """Connect."""
         self._kept.start()
         self._place.start()
+        self._calibration.start()
         subscribe("map", OccupancyGrid, self._given_map_of, self._on_map)
         self._body.start()
         subscribe("initialpose", PoseWithCovarianceStamped, told_pose_of, self._on_told)
@@ -117,7 +122,8 @@ class LocalizationTopics:
             keeper, localizer = self._keeper, self._localizer
             if keeper is None or localizer is None:
                 return
-            keeper.place = mapper or localizer
+            before, keeper.place = keeper.place, mapper or localizer
+            Calibration.of(before.belief).take_up(keeper.place.belief)
             if mapper is not None:
                 self._begin_map(mapper)
 
@@ -157,6 +163,7 @@ class LocalizationTopics:
         self.is_asked_to_search &= estimate.knowledge is Knowledge.SEARCHING
         stamp = now if self._newest is None else self._newest.time
         self._place.tell(now, stamp, knower, estimate)
+        self._calibration.tell(now, knower)
         if estimate.knowledge is Knowledge.KNOWN:
             self._kept.keep(knower.map_to_odometry)
         return estimate
@@ -204,6 +211,7 @@ class LocalizationTopics:
             deviation,
             config.scan_stride,
         )
+        self._calibration.begin(self._localizer, config.body.wheel_separation)
         self._keeper = PlaceKeeper(self._localizer, config)
 
     def _hear_map(self, localizer: Localizer) -> None:

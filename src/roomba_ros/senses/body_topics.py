@@ -10,6 +10,7 @@ from functools import partial
 from typing import Any, Final
 
 import rospy
+from geometry_msgs.msg import Pose2D
 from nav_msgs.msg import Odometry
 from roomba_robot.msg import Bumper, Cliff, DockStatus, WheelDrop
 from sensor_msgs.msg import BatteryState, Imu, LaserScan
@@ -20,7 +21,9 @@ from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose
 from roomba.mission.docking.beams import StationBeams
 from roomba.mission.inputs.senses import Battery
+from roomba.perception.calibration.lidar import CorrectedLidar
 from roomba.robot.readings import Readings, ScanReading
+from roomba_ros.convert.calibration import correction_of
 from roomba_ros.convert.localization import SAME_TIME
 from roomba_ros.convert.mission import battery_of, beams_of
 from roomba_ros.convert.mounts import Mounts, transforms_of
@@ -54,7 +57,8 @@ class BodyTopics:
 
     Subscribes: those of ``topics``, out of ``odom``, ``imu``, ``bumper``, ``cliff``,
     ``wheel_drop``, ``battery_state``, ``dock_status``, ``ir_omni``, ``dirt_detect``, ``bin_level``,
-    and ``scan``, with ``/tf_static`` (where the lidar is mounted).
+    and ``scan``, with ``/tf_static`` (where the lidar is mounted) and ``lidar_correction`` (by what
+    that is moved, as the node that finds the robot's place measured it).
     """
 
     def __init__(self, config: RobotConfig, *topics: str) -> None:
@@ -66,6 +70,7 @@ class BodyTopics:
         self._scans = WaitingScans()
         self._others = Readings(0.0, Pose())
         self._heard: set[str] = set()
+        self._lidars = CorrectedLidar()
 
     def start(self) -> None:
         """Connect."""
@@ -84,6 +89,7 @@ class BodyTopics:
             "ir_omni": (UInt16, lambda told: beams_of(told.data), self._on_beams),
             "dirt_detect": (UInt16, data_of, lambda count: self._note(grains=float(count))),
             "bin_level": (Float32, number_of, self._on_bin),
+            "lidar_correction": (Pose2D, correction_of, self._on_correction),
         }
         if "scan" in self._topics:
             subscribe("/tf_static", TFMessage, transforms_of, mounts.add, queue_size=_QUEUE)
@@ -119,7 +125,7 @@ class BodyTopics:
         """Return the newest scan that was taken by a time, s, if there is a new one."""
         scan, oldest = self._scans.take(stamp), self._scans.oldest
         if scan is not None:
-            return replace(scan, stamp=scan.stamp or stamp)
+            return replace(scan, stamp=scan.stamp or stamp, lidar=self._lidars.of(scan.lidar))
         if oldest is not None and oldest > stamp + self._config.localization.scan_timeout:
             rospy.logwarn_throttle(
                 10.0,
@@ -153,6 +159,9 @@ class BodyTopics:
 
     def _on_beams(self, beams: StationBeams) -> None:
         self._note(beams=beams)
+
+    def _on_correction(self, correction: Pose) -> None:
+        self._lidars.correction = correction
 
     def _on_battery(self, battery: Battery) -> None:
         with self._lock:

@@ -24,7 +24,7 @@ class HeardSenses:
 
     def __init__(self, config: RobotConfig, hearing: HearingConfig, *topics: str) -> None:
         """Connect nothing yet."""
-        self._body = BodyTopics(config, *topics)
+        self._body = BodyTopics(config, *topics, "lidar_correction")
         self.place = HeardPlace(config.timing.tick, hearing)
         self._scans = ScanSelection(config.timing)
         self._readings: Readings | None = None

@@ -70,9 +70,9 @@ class HomeSimNode:
     Services: those of :class:`CameraTopics` and :class:`SimServices`.
     Parameters: ``~home`` (name or path), ``~homes_directory``, ``~speed`` (robot seconds per second
     of wall time), ``~seed``, ``~clock`` (false for all but one of several robots, which go by that
-    one's clock and do not wait), ``~sensors``
-    (ideal or noisy; by default what ``robot_config`` says),
-    ``robot_max_speed``, ``initial_post_x``, ``initial_post_y``.
+    one's clock and do not wait), ``~sensors`` (ideal or noisy) and ``~wheels`` (factory or worn),
+    by default what ``robot_config`` says, ``robot_max_speed``, ``initial_post_x``,
+    ``initial_post_y``.
     """
 
     period: float
@@ -263,7 +263,10 @@ def _config_with_sensors(config: SimulatedRobotConfig) -> SimulatedRobotConfig:
     sensors = rospy.get_param("~sensors", "") or config.simulation.sensors
     if sensors not in ("ideal", "noisy"):
         raise ConfigError(f"parameter ~sensors: expected ideal or noisy, got {sensors!r}")
-    return config.with_sensors(sensors)
+    wheels = rospy.get_param("~wheels", "") or config.simulation.condition
+    if wheels not in ("factory", "worn"):
+        raise ConfigError(f"parameter ~wheels: expected factory or worn, got {wheels!r}")
+    return config.with_sensors(sensors).with_wheels(wheels)
 
 
 def _tells_map_parameter() -> bool:

@@ -32,6 +32,7 @@ def run_as_json(run: MapRun) -> dict[str, Any]:
         "map": run.trial.home,
         "seed": run.trial.seed,
         "sensors": run.robot.simulation.sensors,
+        "wheels": run.robot.simulation.condition,
         "outcome": result.outcome.name,
         "message": result.message,
         "duration_s": round(result.duration, 3),

@@ -79,6 +79,7 @@ def options_of(arguments: list[str] | None) -> MapOptions:
         home=str(given.map or given.home or "flat"),
         seed=given.seed,
         sensors=given.sensors,
+        wheels=given.wheels,
         station=None if given.station is None else Pose(*given.station),
         config=given.config,
         turned=given.turned,
@@ -148,6 +149,11 @@ def _parser() -> Parser:
     where.add_argument("--seed", type=_seed, default=0, metavar="N")
     how = parser.add_argument_group("circumstances")
     how.add_argument("--sensors", choices=("noisy", "ideal"), help="default: as configured")
+    how.add_argument(
+        "--wheels",
+        choices=("factory", "worn"),
+        help="worn: wheels, gyro and lidar are off by up to 2 %% (default: as configured)",
+    )
     how.add_argument("--config", type=Path, metavar="FILE", help="default: the shipped robot.yaml")
     parser.add_output()
     return parser

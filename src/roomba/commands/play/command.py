@@ -12,7 +12,7 @@ from typing import Final
 from roomba.commands.play.serving import add_page_options, listen_on, serve_page
 from roomba.commands.sim.homes import home_of, rooms_of
 from roomba.commands.sim.runs import mission_config, robot_config_of
-from roomba.commands.sim.trial import Trial
+from roomba.commands.sim.trial import Trial, Wheels
 from roomba.commands.spelling import spelled
 from roomba.configuration.docking import DockingConfig
 from roomba.configuration.frozen import load_config
@@ -40,6 +40,7 @@ def main(arguments: list[str] | None = None) -> int:
             wanted.speed,
             knows_map=wanted.map == "home",
             bin_grams=wanted.bin,
+            wheels=wanted.wheels,
         )
         bound = listen_on(wanted.port)
     except RoombaError as error:
@@ -65,10 +66,16 @@ def _warn(text: str) -> None:
 
 
 def live_client(
-    name: str, seed: int, speed: float, *, knows_map: bool, bin_grams: float | None = None
+    name: str,
+    seed: int,
+    speed: float,
+    *,
+    knows_map: bool,
+    bin_grams: float | None = None,
+    wheels: Wheels | None = None,
 ) -> LiveClient:
     """Return a robot in a home; raises RoombaError."""
-    trial = Trial(home=name, seed=seed, bin=bin_grams)
+    trial = Trial(home=name, seed=seed, bin=bin_grams, wheels=wheels)
     robot = robot_config_of(trial)
     home = home_of(trial, robot.body)
     docking = load_config(DockingConfig, CONFIGURATION / "docking.yaml")
@@ -113,6 +120,11 @@ def _parser() -> argparse.ArgumentParser:
         type=_positive,
         metavar="GRAMS",
         help="how much its dust bin takes (default: as the configuration says)",
+    )
+    parser.add_argument(
+        "--wheels",
+        choices=("factory", "worn"),
+        help="worn: wheels, gyro and lidar are off by up to 2 %% (default: as configured)",
     )
     add_page_options(parser)
     return parser

@@ -185,6 +185,8 @@ def _again(trial: Trial) -> str:
         words += ["--sensors", trial.sensors]
     if trial.lidar is not None:
         words += ["--lidar", trial.lidar]
+    if trial.wheels is not None:
+        words += ["--wheels", trial.wheels]
     if trial.things:
         words += ["--things", str(trial.things)]
     if trial.shut_doors:

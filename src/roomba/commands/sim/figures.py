@@ -19,7 +19,12 @@ class MissedShare:
 
 @dataclass(frozen=True, slots=True)
 class Figures:
-    """What a run achieved; the unit is the end of each name, and see :mod:`.json_file`."""
+    """What a run achieved; the unit is the end of each name, and see :mod:`.json_file`.
+
+    ``calibration`` tells what the robot measured of its own errors. By the wheels alone it is off
+    by ``wheels_error``, m per m of way, and by wheels and gyro by ``odometry_error``; None of too
+    short a way. ``calibrated_...`` are the same with what was measured taken out.
+    """
 
     outcome: str
     message: str
@@ -38,6 +43,11 @@ class Figures:
     hits: int
     missed: tuple[MissedShare, ...]
     bins_emptied: int = 0
+    calibration: str = ""
+    wheels_error: float | None = None
+    calibrated_wheels_error: float | None = None
+    odometry_error: float | None = None
+    calibrated_error: float | None = None
 
     @property
     def is_completed(self) -> bool:
@@ -81,6 +91,11 @@ class Figures:
             "fraction": round(self.fraction, 6),
             "path_ratio": None if ratio is None else round(ratio, 4),
             "hits": self.hits,
+            "calibration": self.calibration,
+            "wheels_error": _rounded(self.wheels_error),
+            "calibrated_wheels_error": _rounded(self.calibrated_wheels_error),
+            "odometry_error": _rounded(self.odometry_error),
+            "calibrated_error": _rounded(self.calibrated_error),
             "missed": [
                 {
                     "area_m2": round(each.area_m2, 4),
@@ -92,3 +107,8 @@ class Figures:
                 for each in self.missed
             ],
         }
+
+
+def _rounded(error: float | None) -> float | None:
+    """Return an error for a file."""
+    return None if error is None else round(error, 6)

@@ -35,6 +35,7 @@ def run_as_json(run: Run) -> dict[str, Any]:
         **_about(run.trial, run.home.name),
         **run.figures.as_json(),
         "sensors": run.robot.simulation.sensors,
+        "wheels": run.robot.simulation.condition,
         "robot": {
             "body_diameter_m": run.robot.body.diameter,
             "reach_m": round(run.reach, 6),
@@ -59,6 +60,7 @@ def runs_as_json(
         "homes": len(figures) + len(failures),
         "completed": sum(each.is_completed for each in figures.values()),
         "sensors": config.simulation.sensors,
+        "wheels": config.simulation.condition,
         "all_wall_s": round(wall, 3),
         "percentiles": percentiles,
         "runs": [{"seed": seed, **each.as_json()} for seed, each in sorted(figures.items())],

@@ -49,6 +49,7 @@ def options_of(arguments: list[str] | None) -> SimOptions:
         request=_request_of(given),
         sensors=given.sensors,
         lidar=given.lidar,
+        wheels=given.wheels,
         no_go=tuple(_rectangle("--no-go", corners) for corners in given.no_go),
         things=given.things,
         shut_doors=given.shut_doors,
@@ -170,6 +171,13 @@ def _add_circumstances(parser: argparse.ArgumentParser) -> None:
         type=_choice(*models),
         metavar="NAME",
         help=f"a lidar as sold: {', '.join(models)} (default: as the configuration says)",
+    )
+    how.add_argument(
+        "--wheels",
+        type=_choice("factory", "worn"),
+        metavar="factory|worn",
+        help="worn: wheels, gyro and lidar are off by up to 2 %%, and carpets pull aside (default: "
+        "as the configuration says)",
     )
     how.add_argument(
         "--things",

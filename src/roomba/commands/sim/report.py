@@ -30,6 +30,9 @@ def lines_of(figures: Figures) -> list[tuple[str, str]]:
         ("energy", f"{figures.energy_wh:.2f} Wh"),
         ("dirt", _dirt(figures)),
         ("hits", f"{figures.hits}"),
+        ("calibration", figures.calibration),
+        ("wheels alone", _off(figures.wheels_error, figures.calibrated_wheels_error)),
+        ("wheels, gyro", _off(figures.odometry_error, figures.calibrated_error)),
         ("planning", f"{figures.planning_s:.2f} s in {_count(figures.plans, 'plan')}"),
         (
             "wall time",
@@ -108,6 +111,12 @@ def _dirt(figures: Figures) -> str:
     if not figures.bins_emptied:
         return picked_up
     return f"{picked_up}, the full bin emptied {_count(figures.bins_emptied, 'time')}"
+
+
+def _off(before: float | None, after: float | None) -> str:
+    if before is None or after is None:
+        return "too short a way to tell how far they are off"
+    return f"{1e3 * before:.1f} mm off per metre, {1e3 * after:.1f} mm as calibrated"
 
 
 def _coverage(figures: Figures) -> str:

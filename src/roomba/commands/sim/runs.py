@@ -26,7 +26,9 @@ from roomba.geometry import Pose
 from roomba.grid import FREE
 from roomba.headless.burst import LONGEST_BURST
 from roomba.headless.cleaner import HeadlessMission
+from roomba.headless.odometry import odometry_error
 from roomba.headless.records import CleanRecord
+from roomba.perception.calibration.calibration import Calibration
 from roomba.perception.swept.coverage_map import CoverageMap
 from roomba.planning.path.costmap import RoundObstacle
 from roomba.world.home.home import Home
@@ -113,7 +115,8 @@ class TrialSetup:
         wall = time.perf_counter() - began
         covered = record.truth.swept & self.coverable
         cell = record.truth.cell_area
-        result = record.result
+        result, rows = record.result, robot.passed
+        measured = Calibration.of(robot.brain.keeper.place.belief)
         figures = Figures(
             outcome=result.outcome.name,
             message=result.message,
@@ -135,6 +138,11 @@ class TrialSetup:
                 MissedShare(each.area, each.x, each.y, each.room, each.reason.value)
                 for each in result.missed
             ),
+            calibration=str(measured),
+            wheels_error=odometry_error(rows, self.config, None, has_gyro=False),
+            calibrated_wheels_error=odometry_error(rows, self.config, measured, has_gyro=False),
+            odometry_error=odometry_error(rows, self.config, None),
+            calibrated_error=odometry_error(rows, self.config, measured),
         )
         return Run(
             self.trial,
@@ -175,6 +183,8 @@ def robot_config_of(trial: Trial) -> SimulatedRobotConfig:
         config = config.model_copy(update={"brush": brush})
     if trial.lidar is not None:
         config = config.with_lidar(trial.lidar)
+    if trial.wheels is not None:
+        config = config.with_wheels(trial.wheels)
     if trial.sensors is None:
         return config
     return config.with_sensors(trial.sensors)

@@ -16,6 +16,7 @@ MOST_THINGS: Final = 16
 """Of one world: see :data:`roomba.world.engine.state.arrays.MOST_DISCS`."""
 
 Sensors = Literal["noisy", "ideal"]
+Wheels = Literal["factory", "worn"]
 
 
 class UsageError(RoombaError):
@@ -29,11 +30,12 @@ class Trial:
     ``home`` is a name or a path as :func:`roomba.world.layers.layer.load_home` takes it, or RANDOM.
     ``seed`` decides about noise, where ``things`` stand, and a random home. ``sensors`` replaces
     what the configuration file ``config`` says, ``lidar`` the lidar by one of the names of
-    :func:`roomba.configuration.sensors.lidar_models`. ``station`` is the pose of the docked robot
-    in place of the home's own. ``battery`` is its charge at the start, 0..1. ``bin`` is how much
-    its dust bin takes, g, in place of what the configuration says; ``empties_bin_after`` s of
-    standing with a full one it is emptied. ``turned`` is by how many degrees, counter-clockwise,
-    the home is turned about the origin of its map; ``station`` turns with it.
+    :func:`roomba.configuration.sensors.lidar_models`, ``wheels`` the robot's condition. ``station``
+    is the pose of the docked robot in place of the home's own. ``battery`` is its charge at the
+    start, 0..1. ``bin`` is how much its dust bin takes, g, in place of what the configuration
+    says; ``empties_bin_after`` s of standing with a full one it is emptied. ``turned`` is by how
+    many degrees, counter-clockwise, the home is turned about the origin of its map; ``station``
+    turns with it.
     """
 
     home: str = "flat"
@@ -41,6 +43,7 @@ class Trial:
     request: CleanRequest = field(default_factory=CleanRequest)
     sensors: Sensors | None = None
     lidar: str | None = None
+    wheels: Wheels | None = None
     no_go: tuple[Rectangle, ...] = ()
     things: int = 0
     shut_doors: bool = False

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from roomba.configuration.localization import LocalizationConfig
 from roomba.configuration.sensors import GyroConfig
 from roomba.geometry import Pose
+from roomba.perception.calibration.state import begin_calibration
 from roomba.perception.localization.belief.belief import Rows, numbers_of, unknown_belief
 from roomba.perception.localization.belief.reckon_kernels import reckon_on
 from roomba.perception.matching.reckoned_path import ReckonedPath, pose_at
@@ -28,6 +29,7 @@ class DeadReckoning:
         """Begin at the origin; the pose on the map of a ``belief`` goes along."""
         self.belief = unknown_belief() if belief is None else belief
         self._belief = self.belief[0]
+        begin_calibration(self._belief["calibration"], config, gyro)
         self._reckoned: NDArray[np.float64] = self._belief["reckoned"]
         self.numbers = numbers_of(config, gyro)
         self.path = ReckonedPath.empty()

@@ -18,8 +18,10 @@ from roomba.configuration.localization import LocalizationConfig
 from roomba.configuration.sensors import GyroConfig
 from roomba.geometry import Pose
 from roomba.grid import OccupancyMap
+from roomba.perception.calibration.kernels import apply_lidar
+from roomba.perception.calibration.lidar import lidar_correction
 from roomba.perception.localization.belief.belief import numbers_of, unknown_belief
-from roomba.perception.localization.belief.correct_kernels import deviation, is_calm
+from roomba.perception.localization.belief.correct_kernels import calibrate, deviation, is_calm
 from roomba.perception.localization.belief.reckon_kernels import SET_BACK
 from roomba.perception.localization.dead_reckoning import DeadReckoning
 from roomba.perception.localization.doubt import Doubt
@@ -178,6 +180,18 @@ class Localizer:
             self._reconsider(stamp, view, reckoned)
         self._doubt.note(stamp, reckoned, view)
         self.placed = PlacedScan(self._pose_then(reckoned), still, lidar)
+
+    def go_by_lidar(self) -> None:
+        """Take the lidar for where it is, if that is known better by now; call it between scans.
+
+        What was seen stays where it is on the map: it is the robot's body that is elsewhere.
+        """
+        if not self._row["calibration"]["is_lidar_due"]:
+            return
+        before = lidar_correction(self.belief)
+        apply_lidar(self._row["calibration"])
+        by = before.compose(lidar_correction(self.belief).inverse())
+        self._tracker.pose = self._tracker.pose.compose(by)
 
     def pass_time(self, now: float) -> None:
         """Tell the time when no sensor does: silence counts, too."""
@@ -357,6 +371,7 @@ class Localizer:
         self._learn_walls()
         if since is not None:
             tracker.pose = tracker.pose.compose(since)
+        calibrate(self.belief)
         if fit is None:
             return
         if self._told is not None:

@@ -41,6 +41,7 @@ class Tracker:
         self._field, self._place = field.values, field.place
         self.pose, self.covariance = pose, covariance
         self._belief["is_judged"] = self._belief["is_doubtful"] = False
+        self._belief["calibration"]["is_open"] = False
 
     @property
     def pose(self) -> Pose:

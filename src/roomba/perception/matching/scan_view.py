@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from copy import copy
 from dataclasses import dataclass
 from typing import Final, NamedTuple
 
@@ -75,6 +76,13 @@ class LidarModel:
     def all_around(beams: int, nearest: float, farthest: float) -> LidarModel:
         """Return a lidar in the middle of the robot, beam 0 ahead, then counter-clockwise."""
         return LidarModel(np.arange(beams) * (2.0 * np.pi / beams), nearest, farthest)
+
+    def moved(self, by: Pose) -> LidarModel:
+        """Return the same lidar where ``by`` moves its mount to, in the robot's frame."""
+        lidar = copy(self)
+        mount = by.compose(Pose(*self.mount.tolist()))
+        lidar.mount, lidar._arrays = np.array([mount.x, mount.y, mount.theta]), None
+        return lidar
 
     def arrays(self) -> LidarBeams:
         """Return the lidar as kernels know it, with work arrays of its own."""

@@ -93,9 +93,10 @@ def drive(
         rolled, rolled_turn = 0.5 * (left + right), (right - left) / numbers.track
     length, turn = rolled, rolled_turn
     slip_left, slip_right = slips(body, numbers, quantiles, ground, 0.5 * (abs(left) + abs(right)))
-    if slip_left != 0.0 or slip_right != 0.0:
-        over_left, over_right = left * (1.0 - slip_left), right * (1.0 - slip_right)
-        length, turn = 0.5 * (over_left + over_right), (over_right - over_left) / numbers.track
+    if slip_left != 0.0 or slip_right != 0.0 or numbers.worn > 0.0:
+        over_left = left * (1.0 - slip_left) * body.roll_left
+        over_right = right * (1.0 - slip_right) * body.roll_right
+        length, turn = 0.5 * (over_left + over_right), (over_right - over_left) / body.track
     if body.lifted > 0.0:
         length = turn = 0.0
     share = free_share(solid, home, world, robot, numbers.radius, length, turn)
@@ -103,6 +104,8 @@ def drive(
     if length != 0.0:
         body.x, body.y = arc(body.x, body.y, body.theta, length * share, turn * share)
     body.theta = wrapped(body.theta + turn)
+    if ground == CARPET and numbers.worn > 0.0 and body.lifted == 0.0:
+        pull_aside(solid, home, world, robot, numbers, 0.5 * (abs(left) + abs(right)))
     body.hits += 1.0 if is_hit and body.hit == 0.0 else 0.0
     body.hit = 1.0 if is_hit else 0.0
     body.linear = 0.0 if is_hit else linear
@@ -120,6 +123,21 @@ def drive(
     count_wheels(body, numbers, left, right, share, dt)
     feel_motion(body, numbers, quantiles, turn / dt, (body.ground_linear - before) / dt, dt)
     return math.copysign(abs(length) * share, length), turn
+
+
+@part
+def pull_aside(
+    solid: Solid, home: Row, world: Row, robot: int, numbers: Row, rolled: float
+) -> None:
+    """Carry a robot along the pile of the carpet that its wheels rolled over, m, up to a wall."""
+    body = solid.robots[robot]
+    way = rolled * math.hypot(world.pull_x, world.pull_y)
+    if way == 0.0:
+        return
+    heading, body.theta = body.theta, math.atan2(world.pull_y, world.pull_x)
+    share = free_share(solid, home, world, robot, numbers.radius, way, 0.0)
+    body.x, body.y = arc(body.x, body.y, body.theta, way * share, 0.0)
+    body.theta = heading
 
 
 @part
@@ -167,5 +185,7 @@ def feel_motion(
         acceleration += numbers.acceleration_noise * next_normal(body, quantiles)
         most = numbers.most_acceleration
         acceleration = min(max(acceleration, -most), most)
+    elif numbers.worn > 0.0:
+        angular *= body.gyro_scale
     body.gyro = angular
     body.acceleration = acceleration

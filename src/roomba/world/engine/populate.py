@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.configuration.simulation import SimulatedRobotConfig
+from roomba.configuration.simulation import SimulatedRobotConfig, SimulatedWear
 from roomba.errors import HomeError
 from roomba.world.engine.layout import Layout, room_around
 from roomba.world.engine.state.arrays import (
@@ -18,6 +18,7 @@ from roomba.world.engine.state.arrays import (
     THING,
     WORLD,
     Dirt,
+    Row,
     Rows,
     Solid,
     State,
@@ -26,7 +27,7 @@ from roomba.world.home.dirt import DirtField
 from roomba.world.home.home import Box, Home
 from roomba.world.home.moving import Track, tracks_of
 
-_WORLD, _TRACKS, _ROBOT, _PLACES = range(4)
+_WORLD, _TRACKS, _ROBOT, _PLACES, _WEAR, _PILE = range(6)
 """What a seed is used for, so that no two things get the same random numbers."""
 _TRIES = 2000
 
@@ -54,6 +55,7 @@ def first_state(
         world = worlds[number]
         world["random"] = _seed_bits(seed, _WORLD)
         world["home"] = home
+        world["pull_x"], world["pull_y"] = _pull(config, seed)
         world["robots_at"], world["robots_end"] = robots_at, robots_at + robots_per_home
         world["dirt_at"], world["dirt_end"] = dirt_at, dirt_at + dirt[home].size
         world["brought_in"] = dirt[home].sum(dtype=np.int64)
@@ -105,8 +107,10 @@ def first_robots(
     robots["temperature"] = truth.battery.ambient
     robots["max_speed"] = max_speed
     robots["brush_duty"], robots["fan_duty"] = config.brush.duty, config.fan.duty
-    for name in ("wheel_left_size", "wheel_right_size", "gyro_scale"):
+    sizes = ("wheel_left_size", "wheel_right_size", "roll_left", "roll_right", "gyro_scale")
+    for name in sizes:
         robots[name] = 1.0
+    robots["track"] = config.body.wheel_separation
     for number, robot in enumerate(robots):
         seed = seeds[number // robots_per_home]
         purpose = (_ROBOT, number % robots_per_home)
@@ -117,7 +121,28 @@ def first_robots(
             robot["wheel_right_size"] += truth.wheels.scale_error * right
             robot["gyro_scale"] += truth.gyro.scale_error * scale
             robot["gyro_bias"] = truth.gyro.bias * bias
+        if truth.condition == "worn":
+            _wear(robot, truth.wear, _generator(seed, _WEAR, purpose[1]))
     return robots
+
+
+def _wear(robot: Row, wear: SimulatedWear, random: np.random.Generator) -> None:
+    """Give a robot the errors of worn wheels, of its gyro, and of how its lidar is screwed on."""
+    left, right, base, gyro, x, y, turn = random.uniform(-1.0, 1.0, 7).tolist()
+    robot["roll_left"] += wear.wheel * left
+    robot["roll_right"] += wear.wheel * right
+    robot["track"] *= 1.0 + wear.base * base
+    robot["gyro_scale"] += wear.gyro * gyro
+    robot["lidar_x"], robot["lidar_y"] = wear.lidar_shift * x, wear.lidar_shift * y
+    robot["lidar_turn"] = np.radians(wear.lidar_turn) * turn
+
+
+def _pull(config: SimulatedRobotConfig, seed: int) -> tuple[float, float]:
+    """Return how far the carpets of a home carry a worn robot, m for each metre that it rolls."""
+    if config.simulation.condition != "worn":
+        return 0.0, 0.0
+    pull, pile = config.simulation.wear.carpet_pull, _generator(seed, _PILE).uniform(-np.pi, np.pi)
+    return float(pull * np.cos(pile)), float(pull * np.sin(pile))
 
 
 def starts_of(

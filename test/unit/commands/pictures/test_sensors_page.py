@@ -15,8 +15,8 @@ from roomba.world.engine.state.arrays import Fault
 ROOT = Path(__file__).parents[4]
 INTERFACE = (ROOT / "docs" / "ros_interface.md").read_text(encoding="utf-8")
 PAGE = (ROOT / "docs" / "sensors.md").read_text(encoding="utf-8")
-SECTIONS = ("body", "brush", "fan", "battery", "lidar", "wheels", "gyro", "cliff", "station",
-            "dirt_sensor", "camera", "surroundings", "health")  # fmt: skip
+SECTIONS = ("body", "brush", "fan", "battery", "lidar", "wheels", "wear", "gyro", "cliff",
+            "station", "dirt_sensor", "camera", "surroundings", "health")  # fmt: skip
 
 
 def names_of_faults() -> set[str]:

@@ -12,6 +12,7 @@ from rich.text import Text
 
 from roomba.commands.map.drive.mapped import Floats, MappedDrive
 from roomba.grid import FREE, UNKNOWN
+from roomba.perception.calibration.calibration import Calibration
 from roomba.perception.matching.scan_view import LidarModel
 
 
@@ -51,6 +52,7 @@ class MappingSummary:
     last_error_m: float | None
     largest_error_by_odometry_m: float | None
     last_error_by_odometry_m: float | None
+    calibration: str
     notes: tuple[str, ...]
 
     def as_json(self) -> dict[str, Any]:
@@ -92,6 +94,7 @@ def summary_of(done: MappedDrive, processing: float) -> MappingSummary:
         last_error_m=ours[1],
         largest_error_by_odometry_m=theirs[0],
         last_error_by_odometry_m=theirs[1],
+        calibration=str(Calibration.of(mapper.belief)),
         notes=done.notes,
     )
 
@@ -132,6 +135,7 @@ def lines_of(summary: MappingSummary) -> list[tuple[str, str]]:
             f"{summary.closure_m:.3f} m from the beginning, by odometry alone "
             f"{summary.closure_by_odometry_m:.3f} m",
         ),
+        ("calibration", summary.calibration),
         ("corrected", f"odometry alone was up to {summary.corrected_m:.3f} m off the map"),
     ]
     if summary.largest_error_m is not None and summary.last_error_m is not None:

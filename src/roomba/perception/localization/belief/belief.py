@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from roomba.configuration.localization import LocalizationConfig
 from roomba.configuration.sensors import GyroConfig
+from roomba.perception.calibration.state import CALIBRATION
 
 Row: TypeAlias = Any
 """One row of an array below, in a kernel."""
@@ -55,6 +56,7 @@ BELIEF: Final = np.dtype(
         ("usual_through", "f8"),
         ("counts", "f8", (5,)),  # what the kernels work in; means nothing between them
         ("work", "f8", (14, 3)),
+        ("calibration", CALIBRATION),  # how far wheels, gyro and lidar are off what is told
     ],
     align=True,
 )

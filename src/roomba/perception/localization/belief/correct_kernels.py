@@ -10,6 +10,8 @@ from numba import njit
 from numpy.typing import NDArray
 
 from roomba.angles import wrapped
+from roomba.perception.calibration.kernels import drop_window
+from roomba.perception.calibration.place_kernels import note_pose
 from roomba.perception.localization.belief.belief import AGREE, EVIDENCE, SHORT, THROUGH, Row, Rows
 from roomba.perception.localization.belief.map_spread_kernels import map_spread
 from roomba.perception.localization.belief.trust_kernels import learn_trust, note_correction
@@ -97,6 +99,17 @@ def correct_late(
     on = seen_from(reckoned, belief.reckoned)
     pose[0], pose[1], pose[2] = beyond(pose[0], pose[1], pose[2], on[0], on[1], on[2])
     return count
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def calibrate(beliefs: Rows) -> None:
+    """Measure the robot's errors by a scan that was matched, and judged, just now."""
+    belief = beliefs[0]
+    if not belief.is_judged or belief.is_doubtful:
+        drop_window(belief.calibration)
+        return
+    pose = belief.pose[0], belief.pose[1], belief.pose[2]
+    note_pose(belief.calibration, pose, belief.covariance, belief.map_spread)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

@@ -9,6 +9,8 @@ from numba import njit
 
 from roomba.angles import wrapped
 from roomba.configuration.body import FASTEST_SPEED
+from roomba.perception.calibration.kernels import corrected, note_gyro, note_step
+from roomba.perception.calibration.state import GYRO
 from roomba.perception.localization.belief.belief import Row, Rows
 from roomba.perception.matching.reckoned_path import ReckonedPath, forget_path, remember
 
@@ -97,6 +99,8 @@ def _go(
     """Move by a step of the wheels, m and rad, that took so long, s; 0: unknown."""
     way = math.hypot(ahead, aside)
     _learn_bias(belief, numbers, way, wheels, turning)
+    note_step(belief.calibration, ahead, aside, wheels)
+    ahead, aside, wheels = corrected(belief.calibration, ahead, aside, wheels)
     turn, variance = _turn(belief, numbers, way, wheels, turning, elapsed)
     half = 0.5 * (turn - wheels)
     cosine, sine = math.cos(half), math.sin(half)
@@ -150,10 +154,13 @@ def _turn(
     before, belief.turning = belief.turning, turning
     by_wheels = numbers.wheel_variance * way + numbers.turn_variance * abs(wheels) + 1e-9
     if math.isnan(turning) or elapsed == 0.0:
+        note_gyro(belief.calibration, math.nan, elapsed)
         return wheels, by_wheels
     if math.isnan(before):
         before = turning
     gyro = (0.5 * (before + turning) - belief.bias) * elapsed
+    note_gyro(belief.calibration, gyro, elapsed)
+    gyro *= 1.0 + belief.calibration.applied[GYRO]
     noise = numbers.gyro_noise * elapsed
     # Between two samples the change of the turning is not known.
     unseen = _UNSEEN * (turning - before) * elapsed

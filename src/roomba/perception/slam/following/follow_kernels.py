@@ -57,6 +57,8 @@ FOLLOWER: Final = np.dtype(
 )
 """State and numbers of a follower, one row."""
 
+COVARIANCE: Final = 4
+"""The first of three rows of ``work`` with that of the newest pose, once it was matched."""
 _FIRST_SCALES: Final = (0.1, 0.05)
 """m; of the first rounds of a match."""
 _LEARNING: Final = 0.02
@@ -85,7 +87,7 @@ def follow(
     _move_on(follower, beliefs[0], reckoned)
     work = follower.work
     prior, pose, scales, counts = work[0], work[1], work[2], work[3]
-    covariance, information = work[4:7], work[7:10]
+    covariance, information = work[COVARIANCE : COVARIANCE + 3], work[7:10]
     for row in range(3):
         prior[row] = pose[row] = follower.here[row]
         for column in range(3):

@@ -154,6 +154,7 @@ class ScanFollower:
     def restart(self) -> None:
         """Go on at the origin of another submap."""
         self._row["here"] = 0.0
+        self._drop_window()
 
     def jump(self) -> None:
         """Go on at the origin of another submap, where the robot was put down."""
@@ -188,6 +189,7 @@ class ScanFollower:
         Where the scan confirms both, it must agree ``better`` times as well with ``pose``.
         """
         before, parts = self.state.copy(), self.following
+        self._drop_window()
         least = better * self.met * self.close if self.is_sure else 0.0
         self._row["here"], self._row["spread"] = pose, _FOUND_SPREAD
         reckoned, points = self._row["reckoned"].copy(), self._row["points"]
@@ -195,7 +197,12 @@ class ScanFollower:
         if not self.is_sure or self.met * self.close < least:
             self.state[:] = before
 
+    def _drop_window(self) -> None:
+        """Measure the robot's errors anew: poses are told in another frame from now on."""
+        self._reckoning.belief[0]["calibration"]["is_open"] = False
+
     def _go_on_from(self, here: Floats) -> None:
+        self._drop_window()
         self._row["here"], self._row["spread"] = here, 0.0
         self._row["unsure_way"] = self._row["unsure_turn"] = 0.0
         reckoned = self._reckoning.pose

@@ -10,6 +10,8 @@ from numba import njit
 from numpy.typing import NDArray
 
 from roomba.angles import wrapped
+from roomba.perception.calibration.kernels import drop_window
+from roomba.perception.calibration.place_kernels import note_pose
 from roomba.perception.localization.belief.belief import Rows
 from roomba.perception.matching.beams import LidarBeams
 from roomba.perception.matching.pose_kernels import is_apart
@@ -17,7 +19,7 @@ from roomba.perception.matching.range_noise import measure_noise
 from roomba.perception.matching.reckoned_path import ReckonedPath, pose_at
 from roomba.perception.matching.sweep import at_once
 from roomba.perception.slam.following.finding_back_kernels import is_due, saw
-from roomba.perception.slam.following.follow_kernels import follow
+from roomba.perception.slam.following.follow_kernels import COVARIANCE, follow, moved_since
 from roomba.perception.slam.following.latency import learn_latency
 from roomba.perception.slam.scan_matching.surface_kernels import surface_points
 from roomba.perception.slam.scan_matching.surfel_kernels import Surfels
@@ -121,6 +123,19 @@ def follow_points(following: Following, stamp: float) -> None:
         following.points, follower.points,
     )  # fmt: skip
     saw(following.finding, following.follower, stamp)
+    _calibrate(following)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _calibrate(following: Following) -> None:
+    """Measure the robot's errors by the scan that was followed just now."""
+    follower, row = following.follower[0], following.belief[0].calibration
+    if not follower.is_sure:
+        drop_window(row)
+        return
+    here = follower.here
+    now = moved_since(following.follower, following.belief, here[0], here[1], here[2])
+    note_pose(row, now, follower.work[COVARIANCE : COVARIANCE + 3], follower.spread)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

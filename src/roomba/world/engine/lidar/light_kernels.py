@@ -33,6 +33,9 @@ _NEVER: Final = -1e-12
 """Reflectivity of what is shiny and nothing else."""
 _SHINY, _GLASS, _MIRROR = float(Finish.SHINY), float(Finish.GLASS), float(Finish.MIRROR)
 
+Eye = tuple[float, float, float]
+"""Where a lidar is and looks, map frame: x, y, m, and theta, rad."""
+
 
 class Surroundings(NamedTuple):
     """Where a robot's lidar measures, and by which numbers."""
@@ -198,6 +201,19 @@ def is_echo(around: Surroundings, met: Met, fading: float) -> bool:
 
 
 @part
+def lidar_at(body: Row, numbers: Row, x: float, y: float, theta: float) -> Eye:
+    """Return where the lidar of a body at a pose is."""
+    if numbers.worn == 0.0:
+        return x, y, theta
+    cosine, sine = math.cos(theta), math.sin(theta)
+    return (
+        x + cosine * body.lidar_x - sine * body.lidar_y,
+        y + sine * body.lidar_x + cosine * body.lidar_y,
+        theta + body.lidar_turn,
+    )
+
+
+@part
 def look_through(around: Surroundings, ranges: Floats, key: np.uint32) -> None:
     """Measure those beams of a scan anew that met glass or a mirror before anything else.
 
@@ -205,19 +221,20 @@ def look_through(around: Surroundings, ranges: Floats, key: np.uint32) -> None:
     """
     home, numbers = around.home, around.numbers
     body = around.solid.robots[around.robot]
+    eye = lidar_at(body, numbers, body.x, body.y, body.theta)
     beams = ranges.shape[1]
     for beam in range(beams):
-        angle = body.theta + beam * (2.0 * math.pi / beams)
+        angle = eye[2] + beam * (2.0 * math.pi / beams)
         cosine, sine = math.cos(angle), math.sin(angle)
         way, _, _ = ray_to_faces(
-            around.solid.faces, home.clear_at, home.faces_end, body.x, body.y, cosine, sine, -1
+            around.solid.faces, home.clear_at, home.faces_end, eye[0], eye[1], cosine, sine, -1
         )
         if way < ranges[around.robot, beam]:
             chance = 1.0
             if numbers.noisy > 0.0:
                 bits = hashed(np.uint32(key + np.uint32(beam) * np.uint32(0x9E3779B9)))
                 chance = float(bits >> np.uint32(12)) * _UNIT_20
-            found = ray(around, body.x, body.y, angle, chance).way
+            found = ray(around, eye[0], eye[1], angle, chance).way
             if found < numbers.min_range:
                 found = -math.inf
             elif found >= numbers.max_range:

@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.world.engine.lidar.light_kernels import Surroundings, look_through
+from roomba.world.engine.lidar.light_kernels import Eye, Surroundings, lidar_at, look_through
 from roomba.world.engine.lidar.projection import (
     ScanBuffers,
     begin_scan,
@@ -57,13 +57,14 @@ def scan(
         for beam in range(ranges.shape[1]):
             ranges[robot, beam] = np.float32(math.inf)
         return
-    x, y = np.float32(body.x - home.left), np.float32(body.y - home.bottom)
-    theta = begin_scan(buffers.rays, buffers.fan, body.theta, numbers.max_range)
+    eye = lidar_at(body, numbers, body.x, body.y, body.theta)
+    x, y = np.float32(eye[0] - home.left), np.float32(eye[1] - home.bottom)
+    theta = begin_scan(buffers.rays, buffers.fan, eye[2], numbers.max_range)
     scan_walls(buffers, edges, home, x, y, theta)
     beams = ranges.shape[1]
-    scan_faces(solid.faces, home, body.x, body.y, buffers.fan, beams, theta)
-    scan_things(solid, world, body, buffers.fan, beams, theta, numbers.lidar_height)
-    scan_round_things(solid, world, robot, buffers.fan, beams, theta, numbers.radius)
+    scan_faces(solid.faces, home, eye[0], eye[1], buffers.fan, beams, theta)
+    scan_things(solid, world, eye, buffers.fan, beams, theta, numbers.lidar_height)
+    scan_round_things(solid, world, robot, eye, buffers.fan, beams, theta, numbers.radius)
     end_scan(buffers.fan, ranges, robot, numbers.min_range, numbers.max_range)
     bits = next_bits(body) if numbers.noisy > 0.0 else np.uint64(0)
     if home.faces_end > home.clear_at:
@@ -81,7 +82,7 @@ def scan_faces(
 ) -> None:
     """Put the faces of walls that are free of the grid into the depth buffer, but for clear ones.
 
-    The robot is at ``x``, ``y``, m, map frame.
+    The lidar is at ``x``, ``y``, m, map frame.
     """
     for index in range(home.faces_at, home.clear_at):
         face = faces[index]
@@ -100,7 +101,7 @@ def scan_faces(
 def scan_things(
     solid: Solid,
     world: Row,
-    body: Row,
+    eye: Eye,
     fan: Floats,
     beams: int,
     theta: np.float32,
@@ -115,8 +116,8 @@ def scan_things(
         for index in range(thing.boxes_at, thing.boxes_end):
             box = solid.boxes[index]
             if box.bottom <= height < box.top:
-                x = thing.x - body.x + cosine * box.x - sine * box.y
-                y = thing.y - body.y + sine * box.x + cosine * box.y
+                x = thing.x - eye[0] + cosine * box.x - sine * box.y
+                y = thing.y - eye[1] + sine * box.x + cosine * box.y
                 scan_box(fan, beams, box, x, y, thing.theta + box.theta, theta)
 
 
@@ -141,17 +142,17 @@ def scan_round_things(
     solid: Solid,
     world: Row,
     robot: int,
+    eye: Eye,
     fan: Floats,
     beams: int,
     theta: np.float32,
     radius: float,
 ) -> None:
     """Put round things and other robots, discs of ``radius`` m, into the depth buffer."""
-    body = solid.robots[robot]
     for number in range(world.discs_at, world.discs_end):
         disc = solid.discs[number]
-        scan_disc(fan, beams, disc.x - body.x, disc.y - body.y, disc.radius, theta)
+        scan_disc(fan, beams, disc.x - eye[0], disc.y - eye[1], disc.radius, theta)
     for number in range(world.robots_at, world.robots_end):
         if number != robot:
             other = solid.robots[number]
-            scan_disc(fan, beams, other.x - body.x, other.y - body.y, radius, theta)
+            scan_disc(fan, beams, other.x - eye[0], other.y - eye[1], radius, theta)

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.angles import wrapped
-from roomba.world.engine.lidar.light_kernels import Met, Surroundings, is_echo, ray
+from roomba.world.engine.lidar.light_kernels import Met, Surroundings, is_echo, lidar_at, ray
 from roomba.world.engine.state.arrays import Row
 from roomba.world.engine.state.compilation import part
 from roomba.world.engine.state.random_kernels import hashed, next_bits
@@ -108,6 +108,7 @@ def measure_beams(around: Surroundings, ranges: Floats, due: int, dt: float) -> 
         x = body.before_x + cosine * chord_x - sine * chord_y
         y = body.before_y + sine * chord_x + cosine * chord_y
         theta = body.before_theta + share * turn
+        x, y, theta = lidar_at(body, numbers, x, y, theta)
         ranges[around.robot, beam] = measure(around, beam, x, y, theta)
     body.next_beam = due
 

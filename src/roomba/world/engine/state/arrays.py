@@ -114,6 +114,8 @@ WORLD: Final = np.dtype(
         ("things_end", "i8"),
         ("discs_at", "i8"),
         ("discs_end", "i8"),
+        ("pull_x", "f8"),  # by carpets, m for each metre rolled
+        ("pull_y", "f8"),
     ]
 )
 FALL: Final = np.dtype([("time", "f8"), ("source", "i8")])
@@ -203,6 +205,12 @@ ROBOT: Final = np.dtype(
         ("random", "u8"),
         ("wheel_left_size", "f8"),  # 1 without error
         ("wheel_right_size", "f8"),
+        ("roll_left", "f8"),  # way of the wheel for one of the size that is told
+        ("roll_right", "f8"),
+        ("track", "f8"),  # between the wheels
+        ("lidar_x", "f8"),  # where the lidar is beside where it should be, body's frame
+        ("lidar_y", "f8"),
+        ("lidar_turn", "f8"),
         ("gyro_scale", "f8"),
         ("gyro_bias", "f8"),
         ("varying_left", "f8"),  # what varies of the wheel's slip

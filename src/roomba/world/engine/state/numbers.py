@@ -22,6 +22,7 @@ def numbers_of(config: SimulatedRobotConfig) -> Rows:
     noise = 1.0 if truth.sensors == "noisy" else 0.0
     fields: dict[str, float] = {
         "noisy": noise,
+        "worn": 1.0 if truth.condition == "worn" else 0.0,
         "radius": body.radius,
         "track": body.wheel_separation,
         "wheel_radius": 0.5 * body.wheel_diameter,

@@ -1,0 +1,64 @@
+"""How far dead reckoning is off the truth of a run, with and without what was measured of it."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.configuration.robot import RobotConfig
+from roomba.headless.odometry_kernels import reckon_rows
+from roomba.headless.rows import GYRO, ODOMETRY, TIME, TRUE
+from roomba.perception.calibration.calibration import Calibration
+from roomba.perception.localization.dead_reckoning import DeadReckoning
+
+Floats = NDArray[np.float64]
+
+PIECE: Final = 5.0
+"""m; the way over which errors gather."""
+
+
+def odometry_error(
+    rows: Floats, robot: RobotConfig, calibration: Calibration | None, *, has_gyro: bool = True
+) -> float | None:
+    """Return by how much dead reckoning is off after each :data:`PIECE` of way, m per m.
+
+    ``rows`` is float64 [n, PASSED], as of :mod:`roomba.headless.rows`. It is the mean of the
+    distances between where the robot was and where wheels and gyro had it, from where both began a
+    piece, by the way of a piece; None of a shorter way. ``calibration`` None: without any;
+    ``has_gyro`` False: by the wheels alone.
+    """
+    true = rows[:, TRUE]
+    way = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(true[:, :2], axis=0).T))))
+    ends = np.flatnonzero(np.diff(np.floor(way / PIECE), prepend=0.0))
+    ends = np.concatenate(([0], ends))
+    if len(ends) < 2:
+        return None
+    told = rows.copy()
+    if not has_gyro:
+        told[:, GYRO] = np.nan
+    poses = reckoned(told, robot, calibration)
+    off = _moved(poses[ends]) - _moved(true[ends])
+    return float(np.hypot(off[:, 0], off[:, 1]).mean() / PIECE)
+
+
+def reckoned(rows: Floats, robot: RobotConfig, calibration: Calibration | None) -> Floats:
+    """Return where dead reckoning has the robot at each tick, float64 [n, 3], in its own frame."""
+    reckoning = DeadReckoning(robot.localization, robot.gyro)
+    if calibration is not None:
+        calibration.take_up(reckoning.belief)
+    reckoning.belief["calibration"]["base"] = robot.body.wheel_separation
+    told = np.column_stack((rows[:, TIME], rows[:, ODOMETRY], rows[:, GYRO]))
+    poses = np.empty((len(rows), 3))
+    reckon_rows(reckoning.belief, reckoning.numbers, told, poses)
+    return poses
+
+
+def _moved(poses: Floats) -> Floats:
+    """Return how each pose sees the next one, float64 [n - 1, 2]: ahead and left, m."""
+    off = np.diff(poses[:, :2], axis=0)
+    cosine, sine = np.cos(poses[:-1, 2]), np.sin(poses[:-1, 2])
+    return np.column_stack(
+        (cosine * off[:, 0] + sine * off[:, 1], cosine * off[:, 1] - sine * off[:, 0])
+    )

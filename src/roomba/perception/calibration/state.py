@@ -1,0 +1,97 @@
+"""What is measured of the robot's errors: a part of the belief's row, that kernels read and write.
+
+Seven errors, in this order (after Censi, Franchi, Marchionni and Oriolo, "Simultaneous calibration
+of odometry and sensor parameters for mobile robots", 2013, with the wheels' radii and their
+distance told as what odometry makes of them):
+
+==========  =====================================================================================
+``WAY``     share by which a way is longer than odometry tells
+``TURN``    share by which a turn is larger
+``DRIFT``   rad/m by which the robot turns left while odometry tells that it goes straight ahead
+``GYRO``    share by which a turn is larger than the gyro tells
+``AHEAD``   m by which the lidar sits farther ahead than is told
+``LEFT``    m by which it sits farther left
+``TURNED``  rad by which it, and where it is told to be, is turned to the left about the robot
+==========  =====================================================================================
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, Final, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.configuration.localization import LocalizationConfig
+from roomba.configuration.sensors import GyroConfig
+
+Row: TypeAlias = Any
+"""A CALIBRATION in a kernel."""
+Floats = NDArray[np.float64]
+
+WAY, TURN, DRIFT, GYRO, AHEAD, LEFT, TURNED = range(7)
+ERRORS: Final = 7
+OF_WHEELS: Final = 3
+"""The first errors are those of the wheels."""
+
+CALIBRATION: Final = np.dtype(
+    [
+        ("errors", "f8", (ERRORS,)),  # as measured
+        ("covariance", "f8", (ERRORS, ERRORS)),
+        ("applied", "f8", (ERRORS,)),  # of these, what dead reckoning and the lidar go by
+        ("is_applied", "?"),  # whether any of the wheels' or the gyro's is
+        ("is_lidar_due", "?"),  # whether the lidar is known better than it is gone by
+        ("base", "f8"),  # m; between the wheels, 0: not known
+        ("windows", "i8"),  # measured so far
+        ("outliers", "i8"),  # numbers in these that fitted badly, of four each
+        # the window under way
+        ("is_open", "?"),
+        ("begin", "f8", (3,)),  # where the lidar stood, and looked, if it sat in the middle
+        ("begin_variance", "f8", (2,)),  # of that: m2, rad2
+        ("moved", "f8", (3,)),  # since then by the wheels, less their errors
+        ("slopes", "f8", (3, OF_WHEELS)),  # of that, by each of their errors
+        ("gyro", "f8"),  # rad; turned by the gyro as it tells
+        ("has_gyro", "?"),
+        ("way", "f8"),  # m
+        ("turned", "f8"),  # rad, either way
+        ("time", "f8"),  # s
+        # what does not change
+        ("prior", "f8", (ERRORS,)),  # variances
+        ("least", "f8", (ERRORS,)),
+        ("sure", "f8"),
+        ("window_way", "f8"),
+        ("window_turn", "f8"),
+        ("forgetting_way", "f8"),
+        ("way_variance", "f8"),  # as of roomba.perception.localization.belief.belief.NUMBERS
+        ("side_variance", "f8"),
+        ("wheel_variance", "f8"),
+        ("turn_variance", "f8"),
+        ("drift_variance", "f8"),
+        ("bias", "f8"),  # rad/s; deviation of the gyro's
+        ("work", "f8", (8, ERRORS)),  # what the kernel works in; means nothing between two calls
+    ],
+    align=True,
+)
+
+
+def begin_calibration(row: Row, localization: LocalizationConfig, gyro: GyroConfig) -> None:
+    """Let nothing be measured yet."""
+    config = localization.calibration
+    turn, least_turn = math.radians(config.turn), math.radians(config.least_turn)
+    prior = [config.scale] * 2 + [config.drift, config.scale] + [config.shift] * 2 + [turn]
+    least = [config.least_scale] * 2 + [config.least_drift, config.least_gyro]
+    least += [config.least_shift] * 2 + [least_turn]
+    row["prior"], row["least"] = np.square(prior), least
+    row["errors"] = row["applied"] = 0.0
+    row["covariance"] = np.diag(row["prior"])
+    row["sure"] = config.sure
+    for name in ("window_way", "window_turn", "forgetting_way"):
+        row[name] = getattr(config, name)
+    row["way_variance"], row["side_variance"] = (
+        localization.way_noise**2,
+        localization.side_noise**2,
+    )
+    row["wheel_variance"] = localization.wheel_turn_noise**2
+    row["turn_variance"] = localization.turn_noise**2
+    row["drift_variance"], row["bias"] = localization.gyro_drift**2, gyro.bias
