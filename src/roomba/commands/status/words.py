@@ -21,7 +21,7 @@ def lines_of(state: dict[str, Any]) -> list[tuple[str, str]]:
         cleaned = [area_text(vacuum["covered"], vacuum["wanted"])]
         to_go = to_go_text(vacuum["seconds_to_go"])
         lines.append(("cleaned", ", ".join([*cleaned, to_go] if to_go else cleaned)))
-    x, y, heading = state["pose"]
+    x, y, heading = (round(value, 2) + 0.0 for value in state["pose"])  # and no minus before 0
     lines.append(("dirt", f"{state['dirt']:.1f} g picked up since the bin was emptied"))
     lines.append(("place", f"x {x:.2f} m, y {y:.2f} m, heading {math.degrees(heading):.0f}°"))
     lines.append(("speed", f"{state['speed']:.2f} m/s"))

@@ -66,10 +66,13 @@ def test_it_tells_what_is_wrong_and_how_the_last_errand_ended(
 ) -> None:
     ended = CleanReport(ErrandOutcome.STUCK, "free its wheels", 2.0, 4.0, 1.0, 9.0, 60.0, 0.1)
     vacuum = replace(VIEW.vacuum, state="error", phase="stuck", message="both wheels spin")
-    robot.view = replace(VIEW, vacuum=vacuum, held="a hand", doubt="it is dark", last=ended)
+    robot.view = replace(
+        VIEW, pose=(-1e-4, 2.0, 0.0), vacuum=vacuum, held="a hand", doubt="it is dark", last=ended
+    )
     assert main(["--port", str(port)]) == 0
     told = capsys.readouterr().out
     assert rows(told)["state"] == "error, stuck, in hall"
+    assert rows(told)["place"] == "x 0.00 m, y 2.00 m, heading 0°"
     assert rows(told)["last"] == "stuck, 2.0 of 4.0 m2 (50%), free its wheels"
     troubles = [line.split(maxsplit=1)[1] for line in told.splitlines() if "trouble" in line]
     assert [each.strip() for each in troubles] == ["both wheels spin", "held: a hand", "it is dark"]
