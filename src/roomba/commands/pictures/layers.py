@@ -24,6 +24,10 @@ _WIDTH, _HEIGHT = 1200, 1000
 """px; of the picture, and of its coordinates, y up."""
 _BOX: Final = (92.0, 30.0)
 """px; width and height of a folder's box."""
+_LEGEND: Final = (42.0, 4)
+"""px; height of the legend above the folders, and its columns."""
+_LONG: Final = 12
+"""Letters; longer names are written smaller, so that they stay in their boxes."""
 _SWEEPS: Final = 24
 """How often the order in the layers is improved, up and down in turn."""
 
@@ -107,7 +111,7 @@ def _mean_x(places: _Places, folders: set[str], otherwise: float) -> float:
 
 def _places(layers: Sequence[Sequence[str]]) -> _Places:
     """Return the middle of each folder's box, px; the layers fill the picture's width."""
-    rise = (_HEIGHT - 1.6 * _BOX[1]) / len(layers)
+    rise = (_HEIGHT - _LEGEND[0] - 1.0 * _BOX[1]) / len(layers)
     return {
         folder: (_WIDTH * (index + 0.5) / len(layer), 0.9 * _BOX[1] + rise * height)
         for height, layer in enumerate(layers)
@@ -166,9 +170,12 @@ def _draw_folder(axes: Axes, folder: str, place: tuple[float, float]) -> None:
     *parents, name = folder.split(".")
     text: dict[str, Any] = {"ha": "center", "va": "center", "zorder": 4}
     axes.text(x, y + 7.0, "/".join(parents).removeprefix("roomba/"), fontsize=6.0, **text)
-    axes.text(x, y - 5.0, name, fontsize=8.5, color=colour, fontweight="bold", **text)
+    size = 8.5 if len(name) <= _LONG else 7.5
+    axes.text(x, y - 5.0, name, fontsize=size, color=colour, fontweight="bold", **text)
 
 
 def _draw_legend(axes: Axes) -> None:
     for index, (name, (colour, _)) in enumerate(_COLOURS.items()):
-        axes.text(12.0, _HEIGHT - 16.0 - 15.0 * index, name, fontsize=8.5, color=colour)
+        row, column = divmod(index, _LEGEND[1])
+        x, y = 14.0 + column * _WIDTH / _LEGEND[1], _HEIGHT - 17.0 - 17.0 * row
+        axes.text(x, y, name, fontsize=8.5, color=colour)
