@@ -61,6 +61,28 @@ def best_near(
     return max(tried, key=lambda each: each[1].evidence)
 
 
+def better_near(
+    view: ScanView,
+    field: SurfaceField,
+    pose: Pose,
+    usual: tuple[float, float],
+    config: LocalizationConfig,
+) -> tuple[Pose, Fit] | None:
+    """Return a pose near ``pose``, map frame, that a scan fits clearly better, and about as usual.
+
+    ``usual`` are shares of beams that agree, and that go through walls. None: there is no such.
+    """
+    found, worse = best_near(view, field, pose, config), config.fit
+    if found is None:
+        return None
+    _, fit = found
+    is_usual = (
+        fit.agree >= usual[0] - worse.near_worse and fit.through <= usual[1] + worse.near_through
+    )
+    lead = fit.evidence - view.fit(field, np.array([pose.x, pose.y, pose.theta])).evidence
+    return found if is_usual and lead >= config.needed_evidence else None
+
+
 def matched(view: ScanView, field: SurfaceField, start: Pose, deviation: float) -> tuple[Pose, Fit]:
     """Return where a scan fits best from a start on, and how well; ``deviation`` is a beam's, m."""
     prior = np.array([start.x, start.y, start.theta])

@@ -10,7 +10,7 @@ from fixtures.located import CONFIG, FURNISHED, LIDAR, START, Eye, Located, step
 
 from roomba.geometry import Pose, Twist, wrap_angle
 from roomba.perception.localization.estimate import Knowledge
-from roomba.perception.localization.search.near_search import best_near
+from roomba.perception.localization.search.near_search import best_near, better_near
 from roomba.perception.matching.surface_field import SurfaceField
 
 HERE = Pose(1.4, 2.6, 0.7)
@@ -42,6 +42,19 @@ def test_where_nothing_has_room_nothing_is_found() -> None:
     assert best_near(view, FIELD, Pose(-5.0, -5.0, 0.0), CONFIG.localization) is None
     nothing = LIDAR.view(np.full(LIDAR.beams, np.inf, np.float32))
     assert best_near(nothing, FIELD, HERE, CONFIG.localization) is None
+
+
+def test_a_place_near_by_is_better_only_if_a_scan_fits_it_clearly_more_and_as_usual() -> None:
+    view, config = LIDAR.view(Eye(FURNISHED).scan(HERE)), CONFIG.localization
+    off = Pose(HERE.x + 0.3, HERE.y - 0.2, HERE.theta + 0.4)
+    found = better_near(view, FIELD, off, (0.98, 0.0), config)
+    assert found is not None
+    assert found[0].distance_to(HERE.x, HERE.y) < 0.01
+    assert better_near(view, FIELD, HERE, (0.98, 0.0), config) is None
+    # Better than that no scan fits: what is usual was seen somewhere else.
+    assert better_near(view, FIELD, off, (1.3, 0.0), config) is None
+    assert better_near(view, FIELD, off, (0.98, -0.2), config) is None
+    assert better_near(view, FIELD, Pose(-5.0, -5.0, 0.0), (0.98, 0.0), config) is None
 
 
 def test_a_push_that_no_wheel_told_costs_no_search_of_the_whole_map() -> None:

@@ -1,0 +1,81 @@
+"""A pose that was told, or that is believed no more: scans confirm it, or refute it."""
+
+from __future__ import annotations
+
+import math
+
+from roomba.configuration.localization import LocalizationConfig
+from roomba.geometry import Pose
+from roomba.perception.localization.doubt import Doubt
+from roomba.perception.localization.expecting import where_told
+from roomba.perception.localization.relocation import Expectation
+from roomba.perception.matching.scan_view import Fit, ScanView
+from roomba.perception.matching.surface_field import SurfaceField
+
+
+class Confirmation:
+    """What is still to be confirmed: ``awaited`` by the next scan that tells, or ``compared``.
+
+    What was told last was told at ``told_at``, s of the robot's clock.
+    """
+
+    def __init__(self, config: LocalizationConfig, doubt: Doubt) -> None:
+        """Begin with nothing told; ``doubt`` compares places."""
+        self._config, self._doubt = config, doubt
+        self.told_at = -math.inf
+        self.awaited: Expectation | None = None
+        self.compared: Expectation | None = None
+        self._least, self._most = config.fit.good_agree, config.fit.good_through
+
+    @property
+    def is_open(self) -> bool:
+        """Whether there is something to be confirmed."""
+        return self.awaited is not None or self.compared is not None
+
+    def told(self, now: float, pose: Pose, deviation: tuple[float, float]) -> None:
+        """Take a pose of the map that was told, with deviations in m and rad, in place of all."""
+        self.compared, self.told_at = None, now
+        self.await_at(pose, deviation)
+
+    def await_at(self, pose: Pose, deviation: tuple[float, float]) -> None:
+        """Have the next scan confirm a pose that is so unsure, m and rad."""
+        self.awaited = where_told(pose, deviation, self._config)
+        self._least, self._most = self._config.fit.good_agree, self._config.fit.good_through
+
+    def need_less(self) -> None:
+        """Take what is awaited by a fair fit: it has more evidence than a report."""
+        self._least, self._most = self._config.fit.fair_agree, self._config.fit.fair_through
+
+    def drop(self) -> None:
+        """Confirm nothing any more: the pose is not believed."""
+        self.awaited = self.compared = None
+
+    def refuted(
+        self, now: float, fit: Fit, view: ScanView, reckoned: Pose, field: SurfaceField
+    ) -> Expectation | None:
+        """Take a scan and its fit; return what it refutes, None: the pose is to be kept.
+
+        ``now`` is in s, ``reckoned`` the pose of dead reckoning at which the scan was taken.
+        """
+        if self.awaited is not None:
+            return self._checked(self.awaited, fit)
+        if self.compared is None:
+            return None
+        told = self.compared
+        is_elsewhere = self._doubt.is_elsewhere(now, view, reckoned, told, field)
+        if is_elsewhere is not None:
+            self.compared = None
+        return told if is_elsewhere else None
+
+    def _checked(self, told: Expectation, fit: Fit) -> Expectation | None:
+        """Take what was told if the scan fits well there; else compare it with the map.
+
+        Where it fits in part, as on a map of another day, it goes by what was told meanwhile.
+        """
+        self.awaited = None
+        if fit.agree >= self._least and fit.through <= self._most:
+            return None
+        if fit.agree < self._config.fit.told_agree:
+            return told
+        self.compared = told
+        return None
