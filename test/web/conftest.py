@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import pytest
 from playwright.sync_api import Browser, Page, sync_playwright
 
-from roomba.commands.play.command import live_client
+from roomba.commands.play.living import live_client
 from roomba.headless.live.client import LiveClient
 from roomba.ui.web.app import create_app
 from roomba.ui.web.guard import Guard, new_token

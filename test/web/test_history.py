@@ -12,7 +12,7 @@ from unit.history.made import made_figures, made_recording
 from web.conftest import SIZES, Opened
 from web.test_page import CONTRASTS, CONTROLS, DEADLINE
 
-from roomba.commands.play.command import live_client
+from roomba.commands.play.living import live_client
 from roomba.history.database import History
 from roomba.history.recorder import HistoryKeeper
 from roomba.history.run import RunSource

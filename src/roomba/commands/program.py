@@ -29,6 +29,8 @@ _COMMANDS: Final = {
 """The module whose ``main`` is the command; each is loaded when it is asked for."""
 _OF_RECORDINGS: Final = {"map": "roomba.commands.map.drive.command"}
 """The same of a command with ``--bag``."""
+_DEMOS: Final = {"control": "roomba.commands.control.command"}
+"""The same of a command that needs ROS, but not with ``--demo``."""
 _NEED_ROS: Final = ("run", "control", "camera", "exec", "localize")
 _NEED_CHECKOUT: Final = ("test", "bench")
 _USAGE: Final = """\
@@ -41,6 +43,9 @@ usage: roomba COMMAND ...
                    recorded drive (see --help)
   play [ARGS]      a robot that lives in a home, on a web page: --home NAME, --speed N,
                    --map none (see --help)
+  control --demo [ARGS]
+                   the menu in the terminal over a robot that lives in a home: --home NAME,
+                   --speed N, --map none (see --demo --help)
   status [ARGS]    what a robot with a page does now: --json, --watch
   report [RUN]     the runs that were kept: a list, or a report as HTML: --out FILE.html,
                    --compare A B, --csv FILE (see --help)
@@ -54,8 +59,8 @@ usage: roomba COMMAND ...
   doctor [--json]  what is missing, and how to mend it
   help             this text
 
-The commands run, control, camera, exec and localize need ROS, test and bench the checkout: there
-it is ./roomba COMMAND.
+The commands run, camera, exec, localize, and control without --demo, need ROS, test and bench the
+checkout: there it is ./roomba COMMAND.
 """
 _MODULES: Final = (
     "cv2", "fastapi", "matplotlib", "numba", "numpy", "PIL", "pydantic", "rich", "rosbags", "scipy",
@@ -70,8 +75,12 @@ def program() -> int:
     if command in ("help", "-h", "--help"):
         print(_USAGE, end="")
         return 0
+    if command in _DEMOS and "--demo" in arguments:
+        return int(importlib.import_module(_DEMOS[command]).main(arguments))
     if command in _NEED_ROS:
-        return _refused(f"{command}: needs ROS, which only a checkout sets up: ./roomba {command}")
+        demo = f"; without it: roomba {command} --demo" if command in _DEMOS else ""
+        why = "needs ROS, which only a checkout sets up"
+        return _refused(f"{command}: {why}: ./roomba {command}{demo}")
     if command in _NEED_CHECKOUT:
         return _refused(f"{command}: needs the sources; in a checkout: ./roomba {command}")
     if command not in _COMMANDS:

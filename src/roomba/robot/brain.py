@@ -31,6 +31,7 @@ from roomba.perception.rooms.rooms import Rooms
 from roomba.perception.rooms.zones import Zones
 from roomba.perception.slam.mapper import Mapper
 from roomba.perception.things.layer import ThingLayer
+from roomba.planning.path.polyline import Path
 from roomba.robot.command import Command
 from roomba.robot.growing_map import GrowingMap
 from roomba.robot.mapped_mission import MappedMission, fan_of
@@ -145,6 +146,15 @@ class Brain:
         if mission.state.drives:
             mission.command(Event.PAUSE, senses)
         return walk
+
+    def way_to(self, x: float, y: float) -> Path:
+        """Return the way that a walk to a point of the map, m, would begin with.
+
+        Raises NoPathError when there is none, RoombaError while there is no map.
+        """
+        mission, senses = self.mission, self.senses()
+        home = mission.context.occupancy, mission.obstacles
+        return self.walking.planned((x, y), *home, senses).path
 
     def look(self) -> None:
         """Look in the newest scan for things that the map does not show."""

@@ -25,6 +25,8 @@ class Walking:
         self._planner: tuple[OccupancyMap, PathPlanner] | None = None
         self._walk: Walk | None = None
         self._step: WalkStep | None = None
+        self.ended: WalkStep | None = None
+        """The last step of the newest walk: None while it lasts, or if something else ended it."""
 
     @property
     def is_under_way(self) -> bool:
@@ -46,9 +48,19 @@ class Walking:
         senses: Senses,
     ) -> Walk:
         """Walk to a point of a map, m; raises NoPathError when there is no way."""
-        planner = self.planner(occupancy)
-        self._walk = Walk(planner, self._robot.walk, obstacles, goal, senses)
+        self._walk = self.planned(goal, occupancy, obstacles, senses)
+        self.ended = None
         return self._walk
+
+    def planned(
+        self,
+        goal: tuple[float, float],
+        occupancy: OccupancyMap,
+        obstacles: Obstacles,
+        senses: Senses,
+    ) -> Walk:
+        """Return a walk to a point of a map, m, and begin none; raises NoPathError."""
+        return Walk(self.planner(occupancy), self._robot.walk, obstacles, goal, senses)
 
     def end(self) -> None:
         """End the walk under way, if there is one."""
@@ -59,7 +71,7 @@ class Walking:
         assert self._walk is not None
         self._step = step = self._walk.tick(senses, max_speed)
         if step.state not in _UNDER_WAY:
-            self._walk = None
+            self._walk, self.ended = None, step
         if step.state is not WalkState.WALKING:
             return STANDSTILL, step.cruise_speed
         return self._loop.tick(senses.pose, step.setpoint, max_speed), step.cruise_speed

@@ -42,6 +42,15 @@ def test_a_command_that_is_not_here_is_refused_in_one_line(
     assert len(told.err.splitlines()) == 1
 
 
+def test_the_menu_needs_no_ros_for_a_demo(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert call(monkeypatch, "control", "--demo", "--home", "castle") == 2
+    assert "castle" in capsys.readouterr().err
+    assert call(monkeypatch, "control", "--home", "castle") == 2
+    assert "needs ROS" in capsys.readouterr().err
+
+
 def test_arguments_are_handed_to_the_command(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

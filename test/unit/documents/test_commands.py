@@ -19,6 +19,7 @@ MODULES = {
     "sim": "roomba.commands.sim.command",
     "map": "roomba.commands.map.command",
     "map --bag": "roomba.commands.map.drive.command",
+    "control": "roomba.commands.control.command",
     "play": "roomba.commands.play.command",
     "replay": "roomba.commands.play.replay",
     "report": "roomba.commands.report.command",

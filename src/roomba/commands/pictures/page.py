@@ -9,7 +9,7 @@ from typing import Any, Final
 import cv2
 import numpy as np
 
-from roomba.commands.play.command import live_client
+from roomba.commands.play.living import live_client
 from roomba.commands.sim.kept_run import StateSamples, figures_of, recording_of
 from roomba.commands.sim.runs import run_trial
 from roomba.commands.sim.trial import Trial

@@ -3,25 +3,14 @@
 from __future__ import annotations
 
 import argparse
-import math
 import shlex
 import sys
-from collections.abc import Callable
 from typing import Final
 
+from roomba.commands.play.living import add_robot_options, wanted_robot
 from roomba.commands.play.serving import add_page_options, listen_on, serve_page
-from roomba.commands.sim.homes import home_of, rooms_of
-from roomba.commands.sim.runs import mission_config, robot_config_of
-from roomba.commands.sim.trial import Trial, Wheels
 from roomba.commands.spelling import spelled
-from roomba.configuration.docking import DockingConfig
-from roomba.configuration.frozen import load_config
-from roomba.configuration.mapping import MappingConfig
 from roomba.errors import RoombaError
-from roomba.files.shipped import CONFIGURATION
-from roomba.headless.cleaner import HeadlessMission
-from roomba.headless.live.client import LiveClient
-from roomba.headless.live.robot import SPEEDS
 from roomba.history.database import History
 from roomba.history.folder import history_folder
 from roomba.history.recorder import HistoryKeeper
@@ -34,14 +23,7 @@ def main(arguments: list[str] | None = None) -> int:
     """Let a robot live until Ctrl-C; returns 0, or 2 for wrong usage."""
     wanted = _parser().parse_args(arguments)
     try:
-        client = live_client(
-            wanted.home,
-            wanted.seed,
-            wanted.speed,
-            knows_map=wanted.map == "home",
-            bin_grams=wanted.bin,
-            wheels=wanted.wheels,
-        )
+        client = wanted_robot(wanted)
         bound = listen_on(wanted.port)
     except RoombaError as error:
         print(f"{PROGRAM}: {error}", file=sys.stderr)
@@ -65,87 +47,10 @@ def _warn(text: str) -> None:
     print(f"{PROGRAM}: {text}", file=sys.stderr, flush=True)
 
 
-def live_client(
-    name: str,
-    seed: int,
-    speed: float,
-    *,
-    knows_map: bool,
-    bin_grams: float | None = None,
-    wheels: Wheels | None = None,
-) -> LiveClient:
-    """Return a robot in a home; raises RoombaError."""
-    trial = Trial(home=name, seed=seed, bin=bin_grams, wheels=wheels)
-    robot = robot_config_of(trial)
-    home = home_of(trial, robot.body)
-    docking = load_config(DockingConfig, CONFIGURATION / "docking.yaml")
-    rooms = rooms_of(home) if knows_map else None
-    mission = HeadlessMission(
-        home,
-        robot,
-        mission_config(robot),
-        docking,
-        seed=seed,
-        known=None if knows_map else load_config(MappingConfig, CONFIGURATION / "mapping.yaml"),
-        rooms=rooms,
-        longest_burst=int(speed) if speed >= 2.0 else 0,
-        empties_bin_after=math.inf,
-    )
-    return LiveClient(home, mission, rooms, speed)
-
-
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog=PROGRAM, description="A robot in a simulated home, seen and commanded on a page."
     )
-    parser.add_argument(
-        "--home", default="flat", metavar="NAME|FOLDER", help="the home (default: flat)"
-    )
-    parser.add_argument("--seed", type=int, default=0, metavar="N")
-    parser.add_argument(
-        "--speed",
-        type=_speed,
-        default=1.0,
-        metavar="N",
-        help=f"the robot's seconds per second, {SPEEDS[0]:g} to {SPEEDS[1]:g} (default: 1)",
-    )
-    parser.add_argument(
-        "--map",
-        choices=("home", "none"),
-        default="home",
-        help="whether the robot knows the home, or makes a map of it (default: home)",
-    )
-    parser.add_argument(
-        "--bin",
-        type=_positive,
-        metavar="GRAMS",
-        help="how much its dust bin takes (default: as the configuration says)",
-    )
-    parser.add_argument(
-        "--wheels",
-        choices=("factory", "worn"),
-        help="worn: wheels, gyro and lidar are off by up to 2 %% (default: as configured)",
-    )
+    add_robot_options(parser)
     add_page_options(parser)
     return parser
-
-
-def _number(is_right: Callable[[float], bool], expected: str) -> Callable[[str], float]:
-    """Return a reader of numbers; of another one it says what was expected."""
-
-    def read(text: str) -> float:
-        try:
-            number = float(text)
-        except ValueError:
-            number = math.nan
-        if not is_right(number):
-            raise argparse.ArgumentTypeError(f"expected a number {expected}, got {text!r}")
-        return number
-
-    return read
-
-
-_positive = _number(lambda number: 0.0 < number < math.inf, "above 0")
-_speed = _number(
-    lambda number: SPEEDS[0] <= number <= SPEEDS[1], f"from {SPEEDS[0]:g} to {SPEEDS[1]:g}"
-)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,14 +15,19 @@ from roomba.errors import RoombaError
 from roomba.geometry import STANDSTILL, Pose, Twist
 from roomba.headless.cleaner import HeadlessMission
 from roomba.headless.live.camera import LiveCamera
+from roomba.headless.live.errands import begin_exploring
 from roomba.headless.live.floor_plan import FloorPlan, made
 from roomba.headless.live.robot import LiveRobot
-from roomba.headless.live.snapshots import Snapshots
+from roomba.headless.live.snapshots import ErrandsEnded, Snapshots
 from roomba.mission.cleaning.request import CleanRequest
 from roomba.mission.phases.machine import Event, Phase
 from roomba.perception.rooms.rooms import Rooms
 from roomba.vocabulary import CleanMode, FanLevel
 from roomba.world.home.home import Home
+
+_Answer = TypeVar("_Answer")
+Watcher = Callable[[HeadlessMission, ErrandsEnded], None]
+"""Is shown the robot, and what ended since the last call."""
 
 
 class LiveClient:
@@ -32,7 +38,8 @@ class LiveClient:
     ) -> None:
         """Start nothing yet."""
         self._snapshots = Snapshots(home, robot, FloorPlan(rooms))
-        self._live = LiveRobot(robot, speed, self._snapshots.observe)
+        self._live = LiveRobot(robot, speed, self._observe)
+        self._watchers: list[Watcher] = []
         self._camera = LiveCamera(home, robot.robot.camera)
         body = robot.robot.body
         self._limits = view.PageLimits(body.max_speed, body.max_angular_speed)
@@ -44,6 +51,44 @@ class LiveClient:
     def end(self) -> None:
         """Let its time stop."""
         self._live.stop()
+
+    # ---------------------------------------------------------------- what other clients need
+
+    def watch(self, watcher: Watcher) -> None:
+        """Let ``watcher`` be called in the robot's thread, after each frame and each command."""
+        self._watchers.append(watcher)
+
+    def ask(self, question: Callable[[HeadlessMission], _Answer], timeout: float = 5.0) -> _Answer:
+        """Let the robot's thread answer a question, within ``timeout`` s of wall time.
+
+        Raises RequestRefusedError with the reason, RobotUnavailableError.
+        """
+        try:
+            return self._live.carry_out(question, timeout)
+        except (RobotUnavailableError, RequestRefusedError):
+            raise
+        except (RoombaError, ValueError) as refusal:
+            raise RequestRefusedError(str(refusal)) from refusal
+
+    def obey(self, command: Callable[[HeadlessMission], None]) -> None:
+        """Let the robot obey; what it refuses is RequestRefusedError with its reason."""
+
+        def obey(robot: HeadlessMission) -> None:
+            command(robot)
+            self._snapshots.look(robot)
+            self._tell(robot)
+
+        self.ask(obey)
+
+    @property
+    def speed(self) -> float:
+        """The robot's seconds per second of the wall clock, if the machine keeps up."""
+        return self._live.speed
+
+    @property
+    def ending(self) -> str:
+        """Why the robot's time does not pass any more; empty while it does."""
+        return self._live.ending
 
     # ---------------------------------------------------------------- what a page reads
 
@@ -81,20 +126,11 @@ class LiveClient:
             robot.mission.clean(request, robot.senses())
             self._snapshots.begin_coverage()
 
-        self._obey(begin)
+        self.obey(begin)
 
     def explore(self) -> None:
         """Begin to look at what the map does not show yet."""
-
-        def begin(robot: HeadlessMission) -> None:
-            if robot.brain.mapper is None:
-                raise RequestRefusedError(
-                    "the robot was given a map of this home, so there is nothing to explore; "
-                    "start it with --map none"
-                )
-            robot.mission.explore(robot.senses())
-
-        self._obey(begin)
+        self.obey(begin_exploring)
 
     def go_to(self, x: float, y: float) -> None:
         """Walk to a point; an errand under way is paused."""
@@ -102,7 +138,7 @@ class LiveClient:
         def walk(robot: HeadlessMission) -> None:
             robot.brain.walk(x, y)
 
-        self._obey(walk)
+        self.obey(walk)
 
     def dock(self) -> None:
         """Go to the charging station."""
@@ -123,7 +159,7 @@ class LiveClient:
             robot.brain.walking.end()
             robot.mission.command(Event.STOP, robot.senses())
 
-        self._obey(stop)
+        self.obey(stop)
 
     def locate(self) -> None:
         """Beep: a simulated robot has no speaker, the page shows it."""
@@ -136,7 +172,7 @@ class LiveClient:
             robot.look()
             robot.mission.empty_bin(robot.senses())
 
-        self._obey(empty)
+        self.obey(empty)
 
     def emergency_stop(self, reason: str) -> None:
         """Hold the drive until it is released."""
@@ -187,36 +223,30 @@ class LiveClient:
     def _edit(self, change: Callable[[FloorPlan], FloorPlan]) -> None:
         """Let the mission go on with other rooms and zones."""
         seen = self._snapshots
-        self._obey(lambda robot: seen.use(robot, change(seen.plan)))
+        self.obey(lambda robot: seen.use(robot, change(seen.plan)))
 
     # ---------------------------------------------------------------- to play with
 
     def spill_dirt(self, x: float, y: float) -> None:
         """Spill a heap of dirt."""
-        self._obey(lambda robot: robot.simulator.spill(x, y, *SPILL))
+        self.obey(lambda robot: robot.simulator.spill(x, y, *SPILL))
 
     def place_chair(self, x: float, y: float) -> None:
         """Put a chair where it stands in the way."""
-        self._obey(lambda robot: robot.simulator.place_chair(Pose(x, y, 0.0)))
+        self.obey(lambda robot: robot.simulator.place_chair(Pose(x, y, 0.0)))
 
     # ---------------------------------------------------------------- in the robot's thread
 
     def _command(self, event: Event, reason: str = "") -> None:
-        self._obey(lambda robot: robot.mission.command(event, robot.senses(), reason))
+        self.obey(lambda robot: robot.mission.command(event, robot.senses(), reason))
 
-    def _obey(self, command: Callable[[HeadlessMission], None]) -> None:
-        """Let the robot obey; what it refuses is RequestRefusedError with its reason."""
+    def _observe(self, robot: HeadlessMission) -> None:
+        self._snapshots.observe(robot)
+        self._tell(robot)
 
-        def obey(robot: HeadlessMission) -> None:
-            command(robot)
-            self._snapshots.look(robot)
-
-        try:
-            self._live.carry_out(obey)
-        except (RobotUnavailableError, RequestRefusedError):
-            raise
-        except (RoombaError, ValueError) as refusal:
-            raise RequestRefusedError(str(refusal)) from refusal
+    def _tell(self, robot: HeadlessMission) -> None:
+        for watcher in self._watchers:
+            watcher(robot, self._snapshots.ended)
 
 
 def _request_of(order: view.CleanOrder) -> CleanRequest:

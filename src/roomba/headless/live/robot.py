@@ -57,25 +57,35 @@ class LiveRobot:
         self._ends.set()
         self._thread.join(_ANSWER)
 
-    def carry_out(self, command: Callable[[HeadlessMission], _Answer]) -> _Answer:
+    def carry_out(
+        self, command: Callable[[HeadlessMission], _Answer], timeout: float = _ANSWER
+    ) -> _Answer:
         """Let the robot's thread call ``command`` between two frames, and return its answer.
 
-        Raises what it raises, and RobotUnavailableError when the robot ended or does not answer.
+        Raises what it raises, and RobotUnavailableError when the robot ended or does not answer
+        within ``timeout`` s of wall time.
         """
-        if self._failure is not None or not self._thread.is_alive():
-            raise RobotUnavailableError(f"the robot has ended{self._reason}; start it again")
+        if self.ending:
+            raise RobotUnavailableError(f"{self.ending}; start it again")
         answer: Future[_Answer] = Future()
         self._commands.put((command, answer))
         try:
-            return answer.result(_ANSWER)
+            return answer.result(timeout)
         except FutureTimeoutError:
             raise RobotUnavailableError(
-                f"expected the robot's answer within {_ANSWER:g} s, got none{self._reason}"
+                f"expected the robot's answer within {timeout:g} s, got none{self._reason}"
             ) from None
 
     def drive(self, twist: Twist) -> None:
         """Drive by hand for the next half second."""
         self._by_hand, self._hand_heard = twist, time.monotonic()
+
+    @property
+    def ending(self) -> str:
+        """Why its time does not pass any more; empty while it does."""
+        if self._failure is None and self._thread.is_alive():
+            return ""
+        return f"the robot has ended{self._reason}"
 
     @property
     def _reason(self) -> str:

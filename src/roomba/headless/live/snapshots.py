@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import itertools
 import threading
+from dataclasses import dataclass
 
-from roomba.client.protocol import CleanReport, RobotUnavailableError
-from roomba.client.view import GridLayer, HomeView, RobotView, known_cells
+from roomba.client.protocol import CleanReport, ExploreReport, RobotUnavailableError
+from roomba.client.view import GridLayer, HomeView, RobotView, exploration_as_clean, known_cells
 from roomba.headless.cleaner import HeadlessMission
 from roomba.headless.live.floor_plan import FloorPlan
 from roomba.headless.live.views import (
@@ -21,6 +22,14 @@ from roomba.perception.swept.visits import Visits
 from roomba.world.home.home import Home
 
 
+@dataclass(frozen=True, slots=True)
+class ErrandsEnded:
+    """How errands ended that did since the last look."""
+
+    clean: CleanReport | None = None
+    exploration: ExploreReport | None = None
+
+
 class Snapshots:
     """The newest snapshots; they may be read from any thread, all else is for the robot's own."""
 
@@ -32,6 +41,7 @@ class Snapshots:
         self._view: RobotView | None = None
         self._home_view: HomeView | None = None
         self._last: CleanReport | None = None
+        self.ended = ErrandsEnded()
         self._map: GridLayer | None = None
         self._map_of: object = None
         self._visits = Visits(robot.mission.context.occupancy.frame, robot.robot.brush.width)
@@ -107,12 +117,16 @@ class Snapshots:
             self._visits.sweep(robot.seen.time, pose.x, pose.y)
 
     def _take_results(self, robot: HeadlessMission) -> None:
-        clean = robot.mission.take_result()
-        if clean is not None:
-            self._last = clean_report(clean)
-        exploration = robot.mission.take_exploration()
-        if exploration is not None:
-            self._last = exploration_report(exploration)
+        clean, exploration = robot.mission.take_result(), robot.mission.take_exploration()
+        self.ended = ended = ErrandsEnded(
+            None if clean is None else clean_report(clean),
+            None if exploration is None else exploration_report(exploration),
+        )
+        if ended.clean is not None:
+            self._last = ended.clean
+        if ended.exploration is not None:
+            end = ended.exploration
+            self._last = exploration_as_clean(end.outcome, end.message, end.distance, end.duration)
             robot.brain.finish_map()
 
     def _follow_map(self, robot: HeadlessMission) -> None:

@@ -9,7 +9,13 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from roomba.client.protocol import CleanReport, ErrandOutcome, MissedFloor, VacuumSnapshot
+from roomba.client.protocol import (
+    CleanReport,
+    ErrandOutcome,
+    ExploreReport,
+    MissedFloor,
+    VacuumSnapshot,
+)
 from roomba.client.view import (
     MOST_PATH,
     GridLayer,
@@ -18,7 +24,6 @@ from roomba.client.view import (
     RobotView,
     RoomView,
     ZoneView,
-    exploration_as_clean,
 )
 from roomba.headless.cleaner import HeadlessMission
 from roomba.mission.cleaning.request import CleanResult
@@ -165,7 +170,12 @@ def clean_report(result: CleanResult) -> CleanReport:
     )
 
 
-def exploration_report(result: ExploreResult) -> CleanReport:
-    """Return how an exploration ended, in the words of a clean."""
-    outcome = ErrandOutcome(result.outcome.value)
-    return exploration_as_clean(outcome, result.message, result.distance, result.duration)
+def exploration_report(result: ExploreResult) -> ExploreReport:
+    """Return how an exploration ended."""
+    return ExploreReport(
+        ErrandOutcome(result.outcome.value),
+        result.message,
+        result.known,
+        result.distance,
+        result.duration,
+    )

@@ -11,7 +11,7 @@ from fixtures.waiting import wait_until
 
 from roomba.client.protocol import RequestRefusedError, RobotUnavailableError
 from roomba.client.view import CleanOrder, LayerName, ZoneView
-from roomba.commands.play.command import live_client
+from roomba.commands.play.living import live_client
 from roomba.headless.live.client import LiveClient
 
 DEADLINE = 20.0

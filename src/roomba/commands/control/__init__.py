@@ -1,0 +1,1 @@
+"""``roomba control --demo``: the menu over a robot that lives in a simulated home."""

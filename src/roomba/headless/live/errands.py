@@ -1,0 +1,333 @@
+"""Walks and errands of a live robot: begun, followed and ended in the robot's thread, and waited
+for in others."""
+
+from __future__ import annotations
+
+import threading
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from typing import Final, Generic, TypeVar
+
+from roomba.client.protocol import (
+    CleanProgress,
+    CleanReport,
+    DockReport,
+    ErrandOutcome,
+    ExploreReport,
+    WalkOutcome,
+    WalkReport,
+)
+from roomba.configuration.nodes import WalkEndConfig
+from roomba.errors import RoombaError
+from roomba.grid import OccupancyMap
+from roomba.headless.cleaner import HeadlessMission
+from roomba.headless.live.snapshots import ErrandsEnded
+from roomba.headless.live.views import vacuum_snapshot
+from roomba.mission.cleaning.request import CleanRequest
+from roomba.mission.commands import CommandRefusedError
+from roomba.mission.phases.machine import Errand, Event, Phase
+from roomba.mission.walking.walk import WalkState, expected_duration, feedback_period
+
+NEWER: Final = "a newer goal took over"
+_PERIOD: Final = 1.0
+"""s of the robot's clock between two news of an errand, as on ROS."""
+
+_News = TypeVar("_News")
+_Report = TypeVar("_Report")
+Obey = Callable[[Callable[[HeadlessMission], None]], None]
+"""Lets the robot carry out a command."""
+
+
+class LiveErrand(ABC, Generic[_News, _Report]):
+    """One thing that the robot is to do.
+
+    ``obey`` lets the robot carry out a command, ``ending`` tells why its time does not pass any
+    more, and ``pace`` is its seconds per second: one that is slow tells news more often.
+    """
+
+    def __init__(self, obey: Obey, ending: Callable[[], str], pace: float) -> None:
+        """Begin nothing yet."""
+        self._obey, self._ending = obey, ending
+        self._slowness = min(1.0, pace)
+        self._period = _PERIOD * self._slowness
+        self._told = threading.Condition()
+        self._news: _News | None = None
+        self._report: _Report | None = None
+        self._began = self._due = 0.0
+
+    # ---------------------------------------------------------------- for who waits
+
+    def next_feedback(self, timeout: float) -> _News | None:
+        """Wait up to ``timeout`` s of wall time for news, else None; None at once at its end."""
+        with self._told:
+            self._told.wait_for(lambda: self.has_ended or self._news is not None, timeout)
+            if self.report() is not None:
+                return None
+            news, self._news = self._news, None
+            return news
+
+    def report(self) -> _Report | None:
+        """Return its end, or None while it lasts."""
+        with self._told:
+            if self._report is None and self._ending():
+                self._report = self._lost(self._ending())
+            return self._report
+
+    def cancel(self) -> None:
+        """Let the robot stop and stay."""
+        self._obey(lambda robot: None if self.has_ended else self._cancel(robot))
+
+    # ---------------------------------------------------------------- in the robot's thread
+
+    @property
+    def has_ended(self) -> bool:
+        """Whether its end is known."""
+        return self._report is not None
+
+    def begin(self, robot: HeadlessMission) -> bool:
+        """Let the robot begin, and return whether it does; else the report says why not."""
+        self._began = self._due = robot.seen.time
+        try:
+            self._begin(robot)
+        except (RoombaError, ValueError) as refusal:
+            self._end(self._refused(str(refusal)))
+        return not self.has_ended
+
+    @abstractmethod
+    def follow(self, robot: HeadlessMission, ended: ErrandsEnded) -> None:
+        """Tell how far it is, and its end if it has ended."""
+
+    @abstractmethod
+    def give_way(self) -> None:
+        """End, because something newer took over."""
+
+    @abstractmethod
+    def _begin(self, robot: HeadlessMission) -> None:
+        """Let the robot begin; raises RoombaError with the reason why not."""
+
+    def _cancel(self, robot: HeadlessMission) -> None:
+        robot.mission.command(Event.STOP, robot.senses())
+
+    @abstractmethod
+    def _refused(self, reason: str) -> _Report:
+        """Return the report of what is not begun."""
+
+    @abstractmethod
+    def _lost(self, reason: str) -> _Report:
+        """Return the report of what has no end, as the robot's time ended."""
+
+    def _is_due(self, robot: HeadlessMission) -> bool:
+        """Whether it is time for news, which is so each period."""
+        if robot.seen.time < self._due:
+            return False
+        self._due = robot.seen.time + self._period
+        return True
+
+    def _tell(self, news: _News) -> None:
+        with self._told:
+            self._news = news
+            self._told.notify_all()
+
+    def _end(self, report: _Report) -> None:
+        with self._told:
+            self._report = report
+            self._told.notify_all()
+
+
+class LiveWalk(LiveErrand[float, WalkReport]):
+    """A walk to a point, m."""
+
+    def __init__(
+        self, obey: Obey, ending: Callable[[], str], pace: float, goal: tuple[float, float]
+    ) -> None:
+        """Begin nothing yet."""
+        super().__init__(obey, ending, pace)
+        self._goal = goal
+        self._way_before = self._way = self._duration = 0.0
+        self._rest_by: float | None = None
+
+    def _begin(self, robot: HeadlessMission) -> None:
+        walk = robot.brain.walk(*self._goal)
+        duration = expected_duration(walk.path, robot.robot.body.max_speed)
+        self._period = feedback_period(duration) * self._slowness
+        self._way_before = robot.simulator.numbers["distance"]
+        if self._is_due(robot):
+            self._tell(walk.path.length)
+
+    def follow(self, robot: HeadlessMission, ended: ErrandsEnded) -> None:
+        """Tell what is left of the path, or how it ended; one that was ended, when it stands."""
+        self._way = robot.simulator.numbers["distance"] - self._way_before
+        self._duration = robot.seen.time - self._began
+        walking = robot.brain.walking
+        if walking.is_under_way:
+            if self._is_due(robot):
+                self._tell(walking.newest.distance_left)
+        elif walking.ended is None:
+            self._come_to_rest(robot)
+        elif walking.ended.state is WalkState.ARRIVED:
+            self._end(self._reported(WalkOutcome.ARRIVED, ""))
+        else:
+            self._end(self._reported(WalkOutcome.FAILED, walking.ended.reason))
+
+    def give_way(self) -> None:
+        """End, because something newer took over."""
+        self._end(self._reported(WalkOutcome.CANCELLED, NEWER))
+
+    def _cancel(self, robot: HeadlessMission) -> None:
+        robot.brain.walking.end()
+
+    def _come_to_rest(self, robot: HeadlessMission) -> None:
+        end, now = WalkEndConfig(), robot.seen.time
+        if self._rest_by is None:
+            self._rest_by = now + end.longest_braking
+        stands = abs(robot.seen.odometry_twist.linear) <= end.standstill
+        if robot.mission.state.drives:
+            self.give_way()
+        elif stands or now >= self._rest_by:
+            self._end(self._reported(WalkOutcome.CANCELLED, ""))
+
+    def _refused(self, reason: str) -> WalkReport:
+        return self._reported(WalkOutcome.REFUSED, reason)
+
+    def _lost(self, reason: str) -> WalkReport:
+        return self._reported(WalkOutcome.DISCONNECTED, reason)
+
+    def _reported(self, outcome: WalkOutcome, message: str) -> WalkReport:
+        return WalkReport(outcome, self._way, self._duration, message)
+
+
+class LiveClean(LiveErrand[CleanProgress, CleanReport]):
+    """A clean."""
+
+    def __init__(
+        self, obey: Obey, ending: Callable[[], str], pace: float, request: CleanRequest
+    ) -> None:
+        """Begin nothing yet."""
+        super().__init__(obey, ending, pace)
+        self._request = request
+
+    def _begin(self, robot: HeadlessMission) -> None:
+        robot.mission.clean(self._request, robot.senses())
+
+    def follow(self, robot: HeadlessMission, ended: ErrandsEnded) -> None:
+        """Tell how much is clean."""
+        if ended.clean is not None:
+            self._end(ended.clean)
+        elif self._is_due(robot):
+            now = vacuum_snapshot(robot)
+            self._tell(
+                CleanProgress(
+                    now.state,
+                    now.room,
+                    now.covered,
+                    now.wanted,
+                    now.fraction,
+                    now.seconds_to_go,
+                    now.battery,
+                )
+            )
+
+    def give_way(self) -> None:
+        """End, because something newer took over."""
+        self._end(_empty_clean(ErrandOutcome.STOPPED, NEWER))
+
+    def _refused(self, reason: str) -> CleanReport:
+        return _empty_clean(ErrandOutcome.REFUSED, reason)
+
+    def _lost(self, reason: str) -> CleanReport:
+        return _empty_clean(ErrandOutcome.DISCONNECTED, reason)
+
+
+class LiveExploring(LiveErrand[float, ExploreReport]):
+    """An exploration."""
+
+    _known = 0.0
+    _looked_at: OccupancyMap | None = None
+
+    def _begin(self, robot: HeadlessMission) -> None:
+        begin_exploring(robot)
+
+    def follow(self, robot: HeadlessMission, ended: ErrandsEnded) -> None:
+        """Tell how much floor is known."""
+        if ended.exploration is not None:
+            self._end(ended.exploration)
+            return
+        occupancy = robot.mission.context.occupancy
+        if occupancy is not self._looked_at:
+            self._looked_at, self._known = occupancy, occupancy.free_area
+        if self._is_due(robot):
+            self._tell(self._known)
+
+    def give_way(self) -> None:
+        """End, because something newer took over."""
+        self._end(self._reported(ErrandOutcome.STOPPED, NEWER))
+
+    def _refused(self, reason: str) -> ExploreReport:
+        return self._reported(ErrandOutcome.REFUSED, reason)
+
+    def _lost(self, reason: str) -> ExploreReport:
+        return self._reported(ErrandOutcome.DISCONNECTED, reason)
+
+    def _reported(self, outcome: ErrandOutcome, reason: str) -> ExploreReport:
+        return ExploreReport(outcome, reason, self._known, float("nan"), float("nan"))
+
+
+class LiveDocking(LiveErrand[str, DockReport]):
+    """A way into the station, or out of it with Event.UNDOCK."""
+
+    def __init__(
+        self, obey: Obey, ending: Callable[[], str], pace: float, event: Event = Event.DOCK
+    ) -> None:
+        """Begin nothing yet."""
+        super().__init__(obey, ending, pace)
+        self._event = event
+        is_in = event is Event.DOCK
+        self._errand = Errand.DOCK if is_in else Errand.UNDOCK
+        self._there = Phase.DOCKED if is_in else Phase.IDLE
+
+    def _begin(self, robot: HeadlessMission) -> None:
+        robot.mission.command(self._event, robot.senses())
+
+    def follow(self, robot: HeadlessMission, ended: ErrandsEnded) -> None:
+        """Tell what it does."""
+        state = robot.mission.state
+        if state.phase in (Phase.ERROR, Phase.EMERGENCY):
+            self._end(DockReport(ErrandOutcome.FAULT, robot.mission.message))
+        elif state.errand is self._errand:
+            if self._is_due(robot):
+                self._tell(state.phase.value)
+        elif state.phase is self._there:
+            self._end(DockReport(ErrandOutcome.COMPLETED, ""))
+        else:
+            self._end(DockReport(ErrandOutcome.STOPPED, "it was stopped"))
+
+    def give_way(self) -> None:
+        """End, because something newer took over."""
+        self._end(DockReport(ErrandOutcome.STOPPED, NEWER))
+
+    def _cancel(self, robot: HeadlessMission) -> None:
+        super()._cancel(robot)
+        # Out of the station it would stand where it was to come to.
+        self._end(DockReport(ErrandOutcome.STOPPED, "it was stopped"))
+
+    def _refused(self, reason: str) -> DockReport:
+        return DockReport(ErrandOutcome.REFUSED, reason)
+
+    def _lost(self, reason: str) -> DockReport:
+        return DockReport(ErrandOutcome.DISCONNECTED, reason)
+
+
+def begin_exploring(robot: HeadlessMission) -> None:
+    """Begin to look at what the map does not show yet; raises CommandRefusedError."""
+    if not robot.mission.context.is_growing:
+        raise CommandRefusedError(
+            "the robot knows the map of this home, so there is nothing to explore; to let it make "
+            "one anew, start it with --map none"
+        )
+    robot.mission.explore(robot.senses())
+
+
+def _empty_clean(outcome: ErrandOutcome, reason: str) -> CleanReport:
+    """Return the report of a clean of which there are no numbers."""
+    nan = float("nan")
+    return CleanReport(outcome, reason, nan, nan, nan, nan, nan, nan)
