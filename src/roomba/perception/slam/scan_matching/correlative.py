@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 Likelihoods = NDArray[np.uint8]
+Cells = NDArray[np.int32]
 
 _CELL: Final = 0.05
 """m; of the finest grid."""
@@ -153,9 +154,7 @@ def _heighten(levels: Likelihoods) -> None:
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _score(
-    grid: Likelihoods, columns: NDArray[np.int32], rows: NDArray[np.int32], right: int, up: int
-) -> float:
+def _score(grid: Likelihoods, columns: Cells, rows: Cells, right: int, up: int) -> float:
     """Return the mean likelihood of points in cells that are shifted right and up, 0..1."""
     total = 0
     for index in range(columns.size):
@@ -163,6 +162,91 @@ def _score(
         if 0 <= row < grid.shape[0] and 0 <= column < grid.shape[1]:
             total += grid[row, column]
     return total / (columns.size * float(_FULL))
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _cells_of(
+    points: Floats,
+    around: Floats,
+    corner: Floats,
+    cell: float,
+    turns: int,
+    turn_step: float,
+) -> tuple[Cells, Cells]:
+    """Return columns and rows of points that are placed at ``around``, int32 [2 * turns + 1, n].
+
+    Each line is of a heading that is ``turn_step``, rad, further than that of the line before it;
+    the middle one is of the heading of ``around``.
+    """
+    count, angles = points.shape[0], 2 * turns + 1
+    columns = np.empty((angles, count), np.int32)
+    rows = np.empty((angles, count), np.int32)
+    for angle in range(angles):
+        theta = around[2] + (angle - turns) * turn_step
+        cosine, sine = math.cos(theta), math.sin(theta)
+        for index in range(count):
+            x = around[0] + cosine * points[index, 0] - sine * points[index, 1]
+            y = around[1] + sine * points[index, 0] + cosine * points[index, 1]
+            columns[angle, index] = math.floor((x - corner[0]) / cell)
+            rows[angle, index] = math.floor((y - corner[1]) / cell)
+    return columns, rows
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _largest_blocks(
+    grid: Likelihoods, columns: Cells, rows: Cells, block: int, reach: int
+) -> tuple[Floats, Cells]:
+    """Return the bounds [n] of all blocks of the coarsest grid, and angle, right and up [n, 3].
+
+    They cover shifts of up to ``reach`` cells; each has ``block`` cells a side.
+    """
+    angles, per_side = columns.shape[0], 2 * reach // block + 1
+    scores = np.empty(angles * per_side * per_side)
+    places = np.empty((angles * per_side * per_side, 3), np.int32)
+    many = 0
+    for angle in range(angles):
+        for across in range(per_side):
+            for along in range(per_side):
+                right, up = along * block - reach, across * block - reach
+                scores[many] = _score(grid, columns[angle], rows[angle], right, up)
+                places[many, 0], places[many, 1], places[many, 2] = angle, right, up
+                many += 1
+    return scores, places
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _is_near(right: int, up: int, size: int, x: float, y: float, square: float) -> bool:
+    """Whether no shift of a block, ``size`` cells a side, counts: all are near the shift x, y.
+
+    ``square`` is that of the distance, cells, from which on a shift counts. The corner of the block
+    that is farthest off decides.
+    """
+    far_x = max(abs(right - x), abs(right + size - 1 - x))
+    far_y = max(abs(up - y), abs(up + size - 1 - y))
+    return far_x * far_x + far_y * far_y < square
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _insert(
+    bounds: Floats,
+    pending: Cells,
+    first: int,
+    waiting: int,
+    bound: float,
+    block: tuple[int, int, int, int],
+) -> None:
+    """Put a block, (level, angle, right, up), on the stack of ``waiting`` ones.
+
+    From ``first`` on the stack stays in the order of bounds: the best is taken next.
+    """
+    place = waiting
+    while place > first and bounds[place - 1] > bound:
+        bounds[place] = bounds[place - 1]
+        pending[place] = pending[place - 1]
+        place -= 1
+    bounds[place] = bound
+    pending[place, 0], pending[place, 1] = block[0], block[1]
+    pending[place, 2], pending[place, 3] = block[2], block[3]
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -190,29 +274,8 @@ def _search(
     top = levels.shape[0] - 1
     beside_x, beside_y, beside_square = beside[0] / cell, beside[1] / cell, (beside[2] / cell) ** 2
     turns, reach = math.ceil(turn / turn_step), math.ceil(window / cell)
-    count, angles = points.shape[0], 2 * turns + 1
-    columns = np.empty((angles, count), np.int32)
-    rows = np.empty((angles, count), np.int32)
-    for angle in range(angles):
-        theta = around[2] + (angle - turns) * turn_step
-        cosine, sine = math.cos(theta), math.sin(theta)
-        for index in range(count):
-            x = around[0] + cosine * points[index, 0] - sine * points[index, 1]
-            y = around[1] + sine * points[index, 0] + cosine * points[index, 1]
-            columns[angle, index] = math.floor((x - corner[0]) / cell)
-            rows[angle, index] = math.floor((y - corner[1]) / cell)
-    block = 1 << top
-    per_side = 2 * reach // block + 1
-    scores = np.empty(angles * per_side * per_side)
-    places = np.empty((angles * per_side * per_side, 3), np.int32)
-    many = 0
-    for angle in range(angles):
-        for across in range(per_side):
-            for along in range(per_side):
-                right, up = along * block - reach, across * block - reach
-                scores[many] = _score(levels[top], columns[angle], rows[angle], right, up)
-                places[many, 0], places[many, 1], places[many, 2] = angle, right, up
-                many += 1
+    columns, rows = _cells_of(points, around, corner, cell, turns, turn_step)
+    scores, places = _largest_blocks(levels[top], columns, rows, 1 << top, reach)
     best, best_angle, best_right, best_up = least, -1, 0, 0
     pending = np.empty((4 * (top + 1), 4), np.int32)
     bounds = np.empty(4 * (top + 1))
@@ -229,11 +292,7 @@ def _search(
                 continue
             level, angle = pending[waiting, 0], pending[waiting, 1]
             right, up = pending[waiting, 2], pending[waiting, 3]
-            # The corner of the block that is farthest from what does not count.
-            size = (1 << level) - 1
-            far_x = max(abs(right - beside_x), abs(right + size - beside_x))
-            far_y = max(abs(up - beside_y), abs(up + size - beside_y))
-            if far_x * far_x + far_y * far_y < beside_square:
+            if _is_near(right, up, 1 << level, beside_x, beside_y, beside_square):
                 continue
             if level == 0:
                 best, best_angle, best_right, best_up = bounds[waiting], angle, right, up
@@ -247,14 +306,8 @@ def _search(
                 bound = _score(levels[level - 1], columns[angle], rows[angle], next_right, next_up)
                 if bound <= best:
                     continue
-                place = waiting
-                while place > first and bounds[place - 1] > bound:
-                    bounds[place] = bounds[place - 1]
-                    pending[place] = pending[place - 1]
-                    place -= 1
-                bounds[place] = bound
-                pending[place, 0], pending[place, 1] = level - 1, angle
-                pending[place, 2], pending[place, 3] = next_right, next_up
+                block = level - 1, angle, next_right, next_up
+                _insert(bounds, pending, first, waiting, bound, block)
                 waiting += 1
     if best_angle < 0:
         return False
