@@ -56,7 +56,6 @@ LONGEST_FIRST = (
     "test_control_node.py",
     "test_explore.py",
     "test_ros_interface.py",
-    "test_localize.py",
     "test_page.py",
     "test_pictures.py",
     "test_page_on_graph.py",
@@ -67,6 +66,7 @@ that wait and those that compute by turns."""
 
 SLOW = (
     "unit/benchmarks",
+    "unit/commands/localize",
     "unit/commands/map",
     "unit/commands/pictures/test_pictures.py",
     "unit/headless",

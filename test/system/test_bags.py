@@ -1,5 +1,6 @@
 """Recording a run and playing it again."""
 
+import json
 import math
 import signal
 from pathlib import Path
@@ -11,7 +12,14 @@ from fixtures.forked import run_forked
 from fixtures.graph import RosGraph
 from fixtures.probe import Probe, Walker
 from fixtures.waiting import wait_until
-from roomba_robot.msg import RobotPosition
+from geometry_msgs.msg import Pose as PoseMessage
+from geometry_msgs.msg import PoseStamped, PoseWithCovarianceStamped
+from roomba_robot.msg import Localization, RobotPosition
+
+from roomba.commands.localize.command import main
+from roomba.files.shipped import HOMES
+
+NAMES = ("pose", "amcl")
 
 
 @pytest.fixture(scope="module")
@@ -81,6 +89,37 @@ def test_a_replay_shows_the_same_run(bag: Path, graph: RosGraph, clock: tuple[st
     wait_until(lambda: heard[-1:] == recorded[-1:], 10.0, "the end of the run")
     assert len(heard) > 0.8 * len(recorded)
     assert set(heard) <= set(recorded)
+
+
+def test_a_recording_is_localized_and_what_was_found_is_played(
+    bag: Path, graph: RosGraph, tmp_path: Path
+) -> None:
+    output, figures = tmp_path / "localized.bag", tmp_path / "figures.json"
+    words = ["--map", HOMES / "flat" / "map.yaml", "--bag", bag, "--quiet"]
+    assert main(list(map(str, [*words, "--output", output, "--json", figures]))) == 0
+    values = json.loads(figures.read_text("utf-8"))
+    assert values["shares"]["known"] > 0.9
+    assert values["differences"][0]["median"] < 0.05
+    graph.set_param("/use_sim_time", True)
+    probe = Probe(graph)
+    ends: dict[str, tuple[float, float]] = {}
+    rospy.Subscriber("/pose", PoseStamped, lambda m: ends.update(pose=place_of(m.pose)))
+    rospy.Subscriber(
+        "/amcl_pose", PoseWithCovarianceStamped, lambda m: ends.update(amcl=place_of(m.pose.pose))
+    )
+    probe.hear("/localization", Localization)
+    player = graph.run("rosbag", "play", "-d", "2", "-r", "4", "-q", "--clock", str(output))
+    assert probe.next("/localization", Localization).state == Localization.KNOWN
+    assert player.ends(60.0) == 0
+    wait_until(
+        lambda: all(math.dist(ends.get(topic, (0.0, 0.0)), (1.5, 2.0)) < 0.1 for topic in NAMES),
+        10.0,
+        "the end of the run",
+    )
+
+
+def place_of(pose: PoseMessage) -> tuple[float, float]:
+    return pose.position.x, pose.position.y
 
 
 def wait_for_a_jump_back() -> None:

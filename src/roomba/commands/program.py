@@ -17,6 +17,7 @@ from roomba.commands.spelling import spelled
 _COMMANDS: Final = {
     "sim": "roomba.commands.sim.command",
     "map": "roomba.commands.map.command",
+    "localize": "roomba.commands.localize.command",
     "play": "roomba.commands.play.command",
     "replay": "roomba.commands.play.replay",
     "status": "roomba.commands.status.command",
@@ -31,7 +32,7 @@ _OF_RECORDINGS: Final = {"map": "roomba.commands.map.drive.command"}
 """The same of a command with ``--bag``."""
 _DEMOS: Final = {"control": "roomba.commands.control.command"}
 """The same of a command that needs ROS, but not with ``--demo``."""
-_NEED_ROS: Final = ("run", "control", "camera", "exec", "localize")
+_NEED_ROS: Final = ("run", "control", "camera", "exec")
 _NEED_CHECKOUT: Final = ("test", "bench")
 _USAGE: Final = """\
 usage: roomba COMMAND ...
@@ -41,6 +42,7 @@ usage: roomba COMMAND ...
   map [ARGS]       explore a home without a map, and tell how good the map becomes: --home NAME
                    --seed N, --map FILE.yaml, --out FOLDER, --plot FILE.png; --bag FILE ...: map a
                    recorded drive (see --help)
+  localize ARGS    localize a recorded drive on a map: --map FILE.yaml --bag FILE ... (see --help)
   play [ARGS]      a robot that lives in a home, on a web page: --home NAME, --speed N,
                    --map none (see --help)
   control --demo [ARGS]
@@ -59,8 +61,8 @@ usage: roomba COMMAND ...
   doctor [--json]  what is missing, and how to mend it
   help             this text
 
-The commands run, camera, exec, localize, and control without --demo, need ROS, test and bench the
-checkout: there it is ./roomba COMMAND.
+The commands run, camera, exec, and control without --demo, need ROS, test and bench the checkout:
+there it is ./roomba COMMAND.
 """
 _MODULES: Final = (
     "cv2", "fastapi", "matplotlib", "numba", "numpy", "PIL", "pydantic", "rich", "rosbags", "scipy",

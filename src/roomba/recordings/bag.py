@@ -1,7 +1,7 @@
 """Bags of ROS 1 and 2 (a folder with metadata.yaml, .db3, .mcap), read without ROS by rosbags.
 
-Only standard messages are needed, and their fields are the same in all versions of ROS: what a bag
-says about the types of its messages is not read.
+Only standard messages and those of this robot are needed, and their fields are the same in all
+versions of ROS: what a bag says about the types of its messages is not read.
 """
 
 from __future__ import annotations
@@ -15,23 +15,28 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 from rosbags.serde import SerdeError
-from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 from roomba.perception.matching.mounts import FrameTransform, frame_name
 from roomba.recordings.bag_file import BagFile
 from roomba.recordings.bag_values import LidarBook, decoded, transforms_in
-from roomba.recordings.log import Arrival, Channel, MountOf
+from roomba.recordings.log import Arrival, Channel, Frames, MountOf
+from roomba.recordings.message_types import TRANSFORMS, full_name, known_types
 from roomba.recordings.readings import Kind, Refused, Value
 
 _KINDS: Final[dict[str, Kind]] = {
     "sensor_msgs/LaserScan": Kind.SCAN,
     "nav_msgs/Odometry": Kind.ODOMETRY,
     "sensor_msgs/Imu": Kind.GYRO,
+    "roomba_robot/WheelDrop": Kind.LIFTED,
 }
 _TRUE_POSES: Final = ("ground_truth/pose", "geometry_msgs/PoseStamped")
 """End of a topic's name, and its type."""
-_TRANSFORMS: Final = ("tf2_msgs/TFMessage", "tf/tfMessage")
-_TRANSFORM_FIELDS: Final = "geometry_msgs/TransformStamped[] transforms"
+_TOLD_NAMES, _TOLD_TYPE = ("initialpose", "amcl_pose"), "geometry_msgs/PoseWithCovarianceStamped"
+_OWN_NAMES: Final = ("pose", "position", "amcl_pose")
+_WITHOUT_STAMP: Final = "roomba_robot/RobotPosition"
+_OWN_TYPES: Final = ("geometry_msgs/PoseStamped", _TOLD_TYPE, _WITHOUT_STAMP)
+"""Topics and types of told poses, and of what the robot itself says where it is."""
+_TRANSFORMS: Final = (TRANSFORMS, "tf/tfMessage")
 _FIXED_MESSAGES: Final = 1000
 _MOVING_MESSAGES: Final = 300
 """Messages of /tf_static and /tf that are searched for the mounts of sensors."""
@@ -60,8 +65,9 @@ class BagLog:
     def channels(self) -> Sequence[Channel]:
         """The topics; one of transforms is of odometry if no other one is, and it tells of it."""
         channels = [
-            Channel(name, _kind(name, type_), type_, count)
+            Channel(name, kind, type_, count)
             for name, (type_, count) in self._file.topics.items()
+            for kind in _kinds(name, type_)
         ]
         if any(channel.kind is Kind.ODOMETRY for channel in channels):
             return channels
@@ -72,12 +78,15 @@ class BagLog:
             for channel in channels
         ]
 
-    def base(self, odometry: Channel) -> str:
-        """Return the frame that odometry tells of."""
+    def frames(self, odometry: Channel) -> Frames:
+        """Return the frame of odometry, and that which it tells of."""
         if odometry.type in _TRANSFORMS:
-            return self._moving.child if self._moving is not None else ""
+            return Frames("", "") if self._moving is None else Frames(*self._moving[:2])
         first = next(self._messages(odometry), None)
-        return "" if first is None else frame_name(str(first.child_frame_id))
+        if first is None:
+            return Frames("", "")
+        names = (first.header.frame_id, first.child_frame_id)
+        return Frames(*(frame_name(str(name)) for name in names))
 
     def transforms(self) -> Iterable[FrameTransform]:
         """Return what does not move; of /tf what others than odometry and maps say.
@@ -106,7 +115,8 @@ class BagLog:
                     if self._is_odometry(each):
                         yield Arrival(number, stamp, arrival)
                 continue
-            yield Arrival(number, _stamp_of(raw), arrival)
+            has_stamp = channels[number].type != _WITHOUT_STAMP
+            yield Arrival(number, _stamp_of(raw) if has_stamp else 0.0, arrival)
 
     def values(
         self, channels: Sequence[Channel], wanted: NDArray[np.bool_], mount_of: MountOf
@@ -165,27 +175,32 @@ class BagLog:
         """Return a message; None for one that is cut short."""
         type_ = _TRANSFORMS[0] if channel.type in _TRANSFORMS else channel.type
         try:
-            return self._deserialize(raw, type_.replace("/", "/msg/"))
+            return self._deserialize(raw, full_name(type_))
         except SerdeError:
             return None
 
 
 def _deserializer(is_first: bool) -> Callable[[bytes, str], Any]:
     """Return what makes messages of ROS 1, or else 2, of bytes and the name of a type."""
-    store = get_typestore(Stores.ROS1_NOETIC if is_first else Stores.ROS2_HUMBLE)
-    if is_first:
-        store.register(get_types_from_msg(_TRANSFORM_FIELDS, _TRANSFORMS[0].replace("/", "/msg/")))
+    store = known_types(is_first=is_first)
     made: Callable[[bytes, str], Any] = (
         store.deserialize_ros1 if is_first else store.deserialize_cdr
     )
     return made
 
 
-def _kind(name: str, type_: str) -> Kind | None:
+def _kinds(name: str, type_: str) -> list[Kind | None]:
+    """Return what a topic tells; of some robots their own pose is told to them as well."""
     end, true_type = _TRUE_POSES
     if type_ == true_type and name.endswith(end):
-        return Kind.TRUTH
-    return _KINDS.get(type_)
+        return [Kind.TRUTH]
+    last = name.rpartition("/")[2]
+    kinds: list[Kind | None] = []
+    if type_ == _TOLD_TYPE and last in _TOLD_NAMES:
+        kinds.append(Kind.TOLD)
+    if type_ in _OWN_TYPES and last in _OWN_NAMES:
+        kinds.append(Kind.OWN_POSE)
+    return kinds or [_KINDS.get(type_)]
 
 
 def _may_move(channel: Channel) -> bool:

@@ -13,19 +13,27 @@ from typing import Any, Final
 import numpy as np
 
 from roomba.geometry import Pose
-from roomba.perception.matching.mounts import FrameTransform
+from roomba.perception.matching.mounts import FrameTransform, frame_name
 from roomba.perception.matching.scan_view import LidarModel
 from roomba.recordings.log import MountOf
 from roomba.recordings.readings import (
     UNUSABLE_SCANS,
     Kind,
     LidarScan,
+    Lifted,
     Odometry,
+    OwnPose,
     Refused,
+    ToldPose,
     TruePose,
     Turning,
     Value,
 )
+
+_MAP: Final = "map"
+_NOT_FINITE: Final = "its numbers are not finite"
+_LEAST_DEVIATION: Final = 0.1
+"""m, rad; of a told pose whose sender does not say how sure it is."""
 
 
 class LidarBook:
@@ -87,15 +95,49 @@ def _scan(message: Any, lidars: LidarBook) -> Value | Refused:
 def _odometry(message: Any, lidars: LidarBook) -> Value | Refused:
     pose = message.pose if isinstance(message, FrameTransform) else _pose(message.pose.pose)
     if not pose.is_finite:
-        return Refused("messages of odometry", "its numbers are not finite")
+        return Refused("messages of odometry", _NOT_FINITE)
     return Odometry(pose)
 
 
 def _true_pose(message: Any, lidars: LidarBook) -> Value | Refused:
     pose = _pose(message.pose)
     if not pose.is_finite:
-        return Refused("true poses", "its numbers are not finite")
+        return Refused("true poses", _NOT_FINITE)
     return TruePose(pose)
+
+
+def _lifted(message: Any, lidars: LidarBook) -> Value | Refused:
+    return Lifted(bool(message.is_left_dropped and message.is_right_dropped))
+
+
+def _told_pose(message: Any, lidars: LidarBook) -> Value | Refused:
+    pose, covariance = _pose(message.pose.pose), message.pose.covariance
+    variances = (max(covariance[0], covariance[7]), covariance[35])
+    why = _off_map(message, pose, *variances)
+    if why:
+        return Refused("told poses", why)
+    across, turned = (
+        math.sqrt(variance) if variance > 0.0 else _LEAST_DEVIATION for variance in variances
+    )
+    return ToldPose(pose, (across, turned))
+
+
+def _own_pose(message: Any, lidars: LidarBook) -> Value | Refused:
+    if hasattr(message, "pos_x"):
+        pose = Pose(float(message.pos_x), float(message.pos_y))
+        why = _off_map(None, pose)
+    else:
+        pose = _pose(message.pose if hasattr(message.pose, "position") else message.pose.pose)
+        why = _off_map(message, pose)
+    return Refused("poses of the robot itself", why) if why else OwnPose(pose)
+
+
+def _off_map(message: Any, pose: Pose, *numbers: float) -> str:
+    """Return why a pose is none on the map; "" if it is one. No frame means that of the map."""
+    frame = "" if message is None else frame_name(str(message.header.frame_id))
+    if frame not in ("", _MAP):
+        return f"expected the frame {_MAP!r}, got {frame!r}"
+    return "" if pose.is_finite and all(map(math.isfinite, numbers)) else _NOT_FINITE
 
 
 def _turning(message: Any, lidars: LidarBook) -> Value | Refused:
@@ -118,5 +160,8 @@ _DECODERS: Final[dict[Kind, Callable[[Any, LidarBook], Value | Refused]]] = {
     Kind.GYRO: _turning,
     Kind.ODOMETRY: _odometry,
     Kind.TRUTH: _true_pose,
+    Kind.LIFTED: _lifted,
+    Kind.TOLD: _told_pose,
     Kind.SCAN: _scan,
+    Kind.OWN_POSE: _own_pose,
 }

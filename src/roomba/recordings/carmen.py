@@ -30,7 +30,7 @@ from numpy.typing import NDArray
 from roomba.geometry import Pose, wrap_angle
 from roomba.perception.matching.mounts import FrameTransform
 from roomba.perception.matching.scan_view import LidarModel
-from roomba.recordings.log import Arrival, Channel, MountOf
+from roomba.recordings.log import Arrival, Channel, Frames, MountOf
 from roomba.recordings.packed import Unpacked
 from roomba.recordings.readings import (
     UNUSABLE_SCANS,
@@ -105,9 +105,9 @@ class CarmenLog:
         self._farthest = _ECHO * largest
         self.channels = self._count()
 
-    def base(self, odometry: Channel) -> str:
+    def frames(self, odometry: Channel) -> Frames:
         """Return the name of the body's frame: a log has none of its own."""
-        return BASE
+        return Frames("", BASE)
 
     def transforms(self) -> Iterable[FrameTransform]:
         """Return where the lasers are: by the poses in the log if they tell, or its parameters."""

@@ -19,17 +19,27 @@ _TYPES: Final = {
     Kind.ODOMETRY: "nav_msgs/Odometry",
     Kind.GYRO: "sensor_msgs/Imu",
 }
+_BESIDE: Final = {
+    Kind.LIFTED: ("wheel_drop",),
+    Kind.TOLD: ("initialpose", "amcl_pose"),
+    Kind.OWN_POSE: ("pose", "position", "amcl_pose"),
+}
+"""Names of what may be beside scans and odometry, the likelier ones first."""
 _OPTIONS: Final = {Kind.SCAN: "--scan", Kind.ODOMETRY: "--odom", Kind.GYRO: "--imu"}
 
 
 @dataclass(frozen=True, slots=True)
 class Wanted:
-    """What is to be read: names of channels, and where the lidar is on the robot; None: see."""
+    """What is to be read: names of channels, and where the lidar is on the robot; None: see.
+
+    ``beside`` are the kinds that are read, too, where they are there.
+    """
 
     scan: str | None = None
     odometry: str | None = None
     gyro: str | None = None
     laser: Pose | None = None
+    beside: frozenset[Kind] = frozenset({Kind.TRUTH})
 
     def name(self, kind: Kind) -> str | None:
         """Return the name that was given for a kind."""
@@ -49,6 +59,10 @@ class Chosen:
         """The channel of odometry."""
         return self.channels[1]
 
+    def name(self, kind: Kind) -> str | None:
+        """Return the name of the channel of a kind; None if there is none."""
+        return next((channel.name for channel in self.channels if channel.kind is kind), None)
+
 
 def chosen(paths: Sequence[Path], channels: Sequence[Channel], wanted: Wanted) -> Chosen:
     """Return what to read of the ``channels`` of all logs; raises LogError."""
@@ -57,8 +71,14 @@ def chosen(paths: Sequence[Path], channels: Sequence[Channel], wanted: Wanted) -
     odometry = _required(paths, channels, Kind.ODOMETRY, wanted, scan.name, notes)
     taken = [scan, odometry]
     gyro = _gyro(paths, channels, wanted, odometry.name, notes)
-    truth = [channel for channel in channels if channel.kind is Kind.TRUTH]
-    return Chosen((*taken, *gyro, *truth[:1]), tuple(notes))
+    beside = [
+        channel
+        for kind in sorted(wanted.beside)
+        for channel in _usual(channels, kind, odometry.name, _BESIDE.get(kind, ()))
+    ]
+    if Kind.TRUTH in wanted.beside:
+        beside += [channel for channel in channels if channel.kind is Kind.TRUTH][:1]
+    return Chosen((*taken, *gyro, *beside), tuple(notes))
 
 
 def _required(
@@ -97,15 +117,26 @@ def _gyro(
     """
     if wanted.gyro is not None:
         return [_named(paths, channels, Kind.GYRO, wanted.gyro)]
+    usual = _usual(channels, Kind.GYRO, odometry, ("imu", "imu/data"))
+    if usual:
+        return usual
     fitting = [channel for channel in channels if channel.kind is Kind.GYRO]
-    namespace = odometry.rpartition("/")[0]
-    for name in (f"{namespace}/imu", "/imu", f"{namespace}/imu/data", "/imu/data"):
-        for channel in fitting:
-            if channel.name == name:
-                return [channel]
     if fitting:
         names = " or ".join(channel.name for channel in fitting)
         notes.append(f"no gyro is used: --imu {names} would be, if it lies flat on the robot")
+    return []
+
+
+def _usual(
+    channels: Sequence[Channel], kind: Kind, odometry: str, names: Sequence[str]
+) -> list[Channel]:
+    """Return the channel of a kind with the first of names, best that of the odometry's robot."""
+    namespace = odometry.rpartition("/")[0]
+    for name in names:
+        for spelled in (f"{namespace}/{name}", f"/{name}"):
+            for channel in channels:
+                if channel.kind is kind and channel.name == spelled:
+                    return [channel]
     return []
 
 
@@ -128,7 +159,9 @@ def _named(paths: Sequence[Path], channels: Sequence[Channel], kind: Kind, name:
 
 
 def _listed(channels: Sequence[Channel]) -> str:
-    names = [f"{each.name} ({each.type}, {each.messages})" for each in channels]
+    # A topic that tells two kinds is listed once.
+    told = (f"{each.name} ({each.type}, {each.messages})" for each in channels)
+    names = list(dict.fromkeys(told))
     if len(names) > _LISTED:
         names = [*names[:_LISTED], f"and {len(names) - _LISTED} more"]
     return ", ".join(names)

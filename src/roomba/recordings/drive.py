@@ -13,7 +13,7 @@ import numpy as np
 
 from roomba.perception.matching.mounts import Mount, Mounts
 from roomba.recordings.choice import Chosen, Wanted, chosen
-from roomba.recordings.log import Channel, Log
+from roomba.recordings.log import Channel, Frames, Log
 from roomba.recordings.opening import open_log
 from roomba.recordings.readings import UNUSABLE_SCANS, Kind, Reading, Refused, Value
 from roomba.recordings.stamps import (
@@ -28,6 +28,7 @@ from roomba.recordings.stamps import (
 
 _GAP: Final = 1.0
 """s between two logs from which it is told."""
+_ODOMETRY: Final = "odom"
 _BODIES: Final = ("base_link", "base_footprint", "base")
 """Frames of a robot's body that lie on each other as seen from above."""
 
@@ -35,7 +36,7 @@ _BODIES: Final = ("base_link", "base_footprint", "base")
 class LoggedDrive:
     """Logs that are open for reading; a context.
 
-    All messages are looked at twice: first for their times alone, of which some twenty bytes each
+    All messages are looked at twice: first for their times alone, of which some thirty bytes each
     are kept, then in the order of these times.
     """
 
@@ -50,11 +51,14 @@ class LoggedDrive:
         self._laser = wanted.laser
         with contextlib.ExitStack() as stack:
             self._logs = [_entered(stack, path) for path in paths]
-            self._chosen = chosen(paths, _together(self._logs), wanted)
-            self._base = self._body()
+            channels = _together(self._logs)
+            self.names = frozenset(channel.name for channel in channels)
+            """Of all channels, also of those that are not read."""
+            self._chosen = chosen(paths, channels, wanted)
+            self._frames = self._told_frames()
             self._mounts = self._known_mounts()
             self._found: dict[str, Mount] = {}
-            self._times, self._owners, self._order = self._timed()
+            self._times, self._arrivals, self._owners, self._order = self._timed()
             self._stack = stack.pop_all()
 
     def __enter__(self) -> LoggedDrive:
@@ -69,6 +73,11 @@ class LoggedDrive:
     def chosen(self) -> Chosen:
         """The channels that are read."""
         return self._chosen
+
+    @property
+    def odometry_frame(self) -> str:
+        """The frame in which odometry tells poses."""
+        return self._frames.odometry
 
     @property
     def notes(self) -> list[str]:
@@ -116,7 +125,8 @@ class LoggedDrive:
                 self.refused[reading.what] += 1
                 self._reasons.setdefault(reading.what, reading.reason)
             else:
-                yield Reading(float(self._times[number]), reading)
+                times = (self._times[number], self._arrivals[number])
+                yield Reading(float(times[0]), reading, float(times[1]))
 
     def _channels_of(self, log: Log) -> list[Channel]:
         """Return the chosen channels that a log has."""
@@ -127,13 +137,17 @@ class LoggedDrive:
             if (own.name, own.kind) == (channel.name, channel.kind)
         ]
 
-    def _body(self) -> str:
-        """Return the frame of the robot's body."""
-        odometry = self._chosen.odometry
-        told = (log.base(odometry) for log in self._logs if odometry in self._channels_of(log))
-        of_all = (log.base(each) for log in self._logs for each in self._channels_of(log)
-                  if each.kind is Kind.ODOMETRY)  # fmt: skip
-        return next((name for name in (*told, *of_all) if name), _BODIES[0])
+    def _told_frames(self) -> Frames:
+        """Return the frames of odometry and of the robot's body."""
+        told = [
+            log.frames(each)
+            for log in self._logs
+            for each in self._channels_of(log)
+            if each.kind is Kind.ODOMETRY
+        ]
+        worlds = (each.odometry for each in told if each.odometry)
+        bodies = (each.body for each in told if each.body)
+        return Frames(next(worlds, _ODOMETRY), next(bodies, _BODIES[0]))
 
     def _known_mounts(self) -> Mounts:
         mounts = Mounts()
@@ -151,16 +165,17 @@ class LoggedDrive:
         return mount
 
     def _searched(self, frame: str, kind: Kind) -> Mount:
-        mount = self._mounts.mount(self._base, frame)
+        base = self._frames.body
+        mount = self._mounts.mount(base, frame)
         if mount is not None:
             return mount
-        for body in _BODIES if self._base in _BODIES else ():
+        for body in _BODIES if base in _BODIES else ():
             mount = self._mounts.mount(body, frame)
             if mount is not None:
-                self._remark(f"{frame!r} is where it is on {body!r}, not on {self._base!r}", kind)
+                self._remark(f"{frame!r} is where it is on {body!r}, not on {base!r}", kind)
                 return mount
         self._remark(
-            f"no transform from {self._base!r} to {frame!r} was recorded: the lidar is taken to be "
+            f"no transform from {base!r} to {frame!r} was recorded: the lidar is taken to be "
             "in the middle of the robot, and to look ahead; --laser X,Y,YAW says where it is",
             kind,
         )
@@ -170,19 +185,19 @@ class LoggedDrive:
         if kind is Kind.SCAN and self._laser is None:
             self._remarks.append(remark)
 
-    def _timed(self) -> tuple[Floats, Ints, Ints]:
-        """Return times, s, and numbers of the logs of all messages, and the order to read them."""
+    def _timed(self) -> tuple[Floats, Floats, Ints, Ints]:
+        """Return times and arrivals, s, numbers of logs of all messages, the order to read them."""
         parts = [self._timed_log(log) for log in self._logs]
-        sizes = [len(times) for times, _ in parts]
-        times = np.concatenate([times for times, _ in parts])
-        channels = np.concatenate([numbers for _, numbers in parts])
+        sizes = [len(times) for times, *_ in parts]
+        times, arrivals = (np.concatenate([part[at] for part in parts]) for at in (0, 1))
+        channels = np.concatenate([numbers for *_, numbers in parts])
         owners = np.repeat(np.arange(len(parts)), sizes)
-        self._tell_gaps([times for times, _ in parts])
+        self._tell_gaps([times for times, *_ in parts])
         ranks = np.array([int(each.kind or 0) for each in self._chosen.channels])[channels]
-        return times, owners, in_order(times, channels, ranks, self.counts)
+        return times, arrivals, owners, in_order(times, channels, ranks, self.counts)
 
-    def _timed_log(self, log: Log) -> tuple[Floats, Ints]:
-        """Return times and numbers of channels, among the chosen ones, of what a log has."""
+    def _timed_log(self, log: Log) -> tuple[Floats, Floats, Ints]:
+        """Return times, arrivals and numbers of channels, among the chosen ones, of a log."""
         channels = self._channels_of(log)
         entries = list(log.entries(channels))
         own = np.array([entry.channel for entry in entries], np.int64)
@@ -201,7 +216,7 @@ class LoggedDrive:
                     f"the clock of {channel.name} is {reference - delay:+.1f} s off that of the "
                     "odometry: its times are shifted"
                 )
-        return times, numbers
+        return times, arrivals, numbers
 
     def _number(self, channel: Channel) -> int:
         """Return the number of a log's channel among the chosen ones."""

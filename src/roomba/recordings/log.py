@@ -36,6 +36,13 @@ class Arrival(NamedTuple):
     arrival: float
 
 
+class Frames(NamedTuple):
+    """The frame of odometry, and that of the body that it tells of; "" what is not told."""
+
+    odometry: str
+    body: str
+
+
 class Log(Protocol):
     """One file, or the folder of a bag, that is open for reading."""
 
@@ -49,8 +56,8 @@ class Log(Protocol):
     def notes(self) -> Sequence[str]:
         """What is worth knowing of what was read so far."""
 
-    def base(self, odometry: Channel) -> str:
-        """Return the frame of the body that a channel of odometry tells of; "" if not told."""
+    def frames(self, odometry: Channel) -> Frames:
+        """Return the frames of a channel of odometry."""
 
     def transforms(self) -> Iterable[FrameTransform]:
         """Return where sensors are in frames that do not move against them."""

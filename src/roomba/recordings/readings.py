@@ -1,4 +1,4 @@
-"""What a recorded drive says: odometry, scans, turning speeds, each with its time."""
+"""What a recorded drive says: odometry, scans, turning speeds, poses, each with its time."""
 
 from __future__ import annotations
 
@@ -28,7 +28,13 @@ class Kind(IntEnum):
     ODOMETRY = 1
     TRUTH = 2
     """Where the robot truly was; simulators write it."""
-    SCAN = 3
+    LIFTED = 3
+    """Whether the wheels hang in the air."""
+    TOLD = 4
+    """A pose that a person or a program told."""
+    SCAN = 5
+    OWN_POSE = 6
+    """Where the robot itself believed to be."""
 
 
 class Turning(NamedTuple):
@@ -49,6 +55,25 @@ class TruePose(NamedTuple):
     pose: Pose
 
 
+class Lifted(NamedTuple):
+    """Whether the robot is held: both wheels hang; of one over an edge the other one does not."""
+
+    is_lifted: bool
+
+
+class ToldPose(NamedTuple):
+    """A pose on the map that was told, and its standard deviations, m and rad."""
+
+    pose: Pose
+    deviation: tuple[float, float]
+
+
+class OwnPose(NamedTuple):
+    """Where the robot itself believed to be on the map; some robots do not tell the heading: 0."""
+
+    pose: Pose
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class LidarScan:
     """A scan of ``lidar``: ``ranges`` is float32 [beams], m; what is not finite met nothing."""
@@ -57,14 +82,18 @@ class LidarScan:
     lidar: LidarModel
 
 
-Value: TypeAlias = Turning | Odometry | TruePose | LidarScan
+Value: TypeAlias = Turning | Odometry | TruePose | Lifted | ToldPose | LidarScan | OwnPose
 
 
 class Reading(NamedTuple):
-    """A value and when it was measured, s, by the clock of the odometry."""
+    """A value and when it was measured, s, by the clock of the odometry.
+
+    ``arrival`` is when it was recorded, s, by the clock of the recorder.
+    """
 
     stamp: float
     value: Value
+    arrival: float
 
 
 class Refused(NamedTuple):

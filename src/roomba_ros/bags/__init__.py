@@ -1,1 +1,1 @@
-"""Recorded drives: localized, mapped, written."""
+"""Runs of the headless robot, written as bags."""

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-
 from geometry_msgs.msg import TransformStamped
 from tf2_msgs.msg import TFMessage
 
@@ -16,7 +14,6 @@ __all__ = [
     "Mounts",
     "transform_of",
     "transforms_of",
-    "usable_transforms",
 ]
 
 
@@ -25,15 +22,6 @@ def transforms_of(message: TFMessage) -> list[FrameTransform]:
     if not message.transforms:
         raise MessageError("expected transforms, got none")
     return [transform_of(transform) for transform in message.transforms]
-
-
-def usable_transforms(messages: Iterable[TransformStamped]) -> Iterator[FrameTransform]:
-    """Yield the transforms that are not broken."""
-    for message in messages:
-        try:
-            yield transform_of(message)
-        except MessageError:
-            continue
 
 
 def transform_of(message: TransformStamped) -> FrameTransform:

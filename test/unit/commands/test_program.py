@@ -20,7 +20,9 @@ def test_usage_names_each_command(
     assert call(monkeypatch, *words) == 0
     told = capsys.readouterr().out
     assert told.startswith("usage: roomba COMMAND")
-    assert all(f"\n  {command}" in told for command in ("sim", "map", "pictures", "doctor"))
+    assert all(
+        f"\n  {command}" in told for command in ("sim", "map", "localize", "pictures", "doctor")
+    )
 
 
 @pytest.mark.parametrize(
@@ -64,6 +66,13 @@ def test_a_recorded_drive_is_mapped_without_ros(
 ) -> None:
     assert call(monkeypatch, "map", *words) == 1
     assert "no.bag: no such file; expected a bag or a log" in capsys.readouterr().err
+
+
+def test_a_recorded_drive_is_localized_without_ros(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert call(monkeypatch, "localize", "--map", "no.yaml", "--bag", "no.bag") == 1
+    assert "roomba localize: no.yaml: " in capsys.readouterr().err
 
 
 def test_the_doctor_tells_of_each_module(

@@ -27,7 +27,7 @@ MODULES = {
     "export": "roomba.commands.valetudo.export_command",
     "pictures": "roomba.commands.pictures.__main__",
     "bench": "benchmarks.__main__",
-    "localize": "roomba_ros.bags.localize_bag",
+    "localize": "roomba.commands.localize.command",
 }
 """The module whose ``main`` parses what follows a command; the others are told below."""
 PROGRAMS = {"rostopic", "rosservice", "roscore", "rosparam", "rosbag", "bash"}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from pathlib import Path
 
@@ -26,9 +27,12 @@ from roomba.recordings.log import Channel
 from roomba.recordings.readings import (
     Kind,
     LidarScan,
+    Lifted,
     LogError,
     Odometry,
+    OwnPose,
     Refused,
+    ToldPose,
     Turning,
     Value,
 )
@@ -62,7 +66,7 @@ def test_each_form_of_a_bag_says_the_same(tmp_path: Path, form: str) -> None:
         "/odom": (Kind.ODOMETRY, "nav_msgs/Odometry", 2 * SCANS),
         "/tf_static": (None, "tf2_msgs/TFMessage", 1),
     }
-    assert log.base(channels["/odom"]) == "base_link"
+    assert log.frames(channels["/odom"]) == ("odom", "base_link")
     mounts = Mounts()
     mounts.add(log.transforms())
     mount = mounts.mount("base_link", "laser")
@@ -101,7 +105,7 @@ def test_odometry_that_is_only_in_the_transforms_is_found_there(tmp_path: Path) 
     log = BagLog(write_bag(tmp_path / "made.bag", items))
     [odometry] = [each for each in log.channels if each.kind is Kind.ODOMETRY]
     assert odometry.name == "/tf"
-    assert log.base(odometry) == "base_link"
+    assert log.frames(odometry) == ("odom", "base_link")
     found = read(log, odometry)
     assert [stamp for stamp, _ in found] == pytest.approx(
         [item.stamp for item in items if item.topic == "/tf"], abs=1e-6
@@ -119,6 +123,73 @@ def test_a_gyro_that_hangs_upside_down_turns_the_other_way(tmp_path: Path) -> No
         mount = Mount(is_upside_down=upside_down)
         [value] = log.values([gyro], np.ones(1, np.bool_), lambda *_, mount=mount: mount)
         assert value == Turning(expected)
+    log.close()
+
+
+@pytest.mark.parametrize("form", ["bag", "folder"])
+def test_wheels_that_hang_and_poses_are_read(tmp_path: Path, form: str) -> None:
+    pose = Pose(1.5, -2.0, 0.25)
+    told = ToldPose(pose, (0.3, 0.2))
+    items = [
+        Item("/wheel_drop", Lifted(True), BEGAN, BEGAN),
+        Item("/initialpose", told, BEGAN, BEGAN),
+        Item("/amcl_pose", told, BEGAN, BEGAN),
+        Item("/amcl_pose", told, BEGAN + 0.5, BEGAN + 0.5),
+        Item("/robot/pose", OwnPose(pose), BEGAN, BEGAN),
+        Item("/position", OwnPose(pose), BEGAN, BEGAN),
+    ]
+    log = BagLog(written(tmp_path, form, items))
+    channels = {(e.name, e.kind, e.messages): e for e in log.channels if e.kind is not None}
+    expected = [
+        ("/wheel_drop", Kind.LIFTED, 1),
+        ("/initialpose", Kind.TOLD, 1),
+        ("/amcl_pose", Kind.TOLD, 2),
+        ("/amcl_pose", Kind.OWN_POSE, 2),
+        ("/robot/pose", Kind.OWN_POSE, 1),
+        ("/position", Kind.OWN_POSE, 1),
+    ]
+    assert channels.keys() == set(expected)
+    found = (read(log, channels[key]) for key in expected)
+    drop, start, first, own, named, position = found
+    assert drop == [(BEGAN, Lifted(True))]
+    for [(stamp, value), *_] in (start, first):
+        assert stamp == BEGAN
+        assert isinstance(value, ToldPose)
+        assert value.deviation == pytest.approx((0.3, 0.2))
+        assert (value.pose.x, value.pose.y, value.pose.theta) == pytest.approx((1.5, -2.0, 0.25))
+    assert [type(value) for _, value in own] == [OwnPose, OwnPose]
+    assert [type(value) for _, value in named] == [OwnPose]
+    # It has no stamp, and tells no heading.
+    assert position == [(0.0, OwnPose(Pose(1.5, -2.0)))]
+    log.close()
+
+
+@pytest.mark.parametrize(
+    ("value", "why"),
+    [
+        (OwnPose(Pose(math.nan, 0.0)), "its numbers are not finite"),
+        (ToldPose(Pose(0.0, math.inf), (0.1, 0.1)), "its numbers are not finite"),
+        (ToldPose(Pose(), (math.nan, 0.1)), "its numbers are not finite"),
+    ],
+)
+def test_poses_that_are_none_are_refused(
+    tmp_path: Path, value: OwnPose | ToldPose, why: str
+) -> None:
+    topic = "/pose" if isinstance(value, OwnPose) else "/initialpose"
+    log = BagLog(write_bag(tmp_path / "made.bag", [Item(topic, value, BEGAN, BEGAN)]))
+    [(_, refused)] = read(log, *[each for each in log.channels if each.kind is not None])
+    assert isinstance(refused, Refused)
+    assert refused.reason == why
+    log.close()
+
+
+@pytest.mark.parametrize("topic", ["/pose", "/initialpose"])
+def test_poses_of_another_frame_are_none_on_the_map(tmp_path: Path, topic: str) -> None:
+    value = OwnPose(Pose()) if topic == "/pose" else ToldPose(Pose(), (0.1, 0.1))
+    items = [Item(topic, value, BEGAN, BEGAN, frame) for frame in ("map", "", "odom")]
+    log = BagLog(write_bag(tmp_path / "made.bag", items))
+    found = read(log, *[each for each in log.channels if each.kind is not None])
+    assert [isinstance(each, Refused) for _, each in found] == [False, False, True]
     log.close()
 
 

@@ -23,6 +23,15 @@ IMAGE = Channel("/image", None, "sensor_msgs/Image", 7)
 TRUTH = Channel("/ground_truth/pose", Kind.TRUTH, "geometry_msgs/PoseStamped", 5)
 
 
+DROP = Channel("/wheel_drop", Kind.LIFTED, "roomba_robot/WheelDrop", 40)
+START = Channel("/initialpose", Kind.TOLD, "geometry_msgs/PoseWithCovarianceStamped", 1)
+AMCL = Channel("/amcl_pose", Kind.TOLD, "geometry_msgs/PoseWithCovarianceStamped", 9)
+OWN_AMCL = AMCL._replace(kind=Kind.OWN_POSE)
+POSE = Channel("/pose", Kind.OWN_POSE, "geometry_msgs/PoseStamped", 80)
+OTHER_POSE = POSE._replace(name="/two/pose")
+BESIDE = frozenset({Kind.LIFTED, Kind.TOLD, Kind.OWN_POSE})
+
+
 def names(channels: list[Channel], wanted: Wanted | None = None) -> list[str]:
     return [each.name for each in chosen(PATHS, channels, wanted or Wanted()).channels]
 
@@ -65,6 +74,34 @@ def test_a_gyro_of_an_unusual_name_is_only_told() -> None:
     assert names(channels) == ["/scan", "/odom"]
     assert "--imu /camera/imu would be" in chosen(PATHS, channels, Wanted()).notes[0]
     assert names(channels, Wanted(gyro="/camera/imu"))[2] == "/camera/imu"
+
+
+@pytest.mark.parametrize(
+    ("beside", "expected"),
+    [
+        ([DROP, AMCL, OWN_AMCL, START, OTHER_POSE, POSE], [DROP, START, POSE]),
+        ([TRUTH, OTHER_POSE, AMCL, OWN_AMCL], [AMCL, OWN_AMCL]),
+        ([OTHER_POSE, IMAGE], []),
+    ],
+)
+def test_poses_are_read_by_their_usual_names_if_they_are_wanted(
+    beside: list[Channel], expected: list[Channel]
+) -> None:
+    found = chosen(PATHS, [*beside, SCAN, ODOM], Wanted(beside=BESIDE))
+    assert list(found.channels) == [SCAN, ODOM, *expected]
+    assert found.name(Kind.TOLD) == next((e.name for e in expected if e.kind is Kind.TOLD), None)
+    assert set(names([*beside, SCAN, ODOM])) <= {"/scan", "/odom", TRUTH.name}
+
+
+def test_poses_of_a_named_robot_are_those_beside_its_odometry() -> None:
+    channels = [POSE, OTHER_POSE, OTHER_SCAN, OTHER_ODOM]
+    assert names(channels, Wanted(beside=BESIDE))[2:] == ["/two/pose"]
+
+
+def test_a_topic_that_tells_two_kinds_is_listed_once() -> None:
+    with pytest.raises(LogError) as refusal:
+        chosen(PATHS, [SCAN, AMCL, OWN_AMCL], Wanted())
+    assert str(refusal.value).count("/amcl_pose") == 1
 
 
 @pytest.mark.parametrize(

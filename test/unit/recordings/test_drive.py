@@ -37,16 +37,18 @@ def read(paths: Sequence[Path], wanted: Wanted | None = None) -> tuple[list[Read
 
 def mount_of(readings: Sequence[Reading]) -> list[float]:
     [mount] = {
-        tuple(value.lidar.mount.tolist()) for _, value in readings if isinstance(value, LidarScan)
+        tuple(value.lidar.mount.tolist())
+        for _, value, _ in readings
+        if isinstance(value, LidarScan)
     }
     return list(mount)
 
 
 def assert_whole(readings: Sequence[Reading], items: Sequence[Item], within: float = 1e-6) -> None:
     """All items are there, in the order of time, at the times at which they were measured."""
-    assert [stamp for stamp, _ in readings] == sorted(stamp for stamp, _ in readings)
+    assert [stamp for stamp, *_ in readings] == sorted(stamp for stamp, *_ in readings)
     for type_, topic in ((Odometry, "/odom"), (LidarScan, "/scan")):
-        stamps = [stamp for stamp, value in readings if isinstance(value, type_)]
+        stamps = [stamp for stamp, value, _ in readings if isinstance(value, type_)]
         expected = [item.stamp for item in items if item.topic == topic]
         assert stamps == pytest.approx(expected, abs=within)
 
@@ -55,7 +57,7 @@ def test_odometry_comes_before_the_scan_of_its_time(tmp_path: Path) -> None:
     items = drive(SECONDS)
     readings, recorded = read([write_bag(tmp_path / "made.bag", items)])
     assert_whole(readings, items)
-    assert [type(value) for _, value in readings[:3]] == [Odometry, LidarScan, Odometry]
+    assert [type(value) for _, value, _ in readings[:3]] == [Odometry, LidarScan, Odometry]
     assert recorded.counts.words == f"{len(items)} messages: all in order"
     assert recorded.notes == []
     assert mount_of(readings) == [LASER.x, LASER.y, LASER.theta]
@@ -123,10 +125,10 @@ def test_a_clock_that_was_set_back_on_the_way_goes_on(tmp_path: Path) -> None:
         replace(item, stamp=item.stamp - 30.0, arrival=item.arrival - 30.0) for item in items[half:]
     ]
     readings, recorded = read([write_bag(tmp_path / "made.bag", items[:half] + again)])
-    stamps = [stamp for stamp, _ in readings]
+    stamps = [stamp for stamp, *_ in readings]
     assert stamps == sorted(stamps)
     assert stamps[-1] - stamps[0] == pytest.approx(SECONDS - 0.5 * PERIOD, abs=0.2)
-    poses = [value.pose.x for _, value in readings if isinstance(value, Odometry)]
+    poses = [value.pose.x for _, value, _ in readings if isinstance(value, Odometry)]
     assert poses == pytest.approx([item.value.x for item in items if isinstance(item.value, Pose)])
     assert any("clock was set back" in note for note in recorded.notes)
 
@@ -197,10 +199,10 @@ def test_a_log_and_a_bag_of_the_same_drive_say_the_same(tmp_path: Path) -> None:
     items = drive(SECONDS)
     readings, recorded = read([write_carmen(tmp_path / "made.log", items)])
     scans = [item.stamp for item in items if item.topic == "/scan"]
-    assert [stamp for stamp, value in readings if isinstance(value, LidarScan)] == pytest.approx(
+    assert [stamp for stamp, value, _ in readings if isinstance(value, LidarScan)] == pytest.approx(
         scans
     )
-    assert [stamp for stamp, value in readings if isinstance(value, Odometry)] == pytest.approx(
+    assert [stamp for stamp, value, _ in readings if isinstance(value, Odometry)] == pytest.approx(
         scans
     )
     assert mount_of(readings) == pytest.approx([LASER.x, LASER.y, LASER.theta], abs=1e-5)
@@ -220,5 +222,5 @@ def test_what_is_refused_is_counted_with_its_first_reason(tmp_path: Path) -> Non
     readings, recorded = read([write_bag(tmp_path / "made.bag", items)])
     [(what, count)] = recorded.refused_scans.items()
     assert (count, "0 beams" in what) == (10, True)
-    assert sum(isinstance(value, LidarScan) for _, value in readings) == 20
+    assert sum(isinstance(value, LidarScan) for _, value, _ in readings) == 20
     assert math.isclose(readings[-1].stamp, BEGAN + SECONDS - 0.5 * PERIOD, abs_tol=1e-6)

@@ -27,25 +27,30 @@ def main(arguments: list[str] | None = None) -> int:
     return guarded(lambda: _explore(options_of(_without_bag(arguments))), USAGE)
 
 
-def guarded(work: Callable[[], int], refused: int = ENDED_OTHERWISE) -> int:
-    """Return the exit status of some work; an error is printed in a line.
+def guarded(work: Callable[[], int], refused: int = ENDED_OTHERWISE, program: str = PROGRAM) -> int:
+    """Return the exit status of some work of a ``program``; an error is printed in a line.
 
     ``refused`` is the status for an input that cannot be used.
     """
+
+    def complain(text: str, status: int) -> int:
+        print(f"{program}: {' '.join(text.split())}", file=sys.stderr)
+        return status
+
     try:
         return work()
     except UsageError as error:
-        return _complain(str(error), USAGE)
+        return complain(str(error), USAGE)
     except RoombaError as error:
-        return _complain(str(error), refused)
+        return complain(str(error), refused)
     except BrokenPipeError:
         # The reader of the pipe has closed it; Python must not try to write the rest.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return ENDED_OTHERWISE
     except OSError as error:
-        return _complain(f"{error}; choose another file", ENDED_OTHERWISE)
+        return complain(f"{error}; choose another file", ENDED_OTHERWISE)
     except KeyboardInterrupt:
-        return _complain("stopped on the way", INTERRUPTED)
+        return complain("stopped on the way", INTERRUPTED)
 
 
 def _without_bag(arguments: list[str] | None) -> list[str] | None:
@@ -56,11 +61,6 @@ def _without_bag(arguments: list[str] | None) -> list[str] | None:
             f"--bag: expected a home to explore, got a recording; call {PROGRAM} --bag"
         )
     return arguments
-
-
-def _complain(text: str, status: int) -> int:
-    print(f"{PROGRAM}: {' '.join(text.split())}", file=sys.stderr)
-    return status
 
 
 def _explore(options: MapOptions) -> int:

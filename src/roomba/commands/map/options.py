@@ -8,7 +8,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Final, NoReturn
+from typing import Final, NoReturn, TypeAlias
 
 from roomba.commands.sim.trial import RANDOM, Trial, UsageError
 from roomba.commands.spelling import spelled
@@ -16,6 +16,8 @@ from roomba.geometry import Pose
 
 PROGRAM: Final = spelled("map")
 _MOST_SEED: Final = 2**63 - 1
+Named: TypeAlias = tuple[str, Path | None]
+"""An option, and the file that it names."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,15 +41,15 @@ class MapOptions:
 class Parser(argparse.ArgumentParser):
     """Says in one line what is wrong."""
 
-    def __init__(self, description: str, epilog: str) -> None:
-        """Expect options of this command."""
-        super().__init__(prog=PROGRAM, allow_abbrev=False, description=description, epilog=epilog)
+    def __init__(self, description: str, epilog: str, program: str = PROGRAM) -> None:
+        """Expect options of a command."""
+        super().__init__(prog=program, allow_abbrev=False, description=description, epilog=epilog)
         # Python's own pattern knows no exponents: -1e-05 would be taken for an option.
         self._negative_number_matcher = re.compile(r"-(\.?\d|inf|nan)")
 
     def error(self, message: str) -> NoReturn:
         """Raise UsageError."""
-        raise UsageError(f"{message}; see {PROGRAM} --help")
+        raise UsageError(f"{message}; see {self.prog} --help")
 
     def add_output(self) -> None:
         """Add the options of what is told."""
@@ -70,6 +72,17 @@ class Parser(argparse.ArgumentParser):
         told.add_argument("--quiet", action="store_true", help="no progress and no table")
 
 
+def finite(text: str) -> float:
+    """Return a number of an option; raises ArgumentTypeError."""
+    try:
+        number = float(text)
+    except ValueError:
+        number = math.nan
+    if not math.isfinite(number):
+        raise argparse.ArgumentTypeError(f"expected finite numbers (m, rad), got {text!r}")
+    return number
+
+
 def options_of(arguments: list[str] | None) -> MapOptions:
     """Return what a command line asks for; raises UsageError, and SystemExit for ``--help``."""
     given = _parser().parse_args(arguments)
@@ -90,30 +103,44 @@ def options_of(arguments: list[str] | None) -> MapOptions:
     return MapOptions(trial, output_of(given, read))
 
 
-def output_of(given: argparse.Namespace, read: Sequence[tuple[str, Path | None]]) -> Output:
+def output_of(
+    given: argparse.Namespace, read: Sequence[Named], written: Sequence[Named] = ()
+) -> Output:
     """Return what is to be told; raises UsageError, before the work, for what cannot be written.
 
-    ``read`` are options with files that must not be overwritten.
+    ``read`` are options with files that must not be overwritten, ``written`` more of what is told.
     """
-    if given.plot is not None and given.plot.suffix.lower() != ".png":
-        raise UsageError(f"--plot: expected a name that ends with .png, got {given.plot}")
     if given.out is not None:
         parent = given.out.expanduser().absolute().parent
         if given.out.is_file() or not parent.is_dir():
             raise UsageError(
                 f"--out: expected a folder, or a new one in a folder that is there, got {given.out}"
             )
+    check_written([("--json", file_of(given.json)), ("--plot", given.plot), *written], read)
+    return Output(given.json, given.plot, given.out, given.quiet)
+
+
+def file_of(name: str | None) -> Path | None:
+    """Return the file that figures are written to; None for standard output."""
+    return None if name in (None, "-") else Path(str(name))
+
+
+def check_written(written: Sequence[Named], read: Sequence[Named]) -> None:
+    """Refuse before the work what could not be written after it; raises UsageError.
+
+    ``read`` are options with files that must not be overwritten.
+    """
     used = {path.expanduser().resolve(): option for option, path in read if path is not None}
-    json_file = Path(given.json) if given.json not in (None, "-") else None
-    for option, path in (("--json", json_file), ("--plot", given.plot)):
+    for option, path in written:
         if path is None:
             continue
+        if option == "--plot" and path.suffix.lower() != ".png":
+            raise UsageError(f"--plot: expected a name that ends with .png, got {path}")
         if path.is_dir() or not path.absolute().parent.is_dir():
             raise UsageError(f"{option}: expected a file in a folder that is there, got {path}")
         other = used.setdefault(path.resolve(), option)
         if other != option:
             raise UsageError(f"{option}: {path} is the file of {other} already; choose another one")
-    return Output(given.json, given.plot, given.out, given.quiet)
 
 
 def _parser() -> Parser:
@@ -134,14 +161,14 @@ def _parser() -> Parser:
     where.add_argument("--map", type=Path, metavar="FILE.yaml", help="any map_server map")
     where.add_argument(
         "--station",
-        type=_finite,
+        type=finite,
         nargs=3,
         metavar=("X", "Y", "THETA"),
         help="pose of the docked robot (default: as the layer says, else it is found)",
     )
     where.add_argument(
         "--turned",
-        type=_finite,
+        type=finite,
         default=0.0,
         metavar="DEGREES",
         help="turn the home, counter-clockwise about the origin of its map, with its station",
@@ -165,14 +192,4 @@ def _seed(text: str) -> int:
         raise argparse.ArgumentTypeError(
             f"expected a whole number from 0 to {_MOST_SEED}, got {text!r}"
         )
-    return number
-
-
-def _finite(text: str) -> float:
-    try:
-        number = float(text)
-    except ValueError:
-        number = math.nan
-    if not math.isfinite(number):
-        raise argparse.ArgumentTypeError(f"expected finite numbers (m, rad), got {text!r}")
     return number

@@ -12,7 +12,6 @@ from roomba.commands.map.command import COMPLETED, guarded
 from roomba.commands.map.drive.options import DriveOptions, options_of
 from roomba.commands.progress import progress
 from roomba.commands.telling import tell_tables, write_json
-from roomba.recordings.choice import Wanted
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -28,10 +27,9 @@ def _run(options: DriveOptions) -> int:
     from roomba.commands.map.files import write_files
 
     output = options.output
-    wanted = Wanted(options.scan, options.odometry, options.gyro, options.laser)
     began = time.perf_counter()
     with progress("Mapping", output.quiet) as show:
-        done = mapped_drive(options.logs, wanted, show)
+        done = mapped_drive(options.logs, options.wanted, show)
     processing = time.perf_counter() - began
     if output.out is not None:
         write_files(output.out, done.occupancy, done.begin)

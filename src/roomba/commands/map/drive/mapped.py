@@ -95,7 +95,7 @@ def _replayed(drive: LoggedDrive, start: Pose, show: Show) -> tuple[MapReplay, F
     mapping = load_config(MappingConfig, CONFIGURATION / "mapping.yaml")
     replay = MapReplay(config, mapping, start)
     true = []
-    for number, (stamp, value) in enumerate(drive.readings()):
+    for number, (stamp, value, _) in enumerate(drive.readings()):
         if isinstance(value, TruePose):
             true.append((stamp, value.pose.x, value.pose.y))
         else:

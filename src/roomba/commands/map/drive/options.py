@@ -9,9 +9,15 @@ from pathlib import Path
 from typing import Final
 
 from roomba.commands.map.options import Output, Parser, output_of
-from roomba.commands.sim.trial import UsageError
 from roomba.geometry import Pose
+from roomba.recordings.choice import Wanted
 
+DRIVES: Final = (
+    "a planar lidar and odometry: bags of ROS 1 (.bag), bags of ROS 2 (a folder with "
+    "metadata.yaml, .db3, .mcap), CARMEN logs (.log, .clf); each also packed by gzip or xz. Needs "
+    "no ROS."
+)
+"""What can be read."""
 _MOUNT: Final = 3
 """Numbers of --laser."""
 
@@ -21,10 +27,7 @@ class DriveOptions:
     """Logs that are one drive, what is read of them, and what is told."""
 
     logs: tuple[Path, ...]
-    scan: str | None
-    odometry: str | None
-    gyro: str | None
-    laser: Pose | None
+    wanted: Wanted
     trajectory: Path | None
     online: Path | None
     output: Output
@@ -33,29 +36,14 @@ class DriveOptions:
 def options_of(arguments: list[str] | None) -> DriveOptions:
     """Return what a command line asks for; raises UsageError, and SystemExit for ``--help``."""
     given = _parser().parse_args(arguments)
-    output = output_of(given, [("--bag", path) for path in given.bag])
-    for option, path in (("--trajectory", given.trajectory), ("--online", given.online)):
-        if path is not None and not path.absolute().parent.is_dir():
-            raise UsageError(f"{option}: expected a file in a folder that is there, got {path}")
-    return DriveOptions(
-        tuple(given.bag),
-        given.scan,
-        given.odom,
-        given.imu,
-        given.laser,
-        given.trajectory,
-        given.online,
-        output,
-    )
+    written = [("--trajectory", given.trajectory), ("--online", given.online)]
+    output = output_of(given, [("--bag", path) for path in given.bag], written)
+    wanted = wanted_of(given)
+    return DriveOptions(tuple(given.bag), wanted, given.trajectory, given.online, output)
 
 
-def _parser() -> Parser:
-    parser = Parser(
-        "Make a map of a recorded drive of any robot with a planar lidar and odometry: bags of "
-        "ROS 1 (.bag), bags of ROS 2 (a folder with metadata.yaml, .db3, .mcap), CARMEN logs "
-        "(.log, .clf); each also packed by gzip or xz. Needs no ROS.",
-        "A home without a recording: see ./roomba map --help. Lengths in m, angles in rad.",
-    )
+def add_read(parser: argparse.ArgumentParser) -> None:
+    """Add the options of what is read of a drive: ``--bag``, ``--scan`` and the like."""
     what = parser.add_argument_group("what is read")
     what.add_argument(
         "--bag",
@@ -83,6 +71,19 @@ def _parser() -> Parser:
         metavar="X,Y,YAW",
         help="where the lidar is on the robot (default: as the transforms or the log tell)",
     )
+
+
+def wanted_of(given: argparse.Namespace) -> Wanted:
+    """Return what is to be read of the logs."""
+    return Wanted(given.scan, given.odom, given.imu, given.laser)
+
+
+def _parser() -> Parser:
+    parser = Parser(
+        f"Make a map of a recorded drive of any robot with {DRIVES}",
+        "A home without a recording: see ./roomba map --help. Lengths in m, angles in rad.",
+    )
+    add_read(parser)
     parser.add_output()
     parser.add_argument(
         "--trajectory",

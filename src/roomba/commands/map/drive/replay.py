@@ -20,12 +20,11 @@ from roomba.perception.localization.estimate import Knowledge
 from roomba.perception.matching.scan_view import LidarModel
 from roomba.perception.slam.mapper import Mapper
 from roomba.recordings.readings import LidarScan, Odometry, Turning, Value
+from roomba.recordings.turning import NewestTurning
 from roomba.recordings.waiting import StampedScan, WaitingScan
 
 _LATEST: Final = 1.0
 """s; a scan that odometry is so far behind is of a time that it knows nothing of."""
-_SAME_TIME: Final = 0.06
-"""s; a gyro's sample so near to an odometry's time is of the same motion."""
 
 
 class MapReplay:
@@ -49,7 +48,7 @@ class MapReplay:
         self._blind_rows: list[tuple[float, float, float, float]] = []
         self._stamp = -math.inf
         self._at: Pose | None = None
-        self._turning: tuple[float, float] | None = None
+        self._turning = NewestTurning()
         self._waiting = WaitingScan()
 
     @property
@@ -67,7 +66,7 @@ class MapReplay:
         if isinstance(value, Odometry):
             self._hear_odometry(stamp, value.pose)
         elif isinstance(value, Turning):
-            self._turning = (stamp, value.speed)
+            self._turning.hear(stamp, value.speed)
         elif isinstance(value, LidarScan):
             self._hear_scan(stamp, value)
 
@@ -86,7 +85,7 @@ class MapReplay:
         if math.isfinite(self._stamp):
             self.elapsed += max(0.0, stamp - self._stamp)
         self._stamp = stamp
-        turning = self._turning_at(stamp)
+        turning = self._turning.at(stamp)
         began = time.process_time()
         self.mapper.move(stamp, pose, turning)
         self.seconds += time.process_time() - began
@@ -96,12 +95,6 @@ class MapReplay:
             self.way += here.distance_to(self._at.x, self._at.y)
         self._at = here
         self._see(self._waiting.ready(stamp))
-
-    def _turning_at(self, stamp: float) -> float | None:
-        """Return the gyro's newest sample, rad/s, if it is of about that time."""
-        if self._turning is None or abs(self._turning[0] - stamp) > _SAME_TIME:
-            return None
-        return self._turning[1]
 
     def _hear_scan(self, stamp: float, scan: LidarScan) -> None:
         """Keep a scan until odometry has reached its last beam, or the next scan comes."""

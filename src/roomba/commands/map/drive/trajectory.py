@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from roomba.files.atomic import write_whole
 from roomba.geometry import Pose
-from roomba.perception.slam.mapper import Mapper
+
+if TYPE_CHECKING:
+    from roomba.perception.slam.mapper import Mapper
 
 Floats = NDArray[np.float64]
 
@@ -48,5 +51,10 @@ class Trajectory:
 
 def write_trajectory(path: Path, rows: Floats) -> None:
     """Write rows of t (s), x, y (m), theta (rad) as lines of text; raises OSError."""
-    lines = [f"{t:.6f} {x:.6f} {y:.6f} {theta:.7f}\n" for t, x, y, theta in rows.tolist()]
+    lines = [trajectory_line(t, Pose(*pose)) for t, *pose in rows.tolist()]
     write_whole(path, "".join(lines).encode())
+
+
+def trajectory_line(stamp: float, pose: Pose) -> str:
+    """Return the line ``t x y theta`` of a pose; s, m, rad."""
+    return f"{stamp:.6f} {pose.x:.6f} {pose.y:.6f} {pose.theta:.7f}\n"

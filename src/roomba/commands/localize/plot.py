@@ -15,11 +15,11 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
+from roomba.commands.localize.replay import Row
+from roomba.commands.localize.tally import Loss
 from roomba.grid import FREE, UNKNOWN, OccupancyMap
 from roomba.perception.localization.estimate import Knowledge
 from roomba.plots.style import BLUE, INK, ORANGE, PINK, RED, drawn, empty_figure
-from roomba_ros.bags.localize_replay import Row
-from roomba_ros.bags.localize_report import Loss
 
 COLOURS: Final = {
     Knowledge.KNOWN: BLUE,

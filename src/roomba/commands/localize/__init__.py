@@ -1,0 +1,1 @@
+"""Recorded drives localized on a map: ``./roomba localize``."""

@@ -1,0 +1,141 @@
+"""A recorded drive, localized: what was heard, and what came of it."""
+
+from __future__ import annotations
+
+import contextlib
+import itertools
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+from roomba.commands.localize.files import OUTPUT_TOPICS, RowBag, RowFile, RowTable, RowTrajectory
+from roomba.commands.localize.options import LocalizeOptions
+from roomba.commands.localize.replay import Replay, Row
+from roomba.commands.localize.tally import Tally
+from roomba.commands.progress import Show
+from roomba.configuration.robot import load_robot_config
+from roomba.files.shipped import CONFIGURATION
+from roomba.grid import FREE, OccupancyMap
+from roomba.recordings.drive import LoggedDrive
+from roomba.recordings.readings import Kind, LogError, OwnPose
+from roomba.recordings.stamps import StampCounts
+
+_SHOWN: Final = 64
+"""Readings between two updates of the progress."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LocalizedDrive:
+    """What came of logs: ``start`` says where it began, ``own_poses`` which channel it had of its
+    own poses; ``stamps`` what was wrong with the times of how many messages.
+    """
+
+    logs: tuple[Path, ...]
+    map: Path
+    start: str
+    own_poses: str | None
+    tally: Tally
+    scans: int
+    stamps: StampCounts
+    notes: tuple[str, ...]
+
+    @property
+    def name(self) -> str:
+        """The names of the logs."""
+        return " + ".join(path.name for path in self.logs)
+
+    @property
+    def placed_rows(self) -> list[Row]:
+        """Rows from when the place was first known; all of them if it never was."""
+        rows = self.tally.shown_rows
+        placed = itertools.dropwhile(lambda row: not row.estimate.knowledge.is_usable, rows)
+        return list(placed) or rows
+
+
+def localized_drive(
+    options: LocalizeOptions, occupancy: OccupancyMap, show: Show
+) -> LocalizedDrive:
+    """Go through a drive, write down where it was, and ``show`` how far it is.
+
+    Raises LogError for logs that cannot be read, and OSError for files that cannot be written.
+    """
+    with LoggedDrive(options.logs, options.wanted) as drive:
+        config = load_robot_config(CONFIGURATION / "robot.yaml")
+        replay, tally = Replay(occupancy, config, options.start), Tally()
+        _replay(drive, replay, tally, options, show)
+        if tally.last is None:
+            raise LogError(f"{_names(options.logs)}: no message of odometry could be read")
+        told = drive.chosen.name(Kind.TOLD)
+        return LocalizedDrive(
+            options.logs,
+            options.map,
+            f"as recorded on {told}" if replay.was_told else _words_of_start(options),
+            drive.chosen.name(Kind.OWN_POSE),
+            tally,
+            replay.scans,
+            drive.counts,
+            (
+                *drive.notes,
+                *replay.notes,
+                *_remarks(options, occupancy),
+                *_how_to_play(options, drive),
+            ),
+        )
+
+
+def _replay(
+    drive: LoggedDrive, replay: Replay, tally: Tally, options: LocalizeOptions, show: Show
+) -> None:
+    is_placed = False
+    with contextlib.ExitStack() as stack:
+        files = [stack.enter_context(file) for file in _files(options, drive.odometry_frame)]
+        for number, reading in enumerate(drive.readings()):
+            if number % _SHOWN == 0:
+                show(number / len(drive), f"{tally.seconds:.0f} s, {replay.scans} scans")
+            if isinstance(reading.value, OwnPose):
+                tally.hear_own_pose(reading.stamp, reading.value.pose)
+            row = replay.hear(reading)
+            if row is None:
+                continue
+            tally.take(row)
+            # What comes before the place is first known is no pose that a file should hold.
+            is_placed = is_placed or row.estimate.knowledge.is_usable
+            for file in files if is_placed else ():
+                file.write(row)
+
+
+def _files(options: LocalizeOptions, odometry_frame: str) -> Iterator[RowFile]:
+    if options.csv is not None:
+        yield RowTable(options.csv)
+    if options.trajectory is not None:
+        yield RowTrajectory(options.trajectory)
+    if options.output is not None:
+        yield RowBag(options.output, odometry_frame)
+
+
+def _words_of_start(options: LocalizeOptions) -> str:
+    return "searched for in the whole map" if options.start is None else "given"
+
+
+def _remarks(options: LocalizeOptions, occupancy: OccupancyMap) -> list[str]:
+    start = options.start
+    if start is None or occupancy.values[occupancy.frame.cell_of(start.x, start.y)] == FREE:
+        return []
+    return [f"the start ({start.x:g}, {start.y:g}) is not on free floor of {options.map}"]
+
+
+def _how_to_play(options: LocalizeOptions, drive: LoggedDrive) -> list[str]:
+    """Return what to leave out of a bag of ROS 1 to play it beside what was written."""
+    bags = [path for path in options.logs if path.suffix == ".bag"]
+    if options.output is None or not bags or not drive.names & {*OUTPUT_TOPICS, "/tf"}:
+        return []
+    return [
+        "the bag may have such topics of its own; to play both, leave those out: ./roomba exec "
+        f"rosbag filter {bags[0]} NEW.bag \"topic not in {OUTPUT_TOPICS} and not (topic == '/tf' "
+        f"and any(x.child_frame_id == '{drive.odometry_frame}' for x in m.transforms))\""
+    ]
+
+
+def _names(logs: tuple[Path, ...]) -> str:
+    return ", ".join(map(str, logs))

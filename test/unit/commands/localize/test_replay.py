@@ -1,0 +1,74 @@
+"""Readings of a drive, told to the localizer one by one."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from fixtures.located import CONFIG, FURNISHED
+
+from roomba.commands.localize.replay import Replay, Row
+from roomba.geometry import Pose
+from roomba.perception.matching.scan_view import LidarModel
+from roomba.recordings.readings import LidarScan, Odometry, Reading, Turning, Value
+
+BEGAN = 1_700_000_000.0
+START = Pose(1.4, 1.0, 0.3)
+
+
+def replay() -> Replay:
+    return Replay(FURNISHED.map, CONFIG, START)
+
+
+def hear(robot: Replay, seconds: float, value: Value) -> Row | None:
+    """Tell a reading that was recorded a day after it was measured."""
+    return robot.hear(Reading(BEGAN + seconds, value, BEGAN + seconds + 86400.0))
+
+
+def test_a_scan_waits_until_odometry_has_reached_its_last_beam() -> None:
+    robot, angles = replay(), np.linspace(0.0, math.tau, 360, endpoint=False)
+    lidar = LidarModel(angles, 0.1, 12.0, Pose(), 0.2 / 359)
+    scan = LidarScan(np.ones(360, np.float32), lidar)
+    hear(robot, 0.9, Odometry(Pose()))
+    hear(robot, 1.0, scan)
+    hear(robot, 1.15, Odometry(Pose()))
+    assert robot.scans == 0
+    hear(robot, 1.21, Odometry(Pose()))
+    assert robot.scans == 1
+
+
+def test_scans_without_odometry_are_left_out_and_counted() -> None:
+    robot = replay()
+    lidar = LidarModel(np.linspace(0.0, 3.0, 180), 0.1, 12.0)
+    scan = LidarScan(np.ones(180, np.float32), lidar)
+    hear(robot, 0.0, Odometry(Pose()))
+    for seconds in (2.0, 3.0, 4.0):
+        hear(robot, seconds, scan)
+    assert robot.scans == 0
+    assert robot.notes == ["2 scans of times without odometry: left out"]
+
+
+def test_turns_are_those_of_the_gyro() -> None:
+    """The wheels say that it stands."""
+    headings = []
+    for speed in (None, 0.5):
+        robot, row = replay(), None
+        for tick in range(41):
+            if speed is not None:
+                hear(robot, 0.05 * tick, Turning(speed))
+            row = hear(robot, 0.05 * tick, Odometry(Pose(0.02 * tick, 0.0, 0.0))) or row
+        assert row is not None
+        headings.append(row.estimate.pose.theta - START.theta)
+    assert abs(headings[0]) < 1e-6
+    assert 0.3 < headings[1] < 1.01
+
+
+def test_rows_come_as_often_as_the_live_node_tells_its_pose() -> None:
+    robot = replay()
+    rows = [hear(robot, 0.01 * tick, Odometry(Pose(0.001 * tick))) for tick in range(101)]
+    told = [row for row in rows if row is not None]
+    assert len(told) == 21
+    assert [row.elapsed for row in told[:3]] == [0.0, told[1].elapsed, 2.0 * told[1].elapsed]
+    assert told[-1].stamp == BEGAN + 1.0
+    assert told[-1].arrival == BEGAN + 1.0 + 86400.0
+    assert abs(told[-1].way - 0.1) < 1e-6
