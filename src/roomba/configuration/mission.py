@@ -155,8 +155,12 @@ class ExploringConfig(Frozen):
     """Driving where the map is being made: m, m/s."""
 
     speed: Positive = 0.40
+    stand_first: NotNegative = 8.0
+    """s; on its station, before it leaves it: the gyro shows its bias."""
     clearance: Positive = 0.12
     tight_clearance: Positive = 0.005
+    cleaning_clearance: Positive = 0.015
+    """The same as ``driving.clearance``, for a clean while the map is being made."""
     look_first: Positive = 10.0
     most_stuck: Count = 3
     viewpoint_tolerance: Positive = 0.12

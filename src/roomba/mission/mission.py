@@ -317,7 +317,8 @@ class Mission:
         job, drives, limit = self._job, self._drives, self.speed_limit(senses)
         match self.state.phase:
             case Phase.UNDOCKING:
-                return self._at_station.undock(senses, self.context.station)
+                stand = self._config.exploring.stand_first if self.context.is_growing else 0.0
+                return self._at_station.undock(senses, self.context.station, stand)
             case Phase.CLEANING:
                 return self._clean_phase.tick(senses, limit)
             case Phase.EXPLORING:

@@ -21,7 +21,7 @@ from fixtures.exploring import (
 )
 from fixtures.missions import DOOR, TWO_ROOMS, WALL_X
 
-from roomba.geometry import Twist
+from roomba.geometry import STANDSTILL, Twist
 from roomba.grid import OCCUPIED, OccupancyMap
 from roomba.mission.cleaning.request import CleanOutcome, CleanRequest
 from roomba.mission.commands import CommandRefusedError
@@ -54,11 +54,13 @@ def test_told_to_explore_it_drives_and_sweeps_nothing() -> None:
     assert rig.mission.speed_limit(rough) == ROBOT.walk.careful_speed
 
 
-def test_from_its_station_it_comes_out_first() -> None:
+def test_from_its_station_it_comes_out_first_once_its_gyro_has_settled() -> None:
     rig = Rig(DOCKED)
     rig.mission.explore(rig.senses)
     assert rig.phase is Phase.UNDOCKING
-    assert rig.tick(5).twist.linear < 0.0
+    stand = round(CONFIG.exploring.stand_first / TICK)
+    assert rig.tick(stand - 2).twist == STANDSTILL
+    assert rig.tick(4).twist.linear < 0.0
 
 
 def test_with_nothing_left_it_goes_home() -> None:

@@ -6,7 +6,18 @@ import json
 
 import numpy as np
 import pytest
-from fixtures.exploring import AWAY, DOCKED, HALL, HERE, TICK, WHOLE, Rig, known_to
+from fixtures.exploring import (
+    AWAY,
+    CONFIG,
+    DOCKED,
+    HALL,
+    HERE,
+    ROBOT,
+    TICK,
+    WHOLE,
+    Rig,
+    known_to,
+)
 from fixtures.missions import TWO_ROOMS, WALL_X
 
 from roomba.geometry import Pose, Twist
@@ -74,6 +85,36 @@ def test_with_nothing_near_to_look_at_it_cleans_what_is_known() -> None:
     # All of the hall.
     assert rig.mission.driver.left > 8.0
     assert not rig.mission.wants_map(WHOLE)
+
+
+def test_while_the_map_grows_it_keeps_farther_from_walls_and_leaves_the_edges() -> None:
+    rig = cleaning()
+    mission = rig.mission
+    assert mission.exploration is not None
+    mission.exploration.cut_off()
+    mission.exploration.unseen += [(WALL_X + 0.1, y) for y in np.arange(0.7, 1.8, 0.1).tolist()]
+    mission.driver = None
+    rig.tick(4)
+    assert mission.driver is not None
+    assert mission.cleaning is not None
+    points = mission.driver.tracker.course.points
+    frame, solid = HALL.frame, np.argwhere(HALL.solid)
+    x, y = frame.centres(solid[:, 0], solid[:, 1])
+    half = 0.5 * frame.resolution
+    gaps = [
+        np.hypot(np.maximum(abs(x - at[0]) - half, 0), np.maximum(abs(y - at[1]) - half, 0)).min()
+        for at in points
+    ]
+    assert min(gaps) > ROBOT.body.radius + CONFIG.exploring.cleaning_clearance - 0.001
+    coverage, width = mission.cleaning.coverage, ROBOT.brush.width
+    tried = (coverage.cells & TRIED) > 0
+    rows, columns = np.nonzero(tried)
+    inside_x, inside_y = coverage.frame.centres(rows, columns)
+    assert tried.any()
+    off_walls = [
+        np.hypot(x - at[0], y - at[1]).min() for at in zip(inside_x, inside_y, strict=True)
+    ]
+    assert min(off_walls) > width
 
 
 def test_with_all_seen_and_clean_it_waits_for_the_whole_map_and_ends_on_it() -> None:

@@ -19,7 +19,7 @@ from roomba.mission.cleaning.checkpoint import Values
 from roomba.mission.cleaning.ledger import CoverageLedger
 from roomba.mission.cleaning.missed import is_hidden, missed_floor
 from roomba.mission.cleaning.request import CleanRefusedError, CleanRequest, Missed
-from roomba.mission.cleaning.stages import Stage
+from roomba.mission.cleaning.stages import Stage, edges_of
 from roomba.mission.driving.gaps import closed_gaps
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.perception.swept.coverage_map import CoverageMap, patches_of
@@ -220,16 +220,19 @@ class Cleaning:
         return missed_floor(left, least, self._context, obstacles, edges, is_over=is_over)
 
     def _next_of_known(self, here: Pose, obstacles: list[RoundObstacle]) -> Floats | None:
-        """Plan over what is large enough of the floor that is known; None if there is none."""
+        """Plan over what is known and large enough, but for the edges; None if there is none."""
         at = (here.x, here.y)
-        todo = self._ledger.untried & self._reachable(at, obstacles)
+        planner = self._context.growing_coverage
+        floor = planner.floor.with_obstacles(obstacles).coverable(at)
+        # Edges are driven along on the whole map, by which the place is known better.
+        todo = self._ledger.untried & floor & ~edges_of(floor, self._context)
         todo = _patches(todo, self.coverage.frame, self._config.least_while_growing)
         if not todo.any():
             return None
         self._ledger.note_tried(todo)
         edges_only = self.request.mode is CleanMode.EDGES
         try:
-            plan = self._context.coverage.plan(at, None, todo, obstacles, edges_only=edges_only)
+            plan = planner.plan(at, None, todo, obstacles, edges_only=edges_only)
         except NoPathError:
             return None
         return plan.points if plan.length > 0.0 and len(plan.points) > 2 else None

@@ -39,14 +39,20 @@ def stages_of(
     ]
 
 
+def edges_of(floor: Mask, context: PlanningContext) -> Mask:
+    """Return the strip of a floor along its edges that is as wide as the tool."""
+    off_edge = distance_to_nearest(~floor) * context.frame.resolution
+    strip: Mask = floor & (off_edge <= context.tool_width)
+    return strip
+
+
 def _parts(
     request: CleanRequest, context: PlanningContext, dirt: DirtMap, coverable: Mask, here: Pose
 ) -> list[Stage]:
     if request.mode in (CleanMode.WHOLE, CleanMode.EDGES):
         floor = coverable
         if request.mode is CleanMode.EDGES:
-            off_edge = distance_to_nearest(~coverable) * context.frame.resolution
-            floor = coverable & (off_edge <= context.tool_width)
+            floor = edges_of(coverable, context)
         return [Stage("", floor)]
     if request.mode is CleanMode.ZONES:
         return [Stage("", coverable & _inside(context, request.zones))]

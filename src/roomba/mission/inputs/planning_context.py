@@ -82,6 +82,7 @@ class PlanningContext:
         self.staging = staging_pose(station, docking)
         driving, radius = mission.driving, robot.body.radius
         self.reach, self.gap_spare = radius + driving.clearance, driving.gap_spare
+        self._growing_reach = radius + mission.exploring.cleaning_clearance
         self.staging_tolerance = docking.place_tolerance
         self.spot_size = mission.cleaning.spot_size
         self.tool_width = robot.brush.width
@@ -99,6 +100,13 @@ class PlanningContext:
     def coverage(self) -> CoveragePlanner:
         """The planner of ways over the floor; made when it is first asked for: that takes time."""
         return CoveragePlanner(self.known, self.reach, self.tool_width, self._coverage_config)
+
+    @cached_property
+    def growing_coverage(self) -> CoveragePlanner:
+        """The same for a map that grows: farther from walls, as these and the place may be off."""
+        return CoveragePlanner(
+            self.known, self._growing_reach, self.tool_width, self._coverage_config
+        )
 
     @property
     def floor(self) -> CoverageFloor:

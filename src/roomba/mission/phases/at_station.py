@@ -7,6 +7,7 @@ from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose
 from roomba.mission.cleaning.request import CleanOutcome
 from roomba.mission.docking.docking import Docking, DockSenses, DockState
+from roomba.mission.docking.expected_time import RobotTime
 from roomba.mission.docking.undocking import Undocking, UndockState
 from roomba.mission.inputs.senses import Senses
 from roomba.mission.phases.job import Job
@@ -26,10 +27,16 @@ class AtStation:
         """Leave what was under way: it begins anew next time."""
         self._docking: Docking | None = None
         self._undocking: Undocking | None = None
+        self._stood: RobotTime | None = None
         self._needed: float | None = None
 
-    def undock(self, senses: Senses, station: Pose) -> PhaseStep:
-        """Drive out of the station."""
+    def undock(self, senses: Senses, station: Pose, stand_first: float = 0.0) -> PhaseStep:
+        """Drive out of the station; if docked, after it stood there for ``stand_first`` s."""
+        self._stood = self._stood or RobotTime(senses.now)
+        self._stood.tick(senses.now)
+        is_in = senses.battery.is_docked and self._undocking is None
+        if is_in and self._stood.elapsed < stand_first:
+            return PhaseStep()
         sensed = _dock_senses(senses)
         if self._undocking is None:
             self._undocking = Undocking(self._config, station, sensed)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from fixtures.missions import HOME, STATION
 
@@ -101,3 +102,21 @@ def test_it_charges_until_there_is_enough_for_the_rest() -> None:
     assert station.charge(DOCKED, job, TOOL) == PhaseStep(STANDSTILL)
     station.forget()
     assert station.charge(DOCKED, job, TOOL) == PhaseStep(event=Event.CHARGED)
+
+
+def test_docked_it_stands_first_and_away_from_its_station_it_does_not() -> None:
+    station = at_the_station()
+    twists = {
+        now: station.undock(replace(DOCKED, now=now), STATION, 2.0).twist
+        for now in np.arange(0.0, 3.0, 0.1).round(1).tolist()
+    }
+    assert {twist for now, twist in twists.items() if now < 1.95} == {STANDSTILL}
+    assert all(twist.linear < 0.0 for now, twist in twists.items() if now > 2.05)
+    assert at_the_station().undock(BEFORE, STATION, 2.0).event is Event.OUT
+
+
+def test_it_stands_again_before_it_undocks_another_time() -> None:
+    station = at_the_station()
+    station.undock(DOCKED, STATION)
+    station.forget()
+    assert station.undock(replace(DOCKED, now=9.0), STATION, 2.0).twist == STANDSTILL
