@@ -84,13 +84,15 @@ def test_states_have_the_codes_of_the_message() -> None:
 
 def test_messages_of_this_robot_are_read(words: list[str], tmp_path: Path) -> None:
     """Recorded by rosbag, with the messages that the nodes send."""
-    bag = tmp_path / "made.bag"
+    bag = tmp_path / "recorded.bag"
     told = PoseWithCovarianceStamped()
     told.header.frame_id = "map"
     told.pose.pose = pose_message(0.0, START, "map").pose
     told.pose.covariance[0] = told.pose.covariance[7] = 0.04
     drop = WheelDrop(is_left_dropped=True, is_right_dropped=True)
-    with rosbag.Bag(str(bag), "a") as recorder:
+    with rosbag.Bag(words[3]) as made, rosbag.Bag(str(bag), "w") as recorder:
+        for topic, message, time in made.read_messages():
+            recorder.write(topic, message, time)
         for topic, message in (
             ("/initialpose", told),
             ("/wheel_drop", drop),
