@@ -65,6 +65,8 @@ class Calibration:
         )
         row["base"] = row["base"] or self.base
         row["windows"], row["is_applied"] = self.windows, bool(self.applied[: GYRO + 1].any())
+        # What was under way was measured by other corrections, and perhaps in another frame.
+        row["is_open"] = False
 
     @property
     def deviations(self) -> Floats:

@@ -48,6 +48,15 @@ def live(tmp_path: Path) -> Iterator[LiveClient]:
 
 
 @pytest.fixture
+def unhurried(tmp_path: Path) -> Iterator[RobotClient]:
+    """A robot whose walks take so long that they are told on the way."""
+    live = live_client(str(tiny_home(tmp_path)), seed=1, speed=10.0, knows_map=True)
+    live.start()
+    yield LiveRobotClient(live)
+    live.end()
+
+
+@pytest.fixture
 def robot(live: LiveClient) -> RobotClient:
     return LiveRobotClient(live)
 
@@ -82,7 +91,8 @@ def walk_and_tell(walk: WalkHandle) -> tuple[list[float], WalkReport]:
     return told, wait_until(end, DEADLINE, "the end of the walk")
 
 
-def test_a_walk_tells_its_way_and_arrives(robot: RobotClient) -> None:
+def test_a_walk_tells_its_way_and_arrives(unhurried: RobotClient) -> None:
+    robot = unhurried
     length = robot.path_length(*FAR)
     told, report = walk_and_tell(robot.walk_to(*FAR))
     assert (report.outcome, report.message) == (WalkOutcome.ARRIVED, "")

@@ -77,7 +77,9 @@ def test_its_line_tells_what_is_sure_alone() -> None:
 
 def test_another_belief_goes_on_with_it() -> None:
     known, other = Calibration.of(measured()), belief()
+    other[0]["calibration"]["is_open"] = True
     known.take_up(other)
+    assert not other[0]["calibration"]["is_open"]
     again = Calibration.of(other)
     assert np.array_equal(again.errors, known.errors)
     assert np.array_equal(again.covariance, known.covariance)

