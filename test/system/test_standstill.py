@@ -200,7 +200,7 @@ def killed(node: str) -> Cause:
     @contextlib.contextmanager
     def cause(drive: Drive) -> Iterator[float]:
         old = drive.graph.signal(node, signal.SIGKILL)
-        yield drive.rest.last_sent(node, rospy.get_time() + 0.1)
+        yield drive.rest.last_sent(node)
         wait_until(lambda: is_new(drive.graph, node, old), 30.0, f"{node} is back", pause=0.1)
 
     return cause
@@ -215,7 +215,7 @@ def frozen(node: str) -> Cause:
     def cause(drive: Drive) -> Iterator[float]:
         pid = drive.graph.signal(node, signal.SIGSTOP)
         try:
-            yield drive.rest.last_sent(node, rospy.get_time() + 0.1)
+            yield drive.rest.last_sent(node)
         finally:
             os.kill(pid, signal.SIGCONT)
 
