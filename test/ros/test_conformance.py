@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 from fixtures.compositions import REFERENCE, Case, Outcome, assert_same
 from fixtures.forked import run_forked
@@ -18,9 +19,9 @@ BEGIN = 5.0
 THING = (1.03, 0.77, 0.10)
 """x, y and radius, m, of something that the map of HOME does not show; ways around it do not lead
 along the sides of the dirt map's cells, where the last bits decide which one counts a grain."""
-CLEAR_CUT = 6
-"""Seed of a clean while mapping in which no decision hangs on the last bits. A rounding of 1e-14 m
-grows to 1e-7 m in 165 s. Then the encoders count a tick more or less, 0.2 mm, and with most seeds a
+ALIKE = 90.0
+"""s for which a noisy clean while mapping is the same. A rounding of 1e-14 m grows to 1e-7 m in
+about 165 s, on some processors in 150 s. Then the encoders count a tick more or less, 0.2 mm, and a
 turn ends a tick earlier soon: from there on the two robots are 15 mm apart, and part. A touch
 amplifies as much within two seconds."""
 STUDIO = load_home("studio", HOMES, SimulatedRobotConfig().body)
@@ -36,7 +37,6 @@ NOISY = {
     "clean": Case(TWO_ROOMS, begin=BEGIN),
     "walk": Case(TWO_ROOMS, goal=(3.0, 2.0), begin=BEGIN),
     "clean slowly around a thing": Case(HOME, things=(THING,), seed=3, speed=0.2, begin=BEGIN),
-    "clean while mapping": Case(TWO_ROOMS, is_mapped=False, seed=CLEAR_CUT, begin=BEGIN),
     "walk around a thing": Case(HOME, goal=(1.4, 0.4), things=(THING,), seed=3, begin=BEGIN),
 }
 EDGE = 0.002
@@ -57,6 +57,27 @@ def test_with_noise_they_do_so_as_well(name: str, tmp_path: Path) -> None:
         assert_same(in_lockstep(case, tmp_path), REFERENCE(case), ticks=1, edge=EDGE)
 
     run_forked(compare)
+
+
+def test_with_noise_a_clean_while_mapping_begins_and_ends_as_the_headless_one(
+    tmp_path: Path,
+) -> None:
+    case = Case(TWO_ROOMS, is_mapped=False, seed=6, begin=BEGIN)
+
+    def compare() -> None:
+        nodes, reference = in_lockstep(case, tmp_path), REFERENCE(case)
+        assert_same(nodes.until(ALIKE), reference.until(ALIKE))
+        assert_ends_alike(nodes, reference)
+
+    run_forked(compare)
+
+
+def assert_ends_alike(nodes: Outcome, reference: Outcome) -> None:
+    assert nodes.told == reference.told == "COMPLETED"
+    assert nodes.phase is reference.phase
+    assert nodes.hits == reference.hits == 0
+    assert np.count_nonzero(nodes.swept != reference.swept) < 0.02 * reference.swept.sum()
+    assert nodes.figures["duration"] == pytest.approx(reference.figures["duration"], rel=0.1)
 
 
 @pytest.mark.parametrize("sensors", ["ideal", "noisy"])

@@ -84,8 +84,7 @@ def frontiers(
     for first, last in pairwise(ends.tolist()):
         if last - first < choice.least_cells:
             continue
-        # A place near its middle, if that can be.
-        tried = first + np.argsort(apart[first:last])[::every]
+        tried = first + _spaced(apart[first:last], every)
         index, row, column = seen_from(
             cells[tried], middles[tried], leave, choice.away, occupancy.values, ways, radius, worth
         )
@@ -138,6 +137,15 @@ def _from_middle(cells: NDArray[np.int64], ends: NDArray[np.int64]) -> NDArray[n
     means = np.add.reduceat(cells, ends[:-1]) / counts[:, None] if len(counts) else cells
     apart: NDArray[np.float64] = np.abs(cells - np.repeat(means, counts, axis=0)).sum(axis=1)
     return apart
+
+
+def _spaced(apart: NDArray[np.float64], every: int) -> NDArray[np.intp]:
+    """Return one of ``every`` places, the nearest to the middle first; it is one of them.
+
+    The order of places that are equally far is the same on all processors.
+    """
+    spaced = np.arange(int(np.argmin(apart)) % every, len(apart), every)
+    return spaced[np.argsort(apart[spaced], kind="stable")]
 
 
 def _middles_of(cells: NDArray[np.int64], frame: GridFrame) -> NDArray[np.float64]:

@@ -172,7 +172,7 @@ def _errors(rows: Floats, true: Floats) -> tuple[float | None, float | None]:
     """Return how far rows of t, x, y were off the true ones: at most, and at the end."""
     if not len(true):
         return None, None
-    stamps, x, y = true[np.argsort(true[:, 0])].T
+    stamps, x, y = true[np.argsort(true[:, 0], kind="stable")].T
     at = rows[(rows[:, 0] >= stamps[0]) & (rows[:, 0] <= stamps[-1])]
     if not len(at):
         return None, None
