@@ -40,7 +40,7 @@ class CoverageConfig(Frozen):
     """Cells of way that a cell of floor is worth when the way is polished."""
     spare: Ratio = 0.002
     """Share of the floor that polishing may leave at most."""
-    search_rounds: AtLeastOne = 20000
+    search_rounds: AtLeastOne = 5000
     """Exchanges in the search for an order, after which it goes on only if they paid."""
     search_pays: Ratio = 0.005
     """Share of the cost that so many exchanges must gain, or the search ends."""

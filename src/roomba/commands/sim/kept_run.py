@@ -119,8 +119,7 @@ def recording_of(run: Run, samples: StateSamples) -> RunRecording:
         for word in samples.words
     )
     visits = Visits(run.home.map.frame, run.figures.tool_width_m)
-    for moment, x, y, _ in run.trajectory[::_COVERAGE_STRIDE].tolist():
-        visits.sweep(moment, x, y)
+    visits.sweep_all(run.trajectory[::_COVERAGE_STRIDE, :3])
     layers = {
         "map": _layer(run.home.map.frame, known_cells(run.home.map)),
         "coverage": _layer(visits.frame, visits.counts),

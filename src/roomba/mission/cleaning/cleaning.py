@@ -101,7 +101,7 @@ class Cleaning:
     @property
     def clean_area(self) -> float:
         """What was ever swept of what is wanted, m2; only edits of zones make it less."""
-        return float(np.count_nonzero(self.clean)) * self.coverage.cell_area
+        return self._ledger.clean_area
 
     @property
     def explores(self) -> bool:

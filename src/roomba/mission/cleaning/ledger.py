@@ -20,6 +20,7 @@ from roomba.mission.cleaning.request import CleanRequest
 from roomba.mission.cleaning.stages import Stage, stages_of
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.perception.swept.coverage_bits import SWEPT, TRIED, WANTED
+from roomba.perception.swept.coverage_kernels import missed_of, swept_or
 from roomba.perception.swept.coverage_map import CoverageMap
 from roomba.perception.swept.dirt_map import DirtMap
 from roomba.raster.carried import carried
@@ -54,13 +55,17 @@ class CoverageLedger:
     @property
     def left(self) -> float:
         """Floor that is still to be cleaned, m2, stages and passes to come included."""
-        cell = self.coverage.cell_area
-        missed = self.coverage.missed
-        now = sum(
-            float(np.count_nonzero(stage.floor & missed if number == 0 else stage.floor))
-            for number, stage in enumerate(self.stages[self.stage_number :])
-        )
-        return now * cell
+        stage = self.stage
+        if stage is None:
+            return 0.0
+        cells = missed_of(self.coverage.cells, stage.floor)
+        cells += sum(later.cells for later in self.stages[self.stage_number + 1 :])
+        return cells * self.coverage.cell_area
+
+    @property
+    def clean_area(self) -> float:
+        """What was ever swept of what is wanted, m2; only edits of zones make it less."""
+        return swept_or(self.coverage.cells, self._ever) * self.coverage.cell_area
 
     @property
     def clean(self) -> Mask:

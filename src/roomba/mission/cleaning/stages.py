@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,13 +19,18 @@ from roomba.vocabulary import CleanMode
 Mask = NDArray[np.bool_]
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class Stage:
     """A part of a clean: its ``name``, the floor of it, and whether it is driven again."""
 
     name: str
     floor: Mask
     again: bool = False
+
+    @cached_property
+    def cells(self) -> int:
+        """How many cells its floor has."""
+        return int(np.count_nonzero(self.floor))
 
 
 def stages_of(

@@ -1,4 +1,4 @@
-"""Compiled sweeping: which floor the tool passed over."""
+"""Compiled sweeping: which floor the tool passed over, and how often; and counts of it."""
 
 from __future__ import annotations
 
@@ -28,31 +28,116 @@ def sweep(
 
     ``place`` is x and y of the middle of the first cell, and the resolution, m.
     """
-    rows, columns = cells.shape
-    step = place[2]
-    inverse = 1.0 / step
-    low_x, high_x = min(from_x, to_x) - radius, max(from_x, to_x) + radius
-    low_y, high_y = min(from_y, to_y) - radius, max(from_y, to_y) + radius
-    first_column = max(math.ceil((low_x - place[0]) * inverse), 0)
-    last_column = min(math.floor((high_x - place[0]) * inverse), columns - 1)
-    first_row = max(math.ceil((low_y - place[1]) * inverse), 0)
-    last_row = min(math.floor((high_y - place[1]) * inverse), rows - 1)
+    window = _window(cells.shape, place, from_x, from_y, to_x, to_y, radius)
+    first_row, end_row, first_column, end_column = window
     way_x, way_y = to_x - from_x, to_y - from_y
-    square = way_x * way_x + way_y * way_y
-    per_square = 1.0 / square if square > 0.0 else 0.0
+    inverse = _inverse_square(way_x, way_y)
     most = radius * radius
     found = 0
-    for row in range(first_row, last_row + 1):
-        dy = place[1] + row * step - from_y
-        for column in range(first_column, last_column + 1):
+    for row in range(first_row, end_row):
+        dy = place[1] + row * place[2] - from_y
+        for column in range(first_column, end_column):
             value = cells[row, column]
             if value & SWEPT:
                 continue
-            dx = place[0] + column * step - from_x
-            share = min(max((dx * way_x + dy * way_y) * per_square, 0.0), 1.0)
-            off_x, off_y = dx - share * way_x, dy - share * way_y
-            if off_x * off_x + off_y * off_y <= most:
+            dx = place[0] + column * place[2] - from_x
+            if _squared_distance(dx, dy, way_x, way_y, inverse) <= most:
                 cells[row, column] = value | SWEPT
                 if value & WANTED:
                     found += 1
     return found
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def visit(
+    counts: Cells,
+    swept_at: NDArray[np.float64],
+    place: NDArray[np.float64],
+    rule: tuple[float, float, int],
+    poses: NDArray[np.float64],
+) -> None:
+    """Count one visit more of each cell whose middle a disc passes over that goes from pose to
+    pose, float64 [n, 3]: s, m, m.
+
+    ``place`` is as in :func:`sweep`; ``swept_at``, s, tells when a cell was last passed. ``rule``
+    is the radius of the disc, m, after how many s a cell counts anew, and the highest count.
+    """
+    radius, apart, highest = rule
+    most = radius * radius
+    for number in range(1, len(poses)):
+        from_x, from_y = poses[number - 1, 1], poses[number - 1, 2]
+        now, to_x, to_y = poses[number]
+        window = _window(counts.shape, place, from_x, from_y, to_x, to_y, radius)
+        first_row, end_row, first_column, end_column = window
+        way_x, way_y = to_x - from_x, to_y - from_y
+        inverse = _inverse_square(way_x, way_y)
+        for row in range(first_row, end_row):
+            dy = place[1] + row * place[2] - from_y
+            for column in range(first_column, end_column):
+                dx = place[0] + column * place[2] - from_x
+                if _squared_distance(dx, dy, way_x, way_y, inverse) > most:
+                    continue
+                if now - swept_at[row, column] > apart:
+                    counts[row, column] = min(counts[row, column] + 1, highest)
+                swept_at[row, column] = now
+
+
+@njit(cache=True, nogil=True)
+def swept_or(cells: Cells, ever: NDArray[np.bool_]) -> int:
+    """Return how many WANTED cells are SWEPT, or true in ``ever``, bool of the same shape."""
+    values, once = cells.ravel(), ever.ravel()
+    found = 0
+    for index in range(values.size):  # Without branches: eight and more cells at once.
+        value = values[index]
+        found += ((value & WANTED) != 0) & (((value & SWEPT) != 0) | once[index])
+    return found
+
+
+@njit(cache=True, nogil=True)
+def missed_of(cells: Cells, floor: NDArray[np.bool_]) -> int:
+    """Return how many WANTED cells of ``floor``, bool of the same shape, are not SWEPT."""
+    values, is_of_it = cells.ravel(), floor.ravel()
+    found = 0
+    for index in range(values.size):  # Without branches, as above.
+        found += ((values[index] & (WANTED | SWEPT)) == WANTED) & is_of_it[index]
+    return found
+
+
+@njit(cache=True, nogil=True)
+def _window(
+    shape: tuple[int, ...],
+    place: NDArray[np.float64],
+    from_x: float,
+    from_y: float,
+    to_x: float,
+    to_y: float,
+    radius: float,
+) -> tuple[int, int, int, int]:
+    """Return the first row, the end of the rows, the first column and the end of the columns that
+    a disc of ``radius`` m can reach on its way."""
+    inverse = 1.0 / place[2]
+    low_x, high_x = min(from_x, to_x) - radius, max(from_x, to_x) + radius
+    low_y, high_y = min(from_y, to_y) - radius, max(from_y, to_y) + radius
+    return (
+        max(math.ceil((low_y - place[1]) * inverse), 0),
+        min(math.floor((high_y - place[1]) * inverse), shape[0] - 1) + 1,
+        max(math.ceil((low_x - place[0]) * inverse), 0),
+        min(math.floor((high_x - place[0]) * inverse), shape[1] - 1) + 1,
+    )
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _inverse_square(way_x: float, way_y: float) -> float:
+    """Return one over the squared length of a way, or 0 of one without length."""
+    square = way_x * way_x + way_y * way_y
+    return 1.0 / square if square > 0.0 else 0.0
+
+
+@njit(cache=True, nogil=True)
+def _squared_distance(
+    dx: float, dy: float, way_x: float, way_y: float, inverse_square: float
+) -> float:
+    """Return the squared distance of a point from a straight way; both begin at the origin."""
+    share = min(max((dx * way_x + dy * way_y) * inverse_square, 0.0), 1.0)
+    off_x, off_y = dx - share * way_x, dy - share * way_y
+    return float(off_x * off_x + off_y * off_y)

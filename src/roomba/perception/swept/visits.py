@@ -9,8 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.grid import GridFrame
-from roomba.perception.swept.coverage_bits import SWEPT
-from roomba.perception.swept.coverage_kernels import sweep
+from roomba.perception.swept.coverage_kernels import visit
 from roomba.perception.swept.coverage_map import LONGEST_STEP
 
 CELL: Final = 0.05
@@ -30,7 +29,8 @@ class Visits:
         self.frame = GridFrame(CELL, frame.origin_x, frame.origin_y, rows, columns)
         self.counts: NDArray[np.uint8] = np.zeros(self.frame.shape, np.uint8)
         self._swept_at = np.full(self.frame.shape, -np.inf)
-        self._radius = 0.5 * tool_width
+        self._place = np.array([*self.frame.centre_of(0, 0), CELL])
+        self._rule = (0.5 * tool_width, _ANOTHER_VISIT, _MOST)
         self._at: tuple[float, float] | None = None
 
     def clear(self) -> None:
@@ -49,19 +49,16 @@ class Visits:
         if math.hypot(x - from_x, y - from_y) > LONGEST_STEP:
             from_x, from_y = x, y
         self._at = (x, y)
-        reach, frame = self._radius, self.frame
-        low_row, low_column = frame.cell_of(min(x, from_x) - reach, min(y, from_y) - reach)
-        high_row, high_column = frame.cell_of(max(x, from_x) + reach, max(y, from_y) + reach)
-        rows = np.arange(max(low_row, 0), min(high_row + 1, frame.rows))
-        columns = np.arange(max(low_column, 0), min(high_column + 1, frame.columns))
-        if not (rows.size and columns.size):
-            return
-        first_x, first_y = frame.centre_of(rows[0], columns[0])
-        passed = np.zeros((rows.size, columns.size), np.uint8)
-        sweep(passed, np.array([first_x, first_y, CELL]), from_x, from_y, x, y, reach)
-        under = passed == SWEPT
-        area = np.ix_(rows, columns)
-        counts, swept_at = self.counts[area], self._swept_at[area]
-        fresh = under & (now - swept_at > _ANOTHER_VISIT)
-        self.counts[area] = np.where(fresh, np.minimum(counts + 1, _MOST), counts)
-        self._swept_at[area] = np.where(under, now, swept_at)
+        self._visit(np.array([(now, from_x, from_y), (now, x, y)]))
+
+    def sweep_all(self, poses: NDArray[np.float64]) -> None:
+        """Count what the tool passes from pose to pose, float64 [n, 3]: s, m, m."""
+        steps = np.hypot(*np.diff(poses[:, 1:], axis=0).T)
+        for part in np.split(poses, np.flatnonzero(steps > LONGEST_STEP) + 1):
+            now, x, y = part[0].tolist()
+            self.sweep(now, x, y)
+            self._visit(part)
+            self._at = (float(part[-1, 1]), float(part[-1, 2]))
+
+    def _visit(self, poses: NDArray[np.float64]) -> None:
+        visit(self.counts, self._swept_at, self._place, self._rule, poses)

@@ -14,6 +14,7 @@ from roomba.grid import GridFrame, OccupancyMap
 from roomba.mission.cleaning.checkpoint import CheckpointError
 from roomba.mission.cleaning.ledger import CoverageLedger
 from roomba.mission.cleaning.request import CleanRefusedError, CleanRequest
+from roomba.mission.cleaning.stages import Stage
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.perception.swept.coverage_bits import SWEPT
 from roomba.perception.swept.dirt_map import DirtMap
@@ -146,3 +147,25 @@ def test_a_zone_that_is_gone_is_wanted_at_the_end() -> None:
 def test_rooms_of_a_map_without_rooms_are_refused() -> None:
     with pytest.raises(CleanRefusedError, match="clean the whole home"):
         begun(context_of(HALL), CleanRequest(CleanMode.ROOMS, rooms=("den",)))
+
+
+def test_its_areas_are_those_of_its_masks() -> None:
+    """Of a floor that is swept, made dirty again, and swept in part; then of a second pass."""
+    context = context_of(WHOLE)
+    ledger = begun(context)
+    ledger.add(Stage("again", ledger.coverage.wanted, again=True))
+    cell = context.frame.resolution**2
+    assert ledger.left == pytest.approx(2.0 * ledger.coverage.wanted.sum() * cell)
+    ledger.coverage.sweep(1.0, 1.2)
+    ledger.coverage.sweep(2.0, 1.2)
+    ledger.sweep_anew(ledger.coverage.wanted)
+    ledger.coverage.lift()
+    ledger.coverage.sweep(1.0, 1.0)
+    ledger.coverage.sweep(1.5, 1.0)
+    assert ledger.coverage.swept.sum() < ledger.clean.sum() < ledger.coverage.wanted.sum()
+    assert ledger.clean_area == pytest.approx(ledger.clean.sum() * cell)
+    missed = ledger.coverage.wanted & ~ledger.coverage.swept
+    assert ledger.left == pytest.approx((missed.sum() + ledger.coverage.wanted.sum()) * cell)
+    ledger.next_stage()
+    assert ledger.clean_area == pytest.approx(ledger.clean.sum() * cell)
+    assert ledger.left == pytest.approx(ledger.coverage.wanted.sum() * cell)

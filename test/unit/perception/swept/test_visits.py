@@ -57,3 +57,17 @@ def test_what_lies_off_the_frame_is_left_out() -> None:
     visits = Visits(FRAME, 0.2)
     visits.sweep(0.0, -30.0, 40.0)
     assert not visits.counts.any()
+
+
+def test_all_poses_at_once_count_as_one_by_one() -> None:
+    random = np.random.default_rng(5)
+    turns = np.cumsum(random.normal(0.0, 0.5, 400))
+    way = np.cumsum(0.08 * np.column_stack((np.cos(turns), np.sin(turns))), axis=0)
+    way[200:] += (0.7, 0.4)  # carried
+    poses = np.column_stack((0.5 * np.arange(400), way + np.array([0.5, 2.0])))
+    one_by_one, at_once = Visits(FRAME, 0.2), Visits(FRAME, 0.2)
+    for moment, x, y in poses.tolist():
+        one_by_one.sweep(moment, x, y)
+    at_once.sweep_all(poses)
+    assert np.array_equal(at_once.counts, one_by_one.counts)
+    assert set(np.unique(at_once.counts)) == {0, 1, 2, 3}
