@@ -10,29 +10,12 @@ from typing import Any, TypeVar
 
 from pydantic import BaseModel, ValidationError
 from yaml import MappingNode, Node, ScalarNode, SequenceNode, YAMLError
-from yaml.composer import Composer
-from yaml.constructor import SafeConstructor
-from yaml.parser import Parser
-from yaml.reader import Reader
-from yaml.resolver import Resolver
-from yaml.scanner import Scanner
 
 from roomba.errors import HomeError
+from roomba.files.plain_yaml import load_with_nodes
 
 Location = tuple[int | str, ...]
 _Model = TypeVar("_Model", bound=BaseModel)
-
-
-class _Loader(Reader, Scanner, Parser, Composer, SafeConstructor, Resolver):
-    """A copy of ``yaml.SafeLoader``: ROS adds constructors to the original that run code."""
-
-    def __init__(self, text: str) -> None:
-        Reader.__init__(self, text)
-        Scanner.__init__(self)
-        Parser.__init__(self)
-        Composer.__init__(self)
-        SafeConstructor.__init__(self)
-        Resolver.__init__(self)
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,21 +67,17 @@ def read_yaml(path: Path) -> YamlFile:
             f"{path}: expected UTF-8 text, got other bytes; save it as UTF-8"
         ) from error
     try:
-        loader = _Loader(text)
-        root = loader.get_single_node()
-        file = YamlFile(path, None, root)
-        _refuse_duplicates(file, root, set())
-        data = loader.construct_document(root) if root is not None else None
+        data, root = load_with_nodes(text)
     except YAMLError as error:
         mark = getattr(error, "problem_mark", None)
         line = mark.line + 1 if mark is not None else 1
         problem = getattr(error, "problem", None) or str(error).splitlines()[0]
         raise HomeError(f"{path}:{line}: expected YAML, got something else: {problem}") from error
-    except (ValueError, TypeError, RecursionError) as error:
-        raise HomeError(f"{path}:1: expected plain YAML values: {error}") from error
+    file = YamlFile(path, data, root)
+    _refuse_duplicates(file, root, set())
     if not isinstance(data, dict):
         raise file.error((), f"expected keys and values (`key: value`), got {_shown(data)}")
-    return YamlFile(path, data, root)
+    return file
 
 
 def suggestion(word: str, known: Iterable[str]) -> str:

@@ -11,6 +11,7 @@ from pydantic import Field, ValidationError
 
 from roomba.errors import RoombaError
 from roomba.files.atomic import write_whole
+from roomba.files.plain_yaml import load_yaml
 from roomba.perception.calibration.calibration import Calibration
 from roomba.storage.map_bound import Entry, yaml_text
 
@@ -59,7 +60,7 @@ def load_calibration(path: Path) -> Calibration | None:
     except (OSError, UnicodeDecodeError) as cause:
         raise CalibrationError(_set_aside(path, str(cause))) from cause
     try:
-        file = _CalibrationFile.model_validate(yaml.safe_load(text))
+        file = _CalibrationFile.model_validate(load_yaml(text))
         calibration = Calibration(
             np.array(file.errors),
             np.array(file.covariance),
