@@ -41,7 +41,10 @@ CASES = {
     ),
     "clean while mapping": Case(TWO_ROOMS, is_mapped=False, seed=2),
     "clean with worn wheels": Case(TWO_ROOMS, wheels="worn", seed=2),
-    "clean with worn wheels and a lidar that turns": Case(HOME, wheels="worn", lidar="neato"),
+    # Without touches: with other seeds it has many, and a touch amplifies the last bits.
+    "clean with worn wheels and a lidar that turns": Case(
+        HOME, wheels="worn", lidar="neato", seed=3
+    ),
     "explore with worn wheels": Case(TWO_ROOMS, wheels="worn", is_mapped=False, explores=True),
     "charge on the way": Case(HOME, charge=0.09, charge_at=60.0, seconds=300.0),
 }
