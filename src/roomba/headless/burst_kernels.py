@@ -19,8 +19,7 @@ from roomba.headless.burst_state import Drive, Floats, Floor, PlaceParts, Rows, 
 from roomba.headless.rows import GYRO, TIME
 from roomba.mission.driving.progress_kernels import along_of, mark_progress, off_path
 from roomba.mission.phases.dust_bin_kernels import note_dust
-from roomba.perception.swept.coverage_kernels import sweep
-from roomba.perception.swept.coverage_map import LONGEST_STEP
+from roomba.perception.swept.coverage_kernels import sweep, swept_from
 from roomba.perception.swept.dirt_map import note_dirt
 from roomba.perception.things.kernels import Things
 from roomba.world.engine.step_kernels import advance
@@ -137,7 +136,7 @@ def account(burst: Any, robot: Any, floor: Floor, now: float, x: float, y: float
     way = math.hypot(x - burst.last[1], y - burst.last[2])
     burst.way += way
     if burst.sweeps:
-        at_x, at_y = from_where(burst.swept_at, x, y)
+        at_x, at_y = swept_from(burst.swept_at[0], burst.swept_at[1], x, y)
         cells = sweep(floor.cells, floor.place, at_x, at_y, x, y, floor.radius)
         burst.swept += cells
         burst.swept_at[0], burst.swept_at[1] = x, y
@@ -166,18 +165,9 @@ def sweep_truth(burst: Any, robot: Any, floor: Floor, x: float, y: float) -> Non
     if robot.in_bin >= burst.bin_capacity:
         burst.true_at[0] = burst.true_at[1] = math.nan
         return
-    at_x, at_y = from_where(burst.true_at, x, y)
+    at_x, at_y = swept_from(burst.true_at[0], burst.true_at[1], x, y)
     burst.truth_swept += sweep(floor.true_cells, floor.true_place, at_x, at_y, x, y, floor.radius)
     burst.true_at[0], burst.true_at[1] = x, y
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def from_where(last: Floats, x: float, y: float) -> tuple[float, float]:
-    """Return where the tool swept from to a place: from the last one, if it drove from there."""
-    away = math.hypot(x - last[0], y - last[1])
-    if away <= LONGEST_STEP:
-        return last[0], last[1]
-    return x, y
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

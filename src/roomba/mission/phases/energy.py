@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from roomba.configuration.mission import EnergyConfig
 from roomba.mission.inputs.senses import Battery, Senses
-from roomba.perception.swept.coverage_map import LONGEST_STEP
+from roomba.perception.swept.coverage_kernels import LONGEST_STEP
 
 
 class EnergyLedger:

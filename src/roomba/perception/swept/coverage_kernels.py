@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Final
 
 import numpy as np
 from numba import njit
@@ -11,6 +12,20 @@ from numpy.typing import NDArray
 from roomba.perception.swept.coverage_bits import SWEPT, WANTED
 
 Cells = NDArray[np.uint8]
+
+LONGEST_STEP: Final = 0.3
+"""m; a larger step between two ticks means that the robot was carried."""
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def swept_from(last_x: float, last_y: float, x: float, y: float) -> tuple[float, float]:
+    """Return where the tool swept from to a place, m: from the last one, if it drove from there.
+
+    A last place that is not finite is none.
+    """
+    if math.hypot(x - last_x, y - last_y) <= LONGEST_STEP:
+        return last_x, last_y
+    return x, y
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -28,7 +43,7 @@ def sweep(
 
     ``place`` is x and y of the middle of the first cell, and the resolution, m.
     """
-    window = _window(cells.shape, place, from_x, from_y, to_x, to_y, radius)
+    window = _window(cells.shape, place, (from_x, from_y, to_x, to_y), radius)
     first_row, end_row, first_column, end_column = window
     way_x, way_y = to_x - from_x, to_y - from_y
     inverse = _inverse_square(way_x, way_y)
@@ -57,7 +72,7 @@ def visit(
     poses: NDArray[np.float64],
 ) -> None:
     """Count one visit more of each cell whose middle a disc passes over that goes from pose to
-    pose, float64 [n, 3]: s, m, m.
+    pose, float64 [n, 3]: s, m, m. Between poses farther apart than LONGEST_STEP it was carried.
 
     ``place`` is as in :func:`sweep`; ``swept_at``, s, tells when a cell was last passed. ``rule``
     is the radius of the disc, m, after how many s a cell counts anew, and the highest count.
@@ -65,9 +80,9 @@ def visit(
     radius, apart, highest = rule
     most = radius * radius
     for number in range(1, len(poses)):
-        from_x, from_y = poses[number - 1, 1], poses[number - 1, 2]
         now, to_x, to_y = poses[number]
-        window = _window(counts.shape, place, from_x, from_y, to_x, to_y, radius)
+        from_x, from_y = swept_from(poses[number - 1, 1], poses[number - 1, 2], to_x, to_y)
+        window = _window(counts.shape, place, (from_x, from_y, to_x, to_y), radius)
         first_row, end_row, first_column, end_column = window
         way_x, way_y = to_x - from_x, to_y - from_y
         inverse = _inverse_square(way_x, way_y)
@@ -107,14 +122,12 @@ def missed_of(cells: Cells, floor: NDArray[np.bool_]) -> int:
 def _window(
     shape: tuple[int, ...],
     place: NDArray[np.float64],
-    from_x: float,
-    from_y: float,
-    to_x: float,
-    to_y: float,
+    ends: tuple[float, float, float, float],
     radius: float,
 ) -> tuple[int, int, int, int]:
     """Return the first row, the end of the rows, the first column and the end of the columns that
-    a disc of ``radius`` m can reach on its way."""
+    a disc of ``radius`` m can reach on its way between ``ends``, x, y, x, y, m."""
+    from_x, from_y, to_x, to_y = ends
     inverse = 1.0 / place[2]
     low_x, high_x = min(from_x, to_x) - radius, max(from_x, to_x) + radius
     low_y, high_y = min(from_y, to_y) - radius, max(from_y, to_y) + radius

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import Final
 
@@ -12,7 +11,7 @@ from numpy.typing import NDArray
 from roomba.geometry import Pose
 from roomba.grid import GridFrame
 from roomba.perception.swept.coverage_bits import SWEPT, WANTED
-from roomba.perception.swept.coverage_kernels import sweep
+from roomba.perception.swept.coverage_kernels import sweep, swept_from
 from roomba.raster.carried import carried
 from roomba.raster.regions import numbered_regions
 
@@ -21,8 +20,6 @@ Mask = NDArray[np.bool_]
 GRANTED: Final = 0.002
 """m; a cell counts as swept when the tool's rim comes so near to its middle: two swaths that touch
 in the middle of a row of cells, each a millimetre off, leave none of it."""
-LONGEST_STEP: Final = 0.3
-"""m; a larger step between two ticks means that the robot was carried."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -55,9 +52,7 @@ class CoverageMap:
 
     def sweep(self, x: float, y: float) -> None:
         """The robot drove straight here from where it last was, sweeping."""
-        from_x, from_y = self.at or (x, y)
-        if math.hypot(x - from_x, y - from_y) > LONGEST_STEP:
-            from_x, from_y = x, y
+        from_x, from_y = swept_from(*(self.at or (x, y)), x, y)
         self.swept_cells += sweep(self.cells, self.place, from_x, from_y, x, y, self.radius)
         self.at = (x, y)
 

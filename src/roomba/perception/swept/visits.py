@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 from roomba.grid import GridFrame
 from roomba.perception.swept.coverage_kernels import visit
-from roomba.perception.swept.coverage_map import LONGEST_STEP
 
 CELL: Final = 0.05
 """m; side of a cell, as fine as can be seen on a page."""
@@ -31,7 +30,7 @@ class Visits:
         self._swept_at = np.full(self.frame.shape, -np.inf)
         self._place = np.array([*self.frame.centre_of(0, 0), CELL])
         self._rule = (0.5 * tool_width, _ANOTHER_VISIT, _MOST)
-        self._at: tuple[float, float] | None = None
+        self._at: NDArray[np.float64] | None = None
 
     def clear(self) -> None:
         """Begin with nothing visited."""
@@ -45,20 +44,12 @@ class Visits:
 
     def sweep(self, now: float, x: float, y: float) -> None:
         """Count what the tool passes on a straight way to (x, y), m, at a time, s."""
-        from_x, from_y = self._at or (x, y)
-        if math.hypot(x - from_x, y - from_y) > LONGEST_STEP:
-            from_x, from_y = x, y
-        self._at = (x, y)
-        self._visit(np.array([(now, from_x, from_y), (now, x, y)]))
+        self.sweep_all(np.array([(now, x, y)]))
 
     def sweep_all(self, poses: NDArray[np.float64]) -> None:
         """Count what the tool passes from pose to pose, float64 [n, 3]: s, m, m."""
-        steps = np.hypot(*np.diff(poses[:, 1:], axis=0).T)
-        for part in np.split(poses, np.flatnonzero(steps > LONGEST_STEP) + 1):
-            now, x, y = part[0].tolist()
-            self.sweep(now, x, y)
-            self._visit(part)
-            self._at = (float(part[-1, 1]), float(part[-1, 2]))
-
-    def _visit(self, poses: NDArray[np.float64]) -> None:
-        visit(self.counts, self._swept_at, self._place, self._rule, poses)
+        if not len(poses):
+            return
+        begin = poses[:1] if self._at is None else self._at
+        visit(self.counts, self._swept_at, self._place, self._rule, np.vstack((begin, poses)))
+        self._at = poses[-1:].copy()

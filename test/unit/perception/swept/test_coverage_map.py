@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from roomba.grid import GridFrame
 from roomba.perception.swept.coverage_bits import SWEPT, WANTED
-from roomba.perception.swept.coverage_kernels import sweep
-from roomba.perception.swept.coverage_map import GRANTED, LONGEST_STEP, CoverageMap, patches_of
+from roomba.perception.swept.coverage_kernels import LONGEST_STEP, sweep
+from roomba.perception.swept.coverage_map import GRANTED, CoverageMap, patches_of
 
 FRAME = GridFrame(0.02, -0.5, 0.3, 40, 60)
 LEFT, RIGHT, LOW, HIGH = FRAME.extent
