@@ -2,9 +2,8 @@
 
 from pathlib import Path
 
-import numpy as np
 import pytest
-from fixtures.compositions import REFERENCE, Case, Outcome, assert_same
+from fixtures.compositions import REFERENCE, Case, Outcome, assert_same, assert_same_end
 from fixtures.forked import run_forked
 from fixtures.missions import HOME, TWO_ROOMS
 from fixtures.node_compositions import in_lockstep
@@ -67,17 +66,11 @@ def test_with_noise_a_clean_while_mapping_begins_and_ends_as_the_headless_one(
     def compare() -> None:
         nodes, reference = in_lockstep(case, tmp_path), REFERENCE(case)
         assert_same(nodes.until(ALIKE), reference.until(ALIKE))
-        assert_ends_alike(nodes, reference)
+        assert_same_end(nodes, reference, edge=0.02, figures=0.1)
+        assert nodes.told == "COMPLETED"
+        assert nodes.hits == 0
 
     run_forked(compare)
-
-
-def assert_ends_alike(nodes: Outcome, reference: Outcome) -> None:
-    assert nodes.told == reference.told == "COMPLETED"
-    assert nodes.phase is reference.phase
-    assert nodes.hits == reference.hits == 0
-    assert np.count_nonzero(nodes.swept != reference.swept) < 0.02 * reference.swept.sum()
-    assert nodes.figures["duration"] == pytest.approx(reference.figures["duration"], rel=0.1)
 
 
 @pytest.mark.parametrize("sensors", ["ideal", "noisy"])
