@@ -135,9 +135,9 @@ def test_where_no_way_leads_is_refused_in_words(
 
 
 def test_a_cancelled_walk_ends_where_the_robot_stands(live: LiveClient, robot: RobotClient) -> None:
+    # In the robot's own thread, and before it begins: else it might arrive first.
+    live.watch(lambda one, _: one.brain.walking.end())
     walk = robot.walk_to(*FAR)
-    # in the robot's own thread: else it might arrive before
-    live.watch(lambda one, _: one.brain.walking.end() if one.seen.time > 0.0 else None)
     report = end_of(walk)
     assert report.outcome is WalkOutcome.CANCELLED
     assert abs(robot.state().speed) < 0.03
