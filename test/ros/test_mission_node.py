@@ -23,7 +23,7 @@ from roomba_robot.msg import (
     Zone,
     ZoneArray,
 )
-from roomba_robot.srv import SetZone
+from roomba_robot.srv import EmergencyStop, SetZone
 from sensor_msgs.msg import BatteryState
 from std_msgs.msg import Float32, String
 from std_srvs.srv import Trigger
@@ -132,7 +132,7 @@ def order(name: str) -> tuple[bool, str]:
 
 
 def test_orders_are_obeyed_or_refused_with_the_reason(graph: RosGraph) -> None:
-    world, _ = start(graph)
+    world, node = start(graph)
     cancels = [0]
     rospy.Subscriber(
         "/walk_to_point/cancel", GoalID, lambda _: cancels.__setitem__(0, cancels[0] + 1)
@@ -164,11 +164,19 @@ def test_orders_are_obeyed_or_refused_with_the_reason(graph: RosGraph) -> None:
 
     undock.send_goal(UndockGoal())
     world.does("undocking", 30.0)
-    world.send("/emergency_stop", String("a child"))
+    graph.set_param("/robot_max_speed", 0.5)
+    graph.rosrun("speed_pub_node.py")
+    hold = rospy.ServiceProxy("/emergency_stop", EmergencyStop)
+    hold.wait_for_service(30.0)
+    assert hold(True, "a child").success
     world.does("emergency stop", 30.0)
     assert (world.state.state, world.state.message) == ("error", "a child")
     assert ends(undock, 30.0) == GoalStatus.ABORTED
+    # The state is what the drive says, and no other node.
     world.send("/emergency_stop", String(""))
+    wait_until(lambda: "emergency_stop refused" in node.output, 30.0, "the forged release is told")
+    assert world.next("/vacuum/state", VacuumState).phase == "emergency stop"
+    assert hold(False, "").success
     wait_until(lambda: world.state.state != "error", 30.0)
 
 

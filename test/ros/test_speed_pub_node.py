@@ -152,6 +152,25 @@ def test_ten_commands_a_second_drive_without_a_halt(node: RosGraph) -> None:
     assert min(gets[5:]) == pytest.approx(0.3)
 
 
+def test_a_flood_of_commands_makes_no_flood_for_the_drive(node: RosGraph) -> None:
+    """Between two of the loop's own messages, 20 a second, one more at most for each topic."""
+    probe = start(node)
+    probe.wanted = None
+    stamps: list[float] = []
+    rospy.Subscriber("/cmd_vel_out", Twist, lambda _: stamps.append(time.monotonic()))
+    wait_until(lambda: len(stamps) > 3, 20.0, "it tells the drive")
+    flood, command = probe.publisher("/cmd_vel", Twist), Twist()
+    stamps.clear()
+    began = time.monotonic()
+    for number in range(5000):
+        command.linear.x = 0.1 + 1e-5 * number
+        flood.publish(command)
+    elapsed = time.monotonic() - began
+    wait_until(lambda: probe.drive_gets(command.linear.x), 20.0, "the newest one is obeyed")
+    assert len([stamp for stamp in stamps if stamp < began + elapsed]) <= 2 * (20 * elapsed + 2)
+    assert 5000 / elapsed > 1000.0
+
+
 def test_silence_stops_the_drive(node: RosGraph) -> None:
     probe = start(node)
     probe.want(0.4)

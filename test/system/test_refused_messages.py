@@ -1,4 +1,4 @@
-"""Messages that make no sense have no effect on a robot that cleans, on any topic."""
+"""Messages that make no sense have no effect on a robot that cleans, nor do forged ones."""
 
 import itertools
 import time
@@ -14,10 +14,13 @@ from fixtures.malformed import CANNOT_BE_WRONG, has_numbers, malformed, not_fini
 from fixtures.probe import Probe
 from fixtures.tiny_home import tiny_home
 from fixtures.waiting import wait_until
-from geometry_msgs.msg import Twist
+from geometry_msgs.msg import PoseStamped, Twist
+from nav_msgs.msg import Odometry
 from roomba_robot.msg import CleanActionGoal, VacuumState
+from roomba_robot.srv import EmergencyStop
 from rosgraph_msgs.msg import Log
 from roslib.message import get_message_class
+from std_msgs.msg import String
 from std_srvs.srv import Trigger
 
 FLOOD = 200
@@ -151,6 +154,57 @@ def test_bad_messages_on_every_topic_are_refused_and_have_no_effect(
     assert set(witness.states) == {"cleaning"}
     assert {node: count for node, count in witness.lines.items() if count > elapsed + 2.0} == {}
     assert set(witness.lines) >= {node for topic in bad for node in topics[topic][1]}
+    witness.stops()
+
+
+def test_forged_commands_and_a_forged_release_do_not_move_a_held_robot(
+    shared_robot: RosGraph,
+) -> None:
+    witness = Witness(shared_robot)
+    witness.cleans()
+    hold = rospy.ServiceProxy("/emergency_stop", EmergencyStop)
+    assert hold(True, "a child").success
+    speeds: list[float] = []
+    rospy.Subscriber("/odom", Odometry, lambda odom: speeds.append(odom.twist.twist.linear.x))
+    wait_until(lambda: speeds and speeds[-1] == 0.0, 10.0, "it stands")
+    speeds.clear()
+    before = witness.counts.get(("home_sim_node", "cmd_vel_out"), 0)
+    ahead = Twist()
+    ahead.linear.x = 0.3
+    for _ in range(100):
+        witness.probe.send("/emergency_stop", String(""), receivers=2)
+        witness.probe.send("/cmd_vel_out", ahead)
+        time.sleep(0.02)  # a program that drives fifty times a second
+    assert speeds
+    assert set(speeds) == {0.0}
+    assert witness.state.phase == "emergency stop"
+    refused = {("home_sim_node", "cmd_vel_out"): before + 80}
+    witness.hears_refusals(refused, "the forged commands")
+    assert hold(False, "").success
+    wait_until(lambda: witness.state.phase == "idle", 20.0, lambda: f"released: {witness.state}")
+
+
+def test_a_second_node_that_tells_the_place_is_noticed_and_the_robot_stands(
+    shared_robot: RosGraph,
+) -> None:
+    witness = Witness(shared_robot)
+    witness.cleans()
+    forger = witness.probe.publisher("/pose", PoseStamped)
+    witness.is_heard(forger, 4)
+    forged = PoseStamped()
+    forged.header.frame_id, forged.pose.orientation.w = "map", 1.0
+    turning: list[float] = []
+    rospy.Subscriber("/odom", Odometry, lambda odom: turning.append(odom.twist.twist.angular.z))
+
+    def stands() -> bool:
+        forged.header.stamp = rospy.Time.now()
+        forger.publish(forged)
+        return len(turning) > 60 and set(turning[-20:]) == {0.0}
+
+    wait_until(stands, 20.0, "it stands", pause=0.02)
+    assert "/position_pub_node and /probe" in witness.state.message, witness.state
+    assert max(abs(turn) for turn in turning[20:]) < 0.1
+    witness.goes_on()
     witness.stops()
 
 

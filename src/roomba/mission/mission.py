@@ -185,6 +185,8 @@ class Mission:
     @property
     def message(self) -> str:
         """Why it does not do what was asked, and what helps; empty when all is well."""
+        if self._monitor.is_astray and self.state.drives:
+            return f"it stands until it knows where it is: {self._last.trouble}"
         return self._transitions.message
 
     @message.setter

@@ -49,6 +49,7 @@ from roomba_ros.convert.page import (
 from roomba_ros.convert.scan import ScanDecoder
 from roomba_ros.convert.values import data_of, number_of
 from roomba_ros.runtime.node import frame_id
+from roomba_ros.runtime.senders import SPEED_NODE, OnlyFrom
 from roomba_ros.runtime.subscriptions import subscribe
 
 _OLDEST_POSE: Final = 2.0
@@ -89,7 +90,8 @@ class PageTopics:
         subscribe("localization", Localization, doubt_of, partial(self._set, "doubt"))
         subscribe("speed", Float32, number_of, partial(self._set, "speed"))
         subscribe("bin_level", Float32, number_of, self._on_bin_level)
-        subscribe("emergency_stop", String, data_of, partial(self._set, "held"))
+        drive = OnlyFrom(SPEED_NODE)
+        subscribe("emergency_stop", String, data_of, partial(self._set, "held"), senders=drive)
         subscribe("scan", LaserScan, self._decoder.decode, self._on_scan)
         subscribe("plan", Path, shown_path_of, self._on_path)
         subscribe("station_pose", PoseStamped, pose_in_map, self._on_station)

@@ -23,6 +23,7 @@ from roomba.mission.phases.machine import Event, Phase
 from roomba_ros.convert.values import data_of
 from roomba_ros.mission.goals import GOALS, Ended, MissionGoal
 from roomba_ros.runtime.action_goal import server_of
+from roomba_ros.runtime.senders import SPEED_NODE, OnlyFrom
 from roomba_ros.runtime.subscriptions import subscribe
 
 _OVERTAKEN: Final = "a newer goal took over"
@@ -78,7 +79,8 @@ class MissionOrders:
             server_of(kind, self.ask, lambda identity: self.ask(Cancel(identity))) for kind in GOALS
         ]
         self._beep = rospy.Publisher("beep", Empty, queue_size=1)
-        subscribe("emergency_stop", String, data_of, self.hold, queue_size=10)
+        drive = OnlyFrom(SPEED_NODE)
+        subscribe("emergency_stop", String, data_of, self.hold, queue_size=10, senders=drive)
         for name, event in (
             ("pause", Event.PAUSE),
             ("resume", Event.RESUME),

@@ -17,6 +17,7 @@ from diagnostic_msgs.msg import DiagnosticArray
 from roomba_ros.convert.diagnostics import refused_message
 from roomba_ros.convert.errors import MessageError
 from roomba_ros.runtime.refusals import LINE_PERIOD, Refusals
+from roomba_ros.runtime.senders import Senders
 
 Value = TypeVar("Value")
 
@@ -38,15 +39,20 @@ def subscribe(
     *,
     queue_size: int = 1,
     tcp_nodelay: bool = False,
+    senders: Senders | None = None,
 ) -> rospy.Subscriber:
     """Give ``take`` what ``convert`` makes of each message of a topic.
 
-    A message of which either of them raises MessageError is refused: counted, and told.
+    A message of which one of them raises MessageError is refused: counted, and told. So is one
+    that ``senders`` do not let through; without them any node may send.
     """
 
     def hear(message: Any) -> None:
         try:
-            take(convert(message))
+            value = convert(message)
+            if senders is not None:
+                senders.check(message._connection_header["callerid"])
+            take(value)
         except MessageError as error:
             refuse(topic, error)
 

@@ -21,6 +21,7 @@ from roomba.perception.matching.reckoned_path import ReckonedPath, forget_path, 
 from roomba.robot.readings import Readings
 from roomba_ros.convert.localization import knowledge_of
 from roomba_ros.convert.readings import StampedPose, stamped_pose_of
+from roomba_ros.runtime.senders import OneSender
 from roomba_ros.runtime.subscriptions import subscribe
 
 _KEPT: Final = 40
@@ -39,6 +40,7 @@ class HeardPlace:
         """Connect nothing yet; the wheels tell about the way every ``tick`` s."""
         self._tick, self._config = tick, config
         self._lock = threading.Lock()
+        self._senders = OneSender()
         self._way: deque[Readings] = deque(maxlen=_KEPT)
         self.path = ReckonedPath.empty()
         """Where the wheels had the robot in the last seconds."""
@@ -53,7 +55,13 @@ class HeardPlace:
         """Connect."""
         subscribe("localization", Localization, knowledge_of, self._on_localization, queue_size=5)
         subscribe(
-            "pose", PoseStamped, stamped_pose_of, self._on_pose, queue_size=5, tcp_nodelay=True
+            "pose",
+            PoseStamped,
+            stamped_pose_of,
+            self._on_pose,
+            queue_size=5,
+            tcp_nodelay=True,
+            senders=self._senders,
         )
 
     @property
@@ -63,8 +71,12 @@ class HeardPlace:
 
     @property
     def knowledge(self) -> tuple[Knowledge, str]:
-        """How well its place is told to be known, and why not better."""
-        return self._told
+        """How well its place is told to be known, and why not better.
+
+        Of two nodes that tell it, one is wrong: nothing is to drive by that.
+        """
+        conflict = self._senders.conflict
+        return (Knowledge.SEARCHING, f"of its place {conflict}") if conflict else self._told
 
     def move(self, readings: Readings) -> None:
         """Take what the wheels say next."""

@@ -12,12 +12,13 @@ from geometry_msgs.msg import PoseStamped, TransformStamped
 from geometry_msgs.msg import Twist as TwistMessage
 from nav_msgs.msg import OccupancyGrid, Odometry
 from rosgraph_msgs.msg import Clock
-from std_msgs.msg import Float32, Time
+from std_msgs.msg import Float32, String, Time
 from tf2_msgs.msg import TFMessage
 
 from roomba.clock import ClockJumps
 from roomba.configuration.seed import SeedParameters
 from roomba.configuration.simulation import SimulatedRobotConfig
+from roomba.control.drive_gate import DriveGate
 from roomba.errors import ConfigError, RoombaError
 from roomba.files.shipped import HOMES
 from roomba.geometry import Pose, Twist
@@ -33,7 +34,7 @@ from roomba_ros.convert.common import (
     twist_of,
 )
 from roomba_ros.convert.readings import StampedPose, stamped_pose_of
-from roomba_ros.convert.values import duty_of, time_of
+from roomba_ros.convert.values import data_of, duty_of, time_of
 from roomba_ros.localization import kept_pose
 from roomba_ros.runtime import progress
 from roomba_ros.runtime.node import frame_id, give_up, leave, register, require_master, told_to_end
@@ -43,6 +44,7 @@ from roomba_ros.runtime.parameters import (
     read_nodes_config,
     read_simulated_config,
 )
+from roomba_ros.runtime.senders import SPEED_NODE, OnlyFrom
 from roomba_ros.runtime.subscriptions import subscribe, tell_refusals
 from roomba_ros.runtime.ticker import Ticker
 from roomba_ros.simulation.camera_topics import CameraTopics
@@ -63,14 +65,16 @@ class HomeSimNode:
     the docked robot stands on that map, its nose to the station), ``odom`` (20 Hz, by the wheel
     encoders), ``/tf`` (odom -> base_link), ``/tf_static`` (where the sensors are on the body), and
     what :class:`SensorTopics` and :class:`CameraTopics` tell.
-    Subscribes: ``cmd_vel_out`` (Twist; older than the drive's time-out it stops), ``pose``
-    (PoseStamped) and the ``progress`` (Time) of :data:`progress.NODES`: a robot that is late, on a
-    busy machine, is waited for,
-    ``main_brush_motor``, ``vacuum_motor`` (Float32, duty 0..1, of brush and fan).
+    Subscribes: ``cmd_vel_out`` (Twist; older than the drive's time-out it stops) and
+    ``emergency_stop`` (String; while it says a reason the wheels stand), of ``~drive_owner`` alone;
+    ``pose`` (PoseStamped) and the ``progress`` (Time) of :data:`progress.NODES`: a robot that is
+    late, on a busy machine, is waited for; ``main_brush_motor``, ``vacuum_motor`` (Float32, duty
+    0..1, of brush and fan).
     Services: those of :class:`CameraTopics` and :class:`SimServices`.
     Parameters: ``~home`` (name or path), ``~homes_directory``, ``~speed`` (robot seconds per second
     of wall time), ``~seed``, ``~clock`` (false for all but one of several robots, which go by that
-    one's clock and do not wait), ``~sensors`` (ideal or noisy) and ``~wheels`` (factory or worn),
+    one's clock and do not wait), ``~drive_owner`` (the node that may drive, or any),
+    ``~sensors`` (ideal or noisy) and ``~wheels`` (factory or worn),
     by default what ``robot_config`` says, ``robot_max_speed``, ``initial_post_x``,
     ``initial_post_y``.
     """
@@ -90,10 +94,10 @@ class HomeSimNode:
         self._owns_clock = rospy.get_param("~clock", True)
         if not isinstance(self._owns_clock, bool):
             raise ConfigError(f"parameter ~clock: expected true or false, got {self._owns_clock!r}")
+        self._drive_owner = _drive_owner_parameter()
         self._simulator = self._make_simulator()
         self._lock = threading.Lock()
-        self._command = Twist()
-        self._command_age = float("inf")
+        self._gate = DriveGate(self._config.body.command_timeout)
         self._clock = self._first_clock()
         self._jumps = ClockJumps(last=self._now(), longest=_LONGEST_STEP)
         self._ticks = 0
@@ -133,20 +137,15 @@ class HomeSimNode:
         max_speed = self._parameters.refresh().robot_max_speed
         with self._lock:
             self._simulator.max_speed = max_speed
+            step = self._timing.world_step
             for _ in range(self._timing.steps_per_tick):
-                self._simulator.advance(self._fresh_command(), self._timing.world_step, 1)
+                self._simulator.advance(self._gate.step(step), step, 1)
             observation = self._simulator.observe()
             self._clock += self._nanoseconds
             now = self._told = self._now()
             self._camera.set_time(now)
         self._ticks += 1
         self._publish(now, observation)
-
-    def _fresh_command(self) -> Twist:
-        self._command_age += self._timing.world_step
-        if self._command_age > self._config.body.command_timeout + 0.5 * self._timing.world_step:
-            self._command = Twist()
-        return self._command
 
     def _publish(self, now: float, observation: Observation) -> None:
         if self._owns_clock:
@@ -208,7 +207,11 @@ class HomeSimNode:
             self._simulator, self._config.camera, self._nodes.periods.pictures, self._lock
         )
         self._services = SimServices(self._simulator, self._lock)
-        subscribe("cmd_vel_out", TwistMessage, twist_of, self._on_command, tcp_nodelay=True)
+        for topic, kind, convert, take in (
+            ("cmd_vel_out", TwistMessage, twist_of, self._on_command),
+            ("emergency_stop", String, data_of, self._on_emergency_stop),
+        ):
+            subscribe(topic, kind, convert, take, tcp_nodelay=True, senders=self._drive_owner)
         self._parts = {
             _POSE: subscribe("pose", PoseStamped, stamped_pose_of, self._on_pose, tcp_nodelay=True)
         }
@@ -252,7 +255,11 @@ class HomeSimNode:
 
     def _on_command(self, twist: Twist) -> None:
         with self._lock:
-            self._command, self._command_age = twist, 0.0
+            self._gate.command(twist)
+
+    def _on_emergency_stop(self, reason: str) -> None:
+        with self._lock:
+            self._gate.hold(bool(reason))
 
     def _on_power(self, motor: str, duty: float) -> None:
         with self._lock:
@@ -267,6 +274,14 @@ def _config_with_sensors(config: SimulatedRobotConfig) -> SimulatedRobotConfig:
     if wheels not in ("factory", "worn"):
         raise ConfigError(f"parameter ~wheels: expected factory or worn, got {wheels!r}")
     return config.with_sensors(sensors).with_wheels(wheels)
+
+
+def _drive_owner_parameter() -> OnlyFrom | None:
+    """Return which nodes may drive; None: any."""
+    name = rospy.get_param("~drive_owner", SPEED_NODE)
+    if not isinstance(name, str) or not name:
+        raise ConfigError(f"parameter ~drive_owner: expected a node's name, or any, got {name!r}")
+    return None if name == "any" else OnlyFrom(name)
 
 
 def _tells_map_parameter() -> bool:

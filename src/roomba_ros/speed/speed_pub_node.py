@@ -46,9 +46,9 @@ _NO_REASON: Final = "no reason was given"
 class SpeedPubNode:
     """Keeps every wanted twist within the limits and stops the drive without a fresh command.
 
-    Publishes: ``speed`` (Float32, m/s, 10 Hz), ``cmd_vel_out`` (Twist, to the drive, at once for
-    each command, and 20 Hz), ``emergency_stop`` (String, latched: why the drive is held, empty when
-    it is not).
+    Publishes: ``speed`` (Float32, m/s, 10 Hz), ``cmd_vel_out`` (Twist, to the drive, 20 Hz, and
+    between two of these at once for the first message of each topic), ``emergency_stop`` (String,
+    latched: why the drive is held, empty when it is not).
     Subscribes: ``change_speed`` (Float32, cruise speed wanted, m/s), ``cmd_vel`` (Twist), and
     ``cmd_vel_mission`` (Twist), which counts while no fresh ``cmd_vel`` does; ``odom`` (Odometry),
     ``bumper`` (Bumper), ``cliff`` (Cliff), ``wheel_drop`` (WheelDrop): a hazard is obeyed at once.
@@ -70,6 +70,7 @@ class SpeedPubNode:
         self._speed: float | None = None
         self._speed_told = -math.inf
         self._hold = Hold.NO_COMMAND
+        self._passed_on: set[str] = set()
         self._speed_publisher = rospy.Publisher("speed", Float32, queue_size=1)
         self._drive = rospy.Publisher("cmd_vel_out", Twist, queue_size=1, tcp_nodelay=True)
         self._emergency = rospy.Publisher("emergency_stop", String, queue_size=1, latch=True)
@@ -92,12 +93,22 @@ class SpeedPubNode:
         max_speed = self._parameters.refresh().robot_max_speed
         with self._lock:
             self._loop.set_max_speed(max_speed)
+        self._passed_on.clear()
         self._tell_drive(now)
         self._tell_speed(now)
 
     def stop(self) -> None:
         """Stop the drive."""
         self._drive.publish(Twist())
+
+    def _pass_on(self, now: float, topic: str) -> None:
+        """Tell the drive at once what a topic said, unless that was done since the last tick.
+
+        What comes more often waits for the tick: a flood of messages makes no flood for the drive.
+        """
+        if topic not in self._passed_on:
+            self._passed_on.add(topic)
+            self._tell_drive(now)
 
     def _tell_drive(self, now: float) -> None:
         with self._lock:
@@ -144,19 +155,19 @@ class SpeedPubNode:
         now = rospy.get_time()
         with self._lock:
             self._loop.command(now, twist, source)
-        self._tell_drive(now)
+        self._pass_on(now, source.value)
 
     def _on_change_speed(self, speed: float) -> None:
         with self._lock:
             self._loop.set_cruise_speed(speed)
-        self._tell_drive(rospy.get_time())
+        self._pass_on(rospy.get_time(), "change_speed")
 
     def _on_hazard(self, hazard: str, felt: Sides | CliffReading) -> None:
         with self._lock:
             self._hazards = replace(self._hazards, **{hazard: felt.any})
             self._loop.set_hazards(self._hazards)
         if felt.any:
-            self._tell_drive(rospy.get_time())
+            self._pass_on(rospy.get_time(), hazard)
 
     def _on_odometry(self, told: OdometryReading) -> None:
         self._speed = abs(told.twist.linear)

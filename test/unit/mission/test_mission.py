@@ -136,8 +136,9 @@ def test_knowing_its_place_only_roughly_it_drives_slowly() -> None:
 
 def test_not_knowing_its_place_it_stands_and_looks_around() -> None:
     rig = cleaning()
-    step = rig.tick(10, knowledge=Knowledge.SEARCHING)
+    step = rig.tick(10, knowledge=Knowledge.SEARCHING, trouble="it was carried")
     assert step == MissionStep(Twist(), looks_around=True)
+    assert rig.mission.message == "it stands until it knows where it is: it was carried"
     assert rig.phase is Phase.CLEANING
     assert rig.mission.steady(rig.senses) is None
     step = rig.tick(2, knowledge=Knowledge.KNOWN)
