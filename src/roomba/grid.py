@@ -15,6 +15,11 @@ UNKNOWN = -1
 FREE = 0
 OCCUPIED = 100
 
+MOST_CELLS = 20_000_000
+"""Of a map: 50,000 m2 in cells of 5 cm."""
+FINEST_CELL, COARSEST_CELL = 1e-3, 1.0
+"""m; finer than a millimetre no map is, and in coarser cells than a metre no robot fits."""
+
 _Floats = NDArray[np.float64]
 _Indices = NDArray[np.int64] | NDArray[np.float64]
 

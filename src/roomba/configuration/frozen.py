@@ -12,6 +12,7 @@ import yaml
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from roomba.errors import ConfigError
+from roomba.files.bounded import read_text
 from roomba.files.plain_yaml import load_yaml
 
 Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
@@ -56,7 +57,7 @@ def load_config(model: type[_Model], path: Path) -> _Model:
 def read_yaml(path: Path) -> Any:
     """Return what a YAML file holds, an empty mapping for an empty file; raises ConfigError."""
     try:
-        raw = load_yaml(path.read_text(encoding="utf-8"))
+        raw = load_yaml(read_text(path))
     except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
         raise ConfigError(f"{path}: cannot be read as YAML: {error}") from error
     return raw or {}

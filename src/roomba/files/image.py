@@ -1,4 +1,4 @@
-"""Reads pictures of floor plans: PGM by itself, PNG and others through Pillow."""
+"""Reads pictures of floor plans, of bounded size: PGM by itself, PNG and others through Pillow."""
 
 from __future__ import annotations
 
@@ -12,10 +12,14 @@ import PIL.Image
 from numpy.typing import NDArray
 
 from roomba.errors import HomeError
+from roomba.files.bounded import read_bytes
+from roomba.grid import MOST_CELLS
 
 PNG_BEGIN = b"\x89PNG\r\n\x1a\n"
+FORMATS = ("PNG", "PPM", "BMP", "GIF", "JPEG", "TIFF", "WEBP")
+"""What Pillow may read: other formats run programs, or describe what is to be drawn."""
 PNG_END = b"IEND\xaeB`\x82"
-_PGM_TOKEN = rb"(?:\s|#[^\n]*\n)+(\d+)"
+_PGM_TOKEN = rb"(?:\s|#[^\n]*\n)+(\d{1,9})"
 _PGM_HEADER = re.compile(rb"P([25])(?:%s)(?:%s)(?:%s)\s" % ((_PGM_TOKEN,) * 3))
 
 
@@ -30,7 +34,7 @@ class Image:
 def read_image(path: Path) -> Image:
     """Read a picture; colours are averaged. Raises :class:`HomeError` with file and reason."""
     try:
-        content = path.read_bytes()
+        content = read_bytes(path)
     except OSError as error:
         raise HomeError(f"expected a picture at {path}, got: {error.strerror or error}") from error
     if content[:2] in (b"P2", b"P5"):
@@ -48,6 +52,7 @@ def _read_pgm(path: Path, content: bytes) -> NDArray[np.float64]:
     width, height, highest = (int(number) for number in header.groups()[1:])
     if width == 0 or height == 0 or not 0 < highest < 65536:
         raise HomeError(f"{path}: expected a picture, got {width} x {height} px, grey to {highest}")
+    _require_size(path, width, height)
     body = content[header.end() :]
     if header.group(1) == b"2":
         try:
@@ -68,13 +73,24 @@ def _read_pgm(path: Path, content: bytes) -> NDArray[np.float64]:
     return grey * (255.0 / highest)
 
 
+def _require_size(path: Path, width: int, height: int) -> None:
+    """Refuse a picture that would take the memory before it is unpacked."""
+    if width * height > MOST_CELLS:
+        raise HomeError(
+            f"{path}: expected at most {MOST_CELLS} pixels, got {width} x {height} = "
+            f"{width * height}; cut it to the home, or make its cells larger"
+        )
+
+
 def _read_with_pillow(path: Path, content: bytes) -> Image:
     if content.startswith(PNG_BEGIN) and PNG_END not in content[-64:]:
         raise HomeError(f"{path}: expected a whole PNG, got one that is cut short; copy it again")
     if not content:
         raise HomeError(f"{path}: expected a picture, got an empty file")
     try:
-        return _decoded(PIL.Image.open(io.BytesIO(content)))
+        picture = PIL.Image.open(io.BytesIO(content), formats=FORMATS)
+        _require_size(path, *picture.size)
+        return _decoded(picture)
     except (OSError, SyntaxError, ValueError, PIL.Image.DecompressionBombError) as error:
         raise HomeError(
             f"{path}: expected a PGM or PNG picture, got something else ({error}); convert it"

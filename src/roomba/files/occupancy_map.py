@@ -19,9 +19,11 @@ from roomba.errors import HomeError
 from roomba.files.atomic import write_whole
 from roomba.files.image import Image, read_image
 from roomba.files.strict_yaml import YamlFile, read_yaml
-from roomba.grid import FREE, OCCUPIED, UNKNOWN, GridFrame, OccupancyMap
+from roomba.grid import COARSEST_CELL, FINEST_CELL, FREE, OCCUPIED, UNKNOWN, GridFrame, OccupancyMap
 
-Number = Annotated[float, Field(allow_inf_nan=False)]
+Resolution = Annotated[float, Field(ge=FINEST_CELL, le=COARSEST_CELL)]
+Origin = Annotated[float, Field(ge=-1e6, le=1e6)]
+"""m; farther off the cells of a map are no longer told apart."""
 Threshold = Annotated[float, Field(ge=0.0, le=1.0, allow_inf_nan=False)]
 
 MAP_SAVER_PIXELS = {FREE: 254, OCCUPIED: 0, UNKNOWN: 205}
@@ -35,8 +37,8 @@ class MapDescription(BaseModel):
     model_config = ConfigDict(extra="ignore", frozen=True)
 
     image: Annotated[str, Field(min_length=1)]
-    resolution: Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
-    origin: Annotated[list[Number], Field(min_length=3, max_length=3)]
+    resolution: Resolution
+    origin: Annotated[list[Origin], Field(min_length=3, max_length=3)]
     negate: Annotated[int, Field(ge=0, le=1)] = 0
     occupied_thresh: Threshold = 0.65
     free_thresh: Threshold = 0.196

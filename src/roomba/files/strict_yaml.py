@@ -12,6 +12,7 @@ from pydantic import BaseModel, ValidationError
 from yaml import MappingNode, Node, ScalarNode, SequenceNode, YAMLError
 
 from roomba.errors import HomeError
+from roomba.files.bounded import read_text
 from roomba.files.plain_yaml import load_with_nodes
 
 Location = tuple[int | str, ...]
@@ -59,7 +60,7 @@ class YamlFile:
 def read_yaml(path: Path) -> YamlFile:
     """Read a YAML file; raises :class:`HomeError` if it cannot be read or is not a mapping."""
     try:
-        text = path.read_text(encoding="utf-8")
+        text = read_text(path)
     except OSError as error:
         raise HomeError(f"{path}: cannot be read: {error.strerror or error}") from error
     except UnicodeDecodeError as error:

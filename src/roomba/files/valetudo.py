@@ -21,8 +21,9 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from roomba.errors import RoombaError
+from roomba.files.plain_json import load_json
 from roomba.geometry import Pose
-from roomba.grid import FREE, OCCUPIED, UNKNOWN, GridFrame, OccupancyMap
+from roomba.grid import FREE, MOST_CELLS, OCCUPIED, UNKNOWN, GridFrame, OccupancyMap
 
 Mask = NDArray[np.bool_]
 Points = tuple[tuple[float, float], ...]
@@ -31,7 +32,8 @@ VERSION: Final = 2
 _CM: Final = 0.01
 _MARGIN: Final = 2
 """Cells around what a map shows."""
-_MOST_CELLS: Final = 20_000_000
+_MOST_LAYERS: Final = 100
+"""Rooms, floor and walls; each takes a cell's byte of memory for all cells."""
 _NAMES: Final = uuid.UUID("6f1c1a3e-2f0a-4f57-9d52-6a1f5d0b7c11")
 
 
@@ -99,7 +101,7 @@ class _Meta(_Part):
 class _Map(_Part):
     size: _Size
     pixelSize: Annotated[int, Field(gt=0, le=100)]  # noqa: N815
-    layers: list[_Layer]
+    layers: Annotated[list[_Layer], Field(max_length=_MOST_LAYERS)]
     entities: list[_Entity] = []
     metaData: _Meta  # noqa: N815
 
@@ -108,9 +110,9 @@ def parse(text: str) -> ValetudoHome:
     """Return the home of a map; raises ValetudoError with what was expected, and came."""
     found = _validated(text)
     columns, rows = found.size.x // found.pixelSize, found.size.y // found.pixelSize
-    if not 0 < rows * columns <= _MOST_CELLS:
+    if not 0 < rows * columns <= MOST_CELLS:
         raise ValetudoError(
-            f"size: expected 1 to {_MOST_CELLS} pixels of {found.pixelSize} cm, got "
+            f"size: expected 1 to {MOST_CELLS} pixels of {found.pixelSize} cm, got "
             f"{found.size.x} x {found.size.y} cm"
         )
     layers = [_mask(layer, number, rows, columns) for number, layer in enumerate(found.layers)]
@@ -131,8 +133,8 @@ def parse(text: str) -> ValetudoHome:
 
 def _validated(text: str) -> _Map:
     try:
-        raw = json.loads(text)
-    except (ValueError, RecursionError) as error:
+        raw = load_json(text)
+    except ValueError as error:
         raise ValetudoError(f"expected a map of Valetudo in JSON: {error}") from error
     if not isinstance(raw, dict) or "layers" not in raw or "pixelSize" not in raw:
         got = ", ".join(list(raw)[:6]) if isinstance(raw, dict) else type(raw).__name__

@@ -11,6 +11,8 @@ from pydantic import Field, ValidationError
 
 from roomba.errors import RoombaError
 from roomba.files.atomic import write_whole
+from roomba.files.bounded import read_text
+from roomba.files.damaged import set_aside
 from roomba.files.plain_yaml import load_yaml
 from roomba.perception.calibration.calibration import Calibration
 from roomba.storage.map_bound import Entry, yaml_text
@@ -19,7 +21,6 @@ _COMMENT = (
     "What the robot measured of its wheels (way, turn, drift), gyro and lidar (ahead, left, "
     "turned): shares, rad/m, m, rad."
 )
-_DAMAGED = ".damaged"
 
 
 class _CalibrationFile(Entry):
@@ -54,7 +55,7 @@ def load_calibration(path: Path) -> Calibration | None:
     A damaged file is set aside, so that the robot measures anew: raises CalibrationError.
     """
     try:
-        text = path.read_text(encoding="utf-8")
+        text = read_text(path)
     except FileNotFoundError:
         return None
     except (OSError, UnicodeDecodeError) as cause:
@@ -76,12 +77,7 @@ def load_calibration(path: Path) -> Calibration | None:
 
 
 def _set_aside(path: Path, why: str) -> str:
-    aside = path.with_name(path.name + _DAMAGED)
-    try:
-        path.replace(aside)
-    except OSError as cause:
-        return f"{path}: expected a kept calibration ({why}); it cannot be set aside: {cause}"
     return (
-        f"{path}: expected a kept calibration ({why}); it is set aside as {aside.name}, and the "
-        "robot measures itself anew"
+        f"{path}: expected a kept calibration ({why}); {set_aside(path)}, and the robot measures "
+        "itself anew"
     )

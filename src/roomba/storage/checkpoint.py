@@ -15,6 +15,9 @@ from numpy.typing import NDArray
 
 from roomba.errors import RoombaError
 from roomba.files.atomic import UNREADABLE, write_whole
+from roomba.files.bounded import read_bytes, read_text
+from roomba.files.damaged import set_aside
+from roomba.files.plain_json import load_json
 
 Values = dict[str, Any]
 Floats = NDArray[np.float32]
@@ -38,17 +41,17 @@ def load_checkpoint(path: Path, run: str) -> tuple[Values, int] | None:
     """Return what was saved in this run, and how often it was resumed; None without a file.
 
     A checkpoint of another run is ignored: after a launch the robot must not begin to drive by
-    itself. Raises CheckpointFileError for a file that cannot be read.
+    itself. A damaged file is set aside: raises CheckpointFileError.
     """
     try:
-        read = json.loads(path.read_text(encoding="utf-8"))
+        read = load_json(read_text(path))
         values, its_run, taken_up = read["mission"], read["run"], int(read["taken_up"])
     except FileNotFoundError:
         return None
     except (OSError, ValueError, KeyError, TypeError) as error:
-        raise CheckpointFileError(f"{path}: expected a checkpoint in JSON: {error!r}") from error
+        raise _damaged(path, f"expected a checkpoint in JSON ({error!r})") from error
     if not isinstance(values, dict):
-        raise CheckpointFileError(f"{path}: expected a mission's values, got {values!r}")
+        raise _damaged(path, f"expected a mission's values, got {str(values)[:80]}")
     return (values, taken_up) if its_run == run else None
 
 
@@ -70,17 +73,19 @@ def save_dirt(learned: Floats, path: Path) -> None:
 def load_dirt(path: Path, shape: tuple[int, int]) -> Floats | None:
     """Return where it was dirty, or None if that was never saved.
 
-    Raises CheckpointFileError for a file that cannot be read or is of another grid.
+    A file that is damaged, or of another grid, is set aside: raises CheckpointFileError.
     """
     if not path.exists():
         return None
     try:
-        with np.load(path, allow_pickle=False) as file:
+        with np.load(io.BytesIO(read_bytes(path)), allow_pickle=False) as file:
             learned: Floats = np.asarray(file["learned"], np.float32)
     except UNREADABLE as error:
-        raise CheckpointFileError(f"{path}: expected a dirt map: {error!r}") from error
+        raise _damaged(path, f"expected a dirt map ({error!r})") from error
     if learned.shape != shape:
-        raise CheckpointFileError(
-            f"{path}: expected a dirt map of shape {shape}, got {learned.shape}; remove the file"
-        )
+        raise _damaged(path, f"expected a dirt map of shape {shape}, got {learned.shape}")
     return learned
+
+
+def _damaged(path: Path, why: str) -> CheckpointFileError:
+    return CheckpointFileError(f"{path}: {why}; {set_aside(path)}")

@@ -11,6 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from roomba.errors import RoombaError
 from roomba.files.atomic import write_whole
+from roomba.files.bounded import read_text
 from roomba.files.plain_yaml import load_yaml
 from roomba.grid import OccupancyMap
 
@@ -84,7 +85,7 @@ def load_map_bound(
     another map.
     """
     try:
-        file = kind.model_validate(load_yaml(path.read_text(encoding="utf-8")))
+        file = kind.model_validate(load_yaml(read_text(path)))
     except (OSError, UnicodeDecodeError, yaml.YAMLError) as cause:
         raise error(f"{path}: expected a file of {what} in YAML: {cause}") from cause
     except ValidationError as cause:

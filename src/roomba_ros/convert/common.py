@@ -16,11 +16,8 @@ from sensor_msgs.msg import Image
 from std_msgs.msg import Header
 
 from roomba.geometry import Pose, Twist
-from roomba.grid import GridFrame, OccupancyMap
+from roomba.grid import COARSEST_CELL, FINEST_CELL, MOST_CELLS, GridFrame, OccupancyMap
 from roomba_ros.convert.errors import MessageError, require_finite
-
-MOST_CELLS = 20_000_000
-"""Of a map: 220 x 220 m at 5 cm. A larger one would take a robot's memory."""
 
 
 def header(now: float, frame_id: str) -> Header:
@@ -189,8 +186,11 @@ def map_of(message: OccupancyGrid) -> OccupancyMap:
     """
     info = message.info
     place = (info.resolution, info.origin.position.x, info.origin.position.y)
-    if not all(map(math.isfinite, place)) or info.resolution <= 0.0:
-        raise MessageError(f"expected a resolution above 0 and a finite origin, got {place}")
+    if not all(map(math.isfinite, place)) or not FINEST_CELL <= info.resolution <= COARSEST_CELL:
+        raise MessageError(
+            f"expected a resolution from {FINEST_CELL:g} to {COARSEST_CELL:g} m and a finite "
+            f"origin, got {place}"
+        )
     if not 0 < info.width * info.height <= MOST_CELLS:
         raise MessageError(
             f"expected a map of 1 to {MOST_CELLS} cells, got {info.width} x {info.height}; "

@@ -12,8 +12,9 @@ from nav_msgs.msg import OccupancyGrid
 from roomba_robot.msg import CleanGoal, Rectangle, RoomArray, ZoneArray
 from rospy import Time
 
+from roomba.grid import MOST_CELLS
 from roomba.mission.cleaning.request import CleanRefusedError
-from roomba_ros.convert.common import MOST_CELLS, map_of, told_map_of
+from roomba_ros.convert.common import map_of, told_map_of
 from roomba_ros.convert.errors import MessageError
 from roomba_ros.convert.mission import outlines_of, request_of, zones_of
 
@@ -42,7 +43,9 @@ def test_a_map_has_as_many_values_as_cells(values: int) -> None:
 
 @pytest.mark.parametrize("number", BAD)
 def test_maps_at_places_that_are_none_are_refused(number: float) -> None:
-    with pytest.raises(MessageError, match="expected a resolution above 0 and a finite origin"):
+    with pytest.raises(
+        MessageError, match=r"expected a resolution from 0\.001 to 1 m and a finite origin"
+    ):
         map_of(filled("nav_msgs/OccupancyGrid", number))
     messages = [grid(9), grid(9), grid(9), grid(9)]
     messages[0].info.resolution = number
@@ -59,8 +62,10 @@ def test_maps_at_places_that_are_none_are_refused(number: float) -> None:
     [
         (0, 3, 0.05, "1 to 20000000 cells, got 0 x 3"),
         (MOST_CELLS, 2, 0.05, "make its cells larger"),
-        (3, 3, 0.0, "a resolution above 0"),
-        (3, 3, -0.05, "a resolution above 0"),
+        (3, 3, 0.0, "a resolution from 0.001 to 1 m"),
+        (3, 3, -0.05, "a resolution from 0.001 to 1 m"),
+        (3, 3, 1e6, "a resolution from 0.001 to 1 m"),
+        (3, 3, 1e-9, "a resolution from 0.001 to 1 m"),
     ],
 )
 def test_maps_of_sizes_that_no_map_has_are_refused(

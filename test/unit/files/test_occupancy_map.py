@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import cv2
 import numpy as np
+import PIL.Image
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -100,6 +102,10 @@ def test_png_colours_are_averaged_and_clear_is_unknown(tmp_path: Path) -> None:
         (HEADER.replace("0.0]", "0.5]"), 3, "yaw"),
         (HEADER.replace("0.05", "-0.05"), 2, "resolution"),
         (HEADER.replace("0.05", ".nan"), 2, "resolution"),
+        (HEADER.replace("0.05", "1e6"), 2, "1e6"),
+        (HEADER.replace("0.05", "1.0e-9"), 2, "1e-09"),
+        (HEADER.replace("0.05", "1.0e+300"), 2, "1e+300"),
+        (HEADER.replace("2.0", "1.0e+300"), 3, "origin"),
         (HEADER.replace("0.05", "small"), 2, "small"),
         (HEADER.replace("[-1.0, 2.0, 0.0]", "[-1.0, 2.0]"), 3, "origin"),
         (HEADER.replace("image: map.pgm\n", ""), 1, "image"),
@@ -130,6 +136,9 @@ def test_broken_yaml_is_refused_with_its_line(
         (b"P5\n3 1\n255\n\x00\xcd", "cut short"),
         (b"P5\n3\n", "PGM header"),
         (b"P5\n0 1\n255\n", "0 x 1"),
+        (b"P5\n" + 5000 * b"9" + b" 1\n255\n", "PGM header"),
+        (b"P5\n999999999 999999999\n255\n", "at most 20000000 pixels"),
+        (b"P5\n8000 8000\n255\n" + bytes(64_000_000), "8000 x 8000 = 64000000"),
         (b"P2\n3 1\n255\n0 a 3", "numbers"),
         (b"P2\n3 1\n255\n0 1 300", "grey values"),
         (b"", "empty"),
@@ -164,7 +173,7 @@ SHAPES = hnp.array_shapes(min_dims=2, max_dims=2, max_side=12)
         hnp.arrays(np.int8, SHAPES, elements=st.integers(-1, 100)),
         hnp.arrays(np.int8, SHAPES, elements=st.sampled_from([-1, 0, 100])),
     ),
-    st.floats(1e-6, 1e3),
+    st.floats(1e-3, 1.0),
     NUMBERS,
     NUMBERS,
 )
@@ -184,3 +193,31 @@ def test_values_that_are_no_map_are_not_saved(tmp_path: Path) -> None:
     values = np.full((1, 1), 101, np.int8)
     with pytest.raises(ValueError, match="101"):
         save_map(OccupancyMap(GridFrame(1.0, 0.0, 0.0, 1, 1), values), tmp_path / "m.yaml")
+
+
+@pytest.mark.parametrize("name", ["map.yaml", "map.pgm"])
+def test_a_pipe_or_a_device_in_place_of_a_file_is_refused_at_once(
+    tmp_path: Path, name: str
+) -> None:
+    path = written(tmp_path, USUAL)
+    (tmp_path / name).unlink()
+    os.mkfifo(tmp_path / name)
+    with pytest.raises(HomeError, match="expected a regular file, got a pipe"):
+        load_map(path)
+    (tmp_path / name).unlink()
+    (tmp_path / name).symlink_to("/dev/zero")
+    with pytest.raises(HomeError, match="expected a regular file, got a device"):
+        load_map(path)
+
+
+def test_a_png_that_unpacks_to_more_than_a_map_is_refused(tmp_path: Path) -> None:
+    path = written(tmp_path, USUAL.replace("map.pgm", "map.png"))
+    PIL.Image.new("1", (8000, 8000)).save(tmp_path / "map.png")
+    with pytest.raises(HomeError, match="8000 x 8000"):
+        load_map(path)
+
+
+def test_a_picture_that_is_a_program_is_not_run(tmp_path: Path) -> None:
+    path = written(tmp_path, USUAL, b"%!PS-Adobe-3.0 EPSF-3.0\n%%BoundingBox: 0 0 9 9\nshowpage\n")
+    with pytest.raises(HomeError, match="PGM or PNG"):
+        load_map(path)

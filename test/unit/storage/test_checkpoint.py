@@ -50,13 +50,29 @@ def test_who_is_killed_while_writing_finds_the_one_from_before(
 
 
 @pytest.mark.parametrize(
-    "text", ["", "{", "[1]", '{"run": "run"}', '{"run": "r", "taken_up": 0, "mission": 3}']
+    "text",
+    [
+        *("", "{", "[1]", '{"run": "run"}', '{"run": "r", "taken_up": 0, "mission": 3}'),
+        '{"run": "run", "taken_up": 0, "mission": {"ledger": [NaN]}}',
+        '{"run": "run", "taken_up": 1e999, "mission": {}}',
+        '{"run": "run", "taken_up": 0, "mission": ' + 100_000 * "[",
+    ],
 )
-def test_a_broken_checkpoint_is_named(tmp_path: Path, text: str) -> None:
+def test_a_damaged_checkpoint_is_named_and_set_aside(tmp_path: Path, text: str) -> None:
     path = tmp_path / "map.json"
     path.write_text(text, encoding="utf-8")
-    with pytest.raises(CheckpointFileError, match=r"map\.json: expected"):
+    with pytest.raises(CheckpointFileError, match=r"map\.json: expected.*set aside as map"):
         load_checkpoint(path, "run")
+    assert (tmp_path / "map.json.damaged").read_text(encoding="utf-8") == text
+    assert load_checkpoint(path, "run") is None
+
+
+def test_a_checkpoint_that_is_a_pipe_is_set_aside(tmp_path: Path) -> None:
+    path = tmp_path / "map.json"
+    os.mkfifo(path)
+    with pytest.raises(CheckpointFileError, match="got a pipe"):
+        load_checkpoint(path, "run")
+    assert not path.exists()
 
 
 def test_what_is_no_plain_value_is_refused(tmp_path: Path) -> None:
@@ -82,5 +98,6 @@ def test_dirt_comes_back_bit_for_bit(tmp_path: Path) -> None:
 def test_a_broken_dirt_map_is_named(tmp_path: Path, content: bytes) -> None:
     path = tmp_path / "map.npz"
     path.write_bytes(content)
-    with pytest.raises(CheckpointFileError, match=r"map\.npz: expected a dirt map"):
+    with pytest.raises(CheckpointFileError, match=r"map\.npz: expected a dirt map.*set aside"):
         load_dirt(path, (2, 3))
+    assert load_dirt(path, (2, 3)) is None

@@ -10,6 +10,7 @@ from roomba.commands.spelling import spelled
 from roomba.commands.valetudo.homes import write_home
 from roomba.commands.valetudo.options import parser_of, reason_of
 from roomba.errors import RoombaError
+from roomba.files.bounded import read_text
 from roomba.files.valetudo import parse
 
 PROGRAM: Final = spelled("import")
@@ -23,7 +24,7 @@ def main(arguments: list[str] | None = None) -> int:
     given = parser.parse_args(arguments)
     folder = given.out or Path(given.file.stem)
     try:
-        found = parse(given.file.read_text(encoding="utf-8"))
+        found = parse(read_text(given.file))
         home = write_home(found, folder)
     except (RoombaError, OSError, UnicodeDecodeError) as error:
         print(f"{PROGRAM}: {given.file}: {reason_of(error)}", file=sys.stderr)

@@ -34,11 +34,13 @@ def packed(mask: Mask) -> str:
 
 def unpacked(text: str, shape: tuple[int, int]) -> Mask:
     """Return the mask of a text; raises CheckpointError if it is none of that shape."""
+    cells = shape[0] * shape[1]
     try:
-        bits = np.frombuffer(zlib.decompress(base64.b64decode(text, validate=True)), np.uint8)
+        # A few bytes more than expected: no text can unpack to what takes the memory.
+        content = zlib.decompressobj().decompress(base64.b64decode(text, validate=True), cells)
     except (binascii.Error, zlib.error, ValueError) as error:
         raise CheckpointError(f"expected a packed mask: {error}") from error
-    cells = shape[0] * shape[1]
+    bits = np.frombuffer(content, np.uint8)
     if bits.size != (cells + 7) // 8:
         raise CheckpointError(f"expected a mask of {cells} cells, got {8 * bits.size}")
     return np.unpackbits(bits, count=cells).astype(np.bool_).reshape(shape)

@@ -1,0 +1,45 @@
+"""Reads files of bounded size: no pipe, no device and no huge file can hang or end the program."""
+
+from __future__ import annotations
+
+import errno
+import os
+import stat
+from pathlib import Path
+from typing import Final
+
+MOST_BYTES: Final = 100_000_000
+"""Of a file that is read whole; the picture of the largest map has a fifth of that."""
+
+
+def read_bytes(path: Path, most: int = MOST_BYTES) -> bytes:
+    """Return what a file holds; raises OSError for none, for a larger one, for a pipe or device.
+
+    ``/dev/null`` is an empty file.
+    """
+    # Without O_NONBLOCK the opening of a pipe waits for a writer.
+    descriptor = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
+    with open(descriptor, "rb") as file:
+        found = os.fstat(descriptor)
+        if not stat.S_ISREG(found.st_mode) and path != Path(os.devnull):
+            kind = _KINDS.get(stat.S_IFMT(found.st_mode), "something else")
+            raise OSError(errno.EINVAL, f"expected a regular file, got {kind}", str(path))
+        content = file.read(most + 1)
+    if len(content) > most:
+        size = max(found.st_size, len(content))
+        raise OSError(errno.EFBIG, f"expected at most {most} bytes, got {size}", str(path))
+    return content
+
+
+def read_text(path: Path, most: int = MOST_BYTES) -> str:
+    """Return the text of a file in UTF-8; raises OSError as above, and UnicodeDecodeError."""
+    return read_bytes(path, most).decode("utf-8")
+
+
+_KINDS: Final = {
+    stat.S_IFIFO: "a pipe",
+    stat.S_IFCHR: "a device",
+    stat.S_IFBLK: "a device",
+    stat.S_IFDIR: "a folder",
+    stat.S_IFSOCK: "a socket",
+}

@@ -1,0 +1,18 @@
+"""Sets damaged files aside: what they held can be looked at, and the program goes on without."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Final
+
+_END: Final = ".damaged"
+
+
+def set_aside(path: Path) -> str:
+    """Rename a damaged file, in place of one from before; return what was done, in words."""
+    aside = path.with_name(path.name + _END)
+    try:
+        path.replace(aside)
+    except OSError as cause:
+        return f"it cannot be set aside: {cause}"
+    return f"it is set aside as {aside.name}"
