@@ -1,8 +1,21 @@
-"""The words of a clean, for all that ask for one: programs, the menu, messages, the mission."""
+"""The words and limits of what can be asked for: by programs, the menu, messages, the page."""
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from enum import Enum
+from typing import Final
+
+MOST_PASSES: Final = 5
+"""Over the same floor; more are a slip of the finger."""
+MOST_ZONES: Final = 1000
+"""Zones of a map, and zones or rooms of one clean."""
+MOST_CORNERS: Final = 200
+"""Of a zone."""
+LONGEST_NAME: Final = 80
+"""Characters of a room's or zone's name."""
+_LISTED: Final = 20
+"""Names that a message lists."""
 
 
 class CleanMode(Enum):
@@ -28,3 +41,18 @@ class FanLevel(Enum):
     QUIET = "quiet"
     STANDARD = "standard"
     STRONG = "strong"
+
+
+def fault_of_name(name: str) -> str:
+    """Return what is expected of a name in place of this one; empty if it is one."""
+    if 0 < len(name) <= LONGEST_NAME and name.strip() and name.isprintable():
+        return ""
+    # Of an endless one, the beginning tells enough.
+    return f"expected a name of 1 to {LONGEST_NAME} printable characters, got {name[:40]!r}"
+
+
+def listed(names: Collection[str]) -> str:
+    """Return names as a list to be read; of many the first ones, and how many more there are."""
+    shown = ", ".join(list(names)[:_LISTED]) or "none"
+    more = len(names) - _LISTED
+    return f"{shown} and {more} more" if more > 0 else shown

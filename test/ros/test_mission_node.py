@@ -17,6 +17,7 @@ from roomba_robot.msg import (
     CleanAction,
     CleanGoal,
     DockStatus,
+    Rectangle,
     UndockAction,
     UndockGoal,
     VacuumState,
@@ -178,6 +179,30 @@ def test_orders_are_obeyed_or_refused_with_the_reason(graph: RosGraph) -> None:
     assert world.next("/vacuum/state", VacuumState).phase == "emergency stop"
     assert hold(False, "").success
     wait_until(lambda: world.state.state != "error", 30.0)
+
+
+def test_zones_beyond_the_limits_are_refused_and_many_are_quickly_there(graph: RosGraph) -> None:
+    world, _ = start(graph)
+    world.does("docked", 30.0)
+    call = rospy.ServiceProxy("/set_zone", SetZone)
+
+    def refused(zone: Zone) -> str:
+        answer = call(zone)
+        assert not answer.success
+        return str(answer.message)
+
+    round_one = [Point(math.cos(0.01 * i), math.sin(0.01 * i), 0.0) for i in range(200_000)]
+    assert "3 to 200 points, got 200000" in refused(Zone("far", Zone.NO_GO, round_one))
+    assert len(refused(Zone(1_000_000 * "a", Zone.NO_GO, round_one[::100]))) < 200
+    assert "printable" in refused(Zone("a\nb", Zone.NO_GO, round_one[::100]))
+    corners = [Point(-1.0, -1.0, 0.0), Point(-0.8, -1.0, 0.0), Point(-0.8, -0.8, 0.0)]
+    for number in range(100):
+        assert call(Zone(f"zone {number}", Zone.NO_GO, corners)).success
+    wait_until(lambda: len(world.newest["/zones"].zones) == 100, 20.0, "all are told")
+    clean = client("clean", CleanAction)
+    clean.send_goal(CleanGoal(mode=CleanGoal.ZONES, zones=1001 * [Rectangle(0.0, 0.0, 1.0, 1.0)]))
+    assert ends(clean, 30.0) == GoalStatus.REJECTED
+    assert "at most 1000 zones, got 1001" in clean.get_goal_status_text()
 
 
 def test_a_full_bin_is_told_and_waited_for(graph: RosGraph) -> None:

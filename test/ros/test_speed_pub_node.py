@@ -222,6 +222,10 @@ def test_an_emergency_stop_holds_and_outlives_the_node(graph: RosGraph) -> None:
     rospy.Subscriber("/cmd_vel_out", Twist, lambda message: told.append(message.linear.x))
     wait_until(lambda: len(told) > 10, 20.0, "the drive is told to stand, again and again")
     assert set(told) == {0.0}
+    assert (
+        call(True, "smoke\n\x00" + 100_000 * "!").message
+        == "the drive is held: smoke  " + 193 * "!"
+    )
     assert call(False, "").message == "the drive is free again"
     wait_until(lambda: probe.drive_gets(0.4), 20.0, "it drives")
     wait_until(lambda: probe.newest["/emergency_stop"].data == "", 20.0, "it says so")

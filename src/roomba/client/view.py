@@ -13,15 +13,11 @@ from numpy.typing import NDArray
 
 from roomba.client.protocol import CleanReport, ErrandOutcome, RequestRefusedError, VacuumSnapshot
 from roomba.grid import FREE, OCCUPIED, GridFrame, OccupancyMap
+from roomba.vocabulary import LONGEST_NAME, MOST_CORNERS, MOST_PASSES, MOST_ZONES
 
 Point = tuple[float, float]
 """x and y, m."""
 
-MOST_PASSES: Final = 5
-MOST_ZONES: Final = 200
-MOST_CORNERS: Final = 200
-LONGEST_NAME: Final = 80
-"""Letters."""
 MOST_PATH: Final = 400
 """Points of the path that are shown."""
 

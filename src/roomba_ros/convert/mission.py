@@ -282,8 +282,3 @@ def shown(points: NDArray[np.float64]) -> NDArray[np.float64]:
         return points
     line = shapely.LineString(points).simplify(_DRAWN, preserve_topology=False)
     return np.asarray(line.coords, np.float64)
-
-
-def names_of(names: tuple[str, ...]) -> str:
-    """Return names as a list to be read."""
-    return ", ".join(names) or "none"

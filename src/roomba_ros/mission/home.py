@@ -36,11 +36,11 @@ from roomba.perception.rooms.rooms import Rooms
 from roomba.perception.rooms.zones import Zones, ZonesError
 from roomba.storage.map_bound import map_digest
 from roomba.storage.zones import load_zones, save_zones
+from roomba.vocabulary import listed
 from roomba_ros.convert.common import ToldMap, pose_in_map, told_map_of
 from roomba_ros.convert.mapping import is_growing_of
 from roomba_ros.convert.mission import (
     RoomOutlines,
-    names_of,
     outlines_of,
     zone_of,
     zones_markers,
@@ -70,6 +70,13 @@ class KnownHome:
         """Whether station or zones are others than before: that is obeyed at once."""
         now, then = self.context, before.context
         return (now.station, now.zones) != (then.station, then.zones)
+
+
+_LAST_EDIT: Final = 0.1
+"""s of wall time without another edit, after which a context is made; of many edits there is one.
+
+Until there is one the robot stands.
+"""
 
 
 class HomeTopics:
@@ -104,6 +111,7 @@ class HomeTopics:
         self._map_came = 0.0
         self._made: KnownHome | None = None
         self._wanted = self._tried = 0
+        self._make_after: float | None = None
         self._is_edited = False
         self._is_mapped: bool | None = None
         self._held: tuple[float, ToldMap] | None = None
@@ -152,12 +160,15 @@ class HomeTopics:
             is_late = time.monotonic() > self._map_came + self._deadlines.rooms
             if is_first and (is_late or not waits):
                 self._make()
+            if self._make_after is not None and time.monotonic() > self._make_after:
+                self._make_after = None
+                self._background.do("no context for the mission", self._make_now)
 
-    def _make(self, *, is_edited: bool = True) -> None:
-        """Let a context be made of what is known now; hold the lock."""
+    def _make(self, *, is_edited: bool = True, wait: float = 0.0) -> None:
+        """Let a context be made ``wait`` s from now, of what is known then; hold the lock."""
         self._is_edited = is_edited or (self._is_edited and self._wanted != self._tried)
         self._wanted += 1
-        self._background.do("no context for the mission", self._make_now)
+        self._make_after = time.monotonic() + wait
 
     def _make_now(self) -> None:
         with self._lock:
@@ -303,8 +314,8 @@ class HomeTopics:
             self._zones = zones
             self._tell()
             if self._wanted > 0:
-                self._make()
-            return True, f"the zones are: {names_of(zones.names)}"
+                self._make(wait=_LAST_EDIT)
+            return True, f"the zones are: {listed(zones.names)}"
 
     def _on_set(self, request: SetZoneRequest) -> SetZoneResponse:
         return SetZoneResponse(*self._edit(lambda zones: zones.with_zone(zone_of(request.zone))))

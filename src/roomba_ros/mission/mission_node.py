@@ -15,7 +15,7 @@ from roomba.mission.mission import Mission, MissionStep
 from roomba.mission.phases.machine import Phase
 from roomba.perception.localization.estimate import Knowledge
 from roomba.robot.mapped_mission import MappedMission
-from roomba_ros.convert.mission import names_of
+from roomba.vocabulary import listed
 from roomba_ros.mission.drive import MissionDrive
 from roomba_ros.mission.goals import Ended
 from roomba_ros.mission.home import GROWING, HomeTopics, KnownHome
@@ -140,7 +140,7 @@ class MissionNode:
         """Tell what is not there yet."""
         missing = self._context.missing + self._senses.missing(*_NEEDED)
         reason = self._context.trouble or (
-            f"waits for {names_of(missing)}" if missing else "gets to know its map"
+            f"waits for {listed(missing)}" if missing else "gets to know its map"
         )
         self._orders.refuse(f"the robot is not ready: it {reason}")
         self._topics.wait(now, reason)

@@ -37,7 +37,15 @@ from roomba_ros.convert.readings import StampedPose, stamped_pose_of
 from roomba_ros.convert.values import data_of, duty_of, time_of
 from roomba_ros.localization import kept_pose
 from roomba_ros.runtime import progress
-from roomba_ros.runtime.node import frame_id, give_up, leave, register, require_master, told_to_end
+from roomba_ros.runtime.node import (
+    frame_id,
+    give_up,
+    leave,
+    register,
+    require_master,
+    settle,
+    told_to_end,
+)
 from roomba_ros.runtime.pace import Pace
 from roomba_ros.runtime.parameters import (
     LiveSeedParameters,
@@ -319,5 +327,6 @@ def main() -> None:
         node.start()
     except RoombaError as error:
         give_up(str(error))
+    settle()
     node.run()
     leave(0)

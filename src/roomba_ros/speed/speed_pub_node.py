@@ -41,6 +41,7 @@ from roomba_ros.runtime.subscriptions import subscribe
 EMERGENCY_PARAMETER: Final = "emergency_stop"
 """Why the drive is held; kept by the master, so that a node that was killed holds it again."""
 _NO_REASON: Final = "no reason was given"
+_LONGEST_REASON: Final = 200
 
 
 class SpeedPubNode:
@@ -133,7 +134,7 @@ class SpeedPubNode:
         self._emergency.publish(self._reason)
 
     def _on_emergency_stop(self, request: EmergencyStopRequest) -> EmergencyStopResponse:
-        reason = (request.reason.strip() or _NO_REASON) if request.engage else ""
+        reason = _shown(request.reason) if request.engage else ""
         with self._lock:
             was_held = self._loop.emergency
             self._reason, self._loop.emergency = reason, request.engage
@@ -171,6 +172,12 @@ class SpeedPubNode:
 
     def _on_odometry(self, told: OdometryReading) -> None:
         self._speed = abs(told.twist.linear)
+
+
+def _shown(reason: str) -> str:
+    """Return a reason as one line of bounded length: no text of it may keep the robot from it."""
+    text = "".join(letter if letter.isprintable() else " " for letter in reason[:_LONGEST_REASON])
+    return text.strip() or _NO_REASON
 
 
 def _answer(reason: str, was_held: bool) -> str:

@@ -117,7 +117,7 @@ def test_zones_are_those_that_were_told_or_refused_together() -> None:
     assert zones_of(zones(4)).names == ("bowl",)
     assert zones_of(ZoneArray()).all == ()
     for corners in (0, 2):
-        with pytest.raises(MessageError, match=f"3 points or more, got {corners}"):
+        with pytest.raises(MessageError, match=f"3 to 200 points, got {corners}"):
             zones_of(ZoneArray(zones=[*zones(4).zones, *zones(corners).zones]))
     wrong = zones(4)
     wrong.zones[0].kind = 7

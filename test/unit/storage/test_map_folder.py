@@ -21,11 +21,10 @@ from roomba.perception.rooms.rooms import Rooms, segment
 from roomba.perception.rooms.zones import Zone, ZoneKind, Zones
 from roomba.raster.regions import numbered_regions
 from roomba.storage.map_folder import MapStoreError, StoredMap, read_map, write_map
+from roomba.vocabulary import fault_of_name
 from roomba.world.layers.layer import load_home
 
-NAMES = st.text(st.characters(exclude_categories=["Cs"]), min_size=1, max_size=12).filter(
-    lambda name: name.strip() != ""
-)
+NAMES = st.text(min_size=1, max_size=12).filter(lambda name: not fault_of_name(name))
 PLACES = st.floats(-30.0, 30.0)
 
 

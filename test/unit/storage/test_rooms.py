@@ -1,15 +1,19 @@
 """Rooms on disk: the same after reading as before writing, and never half a file."""
 
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy as np
 import pytest
+from hypothesis import example, given
+from hypothesis import strategies as st
 
 from roomba.errors import RoomsError
 from roomba.grid import FREE, OCCUPIED, GridFrame, OccupancyMap
 from roomba.perception.rooms.rooms import Rooms
 from roomba.storage.map_bound import map_digest
 from roomba.storage.rooms import load_rooms, save_rooms
+from roomba.vocabulary import LONGEST_NAME
 
 
 def two_rooms(column: int = 30) -> tuple[OccupancyMap, Rooms]:
@@ -34,11 +38,31 @@ def test_rooms_are_read_as_they_were_written(tmp_path: Path) -> None:
     assert [entry.name for entry in path.parent.iterdir()] == ["rooms.yaml"]
 
 
-@pytest.mark.parametrize("name", ["a\x85den", "a\u2028den", "a\u2029den", "a\nden"])
-def test_a_name_with_line_breaks_comes_back(tmp_path: Path, name: str) -> None:
+@given(st.text(min_size=1, max_size=LONGEST_NAME))
+@example("a: {b}, [c] # d")
+@example("\"'\\ \N{DOG FACE}")
+def test_every_name_that_is_taken_comes_back(name: str) -> None:
     occupancy, rooms = two_rooms()
-    save_rooms(rooms.renamed("Küche", name), occupancy, tmp_path / "rooms.yaml")
-    assert name in load_rooms(tmp_path / "rooms.yaml", occupancy).names
+    try:
+        named = rooms.renamed("Küche", name)
+    except RoomsError:
+        assert not name.isprintable() or not name.strip() or name.strip() == rooms.names[1]
+        return
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / "rooms.yaml"
+        save_rooms(named, occupancy, path)
+        assert name.strip() in load_rooms(path, occupancy).names
+
+
+@pytest.mark.parametrize("name", ["a\x85den", "a\u2028den", "a\nden", "a\0", 1_000_000 * "a"])
+def test_a_name_that_cannot_be_told_is_refused_in_few_words(name: str) -> None:
+    _, rooms = two_rooms()
+    with pytest.raises(RoomsError, match="1 to 80 printable characters") as refusal:
+        rooms.renamed("Küche", name)
+    assert len(str(refusal.value)) < 200
+    with pytest.raises(RoomsError, match="expected a room out of") as refusal:
+        rooms.label_of(name)
+    assert len(str(refusal.value)) < 600
 
 
 def test_a_file_of_another_map_is_refused(tmp_path: Path) -> None:
@@ -81,7 +105,7 @@ def test_rooms_that_overlap_in_the_file_are_refused(tmp_path: Path) -> None:
     path = tmp_path / "rooms.yaml"
     save_rooms(rooms, occupancy, path)
     text = path.read_text(encoding="utf-8")
-    half = text[text.index("- name") :]
+    half = text[text.index('- {"name"') :]
     path.write_text(text + half.replace("Küche", "third").replace("Room: 2 #x", "fourth"))
     with pytest.raises(RoomsError, match="overlap"):
         load_rooms(path, occupancy)

@@ -41,11 +41,11 @@ def test_zones_of_another_map_are_refused(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("old", "new", "reason"),
     [
-        ("kind: wall", "kind: fence", r"zones\.1\.kind"),
+        ('"kind": "wall"', '"kind": "fence"', r"zones\.1\.kind"),
         ("zones:", "zonen:", "zones: Field required"),
         ("map:", "{", "in YAML"),
-        ("- [1.0, 3.0]", "- [1.0, .nan]", r"zones\.1\.points"),
-        ("name: door", "name: ''", "expected a zone's name"),
+        ("[1.0, 3.0]", "[1.0, .nan]", r"zones\.1\.points"),
+        ('"name": "door"', '"name": ""', "1 to 80 printable"),
     ],
 )
 def test_a_file_that_makes_no_sense_is_named_with_the_reason(

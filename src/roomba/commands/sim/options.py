@@ -14,8 +14,8 @@ from roomba.commands.sim.trial import MOST_THINGS, RANDOM, Trial, UsageError
 from roomba.commands.spelling import spelled
 from roomba.configuration.sensors import lidar_models
 from roomba.geometry import Pose
-from roomba.mission.cleaning.request import MOST_PASSES, CleanRefusedError, CleanRequest
-from roomba.vocabulary import CleanMode, FanLevel
+from roomba.mission.cleaning.request import CleanRefusedError, CleanRequest
+from roomba.vocabulary import MOST_PASSES, CleanMode, FanLevel
 
 PROGRAM: Final = spelled("sim")
 MOST_HOMES: Final = 100_000

@@ -179,9 +179,12 @@ class CoverageLedger:
             return
         if frame.shape != self._context.frame.shape:
             raise CheckpointError(f"expected a grid of {self._context.frame}, got {frame}")
-        wanted = unpacked(values["wanted"], frame.shape)
+        # Zones may be newer than the checkpoint.
+        coverable = self._context.coverable()
+        wanted = unpacked(values["wanted"], frame.shape) & coverable
         stages = [
-            Stage(str(n), unpacked(f, frame.shape), bool(again)) for n, f, again in values["stages"]
+            Stage(str(name), unpacked(floor, frame.shape) & coverable, bool(again))
+            for name, floor, again in values["stages"]
         ]
         number = int(values["stage_number"])
         if not 0 <= number <= len(stages):

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from enum import Enum
-from typing import Final
 
 from roomba.errors import RoombaError
-from roomba.vocabulary import CleanMode, FanLevel
+from roomba.vocabulary import MOST_PASSES, MOST_ZONES, CleanMode, FanLevel, fault_of_name
 
 
 class CleanRefusedError(RoombaError):
@@ -16,9 +15,6 @@ class CleanRefusedError(RoombaError):
 
 Rectangle = tuple[float, float, float, float]
 """Lowest x, lowest y, highest x, highest y, m."""
-
-MOST_PASSES: Final = 5
-"""Of a request; more over the same floor are a slip of the finger."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,6 +37,12 @@ class CleanRequest:
             raise CleanRefusedError("expected the names of rooms to clean, got none")
         if self.mode is CleanMode.ZONES and not self.zones:
             raise CleanRefusedError("expected zones to clean, got none")
+        for what, asked in (("rooms", self.rooms), ("zones", self.zones)):
+            if len(asked) > MOST_ZONES:
+                raise CleanRefusedError(f"expected at most {MOST_ZONES} {what}, got {len(asked)}")
+        for name in self.rooms:
+            if fault := fault_of_name(name):
+                raise CleanRefusedError(f"a room to clean: {fault}")
         for zone in self.zones:
             if not (zone[0] < zone[2] and zone[1] < zone[3]):
                 raise CleanRefusedError(

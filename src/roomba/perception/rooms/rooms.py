@@ -19,6 +19,7 @@ from roomba.perception.rooms.floor_kernels import contacts
 from roomba.perception.rooms.outlines import cells_inside, line_on, outline_of
 from roomba.perception.rooms.segmentation import room_labels
 from roomba.raster.distance import distance_to_nearest
+from roomba.vocabulary import LONGEST_NAME, fault_of_name, listed
 
 Point = tuple[float, float]
 
@@ -63,8 +64,8 @@ class Rooms:
                 f"for {found}; leave out rooms without cells"
             )
         for index, name in enumerate(self.names):
-            if not name.strip():
-                raise RoomsError(f"expected a room's name, got {name!r}; name every room")
+            if fault := fault_of_name(name):
+                raise RoomsError(f"a room: {fault}; name every room")
             if name in self.names[:index]:
                 raise RoomsError(
                     f"expected different names, got {name!r} twice; rename one of the rooms"
@@ -109,10 +110,11 @@ class Rooms:
         """Return a room's label, 1 or more. Raises RoomsError for a name that is none."""
         if name in self.names:
             return self.names.index(name) + 1
-        near = difflib.get_close_matches(name, self.names, 1)
+        asked = name[:LONGEST_NAME]
+        near = difflib.get_close_matches(asked, self.names, 1)
         advice = f"did you mean {near[0]!r}?" if near else "choose one of them"
-        known = ", ".join(repr(known) for known in self.names) or "no rooms"
-        raise RoomsError(f"expected a room out of {known}, got {name!r}; {advice}")
+        known = listed([repr(known) for known in self.names]) if self.names else "no rooms"
+        raise RoomsError(f"expected a room out of {known}, got {asked!r}; {advice}")
 
     def at(self, x: float, y: float) -> int:
         """Return the label of the room in which a point lies, m; 0 for none, and off the map."""

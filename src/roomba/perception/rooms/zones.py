@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from dataclasses import dataclass, replace
 from enum import Enum
@@ -13,6 +14,7 @@ from numpy.typing import NDArray
 
 from roomba.errors import RoombaError
 from roomba.grid import OCCUPIED, GridFrame, OccupancyMap
+from roomba.vocabulary import LONGEST_NAME, MOST_CORNERS, MOST_ZONES, fault_of_name, listed
 
 WALL_WIDTH: Final = 0.05
 """m; of a virtual wall: as thick as a cell, so that nothing slips through."""
@@ -48,14 +50,15 @@ class Zone:
     def __post_init__(self) -> None:
         """Check the number of points, and that an area encloses floor. Raises ZonesError."""
         least = 3 if self.kind is ZoneKind.NO_GO else 2
-        if not self.name.strip():
-            raise ZonesError(f"expected a zone's name, got {self.name!r}; name every zone")
+        if fault := fault_of_name(self.name):
+            raise ZonesError(f"a zone: {fault}; name every zone")
+        if not least <= len(self.points) <= MOST_CORNERS:
+            raise ZonesError(
+                f"zone {self.name!r}: expected {least} to {MOST_CORNERS} points, got "
+                f"{len(self.points)}"
+            )
         if not all(math.isfinite(value) for point in self.points for value in point):
             raise ZonesError(f"zone {self.name!r}: expected finite numbers, m, got {self.points}")
-        if len(self.points) < least:
-            raise ZonesError(
-                f"zone {self.name!r}: expected {least} points or more, got {len(self.points)}"
-            )
         shape = self._outline
         if not shape.is_valid:
             reason = shapely.is_valid_reason(shape)
@@ -66,6 +69,13 @@ class Zone:
             )
 
     @property
+    def shape(self) -> shapely.Geometry:
+        """What it covers, m: an area, or a wall with its width."""
+        if self.kind is ZoneKind.NO_GO:
+            return self._outline
+        return self._outline.buffer(0.5 * WALL_WIDTH, cap_style="square")
+
+    @property
     def _outline(self) -> shapely.Geometry:
         if self.kind is ZoneKind.NO_GO:
             return shapely.Polygon(self.points)
@@ -73,25 +83,35 @@ class Zone:
 
     def cells(self, frame: GridFrame) -> NDArray[np.bool_]:
         """Return the cells that it touches, bool [rows, columns]."""
-        shape = self._outline
-        if self.kind is ZoneKind.WALL:
-            shape = shape.buffer(0.5 * WALL_WIDTH, cap_style="square")
         touched = np.zeros(frame.shape, np.bool_)
-        x_min, y_min, x_max, y_max = shape.bounds
-        low_row, low_column = frame.cell_of(x_min, y_min)
-        high_row, high_column = frame.cell_of(x_max, y_max)
-        rows = np.arange(max(low_row, 0), min(high_row + 1, frame.rows))
-        columns = np.arange(max(low_column, 0), min(high_column + 1, frame.columns))
-        if rows.size == 0 or columns.size == 0:
-            return touched
-        left = frame.origin_x + columns[None, :] * frame.resolution
-        bottom = frame.origin_y + rows[:, None] * frame.resolution
-        squares = shapely.box(left, bottom, left + frame.resolution, bottom + frame.resolution)
-        shapely.prepare(shape)
-        # What shares a border with a zone and nothing else is not touched.
-        common = shapely.area(shapely.intersection(squares, shape))
-        touched[np.ix_(rows, columns)] = common > _LEAST_SHARE * frame.resolution**2
+        rows, columns, cells = _touched(self, frame)
+        touched[rows, columns] = cells
         return touched
+
+
+@functools.lru_cache(maxsize=MOST_ZONES)
+def _touched(zone: Zone, frame: GridFrame) -> tuple[slice, slice, NDArray[np.bool_]]:
+    """Return the rows and columns around a zone, and which of these cells it touches.
+
+    Kept: an edit of one zone of many asks for the cells of all.
+    """
+    shape = zone.shape
+    x_min, y_min, x_max, y_max = shape.bounds
+    low_row, low_column = frame.cell_of(x_min, y_min)
+    high_row, high_column = frame.cell_of(x_max, y_max)
+    rows = slice(max(low_row, 0), max(min(high_row + 1, frame.rows), 0))
+    columns = slice(max(low_column, 0), max(min(high_column + 1, frame.columns), 0))
+    left = frame.origin_x + np.arange(columns.start, columns.stop)[None, :] * frame.resolution
+    bottom = frame.origin_y + np.arange(rows.start, rows.stop)[:, None] * frame.resolution
+    squares = shapely.box(left, bottom, left + frame.resolution, bottom + frame.resolution)
+    shapely.prepare(shape)
+    cells = shapely.contains_properly(shape, squares)
+    on_border = ~cells & shapely.intersects(shape, squares)
+    # What shares a border with a zone and nothing else is not touched.
+    common = shapely.area(shapely.intersection(squares[on_border], shape))
+    cells[on_border] = common > _LEAST_SHARE * frame.resolution**2
+    cells.setflags(write=False)
+    return rows, columns, cells
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,6 +120,13 @@ class Zones:
 
     all: tuple[Zone, ...] = ()
 
+    def __post_init__(self) -> None:
+        """Check how many there are. Raises ZonesError."""
+        if len(self.all) > MOST_ZONES:
+            raise ZonesError(
+                f"expected at most {MOST_ZONES} zones, got {len(self.all)}; remove one first"
+            )
+
     def with_zone(self, zone: Zone) -> Zones:
         """Return these with a zone more, in place of one of the same name."""
         return Zones((*(other for other in self.all if other.name != zone.name), zone))
@@ -107,8 +134,10 @@ class Zones:
     def without(self, name: str) -> Zones:
         """Return these without a zone; raises ZonesError for a name that is none."""
         if name not in self.names:
-            known = ", ".join(self.names) or "none"
-            raise ZonesError(f"expected the name of a zone, got {name!r}; there are: {known}")
+            raise ZonesError(
+                f"expected the name of a zone, got {name[:LONGEST_NAME]!r}; there are: "
+                f"{listed(self.names)}"
+            )
         return replace(self, all=tuple(zone for zone in self.all if zone.name != name))
 
     @property
@@ -122,5 +151,6 @@ class Zones:
             return occupancy
         values = occupancy.values.copy()
         for zone in self.all:
-            values[zone.cells(occupancy.frame)] = OCCUPIED
+            rows, columns, cells = _touched(zone, occupancy.frame)
+            values[rows, columns][cells] = OCCUPIED
         return OccupancyMap(occupancy.frame, values)

@@ -14,7 +14,8 @@ from pydantic import BaseModel, ConfigDict, Field
 from roomba.client.observed import MapKeeper, ObservedRobot, Timeline
 from roomba.client.plain import home_of, replay_of, state_of
 from roomba.client.protocol import CameraClient, RequestRefusedError, RobotUnavailableError
-from roomba.client.view import LONGEST_NAME, MOST_CORNERS, MOST_PASSES, CleanOrder, ZoneView
+from roomba.client.view import CleanOrder, ZoneView
+from roomba.vocabulary import LONGEST_NAME, MOST_CORNERS, MOST_PASSES
 
 _Value = TypeVar("_Value")
 _QUALITY: Final = 85

@@ -22,8 +22,8 @@ from roomba.mission.cleaning.checkpoint import (
     request_values,
     unpacked,
 )
-from roomba.mission.cleaning.request import MOST_PASSES, CleanRequest
-from roomba.vocabulary import CleanMode, FanLevel
+from roomba.mission.cleaning.request import CleanRequest
+from roomba.vocabulary import MOST_PASSES, CleanMode, FanLevel, fault_of_name
 
 sizes = st.tuples(st.integers(1, 40), st.integers(1, 40))
 numbers = st.floats(-50.0, 50.0)
@@ -69,6 +69,9 @@ def test_no_junk_gets_through(junk: bytes) -> None:
         unpacked(base64.b64encode(zlib.compress(junk) + b"x"[: len(junk) % 2]).decode(), (50, 50))
 
 
+NAMES = st.text(min_size=1).filter(lambda name: not fault_of_name(name))
+
+
 @st.composite
 def requests(draw: st.DrawFn) -> CleanRequest:
     zones = [
@@ -83,7 +86,7 @@ def requests(draw: st.DrawFn) -> CleanRequest:
     ]
     return CleanRequest(
         draw(st.sampled_from(CleanMode)),
-        tuple(draw(st.lists(st.text(min_size=1), min_size=1, max_size=3))),
+        tuple(draw(st.lists(NAMES, min_size=1, max_size=3))),
         tuple(zones),
         draw(st.none() | st.tuples(numbers, numbers)),
         draw(st.integers(1, MOST_PASSES)),

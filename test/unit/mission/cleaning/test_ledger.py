@@ -144,6 +144,15 @@ def test_a_zone_that_is_gone_is_wanted_at_the_end() -> None:
     assert [stage.name for stage in ledger.stages] == ["", "what was a zone before"]
 
 
+def test_a_zone_that_is_newer_than_the_values_is_not_wanted() -> None:
+    values = json.loads(json.dumps(begun(context_of(WHOLE, is_growing=False)).values()))
+    edited = begun(context_of(HALL, is_growing=False))
+    wanted = edited.coverage.wanted.copy()
+    edited.restore(values)
+    assert np.array_equal(edited.coverage.wanted, wanted)
+    assert np.array_equal(edited.stages[0].floor, wanted)
+
+
 def test_rooms_of_a_map_without_rooms_are_refused() -> None:
     with pytest.raises(CleanRefusedError, match="clean the whole home"):
         begun(context_of(HALL), CleanRequest(CleanMode.ROOMS, rooms=("den",)))

@@ -8,14 +8,13 @@ import pytest
 
 from roomba.errors import RoombaError
 from roomba.mission.cleaning.request import (
-    MOST_PASSES,
     CleanOutcome,
     CleanRefusedError,
     CleanRequest,
     CleanResult,
     Rectangle,
 )
-from roomba.vocabulary import CleanMode, FanLevel
+from roomba.vocabulary import LONGEST_NAME, MOST_PASSES, MOST_ZONES, CleanMode, FanLevel
 
 
 def test_without_more_words_all_is_cleaned_once() -> None:
@@ -67,3 +66,19 @@ def test_a_result_tells_its_share() -> None:
 
     assert result(8.0, 6.0).fraction == 0.75
     assert result(0.0, 0.0).fraction == 1.0
+
+
+def test_more_than_a_home_has_is_refused_before_it_is_looked_at() -> None:
+    zone = (0.0, 0.0, 1.0, 1.0)
+    assert CleanRequest(CleanMode.ZONES, zones=MOST_ZONES * (zone,)).zones
+    with pytest.raises(CleanRefusedError, match="at most 1000 zones, got 1001"):
+        CleanRequest(CleanMode.ZONES, zones=(MOST_ZONES + 1) * (zone,))
+    with pytest.raises(CleanRefusedError, match="at most 1000 rooms, got 1001"):
+        CleanRequest(CleanMode.ROOMS, rooms=(MOST_ZONES + 1) * ("hall",))
+
+
+@pytest.mark.parametrize("name", ["", "a\nb", "a\0", (LONGEST_NAME + 1) * "a", 1_000_000 * "a"])
+def test_a_room_of_a_name_that_none_has_is_refused_in_few_words(name: str) -> None:
+    with pytest.raises(CleanRefusedError, match="1 to 80 printable characters") as refusal:
+        CleanRequest(CleanMode.ROOMS, rooms=("hall", name))
+    assert len(str(refusal.value)) < 200

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -12,7 +13,16 @@ from hypothesis import strategies as st
 
 from roomba.errors import RoombaError
 from roomba.grid import FREE, OCCUPIED, UNKNOWN, GridFrame, OccupancyMap
-from roomba.perception.rooms.zones import WALL_WIDTH, Corners, Zone, ZoneKind, Zones, ZonesError
+from roomba.perception.rooms.zones import (
+    WALL_WIDTH,
+    Corners,
+    Zone,
+    ZoneKind,
+    Zones,
+    ZonesError,
+    _touched,
+)
+from roomba.vocabulary import MOST_CORNERS, MOST_ZONES
 
 FRAME = GridFrame(0.05, -0.5, 0.25, 30, 40)
 LEFT, RIGHT, LOW, HIGH = FRAME.extent
@@ -119,9 +129,9 @@ def test_edits_return_other_zones() -> None:
     ("name", "kind", "points", "word"),
     [
         (" ", NO_GO, ((0.0, 0.0), (1.0, 0.0), (1.0, 1.0)), "name"),
-        ("a", NO_GO, ((0.0, 0.0), (1.0, 0.0)), "3 points or more, got 2"),
-        ("a", WALL, ((0.0, 0.0),), "2 points or more, got 1"),
-        ("a", WALL, (), "2 points"),
+        ("a", NO_GO, ((0.0, 0.0), (1.0, 0.0)), "3 to 200 points, got 2"),
+        ("a", WALL, ((0.0, 0.0),), "2 to 200 points, got 1"),
+        ("a", WALL, (), "2 to 200 points"),
         ("a", NO_GO, ((0.0, 0.0), (math.nan, 0.0), (1.0, 1.0)), "finite"),
         ("a", WALL, ((0.0, 0.0), (math.inf, 0.0)), "finite"),
         ("a", NO_GO, ((0.0, 0.0), (1.0, 1.0), (1.0, 0.0), (0.0, 1.0)), "simple outline"),
@@ -136,3 +146,37 @@ def test_what_makes_no_sense_is_refused(
     with pytest.raises(ZonesError, match=word) as refused:
         Zone(name, kind, points)
     assert isinstance(refused.value, RoombaError)
+
+
+def test_limits_are_told_before_anything_is_reckoned() -> None:
+    round_one = tuple((math.cos(0.01 * i), math.sin(0.01 * i)) for i in range(MOST_CORNERS + 1))
+    assert Zone("most", NO_GO, round_one[:-1]).points
+    with pytest.raises(ZonesError, match="expected 3 to 200 points, got 201"):
+        Zone("too many", NO_GO, round_one)
+    with pytest.raises(ZonesError, match="got 200000"):
+        Zone("far too many", NO_GO, 200_000 * ((math.nan, 0.0),))
+    all_of_them = tuple(replace(area(0.0, 1.0, 1.0, 1.5), name=f"{n}") for n in range(MOST_ZONES))
+    zones = Zones(all_of_them)
+    assert zones.with_zone(area(0.0, 1.0, 0.5, 1.5, "7")).all[-1].name == "7"
+    with pytest.raises(ZonesError, match="at most 1000 zones, got 1001; remove one first"):
+        zones.with_zone(area(0.0, 1.0, 0.5, 1.5, "another"))
+
+
+@pytest.mark.parametrize("name", ["", "  ", "a\nb", "a\0b", 81 * "a", 1_000_000 * "a"])
+def test_names_that_cannot_be_told_are_refused_in_few_words(name: str) -> None:
+    with pytest.raises(ZonesError, match="1 to 80 printable characters") as refusal:
+        area(0.0, 1.0, 1.0, 1.5, name)
+    assert len(str(refusal.value)) < 200
+    with pytest.raises(ZonesError, match="expected the name of a zone") as refusal:
+        Zones().without(name)
+    assert len(str(refusal.value)) < 600
+
+
+def test_an_edit_reckons_the_cells_of_one_zone() -> None:
+    zones = Zones(tuple(area(0.01 * n, 1.0, 0.2 + 0.01 * n, 1.5, f"{n}") for n in range(50)))
+    floor = OccupancyMap(FRAME, np.zeros(FRAME.shape, np.int8))
+    zones.kept_out(floor)
+    before = _touched.cache_info().misses
+    kept_out = zones.with_zone(area(0.3, 0.3, 0.5, 0.8, "new")).kept_out(floor)
+    assert _touched.cache_info().misses == before + 1
+    assert kept_out.values[FRAME.cell_of(0.4, 0.5)] == OCCUPIED
