@@ -35,6 +35,7 @@ LONGEST_FIRST = (
     "test_standstill.py",
     "test_conformance.py",
     "test_faults.py",
+    "test_supervision.py",
     "test_map_topics.py",
     "test_turn_camera.py",
     "test_clean.py",
@@ -137,7 +138,7 @@ def robot_with_page(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RosGra
 
 @pytest.fixture(scope="module")
 def shared_robot(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RosGraph]:
-    """The whole robot by roslaunch, once for a module whose tests leave it as it was."""
+    """The whole robot, once for a module whose tests leave it as it was."""
     with RosGraph(tmp_path_factory.mktemp("robot")) as own:
-        own.roslaunch()
+        own.launch()
         yield own

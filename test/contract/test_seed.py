@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 import rospy
-from fixtures.graph import LAUNCHED, RosGraph
+from fixtures.graph import RUN, RosGraph
 from fixtures.probe import Probe, Walker
 from fixtures.waiting import wait_until
 from roomba_robot.msg import RobotPosition
@@ -92,7 +92,7 @@ def test_nodes_topics_and_services_are_those_of_the_report(shared_robot: RosGrap
         assert publishers.get(topic) == [f"/{node}"], topic
     for topic, node in SUBSCRIBES.items():
         assert f"/{node}" in subscribers.get(topic, []), topic
-    for node in LAUNCHED:
+    for node in RUN:
         assert services[f"/{node}/get_loggers"] == [f"/{node}"]
         assert services[f"/{node}/set_logger_level"] == [f"/{node}"]
     assert services["/turn_camera"] == ["/turn_camera_service_node"]
@@ -107,12 +107,12 @@ def test_every_topic_has_one_writer(shared_robot: RosGraph) -> None:
     # Each tells what it drives; only one of them drives at a time.
     assert sorted(shared.pop("/plan")) == ["/mission_node", "/walk_to_point_action_server_node"]
     # By REP 107 each part tells its own state there.
-    assert sorted(shared.pop("/diagnostics")) == sorted(f"/{node}" for node in LAUNCHED)
+    assert sorted(shared.pop("/diagnostics")) == sorted(f"/{node}" for node in RUN)
     assert shared == {}
 
 
 def test_the_stock_tools_agree(shared_robot: RosGraph) -> None:
-    assert {f"/{node}" for node in LAUNCHED} <= set(tool(shared_robot, "rosnode", "list").split())
+    assert {f"/{node}" for node in RUN} <= set(tool(shared_robot, "rosnode", "list").split())
     info = tool(shared_robot, "rosnode", "info", "/walk_to_point_action_server_node")
     for line in (
         " * /change_position [roomba_robot/RobotPosition]",

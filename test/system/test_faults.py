@@ -30,7 +30,7 @@ ENDED = 3.0
 def shared_robot(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RosGraph]:
     """The whole robot, twice as fast as real time; nodes that were ended are back after a test."""
     with RosGraph(tmp_path_factory.mktemp("robot")) as own:
-        own.roslaunch("speed:=2")
+        own.launch("speed:=2")
         yield own
 
 
@@ -66,16 +66,16 @@ def stands(probe: Probe) -> None:
 
 
 def test_at_a_faster_clock_it_walks_and_ctrl_c_ends_it_without_violence(tmp_path: Path) -> None:
-    """Ctrl-C while it walks: each node ends by itself, and roslaunch has to kill none."""
+    """Ctrl-C while it walks: each node ends by itself, and none has to be killed."""
     with RosGraph(tmp_path) as graph:
-        # `./roomba run` waits 1.8 s for them; here the machine may be a busy one.
-        launch = graph.roslaunch(f"speed:={FAST}", "--sigint-timeout=20")
+        launch = graph.launch(f"speed:={FAST}")
         run_forked(lambda: walk_fast(graph))
         pids = [graph.pid(node) for node in LAUNCHED]
         launch.send_to_leader(signal.SIGINT)
         promised(lambda: launch.status is not None, ENDED, "it has ended")
         assert not [pid for pid in pids if alive(pid)]
-        assert "escalating" not in launch.output
+        assert launch.status == 0
+        assert "has not ended yet" not in launch.output
 
 
 def walk_fast(graph: RosGraph) -> None:
@@ -121,8 +121,8 @@ def walk_again(graph: RosGraph) -> None:
 def test_a_wrong_argument_ends_the_launch_with_a_clear_line(tmp_path: Path) -> None:
     """A negative top speed; test_home_sim_node.py goes through the arguments."""
     with RosGraph(tmp_path) as graph:
-        program = graph.start_launch("robot_max_speed:=-0.5")
-        program.ends(40.0)
+        program = graph.start_run("robot_max_speed:=-0.5")
+        assert program.ends(40.0) == 1
         fatal = [line for line in program.output.splitlines() if "FATAL" in line]
         assert any("robot_max_speed" in line for line in fatal), program.output
 

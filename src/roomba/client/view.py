@@ -109,10 +109,11 @@ class HomeView:
 class RobotView:
     """The robot now; ``time`` is in s of its clock and ``pose`` is x, y and heading.
 
-    ``doubt`` says why its place is not known well; ``speed`` is in m/s, ``dirt`` what it picked up
-    since its bin was emptied, g; ``held`` is why the emergency stop holds the drive, empty if it
-    does not. ``scan`` is float32 [n, 2], where the lidar's beams met something; ``path`` float32
-    [n, 2], what is left of its way. ``last`` is how the last errand ended.
+    ``doubt`` says which part of it fails, or why its place is not known well; ``speed`` is in m/s,
+    ``dirt`` what it picked up since its bin was emptied, g; ``held`` is why the emergency stop
+    holds the drive, empty if it does not. ``scan`` is float32 [n, 2], where the lidar's beams met
+    something; ``path`` float32 [n, 2], what is left of its way. ``last`` is how the last errand
+    ended.
     """
 
     time: float

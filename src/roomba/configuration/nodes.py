@@ -140,6 +140,25 @@ class PicturesConfig(Frozen):
     """s of wall time between two pictures, at least: one is much work, on a fast clock too."""
 
 
+class SupervisionConfig(Frozen):
+    """When a process of the robot is told of, ended, started anew or given up: s of wall time."""
+
+    busy: Positive = 2.0
+    """A node whose last sign of life is older is told of: it hangs, or works for long."""
+    hung: Positive = 20.0
+    """It is ended and started anew: a plan over a large home takes some seconds."""
+    stopped: Positive = 2.0
+    """So is a process that was stopped for so long, by a signal or a debugger."""
+    back_after: Positive = 0.2
+    """From the end of a process until it is started anew."""
+    most_deaths: AtLeastOne = 6
+    """A process that ended so often"""
+    deaths_within: Positive = 60.0
+    """in so many s is not started any more: something is wrong that a start does not mend."""
+
+    in_order: ClassVar = ("busy <= stopped <= hung",)
+
+
 class NodesConfig(Frozen):
     """All of ``configuration/nodes.yaml``; every part has the shipped file's values by default."""
 
@@ -151,3 +170,4 @@ class NodesConfig(Frozen):
     placing: PlacingConfig = PlacingConfig()
     pace: PaceConfig = PaceConfig()
     pictures: PicturesConfig = PicturesConfig()
+    supervision: SupervisionConfig = SupervisionConfig()

@@ -28,3 +28,20 @@ def refused_message(
     message = DiagnosticArray(status=[status])
     message.header.stamp = stamp_of(now)
     return message
+
+
+def processes_message(now: float, trouble: Mapping[str, str]) -> DiagnosticArray:
+    """Return how the robot's processes are: by name what is wrong, empty when all is well."""
+    message = DiagnosticArray(
+        status=[
+            DiagnosticStatus(
+                level=DiagnosticStatus.ERROR if said else DiagnosticStatus.OK,
+                name=f"{name}: process",
+                message=said or "it runs",
+                hardware_id=name,
+            )
+            for name, said in sorted(trouble.items())
+        ]
+    )
+    message.header.stamp = stamp_of(now)
+    return message

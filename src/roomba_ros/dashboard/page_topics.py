@@ -49,7 +49,7 @@ from roomba_ros.convert.page import (
 from roomba_ros.convert.scan import ScanDecoder
 from roomba_ros.convert.values import data_of, number_of
 from roomba_ros.runtime.node import frame_id
-from roomba_ros.runtime.senders import SPEED_NODE, OnlyFrom
+from roomba_ros.runtime.senders import SPEED_NODE, SUPERVISOR, OnlyFrom
 from roomba_ros.runtime.subscriptions import subscribe
 
 _OLDEST_POSE: Final = 2.0
@@ -62,7 +62,7 @@ class PageTopics:
 
     Subscribes: ``pose``, ``localization``, ``speed``, ``bin_level``, ``emergency_stop``, ``scan``,
     ``plan``, ``map``, ``coverage_map``, ``dirt_map``, ``rooms``, ``zones``, ``station_pose``,
-    ``map/update``, ``clean/result``, ``explore/result``, ``/tf_static``.
+    ``trouble``, ``map/update``, ``clean/result``, ``explore/result``, ``/tf_static``.
     """
 
     def __init__(self, config: RobotConfig) -> None:
@@ -77,7 +77,7 @@ class PageTopics:
             0, "home", (0.0, 0.0, 0.0), (), (), (), config.body.radius, config.brush.width
         )
         self._layers: dict[LayerName, GridLayer] = {}
-        self.doubt, self.held = "", ""
+        self.doubt, self.held, self.trouble = "", "", ""
         self.last: CleanReport | None = None
         self.speed, self.in_bin = 0.0, 0.0
         self._mounts = Mounts()
@@ -90,7 +90,8 @@ class PageTopics:
         subscribe("localization", Localization, doubt_of, partial(self._set, "doubt"))
         subscribe("speed", Float32, number_of, partial(self._set, "speed"))
         subscribe("bin_level", Float32, number_of, self._on_bin_level)
-        drive = OnlyFrom(SPEED_NODE)
+        drive, supervisor = OnlyFrom(SPEED_NODE), OnlyFrom(SUPERVISOR)
+        subscribe("trouble", String, data_of, partial(self._set, "trouble"), senders=supervisor)
         subscribe("emergency_stop", String, data_of, partial(self._set, "held"), senders=drive)
         subscribe("scan", LaserScan, self._decoder.decode, self._on_scan)
         subscribe("plan", Path, shown_path_of, self._on_path)

@@ -12,6 +12,7 @@ import rospy
 from nav_msgs.msg import OccupancyGrid, Path
 from numpy.typing import NDArray
 from roomba_robot.msg import VacuumState
+from std_msgs.msg import String
 
 from roomba.configuration.mission import MissionConfig
 from roomba.configuration.nodes import PeriodsConfig
@@ -22,7 +23,10 @@ from roomba.perception.swept.dirt_map import dirty_from
 from roomba_ros.convert.client import BATTERY_NOT_HEARD
 from roomba_ros.convert.common import header, path_message
 from roomba_ros.convert.mission import coverage_message, dirt_message, shown
+from roomba_ros.convert.values import data_of
 from roomba_ros.runtime.background import Background
+from roomba_ros.runtime.senders import SUPERVISOR, OnlyFrom
+from roomba_ros.runtime.subscriptions import subscribe
 
 STARTING: Final = "starting"
 """The phase that is told until there is a mission."""
@@ -32,6 +36,8 @@ class MissionTopics:
     """Publishes ``vacuum/state`` (VacuumState, latched, at each change and 1 Hz), ``plan`` (Path,
     latched: what it drives now), ``coverage_map`` and ``dirt_map`` (OccupancyGrid, latched, 1 Hz
     while it cleans and has subscribers, and at the end of a clean).
+
+    Subscribes: ``trouble`` (String: what is wrong with the robot's processes).
     """
 
     def __init__(
@@ -44,6 +50,7 @@ class MissionTopics:
         self._mapped_wall = 0.0
         self._points: NDArray[np.float64] | None = None
         self._cleaned = False
+        self._trouble = ""
 
     def start(self) -> None:
         """Connect."""
@@ -51,6 +58,8 @@ class MissionTopics:
         self._plan = rospy.Publisher("plan", Path, queue_size=1, latch=True)
         self._coverage = rospy.Publisher("coverage_map", OccupancyGrid, queue_size=1, latch=True)
         self._dirt = rospy.Publisher("dirt_map", OccupancyGrid, queue_size=1, latch=True)
+        supervisor = OnlyFrom(SUPERVISOR)
+        subscribe("trouble", String, data_of, self._on_trouble, senders=supervisor)
 
     def wait(self, now: float, reason: str) -> None:
         """Tell that there is no mission yet, and why."""
@@ -70,12 +79,16 @@ class MissionTopics:
         """Publish what is due; return the state if it is told now."""
         self._show_plan(now, mission)
         self._show_maps(now, mission)
-        said = (mission.state, mission.message)
+        said = (mission.state, mission.message, self._trouble)
         if not self._is_due(now, said):
             return None
         state = state_of(now, mission, senses)
+        state.message = state.message or self._trouble
         self._state.publish(state)
         return state
+
+    def _on_trouble(self, trouble: str) -> None:
+        self._trouble = trouble
 
     def _is_due(self, now: float, said: tuple[object, ...]) -> bool:
         if said == self._said and 0.0 <= now - self._told < self._periods.mission_state:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import socket
 import sys
+from collections.abc import Iterable
 from http.client import HTTPException
 from xmlrpc.client import Error as XmlRpcError
 from xmlrpc.client import ServerProxy
@@ -29,15 +30,20 @@ def refuse_second(node_name: str, topic: str) -> None:
     publishers = master.getSystemState()[0]
     watched = rosgraph.names.resolve_name(topic, ns_join(namespace, "node"))
     rivals = {own, *(node for name, nodes in publishers if name == watched for node in nodes)}
-    for rival in sorted(rivals):
-        if _is_alive(master, rival):
-            print(
-                f"refused: {rival} already serves {watched} on {rosgraph.get_master_uri()}; two of "
-                f"them would drive one robot. End that one first (`rosnode kill {rival}`), or "
-                "start this one in a namespace of its own (ROS_NAMESPACE)",
-                file=sys.stderr,
-            )
-            sys.exit(1)
+    for rival in living(sorted(rivals)):
+        print(
+            f"refused: {rival} already serves {watched} on {rosgraph.get_master_uri()}; two of "
+            f"them would drive one robot. End that one first (`rosnode kill {rival}`), or "
+            "start this one in a namespace of its own (ROS_NAMESPACE)",
+            file=sys.stderr,
+        )
+        sys.exit(1)
+
+
+def living(nodes: Iterable[str]) -> list[str]:
+    """Return those of these nodes, by full name, that answer."""
+    master = rosgraph.Master("/roomba_robot_start")
+    return [node for node in nodes if _is_alive(master, node)]
 
 
 def _is_alive(master: rosgraph.Master, node: str) -> bool:

@@ -15,6 +15,7 @@ import rosgraph
 import rospy
 
 from roomba.errors import RoombaError
+from roomba_ros.runtime.heart import HEART
 from roomba_ros.runtime.progress import Progress
 from roomba_ros.runtime.subscriptions import tell_refusals
 from roomba_ros.runtime.ticker import Ticker
@@ -66,13 +67,15 @@ def run_node(name: str, make: Callable[[], Node]) -> None:
 
 
 def settle() -> None:
-    """Take what there is since the start out of garbage collection.
+    """End the start: signs of life are given from now on.
 
-    That are hundreds of thousands of objects, of imports and compiled functions. To look through
-    them takes up to 0.1 s, in which nothing ticks, each time when enough new ones were made.
+    What was made until now is no longer looked through for garbage: hundreds of thousands of
+    objects, of imports and compiled functions. That takes up to 0.1 s, in which nothing ticks, each
+    time when enough new ones were made.
     """
     gc.collect()
     gc.freeze()
+    HEART.begin()
 
 
 def _stop(node: Node) -> None:
@@ -95,7 +98,11 @@ def register(name: str) -> None:
 
 
 def told_to_end() -> bool:
-    """Whether a signal, the master or another node told this one to end."""
+    """Whether a signal, the master or another node told this one to end.
+
+    Main loops ask again and again: that they do is this process's sign of life.
+    """
+    HEART.beat()
     return _asked_to_end.is_set() or bool(rospy.is_shutdown())
 
 

@@ -17,6 +17,8 @@ from roomba_ros.convert.errors import MessageError
 
 SPEED_NODE: Final = "speed_pub_node"
 """The node that alone decides what the drive gets, and whether it is held."""
+SUPERVISOR: Final = "supervisor_node"
+"""The node that tells how the robot's processes are."""
 _SILENT_AFTER: Final = 1.0
 """s of wall time without a message, after which a node is no sender any more."""
 

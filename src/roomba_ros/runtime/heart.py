@@ -1,0 +1,42 @@
+"""Signs of life of a process, for the one that watches it."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import time
+from typing import Final
+
+_PERIOD: Final = 0.2
+"""s of wall time between two signs."""
+
+
+class Heart:
+    """Writes a byte into a pipe now and then, as long as :meth:`beat` is called."""
+
+    def __init__(self) -> None:
+        """Begin without a pipe."""
+        self._pipe, self._has_begun = -1, False
+        self._beaten = 0.0
+
+    def use(self, pipe: int) -> None:
+        """Take the pipe, which does not block."""
+        self._pipe = pipe
+
+    def begin(self) -> None:
+        """Beat from now on: before that, a process that starts may take its time."""
+        self._has_begun = True
+
+    def beat(self) -> None:
+        """Tell that this process goes on: in its main loop, so that one that hangs does not."""
+        now = time.monotonic()
+        if self._pipe < 0 or not self._has_begun or now - self._beaten < _PERIOD:
+            return
+        self._beaten = now
+        # A full pipe has signs enough; one without a reader ends with this process.
+        with contextlib.suppress(OSError):
+            os.write(self._pipe, b".")
+
+
+HEART: Final = Heart()
+"""That of this process."""

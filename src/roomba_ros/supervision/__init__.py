@@ -1,0 +1,1 @@
+"""The robot's processes: started, watched, started anew, ended."""

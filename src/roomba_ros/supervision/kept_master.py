@@ -1,0 +1,143 @@
+"""A ROS master that remembers: one that takes its place knows all parameters and registrations.
+
+ROS's own master begins with nothing: nodes that run do not register again, and no other program
+finds them any more.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import copy
+import logging
+import signal
+import socket
+import threading
+import time
+import xmlrpc.client
+from pathlib import Path
+from typing import Any, Final
+from urllib.parse import urlparse
+from xml.parsers.expat import ExpatError
+
+import rosgraph.roslogging
+from rosgraph.xmlrpc import XmlRpcNode
+from rosmaster.master_api import ROSMasterHandler
+
+from roomba.files.atomic import write_whole
+from roomba.files.bounded import read_text
+from roomba_ros.runtime.heart import HEART
+
+WORKERS: Final = 8
+"""Threads that tell nodes about others; of three, three frozen nodes hold up all."""
+ANSWER_WITHIN: Final = 1.0
+"""s of wall time; a node that is silent for longer does not hold up the master."""
+_KEEP_PERIOD: Final = 0.2
+"""s of wall time between two looks at what changed."""
+
+Memory = dict[str, Any]
+
+
+def be_master(port: int, file: Path) -> None:
+    """Serve on a port until told to end; what is to be remembered is kept in a file."""
+    rosgraph.roslogging.configure_logging("rosmaster", logging.INFO, filename="master.log")
+    socket.setdefaulttimeout(ANSWER_WITHIN)
+    ended = threading.Event()
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda *_: ended.set())
+    handler = ROSMasterHandler(WORKERS)
+    memory = _recalled(file)
+    if memory is not None:
+        remind(handler, memory)
+    node = XmlRpcNode(port, handler)
+    node.start()
+    HEART.begin()
+    while not ended.wait(_KEEP_PERIOD):
+        HEART.beat()
+        now = memory_of(handler)
+        if now != memory:
+            memory = now
+            _keep(memory, file)
+    node.shutdown("told to end")
+
+
+def memory_of(handler: Any) -> Memory:
+    """Return what a master knows: parameters, and who publishes, subscribes and serves what.
+
+    Registrations are lists of name, node, address of the node, and type or address of the service.
+    """
+    with handler.param_server.lock:
+        parameters = copy.deepcopy(handler.param_server.parameters)
+    with handler.ps_lock:
+        types, services = handler.topics_types, handler.services
+        return {
+            "parameters": parameters,
+            "publishers": [[*row, types.get(row[0], "*")] for row in _rows(handler.publishers.map)],
+            "subscribers": [
+                [*row, types.get(row[0], "*")] for row in _rows(handler.subscribers.map)
+            ],
+            "services": [
+                [*row, services.service_api_map[row[0]][1]]
+                for row in _rows(services.map)
+                if row[0] in (services.service_api_map or {})
+            ],
+        }
+
+
+def _rows(registered: dict[str, list[tuple[str, str]]]) -> list[list[str]]:
+    return [[name, *node] for name, nodes in sorted(registered.items()) for node in nodes]
+
+
+def remind(handler: Any, memory: Memory) -> None:
+    """Let a new master know what the one before it knew, of the nodes that are still there."""
+    handler.param_server.parameters = memory["parameters"]
+    addresses = {
+        row[2] for part in ("publishers", "subscribers", "services") for row in memory[part]
+    }
+    there = {address for address in addresses if _listens(address)}
+    for part, register in (
+        ("subscribers", handler.registerSubscriber),
+        ("publishers", handler.registerPublisher),
+    ):
+        for topic, node, address, kind in memory[part]:
+            if address in there:
+                register(node, topic, kind, address)
+    for service, node, address, place in memory["services"]:
+        if address in there:
+            handler.registerService(node, service, place, address)
+
+
+def _listens(address: str) -> bool:
+    place = urlparse(address)
+    with contextlib.suppress(OSError):
+        socket.create_connection((place.hostname, place.port), ANSWER_WITHIN).close()
+        return True
+    return False
+
+
+def _keep(memory: Memory, file: Path) -> None:
+    try:
+        write_whole(file, xmlrpc.client.dumps((memory,), allow_none=True).encode())
+    except (OSError, TypeError, OverflowError) as error:
+        logging.getLogger("rosmaster").error("what the master knows is not kept: %s", error)
+
+
+def _recalled(file: Path) -> Memory | None:
+    try:
+        (memory,), _ = xmlrpc.client.loads(read_text(file))
+    except FileNotFoundError:
+        return None
+    except (OSError, ValueError, ExpatError, xmlrpc.client.Error) as error:
+        logging.getLogger("rosmaster").error("what the last master knew is lost: %s", error)
+        return None
+    assert isinstance(memory, dict)
+    return memory
+
+
+def wait_for_master(uri: str, seconds: float) -> bool:
+    """Return whether a master answers within so many seconds."""
+    deadline = time.monotonic() + seconds
+    while time.monotonic() < deadline:
+        if rosgraph.is_master_online(uri):
+            return True
+        time.sleep(0.02)
+    return False

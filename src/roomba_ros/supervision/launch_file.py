@@ -1,0 +1,116 @@
+"""The table of processes: what a launch file says, with its arguments checked.
+
+roslaunch's own reader is used, in a process of its own: it brings constructors for YAML that run
+code, and no node is to have these.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+import xml.etree.ElementTree as ElementTree
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from roomba.errors import RoombaError
+from roomba.files.strict_yaml import suggestion
+
+
+@dataclass(frozen=True, slots=True)
+class ProcessEntry:
+    """One node of the table: its ``script`` in the package's folder ``scripts``.
+
+    ``is_required``: all end with it; otherwise it is started anew.
+    """
+
+    name: str
+    namespace: str
+    script: str
+    is_required: bool
+
+    @property
+    def path(self) -> str:
+        """Its full name on the graph."""
+        return f"{self.namespace}{self.name}"
+
+
+@dataclass(frozen=True, slots=True)
+class Launch:
+    """All of a launch file: processes, parameters by full name, environment of all processes."""
+
+    processes: tuple[ProcessEntry, ...]
+    parameters: dict[str, Any]
+    environment: dict[str, str]
+
+
+def check_arguments(path: Path, arguments: Sequence[str]) -> None:
+    """Raise RoombaError for an argument that is no ``name:=value``, or that the file lacks."""
+    try:
+        root = ElementTree.parse(path).getroot()
+    except (OSError, ElementTree.ParseError) as error:
+        raise RoombaError(f"{path}: expected a launch file: {error}") from error
+    known = [str(arg.get("name")) for arg in root.findall("arg")]
+    for argument in arguments:
+        name, sign, _ = argument.partition(":=")
+        if not sign or not name:
+            raise RoombaError(f"expected arguments like home:=flat, got {argument!r}")
+        # Two underscores: a remapping of ROS, such as __name.
+        if name not in known and not name.startswith("__"):
+            raise RoombaError(f"expected a known argument, got {name!r}; {suggestion(name, known)}")
+
+
+def read_launch(path: Path, arguments: Sequence[str]) -> Launch:
+    """Return what a launch file says; raises RoombaError with the reason."""
+    check_arguments(path, arguments)
+    reading, writing = os.pipe()
+    child = os.fork()
+    if child == 0:
+        _tell(path, arguments, writing)
+    os.close(writing)
+    with open(reading, encoding="utf-8") as pipe:
+        told = pipe.read()
+    os.waitpid(child, 0)
+    if not told:
+        raise RoombaError(f"{path}: expected a launch file, got one that cannot be read")
+    found = json.loads(told)
+    if "error" in found:
+        raise RoombaError(f"{path}: {found['error']}")
+    processes = tuple(ProcessEntry(**entry) for entry in found["processes"])
+    return Launch(processes, found["parameters"], found["environment"])
+
+
+def _tell(path: Path, arguments: Sequence[str], pipe: int) -> None:
+    """Read the file, write what it says into a pipe as JSON, and end this process."""
+    try:
+        text = json.dumps(_loaded(path, arguments))
+    except Exception as error:  # the library raises many kinds, and this process ends with it
+        text = json.dumps({"error": str(error)})
+    with open(pipe, "w", encoding="utf-8") as writing:
+        writing.write(text)
+    sys.stdout.flush()
+    os._exit(0)
+
+
+def _loaded(path: Path, arguments: Sequence[str]) -> dict[str, Any]:
+    from roslaunch.config import ROSLaunchConfig
+    from roslaunch.xmlloader import XmlLoader
+
+    config: Any = ROSLaunchConfig()
+    XmlLoader().load(str(path), config, argv=list(arguments), verbose=False)
+    environment = {name: value for node in config.nodes for name, value in node.env_args}
+    return {
+        "processes": [
+            {
+                "name": node.name,
+                "namespace": node.namespace,
+                "script": node.type,
+                "is_required": bool(node.required),
+            }
+            for node in config.nodes
+        ],
+        "parameters": {parameter.key: parameter.value for parameter in config.params.values()},
+        "environment": environment,
+    }

@@ -1,0 +1,150 @@
+"""``./roomba run``: the robot of the launch file, its processes watched."""
+
+from __future__ import annotations
+
+import ast
+import importlib
+import os
+import runpy
+import sys
+import tempfile
+import uuid
+from collections.abc import Sequence
+from functools import partial
+from pathlib import Path
+from typing import Final
+from urllib.parse import urlparse
+
+import numpy as np
+import rosgraph
+import rospkg
+import rospy
+
+from roomba.configuration.frozen import load_config
+from roomba.configuration.nodes import NodesConfig
+from roomba.errors import RoombaError
+from roomba.files.shipped import CONFIGURATION
+from roomba.raster.distance import distance_to_nearest
+from roomba_ros.runtime.alone import living
+from roomba_ros.runtime.senders import SUPERVISOR
+from roomba_ros.supervision.kept_master import be_master, wait_for_master
+from roomba_ros.supervision.launch_file import Launch, ProcessEntry, read_launch
+from roomba_ros.supervision.supervisor import Supervisor
+from roomba_ros.supervision.supervisor_node import be_supervisor_node
+
+USAGE: Final = 2
+"""The exit status for a wrong argument."""
+_PACKAGE: Final = "roomba_robot"
+_CALLER: Final = "/roomba_run"
+_MASTER_WITHIN: Final = 20.0
+"""s of wall time in which the master answers, on a busy machine too."""
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the robot until Ctrl-C; return the exit status."""
+    given = sys.argv[1:] if arguments is None else list(arguments)
+    package = Path(rospkg.RosPack().get_path(_PACKAGE))
+    try:
+        launch = read_launch(package / "launch" / "roomba_robot.launch", given)
+        _refuse_second(launch)
+    except RoombaError as error:
+        print(f"./roomba run: {error}", file=sys.stderr)
+        return USAGE
+    if _adopt(launch.environment):
+        os.execv(sys.executable, [sys.executable, "-m", "roomba_ros.supervision.run", *given])
+    return _run(launch, package / "scripts")
+
+
+def _adopt(environment: dict[str, str]) -> bool:
+    """Set what the C library reads when a process starts; return whether that changed anything."""
+    before = dict(os.environ)
+    os.environ.update(environment)
+    return dict(os.environ) != before
+
+
+def _run(launch: Launch, scripts: Path) -> int:
+    run_id = str(uuid.uuid4())
+    logs = Path(os.environ.get("ROS_LOG_DIR") or Path(rospkg.get_log_dir())) / run_id
+    logs.mkdir(parents=True, exist_ok=True)
+    os.environ["ROS_LOG_DIR"] = str(logs)
+    supervisor = Supervisor(load_config(NodesConfig, CONFIGURATION / "nodes.yaml").supervision)
+    with tempfile.TemporaryDirectory(prefix="roomba_run_") as folder:
+        try:
+            if not rosgraph.is_master_online():
+                port = urlparse(rosgraph.get_master_uri()).port or 11311
+                supervisor.add("master", partial(be_master, port, Path(folder) / "master.xml"))
+            if not wait_for_master(rosgraph.get_master_uri(), _MASTER_WITHIN):
+                print("./roomba run: the master does not answer", file=sys.stderr)
+                return 1
+            _set_parameters(launch, run_id)
+            _import_all(launch, scripts)
+            supervisor.add(SUPERVISOR, partial(be_supervisor_node, supervisor.tell_to()))
+            for entry in launch.processes:
+                supervisor.add(
+                    entry.name,
+                    partial(_be_node, entry, scripts, logs),
+                    is_required=entry.is_required,
+                )
+            return supervisor.run()
+        finally:
+            supervisor.end_all()
+
+
+def _refuse_second(launch: Launch) -> None:
+    """Raise RoombaError when this robot runs already: two of its nodes would end one another."""
+    if not rosgraph.is_master_online():
+        return
+    there = living(tuple(entry.path for entry in launch.processes))
+    if there:
+        raise RoombaError(
+            f"expected no such robot on {rosgraph.get_master_uri()}, got {', '.join(there)}; end "
+            "it first, set ROS_NAMESPACE for another robot, or ROS_MASTER_URI for another master"
+        )
+
+
+def _set_parameters(launch: Launch, run_id: str) -> None:
+    master = rosgraph.Master(_CALLER)
+    if not master.hasParam("/run_id"):
+        master.setParam("/run_id", run_id)
+    for name, value in launch.parameters.items():
+        master.setParam(name, value)
+
+
+def _import_all(launch: Launch, scripts: Path) -> None:
+    """Import what the processes need, once for all of them."""
+    for entry in launch.processes:
+        importlib.import_module(_module_of(scripts / entry.script))
+    # The first call of any compiled function makes numba import most of itself.
+    distance_to_nearest(np.ones((2, 2), np.bool_))
+
+
+def _module_of(script: Path) -> str:
+    """Return the module that a node's script takes its main function from."""
+    (module,) = (
+        line.module
+        for line in ast.parse(script.read_text(encoding="utf-8")).body
+        if isinstance(line, ast.ImportFrom) and line.module
+    )
+    return module
+
+
+def _be_node(entry: ProcessEntry, scripts: Path, logs: Path) -> None:
+    """Run a node's script, as its own process would."""
+    script = str(scripts / entry.script)
+    sys.argv[:] = [
+        script,
+        f"__name:={entry.name}",
+        f"__ns:={entry.namespace}",
+        f"__log:={logs / entry.name}.log",
+    ]
+    os.environ["ROS_NAMESPACE"] = entry.namespace
+    rospy.names.reload_mappings(sys.argv)
+    runpy.run_path(script, run_name="__main__")
+
+
+if __name__ == "__main__":
+    ended = main()
+    sys.stdout.flush()
+    sys.stderr.flush()
+    # Not sys.exit: tearing down the interpreter takes most of a second.
+    os._exit(ended)

@@ -1,0 +1,179 @@
+"""Starts the robot's processes, watches them, starts anew what ended or hangs, and ends all.
+
+It has one thread and no connections: nothing that happens on the graph can hold it up.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import fcntl
+import json
+import os
+import selectors
+import signal
+import sys
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Final
+
+from roomba.configuration.nodes import SupervisionConfig
+from roomba_ros.runtime.heart import HEART
+from roomba_ros.supervision.fork import fork, is_stopped, told_end
+from roomba_ros.supervision.watch import Watch
+
+_LOOK: Final = 0.05
+"""s of wall time between two looks at the processes."""
+_SIGNALS: Final = ((signal.SIGINT, 1.8), (signal.SIGTERM, 0.6), (signal.SIGKILL, 5.0))
+"""How processes are told to end, and s of wall time until they are told so more firmly."""
+
+
+@dataclass(slots=True)
+class _Process:
+    """One process: what it does, how it is, its id and the pipe of its signs of life."""
+
+    run: Callable[[], object]
+    watch: Watch
+    is_required: bool = False
+    pid: int = 0
+    heart: int = -1
+
+
+class Supervisor:
+    """Watches processes; they end with it, also when it is killed."""
+
+    def __init__(self, config: SupervisionConfig) -> None:
+        """Start nothing yet."""
+        self._config = config
+        self._processes: list[_Process] = []
+        self._selector = selectors.DefaultSelector()
+        self._told: dict[str, str] = {}
+        self._face: tuple[int, int] | None = None
+        self._status: int | None = None
+
+    def add(self, name: str, run: Callable[[], object], *, is_required: bool = False) -> None:
+        """Start a process, and watch it from now on; all end with one that ``is_required``."""
+        process = _Process(run, Watch(name, self._config), is_required)
+        self._processes.append(process)
+        self._start(process)
+
+    def tell_to(self) -> int:
+        """Return the end of a pipe that brings each change as a line of JSON: trouble by process.
+
+        It stays the same for a reader that is started anew.
+        """
+        reading, writing = os.pipe()
+        os.set_blocking(writing, False)
+        self._face = (reading, writing)
+        return reading
+
+    def run(self) -> int:
+        """Watch until a signal, or until a required process ended; return the exit status."""
+        for number in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(number, lambda *_: self._end(0))
+        while self._status is None:
+            self._hear()
+            now = time.monotonic()
+            self._reap(now)
+            for process in self._processes:
+                self._look_after(process, now)
+            self._tell(now)
+        self.end_all()
+        return self._status
+
+    def end_all(self) -> None:
+        """End all processes: the last that was added first, the first one, the master, last."""
+        nodes, first = self._processes[1:], self._processes[:1]
+        for processes in (nodes, first):
+            for number, patience in _SIGNALS:
+                there = [process for process in processes if process.watch.is_running]
+                for process in there:
+                    if number is not signal.SIGINT:
+                        _say(f"{process.watch.name} has not ended yet: {number.name}")
+                    os.kill(process.pid, number)
+                    os.kill(process.pid, signal.SIGCONT)
+                deadline = time.monotonic() + patience
+                while there and time.monotonic() < deadline:
+                    there = [process for process in there if not self._has_ended(process)]
+                    time.sleep(0.005)
+
+    def _end(self, status: int) -> None:
+        if self._status is None:
+            self._status = status
+
+    def _start(self, process: _Process) -> None:
+        if process.heart >= 0:
+            with contextlib.suppress(KeyError):
+                self._selector.unregister(process.heart)
+            os.close(process.heart)
+        process.heart, writing = os.pipe()
+        for end in (process.heart, writing):
+            os.set_blocking(end, False)
+            fcntl.fcntl(end, fcntl.F_SETFD, fcntl.FD_CLOEXEC)
+
+        def run() -> None:
+            HEART.use(writing)
+            process.run()
+
+        process.pid = fork(run)
+        os.close(writing)
+        self._selector.register(process.heart, selectors.EVENT_READ, process)
+        process.watch.started()
+        _say(f"{process.watch.name}: started, process {process.pid}")
+
+    def _hear(self) -> None:
+        """Take signs of life as they come, for a moment."""
+        for key, _ in self._selector.select(_LOOK):
+            with contextlib.suppress(BlockingIOError):
+                if os.read(key.fd, 1 << 12):
+                    key.data.watch.beat(time.monotonic())
+                else:
+                    # The process ended, as waitpid tells; the end of its pipe would be told forever.
+                    self._selector.unregister(key.fd)
+
+    def _reap(self, now: float) -> None:
+        for process in self._processes:
+            if not process.watch.is_running:
+                continue
+            pid, status = os.waitpid(process.pid, os.WNOHANG)
+            if not pid:
+                continue
+            how = told_end(status)
+            process.watch.ended(now, how)
+            _say(f"{process.watch.name} {how}")
+            if process.is_required or (process.watch.is_given_up and process is self._processes[0]):
+                _say(f"{process.watch.name} is needed by all others: they end")
+                self._end(max(1, os.waitstatus_to_exitcode(status)))
+
+    def _look_after(self, process: _Process, now: float) -> None:
+        watch = process.watch
+        if watch.is_running:
+            watch.seen(now, is_stopped=is_stopped(process.pid))
+            if watch.wants_end(now):
+                _say(f"{watch.trouble(now)}: it is ended")
+                os.kill(process.pid, signal.SIGKILL)
+        elif watch.wants_start(now) and self._status is None:
+            self._start(process)
+
+    def _tell(self, now: float) -> None:
+        """Write down what is wrong, when that changed."""
+        states = {process.watch.name: process.watch.trouble(now) for process in self._processes}
+        if states == self._told:
+            return
+        for name, said in states.items():
+            if said and said != self._told.get(name):
+                _say(said)
+        self._told = states
+        if self._face is not None:
+            # A pipe is full while its reader hangs: that is started anew, and hears the next line.
+            with contextlib.suppress(BlockingIOError):
+                os.write(self._face[1], json.dumps(states).encode() + b"\n")
+
+    def _has_ended(self, process: _Process) -> bool:
+        if os.waitpid(process.pid, os.WNOHANG)[0]:
+            process.watch.is_running = False
+        return not process.watch.is_running
+
+
+def _say(line: str) -> None:
+    print(f"[supervisor] {line}", file=sys.stderr, flush=True)

@@ -1,0 +1,80 @@
+"""What is to be done about one process: when it is started anew, ended, or given up."""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+
+from roomba.configuration.nodes import SupervisionConfig
+
+
+class Watch:
+    """Follows one process. All times are s of wall time."""
+
+    def __init__(self, name: str, config: SupervisionConfig) -> None:
+        """Begin with a process that is to be started."""
+        self.name, self._config = name, config
+        self._start_at = -math.inf
+        self._beaten = math.inf
+        self._stopped_since: float | None = None
+        self._deaths: deque[float] = deque(maxlen=config.most_deaths)
+        self._last_end = ""
+        self.is_running = False
+        self.is_given_up = False
+
+    def started(self) -> None:
+        """Note that it was started; until its first sign of life it may take long."""
+        self.is_running, self._beaten, self._stopped_since = True, math.inf, None
+
+    def beat(self, now: float) -> None:
+        """Note a sign of life."""
+        self._beaten = now
+
+    def seen(self, now: float, *, is_stopped: bool) -> None:
+        """Note whether it is stopped by a signal or a debugger."""
+        if not is_stopped:
+            self._stopped_since = None
+        elif self._stopped_since is None:
+            self._stopped_since = now
+
+    def ended(self, now: float, how: str) -> None:
+        """Note that it ended, and how: it is started anew soon, unless that happens too often."""
+        config = self._config
+        self.is_running, self._stopped_since, self._last_end = False, None, how
+        self._deaths.append(now)
+        is_often = len(self._deaths) == config.most_deaths
+        self.is_given_up = is_often and now - self._deaths[0] <= config.deaths_within
+        self._start_at = now + config.back_after
+
+    def wants_start(self, now: float) -> bool:
+        """Whether it is to be started now."""
+        return not self.is_running and not self.is_given_up and now >= self._start_at
+
+    def wants_end(self, now: float) -> bool:
+        """Whether it is to be ended now, as it does nothing any more."""
+        return self.is_running and (
+            self._stopped_for(now) > self._config.stopped or self._silence(now) > self._config.hung
+        )
+
+    def trouble(self, now: float) -> str:
+        """Return what is wrong with it and what is done about that; empty when all is well."""
+        if self.is_given_up:
+            return (
+                f"{self.name} keeps ending ({self._last_end}) and is not started any more: see its "
+                "log, and start the robot anew"
+            )
+        if not self.is_running:
+            return f"{self.name} {self._last_end}; it is started anew" if self._last_end else ""
+        if self._stopped_since is not None:
+            return f"{self.name} is stopped; if it stays so, it is started anew"
+        if self._silence(now) > self._config.busy:
+            return f"{self.name} has not answered for {round(self._silence(now))} s"
+        if math.isinf(self._beaten) and self._last_end:
+            return f"{self.name} {self._last_end}; it is starting"
+        return ""
+
+    def _stopped_for(self, now: float) -> float:
+        return 0.0 if self._stopped_since is None else now - self._stopped_since
+
+    def _silence(self, now: float) -> float:
+        return now - self._beaten

@@ -1,0 +1,50 @@
+"""Forked processes: how they end, in words, and whether they are stopped."""
+
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Callable
+
+import pytest
+from fixtures.waiting import wait_until
+
+from roomba_ros.supervision.fork import fork, is_stopped, told_end
+
+
+def fails() -> None:
+    raise ValueError("as wanted")
+
+
+@pytest.mark.parametrize(
+    ("function", "told"),
+    [
+        (lambda: None, "ended with status 0"),
+        (lambda: sys.exit(7), "ended with status 7"),
+        (lambda: sys.exit("a word"), "ended with status 1"),
+        (fails, "ended with status 1"),
+        (lambda: os.kill(os.getpid(), signal.SIGKILL), "was ended by SIGKILL"),
+        (lambda: os.kill(os.getpid(), signal.SIGRTMIN + 3), "was ended by signal"),
+    ],
+)
+def test_the_end_is_told(function: Callable[[], object], told: str) -> None:
+    _, status = os.waitpid(fork(function), 0)
+    assert told_end(status).startswith(told)
+
+
+def test_a_forked_process_has_its_own_group_and_can_be_interrupted() -> None:
+    child = fork(signal.pause)
+    wait_until(lambda: os.getpgid(child) == child, 10.0, "its own group")
+    os.kill(child, signal.SIGINT)
+    assert told_end(os.waitpid(child, 0)[1]) == "ended with status 1"
+
+
+def test_a_stopped_process_is_seen() -> None:
+    with subprocess.Popen(["sleep", "100"]) as process:
+        assert not is_stopped(process.pid)
+        process.send_signal(signal.SIGSTOP)
+        wait_until(lambda: is_stopped(process.pid), 10.0, "it is stopped")
+        process.send_signal(signal.SIGCONT)
+        wait_until(lambda: not is_stopped(process.pid), 10.0, "it goes on")
+        process.kill()
+    assert not is_stopped(process.pid)

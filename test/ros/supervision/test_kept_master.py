@@ -1,0 +1,86 @@
+"""A master that takes another's place knows parameters, topics and services; so do its clients."""
+
+import os
+import signal
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+import rospy
+from fixtures.graph import RosGraph
+from fixtures.probe import Probe
+from fixtures.processes import Program
+from fixtures.waiting import wait_until
+from std_msgs.msg import String
+from std_srvs.srv import Trigger, TriggerResponse
+
+
+@pytest.fixture
+def own(tmp_path: Path) -> Iterator[RosGraph]:
+    """A graph without a master."""
+    with RosGraph(tmp_path) as made:
+        yield made
+
+
+MASTER = "import sys; from pathlib import Path; from roomba_ros.supervision.kept_master import *; "
+
+
+def started(graph: RosGraph) -> Program:
+    code = f"{MASTER}be_master({graph.port}, Path({str(graph.folder / 'master.xml')!r}))"
+    program = graph.run(sys.executable, "-c", code)
+    wait_until(graph.master_answers, 40.0, lambda: f"the master answers: {program.output}")
+    return program
+
+
+def killed(graph: RosGraph, master: Program) -> None:
+    """Kill the master once it has kept what it knows."""
+    text = graph.folder / "master.xml"
+    wait_until(lambda: text.exists() and "/said" in text.read_text(), 20.0, "it is kept")
+    seen = text.stat().st_mtime_ns
+    wait_until(lambda: os.stat(text).st_mtime_ns == seen, 5.0)
+    os.kill(master.process.pid, signal.SIGKILL)
+    master.ends(20.0)
+
+
+def test_all_is_known_to_the_next_one_and_new_clients_find_it(own: RosGraph) -> None:
+    master = started(own)
+    own.set_param("/map/name", {"floor": 1, "names": ["a", "b"], "size": 0.5, "is_new": True})
+    probe = Probe(own)
+    rospy.Service("/said", Trigger, lambda _: TriggerResponse(True, "here"))
+    said = rospy.Publisher("/said/loud", String, queue_size=1, latch=True)
+    said.publish("hello")
+    killed(own, master)
+    started(own)
+    assert own.param("/map/name") == {
+        "floor": 1,
+        "names": ["a", "b"],
+        "size": 0.5,
+        "is_new": True,
+    }
+    assert rospy.ServiceProxy("/said", Trigger)().message == "here"
+    assert own.topic_types()["/said/loud"] == "std_msgs/String"
+    # A node that comes now hears those from before, and they hear it.
+    listener = own.run("rostopic", "echo", "-n", "1", "/said/loud")
+    listener.says("hello", 20.0)
+    speaker = own.run("rostopic", "pub", "-l", "/answer", "std_msgs/String", "back")
+    assert probe.next("/answer", String).data == "back"
+    assert speaker.status is None
+
+
+def test_a_node_that_ended_meanwhile_is_forgotten(own: RosGraph) -> None:
+    master = started(own)
+    speaker = own.run("rostopic", "pub", "-l", "/said", "std_msgs/String", "back")
+    wait_until(lambda: "/said" in own.system_state()[0], 20.0, "it speaks")
+    killed(own, master)
+    os.killpg(speaker.process.pid, signal.SIGKILL)
+    speaker.ends(20.0)
+    started(own)
+    assert "/said" not in own.system_state()[0]
+
+
+def test_what_a_damaged_file_says_is_lost_and_the_master_works(own: RosGraph) -> None:
+    (own.folder / "master.xml").write_text("no such thing", encoding="utf-8")
+    started(own)
+    own.set_param("/a", 1)
+    assert own.param("/a") == 1

@@ -1,0 +1,63 @@
+"""The table of processes is what the launch file says; wrong arguments are named."""
+
+import json
+from pathlib import Path
+
+import pytest
+from fixtures.graph import WITH_PAGE
+
+from roomba.errors import RoombaError
+from roomba_ros.supervision.launch_file import read_launch
+
+LAUNCH = Path(__file__).resolve().parents[3] / "launch" / "roomba_robot.launch"
+
+
+def test_it_has_the_nodes_of_the_graph_and_the_body_is_required() -> None:
+    launch = read_launch(LAUNCH, [])
+    assert {entry.name for entry in launch.processes} == set(WITH_PAGE)
+    assert [entry.name for entry in launch.processes if entry.is_required] == ["home_sim_node"]
+    assert {entry.path for entry in launch.processes} == {f"/{name}" for name in WITH_PAGE}
+    for entry in launch.processes:
+        assert (LAUNCH.parents[1] / "scripts" / entry.script).is_file()
+    assert launch.parameters["/robot_max_speed"] == 0.5
+    assert launch.parameters["/use_sim_time"] is True
+    assert launch.environment["MALLOC_ARENA_MAX"] == "1"
+    json.dumps(launch.parameters)
+
+
+def test_its_arguments_count() -> None:
+    launch = read_launch(LAUNCH, ["page:=false", "home:=studio", "robot_max_speed:=0.25"])
+    assert "dashboard_node" not in {entry.name for entry in launch.processes}
+    assert launch.parameters["/home_sim_node/home"] == "studio"
+    assert launch.parameters["/robot_max_speed"] == 0.25
+
+
+@pytest.mark.parametrize(
+    ("argument", "said"),
+    [
+        ("hme:=flat", "got 'hme'; did you mean 'home'"),
+        ("nosucharg:=1", "got 'nosucharg'; known are: clock, home"),
+        ("flat", "expected arguments like home:=flat, got 'flat'"),
+        (":=flat", "expected arguments like home:=flat, got ':=flat'"),
+        ("--speed=5", "expected arguments like home:=flat"),
+    ],
+)
+def test_a_wrong_argument_is_named_with_the_nearest_one(argument: str, said: str) -> None:
+    with pytest.raises(RoombaError, match=said):
+        read_launch(LAUNCH, ["home:=flat", argument])
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "",
+        "no xml",
+        "<launch>",
+        '<launch><arg name="a"/><node name="n" pkg="p" type="$(arg a)"/></launch>',
+    ],
+)
+def test_a_broken_file_is_refused_with_its_name(tmp_path: Path, text: str) -> None:
+    path = tmp_path / "broken.launch"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(RoombaError, match=r"broken\.launch"):
+        read_launch(path, [])

@@ -1,0 +1,148 @@
+"""``./roomba run`` goes on when its master or a node is killed or stopped, and says so."""
+
+import os
+import signal
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+import rospy
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from fixtures.forked import run_forked
+from fixtures.graph import LAUNCHED, RosGraph
+from fixtures.probe import Probe
+from fixtures.tiny_home import tiny_home
+from fixtures.waiting import promised, wait_until
+from nav_msgs.msg import Odometry
+from roomba_robot.msg import CleanActionGoal, VacuumState
+from roomba_robot.srv import EmergencyStop
+from std_msgs.msg import String
+
+NOTICED = 1.0
+"""s of wall time; by then a process that ended or is stopped is told of."""
+BACK = 5.0
+"""s of wall time; by then it is back, and what the robot did goes on."""
+
+
+@pytest.fixture(scope="module")
+def shared_robot(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RosGraph]:
+    """The whole robot in two little rooms."""
+    folder = tmp_path_factory.mktemp("robot")
+    with RosGraph(folder) as own:
+        own.launch(f"home:={tiny_home(folder)}", "speed:=2")
+        yield own
+
+
+class Owner:
+    """One who looks at the robot, and lets it clean."""
+
+    def __init__(self, graph: RosGraph) -> None:
+        self.probe = Probe(graph, "owner")
+        self.state = VacuumState()
+        self.trouble: list[str] = []
+        self.levels: dict[str, int] = {}
+        rospy.Subscriber("/vacuum/state", VacuumState, self._on_state)
+        rospy.Subscriber("/trouble", String, lambda told: self.trouble.append(told.data))
+        rospy.Subscriber("/diagnostics", DiagnosticArray, self._on_diagnostics)
+        wait_until(lambda: self.trouble and self.trouble[-1] == "", 60.0, lambda: f"{self.trouble}")
+
+    def _on_state(self, state: VacuumState) -> None:
+        self.state = state
+
+    def _on_diagnostics(self, message: DiagnosticArray) -> None:
+        for status in message.status:
+            name, _, part = status.name.partition(": ")
+            if part == "process":
+                self.levels[name] = status.level
+
+    def cleans(self) -> None:
+        """Let it clean, and wait until some floor is clean."""
+        wait_until(lambda: self.state.phase in ("docked", "idle"), 60.0, lambda: f"{self.state}")
+        self.probe.send("/clean/goal", CleanActionGoal())
+        wait_until(lambda: self.state.fraction > 0.05, 60.0, lambda: f"it cleans: {self.state}")
+
+    def goes_on(self) -> None:
+        """Wait until more is clean than was at the call."""
+        before = self.state.covered
+        wait_until(lambda: self.state.covered > before + 0.02, 30.0, lambda: f"{self.state}")
+
+
+def process_of(graph: RosGraph, name: str) -> int:
+    """Return the id of a process's newest start."""
+    lines = graph.programs[0].output.splitlines()
+    starts = [line for line in lines if f"[supervisor] {name}: started" in line]
+    return int(starts[-1].rpartition(" ")[2])
+
+
+def test_a_new_master_knows_all_and_the_clean_goes_on(shared_robot: RosGraph) -> None:
+    owner = Owner(shared_robot)
+    owner.cleans()
+    before = shared_robot.system_state()
+    shared_robot.set_param("/kept", 1)
+    rospy.sleep(1.0)
+    hold = rospy.ServiceProxy("/emergency_stop", EmergencyStop, persistent=True)
+    assert hold(False, "").success
+    os.kill(process_of(shared_robot, "master"), signal.SIGKILL)
+    # By a connection from before, the emergency stop works without a master.
+    assert hold(False, "").success
+    promised(lambda: shared_robot.master_answers(), BACK, "a master answers")
+    assert shared_robot.param("/kept") == 1
+    after = shared_robot.system_state()
+    for known, known_again in zip(before, after, strict=True):
+        lost = {name for name in known if not set(known[name]) <= set(known_again.get(name, []))}
+        assert lost == set()
+    assert rospy.ServiceProxy("/emergency_stop", EmergencyStop)(False, "").success
+    owner.goes_on()
+
+
+@pytest.mark.parametrize("node", ["mission_node", "position_pub_node", "speed_pub_node"])
+def test_a_stopped_node_is_told_replaced_and_the_clean_goes_on(
+    shared_robot: RosGraph, node: str
+) -> None:
+    owner = Owner(shared_robot)
+    if owner.state.phase != "cleaning":
+        owner.cleans()
+    os.kill(process_of(shared_robot, node), signal.SIGSTOP)
+    told = f"{node} is stopped; if it stays so, it is started anew"
+    promised(lambda: told in owner.trouble, NOTICED, "it is told")
+    wait_until(lambda: owner.levels.get(node) == DiagnosticStatus.ERROR, 5.0, "as diagnostics too")
+    if node != "mission_node":
+        wait_until(lambda: owner.state.message == told, 5.0, lambda: f"as state: {owner.state}")
+    promised(lambda: owner.trouble[-1] == "", NOTICED + BACK + 2.0, "all is well again")
+    owner.goes_on()
+
+
+def test_a_killed_node_is_told_and_back(shared_robot: RosGraph) -> None:
+    owner = Owner(shared_robot)
+    old = shared_robot.signal("dirt_pub_node", signal.SIGKILL)
+    promised(
+        lambda: "dirt_pub_node was ended by SIGKILL; it is started anew" in owner.trouble,
+        NOTICED,
+        "it is told",
+    )
+    promised(
+        lambda: shared_robot.answers("dirt_pub_node") and shared_robot.pid("dirt_pub_node") != old,
+        BACK,
+        "it is back",
+    )
+
+
+def test_a_second_run_beside_the_first_is_refused(shared_robot: RosGraph) -> None:
+    second = shared_robot.start_run()
+    assert second.ends(60.0) == 2
+    assert "expected no such robot on" in second.output
+    assert "/home_sim_node" in second.output
+    assert shared_robot.all_up()
+
+
+def test_a_killed_run_leaves_nothing_and_the_next_one_is_whole(tmp_path: Path) -> None:
+    with RosGraph(tmp_path) as graph:
+        run = graph.launch()
+        pids = [graph.pid(node) for node in LAUNCHED]
+        run.send_to_leader(signal.SIGKILL)
+        promised(lambda: not any(os.path.exists(f"/proc/{pid}/exe") for pid in pids), 3.0, "gone")
+        run.ends(10.0)
+        again = graph.launch()
+        run_forked(lambda: Probe(graph).next("/odom", Odometry))
+        again.send_to_leader(signal.SIGINT)
+        assert again.ends(10.0) == 0
