@@ -128,7 +128,7 @@ class Supervisor:
                 if os.read(key.fd, 1 << 12):
                     key.data.watch.beat(time.monotonic())
                 else:
-                    # The process ended, as waitpid tells; the end of its pipe would be told forever.
+                    # It ended, as waitpid tells; the end of its pipe would be told for ever.
                     self._selector.unregister(key.fd)
 
     def _reap(self, now: float) -> None:
