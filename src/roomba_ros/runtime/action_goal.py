@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
+import threading
+import time
 from abc import ABC, abstractmethod
 from collections.abc import Callable
-from typing import TypeVar
+from typing import Final, TypeVar
 
 import actionlib
+import rospy
 from actionlib_msgs.msg import GoalStatus
 
 from roomba_ros.convert.errors import MessageError
 from roomba_ros.runtime.subscriptions import refuse
+
+_STATUS_PERIOD: Final = 0.2
+"""s of wall time between two messages of the states of goals, as the library has it."""
 
 
 class ActionGoal(ABC):
@@ -44,6 +50,29 @@ class ActionGoal(ABC):
         """Tell why it is not begun."""
 
 
+class SteadyActionServer(actionlib.ActionServer):
+    """The library's server, which tells the states of its goals whatever the robot's clock does.
+
+    The library has a timer for that by the ROS clock, which ends when that clock is set back:
+    clients then take the server for gone.
+    """
+
+    def initialize(self) -> None:
+        """Connect, and tell the states from now on."""
+        super().initialize()
+        self.status_timer.shutdown()
+        threading.Thread(target=self._tell, name=f"{self.ns} status", daemon=True).start()
+
+    def _tell(self) -> None:
+        while not rospy.is_shutdown():
+            time.sleep(_STATUS_PERIOD)
+            try:
+                self.publish_status_async(None)
+            except rospy.ROSException as error:
+                # The node ends, and its connections were closed first.
+                rospy.logdebug("states of goals are not told: %s", error)
+
+
 Goal = TypeVar("Goal", bound=ActionGoal)
 
 
@@ -67,7 +96,7 @@ def server_of(
             return
         take(goal)
 
-    return actionlib.ActionServer(
+    return SteadyActionServer(
         kind.name,
         kind.action,
         hear,
