@@ -46,6 +46,27 @@ def own(tmp_path: Path) -> Iterator[RosGraph]:
         yield graph
 
 
+def tells_states(probe: Probe) -> None:
+    """Wait until the states of the goals of all actions were told several times."""
+    before = dict(probe.counts)
+    topics = [f"/{action}/status" for action in ACTIONS]
+    wait_until(
+        lambda: all(probe.counts[topic] > before[topic] + 5 for topic in topics),
+        5.0,
+        lambda: f"states of all actions: {probe.counts}, not {before}",
+    )
+
+
+def goes_on(probe: Probe) -> None:
+    """Wait until more is clean than was at the call."""
+    before = probe.newest["/vacuum/state"].covered
+    wait_until(
+        lambda: probe.newest["/vacuum/state"].covered > before + 0.02,
+        60.0,
+        lambda: f"it cleans: {probe.newest['/vacuum/state']}",
+    )
+
+
 def test_a_clock_that_is_set_ends_nothing(own: RosGraph, tmp_path: Path) -> None:
     own.set_param("/use_sim_time", True)
     probe, clock = Probe(own), OwnClock()
@@ -67,14 +88,8 @@ def test_a_clock_that_is_set_ends_nothing(own: RosGraph, tmp_path: Path) -> None
     for jump in (-10.0, HOUR, -HOUR):
         clock.now += jump
         time.sleep(1.0)  # all have heard it
-        counts = {action: probe.counts[f"/{action}/status"] for action in ACTIONS}
-        covered = state().covered
-        wait_until(
-            lambda: all(probe.counts[f"/{name}/status"] > counts[name] + 5 for name in ACTIONS),
-            5.0,
-            lambda: f"states of all actions: {probe.counts}, not {counts}",
-        )
-        wait_until(lambda: state().covered > covered + 0.02, 60.0, lambda: f"it cleans: {state()}")
+        tells_states(probe)
+        goes_on(probe)
         assert clean.get_state() == GoalStatus.ACTIVE
     clean.cancel_goal()
     wait_until(lambda: clean.simple_state == 2, 30.0, "the goal ends")

@@ -37,9 +37,12 @@ LATE = 0.025
 def shared_robot(
     request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
 ) -> Iterator[RosGraph]:
-    """The whole robot; nodes that were ended are back after a test."""
+    """The whole robot; nodes that were ended are back after a test.
+
+    By roslaunch: the supervisor has a node back so soon that the robot may not come to rest.
+    """
     with RosGraph(tmp_path_factory.mktemp("robot")) as own:
-        own.launch(f"speed:={request.param}")
+        own.roslaunch(f"speed:={request.param}")
         yield own
 
 
@@ -213,11 +216,14 @@ def is_new(graph: RosGraph, node: str, old: int) -> bool:
 def frozen(node: str) -> Cause:
     @contextlib.contextmanager
     def cause(drive: Drive) -> Iterator[float]:
-        pid = drive.graph.signal(node, signal.SIGSTOP)
+        old = drive.graph.signal(node, signal.SIGSTOP)
         try:
             yield drive.rest.last_sent(node)
         finally:
-            os.kill(pid, signal.SIGCONT)
+            # One that was stopped for two seconds is replaced.
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(old, signal.SIGCONT)
+            wait_until(lambda: drive.graph.answers(node), 30.0, f"{node} is back", pause=0.1)
 
     return cause
 

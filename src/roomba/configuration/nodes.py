@@ -151,10 +151,10 @@ class SupervisionConfig(Frozen):
     """So is a process that was stopped for so long, by a signal or a debugger."""
     back_after: Positive = 0.2
     """From the end of a process until it is started anew."""
-    most_deaths: AtLeastOne = 6
-    """A process that ended so often"""
-    deaths_within: Positive = 60.0
-    """in so many s is not started any more: something is wrong that a start does not mend."""
+    short_life: Positive = 20.0
+    """A process that lived for less ended soon;"""
+    most_short_lives: AtLeastOne = 15
+    """after so many of them in a row it is not started any more: a start does not mend it."""
 
     in_order: ClassVar = ("busy <= stopped <= hung",)
 

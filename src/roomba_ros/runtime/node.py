@@ -15,6 +15,7 @@ import rosgraph
 import rospy
 
 from roomba.errors import RoombaError
+from roomba_ros.runtime.connections import guard_connections
 from roomba_ros.runtime.heart import HEART
 from roomba_ros.runtime.progress import Progress
 from roomba_ros.runtime.subscriptions import tell_refusals
@@ -94,6 +95,7 @@ def register(name: str) -> None:
     """
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: _asked_to_end.set())
+    guard_connections()
     rospy.init_node(name, disable_signals=True)
 
 

@@ -118,7 +118,7 @@ class Supervisor:
         process.pid = fork(run)
         os.close(writing)
         self._selector.register(process.heart, selectors.EVENT_READ, process)
-        process.watch.started()
+        process.watch.started(time.monotonic())
         _say(f"{process.watch.name}: started, process {process.pid}")
 
     def _hear(self) -> None:

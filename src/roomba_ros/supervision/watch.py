@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections import deque
 
 from roomba.configuration.nodes import SupervisionConfig
 
@@ -17,14 +16,15 @@ class Watch:
         self._start_at = -math.inf
         self._beaten = math.inf
         self._stopped_since: float | None = None
-        self._deaths: deque[float] = deque(maxlen=config.most_deaths)
+        self._started, self._short_lives = -math.inf, 0
         self._last_end = ""
         self.is_running = False
         self.is_given_up = False
 
-    def started(self) -> None:
+    def started(self, now: float) -> None:
         """Note that it was started; until its first sign of life it may take long."""
         self.is_running, self._beaten, self._stopped_since = True, math.inf, None
+        self._started = now
 
     def beat(self, now: float) -> None:
         """Note a sign of life."""
@@ -41,9 +41,9 @@ class Watch:
         """Note that it ended, and how: it is started anew soon, unless that happens too often."""
         config = self._config
         self.is_running, self._stopped_since, self._last_end = False, None, how
-        self._deaths.append(now)
-        is_often = len(self._deaths) == config.most_deaths
-        self.is_given_up = is_often and now - self._deaths[0] <= config.deaths_within
+        is_short = now - self._started < config.short_life
+        self._short_lives = self._short_lives + 1 if is_short else 0
+        self.is_given_up = self._short_lives >= config.most_short_lives
         self._start_at = now + config.back_after
 
     def wants_start(self, now: float) -> bool:

@@ -39,7 +39,7 @@ def stubborn():
         time.sleep(0.01)
 
 config = SupervisionConfig(
-    busy=0.5, stopped=1.0, hung=2.0, back_after=0.05, most_deaths=4, deaths_within=20.0
+    busy=0.5, stopped=1.0, hung=2.0, back_after=0.05, most_short_lives=4, short_life=20.0
 )
 supervisor = Supervisor(config)
 """

@@ -8,14 +8,14 @@ from roomba.configuration.nodes import SupervisionConfig
 from roomba_ros.supervision.watch import Watch
 
 CONFIG = SupervisionConfig(
-    busy=1.0, stopped=2.0, hung=10.0, back_after=0.5, most_deaths=3, deaths_within=30.0
+    busy=1.0, stopped=2.0, hung=10.0, back_after=0.5, most_short_lives=3, short_life=15.0
 )
 
 
 def running(now: float = 0.0) -> Watch:
     watch = Watch("speed_pub_node", CONFIG)
     assert watch.wants_start(now)
-    watch.started()
+    watch.started(now)
     watch.beat(now)
     return watch
 
@@ -32,7 +32,7 @@ def test_one_that_beats_is_left_alone() -> None:
 
 def test_one_that_starts_may_take_its_time() -> None:
     watch = Watch("speed_pub_node", CONFIG)
-    watch.started()
+    watch.started(0.0)
     assert watch.trouble(1000.0) == ""
     assert not watch.wants_end(1000.0)
 
@@ -65,22 +65,34 @@ def test_one_that_ended_is_started_anew_and_told_until_it_lives() -> None:
     assert not watch.wants_end(5.0)
     assert not watch.wants_start(5.4)
     assert watch.wants_start(5.5)
-    watch.started()
+    watch.started(5.5)
     assert watch.trouble(6.0) == "speed_pub_node was ended by SIGKILL; it is starting"
     watch.beat(7.0)
     assert watch.trouble(7.0) == ""
 
 
-@pytest.mark.parametrize(("apart", "is_given_up"), [(14.9, True), (15.1, False)])
-def test_one_that_keeps_ending_is_given_up_in_words(apart: float, *, is_given_up: bool) -> None:
+@pytest.mark.parametrize(("life", "is_given_up"), [(14.9, True), (15.1, False)])
+def test_one_that_keeps_ending_soon_is_given_up_in_words(life: float, *, is_given_up: bool) -> None:
     watch = running()
     for number in range(3):
         assert not watch.is_given_up
-        watch.started()
-        watch.ended(apart * number, "ended with status 1")
+        watch.started(100.0 * number)
+        watch.ended(100.0 * number + life, "ended with status 1")
     assert watch.is_given_up is is_given_up
     assert watch.wants_start(1e6) is not is_given_up
     assert ("keeps ending (ended with status 1)" in watch.trouble(1e6)) is is_given_up
+
+
+def test_a_long_life_makes_up_for_short_ones() -> None:
+    watch, now = running(), 0.0
+    for life in (1.0, 1.0, 100.0, 1.0, 1.0):
+        watch.started(now)
+        now += life
+        watch.ended(now, "ended with status 1")
+    assert not watch.is_given_up
+    watch.started(now)
+    watch.ended(now, "ended with status 1")
+    assert watch.is_given_up
 
 
 @given(st.lists(st.tuples(st.sampled_from(["beat", "end", "stop", "go"]), st.floats(0.0, 5.0))))
@@ -100,4 +112,4 @@ def test_it_is_never_wanted_that_what_runs_is_started_or_what_ended_is_ended(
         assert not (watch.wants_start(now) and watch.is_running)
         assert watch.is_running or watch.trouble(now)
         if watch.wants_start(now):
-            watch.started()
+            watch.started(now)

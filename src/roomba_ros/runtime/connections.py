@@ -1,0 +1,137 @@
+"""Connections to a node, guarded: one that says nothing, or nothing sensible, holds up no other.
+
+rospy shakes hands on the thread that accepts connections, without a time limit, and believes any
+length that it is told. There is no hook for that, so two of its functions are replaced.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import socket
+import struct
+import threading
+import time
+from collections.abc import Callable
+from typing import Any, Final
+
+import rosgraph.xmlrpc
+import rospy
+import rospy.impl.tcpros_base as tcpros
+from rosgraph.network import (
+    ROSHandshakeException,
+    decode_ros_handshake_header,
+    write_ros_handshake_header,
+)
+
+from roomba_ros.convert.errors import MessageError
+from roomba_ros.runtime.subscriptions import refuse
+
+HANDSHAKE: Final = 5.0
+"""s of wall time until a connection must have said what it wants."""
+LONGEST_HEADER: Final = 1 << 20
+"""Bytes of that; the definition of a message is in it."""
+LARGEST_MESSAGE: Final = 16 << 20
+"""Bytes of a message or request; a map of 16 million cells is one."""
+_MOST_HANDSHAKES: Final = 256
+"""At the same time; more are closed at once."""
+
+_LENGTH: Final = struct.Struct("<I")
+_slots = threading.BoundedSemaphore(_MOST_HANDSHAKES)
+
+
+def guard_connections() -> None:
+    """Guard all connections to this process; call before ``rospy.init_node``."""
+    tcpros.TCPROSServer._tcp_server_callback = _take
+    if tcpros.recv_buff is not _receive:
+        _receive.receive = tcpros.recv_buff  # type: ignore[attr-defined]
+        tcpros.recv_buff = _receive
+    # A request to the node itself that does not come ends its thread.
+    rosgraph.xmlrpc.SilenceableXMLRPCRequestHandler.timeout = HANDSHAKE
+
+
+def _take(server: Any, connection: socket.socket, address: tuple[str, int]) -> None:
+    """Shake hands in a thread of its own."""
+    if not _slots.acquire(blocking=False):
+        connection.close()
+        _refuse(f"more than {_MOST_HANDSHAKES} of them say nothing")
+        return
+    threading.Thread(target=_shake_hands, args=(server, connection, address), daemon=True).start()
+
+
+def _shake_hands(server: Any, connection: socket.socket, address: tuple[str, int]) -> None:
+    """Hand a connection to the topic or service that it wants, or close it."""
+    try:
+        fault = _answer(server, connection, address)
+    except (OSError, ValueError, ROSHandshakeException, rospy.ROSException) as error:
+        fault = str(error) or type(error).__name__
+    finally:
+        _slots.release()
+    if fault:
+        connection.close()
+        if not rospy.core.is_shutdown_requested():
+            _refuse(fault)
+
+
+def _answer(server: Any, connection: socket.socket, address: tuple[str, int]) -> str:
+    """Return what is wrong with a connection; empty when it was taken."""
+    header = _header_of(connection)
+    handlers: dict[str, Callable[..., str | None]] = {
+        "topic": server.topic_connection_handler,
+        "service": server.service_connection_handler,
+    }
+    wanted = next((name for name in handlers if name in header), "")
+    if not wanted:
+        fault: str | None = "expected the name of a topic or service, got none"
+    else:
+        fault = handlers[wanted](connection, address, header)
+    if fault:
+        with contextlib.suppress(OSError):
+            write_ros_handshake_header(connection, {"error": fault})
+    return fault or ""
+
+
+def _header_of(connection: socket.socket) -> dict[str, str]:
+    """Return what a connection says of itself; raises OSError or ROSHandshakeException."""
+    deadline = time.monotonic() + HANDSHAKE
+    length = _exactly(connection, _LENGTH.size, deadline)
+    (size,) = _LENGTH.unpack(length)
+    if size > LONGEST_HEADER:
+        raise ROSHandshakeException(
+            f"expected a header of at most {LONGEST_HEADER} bytes, got one of {size}"
+        )
+    header: dict[str, str] = decode_ros_handshake_header(
+        length + _exactly(connection, size, deadline)
+    )
+    connection.settimeout(None)
+    return header
+
+
+def _exactly(connection: socket.socket, size: int, deadline: float) -> bytes:
+    """Read so many bytes until a deadline, s of wall time; raises OSError."""
+    read = bytearray()
+    while len(read) < size:
+        left = deadline - time.monotonic()
+        if left <= 0.0:
+            raise TimeoutError(f"expected a header within {HANDSHAKE:g} s")
+        connection.settimeout(left)
+        part = connection.recv(size - len(read))
+        if not part:
+            raise ConnectionError("it was closed before it said what it wants")
+        read += part
+    return bytes(read)
+
+
+def _receive(connection: socket.socket, buffer: Any, size: int) -> int:
+    """Receive into a buffer that begins with a message's length, as rospy does; limit that."""
+    received: int = _receive.receive(connection, buffer, size)  # type: ignore[attr-defined]
+    if buffer.tell() >= _LENGTH.size:
+        (length,) = _LENGTH.unpack(buffer.getbuffer()[: _LENGTH.size])
+        if length > LARGEST_MESSAGE:
+            fault = f"expected messages of at most {LARGEST_MESSAGE} bytes, got one of {length}"
+            _refuse(fault)
+            raise rospy.exceptions.TransportTerminated(fault)
+    return received
+
+
+def _refuse(fault: str) -> None:
+    refuse("a connection", MessageError(fault))
