@@ -161,14 +161,20 @@ class HomeTopics:
             if is_first and (is_late or not waits):
                 self._make()
             if self._make_after is not None and time.monotonic() > self._make_after:
-                self._make_after = None
-                self._background.do("no context for the mission", self._make_now)
+                self._make_soon()
 
     def _make(self, *, is_edited: bool = True, wait: float = 0.0) -> None:
         """Let a context be made ``wait`` s from now, of what is known then; hold the lock."""
         self._is_edited = is_edited or (self._is_edited and self._wanted != self._tried)
         self._wanted += 1
-        self._make_after = time.monotonic() + wait
+        if wait > 0.0:
+            self._make_after = time.monotonic() + wait
+        else:
+            self._make_soon()
+
+    def _make_soon(self) -> None:
+        self._make_after = None
+        self._background.do("no context for the mission", self._make_now)
 
     def _make_now(self) -> None:
         with self._lock:
