@@ -6,7 +6,7 @@ import threading
 import time
 
 import rospy
-from actionlib_msgs.msg import GoalID, GoalStatus
+from actionlib_msgs.msg import GoalID, GoalStatus, GoalStatusArray
 from fixtures.graph import RosGraph
 from fixtures.probe import Probe
 from fixtures.processes import Program
@@ -254,6 +254,11 @@ def test_a_killed_node_goes_on_with_its_clean_and_keeps_its_zones(graph: RosGrap
     world.does("cleaning")
     assert math.isclose(world.state.wanted, wanted, rel_tol=1e-4)
     assert [zone.name for zone in world.newest["/zones"].zones] == ["bowl"]
+    # Its client's goal is served on.
+    world.newest.pop("/clean/status", None)
+    told = world.next("/clean/status", GoalStatusArray)
+    assert [status.status for status in told.status_list] == [GoalStatus.ACTIVE]
+    assert clean.get_state() == GoalStatus.ACTIVE
 
     # Another program steers: the mission gives way, once it no longer lets a walk end.
     steered = Twist()
@@ -273,3 +278,5 @@ def test_a_killed_node_goes_on_with_its_clean_and_keeps_its_zones(graph: RosGrap
     wait_until(lambda: world.newest["/cmd_vel_mission"] == Twist(), 30.0, "it stands")
     assert order("stop") == (True, "stopped")
     world.does("idle", 30.0)
+    assert ends(clean, 30.0) == GoalStatus.PREEMPTED
+    assert clean.get_goal_status_text() == "it was told to stop"

@@ -26,6 +26,7 @@ from roomba_ros.mission.goals import CleaningGoal, DockingGoal, MissionGoal
 from roomba_ros.mission.orders import Cancel, MissionOrders, Order
 from roomba_ros.mission.round import MissionRound
 from roomba_ros.mission.topics import MissionTopics
+from roomba_ros.runtime.action_goal import GoalIdentity
 
 CONFIG, MISSION_CONFIG = RobotConfig(), MissionConfig()
 SITE = PlanningContext(HOME.map, HOME.station, CONFIG, MISSION_CONFIG, DockingConfig())
@@ -122,7 +123,7 @@ def test_a_state_is_told_before_the_result_of_a_goal_that_was_cancelled(
 ) -> None:
     rig = Rig(monkeypatch)
     rig.ask(CleaningGoal, CleanGoal())
-    rig.orders.ask(Cancel(("clean", "1")))
+    rig.orders.ask(Cancel(GoalIdentity("clean", "1", 0, 0)))
     assert rig.tick() == ["idle", "canceled"]
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 import io
 import json
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,18 +27,29 @@ class CheckpointFileError(RoombaError):
     """A file that cannot be used; the message names it and says why."""
 
 
-def save_checkpoint(values: Values, run: str, path: Path, taken_up: int = 0) -> None:
-    """Write what a mission must remember; ``run`` names this launch of the robot.
+class Checkpoint(NamedTuple):
+    """What a mission must remember, how often it was resumed without progress, and for which goal.
 
-    ``taken_up`` is how often it was resumed without progress. Raises OSError when the disk
-    refuses, and ValueError for a value that JSON does not have.
+    ``goal`` is what tells the goal of a client from all others; None without one.
     """
-    text = json.dumps({"run": run, "taken_up": taken_up, "mission": values}, allow_nan=False)
-    write_whole(path, text.encode("utf-8"))
+
+    values: Values
+    taken_up: int = 0
+    goal: tuple[str, str, int, int] | None = None
 
 
-def load_checkpoint(path: Path, run: str) -> tuple[Values, int] | None:
-    """Return what was saved in this run, and how often it was resumed; None without a file.
+def save_checkpoint(checkpoint: Checkpoint, run: str, path: Path) -> None:
+    """Write a checkpoint; ``run`` names this launch of the robot.
+
+    Raises OSError when the disk refuses, and ValueError for a value that JSON does not have.
+    """
+    values, taken_up, goal = checkpoint
+    kept = {"run": run, "taken_up": taken_up, "goal": goal, "mission": values}
+    write_whole(path, json.dumps(kept, allow_nan=False).encode("utf-8"))
+
+
+def load_checkpoint(path: Path, run: str) -> Checkpoint | None:
+    """Return what was saved in this run; None without a file.
 
     A checkpoint of another run is ignored: after a launch the robot must not begin to drive by
     itself. A damaged file is set aside: raises CheckpointFileError.
@@ -46,13 +57,17 @@ def load_checkpoint(path: Path, run: str) -> tuple[Values, int] | None:
     try:
         read = load_json(read_text(path))
         values, its_run, taken_up = read["mission"], read["run"], int(read["taken_up"])
+        goal = read["goal"]
+        if goal is not None:
+            action, identity, seconds, nanoseconds = goal
+            goal = (str(action), str(identity), int(seconds), int(nanoseconds))
     except FileNotFoundError:
         return None
     except (OSError, ValueError, KeyError, TypeError) as error:
         raise _damaged(path, f"expected a checkpoint in JSON ({error!r})") from error
     if not isinstance(values, dict):
         raise _damaged(path, f"expected a mission's values, got {str(values)[:80]}")
-    return (values, taken_up) if its_run == run else None
+    return Checkpoint(values, taken_up, goal) if its_run == run else None
 
 
 def remove_checkpoint(path: Path) -> None:

@@ -14,6 +14,7 @@ from roomba.mission.mission import Mission
 from roomba.mission.phases.machine import Phase
 from roomba.perception.swept.dirt_map import DirtMap
 from roomba.storage.checkpoint import (
+    Checkpoint,
     CheckpointFileError,
     load_checkpoint,
     load_dirt,
@@ -21,6 +22,7 @@ from roomba.storage.checkpoint import (
     save_checkpoint,
     save_dirt,
 )
+from roomba_ros.runtime.action_goal import GoalIdentity
 from roomba_ros.runtime.background import Background
 
 
@@ -37,7 +39,9 @@ class MissionMemory:
         self._not_forgotten = f"the errand is not forgotten in {self._checkpoint.name}"
         self._run = str(rospy.get_param("/run_id", ""))
         self._saved = 0.0
-        self._phase: Phase | None = None
+        self._last: tuple[Phase, GoalIdentity | None] | None = None
+        self.goal: GoalIdentity | None = None
+        """Whose errand was taken up."""
         self._taken_up = 0
         self._since = time.monotonic()
         self._is_there = True
@@ -58,31 +62,37 @@ class MissionMemory:
             found = load_checkpoint(self._checkpoint, self._run)
             if found is None:
                 return False
-            values, taken_up = found
-            if taken_up >= self._config.most_taken_up:
-                raise CheckpointError(f"with it this node ended {taken_up} times in a row")
-            self._taken_up = taken_up + 1
-            save_checkpoint(values, self._run, self._checkpoint, self._taken_up)
-            mission.restore(values, senses)
+            if found.taken_up >= self._config.most_taken_up:
+                raise CheckpointError(f"with it this node ended {found.taken_up} times in a row")
+            self._taken_up = found.taken_up + 1
+            again = found._replace(taken_up=self._taken_up)
+            save_checkpoint(again, self._run, self._checkpoint)
+            mission.restore(found.values, senses)
         except (CheckpointFileError, CheckpointError, OSError) as error:
             rospy.logwarn("the errand of before is not taken up: %s", error)
             return False
+        self.goal = None if found.goal is None else GoalIdentity(*found.goal)
         rospy.logwarn("this node ended on an errand; it is taken up: %s", mission.state.phase.value)
         return True
 
-    def keep(self, mission: Mission, senses: Senses) -> None:
-        """Remember the errand, if it is time to; forget it when there is none."""
-        phase, wall = mission.state.phase, time.monotonic()
-        if phase is self._phase and wall - self._saved < self._config.errand:
+    def keep(self, mission: Mission, senses: Senses, goal: GoalIdentity | None) -> None:
+        """Remember the errand and whose goal it is, if it is time to; forget it when there is none.
+
+        A change is remembered at once.
+        """
+        now, wall = (mission.state.phase, goal), time.monotonic()
+        if now == self._last and wall - self._saved < self._config.errand:
             return
-        self._phase, self._saved = phase, wall
+        self._last, self._saved = now, wall
         taken_up = self._taken_up if wall - self._since < self._config.goes_well else 0
         values = mission.checkpoint(senses)
         if values is not None:
             self._is_there = True
             self._background.do(
                 f"the errand is not remembered in {self._checkpoint.name}",
-                lambda: save_checkpoint(values, self._run, self._checkpoint, taken_up),
+                lambda: save_checkpoint(
+                    Checkpoint(values, taken_up, goal), self._run, self._checkpoint
+                ),
             )
         elif self._is_there:
             self._is_there = False

@@ -186,7 +186,7 @@ class MissionNode:
         """Remember by the whole map, now that there is one, what is under way."""
         assert self._memory is not None
         before, self._memory = self._memory, self._memory_by(home.digest)
-        self._memory.keep(mission, senses)
+        self._memory.keep(mission, senses, self._orders.goal)
         before.forget_errand()
 
     def _begin(self, home: KnownHome, senses: Senses) -> None:
@@ -196,6 +196,7 @@ class MissionNode:
         if not home.context.is_growing:
             self._memory.recall_dirt(mission.dirt)
         if self._memory.recall_errand(mission, senses) or self._recall_growing(mission, senses):
+            self._orders.adopt(self._memory.goal)
             self._drive.take()
 
     def _recall_growing(self, mission: Mission, senses: Senses) -> bool:
@@ -206,7 +207,8 @@ class MissionNode:
         if not memory.recall_errand(mission, senses):
             return False
         assert self._memory is not None
-        self._memory.keep(mission, senses)
+        self._memory.goal = memory.goal
+        self._memory.keep(mission, senses, memory.goal)
         memory.forget_errand()
         return True
 
@@ -238,7 +240,7 @@ class MissionNode:
 
     def _remember(self, mission: Mission, senses: Senses, *, has_learned: bool) -> None:
         assert self._memory is not None
-        self._memory.keep(mission, senses)
+        self._memory.keep(mission, senses, self._orders.goal)
         if has_learned:
             self._memory.keep_dirt(mission.dirt)
 

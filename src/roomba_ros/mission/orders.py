@@ -22,7 +22,7 @@ from roomba.mission.mission import Mission
 from roomba.mission.phases.machine import Event, Phase
 from roomba_ros.convert.values import data_of
 from roomba_ros.mission.goals import GOALS, Ended, MissionGoal
-from roomba_ros.runtime.action_goal import server_of
+from roomba_ros.runtime.action_goal import GoalIdentity, server_of
 from roomba_ros.runtime.senders import SPEED_NODE, OnlyFrom
 from roomba_ros.runtime.subscriptions import subscribe
 
@@ -45,9 +45,9 @@ class Order:
 
 @dataclass(frozen=True, slots=True)
 class Cancel:
-    """A goal's client wants it to end; the goal by its :attr:`MissionGoal.identity`."""
+    """A goal's client wants it to end."""
 
-    identity: tuple[str, str]
+    identity: GoalIdentity
 
 
 class MissionOrders:
@@ -97,6 +97,19 @@ class MissionOrders:
     def hold(self, reason: str) -> None:
         """Take an emergency stop for a reason; an empty reason releases it."""
         self._emergency = reason
+
+    @property
+    def goal(self) -> GoalIdentity | None:
+        """The goal of the errand that is under way, if a client gave it."""
+        return None if self._goal is None else self._goal.identity
+
+    def adopt(self, identity: GoalIdentity | None) -> None:
+        """Serve the goal of an errand that was taken up: its client waits for the end of it."""
+        if identity is None or self._serves:
+            return
+        for kind, server in zip(GOALS, self._servers, strict=True):
+            if kind.name == identity.action:
+                self._goal = kind(server.adopt(identity))
 
     def serve(self, is_ready: bool) -> None:
         """Take goals from now on, if the mission is ready or did not become so in time."""

@@ -6,17 +6,28 @@ import threading
 import time
 from abc import ABC, abstractmethod
 from collections.abc import Callable
-from typing import Final, TypeVar
+from typing import Final, NamedTuple, TypeVar
 
 import actionlib
 import rospy
-from actionlib_msgs.msg import GoalStatus
+from actionlib.handle_tracker_deleter import HandleTrackerDeleter
+from actionlib.status_tracker import StatusTracker
+from actionlib_msgs.msg import GoalID, GoalStatus
 
 from roomba_ros.convert.errors import MessageError
 from roomba_ros.runtime.subscriptions import refuse
 
 _STATUS_PERIOD: Final = 0.2
 """s of wall time between two messages of the states of goals, as the library has it."""
+
+
+class GoalIdentity(NamedTuple):
+    """What tells a goal from all others: its action, its id, and its time."""
+
+    action: str
+    identity: str
+    seconds: int
+    nanoseconds: int
 
 
 class ActionGoal(ABC):
@@ -32,9 +43,10 @@ class ActionGoal(ABC):
         self._handle = handle
 
     @property
-    def identity(self) -> tuple[str, str]:
+    def identity(self) -> GoalIdentity:
         """What tells it from all other goals."""
-        return self.name, str(self._handle.get_goal_id().id)
+        told = self._handle.get_goal_id()
+        return GoalIdentity(self.name, str(told.id), told.stamp.secs, told.stamp.nsecs)
 
     @property
     def is_recalled(self) -> bool:
@@ -72,6 +84,20 @@ class SteadyActionServer(actionlib.ActionServer):
                 # The node ends, and its connections were closed first.
                 rospy.logdebug("states of goals are not told: %s", error)
 
+    def adopt(self, identity: GoalIdentity) -> actionlib.ServerGoalHandle:
+        """Return a handle of a goal that a server before this one had accepted.
+
+        Call before :meth:`start`: a client takes a goal for lost that a server does not tell of.
+        """
+        goal = self.ActionGoal()
+        stamp = rospy.Time(identity.seconds, identity.nanoseconds)
+        goal.goal_id = GoalID(stamp, identity.identity)
+        tracker = StatusTracker(goal=goal)
+        tracker.status.status = GoalStatus.ACTIVE
+        tracker.handle_tracker = HandleTrackerDeleter(self, tracker)
+        self.status_list.append(tracker)
+        return actionlib.ServerGoalHandle(tracker, self, tracker.handle_tracker)
+
 
 Goal = TypeVar("Goal", bound=ActionGoal)
 
@@ -79,8 +105,8 @@ Goal = TypeVar("Goal", bound=ActionGoal)
 def server_of(
     kind: type[Goal],
     take: Callable[[Goal], object],
-    cancel: Callable[[tuple[str, str]], object],
-) -> actionlib.ActionServer:
+    cancel: Callable[[GoalIdentity], object],
+) -> SteadyActionServer:
     """Return a server of an action, not started: ``take`` gets goals, ``cancel`` their identities.
 
     A goal that cannot be used is rejected, and counts as a message that was refused.

@@ -17,6 +17,7 @@ from typing import Any, Final
 import rosgraph.xmlrpc
 import rospy
 import rospy.impl.tcpros_base as tcpros
+import rospy.msg
 from rosgraph.network import (
     ROSHandshakeException,
     decode_ros_handshake_header,
@@ -36,15 +37,14 @@ _MOST_HANDSHAKES: Final = 256
 """At the same time; more are closed at once."""
 
 _LENGTH: Final = struct.Struct("<I")
+_unguarded: Final = rospy.msg.deserialize_messages
 _slots = threading.BoundedSemaphore(_MOST_HANDSHAKES)
 
 
 def guard_connections() -> None:
     """Guard all connections to this process; call before ``rospy.init_node``."""
     tcpros.TCPROSServer._tcp_server_callback = _take
-    if tcpros.recv_buff is not _receive:
-        _receive.receive = tcpros.recv_buff  # type: ignore[attr-defined]
-        tcpros.recv_buff = _receive
+    tcpros.deserialize_messages = rospy.msg.deserialize_messages = _deserialize
     # A request to the node itself that does not come ends its thread.
     rosgraph.xmlrpc.SilenceableXMLRPCRequestHandler.timeout = HANDSHAKE
 
@@ -121,16 +121,20 @@ def _exactly(connection: socket.socket, size: int, deadline: float) -> bytes:
     return bytes(read)
 
 
-def _receive(connection: socket.socket, buffer: Any, size: int) -> int:
-    """Receive into a buffer that begins with a message's length, as rospy does; limit that."""
-    received: int = _receive.receive(connection, buffer, size)  # type: ignore[attr-defined]
-    if buffer.tell() >= _LENGTH.size:
-        (length,) = _LENGTH.unpack(buffer.getbuffer()[: _LENGTH.size])
+def _deserialize(
+    buffer: Any, messages: list[Any], kind: type, *limits: int | None, start: int = 0, **more: Any
+) -> None:
+    """Make messages of what was received, as rospy does, unless one is too long.
+
+    A message begins with its length; before the answer of a service stands a byte.
+    """
+    if buffer.tell() >= start + _LENGTH.size:
+        (length,) = _LENGTH.unpack(buffer.getbuffer()[start : start + _LENGTH.size])
         if length > LARGEST_MESSAGE:
             fault = f"expected messages of at most {LARGEST_MESSAGE} bytes, got one of {length}"
             _refuse(fault)
             raise rospy.exceptions.TransportTerminated(fault)
-    return received
+    _unguarded(buffer, messages, kind, *limits, start=start, **more)
 
 
 def _refuse(fault: str) -> None:

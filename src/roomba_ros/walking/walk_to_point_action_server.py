@@ -28,7 +28,7 @@ from roomba.perception.matching.surface_field import SurfaceField
 from roomba.planning.path.planner import PathPlanner
 from roomba.robot.lookout import Lookout
 from roomba_ros.convert.common import header, map_of, path_message, pose_in_map
-from roomba_ros.runtime.action_goal import server_of
+from roomba_ros.runtime.action_goal import GoalIdentity, server_of
 from roomba_ros.runtime.alone import refuse_second
 from roomba_ros.runtime.node import require_master, run_node
 from roomba_ros.runtime.parameters import (
@@ -100,7 +100,7 @@ class WalkToPointActionServer:
         self._newer_map: tuple[PathPlanner, SurfaceField] | None = None
         self._senses = HeardSenses(self._config, self._nodes.hearing, *_HEARD)
         self._goals: deque[WalkGoal] = deque()
-        self._cancels: deque[tuple[str, str]] = deque()
+        self._cancels: deque[GoalIdentity] = deque()
         self._job: _Job | None = None
         self._change_position = rospy.Publisher(
             "change_position", RobotPosition, queue_size=1, tcp_nodelay=True

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from roomba.storage.checkpoint import (
+    Checkpoint,
     CheckpointFileError,
     load_checkpoint,
     load_dirt,
@@ -24,11 +25,12 @@ VALUES = {
 def test_a_checkpoint_comes_back_in_its_own_run_only(tmp_path: Path) -> None:
     path = tmp_path / "robot" / "map.json"
     assert load_checkpoint(path, "run 1") is None
-    save_checkpoint(VALUES, "run 1", path)
-    assert load_checkpoint(path, "run 1") == (VALUES, 0)
+    save_checkpoint(Checkpoint(VALUES), "run 1", path)
+    assert load_checkpoint(path, "run 1") == (VALUES, 0, None)
     assert load_checkpoint(path, "run 2") is None
-    save_checkpoint(VALUES, "run 1", path, taken_up=2)
-    assert load_checkpoint(path, "run 1") == (VALUES, 2)
+    resumed = Checkpoint(VALUES, 2, ("clean", "/client-1-5.7", 5, 700_000_000))
+    save_checkpoint(resumed, "run 1", path)
+    assert load_checkpoint(path, "run 1") == resumed
     remove_checkpoint(path)
     remove_checkpoint(path)
     assert load_checkpoint(path, "run 1") is None
@@ -38,24 +40,31 @@ def test_who_is_killed_while_writing_finds_the_one_from_before(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     path = tmp_path / "map.json"
-    save_checkpoint(VALUES, "run", path)
+    save_checkpoint(Checkpoint(VALUES), "run", path)
 
     def killed(_: int) -> None:
         raise KeyboardInterrupt
 
     monkeypatch.setattr(os, "fsync", killed)
     with pytest.raises(KeyboardInterrupt):
-        save_checkpoint({"phase": "DOCKING"}, "run", path)
-    assert load_checkpoint(path, "run") == (VALUES, 0)
+        save_checkpoint(Checkpoint({"phase": "DOCKING"}), "run", path)
+    assert load_checkpoint(path, "run") == (VALUES, 0, None)
 
 
 @pytest.mark.parametrize(
     "text",
     [
-        *("", "{", "[1]", '{"run": "run"}', '{"run": "r", "taken_up": 0, "mission": 3}'),
-        '{"run": "run", "taken_up": 0, "mission": {"ledger": [NaN]}}',
-        '{"run": "run", "taken_up": 1e999, "mission": {}}',
-        '{"run": "run", "taken_up": 0, "mission": ' + 100_000 * "[",
+        *(
+            "",
+            "{",
+            "[1]",
+            '{"run": "run"}',
+            '{"run": "r", "taken_up": 0, "goal": null, "mission": 3}',
+        ),
+        '{"run": "run", "taken_up": 0, "goal": null, "mission": {"ledger": [NaN]}}',
+        '{"run": "run", "taken_up": 0, "goal": [1, 2], "mission": {}}',
+        '{"run": "run", "taken_up": 1e999, "goal": null, "mission": {}}',
+        '{"run": "run", "taken_up": 0, "goal": null, "mission": ' + 100_000 * "[",
     ],
 )
 def test_a_damaged_checkpoint_is_named_and_set_aside(tmp_path: Path, text: str) -> None:
@@ -78,7 +87,7 @@ def test_a_checkpoint_that_is_a_pipe_is_set_aside(tmp_path: Path) -> None:
 def test_what_is_no_plain_value_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "map.json"
     with pytest.raises(ValueError, match="JSON compliant"):
-        save_checkpoint({"x": float("nan")}, "run", path)
+        save_checkpoint(Checkpoint({"x": float("nan")}), "run", path)
     assert not path.exists()
 
 
