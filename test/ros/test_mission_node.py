@@ -205,6 +205,28 @@ def test_zones_beyond_the_limits_are_refused_and_many_are_quickly_there(graph: R
     assert "at most 1000 zones, got 1001" in clean.get_goal_status_text()
 
 
+def test_a_disk_that_refuses_is_told_and_what_was_refused_is_kept_when_it_does_not(
+    graph: RosGraph,
+) -> None:
+    memory = graph.folder / "ros_home" / "roomba_robot" / "mission"
+    memory.parent.mkdir(parents=True)
+    # In place of the folder: nothing can be written there.
+    memory.write_text("")
+    world, node = start(graph)
+    world.x, world.is_docked = 0.0, False
+    world.does("idle", 30.0)
+    clean = client("clean", CleanAction)
+    clean.send_goal(CleanGoal())
+    world.does("cleaning")
+    wait_until(lambda: "the errand is not remembered" in world.state.message, 5.0, "it is told")
+    assert world.state.phase == "cleaning"
+    memory.unlink()
+    wait_until(lambda: list(memory.glob("robot/*.json")), 20.0, "it is remembered")
+    wait_until(lambda: world.state.message == "", 20.0, lambda: f"all is well: {world.state}")
+    assert node.output.count("the errand is not remembered") == 2
+    assert order("stop")[0]
+
+
 def test_a_full_bin_is_told_and_waited_for(graph: RosGraph) -> None:
     world, _ = start(graph)
     world.x, world.is_docked = 0.0, False

@@ -79,11 +79,12 @@ class MissionTopics:
         """Publish what is due; return the state if it is told now."""
         self._show_plan(now, mission)
         self._show_maps(now, mission)
-        said = (mission.state, mission.message, self._trouble)
+        trouble = self._trouble or self._background.trouble
+        said = (mission.state, mission.message, trouble)
         if not self._is_due(now, said):
             return None
         state = state_of(now, mission, senses)
-        state.message = state.message or self._trouble
+        state.message = state.message or trouble
         self._state.publish(state)
         return state
 

@@ -1,13 +1,32 @@
-"""Work that must not hold up ticks: one thread, and of each kind of work only the newest."""
+"""Work that must not hold up ticks: one thread, and of each kind of work only the newest.
+
+What the disk refuses is told once and tried again, until it is done or newer work takes its place.
+"""
 
 from __future__ import annotations
 
 import threading
+import time
 from collections.abc import Callable
+from typing import Final, NamedTuple
 
 import rospy
 
 from roomba.errors import RoombaError
+
+RETRY: Final = 2.0
+"""s of wall time until work that the disk refused is tried again."""
+_TELL_AGAIN: Final = 60.0
+"""s of wall time between two lines of the log about work that goes on being refused."""
+
+
+class _Failed(NamedTuple):
+    """Work that the disk refused: when it is due again, why it was, and when that was logged."""
+
+    work: Callable[[], object]
+    due: float
+    reason: str
+    told: float
 
 
 class Background:
@@ -16,6 +35,7 @@ class Background:
     def __init__(self) -> None:
         """Begin with nothing to do."""
         self._waiting: dict[str, Callable[[], object]] = {}
+        self._failed: dict[str, _Failed] = {}
         self._news = threading.Condition()
         self._is_at_work = False
 
@@ -24,11 +44,17 @@ class Background:
         threading.Thread(target=self._run, name="background", daemon=True).start()
 
     def do(self, name: str, work: Callable[[], object]) -> None:
-        """Do this soon, in place of what waits by the same name."""
+        """Do this soon, in place of what waits by the same name; ``name`` says what fails then."""
         with self._news:
             self._waiting.pop(name, None)
             self._waiting[name] = work
             self._news.notify_all()
+
+    @property
+    def trouble(self) -> str:
+        """What the disk refuses now, and why; empty when all is well."""
+        with self._news:
+            return "; ".join(f"{name}: {failed.reason}" for name, failed in self._failed.items())
 
     def wait(self, deadline: float) -> bool:
         """Return whether all is done, waiting so long for it at most, s of wall time."""
@@ -45,8 +71,21 @@ class Background:
     def _run(self) -> None:
         while True:
             with self._news:
-                self._news.wait_for(lambda: self._waiting)
-            self._do_next()
+                self._news.wait_for(lambda: self._waiting, timeout=self._until_due())
+                self._take_due()
+            if self._waiting:
+                self._do_next()
+
+    def _until_due(self) -> float | None:
+        if not self._failed:
+            return None
+        return max(0.0, min(failed.due for failed in self._failed.values()) - time.monotonic())
+
+    def _take_due(self) -> None:
+        """Let work that was refused wait to be done again; newer work of its name is done first."""
+        for name, failed in self._failed.items():
+            if time.monotonic() >= failed.due:
+                self._waiting.setdefault(name, failed.work)
 
     def _do_next(self) -> None:
         with self._news:
@@ -55,9 +94,28 @@ class Background:
             self._is_at_work = True
         try:
             work()
-        except (RoombaError, OSError, ValueError, rospy.ROSException) as error:
+            self._succeeded(name)
+        except OSError as error:
+            self._refused(name, work, error)
+        except (RoombaError, ValueError, rospy.ROSException) as error:
             rospy.logwarn("%s: %s", name, error)
         finally:
             with self._news:
                 self._is_at_work = False
                 self._news.notify_all()
+
+    def _succeeded(self, name: str) -> None:
+        with self._news:
+            was_refused = self._failed.pop(name, None) is not None
+        if was_refused:
+            rospy.logwarn("this is over: %s", name)
+
+    def _refused(self, name: str, work: Callable[[], object], error: OSError) -> None:
+        now = time.monotonic()
+        with self._news:
+            before = self._failed.get(name)
+            is_told = before is not None and now - before.told < _TELL_AGAIN
+            told = before.told if before is not None and is_told else now
+            self._failed[name] = _Failed(work, now + RETRY, str(error), told)
+        if not is_told:
+            rospy.logerr("%s: %s; it is tried again", name, error)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import logging
 import os
 import signal
 import sys
@@ -96,6 +97,8 @@ def register(name: str) -> None:
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: _asked_to_end.set())
     guard_connections()
+    # A log that the disk refuses is no reason for a traceback with each line of it.
+    logging.raiseExceptions = False
     rospy.init_node(name, disable_signals=True)
 
 
