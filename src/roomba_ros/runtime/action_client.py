@@ -27,7 +27,9 @@ class ActionClient(actionlib.SimpleActionClient):
 
     def _handle_transition(self, handle: Any) -> None:
         with self._sending:
-            super()._handle_transition(handle)
+            # News of a goal before, or of one that has ended, is late and no error.
+            if handle == self.gh and self.simple_state != actionlib.SimpleGoalState.DONE:
+                super()._handle_transition(handle)
 
     def _handle_feedback(self, handle: Any, feedback: Any) -> None:
         with self._sending:

@@ -14,6 +14,7 @@ import socket
 import threading
 import time
 import xmlrpc.client
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any, Final
 from urllib.parse import urlparse
@@ -133,11 +134,11 @@ def _recalled(file: Path) -> Memory | None:
     return memory
 
 
-def wait_for_master(uri: str, seconds: float) -> bool:
-    """Return whether a master answers within so many seconds."""
+def wait_for_master(seconds: float, ended: Callable[[], bool]) -> bool:
+    """Return whether the master answers within so many seconds, or the waiting has ended."""
     deadline = time.monotonic() + seconds
     while time.monotonic() < deadline:
-        if rosgraph.is_master_online(uri):
+        if ended() or rosgraph.is_master_online():
             return True
         time.sleep(0.02)
     return False

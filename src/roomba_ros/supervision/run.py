@@ -12,7 +12,7 @@ import uuid
 from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
-from typing import Final
+from typing import Final, NoReturn
 from urllib.parse import urlparse
 
 import numpy as np
@@ -51,7 +51,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print(f"./roomba run: {error}", file=sys.stderr)
         return USAGE
     if _adopt(launch.environment):
-        os.execv(sys.executable, [sys.executable, "-m", "roomba_ros.supervision.run", *given])
+        os.execv(sys.executable, [sys.executable, "-m", "roomba_ros.supervision", *given])
     return _run(launch, package / "scripts")
 
 
@@ -73,11 +73,12 @@ def _run(launch: Launch, scripts: Path) -> int:
             if not rosgraph.is_master_online():
                 port = urlparse(rosgraph.get_master_uri()).port or 11311
                 supervisor.add("master", partial(be_master, port, Path(folder) / "master.xml"))
-            if not wait_for_master(rosgraph.get_master_uri(), _MASTER_WITHIN):
+            if not wait_for_master(_MASTER_WITHIN, lambda: supervisor.is_ending):
                 print("./roomba run: the master does not answer", file=sys.stderr)
                 return 1
-            _set_parameters(launch, run_id)
-            _import_all(launch, scripts)
+            if not supervisor.is_ending:
+                _set_parameters(launch, run_id)
+                _import_all(launch, scripts)
             supervisor.add(SUPERVISOR, partial(be_supervisor_node, supervisor.tell_to()))
             for entry in launch.processes:
                 supervisor.add(
@@ -142,9 +143,10 @@ def _be_node(entry: ProcessEntry, scripts: Path, logs: Path) -> None:
     runpy.run_path(script, run_name="__main__")
 
 
-if __name__ == "__main__":
-    ended = main()
+def run_and_leave() -> NoReturn:
+    """Run the robot, and end the process."""
+    status = main()
     sys.stdout.flush()
     sys.stderr.flush()
     # Not sys.exit: tearing down the interpreter takes most of a second.
-    os._exit(ended)
+    os._exit(status)

@@ -43,19 +43,27 @@ class Supervisor:
     """Watches processes; they end with it, also when it is killed."""
 
     def __init__(self, config: SupervisionConfig) -> None:
-        """Start nothing yet."""
+        """Start nothing yet; from now on a signal only says that it is to end."""
         self._config = config
         self._processes: list[_Process] = []
         self._selector = selectors.DefaultSelector()
         self._told: dict[str, str] = {}
         self._face: tuple[int, int] | None = None
         self._status: int | None = None
+        for number in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(number, lambda *_: self._end(0))
+
+    @property
+    def is_ending(self) -> bool:
+        """Whether it was told to end."""
+        return self._status is not None
 
     def add(self, name: str, run: Callable[[], object], *, is_required: bool = False) -> None:
-        """Start a process, and watch it from now on; all end with one that ``is_required``."""
+        """Start a process, unless it is to end, and watch it; all end with one that is required."""
         process = _Process(run, Watch(name, self._config), is_required)
         self._processes.append(process)
-        self._start(process)
+        if not self.is_ending:
+            self._start(process)
 
     def tell_to(self) -> int:
         """Return the end of a pipe that brings each change as a line of JSON: trouble by process.
@@ -69,8 +77,6 @@ class Supervisor:
 
     def run(self) -> int:
         """Watch until a signal, or until a required process ended; return the exit status."""
-        for number in (signal.SIGINT, signal.SIGTERM):
-            signal.signal(number, lambda *_: self._end(0))
         while self._status is None:
             self._hear()
             now = time.monotonic()
@@ -83,6 +89,8 @@ class Supervisor:
 
     def end_all(self) -> None:
         """End all processes: the last that was added first, the first one, the master, last."""
+        for number in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(number, signal.SIG_IGN)
         nodes, first = self._processes[1:], self._processes[:1]
         for processes in (nodes, first):
             for number, patience in _SIGNALS:

@@ -2,6 +2,7 @@
 
 import os
 import signal
+import time
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -125,6 +126,19 @@ def test_a_killed_node_is_told_and_back(shared_robot: RosGraph) -> None:
         BACK,
         "it is back",
     )
+
+
+@pytest.mark.parametrize("seconds", [0.2, 0.6, 1.0, 1.5, 2.0, 2.5, 3.0, 4.0])
+def test_ctrl_c_during_the_start_ends_it_without_a_traceback(
+    tmp_path: Path, seconds: float
+) -> None:
+    with RosGraph(tmp_path) as graph:
+        run = graph.start_run()
+        time.sleep(seconds)  # of the start, which takes three
+        run.send_to_leader(signal.SIGINT)
+        # Before it has begun, the signal ends it as any program.
+        assert run.ends(10.0) in (0, -signal.SIGINT)
+        assert "Traceback" not in run.output, run.output
 
 
 def test_a_second_run_beside_the_first_is_refused(shared_robot: RosGraph) -> None:
