@@ -21,6 +21,10 @@ _MOSTLY: Final = 0.8
 """Share of a patch that is near to things: it is missed for what stands there."""
 _HARDLY_ANY: Final = 0.02
 """Share of the wanted floor; a clean of no more than this did not do what was asked."""
+_NEARLY_ALL: Final = 0.05
+"""Share of the wanted floor; less that is missed needs no words."""
+_MOST_TOLD: Final = 4
+"""Rooms and reasons that a message lists."""
 _IN_THE_WAY: Final = {
     MissReason.THING: "something stands there that the map does not show",
     MissReason.SHUT: "a door is shut, or something stands in the way",
@@ -79,10 +83,25 @@ def is_hidden(patch: Patch, context: PlanningContext, things: Sequence[RoundObst
     return bool(is_near.mean() > _MOSTLY)
 
 
-def why_hardly_any(wanted: float, covered: float, missed: Sequence[Missed]) -> str:
-    """Return why next to nothing of the ``wanted`` m2 is clean, or nothing if more is."""
-    if not missed or covered > _HARDLY_ANY * wanted:
+def what_is_not_clean(wanted: float, covered: float, missed: Sequence[Missed]) -> str:
+    """Return how much of the ``wanted`` m2 is not clean, where and why; empty if nearly all is."""
+    if missed and covered <= _HARDLY_ANY * wanted:
+        return _why_hardly_any(covered, missed)
+    if sum(patch.area for patch in missed) < _NEARLY_ALL * wanted:
         return ""
+    areas: dict[tuple[str, MissReason], float] = {}
+    for patch in missed:
+        place = (patch.room, patch.reason)
+        areas[place] = areas.get(place, 0.0) + patch.area
+    told = [
+        f"{area:.1f} m²{f' of {room}' if room else ''} ({reason.value})"
+        for (room, reason), area in sorted(areas.items(), key=lambda item: -item[1])
+    ]
+    more = f" and {len(told) - _MOST_TOLD} more places" if len(told) > _MOST_TOLD else ""
+    return f"not clean: {', '.join(told[:_MOST_TOLD])}{more}"
+
+
+def _why_hardly_any(covered: float, missed: Sequence[Missed]) -> str:
     share = "hardly any of it" if covered > 0.0 else "nothing of it"
     reason = missed[0].reason
     if reason in _IN_THE_WAY:

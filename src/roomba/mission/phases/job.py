@@ -7,7 +7,7 @@ import math
 from roomba.clock import LONGEST_TICK
 from roomba.configuration.mission import MissionConfig
 from roomba.mission.cleaning.cleaning import Cleaning
-from roomba.mission.cleaning.missed import why_hardly_any
+from roomba.mission.cleaning.missed import what_is_not_clean
 from roomba.mission.cleaning.request import CleanOutcome, CleanRequest, CleanResult
 from roomba.mission.driving.obstacles import Obstacles
 from roomba.mission.exploring.exploration import Exploration, ExploreResult
@@ -162,7 +162,7 @@ class Job:
         )
         wanted, covered = cleaning.coverage.wanted_area, cleaning.clean_area
         if outcome is CleanOutcome.COMPLETED:
-            message = message or why_hardly_any(wanted, covered, missed)
+            message = message or what_is_not_clean(wanted, covered, missed)
         return CleanResult(
             outcome,
             message,

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from roomba.configuration.docking import DockingConfig
 from roomba.configuration.mission import MissionConfig
 from roomba.configuration.robot import RobotConfig
-from roomba.mission.cleaning.missed import is_hidden, missed_floor, why_hardly_any
+from roomba.mission.cleaning.missed import is_hidden, missed_floor, what_is_not_clean
 from roomba.mission.cleaning.request import Missed, MissReason
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.perception.swept.coverage_map import patches_of
@@ -91,7 +91,7 @@ def test_all_clean_there_is_nothing_to_tell() -> None:
     assert (
         missed_floor(np.zeros(SITE.frame.shape, np.bool_), 0.01, SITE, [], [], is_over=True) == ()
     )
-    assert why_hardly_any(4.0, 0.0, ()) == ""
+    assert what_is_not_clean(4.0, 0.0, ()) == ""
 
 
 @pytest.mark.parametrize(
@@ -105,9 +105,29 @@ def test_all_clean_there_is_nothing_to_tell() -> None:
 )
 def test_nothing_done_it_says_so_and_why(why: MissReason, message: str) -> None:
     missed = (Missed(4.0, 1.0, 1.0, "", why), Missed(0.1, 1.0, 1.0, "", MissReason.STOPPED))
-    assert why_hardly_any(4.1, 0.0, missed).startswith(message)
-    assert why_hardly_any(4.1, 0.04, missed).startswith(message.replace("nothing", "hardly any"))
-    assert why_hardly_any(4.1, 0.5, missed) == ""
+    assert what_is_not_clean(4.1, 0.0, missed).startswith(message)
+    assert what_is_not_clean(4.1, 0.04, missed).startswith(message.replace("nothing", "hardly any"))
+
+
+def test_what_was_left_out_is_told_by_room_and_reason_the_largest_first() -> None:
+    missed = (
+        Missed(3.0, 1.0, 1.0, "Kitchen", MissReason.SHUT),
+        Missed(0.5, 2.0, 1.0, "Hall", MissReason.THING),
+        Missed(0.7, 3.0, 1.0, "Kitchen", MissReason.SHUT),
+        Missed(0.9, 3.0, 1.0, "", MissReason.LEFT_OVER),
+    )
+    assert what_is_not_clean(20.0, 14.9, missed) == (
+        f"not clean: 3.7 m² of Kitchen ({MissReason.SHUT.value}), "
+        f"0.9 m² ({MissReason.LEFT_OVER.value}), 0.5 m² of Hall ({MissReason.THING.value})"
+    )
+    many = tuple(Missed(1.0, 0.0, 0.0, f"Room {n}", MissReason.SHUT) for n in range(7))
+    assert what_is_not_clean(20.0, 13.0, many).endswith(" and 3 more places")
+
+
+def test_a_little_that_was_left_out_needs_no_words() -> None:
+    missed = (Missed(0.3, 1.0, 1.0, "Kitchen", MissReason.THING),)
+    assert what_is_not_clean(20.0, 19.7, missed) == ""
+    assert what_is_not_clean(20.0, 20.0, ()) == ""
 
 
 def test_of_a_home_without_rooms_patches_have_no_room() -> None:
