@@ -62,6 +62,9 @@ def test_an_exploration_is_held_ended_and_taken_up(shared_robot: RosGraph) -> No
 
     again = robot.explore()
     result = again.ends()
+    saved = robot.on_maps("save", "at once")
+    assert saved.success, saved.message
+    assert robot.on_maps("remove", "at once").success
     assert (result.outcome, result.message) == (ExploreResult.COMPLETED, "")
     assert list(result.unseen) == []
     assert min(known(again.feedback)) > 0.95 * stopped.known

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 from dataclasses import replace
 from typing import Final
@@ -18,13 +19,17 @@ from std_srvs.srv import Trigger, TriggerResponse
 
 from roomba.errors import RoombaError
 from roomba.perception.rooms.refit import refitted
-from roomba.storage.map_store import MapStoreError
+from roomba.storage.map_store import MapStoreError, StoredMap
 from roomba_ros.localization.topics import LocalizationTopics
 from roomba_ros.maps.change_topics import ChangeTopics
 from roomba_ros.maps.map_maker import MapMaker
 from roomba_ros.maps.map_shelf import MapShelf
 from roomba_ros.maps.own_map import GIVEN, NO_STATION, NONE, OWN, OwnMap
 
+_BECOMES_WHOLE: Final = 5.0
+"""s of wall time that a map is waited for which is about to be whole."""
+_LOOK: Final = 0.05
+"""s of wall time between two looks whether it is."""
 _IS_GIVEN: Final = (
     "the robot was given its map: start it with map:=none (it makes a new one), map:=own (the one "
     "it made of this floor), or map:= and the name of a saved one"
@@ -89,10 +94,7 @@ class MapServices:
         if name in (GIVEN, NONE, OWN):
             raise MapStoreError(f"expected a name but {name!r}, which says how to begin (map:=…)")
         own = self._own
-        with own.lock:
-            before, stored = own.name, own.stored()
-        if stored.rooms is None:
-            raise MapStoreError("the rooms of this map are still being found; try again")
+        before, stored = self._whole_map()
         is_made_anew = name != before and name in self._shelf.names
         saved = self._shelf.taken_over(name, stored) if is_made_anew else stored
         self._shelf.save(name, saved)
@@ -113,6 +115,24 @@ class MapServices:
                     own.tell_again()
         own.settle()
         return f"saved as {name} in {self._shelf.folder}"
+
+    def _whole_map(self) -> tuple[str, StoredMap]:
+        """Return the name of the map and all of it; wait a little for one that becomes whole.
+
+        The end of an exploration is told, then its map is made whole, then its rooms are found.
+        """
+        deadline = time.monotonic() + _BECOMES_WHOLE
+        while True:
+            try:
+                with self._own.lock:
+                    name, stored = self._own.name, self._own.stored()
+                if stored.rooms is None:
+                    raise MapStoreError("the rooms of this map are still being found; try again")
+                return name, stored
+            except MapStoreError:
+                if time.monotonic() > deadline:
+                    raise
+            time.sleep(_LOOK)
 
     def _load(self, name: str) -> str:
         """Go on with a saved map; unless its place there is known the robot finds it out."""

@@ -1,7 +1,7 @@
 """Connections to a node, guarded: one that says nothing, or nothing sensible, holds up no other.
 
 rospy shakes hands on the thread that accepts connections, without a time limit, and believes any
-length that it is told. There is no hook for that, so two of its functions are replaced.
+length that it is told. There is no hook for that, so three of its functions are replaced.
 """
 
 from __future__ import annotations
@@ -35,8 +35,11 @@ LARGEST_MESSAGE: Final = 16 << 20
 """Bytes of a message or request; a map of 16 million cells is one."""
 _MOST_HANDSHAKES: Final = 256
 """At the same time; more are closed at once."""
+_BACKLOG: Final = 128
+"""Connections that may wait to be taken."""
 
 _LENGTH: Final = struct.Struct("<I")
+_unguarded_socket: Final = tcpros.TCPServer._create_server_sock
 _unguarded: Final = rospy.msg.deserialize_messages
 _slots = threading.BoundedSemaphore(_MOST_HANDSHAKES)
 
@@ -44,9 +47,20 @@ _slots = threading.BoundedSemaphore(_MOST_HANDSHAKES)
 def guard_connections() -> None:
     """Guard all connections to this process; call before ``rospy.init_node``."""
     tcpros.TCPROSServer._tcp_server_callback = _take
+    tcpros.TCPServer._create_server_sock = _listen
     tcpros.deserialize_messages = rospy.msg.deserialize_messages = _deserialize
     # A request to the node itself that does not come ends its thread.
     rosgraph.xmlrpc.SilenceableXMLRPCRequestHandler.timeout = HANDSHAKE
+
+
+def _listen(server: Any) -> socket.socket:
+    """Return the socket that a node listens on, with more room for those that wait.
+
+    With rospy's five a connection that comes when they are there waits a second.
+    """
+    listening: socket.socket = _unguarded_socket(server)
+    listening.listen(_BACKLOG)
+    return listening
 
 
 def _take(server: Any, connection: socket.socket, address: tuple[str, int]) -> None:
