@@ -7,7 +7,7 @@ import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from fixtures.graph import RosGraph
+from fixtures.graph import WITH_PAGE, RosGraph
 from fixtures.waiting import wait_until
 from playwright.sync_api import Page, sync_playwright
 
@@ -57,9 +57,8 @@ def test_it_is_served_on_loopback_alone_and_the_log_has_no_token(
     assert shown.startswith("http://127.0.0.1:")
     token = shown.split("token=")[1]
     logs = [file for file in (robot_with_page.folder / "log").rglob("*.log") if file.is_file()]
-    rosout = [file for file in logs if "rosout" in file.name]
-    assert rosout
-    assert not any(token in file.read_text(errors="replace") for file in rosout)
+    assert {f"{name}.log" for name in WITH_PAGE} <= {file.name for file in logs}
+    assert not any(token in file.read_text(errors="replace") for file in logs)
 
 
 def test_a_person_cleans_pauses_edits_and_stops(robot_with_page: RosGraph) -> None:
