@@ -46,13 +46,18 @@ class Launch:
     environment: dict[str, str]
 
 
+def described(path: Path) -> str:
+    """Return the arguments of a launch file, a line each: name, default, what it is for."""
+    return "\n".join(
+        f"  {argument.get('name')}:={argument.get('default', '')}".ljust(34)
+        + argument.get("doc", "")
+        for argument in _arguments(path)
+    )
+
+
 def check_arguments(path: Path, arguments: Sequence[str]) -> None:
     """Raise RoombaError for an argument that is no ``name:=value``, or that the file lacks."""
-    try:
-        root = ElementTree.parse(path).getroot()
-    except (OSError, ElementTree.ParseError) as error:
-        raise RoombaError(f"{path}: expected a launch file: {error}") from error
-    known = [str(arg.get("name")) for arg in root.findall("arg")]
+    known = [str(argument.get("name")) for argument in _arguments(path)]
     for argument in arguments:
         name, sign, _ = argument.partition(":=")
         if not sign or not name:
@@ -60,6 +65,13 @@ def check_arguments(path: Path, arguments: Sequence[str]) -> None:
         # Two underscores: a remapping of ROS, such as __name.
         if name not in known and not name.startswith("__"):
             raise RoombaError(f"expected a known argument, got {name!r}; {suggestion(name, known)}")
+
+
+def _arguments(path: Path) -> list[ElementTree.Element]:
+    try:
+        return ElementTree.parse(path).getroot().findall("arg")
+    except (OSError, ElementTree.ParseError) as error:
+        raise RoombaError(f"{path}: expected a launch file: {error}") from error
 
 
 def read_launch(path: Path, arguments: Sequence[str]) -> Launch:

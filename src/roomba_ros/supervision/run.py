@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import contextlib
 import importlib
 import os
 import runpy
@@ -28,7 +29,7 @@ from roomba.raster.distance import distance_to_nearest
 from roomba_ros.runtime.alone import living
 from roomba_ros.runtime.senders import SUPERVISOR
 from roomba_ros.supervision.kept_master import be_master, wait_for_master
-from roomba_ros.supervision.launch_file import Launch, ProcessEntry, read_launch
+from roomba_ros.supervision.launch_file import Launch, ProcessEntry, described, read_launch
 from roomba_ros.supervision.supervisor import Supervisor
 from roomba_ros.supervision.supervisor_node import be_supervisor_node
 
@@ -44,8 +45,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run the robot until Ctrl-C; return the exit status."""
     given = sys.argv[1:] if arguments is None else list(arguments)
     package = Path(rospkg.RosPack().get_path(_PACKAGE))
+    file = package / "launch" / "roomba_robot.launch"
     try:
-        launch = read_launch(package / "launch" / "roomba_robot.launch", given)
+        if {"-h", "--help"} & set(given):
+            print(f"usage: ./roomba run [name:=value ...]\n\n{described(file)}")
+            return 0
+        launch = read_launch(file, given)
         _refuse_second(launch)
     except RoombaError as error:
         print(f"./roomba run: {error}", file=sys.stderr)
@@ -145,8 +150,11 @@ def _be_node(entry: ProcessEntry, scripts: Path, logs: Path) -> None:
 
 def run_and_leave() -> NoReturn:
     """Run the robot, and end the process."""
-    status = main()
-    sys.stdout.flush()
-    sys.stderr.flush()
+    status = 0
+    # A program that reads its output may have heard enough.
+    with contextlib.suppress(BrokenPipeError):
+        status = main()
+        sys.stdout.flush()
+        sys.stderr.flush()
     # Not sys.exit: tearing down the interpreter takes most of a second.
     os._exit(status)

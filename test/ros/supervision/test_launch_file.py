@@ -7,7 +7,7 @@ import pytest
 from fixtures.graph import WITH_PAGE
 
 from roomba.errors import RoombaError
-from roomba_ros.supervision.launch_file import read_launch
+from roomba_ros.supervision.launch_file import described, read_launch
 
 LAUNCH = Path(__file__).resolve().parents[3] / "launch" / "roomba_robot.launch"
 
@@ -30,6 +30,13 @@ def test_its_arguments_count() -> None:
     assert "dashboard_node" not in {entry.name for entry in launch.processes}
     assert launch.parameters["/home_sim_node/home"] == "studio"
     assert launch.parameters["/robot_max_speed"] == 0.25
+
+
+def test_its_arguments_are_described() -> None:
+    lines = described(LAUNCH).splitlines()
+    assert len(lines) == 17
+    (home,) = (line for line in lines if line.startswith("  home:=flat "))
+    assert home.endswith("name of a shipped home, or path of a map_server yaml")
 
 
 @pytest.mark.parametrize(
