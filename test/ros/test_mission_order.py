@@ -77,6 +77,7 @@ class Rig:
         self.orders = MissionOrders(lambda: None, DeadlinesConfig())
         monkeypatch.setattr(Publisher, "state", self.world.state)
         monkeypatch.setattr(rospy, "Publisher", Publisher)
+        monkeypatch.setattr(rospy, "Subscriber", MagicMock())
         topics = MissionTopics(MISSION_CONFIG, PeriodsConfig(), MagicMock())
         topics.start()
         drive = MagicMock(is_taken=False)
