@@ -18,6 +18,7 @@ from nav_msgs.msg import Odometry
 from roomba_robot.msg import CleanActionGoal, VacuumState
 from roomba_robot.srv import EmergencyStop
 from std_msgs.msg import String
+from std_srvs.srv import Trigger
 
 NOTICED = 1.0
 """s of wall time; by then a process that ended or is stopped is told of."""
@@ -46,6 +47,7 @@ class Owner:
         rospy.Subscriber("/trouble", String, lambda told: self.trouble.append(told.data))
         rospy.Subscriber("/diagnostics", DiagnosticArray, self._on_diagnostics)
         wait_until(lambda: self.trouble and self.trouble[-1] == "", 60.0, lambda: f"{self.trouble}")
+        wait_until(lambda: self.state.phase, 60.0, "the state of the vacuum")
 
     def _on_state(self, state: VacuumState) -> None:
         self.state = state
@@ -57,7 +59,9 @@ class Owner:
                 self.levels[name] = status.level
 
     def cleans(self) -> None:
-        """Let it clean, and wait until some floor is clean."""
+        """Let it clean anew, and wait until some floor is clean."""
+        if self.state.phase not in ("", "docked", "idle"):
+            rospy.ServiceProxy("/stop", Trigger)()
         wait_until(lambda: self.state.phase in ("docked", "idle"), 60.0, lambda: f"{self.state}")
         self.probe.send("/clean/goal", CleanActionGoal())
         wait_until(lambda: self.state.fraction > 0.05, 60.0, lambda: f"it cleans: {self.state}")
@@ -101,8 +105,7 @@ def test_a_stopped_node_is_told_replaced_and_the_clean_goes_on(
     shared_robot: RosGraph, node: str
 ) -> None:
     owner = Owner(shared_robot)
-    if owner.state.phase != "cleaning":
-        owner.cleans()
+    owner.cleans()
     os.kill(process_of(shared_robot, node), signal.SIGSTOP)
     told = f"{node} is stopped; if it stays so, it is started anew"
     promised(lambda: told in owner.trouble, NOTICED, "it is told")
@@ -128,7 +131,7 @@ def test_a_killed_node_is_told_and_back(shared_robot: RosGraph) -> None:
     )
 
 
-@pytest.mark.parametrize("seconds", [0.2, 0.6, 1.0, 1.5, 2.0, 2.5, 3.0, 4.0])
+@pytest.mark.parametrize("seconds", [0.6, 1.5, 2.5])
 def test_ctrl_c_during_the_start_ends_it_without_a_traceback(
     tmp_path: Path, seconds: float
 ) -> None:
