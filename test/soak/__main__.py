@@ -201,12 +201,12 @@ def _until(holds: Callable[[], bool], seconds: float) -> float | None:
     return time.monotonic() - begin
 
 
-def main() -> int:
+def main(arguments: list[str] | None = None) -> int:
     """Run the robot and disturb it."""
     parser = argparse.ArgumentParser(prog="./roomba soak", description=__doc__)
     parser.add_argument("minutes", type=float, nargs="?", default=10.0)
     parser.add_argument("--seed", type=int, default=0)
-    given = parser.parse_args()
+    given = parser.parse_args(arguments)
     with tempfile.TemporaryDirectory(prefix="roomba_soak_") as name, RosGraph(Path(name)) as graph:
         graph.launch(f"home:={tiny_home(Path(name))}")
         told = Path(name) / "told"

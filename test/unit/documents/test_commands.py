@@ -27,6 +27,7 @@ MODULES = {
     "export": "roomba.commands.valetudo.export_command",
     "pictures": "roomba.commands.pictures.__main__",
     "bench": "benchmarks.__main__",
+    "soak": "soak.__main__",
     "localize": "roomba.commands.localize.command",
 }
 """The module whose ``main`` parses what follows a command; the others are told below."""
