@@ -1,7 +1,7 @@
 """The drive gate: the last link before the motors, on the side of the body.
 
-Whatever goes wrong in the brain, the wheels turn for a fresh command alone, and not while the
-emergency stop holds them.
+An error in the brain cannot drive the robot: the wheels turn for a fresh command alone, and not
+while the emergency stop holds them.
 """
 
 from __future__ import annotations

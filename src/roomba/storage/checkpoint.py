@@ -21,6 +21,8 @@ from roomba.files.plain_json import load_json
 
 Values = dict[str, Any]
 Floats = NDArray[np.float32]
+Goal = tuple[str, str, int, int]
+"""Of a client: its action, its id, and its time, s and ns."""
 
 
 class CheckpointFileError(RoombaError):
@@ -35,7 +37,7 @@ class Checkpoint(NamedTuple):
 
     values: Values
     taken_up: int = 0
-    goal: tuple[str, str, int, int] | None = None
+    goal: Goal | None = None
 
 
 def save_checkpoint(checkpoint: Checkpoint, run: str, path: Path) -> None:

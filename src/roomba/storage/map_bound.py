@@ -35,23 +35,10 @@ class MapBound(Entry):
 _File = TypeVar("_File", bound=MapBound)
 
 
-class _Dumper(yaml.SafeDumper):
-    """Escapes the line breaks of Unicode, which outside of double quotes do not come back."""
-
-
-def _text_node(dumper: yaml.SafeDumper, text: str) -> yaml.ScalarNode:
-    style = '"' if set(text) & set("\x85\u2028\u2029") else None
-    return dumper.represent_scalar("tag:yaml.org,2002:str", text, style)
-
-
-_Dumper.add_representer(str, _text_node)
-
-
 def yaml_text(value: dict[str, object]) -> str:
-    """Return a value of plain Python as YAML for people to read; any text in it comes back."""
-    return yaml.dump(
+    """Return a value of plain Python as YAML for people to read; printable text comes back."""
+    return yaml.safe_dump(
         value,
-        Dumper=_Dumper,
         sort_keys=False,
         allow_unicode=True,
         default_flow_style=None,

@@ -16,13 +16,13 @@ from roomba.perception.swept.dirt_map import DirtMap
 from roomba.storage.checkpoint import (
     Checkpoint,
     CheckpointFileError,
+    Goal,
     load_checkpoint,
     load_dirt,
     remove_checkpoint,
     save_checkpoint,
     save_dirt,
 )
-from roomba_ros.runtime.action_goal import GoalIdentity
 from roomba_ros.runtime.background import Background
 
 
@@ -39,9 +39,7 @@ class MissionMemory:
         self._not_forgotten = f"the errand is not forgotten in {self._checkpoint.name}"
         self._run = str(rospy.get_param("/run_id", ""))
         self._saved = 0.0
-        self._last: tuple[Phase, GoalIdentity | None] | None = None
-        self.goal: GoalIdentity | None = None
-        """Whose errand was taken up."""
+        self._last: tuple[Phase, Goal | None] | None = None
         self._taken_up = 0
         self._since = time.monotonic()
         self._is_there = True
@@ -56,26 +54,25 @@ class MissionMemory:
         if learned is not None:
             dirt.learned[:] = learned
 
-    def recall_errand(self, mission: Mission, senses: Senses) -> bool:
-        """Let a mission go on where it was killed; return whether it does."""
+    def recall_errand(self, mission: Mission, senses: Senses) -> Checkpoint | None:
+        """Let a mission go on where it was killed; return where that was, None if it does not."""
         try:
             found = load_checkpoint(self._checkpoint, self._run)
             if found is None:
-                return False
+                return None
             if found.taken_up >= self._config.most_taken_up:
                 raise CheckpointError(f"with it this node ended {found.taken_up} times in a row")
             self._taken_up = found.taken_up + 1
-            again = found._replace(taken_up=self._taken_up)
-            save_checkpoint(again, self._run, self._checkpoint)
+            found = found._replace(taken_up=self._taken_up)
+            save_checkpoint(found, self._run, self._checkpoint)
             mission.restore(found.values, senses)
         except (CheckpointFileError, CheckpointError, OSError) as error:
             rospy.logwarn("the errand of before is not taken up: %s", error)
-            return False
-        self.goal = None if found.goal is None else GoalIdentity(*found.goal)
+            return None
         rospy.logwarn("this node ended on an errand; it is taken up: %s", mission.state.phase.value)
-        return True
+        return found
 
-    def keep(self, mission: Mission, senses: Senses, goal: GoalIdentity | None) -> None:
+    def keep(self, mission: Mission, senses: Senses, goal: Goal | None) -> None:
         """Remember the errand and whose goal it is, if it is time to; forget it when there is none.
 
         A change is remembered at once.

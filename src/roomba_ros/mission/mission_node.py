@@ -15,6 +15,7 @@ from roomba.mission.mission import Mission, MissionStep
 from roomba.mission.phases.machine import Phase
 from roomba.perception.localization.estimate import Knowledge
 from roomba.robot.mapped_mission import MappedMission
+from roomba.storage.checkpoint import Checkpoint
 from roomba.vocabulary import listed
 from roomba_ros.mission.drive import MissionDrive
 from roomba_ros.mission.goals import Ended
@@ -195,22 +196,23 @@ class MissionNode:
         self._memory = self._memory_by(home.digest)
         if not home.context.is_growing:
             self._memory.recall_dirt(mission.dirt)
-        if self._memory.recall_errand(mission, senses) or self._recall_growing(mission, senses):
-            self._orders.adopt(self._memory.goal)
+        found = self._memory.recall_errand(mission, senses)
+        found = found or self._recall_growing(mission, senses)
+        if found is not None:
+            self._orders.adopt(found.goal)
             self._drive.take()
 
-    def _recall_growing(self, mission: Mission, senses: Senses) -> bool:
+    def _recall_growing(self, mission: Mission, senses: Senses) -> Checkpoint | None:
         """Take up what was under way on this map while it was being made."""
         if mission.context.is_growing:
-            return False
+            return None
         memory = self._memory_by(GROWING)
-        if not memory.recall_errand(mission, senses):
-            return False
-        assert self._memory is not None
-        self._memory.goal = memory.goal
-        self._memory.keep(mission, senses, memory.goal)
-        memory.forget_errand()
-        return True
+        found = memory.recall_errand(mission, senses)
+        if found is not None:
+            assert self._memory is not None
+            self._memory.keep(mission, senses, found.goal)
+            memory.forget_errand()
+        return found
 
     def _memory_by(self, digest: str) -> MissionMemory:
         robot = rospy.get_namespace().strip("/") or "robot"

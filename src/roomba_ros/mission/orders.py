@@ -20,6 +20,7 @@ from roomba.errors import RoombaError
 from roomba.mission.inputs.senses import Senses
 from roomba.mission.mission import Mission
 from roomba.mission.phases.machine import Event, Phase
+from roomba.storage.checkpoint import Goal
 from roomba_ros.convert.values import data_of
 from roomba_ros.mission.goals import GOALS, Ended, MissionGoal
 from roomba_ros.runtime.action_goal import GoalIdentity, server_of
@@ -103,10 +104,11 @@ class MissionOrders:
         """The goal of the errand that is under way, if a client gave it."""
         return None if self._goal is None else self._goal.identity
 
-    def adopt(self, identity: GoalIdentity | None) -> None:
+    def adopt(self, goal: Goal | None) -> None:
         """Serve the goal of an errand that was taken up: its client waits for the end of it."""
-        if identity is None or self._serves:
+        if goal is None or self._serves:
             return
+        identity = GoalIdentity(*goal)
         for kind, server in zip(GOALS, self._servers, strict=True):
             if kind.name == identity.action:
                 self._goal = kind(server.adopt(identity))

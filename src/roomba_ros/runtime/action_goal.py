@@ -63,7 +63,7 @@ class ActionGoal(ABC):
 
 
 class SteadyActionServer(actionlib.ActionServer):
-    """The library's server, which tells the states of its goals whatever the robot's clock does.
+    """The library's server, which tells the states of its goals also when the clock is set.
 
     The library has a timer for that by the ROS clock, which ends when that clock is set back:
     clients then take the server for gone.

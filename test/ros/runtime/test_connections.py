@@ -23,7 +23,7 @@ from std_msgs.msg import Float32, String
 from roomba_ros.runtime.connections import HANDSHAKE, LARGEST_MESSAGE
 
 ANSWERED = 1.0
-"""s of wall time; by then a call is answered, whatever else is connected."""
+"""s of wall time; by then a call is answered, also while other connections are silent."""
 
 
 @pytest.fixture(scope="module")
