@@ -28,6 +28,7 @@ NODE = "a part of a node, tested with the node in a graph"
 WARM = "compiles ahead of time what others test"
 
 TESTED_BY: dict[str, tuple[str, str]] = {
+    "roomba_ros/supervision/launch_xml": ("ros/supervision/test_launch_file.py", VALUES),
     "roomba_ros/supervision/run": ("system/faults/test_supervision.py", NODE),
     "roomba/client/clock": ("unit/client/fake/test_robot.py", VALUES),
     "roomba/client/fake/": ("unit/client/fake/test_robot.py", "one robot in three files"),

@@ -8,15 +8,16 @@ from __future__ import annotations
 
 import json
 import os
-import sys
-import xml.etree.ElementTree as ElementTree
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 from roomba.errors import RoombaError
 from roomba.files.strict_yaml import suggestion
+from roomba_ros.supervision.fork import fork
+from roomba_ros.supervision.launch_xml import elements
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,11 +40,10 @@ class ProcessEntry:
 
 @dataclass(frozen=True, slots=True)
 class Launch:
-    """All of a launch file: processes, parameters by full name, environment of all processes."""
+    """All of a launch file: processes, and parameters by full name."""
 
     processes: tuple[ProcessEntry, ...]
     parameters: dict[str, Any]
-    environment: dict[str, str]
 
 
 def described(path: Path) -> str:
@@ -51,13 +51,13 @@ def described(path: Path) -> str:
     return "\n".join(
         f"  {argument.get('name')}:={argument.get('default', '')}".ljust(34)
         + argument.get("doc", "")
-        for argument in _arguments(path)
+        for argument in elements(path, "arg")
     )
 
 
 def check_arguments(path: Path, arguments: Sequence[str]) -> None:
     """Raise RoombaError for an argument that is no ``name:=value``, or that the file lacks."""
-    known = [str(argument.get("name")) for argument in _arguments(path)]
+    known = [str(argument.get("name")) for argument in elements(path, "arg")]
     for argument in arguments:
         name, sign, _ = argument.partition(":=")
         if not sign or not name:
@@ -67,20 +67,11 @@ def check_arguments(path: Path, arguments: Sequence[str]) -> None:
             raise RoombaError(f"expected a known argument, got {name!r}; {suggestion(name, known)}")
 
 
-def _arguments(path: Path) -> list[ElementTree.Element]:
-    try:
-        return ElementTree.parse(path).getroot().findall("arg")
-    except (OSError, ElementTree.ParseError) as error:
-        raise RoombaError(f"{path}: expected a launch file: {error}") from error
-
-
 def read_launch(path: Path, arguments: Sequence[str]) -> Launch:
     """Return what a launch file says; raises RoombaError with the reason."""
     check_arguments(path, arguments)
     reading, writing = os.pipe()
-    child = os.fork()
-    if child == 0:
-        _tell(path, arguments, writing)
+    child = fork(partial(_tell, path, arguments, writing))
     os.close(writing)
     with open(reading, encoding="utf-8") as pipe:
         told = pipe.read()
@@ -91,19 +82,17 @@ def read_launch(path: Path, arguments: Sequence[str]) -> Launch:
     if "error" in found:
         raise RoombaError(f"{path}: {found['error']}")
     processes = tuple(ProcessEntry(**entry) for entry in found["processes"])
-    return Launch(processes, found["parameters"], found["environment"])
+    return Launch(processes, found["parameters"])
 
 
 def _tell(path: Path, arguments: Sequence[str], pipe: int) -> None:
-    """Read the file, write what it says into a pipe as JSON, and end this process."""
+    """Read the file, and write what it says into a pipe as JSON."""
     try:
         text = json.dumps(_loaded(path, arguments))
     except Exception as error:  # the library raises many kinds, and this process ends with it
         text = json.dumps({"error": str(error)})
     with open(pipe, "w", encoding="utf-8") as writing:
         writing.write(text)
-    sys.stdout.flush()
-    os._exit(0)
 
 
 def _loaded(path: Path, arguments: Sequence[str]) -> dict[str, Any]:
@@ -112,7 +101,6 @@ def _loaded(path: Path, arguments: Sequence[str]) -> dict[str, Any]:
 
     config: Any = ROSLaunchConfig()
     XmlLoader().load(str(path), config, argv=list(arguments), verbose=False)
-    environment = {name: value for node in config.nodes for name, value in node.env_args}
     return {
         "processes": [
             {
@@ -124,5 +112,4 @@ def _loaded(path: Path, arguments: Sequence[str]) -> dict[str, Any]:
             for node in config.nodes
         ],
         "parameters": {parameter.key: parameter.value for parameter in config.params.values()},
-        "environment": environment,
     }

@@ -30,12 +30,12 @@ from roomba_ros.runtime.alone import living
 from roomba_ros.runtime.senders import SUPERVISOR
 from roomba_ros.supervision.kept_master import be_master, wait_for_master
 from roomba_ros.supervision.launch_file import Launch, ProcessEntry, described, read_launch
+from roomba_ros.supervision.launch_xml import launch_file, package_folder
 from roomba_ros.supervision.supervisor import Supervisor
 from roomba_ros.supervision.supervisor_node import be_supervisor_node
 
 USAGE: Final = 2
 """The exit status for a wrong argument."""
-_PACKAGE: Final = "roomba_robot"
 _CALLER: Final = "/roomba_run"
 _MASTER_WITHIN: Final = 20.0
 """s of wall time in which the master answers, on a busy machine too."""
@@ -44,8 +44,7 @@ _MASTER_WITHIN: Final = 20.0
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the robot until Ctrl-C; return the exit status."""
     given = sys.argv[1:] if arguments is None else list(arguments)
-    package = Path(rospkg.RosPack().get_path(_PACKAGE))
-    file = package / "launch" / "roomba_robot.launch"
+    file = launch_file()
     try:
         if {"-h", "--help"} & set(given):
             print(f"usage: ./roomba run [name:=value ...]\n\n{described(file)}")
@@ -55,16 +54,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except RoombaError as error:
         print(f"./roomba run: {error}", file=sys.stderr)
         return USAGE
-    if _adopt(launch.environment):
-        os.execv(sys.executable, [sys.executable, "-m", "roomba_ros.supervision", *given])
-    return _run(launch, package / "scripts")
-
-
-def _adopt(environment: dict[str, str]) -> bool:
-    """Set what the C library reads when a process starts; return whether that changed anything."""
-    before = dict(os.environ)
-    os.environ.update(environment)
-    return dict(os.environ) != before
+    return _run(launch, package_folder() / "scripts")
 
 
 def _run(launch: Launch, scripts: Path) -> int:

@@ -14,8 +14,7 @@ from rosgraph_msgs.msg import Log
 from std_msgs.msg import String
 
 from roomba_ros.convert.diagnostics import processes_message
-from roomba_ros.runtime.heart import HEART
-from roomba_ros.runtime.node import leave, register, told_to_end
+from roomba_ros.runtime.node import leave, register, settle, told_to_end
 from roomba_ros.runtime.senders import SUPERVISOR
 
 _PERIOD: Final = 1.0
@@ -74,7 +73,7 @@ def be_supervisor_node(pipe: int) -> None:
     node, selector = SupervisorNode(pipe), selectors.DefaultSelector()
     os.set_blocking(pipe, False)
     selector.register(pipe, selectors.EVENT_READ)
-    HEART.begin()
+    settle()
     while not told_to_end():
         selector.select(_LOOK)
         try:

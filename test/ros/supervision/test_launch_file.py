@@ -8,6 +8,7 @@ from fixtures.graph import WITH_PAGE
 
 from roomba.errors import RoombaError
 from roomba_ros.supervision.launch_file import described, read_launch
+from roomba_ros.supervision.launch_xml import environment_of
 
 LAUNCH = Path(__file__).resolve().parents[3] / "launch" / "roomba_robot.launch"
 
@@ -21,7 +22,7 @@ def test_it_has_the_nodes_of_the_graph_and_the_body_is_required() -> None:
         assert (LAUNCH.parents[1] / "scripts" / entry.script).is_file()
     assert launch.parameters["/robot_max_speed"] == 0.5
     assert launch.parameters["/use_sim_time"] is True
-    assert launch.environment["MALLOC_ARENA_MAX"] == "1"
+    assert environment_of(LAUNCH)["MALLOC_ARENA_MAX"] == "1"
     json.dumps(launch.parameters)
 
 
