@@ -126,13 +126,13 @@ class Soak:
         """Do something to a process; note when that was told, and when all was well again."""
         row = self.rows.setdefault(what, Row())
         row.times += 1
-        old, told = self._process(name), len(self._trouble)
+        old, told = self._graph.process(name), len(self._trouble)
         os.kill(old, number)
         if name != "supervisor_node":
             self._note(row, row.noticed, "noticed", NOTICED, lambda: any(self._trouble[told:]))
 
         def is_well() -> bool:
-            return self._process(name) != old and self._is_well(name)
+            return self._graph.process(name) != old and self._is_well(name)
 
         self._note(row, row.back, "back", back, is_well)
         self._goes_on(row)
@@ -174,12 +174,6 @@ class Soak:
         if name == "master":
             return self._graph.master_answers()
         return self._trouble[-1] == "" and self._graph.answers(name)
-
-    def _process(self, name: str) -> int:
-        """Return the id of a process's newest start."""
-        lines = self._graph.programs[0].output.splitlines()
-        starts = [line for line in lines if f"[supervisor] {name}: started" in line]
-        return int(starts[-1].rpartition(" ")[2])
 
     def table(self) -> str:
         """Return what came of it all."""

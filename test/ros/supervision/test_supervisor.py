@@ -8,7 +8,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from fixtures.processes import Program
+from fixtures.processes import Program, is_running
 from fixtures.waiting import wait_until
 
 HEAD = """
@@ -80,13 +80,6 @@ def run(tmp_path: Path, request: pytest.FixtureRequest) -> Callable[..., Supervi
 Run = Callable[..., Supervised]
 
 
-def is_there(pid: int) -> bool:
-    try:
-        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
-    except FileNotFoundError:
-        return False
-
-
 def test_a_killed_process_is_back_and_the_others_stay(run: Run) -> None:
     robot = run("supervisor.add('one', live)", "supervisor.add('two', live)")
     one, two = robot.starts("one", 1), robot.starts("two", 1)
@@ -113,7 +106,7 @@ def test_a_process_that_keeps_ending_is_given_up_and_the_others_go_on(run: Run) 
     robot = run("supervisor.add('one', live)", "supervisor.add('two', lambda: sys.exit(7))")
     robot.program.says("two keeps ending (ended with status 7) and is not started any more", 20.0)
     assert len(robot.pids("two")) == 4
-    assert is_there(robot.starts("one", 1))
+    assert is_running(robot.starts("one", 1))
     assert robot.program.status is None
 
 
@@ -123,7 +116,7 @@ def test_all_end_with_a_required_one_and_with_its_status(run: Run) -> None:
         "supervisor.add('two', lambda: sys.exit(3), is_required=True)",
     )
     assert robot.program.ends(20.0) == 3
-    assert not is_there(robot.pids("one")[0])
+    assert not is_running(robot.pids("one")[0])
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
@@ -136,14 +129,14 @@ def test_told_to_end_all_end_and_the_stubborn_are_killed(run: Run, number: signa
     assert robot.program.ends(20.0) == 0
     assert "two has not ended yet: SIGKILL" in robot.program.output
     assert "one has not ended yet" not in robot.program.output
-    assert not any(map(is_there, pids))
+    assert not any(map(is_running, pids))
 
 
 def test_all_end_when_the_supervisor_is_killed(run: Run) -> None:
     robot = run("supervisor.add('one', live)", "supervisor.add('two', stubborn)")
     pids = [robot.starts("one", 1), robot.starts("two", 1)]
     robot.program.send_to_leader(signal.SIGKILL)
-    wait_until(lambda: not any(map(is_there, pids)), 10.0, "all ended")
+    wait_until(lambda: not any(map(is_running, pids)), 10.0, "all ended")
 
 
 def test_each_change_is_told_to_the_pipe(run: Run) -> None:

@@ -13,6 +13,7 @@ from actionlib_msgs.msg import GoalStatus
 from fixtures.forked import run_forked
 from fixtures.graph import LAUNCHED, RosGraph
 from fixtures.probe import Probe, Walker
+from fixtures.processes import is_running
 from fixtures.waiting import promised, wait_until
 from nav_msgs.msg import Odometry
 from roomba_robot.msg import RobotPosition
@@ -73,7 +74,7 @@ def test_at_a_faster_clock_it_walks_and_ctrl_c_ends_it_without_violence(tmp_path
         pids = [graph.pid(node) for node in LAUNCHED]
         launch.send_to_leader(signal.SIGINT)
         promised(lambda: launch.status is not None, ENDED, "it has ended")
-        assert not [pid for pid in pids if alive(pid)]
+        assert not [pid for pid in pids if is_running(pid)]
         assert launch.status == 0
         assert "has not ended yet" not in launch.output
 
@@ -157,16 +158,7 @@ def test_a_server_told_to_end_ends_and_the_robot_stops(shared_robot: RosGraph) -
 
 
 def wait_until_ended(pid: int) -> None:
-    wait_until(lambda: not alive(pid), 10.0, "the server ends")
-
-
-def alive(pid: int) -> bool:
-    try:
-        state = Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()[0]
-    except (FileNotFoundError, ProcessLookupError):
-        return False
-    # A process that ended but was not waited for yet is no more.
-    return state != "Z"
+    wait_until(lambda: not is_running(pid), 10.0, "the server ends")
 
 
 def test_a_killed_position_node_keeps_the_pose(shared_robot: RosGraph) -> None:

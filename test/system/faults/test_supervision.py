@@ -72,13 +72,6 @@ class Owner:
         wait_until(lambda: self.state.covered > before + 0.02, 30.0, lambda: f"{self.state}")
 
 
-def process_of(graph: RosGraph, name: str) -> int:
-    """Return the id of a process's newest start."""
-    lines = graph.programs[0].output.splitlines()
-    starts = [line for line in lines if f"[supervisor] {name}: started" in line]
-    return int(starts[-1].rpartition(" ")[2])
-
-
 def test_a_new_master_knows_all_and_the_clean_goes_on(shared_robot: RosGraph) -> None:
     owner = Owner(shared_robot)
     owner.cleans()
@@ -87,7 +80,7 @@ def test_a_new_master_knows_all_and_the_clean_goes_on(shared_robot: RosGraph) ->
     rospy.sleep(1.0)
     hold = rospy.ServiceProxy("/emergency_stop", EmergencyStop, persistent=True)
     assert hold(False, "").success
-    os.kill(process_of(shared_robot, "master"), signal.SIGKILL)
+    os.kill(shared_robot.process("master"), signal.SIGKILL)
     # By a connection from before, the emergency stop works without a master.
     assert hold(False, "").success
     promised(lambda: shared_robot.master_answers(), BACK, "a master answers")
@@ -106,7 +99,7 @@ def test_a_stopped_node_is_told_replaced_and_the_clean_goes_on(
 ) -> None:
     owner = Owner(shared_robot)
     owner.cleans()
-    os.kill(process_of(shared_robot, node), signal.SIGSTOP)
+    os.kill(shared_robot.process(node), signal.SIGSTOP)
     told = f"{node} is stopped; if it stays so, it is started anew"
     promised(lambda: told in owner.trouble, NOTICED, "it is told")
     wait_until(lambda: owner.levels.get(node) == DiagnosticStatus.ERROR, 5.0, "as diagnostics too")
