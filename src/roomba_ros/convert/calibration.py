@@ -9,7 +9,7 @@ from geometry_msgs.msg import Pose2D
 
 from roomba.geometry import Pose
 from roomba.perception.calibration.calibration import Calibration
-from roomba_ros.convert.common import stamp_of
+from roomba_ros.convert.common import header
 from roomba_ros.convert.errors import MessageError, require_finite
 
 _MOST: Final = 0.5
@@ -45,6 +45,4 @@ def calibration_message(now: float, calibration: Calibration, robot: str) -> Dia
             for name, value, deviation, unit in calibration.told()
         ],
     )
-    message = DiagnosticArray(status=[status])
-    message.header.stamp = stamp_of(now)
-    return message
+    return DiagnosticArray(header(now, ""), [status])

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 
-from roomba_ros.convert.common import stamp_of
+from roomba_ros.convert.common import header
 
 
 def refused_message(
@@ -25,15 +25,14 @@ def refused_message(
         hardware_id=node,
         values=[KeyValue(topic, str(count)) for topic, count in sorted(counts.items())],
     )
-    message = DiagnosticArray(status=[status])
-    message.header.stamp = stamp_of(now)
-    return message
+    return DiagnosticArray(header(now, ""), [status])
 
 
 def processes_message(now: float, trouble: Mapping[str, str]) -> DiagnosticArray:
     """Return how the robot's processes are: by name what is wrong, empty when all is well."""
-    message = DiagnosticArray(
-        status=[
+    return DiagnosticArray(
+        header(now, ""),
+        [
             DiagnosticStatus(
                 level=DiagnosticStatus.ERROR if said else DiagnosticStatus.OK,
                 name=f"{name}: process",
@@ -41,7 +40,5 @@ def processes_message(now: float, trouble: Mapping[str, str]) -> DiagnosticArray
                 hardware_id=name,
             )
             for name, said in sorted(trouble.items())
-        ]
+        ],
     )
-    message.header.stamp = stamp_of(now)
-    return message

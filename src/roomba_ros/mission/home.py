@@ -53,6 +53,11 @@ GROWING: Final = "growing"
 """The digest of maps that are being made."""
 MOST_FINE_CELLS: Final = 40_000_000
 """Of a map that is cleaned: 4,000 m2, its walls and surroundings included."""
+_LAST_EDIT: Final = 0.1
+"""s of wall time without another edit, after which a context is made; of many edits there is one.
+
+Until there is one the robot stands.
+"""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -70,13 +75,6 @@ class KnownHome:
         """Whether station or zones are others than before: that is obeyed at once."""
         now, then = self.context, before.context
         return (now.station, now.zones) != (then.station, then.zones)
-
-
-_LAST_EDIT: Final = 0.1
-"""s of wall time without another edit, after which a context is made; of many edits there is one.
-
-Until there is one the robot stands.
-"""
 
 
 class HomeTopics:

@@ -11,12 +11,11 @@ import rospy
 from diagnostic_msgs.msg import DiagnosticArray
 from fixtures.graph import LAUNCHED, RosGraph
 from fixtures.malformed import CANNOT_BE_WRONG, has_numbers, malformed, not_finite
-from fixtures.probe import Probe
+from fixtures.onlooker import Onlooker
 from fixtures.tiny_home import tiny_home
 from fixtures.waiting import wait_until
 from geometry_msgs.msg import PoseStamped, Twist
 from nav_msgs.msg import Odometry
-from roomba_robot.msg import CleanActionGoal, VacuumState
 from roomba_robot.srv import EmergencyStop
 from rosgraph_msgs.msg import Log
 from roslib.message import get_message_class
@@ -39,22 +38,15 @@ def shared_robot(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RosGraph]
         yield own
 
 
-class Witness:
+class Witness(Onlooker):
     """Hears what the vacuum does, what nodes log, and what they say that they refused."""
 
     def __init__(self, graph: RosGraph) -> None:
-        self.probe = Probe(graph)
-        self.state = VacuumState()
-        self.states: list[str] = []
+        super().__init__(graph)
         self.lines: Counter[str] = Counter()
         self.counts: Counts = {}
-        rospy.Subscriber("/vacuum/state", VacuumState, self._on_state)
         rospy.Subscriber("/rosout", Log, self._on_line)
         rospy.Subscriber("/diagnostics", DiagnosticArray, self._on_diagnostics)
-
-    def _on_state(self, message: VacuumState) -> None:
-        self.states.append(message.state)
-        self.state = message
 
     def _on_line(self, line: Log) -> None:
         node = line.name.strip("/")
@@ -80,22 +72,10 @@ class Witness:
             lambda: f"{what}: {missing(expected, self.counts)}",
         )
 
-    def cleans(self) -> None:
-        """Wait until it cleans."""
-        ready = ("docked", "idle")
-        wait_until(lambda: self.state.phase in ready, 60.0, lambda: f"ready: {self.state}")
-        self.probe.send("/clean/goal", CleanActionGoal())
-        wait_until(lambda: self.state.fraction > 0.05, 60.0, lambda: f"it cleans: {self.state}")
-
     def stops(self) -> None:
         """Let it end what it does."""
         assert rospy.ServiceProxy("/stop", Trigger)().success
         wait_until(lambda: self.state.phase == "idle", 30.0, lambda: f"it stops: {self.state}")
-
-    def goes_on(self) -> None:
-        """Wait until more is clean than was at the call."""
-        before = self.state.covered
-        wait_until(lambda: self.state.covered > before + 0.02, 30.0, lambda: f"{self.state}")
 
 
 def heard(graph: RosGraph) -> dict[str, tuple[str, list[str]]]:

@@ -11,11 +11,11 @@ import rospy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from fixtures.forked import run_forked
 from fixtures.graph import LAUNCHED, RosGraph
+from fixtures.onlooker import Onlooker
 from fixtures.probe import Probe
 from fixtures.tiny_home import tiny_home
 from fixtures.waiting import promised, wait_until
 from nav_msgs.msg import Odometry
-from roomba_robot.msg import CleanActionGoal, VacuumState
 from roomba_robot.srv import EmergencyStop
 from std_msgs.msg import String
 from std_srvs.srv import Trigger
@@ -35,22 +35,17 @@ def shared_robot(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RosGraph]
         yield own
 
 
-class Owner:
-    """One who looks at the robot, and lets it clean."""
+class Owner(Onlooker):
+    """Hears what the vacuum does, and how the robot's processes are."""
 
     def __init__(self, graph: RosGraph) -> None:
-        self.probe = Probe(graph, "owner")
-        self.state = VacuumState()
+        super().__init__(graph)
         self.trouble: list[str] = []
         self.levels: dict[str, int] = {}
-        rospy.Subscriber("/vacuum/state", VacuumState, self._on_state)
         rospy.Subscriber("/trouble", String, lambda told: self.trouble.append(told.data))
         rospy.Subscriber("/diagnostics", DiagnosticArray, self._on_diagnostics)
         wait_until(lambda: self.trouble and self.trouble[-1] == "", 60.0, lambda: f"{self.trouble}")
         wait_until(lambda: self.state.phase, 60.0, "the state of the vacuum")
-
-    def _on_state(self, state: VacuumState) -> None:
-        self.state = state
 
     def _on_diagnostics(self, message: DiagnosticArray) -> None:
         for status in message.status:
@@ -62,14 +57,7 @@ class Owner:
         """Let it clean anew, and wait until some floor is clean."""
         if self.state.phase not in ("", "docked", "idle"):
             rospy.ServiceProxy("/stop", Trigger)()
-        wait_until(lambda: self.state.phase in ("docked", "idle"), 60.0, lambda: f"{self.state}")
-        self.probe.send("/clean/goal", CleanActionGoal())
-        wait_until(lambda: self.state.fraction > 0.05, 60.0, lambda: f"it cleans: {self.state}")
-
-    def goes_on(self) -> None:
-        """Wait until more is clean than was at the call."""
-        before = self.state.covered
-        wait_until(lambda: self.state.covered > before + 0.02, 30.0, lambda: f"{self.state}")
+        super().cleans()
 
 
 def test_a_new_master_knows_all_and_the_clean_goes_on(shared_robot: RosGraph) -> None:
