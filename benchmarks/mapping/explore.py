@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from benchmarks.coverage.clean import home_named, true_floor
 from benchmarks.coverage.floor import drawn
 from roomba.commands.map.runs import Drawn, run_trial
-from roomba.commands.sim.trial import Trial
+from roomba.commands.trials.trial import Trial
 from roomba.configuration.docking import DockingConfig
 from roomba.configuration.mapping import MappingConfig
 from roomba.configuration.simulation import SimulatedRobotConfig

@@ -40,7 +40,7 @@ from benchmarks.coverage.rows import (
     over_time_rows,
 )
 from benchmarks.record import PeerFigure, Record
-from roomba.commands.sim.warm import warm_up
+from roomba.commands.trials.warm import warm_up
 from roomba.world.home.home import Home
 
 _SHIPPED = ("empty", "lshape", "apartment", "flat", "studio", "family")

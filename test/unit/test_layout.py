@@ -47,7 +47,7 @@ TESTED_BY: dict[str, tuple[str, str]] = {
     "roomba/commands/report/": ("unit/commands/report/test_command.py", COMMAND),
     "roomba/commands/sim/": ("unit/commands/sim/test_command.py", COMMAND),
     "roomba/commands/status/": ("unit/commands/status/test_command.py", COMMAND),
-    "roomba/commands/telling": ("unit/commands/map/test_command.py", COMMAND),
+    "roomba/commands/trials/": ("unit/commands/trials/test_runs.py", COMMAND),
     "roomba/commands/valetudo/": ("unit/commands/valetudo/test_valetudo_commands.py", COMMAND),
     "roomba/commands/warm_up": ("system/test_one_command.py", WARM),
     "roomba/configuration/": ("unit/configuration/test_robot.py", "numbers with their limits"),
@@ -200,7 +200,6 @@ TESTED_BY: dict[str, tuple[str, str]] = {
 
 LARGE_FOLDERS = {
     "benchmarks/peers": "one script a peer",
-    "src/roomba/commands/sim": "one command: its options, runs, figures and what they are told in",
     "test/fixtures": "one file a fixture",
     "test/ros": "one file a node",
 }

@@ -12,8 +12,8 @@ from web.conftest import SIZES
 from web.test_page import CONTRASTS, CONTROLS, DEADLINE
 
 from roomba.commands.sim.kept_run import StateSamples, figures_of, recording_of
-from roomba.commands.sim.runs import run_trial
-from roomba.commands.sim.trial import Trial
+from roomba.commands.trials.runs import run_trial
+from roomba.commands.trials.trial import Trial
 from roomba.history.replay import RecordedRobot
 from roomba.history.run import RunFigures, RunRecording, RunSource
 from roomba.ui.web.app import create_app

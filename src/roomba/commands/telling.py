@@ -3,17 +3,37 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any, Final
 
 from rich.console import Console
 from rich.table import Table
+from rich.text import Text
 
 STANDARD_OUTPUT: Final = "-"
 """In place of a file's name."""
 _WIDTH: Final = 120
 """Columns of a table that does not go to a terminal."""
+
+
+def named_table(rows: Iterable[tuple[str, str]], styles: Mapping[str, str] | None = None) -> Table:
+    """Return a table of names and texts; ``styles`` has rich's style of a text by its name."""
+    table = Table.grid(padding=(0, 2))
+    table.add_column(style="bold", no_wrap=True)
+    table.add_column(overflow="fold")
+    for name, text in rows:
+        table.add_row(name, Text(text, (styles or {}).get(name, "")))
+    return table
+
+
+def clock(seconds: float) -> str:
+    """Return a time for people."""
+    minutes, rest = divmod(round(seconds), 60)
+    hours, minutes = divmod(minutes, 60)
+    if hours:
+        return f"{hours} h {minutes:02d} min"
+    return f"{minutes} min {rest:02d} s" if minutes else f"{rest} s"
 
 
 def tell_tables(tables: Iterable[Table], figures: str | None, *, quiet: bool) -> None:

@@ -1,7 +1,7 @@
 """Compiles the hot loops once, so that the first start of the robot is as quick as every other.
 
 Numba keeps what it compiled in a cache on disk; ``./roomba`` runs this after each build, and beside
-it :mod:`roomba.commands.sim.warm` and :mod:`roomba.commands.map.warm`, for all that cleans and
+it :mod:`roomba.commands.trials.warm` and :mod:`roomba.commands.map.warm`, for all that cleans and
 maps need.
 """
 

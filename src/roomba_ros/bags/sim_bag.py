@@ -19,7 +19,7 @@ from rosgraph_msgs.msg import Clock
 from tf2_msgs.msg import TFMessage
 
 from roomba.commands.sim.command import main as simulate
-from roomba.commands.sim.runs import TrialSetup
+from roomba.commands.trials.runs import TrialSetup
 from roomba.control.path_tracker import PathTracker
 from roomba.grid import FREE, OCCUPIED, UNKNOWN, OccupancyMap
 from roomba.headless.cleaner import HeadlessMission

@@ -10,9 +10,9 @@ import time
 
 from roomba.commands.localize.options import PROGRAM, LocalizeOptions, options_of
 from roomba.commands.map.command import COMPLETED, guarded
+from roomba.commands.options import UsageError
 from roomba.commands.progress import progress
-from roomba.commands.sim.trial import UsageError
-from roomba.commands.telling import tell_tables, write_json
+from roomba.commands.telling import named_table, tell_tables, write_json
 from roomba.files.occupancy_map import load_map
 from roomba.geometry import Pose
 from roomba.grid import OccupancyMap
@@ -26,7 +26,7 @@ def main(arguments: list[str] | None = None) -> int:
 def _run(options: LocalizeOptions) -> int:
     # Imported here: it takes a second, and a mistyped option should be reported at once.
     from roomba.commands.localize.localized import localized_drive
-    from roomba.commands.localize.report import summary_of, table_of
+    from roomba.commands.localize.report import lines_of, summary_of
 
     occupancy = load_map(options.map)
     if options.start is not None:
@@ -41,7 +41,7 @@ def _run(options: LocalizeOptions) -> int:
 
         title = f"{done.name} on {options.map.name}"
         write_plot(options.plot, occupancy, done.placed_rows, done.tally.losses, title)
-    tell_tables([table_of(summary)], options.json, quiet=options.quiet)
+    tell_tables([named_table(lines_of(summary))], options.json, quiet=options.quiet)
     if options.json is not None:
         write_json(options.json, summary.as_json())
     return COMPLETED

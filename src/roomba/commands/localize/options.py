@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Final
 
 from roomba.commands.map.drive.options import DRIVES, add_read, wanted_of
-from roomba.commands.map.options import Parser, check_written, file_of, finite
+from roomba.commands.options import Parser, check_written, file_of, finite
 from roomba.commands.spelling import spelled
 from roomba.geometry import Pose
 from roomba.recordings.choice import Wanted
@@ -67,30 +67,22 @@ def options_of(arguments: list[str] | None) -> LocalizeOptions:
 
 def _parser() -> Parser:
     parser = Parser(
+        PROGRAM,
         f"Localize a recorded drive on a map, of any robot with {DRIVES}",
         "The start is what --start says, else the first pose that was recorded on initialpose or "
         "amcl_pose, else it is searched for in the whole map. Lengths in m, angles in rad, map "
         "frame.",
-        PROGRAM,
     )
     parser.add_argument("--map", type=Path, required=True, metavar="FILE.yaml")
     parser.add_argument(
         "--start", type=finite, nargs=3, metavar=("X", "Y", "THETA"), help="where it begins"
     )
     add_read(parser)
-    told = parser.add_argument_group("what is told")
-    told.add_argument(
-        "--json",
-        nargs="?",
-        const="-",
-        metavar="FILE|-",
-        help="all figures, for programs; -, or nothing: standard output",
-    )
+    told = parser.add_told("all figures", "the path on the map")
     told.add_argument("--csv", type=Path, metavar="FILE", help="the path, and how sure it is")
     told.add_argument(
         "--trajectory", type=Path, metavar="FILE", help="the path alone: lines 't x y theta'"
     )
-    told.add_argument("--plot", type=Path, metavar="FILE.png", help="the path on the map")
     told.add_argument(
         "--output",
         type=Path,
@@ -98,5 +90,4 @@ def _parser() -> Parser:
         help="/pose, /amcl_pose, /localization and /tf as a bag of ROS 1, to be played beside the "
         "recorded one",
     )
-    told.add_argument("--quiet", action="store_true", help="no progress and no table")
     return parser

@@ -6,8 +6,6 @@ from dataclasses import asdict, dataclass
 from typing import Any, Final
 
 import numpy as np
-from rich.table import Table
-from rich.text import Text
 
 from roomba.commands.localize.localized import LocalizedDrive
 from roomba.commands.localize.tally import Difference, Loss
@@ -78,16 +76,6 @@ def summary_of(done: LocalizedDrive, processing: float) -> LocalizationSummary:
         stamps_told=done.stamps.words,
         notes=done.notes,
     )
-
-
-def table_of(summary: LocalizationSummary) -> Table:
-    """Return the figures as a table."""
-    table = Table.grid(padding=(0, 2))
-    table.add_column(style="bold", no_wrap=True)
-    table.add_column(overflow="fold")
-    for name, text in lines_of(summary):
-        table.add_row(name, Text(text))
-    return table
 
 
 def lines_of(summary: LocalizationSummary) -> list[tuple[str, str]]:

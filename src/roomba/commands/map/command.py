@@ -9,8 +9,8 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Final
 
 from roomba.commands.map.options import PROGRAM, MapOptions, Output, options_of
+from roomba.commands.options import UsageError
 from roomba.commands.progress import Show, progress
-from roomba.commands.sim.trial import UsageError
 from roomba.commands.telling import tell_tables, write_json
 from roomba.errors import RoombaError
 
@@ -79,7 +79,7 @@ def _explore(options: MapOptions) -> int:
 def _shown_by(show: Show, scene: MapScene) -> RunObserver:
     import numpy as np
 
-    from roomba.commands.sim.report import clock
+    from roomba.commands.telling import clock
     from roomba.grid import FREE
 
     all_of_it = float(np.count_nonzero(scene.seen)) * scene.home.frame.resolution**2

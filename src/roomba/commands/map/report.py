@@ -5,10 +5,9 @@ from __future__ import annotations
 import math
 
 from rich.table import Table
-from rich.text import Text
 
 from roomba.commands.map.runs import Drawn, MapRun
-from roomba.commands.sim.report import clock
+from roomba.commands.telling import clock, named_table
 
 
 def run_lines(run: MapRun) -> list[tuple[str, str]]:
@@ -43,13 +42,7 @@ def error_lines(drawn: Drawn) -> list[tuple[str, str]]:
 
 def run_table(run: MapRun) -> Table:
     """Return the table of what happened."""
-    table = Table.grid(padding=(0, 2))
-    table.add_column(style="bold", no_wrap=True)
-    table.add_column(overflow="fold")
-    for name, text in run_lines(run):
-        style = "" if name != "outcome" else "green" if run.is_completed else "red"
-        table.add_row(name, Text(text, style))
-    return table
+    return named_table(run_lines(run), {"outcome": "green" if run.is_completed else "red"})
 
 
 def error_table(run: MapRun) -> Table:

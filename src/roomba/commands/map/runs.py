@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 from roomba.commands.map.blind_map import BlindMap
 from roomba.commands.map.map_error import MapError, map_error
 from roomba.commands.map.seen_floor import seen_floor
-from roomba.commands.sim.homes import home_of
-from roomba.commands.sim.runs import mission_config, robot_config_of
-from roomba.commands.sim.trial import Trial
+from roomba.commands.trials.homes import home_of
+from roomba.commands.trials.runs import mission_config, robot_config_of
+from roomba.commands.trials.trial import Trial
 from roomba.configuration.frozen import load_config
 from roomba.configuration.mapping import MappingConfig
 from roomba.configuration.simulation import SimulatedRobotConfig

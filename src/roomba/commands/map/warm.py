@@ -8,7 +8,7 @@ from typing import Any, Final
 from roomba.commands.compiling import compiled_functions_told
 from roomba.commands.map.map_error import map_error
 from roomba.commands.map.seen_floor import seen_floor
-from roomba.commands.sim.warm import closet
+from roomba.commands.trials.warm import closet
 from roomba.configuration.mapping import MappingConfig
 from roomba.configuration.robot import RobotConfig
 from roomba.headless.cleaner import HeadlessMission

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from roomba.commands.sim.plot import picture_of
-from roomba.commands.sim.runs import run_trial
-from roomba.commands.sim.trial import Trial
+from roomba.commands.trials.runs import run_trial
+from roomba.commands.trials.trial import Trial
 from roomba.plots.canvas import Picture
 from roomba.world.home.home import Home
 

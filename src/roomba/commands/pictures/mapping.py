@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 
 from roomba.commands.map.plot import area_of_maps, draw_map, draw_station, draw_way, picture_of
 from roomba.commands.map.runs import run_trial
-from roomba.commands.sim.report import clock
-from roomba.commands.sim.trial import Trial
+from roomba.commands.telling import clock
+from roomba.commands.trials.trial import Trial
 from roomba.configuration.mapping import MappingConfig
 from roomba.geometry import Pose
 from roomba.grid import FREE, OccupancyMap

@@ -11,8 +11,8 @@ import numpy as np
 
 from roomba.commands.play.living import live_client
 from roomba.commands.sim.kept_run import StateSamples, figures_of, recording_of
-from roomba.commands.sim.runs import run_trial
-from roomba.commands.sim.trial import Trial
+from roomba.commands.trials.runs import run_trial
+from roomba.commands.trials.trial import Trial
 from roomba.errors import RoombaError
 from roomba.history.database import KeptRun
 from roomba.history.replay import RecordedRobot

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import argparse
 import math
-from collections.abc import Callable
 
-from roomba.commands.sim.homes import home_of, rooms_of
-from roomba.commands.sim.runs import mission_config, robot_config_of
-from roomba.commands.sim.trial import Trial, Wheels
+from roomba.commands.options import number
+from roomba.commands.trials.homes import home_of, rooms_of
+from roomba.commands.trials.runs import mission_config, robot_config_of
+from roomba.commands.trials.trial import Trial, Wheels
 from roomba.configuration.docking import DockingConfig
 from roomba.configuration.frozen import load_config
 from roomba.configuration.mapping import MappingConfig
@@ -91,22 +91,8 @@ def add_robot_options(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def _number(is_right: Callable[[float], bool], expected: str) -> Callable[[str], float]:
-    """Return a reader of numbers; of another one it says what was expected."""
-
-    def read(text: str) -> float:
-        try:
-            number = float(text)
-        except ValueError:
-            number = math.nan
-        if not is_right(number):
-            raise argparse.ArgumentTypeError(f"expected a number {expected}, got {text!r}")
-        return number
-
-    return read
-
-
-_positive = _number(lambda number: 0.0 < number < math.inf, "above 0")
-_speed = _number(
-    lambda number: SPEEDS[0] <= number <= SPEEDS[1], f"from {SPEEDS[0]:g} to {SPEEDS[1]:g}"
+_positive = number(lambda value: 0.0 < value < math.inf, "a number above 0")
+_speed = number(
+    lambda value: SPEEDS[0] <= value <= SPEEDS[1],
+    f"a number from {SPEEDS[0]:g} to {SPEEDS[1]:g}",
 )

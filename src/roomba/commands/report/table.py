@@ -12,6 +12,7 @@ from typing import Any, Final
 from rich.table import Table
 from rich.text import Text
 
+from roomba.commands.telling import named_table
 from roomba.history.database import KeptRun
 from roomba.history.report import words
 from roomba.history.totals import totals_by_week
@@ -107,16 +108,12 @@ def weeks_table(runs: Sequence[KeptRun]) -> Table:
 
 def run_table(run: KeptRun) -> Table:
     """Return the figures of one run, and what it missed."""
-    table = Table.grid(padding=(0, 2))
-    table.add_column(style="bold", no_wrap=True)
-    table.add_column(overflow="fold")
-    for name, value in words.figure_rows(run.figures):
-        table.add_row(name, Text(value))
+    rows = [*words.figure_rows(run.figures)]
     if run.figures.message:
-        table.add_row("Message", Text(run.figures.message))
+        rows.append(("Message", run.figures.message))
     for miss in run.figures.missed:
         where = f" in {miss.room}" if miss.room else ""
-        table.add_row("Left", Text(f"{miss.area:.2f} m²{where}: {miss.reason}"))
+        rows.append(("Left", f"{miss.area:.2f} m²{where}: {miss.reason}"))
     if run.figures.source.repeat:
-        table.add_row("Repeat", Text(run.figures.source.repeat))
-    return table
+        rows.append(("Repeat", run.figures.source.repeat))
+    return named_table(rows)

@@ -12,19 +12,17 @@ from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from rich.table import Table
-from rich.text import Text
-
+from roomba.commands.options import UsageError
 from roomba.commands.progress import Show, progress
 from roomba.commands.sim.options import PROGRAM, SimOptions, options_of
-from roomba.commands.sim.trial import RANDOM, Trial, UsageError
-from roomba.commands.telling import tell_tables, write_json
+from roomba.commands.telling import named_table, tell_tables, write_json
+from roomba.commands.trials.trial import RANDOM, Trial
 from roomba.errors import RoombaError
 
 if TYPE_CHECKING:
-    from roomba.commands.sim.figures import Figures
     from roomba.commands.sim.many import Outcome
-    from roomba.commands.sim.runs import Run, RunObserver, TrialSetup
+    from roomba.commands.trials.figures import Figures
+    from roomba.commands.trials.runs import Run, RunObserver, TrialSetup
     from roomba.headless.cleaner import HeadlessMission
 
 BagOpener = Callable[[Path, "TrialSetup"], AbstractContextManager["RunObserver"]]
@@ -67,8 +65,8 @@ def _complain(text: str, status: int) -> int:
 def _run_one(options: SimOptions, open_bag: BagOpener | None, words: list[str]) -> int:
     # Imported here: it takes a second, and a mistyped option should be reported at once.
     from roomba.commands.sim.kept_run import StateSamples, keep_run
-    from roomba.commands.sim.runs import TrialSetup
-    from roomba.commands.sim.warm import warm_up
+    from roomba.commands.trials.runs import TrialSetup
+    from roomba.commands.trials.warm import warm_up
     from roomba.headless.burst import LONGEST_BURST
 
     burst = LONGEST_BURST if options.bag is None else BAG_BURST
@@ -93,7 +91,7 @@ def _run_one(options: SimOptions, open_bag: BagOpener | None, words: list[str]) 
 
 
 def _shown_by(show: Show) -> RunObserver:
-    from roomba.commands.sim.report import clock
+    from roomba.commands.telling import clock
 
     began = time.monotonic()
 
@@ -160,17 +158,14 @@ def _tell_homes(
     from roomba.commands.sim.json_file import runs_as_json
     from roomba.commands.sim.percentiles import percentiles_of
     from roomba.commands.sim.report import failure_lines, percentile_table
-    from roomba.commands.sim.runs import robot_config_of
+    from roomba.commands.trials.runs import robot_config_of
 
     spread = percentiles_of(figures.values())
     completed = sum(each.is_completed for each in figures.values())
     count = len(figures) + len(failures)
-    rows = Table.grid(padding=(0, 2))
-    rows.add_column(style="bold", no_wrap=True)
-    rows.add_column(overflow="fold")
-    rows.add_row("homes", f"{completed} of {count} completed and docked, in {wall:.1f} s")
-    for name, text in failure_lines(figures, failures, _again(options.trial)):
-        rows.add_row(name, Text(text, "red"))
+    ended = f"{completed} of {count} completed and docked, in {wall:.1f} s"
+    failed = failure_lines(figures, failures, _again(options.trial))
+    rows = named_table([("homes", ended), *failed], dict.fromkeys(dict(failed), "red"))
     tell_tables([percentile_table(spread), rows], options.json, quiet=options.quiet)
     if options.json is not None:
         config = robot_config_of(options.trial)

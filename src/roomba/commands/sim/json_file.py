@@ -17,9 +17,9 @@ from typing import Any, Final
 
 import numpy as np
 
-from roomba.commands.sim.figures import Figures
-from roomba.commands.sim.runs import Run
-from roomba.commands.sim.trial import Trial
+from roomba.commands.trials.figures import Figures
+from roomba.commands.trials.runs import Run
+from roomba.commands.trials.trial import Trial
 from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.geometry import Pose
 from roomba.mission.cleaning.checkpoint import request_values

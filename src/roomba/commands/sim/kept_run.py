@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from roomba.client.plain import home_of
 from roomba.client.protocol import MissedFloor
 from roomba.client.view import known_cells
-from roomba.commands.sim.figures import Figures
-from roomba.commands.sim.runs import TRAJECTORY_STEP, Run
+from roomba.commands.trials.figures import Figures
+from roomba.commands.trials.runs import TRAJECTORY_STEP, Run
 from roomba.grid import GridFrame
 from roomba.headless.cleaner import HeadlessMission
 from roomba.headless.live.views import home_view, vacuum_snapshot

@@ -12,8 +12,8 @@ from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess
 from typing import Any, Final
 
-from roomba.commands.sim.figures import Figures
-from roomba.commands.sim.trial import Trial
+from roomba.commands.trials.figures import Figures
+from roomba.commands.trials.trial import Trial
 from roomba.errors import RoombaError
 
 Outcome = Figures | str
@@ -27,8 +27,8 @@ LONGEST_RUN: Final = 900.0
 def figures_of(trial: Trial) -> Outcome:
     """Run one trial; an error becomes its text."""
     # Here, so that the parent, which only waits, does not load it all.
-    from roomba.commands.sim.runs import run_trial
-    from roomba.commands.sim.warm import warm_up
+    from roomba.commands.trials.runs import run_trial
+    from roomba.commands.trials.warm import warm_up
 
     try:
         warm_up()

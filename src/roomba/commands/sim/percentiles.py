@@ -7,7 +7,7 @@ from typing import Final
 
 import numpy as np
 
-from roomba.commands.sim.figures import Figures
+from roomba.commands.trials.figures import Figures
 
 PERCENTS: Final = (0, 5, 50, 95, 100)
 ROWS: Final[dict[str, tuple[str, str]]] = {

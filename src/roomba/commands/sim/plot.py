@@ -17,10 +17,10 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, Patch
 from numpy.typing import NDArray
 
-from roomba.commands.sim.figures import Figures
 from roomba.commands.sim.passes import passes_over
-from roomba.commands.sim.report import clock
-from roomba.commands.sim.runs import Run
+from roomba.commands.telling import clock
+from roomba.commands.trials.figures import Figures
+from roomba.commands.trials.runs import Run
 from roomba.grid import FREE
 from roomba.mission.cleaning.request import MissReason
 from roomba.plots.style import INK, RED, drawn, empty_figure, show_floor_plan

@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import Final
 
 from rich.table import Table
-from rich.text import Text
 
-from roomba.commands.sim.figures import Figures, MissedShare
 from roomba.commands.sim.percentiles import PERCENTS, ROWS
+from roomba.commands.telling import clock, named_table
+from roomba.commands.trials.figures import Figures, MissedShare
 
 _SHOWN: Final = 8
 """The most missed areas or failures that are listed one by one."""
@@ -49,13 +49,7 @@ def lines_of(figures: Figures) -> list[tuple[str, str]]:
 
 def table_of(figures: Figures) -> Table:
     """Return a run's table."""
-    table = Table.grid(padding=(0, 2))
-    table.add_column(style="bold", no_wrap=True)
-    table.add_column(overflow="fold")
-    for name, text in lines_of(figures):
-        style = "" if name != "outcome" else "green" if figures.is_completed else "red"
-        table.add_row(name, Text(text, style))
-    return table
+    return named_table(lines_of(figures), {"outcome": "green" if figures.is_completed else "red"})
 
 
 def percentile_table(spread: dict[str, dict[str, float]]) -> Table:
@@ -89,15 +83,6 @@ def failure_lines(
         others = ", ".join(str(seed) for seed in sorted(bad)[_SHOWN:])
         lines.append(("and seeds", others))
     return lines
-
-
-def clock(seconds: float) -> str:
-    """Return a time for people."""
-    minutes, rest = divmod(round(seconds), 60)
-    hours, minutes = divmod(minutes, 60)
-    if hours:
-        return f"{hours} h {minutes:02d} min"
-    return f"{minutes} min {rest:02d} s" if minutes else f"{rest} s"
 
 
 def _outcome(figures: Figures) -> str:

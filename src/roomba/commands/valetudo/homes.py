@@ -9,8 +9,8 @@ import numpy as np
 import shapely
 import yaml
 
-from roomba.commands.sim.homes import rooms_of
-from roomba.commands.sim.zones import ZONES_NAME, zones_of_home
+from roomba.commands.trials.homes import rooms_of
+from roomba.commands.trials.zones import ZONES_NAME, zones_of_home
 from roomba.configuration.body import BodyConfig
 from roomba.files.atomic import write_whole
 from roomba.files.home_layer import LAYER_NAME, MAP_NAME

@@ -15,7 +15,7 @@ from benchmarks.coverage.lanes import Order, boustrophedon, lanes_on, way_over
 from benchmarks.coverage.peer import PeerRobot
 from benchmarks.coverage.peers import context_of, drive_bounce, drive_lanes, planned, shares_at
 from benchmarks.coverage.recorded import FAILED, recorded
-from roomba.commands.sim.warm import closet
+from roomba.commands.trials.warm import closet
 from roomba.geometry import Pose
 from roomba.grid import GridFrame
 from roomba.world.home.home import Home

@@ -33,7 +33,7 @@ from benchmarks.topics import mapping
 from benchmarks.topics.mapping import Extent, measured, results
 from roomba.commands.map.map_error import MapError
 from roomba.commands.map.runs import Drawn
-from roomba.commands.sim.warm import closet
+from roomba.commands.trials.warm import closet
 from roomba.geometry import Pose
 from roomba.grid import FREE, GridFrame, OccupancyMap
 from roomba.perception.matching.scan_view import LidarModel

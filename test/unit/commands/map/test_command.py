@@ -16,8 +16,8 @@ from roomba.commands.map.json_file import TIMES, run_as_json
 from roomba.commands.map.plot import picture_of
 from roomba.commands.map.report import error_lines, run_lines
 from roomba.commands.map.runs import MapRun, MapScene, ObservedExplorer
-from roomba.commands.sim.trial import Trial
-from roomba.commands.sim.warm import closet
+from roomba.commands.trials.trial import Trial
+from roomba.commands.trials.warm import closet
 from roomba.configuration.robot import RobotConfig
 from roomba.mission.cleaning.request import CleanOutcome
 from roomba.world.layers.layer import load_home

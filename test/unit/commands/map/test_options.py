@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from roomba.commands.map.options import options_of
-from roomba.commands.sim.trial import UsageError
+from roomba.commands.options import UsageError
 from roomba.geometry import Pose
 
 
@@ -21,13 +21,15 @@ def test_without_words_the_flat_is_explored() -> None:
 
 
 def test_all_words_are_understood(tmp_path: Path) -> None:
-    words = f"--map some.yaml --station 1 -2.5 -1e-3 --seed 7 --sensors ideal --json {tmp_path}/a"
-    words += f" --plot {tmp_path}/b.png --out {tmp_path}/new --quiet --turned 45"
+    some = tmp_path / "some.yaml"
+    some.write_text("", encoding="utf-8")
+    words = f"--map {some} --station 1 -2.5 -1e-3 --seed 7 --sensors ideal --json {tmp_path}/a"
+    words += f" --plot {tmp_path}/b.png --out {tmp_path}/new --quiet --turned 45 --lidar ld19"
     options = options_of(words.split())
-    assert options.trial.home == "some.yaml"
+    assert options.trial.home == str(some)
     assert options.trial.station == Pose(1.0, -2.5, -0.001)
     assert (options.trial.seed, options.trial.sensors) == (7, "ideal")
-    assert options.trial.turned == 45.0
+    assert (options.trial.turned, options.trial.lidar) == (45.0, "ld19")
     assert options.output.json == f"{tmp_path}/a"
     assert options.output.plot == tmp_path / "b.png"
     assert options.output.out == tmp_path / "new"
@@ -52,8 +54,9 @@ def test_json_alone_is_standard_output() -> None:
         ("--out nowhere/at/all", "expected a folder, or a new one"),
         ("--config nowhere.yaml", "expected a file like robot.yaml"),
         ("--json a.png --plot a.png", "is the file of --json already"),
-        ("--map a.png --plot a.png", "is the file of --map already"),
-        ("--sensors blind", "invalid choice"),
+        ("--map nowhere.yaml", "--map: expected a file of a map_server map"),
+        ("--sensors blind", "expected noisy, ideal, got 'blind'"),
+        ("--lidar none", "expected ideal_12m, "),
         ("--nonsense", "unrecognized arguments"),
     ],
 )
@@ -61,6 +64,13 @@ def test_what_cannot_be_obeyed_is_told(words: str, said: str) -> None:
     with pytest.raises(UsageError) as raised:
         options_of(words.split())
     assert said in str(raised.value)
+
+
+def test_a_map_is_not_overwritten(tmp_path: Path) -> None:
+    both = tmp_path / "map.png"
+    both.write_bytes(b"")
+    with pytest.raises(UsageError, match="is the file of --map already"):
+        options_of(["--map", str(both), "--plot", str(both)])
 
 
 def test_a_file_is_no_folder(tmp_path: Path) -> None:

@@ -8,7 +8,7 @@ import pytest
 from roomba.commands.map import runs
 from roomba.commands.pictures import mapping
 from roomba.commands.pictures.mapping import picture_of_map_errors, picture_of_mapping
-from roomba.commands.sim.warm import closet
+from roomba.commands.trials.warm import closet
 from roomba.grid import UNKNOWN
 
 

@@ -16,9 +16,9 @@ import pytest
 from fixtures.waiting import promised, wait_until
 
 from roomba.commands.sim import command, many
-from roomba.commands.sim.figures import Figures, MissedShare
 from roomba.commands.sim.many import Outcome
-from roomba.commands.sim.trial import Trial
+from roomba.commands.trials.figures import Figures, MissedShare
+from roomba.commands.trials.trial import Trial
 
 REPOSITORY = Path(__file__).parents[4]
 FINE = Figures(

@@ -12,9 +12,9 @@ import pytest
 from fixtures.waiting import wait_until
 
 from roomba.commands.sim import many
-from roomba.commands.sim.figures import Figures
 from roomba.commands.sim.many import Outcome, run_many
-from roomba.commands.sim.trial import Trial
+from roomba.commands.trials.figures import Figures
+from roomba.commands.trials.trial import Trial
 
 NOTHING = Figures(
     outcome="COMPLETED",

@@ -6,8 +6,9 @@ from pathlib import Path
 
 import pytest
 
+from roomba.commands.options import UsageError
 from roomba.commands.sim.options import options_of
-from roomba.commands.sim.trial import MOST_THINGS, RANDOM, Trial, UsageError
+from roomba.commands.trials.trial import MOST_THINGS, RANDOM, Trial
 from roomba.geometry import Pose
 from roomba.mission.cleaning.request import CleanRequest
 from roomba.vocabulary import CleanMode, FanLevel

@@ -7,9 +7,9 @@ from dataclasses import replace
 import pytest
 from rich.console import Console
 
-from roomba.commands.sim.figures import Figures, MissedShare
 from roomba.commands.sim.percentiles import percentiles_of
-from roomba.commands.sim.report import clock, failure_lines, lines_of, percentile_table, table_of
+from roomba.commands.sim.report import failure_lines, lines_of, percentile_table, table_of
+from roomba.commands.trials.figures import Figures, MissedShare
 
 FIGURES = Figures(
     outcome="COMPLETED",
@@ -99,10 +99,3 @@ def test_a_failure_names_its_seed_and_the_command_that_repeats_it() -> None:
     ]
     many = failure_lines({}, dict.fromkeys(range(10), "no floor"), "x")
     assert many[-1] == ("and seeds", "8, 9")
-
-
-@pytest.mark.parametrize(
-    ("seconds", "text"), [(5.4, "5 s"), (61.0, "1 min 01 s"), (7260.0, "2 h 01 min")]
-)
-def test_times_as_people_say_them(seconds: float, text: str) -> None:
-    assert clock(seconds) == text

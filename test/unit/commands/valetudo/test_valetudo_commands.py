@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from roomba.commands.sim.runs import TrialSetup
-from roomba.commands.sim.trial import Trial
+from roomba.commands.trials.runs import TrialSetup
+from roomba.commands.trials.trial import Trial
 from roomba.commands.valetudo.export_command import main as export
 from roomba.commands.valetudo.homes import read_home, write_home
 from roomba.commands.valetudo.import_command import main as bring

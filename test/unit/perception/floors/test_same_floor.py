@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from fixtures.located import FURNISHED, MOVED
 
-from roomba.commands.sim.homes import with_doors_shut
+from roomba.commands.trials.homes import with_doors_shut
 from roomba.configuration.mapping import FloorsConfig, MappingConfig
 from roomba.files.shipped import HOMES
 from roomba.geometry import Pose, wrap_angle

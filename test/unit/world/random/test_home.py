@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from roomba.commands.sim.homes import rooms_of, with_doors_shut
+from roomba.commands.trials.homes import rooms_of, with_doors_shut
 from roomba.configuration.body import BodyConfig
 from roomba.world.home.raster import largest_component, where_body_fits
 from roomba.world.random.home import random_home

@@ -11,7 +11,7 @@ import time
 from roomba.commands.map.command import COMPLETED, guarded
 from roomba.commands.map.drive.options import DriveOptions, options_of
 from roomba.commands.progress import progress
-from roomba.commands.telling import tell_tables, write_json
+from roomba.commands.telling import named_table, tell_tables, write_json
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -22,7 +22,7 @@ def main(arguments: list[str] | None = None) -> int:
 def _run(options: DriveOptions) -> int:
     # Imported here: it takes a second, and a mistyped option should be reported at once.
     from roomba.commands.map.drive.mapped import mapped_drive
-    from roomba.commands.map.drive.report import summary_of, table_of
+    from roomba.commands.map.drive.report import lines_of, summary_of
     from roomba.commands.map.drive.trajectory import write_trajectory
     from roomba.commands.map.files import write_files
 
@@ -43,7 +43,7 @@ def _run(options: DriveOptions) -> int:
 
         write_plot(output.plot, done)
     summary = summary_of(done, processing)
-    tell_tables([table_of(summary)], output.json, quiet=output.quiet)
+    tell_tables([named_table(lines_of(summary))], output.json, quiet=output.quiet)
     if output.json is not None:
         write_json(output.json, summary.as_json())
     return COMPLETED

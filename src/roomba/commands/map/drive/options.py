@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from roomba.commands.map.options import Output, Parser, output_of
+from roomba.commands.map.options import PROGRAM, Output, add_output, output_of
+from roomba.commands.options import Parser
 from roomba.geometry import Pose
 from roomba.recordings.choice import Wanted
 
@@ -80,11 +81,12 @@ def wanted_of(given: argparse.Namespace) -> Wanted:
 
 def _parser() -> Parser:
     parser = Parser(
+        PROGRAM,
         f"Make a map of a recorded drive of any robot with {DRIVES}",
         "A home without a recording: see ./roomba map --help. Lengths in m, angles in rad.",
     )
     add_read(parser)
-    parser.add_output()
+    add_output(parser)
     parser.add_argument(
         "--trajectory",
         type=Path,

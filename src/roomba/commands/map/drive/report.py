@@ -7,8 +7,6 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
-from rich.table import Table
-from rich.text import Text
 
 from roomba.commands.map.drive.mapped import Floats, MappedDrive
 from roomba.grid import FREE, UNKNOWN
@@ -97,16 +95,6 @@ def summary_of(done: MappedDrive, processing: float) -> MappingSummary:
         calibration=str(Calibration.of(mapper.belief)),
         notes=done.notes,
     )
-
-
-def table_of(summary: MappingSummary) -> Table:
-    """Return the figures as a table."""
-    table = Table.grid(padding=(0, 2))
-    table.add_column(style="bold", no_wrap=True)
-    table.add_column(overflow="fold")
-    for name, text in lines_of(summary):
-        table.add_row(name, Text(text))
-    return table
 
 
 def lines_of(summary: MappingSummary) -> list[tuple[str, str]]:

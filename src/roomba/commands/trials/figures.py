@@ -19,7 +19,9 @@ class MissedShare:
 
 @dataclass(frozen=True, slots=True)
 class Figures:
-    """What a run achieved; the unit is the end of each name, and see :mod:`.json_file`.
+    """What a run achieved; each name ends with its unit.
+
+    The figures are explained where they are written: :mod:`roomba.commands.sim.json_file`.
 
     ``calibration`` tells what the robot measured of its own errors. By the wheels alone it is off
     by ``wheels_error``, m per m of way, and by wheels and gyro by ``odometry_error``; None of too

@@ -9,7 +9,7 @@ from typing import Final
 
 import numpy as np
 
-from roomba.commands.sim.trial import RANDOM, Trial
+from roomba.commands.trials.trial import RANDOM, Trial
 from roomba.files.home_layer import MAP_NAME
 from roomba.files.occupancy_map import load_map
 from roomba.files.shipped import HOMES

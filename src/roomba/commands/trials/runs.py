@@ -10,12 +10,12 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.commands.sim.figures import Figures, MissedShare
-from roomba.commands.sim.homes import home_of, rooms_of
-from roomba.commands.sim.things import Disc, seeded_things
-from roomba.commands.sim.trial import Trial
-from roomba.commands.sim.truth import coverable_floor, true_map
-from roomba.commands.sim.zones import zones_of
+from roomba.commands.trials.figures import Figures, MissedShare
+from roomba.commands.trials.homes import home_of, rooms_of
+from roomba.commands.trials.things import Disc, seeded_things
+from roomba.commands.trials.trial import Trial
+from roomba.commands.trials.truth import coverable_floor, true_map
+from roomba.commands.trials.zones import zones_of
 from roomba.configuration.docking import DockingConfig
 from roomba.configuration.frozen import load_config
 from roomba.configuration.mission import MissionConfig, load_mission_config

@@ -6,7 +6,6 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Final, Literal
 
-from roomba.errors import RoombaError
 from roomba.geometry import Pose
 from roomba.mission.cleaning.request import CleanRequest, Rectangle
 
@@ -17,10 +16,6 @@ MOST_THINGS: Final = 16
 
 Sensors = Literal["noisy", "ideal"]
 Wheels = Literal["factory", "worn"]
-
-
-class UsageError(RoombaError):
-    """A command line that cannot be obeyed; the message says what was expected, and came."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,11 +11,12 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from roomba.commands.options import UsageError
 from roomba.commands.sim.command import main
 from roomba.commands.sim.json_file import TIMES, run_as_json
-from roomba.commands.sim.runs import Run, TrialSetup, run_trial
-from roomba.commands.sim.trial import Trial, UsageError
-from roomba.commands.sim.zones import zones_of
+from roomba.commands.trials.runs import Run, TrialSetup, run_trial
+from roomba.commands.trials.trial import Trial
+from roomba.commands.trials.zones import zones_of
 from roomba.files.occupancy_map import load_map, save_map
 from roomba.geometry import Pose
 from roomba.grid import FREE, OCCUPIED, GridFrame, OccupancyMap

@@ -7,7 +7,8 @@ from dataclasses import replace
 
 import shapely
 
-from roomba.commands.sim.trial import RANDOM, Trial, UsageError
+from roomba.commands.options import UsageError
+from roomba.commands.trials.trial import RANDOM, Trial
 from roomba.configuration.body import BodyConfig
 from roomba.errors import RoomsError
 from roomba.files.shipped import HOMES

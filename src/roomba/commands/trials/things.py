@@ -6,7 +6,7 @@ from typing import Final
 
 import numpy as np
 
-from roomba.commands.sim.trial import UsageError
+from roomba.commands.options import UsageError
 from roomba.geometry import Pose
 from roomba.world.home.home import Home
 from roomba.world.home.raster import Mask, where_body_fits
