@@ -73,15 +73,26 @@ def known_homes() -> Iterable[KnownRooms]:
 def known_maps(folder: Path) -> Iterable[KnownRooms]:
     """Return the maps of a folder beside which there is ``<map>_rooms.png``, sorted by name.
 
-    In the picture, of the map's size, rooms are white areas that people parted by dark lines.
+    The picture has the map's size. Rooms are white areas that people parted by dark lines; where
+    nothing is white each grey value is a room of its own, as a robot vacuum's app has them, and
+    black is none.
     """
     for path in sorted(folder.glob(f"*{_SUFFIX}")):
         name = path.name.removesuffix(_SUFFIX)
         map = load_map(folder / f"{name}.yaml")
-        white = np.ascontiguousarray(read_image(path).grey[::-1] > _WHITE)
-        if white.shape != map.frame.shape:
-            raise ValueError(f"{path}: expected a picture of {map.frame.shape}, got {white.shape}")
-        yield KnownRooms(name, map, without_specks(white, map.frame.resolution))
+        grey = np.ascontiguousarray(read_image(path).grey[::-1])
+        if grey.shape != map.frame.shape:
+            raise ValueError(f"{path}: expected a picture of {map.frame.shape}, got {grey.shape}")
+        white = grey > _WHITE
+        drawn = without_specks(white, map.frame.resolution) if white.any() else _numbered(grey)
+        yield KnownRooms(name, map, drawn)
+
+
+def _numbered(grey: NDArray[Any]) -> RoomLabels:
+    """Return the rooms of a picture in which each has a grey value of its own; 0 is none."""
+    values, labels = np.unique(grey, return_inverse=True)
+    first = int(values[0] > 0)
+    return (labels.reshape(grey.shape) + first).astype(np.int32)
 
 
 def rooms_of(home: Home) -> RoomLabels:

@@ -20,9 +20,17 @@ class RoomsConfig(Frozen):
         more; 0.1 m of the narrowest is left to the noise of scans.
     ``narrowing``
         What has the width of a door and lies between the ends of two walls is a doorway. An opening
-        that is wider, or where a wall ends on one side alone, as in a corner or beside a screen,
-        has to be narrow against the floor on both sides as well: at most this share of its width.
-        People see a room of its own up to about two thirds.
+        that is wider than ``widest_double_door`` has to be narrow against the floor on both sides
+        as well: at most this share of its width. People see a room of its own up to about two
+        thirds.
+    ``widest_double_door``, ``door_to_corridor``
+        A corridor may be hardly wider than the doors that lead to it. Between two walls an opening
+        up to the width of a double door, and where a wall ends on one side alone, as in a corner,
+        one up to ``widest_door`` counts when it has at most this share of the floor's width.
+    ``deepest_passage``, ``deep_narrowing``
+        A passage that is deeper than walls are thick, through the wall of an old house or between
+        built-in cupboards, counts up to this depth, if it is as narrow as a door and has at most
+        this share of the floor's width on both sides.
     ``thickest_wall``, ``jamb``
         What distinguishes a wall's end from furniture that stands in the way: going through the
         opening, the floor widens again, by ``jamb`` or more, within the thickness of a wall.
@@ -41,12 +49,17 @@ class RoomsConfig(Frozen):
         What is smaller belongs to the neighbour with the widest opening: a toilet has 1.0 x 1.5 m.
     ``most_unknown``
         The share of a room's outline that may border on what was never seen. Rooms end at walls;
-        what ends at nothing is outdoors, seen through a window, or not surveyed yet.
+        what ends at nothing is outdoors, seen through a window, or not surveyed yet. On a map whose
+        floor as a whole ends at more of it no walls are drawn, and nothing is left out.
     """
 
     narrowest_door: Length = 0.5
     widest_door: Length = 1.3
     narrowing: Ratio = 0.7
+    widest_double_door: Length = 1.8
+    door_to_corridor: Ratio = 0.9
+    deepest_passage: Length = 1.3
+    deep_narrowing: Ratio = 0.35
     thickest_wall: Length = 0.6
     jamb: Length = 0.3
     furniture_size: Length = 1.0
@@ -54,6 +67,10 @@ class RoomsConfig(Frozen):
     roughness: Length = 0.1
     reach: Length = 0.3
     smallest_room: Area = 1.5
-    most_unknown: Ratio = 0.5
+    most_unknown: Ratio = 0.6
 
-    in_order: ClassVar = ("tightest_passage <= narrowest_door < widest_door",)
+    in_order: ClassVar = (
+        "tightest_passage <= narrowest_door < widest_door <= widest_double_door",
+        "thickest_wall <= deepest_passage",
+        "deep_narrowing <= narrowing <= door_to_corridor",
+    )

@@ -56,7 +56,7 @@ def _doors(solid: Mask, resolution: float, config: RoomsConfig) -> list[Opening]
     Of gaps across each other or side by side counts the one whose walls are thinnest: it runs
     along the walls, and not from one of them to furniture near the door.
     """
-    thickest = _thickest(resolution, config)
+    thickest = _cells_through(config.thickest_wall, resolution)
     found = gaps(
         solid,
         config.narrowest_door / resolution - 0.5,
@@ -94,16 +94,37 @@ def _narrow_places(solid: Mask, resolution: float, config: RoomsConfig) -> list[
         if ends[0] < 0:
             continue
         width = (math.hypot(ends[2] - ends[0], ends[3] - ends[1]) - 1.0) * resolution
-        widest = 2.0 * resolution * float(min(peaks[first], peaks[second]))
-        if not config.narrowest_door <= width <= config.narrowing * widest:
-            continue
-        thickest = _thickest(resolution, config)
-        walls = wall_thicknesses(solid, *ends, thickest, config.jamb / resolution)
-        is_between_walls = max(walls) <= thickest
-        is_beside_wall = min(walls) <= thickest and width <= config.widest_door
-        if is_between_walls or is_beside_wall:
+        share = width / (2.0 * resolution * float(min(peaks[first], peaks[second])))
+        if _is_doorway(solid, ends, width, share, resolution, config):
             found.append(Opening(*ends, width))
     return found
+
+
+def _is_doorway(
+    solid: Mask,
+    ends: tuple[int, int, int, int],
+    width: float,
+    share: float,
+    resolution: float,
+    config: RoomsConfig,
+) -> bool:
+    """Return whether a narrow place is a doorway: it lies between walls, beside one, or is deep.
+
+    ``ends`` are the rows and columns of the solid cells at its sides, ``width`` is in m, ``share``
+    that of the floor's width on the narrower side.
+    """
+    if width < config.narrowest_door:
+        return False
+    look = _cells_through(config.deepest_passage, resolution)
+    thickest = _cells_through(config.thickest_wall, resolution)
+    walls = wall_thicknesses(solid, *ends, look, config.jamb / resolution)
+    is_door = width <= config.widest_door
+    if max(walls) <= thickest:
+        is_double_door = width <= config.widest_double_door
+        return share <= (config.door_to_corridor if is_double_door else config.narrowing)
+    if min(walls) <= thickest and is_door:
+        return share <= config.door_to_corridor
+    return min(walls) <= look and is_door and share <= config.deep_narrowing
 
 
 def _saddles(
@@ -116,6 +137,6 @@ def _saddles(
     return [tuple(touching[order[index], :4].tolist()) for index in first]
 
 
-def _thickest(resolution: float, config: RoomsConfig) -> int:
-    """Return the thickest wall in cells; steps are whole cells, so it may seem one thicker."""
-    return round(config.thickest_wall / resolution) + 1
+def _cells_through(thickness: float, resolution: float) -> int:
+    """Return a thickness, m, in cells; steps are whole cells, so it may seem one thicker."""
+    return round(thickness / resolution) + 1

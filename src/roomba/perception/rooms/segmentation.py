@@ -20,6 +20,7 @@ from roomba.raster.regions import numbered_regions
 
 Mask = NDArray[np.bool_]
 Labels = NDArray[np.int32]
+Counts = NDArray[np.int64] | np.int64
 
 
 def room_labels(occupancy: OccupancyMap, config: RoomsConfig) -> NDArray[np.int16]:
@@ -83,13 +84,20 @@ def _without_small(labels: Labels, resolution: float, config: RoomsConfig) -> La
 
 
 def _without_outdoors(labels: Labels, occupancy: OccupancyMap, config: RoomsConfig) -> Labels:
-    """Drop pieces that end at what was never seen rather than at walls."""
+    """Drop pieces that end at what was never seen rather than at walls, if walls are drawn."""
     to_unknown, to_known = border_counts(
         labels, occupancy.values == UNKNOWN, int(labels.max(initial=0))
     )
-    is_outdoors = to_unknown > config.most_unknown * (to_unknown + to_known)
+    if _is_mostly(to_unknown.sum(), to_known.sum(), config):
+        return labels
+    is_outdoors = _is_mostly(to_unknown, to_known, config)
     is_outdoors[0] = False
     return np.where(is_outdoors[labels], 0, labels).astype(np.int32)
+
+
+def _is_mostly(unknown: Counts, known: Counts, config: RoomsConfig) -> Mask:
+    """Return whether borders are towards what was never seen; counts of sides of cells."""
+    return np.asarray(unknown > config.most_unknown * (unknown + known))
 
 
 def _connected_by_size(labels: Labels, resolution: float, config: RoomsConfig) -> NDArray[np.int16]:

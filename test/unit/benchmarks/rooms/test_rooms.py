@@ -88,6 +88,15 @@ def test_drawn_rooms_are_read_beside_their_maps(tmp_path: Path) -> None:
         list(known_maps(tmp_path))
 
 
+def test_rooms_may_have_a_grey_value_each_and_touch(tmp_path: Path) -> None:
+    known = two_rooms()
+    save_map(known.map, tmp_path / "house.yaml")
+    known.labels[:, 21] = 2
+    Image.fromarray((40 * known.labels).astype(np.uint8)[::-1]).save(tmp_path / "house_rooms.png")
+    [read] = known_maps(tmp_path)
+    assert np.array_equal(read.labels, known.labels)
+
+
 def test_the_shipped_homes_have_rooms() -> None:
     counts = {known.name: known.count for known in known_homes()}
     assert counts["flat"] == 5

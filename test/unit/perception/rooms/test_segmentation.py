@@ -111,7 +111,9 @@ def test_a_gap_between_bed_and_wardrobe_is_no_door() -> None:
         (0.4, 0.1, 1),  # furniture nearly closes it
         (0.6, 0.1, 2),
         (0.9, 0.5, 2),  # a bearing wall
-        (0.9, 0.8, 1),  # no wall is as thick
+        (0.9, 0.8, 2),  # a wall with built-in cupboards
+        (1.5, 0.8, 1),  # so wide a passage through it is no door
+        (0.9, 1.6, 1),  # no wall is as thick
         (1.3, 0.1, 2),
         (2.6, 0.1, 2),  # a wide opening
         (3.2, 0.1, 1),  # a pillar on either side
@@ -130,6 +132,20 @@ def test_a_door_in_the_corner_of_a_room_is_one_and_a_screen_makes_none() -> None
     assert len(segment(drawn(floor)).names) == 2
     cubicle, screen = (0.2, 0.2, 1.2, 4.2), (0.2, 2.2, 0.4, 2.3)
     assert len(segment(drawn([cubicle], [screen])).names) == 1
+
+
+@pytest.mark.parametrize("door", [0.9, 1.1, 1.2])
+def test_a_corridor_may_be_as_narrow_as_the_doors_that_lead_to_it(door: float) -> None:
+    corridor = (0.2, 0.2, 7.8, 1.4)
+    left, right = (0.2, 1.6, 3.9, 5.0), (4.1, 1.6, 7.8, 5.0)
+    doors = [(0.2, 1.4, 0.2 + door, 1.6), (7.8 - door, 1.4, 7.8, 1.6)]  # in their rooms' corners
+    found = segment(drawn([corridor, left, right, *doors], size=(8.0, 5.2)))
+    assert len(found.names) == 3
+
+
+def test_a_map_on_which_no_walls_are_drawn_has_rooms() -> None:
+    rooms = segment(drawn([*ROOMS, *DOORS], around=UNKNOWN))
+    assert sorted(label_in(rooms, area) for area in ROOMS) == [1, 2, 3, 4]
 
 
 def test_a_closet_belongs_to_the_neighbour_with_the_widest_opening() -> None:
