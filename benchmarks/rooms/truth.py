@@ -90,9 +90,9 @@ def known_maps(folder: Path) -> Iterable[KnownRooms]:
 
 def _numbered(grey: NDArray[Any]) -> RoomLabels:
     """Return the rooms of a picture in which each has a grey value of its own; 0 is none."""
-    values, labels = np.unique(grey, return_inverse=True)
-    first = int(values[0] > 0)
-    return (labels.reshape(grey.shape) + first).astype(np.int32)
+    values, numbers = np.unique(grey, return_inverse=True)
+    labels: RoomLabels = (numbers.reshape(grey.shape) + int(values[0] > 0)).astype(np.int32)
+    return labels
 
 
 def rooms_of(home: Home) -> RoomLabels:
