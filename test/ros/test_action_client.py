@@ -5,11 +5,15 @@ from collections.abc import Callable
 from types import SimpleNamespace
 from typing import Any
 
-import actionlib
 import pytest
+import rospy
 from actionlib import CommState, SimpleGoalState
+from actionlib.action_client import ClientGoalHandle
+from actionlib_msgs.msg import GoalID, GoalStatus, GoalStatusArray
+from roomba_robot.msg import DockActionGoal, DockActionResult
 
-from roomba_ros.runtime.action_client import ActionClient
+from roomba_ros.runtime import action_client
+from roomba_ros.runtime.action_client import ActionClient, GoalProgress
 
 
 class Eager:
@@ -37,10 +41,67 @@ class Eager:
 
 @pytest.mark.filterwarnings("ignore:notifyAll:DeprecationWarning")
 def test_what_is_answered_while_it_sends_is_not_lost(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(actionlib.simple_action_client, "ActionClient", Eager)
+    monkeypatch.setattr(action_client, "GoalClient", Eager)
     client = ActionClient("walk", object)
     feedback: list[str] = []
     client.send_goal("there", feedback_cb=feedback.append)
     client.action_client.answers[0].join(20.0)
     assert client.simple_state == SimpleGoalState.DONE
     assert feedback == ["half way"]
+
+
+class Sent:
+    """A goal that was sent, and what the library complained of since."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.errors: list[str] = []
+        monkeypatch.setattr(rospy, "logerr", lambda text, *_: self.errors.append(text))
+        self.cancels: list[GoalID] = []
+        goal = DockActionGoal(goal_id=GoalID(id="this"))
+        self.progress = GoalProgress(goal, None, None, None, self.cancels.append)
+        self.handle = ClientGoalHandle(self.progress)
+
+    def tell(self, **states: int) -> None:
+        told = [GoalStatus(goal_id=GoalID(id=name), status=at) for name, at in states.items()]
+        self.progress.update_status(GoalStatusArray(status_list=told))
+
+    def end(self, status: int) -> None:
+        ended = GoalStatus(goal_id=GoalID(id="this"), status=status)
+        self.progress.update_result(DockActionResult(status=ended))
+
+    @property
+    def end_told(self) -> int | None:
+        """The status with which it ended; None before that."""
+        is_done = self.handle.get_comm_state() == CommState.DONE
+        return int(self.handle.get_terminal_state()) if is_done else None
+
+
+@pytest.fixture
+def sent(monkeypatch: pytest.MonkeyPatch) -> Sent:
+    return Sent(monkeypatch)
+
+
+def test_a_goal_cancelled_before_it_was_heard_ends_as_its_server_says(sent: Sent) -> None:
+    sent.handle.cancel()
+    sent.tell(other=GoalStatus.ACTIVE)
+    assert sent.end_told is None
+    sent.end(GoalStatus.RECALLED)
+    assert (sent.end_told, sent.errors) == (GoalStatus.RECALLED, [])
+
+
+def test_a_cancel_after_the_end_changes_nothing(sent: Sent) -> None:
+    sent.tell(this=GoalStatus.ACTIVE)
+    sent.end(GoalStatus.SUCCEEDED)
+    sent.handle.cancel()
+    sent.tell(this=GoalStatus.RECALLING)
+    sent.end(GoalStatus.RECALLED)
+    assert len(sent.cancels) == 1
+    assert (sent.end_told, sent.errors) == (GoalStatus.SUCCEEDED, [])
+
+
+def test_a_goal_that_its_server_forgot_is_lost_and_a_late_result_is_no_error(sent: Sent) -> None:
+    sent.tell(this=GoalStatus.ACTIVE)
+    sent.tell(other=GoalStatus.ACTIVE)
+    assert sent.end_told == GoalStatus.LOST
+    sent.end(GoalStatus.SUCCEEDED)
+    assert (sent.end_told, sent.errors) == (GoalStatus.LOST, [])

@@ -8,7 +8,6 @@ import time
 from abc import ABC, abstractmethod
 from typing import Any, Final, Generic, TypeVar
 
-import actionlib
 import rospy
 from actionlib import CommState
 from actionlib_msgs.msg import GoalStatus, GoalStatusArray
@@ -24,6 +23,7 @@ from roomba.client.protocol import (
     RobotUnavailableError,
 )
 from roomba_ros.convert.values import unchanged
+from roomba_ros.runtime.action_client import GoalClient, is_heard
 from roomba_ros.runtime.calls import SERVER_DEADLINE
 from roomba_ros.runtime.subscriptions import subscribe
 
@@ -69,7 +69,7 @@ class Server:
     def __init__(self, name: str, action: type) -> None:
         self.name = name
         # Not the simple client: that knows its newest goal alone, and a refused one hides the rest.
-        self._client = actionlib.ActionClient(name, action)
+        self._client = GoalClient(name, action)
         self._status_seen = -math.inf
         subscribe(f"{name}/status", GoalStatusArray, unchanged, self._on_status)
 
@@ -141,10 +141,9 @@ class _Errand(ABC, Generic[_Told, _Report]):
 
     def _notice_silence(self) -> None:
         silence, waited = self._server.silence, time.monotonic() - self._sent
-        is_unheard = self._handle.get_comm_state() == CommState.WAITING_FOR_GOAL_ACK
         if silence > SILENCE_DEADLINE:
             why = f"the action server has been silent for {SILENCE_DEADLINE:g} s"
-        elif is_unheard and waited > SERVER_DEADLINE:
+        elif not is_heard(self._handle) and waited > SERVER_DEADLINE:
             why = f"the action server took no notice of it for {SERVER_DEADLINE:g} s"
         else:
             return

@@ -1,24 +1,50 @@
-"""A client of an action that loses no answer."""
+"""Clients of an action that lose no answer, and take none for an error that is only late."""
 
 from __future__ import annotations
 
 import threading
+import weakref
 from typing import Any
 
 import actionlib
+from actionlib import CommState, SimpleGoalState
+from actionlib.action_client import ClientGoalHandle, CommStateMachine, GoalManager
+from actionlib_msgs.msg import GoalStatusArray
+
+
+class GoalClient(actionlib.ActionClient):
+    """The library's client of many goals, each of which ends once.
+
+    The library's own takes a goal for lost that is cancelled before its server heard of it: states
+    that were told meanwhile do not name it. Then the true result comes, and is an error. And it
+    begins a goal anew that is cancelled after its end.
+    """
+
+    def __init__(self, name: str, action: type) -> None:
+        """Connect to the action of that name and type."""
+        super().__init__(name, action)
+        goals = _Goals(action)
+        goals.register_send_goal_fn(self.pub_goal.publish)
+        goals.register_cancel_fn(self.pub_cancel.publish)
+        # Answers come by this client's own callbacks, which ask for it by that name.
+        self.manager = goals
 
 
 class ActionClient(actionlib.SimpleActionClient):
-    """The stock client with one lock around sending and its callbacks.
+    """The library's client of one goal at a time, with one lock around sending and its callbacks.
 
     Without it an answer that comes while a goal is being sent is taken for one to an older goal
     and dropped, and the goal never ends (actionlib issue 206).
     """
 
-    def __init__(self, *arguments: Any) -> None:
-        """Take what the stock client takes: the name of the action, and its type."""
+    def __init__(self, name: str, action: type) -> None:
+        """Connect to the action of that name and type."""
+        # All that the library's own does here, but for the client below.
         self._sending = threading.RLock()
-        super().__init__(*arguments)
+        self.action_client = GoalClient(name, action)
+        self.simple_state = SimpleGoalState.DONE
+        self.gh = None
+        self.done_condition = threading.Condition()
 
     def send_goal(self, *arguments: Any, **callbacks: Any) -> None:
         """Send a goal in place of the one before."""
@@ -27,10 +53,61 @@ class ActionClient(actionlib.SimpleActionClient):
 
     def _handle_transition(self, handle: Any) -> None:
         with self._sending:
-            # News of a goal before, or of one that has ended, is late and no error.
-            if handle == self.gh and self.simple_state != actionlib.SimpleGoalState.DONE:
+            # News of a goal before is late and no error.
+            if handle == self.gh:
                 super()._handle_transition(handle)
 
     def _handle_feedback(self, handle: Any, feedback: Any) -> None:
         with self._sending:
-            super()._handle_feedback(handle, feedback)
+            if handle == self.gh:
+                super()._handle_feedback(handle, feedback)
+
+
+def is_heard(handle: Any) -> bool:
+    """Whether the server has told of a goal."""
+    return bool(handle.comm_state_machine.is_heard)
+
+
+class GoalProgress(CommStateMachine):
+    """What a client knows of one goal: how far it is, by what its server told."""
+
+    def __init__(self, *arguments: Any) -> None:
+        """Take what the library's own takes: the goal, callbacks, and how to send and cancel."""
+        super().__init__(*arguments)
+        self.is_heard = False
+
+    def update_status(self, statuses: GoalStatusArray) -> None:
+        """Hear the states of all goals of the server."""
+        with self.mutex:
+            named = {each.goal_id.id for each in statuses.status_list}
+            self.is_heard = self.is_heard or self.action_goal.goal_id.id in named
+            # States from before the server had the goal say nothing about it.
+            if self.is_heard:
+                super().update_status(statuses)
+
+    def update_result(self, result: Any) -> None:
+        """Hear the result of a goal, perhaps of another one."""
+        with self.mutex:
+            if self.state != CommState.DONE:
+                super().update_result(result)
+
+    def transition_to(self, state: int) -> None:
+        """Change the state; what has ended stays so, also when it is cancelled."""
+        if self.state != CommState.DONE:
+            super().transition_to(state)
+
+
+class _Goals(GoalManager):
+    """Goals that were sent, followed by :class:`GoalProgress`."""
+
+    def init_goal(self, goal: Any, transition_cb: Any = None, feedback_cb: Any = None) -> Any:
+        """Send a goal; return the handle of it, as the library does."""
+        action_goal = self.ActionGoal(goal_id=self._generate_id(), goal=goal)
+        action_goal.header.stamp = action_goal.goal_id.stamp
+        progress = GoalProgress(
+            action_goal, transition_cb, feedback_cb, self.send_goal_fn, self.cancel_fn
+        )
+        with self.list_mutex:
+            self.statuses.append(weakref.ref(progress))
+        self.send_goal_fn(action_goal)
+        return ClientGoalHandle(progress)

@@ -63,10 +63,13 @@ class ActionGoal(ABC):
 
 
 class SteadyActionServer(actionlib.ActionServer):
-    """The library's server, which tells the states of its goals also when the clock is set.
+    """The library's server, mended in two places.
 
-    The library has a timer for that by the ROS clock, which ends when that clock is set back:
-    clients then take the server for gone.
+    It tells the states of its goals also when the clock is set: the library has a timer for that by
+    the ROS clock, which ends when that clock is set back, and clients take the server for gone.
+
+    A cancel that comes before its goal, or long after its end, may come again: the library logs
+    errors then, as it looks for the goal of each cancel that it keeps.
     """
 
     def initialize(self) -> None:
@@ -83,6 +86,14 @@ class SteadyActionServer(actionlib.ActionServer):
             except rospy.ROSException as error:
                 # The node ends, and its connections were closed first.
                 rospy.logdebug("states of goals are not told: %s", error)
+
+    def internal_cancel_callback(self, goal_id: GoalID) -> None:
+        """Cancel goals, of which one may not have come yet."""
+        with self.lock:
+            super().internal_cancel_callback(goal_id)
+            for tracker in self.status_list:
+                if tracker.goal is None:
+                    tracker.goal = self.ActionGoal(goal_id=tracker.status.goal_id)
 
     def adopt(self, identity: GoalIdentity) -> actionlib.ServerGoalHandle:
         """Return a handle of a goal that a server before this one had accepted.

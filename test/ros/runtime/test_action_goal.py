@@ -1,0 +1,45 @@
+"""The server of actions, told to cancel what it does not know."""
+
+import pytest
+import rospy
+from actionlib_msgs.msg import GoalID, GoalStatus
+from fixtures.graph import RosGraph
+from fixtures.probe import Probe
+from fixtures.waiting import wait_until
+from roomba_robot.msg import DockAction, DockActionGoal, DockActionResult
+
+from roomba_ros.runtime.action_goal import ActionGoal, GoalIdentity, server_of
+
+
+class Errand(ActionGoal):
+    """A goal that is only taken."""
+
+    name, action = "errand", DockAction
+
+    def check(self) -> None: ...
+
+    def reject(self, reason: str) -> None: ...
+
+
+def test_cancels_of_a_goal_to_come_are_no_errors_and_end_it(
+    master: RosGraph, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    probe = Probe(master)
+    errors: list[str] = []
+    monkeypatch.setattr(rospy, "logerr", lambda text, *_: errors.append(text))
+    taken: list[Errand] = []
+    cancelled: list[GoalIdentity] = []
+    server_of(Errand, taken.append, cancelled.append).start()
+    ended: list[DockActionResult] = []
+    rospy.Subscriber("/errand/result", DockActionResult, ended.append)
+    for _ in range(3):
+        probe.send("/errand/cancel", GoalID(id="late"))
+    probe.send("/errand/cancel", GoalID(stamp=rospy.Time.now()))
+    probe.send("/errand/goal", DockActionGoal(goal_id=GoalID(rospy.Time.now(), "other")))
+    wait_until(lambda: taken, 20.0, "the other goal")
+    probe.send("/errand/goal", DockActionGoal(goal_id=GoalID(rospy.Time.now(), "late")))
+    wait_until(lambda: ended, 20.0, "the end of the goal that was cancelled before")
+    (result,) = ended
+    assert (result.status.goal_id.id, result.status.status) == ("late", GoalStatus.RECALLED)
+    assert [goal.identity.identity for goal in taken] == ["other"]
+    assert (cancelled, errors) == ([], [])
