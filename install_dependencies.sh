@@ -12,6 +12,7 @@ set -euo pipefail
 REPOSITORY=$(cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")" && pwd -P)
 VENV=$REPOSITORY/.venv
 BENCH_VENV=$REPOSITORY/.venv-bench
+AUDIT_VENV=$REPOSITORY/.venv-audit
 CACHE=$REPOSITORY/.cache
 PYTHON=/usr/bin/python3 # the one that ROS is packaged for; a pyenv or conda python has no rospy
 
@@ -155,7 +156,7 @@ system_packages() { # runtime|dev|bench
     python3-visualization-msgs ros-visualization-msgs
   )
   if [[ $1 == dev ]]; then
-    packages+=(catkin-lint git)
+    packages+=(catkin-lint git systemd)
     # Ubuntu's package only fetches a snap.
     ! grep -qx 'ID=debian' /etc/os-release || packages+=(chromium)
   fi
@@ -372,6 +373,28 @@ install_bench() {
     run_step "Installing OpenGL for the peers that draw" install_bench_packages
   fi
   run_step "Installing the peers of the benchmarks into .venv-bench" make_bench_environment
+}
+
+# ---------------------------------------------------------------- step: what makes the bill of materials
+
+audit_hash() {
+  (cd "$REPOSITORY" && printf '%s in %s\n' "$(readlink -f "$PYTHON")" "$AUDIT_VENV" | hash_of requirements-audit.txt)
+}
+
+audit_is_current() {
+  [[ -x $AUDIT_VENV/bin/python3 ]] && stamp_is "$AUDIT_VENV/.stamp" "$(audit_hash)"
+}
+
+# Its packages are none of the robot's, and would be in its bill.
+make_audit_environment() {
+  "$PYTHON" -m venv --clear "$AUDIT_VENV"
+  PYTHONNOUSERSITE=1 PIP_USER=no PIP_DISABLE_PIP_VERSION_CHECK=1 "$AUDIT_VENV/bin/python3" -m pip install --no-input \
+    --progress-bar off --retries 5 --prefer-binary --requirement "$REPOSITORY/requirements-audit.txt"
+  audit_hash >"$AUDIT_VENV/.stamp"
+}
+
+install_audit() {
+  audit_is_current || run_step "Installing what makes the bill of materials into .venv-audit" make_audit_environment
 }
 
 # ---------------------------------------------------------------- all of it

@@ -28,6 +28,9 @@ NODE = "a part of a node, tested with the node in a graph"
 WARM = "compiles ahead of time what others test"
 
 TESTED_BY: dict[str, tuple[str, str]] = {
+    "roomba_ros/supervision/enter": ("system/test_isolation.py", NODE),
+    "roomba_ros/supervision/isolation": ("system/test_isolation.py", NODE),
+    "roomba_ros/supervision/namespace": ("system/test_isolation.py", NODE),
     "roomba_ros/supervision/launch_xml": ("ros/supervision/test_launch_file.py", VALUES),
     "roomba_ros/supervision/run": ("system/faults/test_supervision.py", NODE),
     "roomba/client/clock": ("unit/client/fake/test_robot.py", VALUES),

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import os
 import shlex
+import socket
 
 import rospy
 
-from roomba.client.ports import DEFAULT_PORT
+from roomba.client.ports import DEFAULT_PORT, PAGE_SOCKET
 from roomba.errors import ConfigError
 from roomba.history.database import History
 from roomba.history.folder import history_folder
@@ -28,6 +30,9 @@ _ANY = -1
 class DashboardNode:
     """Serves the page on loopback, and prints its address with the token that commands need.
 
+    With a socket that :data:`PAGE_SOCKET` names it serves there: that of an isolated robot is
+    reached from outside.
+
     Publishes, subscribes and calls what :class:`GraphRobot` does.
     Parameters: ``~port`` (by default -1: 8400, or the next that is free; 0: any), ``~home`` (what
     runs are kept under in the history).
@@ -40,9 +45,7 @@ class DashboardNode:
         self._robot = GraphRobot(read_robot_config())
         self._robot.start()
         guard = Guard(new_token())
-        port = _port()
-        bound = listen("127.0.0.1", DEFAULT_PORT if port == _ANY else port, is_fixed=port != _ANY)
-        self._server = PageServer(create_app(self._robot, guard, _keeper()), bound)
+        self._server = PageServer(create_app(self._robot, guard, _keeper()), _bound())
         self._server.start()
         # Not to the log, which every program on the graph can read.
         print(f"The page: {self._server.address}#token={guard.token}", flush=True)
@@ -60,6 +63,15 @@ def _keeper() -> HistoryKeeper:
     home = str(rospy.get_param("~home", "home"))
     source = RunSource("ros", home, None, shlex.join(["./roomba", "run", f"home:={home}"]))
     return HistoryKeeper(History(history_folder()), source, rospy.logwarn)
+
+
+def _bound() -> socket.socket:
+    """Return the socket that this node was given, or one of a port of this network."""
+    given = os.environ.get(PAGE_SOCKET)
+    if given is not None:
+        return socket.socket(fileno=int(given))
+    port = _port()
+    return listen("127.0.0.1", DEFAULT_PORT if port == _ANY else port, is_fixed=port != _ANY)
 
 
 def _port() -> int:

@@ -8,16 +8,22 @@ for number in (signal.SIGINT, signal.SIGTERM):
     signal.signal(number, signal.SIG_DFL)
 
 from roomba.errors import RoombaError  # noqa: E402
+from roomba_ros.supervision.isolation import FLAG, enter_isolation  # noqa: E402
 from roomba_ros.supervision.launch_xml import environment_of, launch_file  # noqa: E402
 
+arguments = [argument for argument in sys.argv[1:] if argument != FLAG]
 try:
     environment = environment_of(launch_file())
+    if len(arguments) < len(sys.argv) - 1:
+        enter_isolation(arguments)
 except RoombaError as error:
-    sys.exit(str(error))
+    print(f"./roomba run: {error}", file=sys.stderr)
+    sys.exit(2)
+sys.argv[1:] = arguments
 if not environment.items() <= os.environ.items():
     # The C library reads it when a process starts.
     os.environ.update(environment)
-    os.execv(sys.executable, [sys.executable, "-m", "roomba_ros.supervision", *sys.argv[1:]])
+    os.execv(sys.executable, [sys.executable, "-m", "roomba_ros.supervision", *arguments])
 
 from roomba_ros.supervision.run import run_and_leave  # noqa: E402
 

@@ -110,6 +110,8 @@ def take(line: str, monkeypatch: pytest.MonkeyPatch) -> None:
     command, *words = shlex.split(line)
     if command == "map" and any(word.startswith("--bag") for word in words):
         command = "map --bag"
+    if command in ("run", "exec", "control", "camera") and words[:1] == ["--isolated"]:
+        words = words[1:]
     if command == "run":
         take_launch_arguments(words)
     elif command == "exec":
