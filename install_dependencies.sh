@@ -127,11 +127,16 @@ distribution() { # prints bookworm, trixie or jammy
 }
 
 # The names are the same in bookworm, trixie and jammy, but for those that the case at the end adds.
-system_packages() { # runtime|dev|bench
-  if [[ $1 == bench ]]; then # beside those of runtime: OpenGL without a screen, for the peers that draw
-    printf '%s\n' libegl1 libgl1 libgl1-mesa-dri
-    return
-  fi
+system_packages() { # runtime|dev|bench, or on asking: rviz|screen|robot_state_publisher
+  case $1 in
+    bench) # beside those of runtime: OpenGL without a screen, for the peers that draw
+      printf '%s\n' libegl1 libgl1 libgl1-mesa-dri
+      return
+      ;;
+    rviz) printf '%s\n' rviz libgl1-mesa-dri && return ;;
+    screen) printf '%s\n' rviz libgl1-mesa-dri xvfb && return ;;
+    robot_state_publisher) printf '%s\n' ros-robot-state-publisher && return ;;
+  esac
   local -a packages=(
     python3 python3-venv cmake g++ make
     # building: catkin with its hooks, and the definitions and CMake files of the messages that ours contain
@@ -163,7 +168,7 @@ system_packages() { # runtime|dev|bench
   printf '%s\n' "${packages[@]}"
 }
 
-missing_system_packages() { # runtime|dev|bench
+missing_system_packages() { # as above
   command -v dpkg-query >/dev/null || fail "expected a system with dpkg and apt (Debian or Ubuntu); there is no dpkg-query."
   local -a packages
   mapfile -t packages < <(system_packages "$1")
@@ -172,7 +177,7 @@ missing_system_packages() { # runtime|dev|bench
       sed -n 's/^installed //p' | sort -u)
 }
 
-system_is_current() { # runtime|dev|bench
+system_is_current() { # as above
   [[ -z $(missing_system_packages "$1") ]]
 }
 
@@ -215,7 +220,7 @@ refresh_package_lists() {
   fi
 }
 
-install_system_packages() { # runtime|dev
+install_system_packages() { # as above
   local -a missing
   mapfile -t missing < <(missing_system_packages "$1")
   as_root env DEBIAN_FRONTEND=noninteractive dpkg --configure -a || true # what an interrupted apt left
@@ -225,6 +230,15 @@ install_system_packages() { # runtime|dev
     return 1
   }
   system_is_current "$1" || fail "apt-get succeeded, but these are still missing: $(missing_system_packages "$1" | xargs)"
+}
+
+# What is asked for, and no other command needs.
+install_on_asking() { # rviz|screen|robot_state_publisher
+  system_is_current "$1" && return
+  local -a missing
+  mapfile -t missing < <(missing_system_packages "$1")
+  require_root "${missing[@]}"
+  run_step "Installing ${missing[*]}, and what they need" install_system_packages "$1"
 }
 
 # ---------------------------------------------------------------- step: Python environment

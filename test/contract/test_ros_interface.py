@@ -3,10 +3,15 @@
 import contextlib
 import re
 from pathlib import Path
+from xml.etree import ElementTree
 
 from fixtures.graph import WITH_PAGE, RosGraph
 from fixtures.probe import Probe
+from fixtures.rviz import TYPES, displays, settings, tools
 from fixtures.waiting import wait_until
+from tf2_msgs.msg import TFMessage
+
+from roomba_ros.model.description import description
 
 PAGE = (Path(__file__).parents[2] / "docs" / "ros_interface.md").read_text(encoding="utf-8")
 OF_EVERY_NODE = {"/rosout"}
@@ -86,3 +91,40 @@ def test_parameters_are_those_of_the_table(robot_with_page: RosGraph) -> None:
     for cells in rows:
         (name,), (default,) = names(cells[0]), names(cells[1])
         assert str(robot_with_page.param(name)) == default
+
+
+def test_what_rviz_shows_is_there(robot_with_page: RosGraph) -> None:
+    types = robot_with_page.topic_types()
+    shown = displays()
+    assert len(shown) >= 12
+    for display in shown:
+        assert types[display["topic"]] == TYPES[display["class"]], display
+    publishers, subscribers, _ = robot_with_page.system_state()
+    assert {display["topic"] for display in shown} <= publishers.keys()
+    wired = tools()
+    assert wired.keys() >= {"rviz/SetGoal", "rviz/SetInitialPose"}
+    for tool in ("rviz/SetGoal", "rviz/SetInitialPose"):
+        assert types[wired[tool]] == TYPES[tool]
+        assert wired[tool] in subscribers
+
+
+def test_rviz_finds_its_fixed_frame_and_every_link_of_the_model(robot_with_page: RosGraph) -> None:
+    assert robot_with_page.param("/robot_description") == description()
+    links = {link.get("name") for link in ElementTree.fromstring(description()).findall("link")}
+    probe = Probe(robot_with_page)
+    mounts = probe.next("/tf_static", TFMessage).transforms
+    frames = {each.child_frame_id for each in mounts}
+
+    def told() -> bool:
+        for each in probe.next("/tf", TFMessage).transforms:
+            frames.update((each.header.frame_id, each.child_frame_id))
+        return frames >= links | {settings()["Global Options"]["Fixed Frame"]}
+
+    wait_until(told, 20.0, lambda: f"all of {links} in {frames}")
+
+
+def test_a_camera_has_the_standard_names(robot_with_page: RosGraph) -> None:
+    types = robot_with_page.topic_types()
+    assert types["/camera/image_raw"] == "sensor_msgs/Image"
+    assert types["/camera/image_raw/compressed"] == "sensor_msgs/CompressedImage"
+    assert types["/camera/camera_info"] == "sensor_msgs/CameraInfo"

@@ -107,7 +107,8 @@ def test_each_sensor_tells_in_the_messages_of_its_kind(apartment: RosGraph) -> N
         transform.child_frame_id: transform
         for transform in probe.next("/tf_static", TFMessage).transforms
     }
-    assert set(mounted) == {"laser", "imu_link", "camera", "camera_optical"}
+    cliffs = {f"cliff_{name}" for name in ("left", "front_left", "front_right", "right")}
+    assert set(mounted) == {"laser", "imu_link", "camera", "camera_optical"} | cliffs
     assert mounted["laser"].header.frame_id == "base_link"
     assert mounted["laser"].transform.translation.z == pytest.approx(0.085)
 

@@ -193,6 +193,7 @@ TESTED_BY: dict[str, tuple[str, str]] = {
     "roomba_ros/dashboard/": ("web/test_page_on_graph.py", NODE),
     "roomba_ros/localization/": ("ros/test_position_pub_node.py", NODE),
     "roomba_ros/maps/": ("ros/test_map_topics.py", NODE),
+    "roomba_ros/model/picture": ("missions/test_rviz.py", PICTURES),
     "roomba_ros/mission/": ("ros/test_mission_node.py", NODE),
     "roomba_ros/rooms/": ("ros/test_position_pub_node.py", NODE),
     "roomba_ros/runtime/": ("ros/test_position_pub_node.py", NODE),

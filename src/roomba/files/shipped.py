@@ -1,4 +1,4 @@
-"""Where the files lie that come with the package: homes, and the configuration's defaults."""
+"""Where the files lie that come with the package: homes, the configuration's defaults, a model."""
 
 from __future__ import annotations
 
@@ -10,3 +10,5 @@ HOMES: Final = _DATA / "homes"
 """A folder for each home that comes along."""
 CONFIGURATION: Final = _DATA / "configuration"
 """A YAML file for each part of the configuration, with every number's default."""
+MODEL: Final = _DATA / "model"
+"""The robot's model, for programs that draw it."""

@@ -125,18 +125,23 @@ def mount_message(
     frame_id: str,
     child_frame_id: str,
     place: tuple[float, float, float],
-    *,
-    is_optical: bool = False,
+    turns: tuple[float, float, float] = (0.0, 0.0, 0.0),
+    now: float = 0.0,
 ) -> TransformStamped:
-    """Return where a part is mounted for good: ``place`` x, y, z, m.
+    """Return where a part is mounted: ``place`` x, y, z, m; ``turns`` as in a URDF.
 
-    An optical frame (REP 103) looks along its z, with x to the right and y down.
+    These are about the fixed axes x, y, z, rad, one after the other. ``now`` is for what moves.
     """
-    message = TransformStamped(header=header(0.0, frame_id), child_frame_id=child_frame_id)
+    message = TransformStamped(header=header(now, frame_id), child_frame_id=child_frame_id)
     translation = message.transform.translation
     translation.x, translation.y, translation.z = place
-    rotation = Quaternion(-0.5, 0.5, -0.5, 0.5) if is_optical else Quaternion(0.0, 0.0, 0.0, 1.0)
-    message.transform.rotation = rotation
+    (sx, cx), (sy, cy), (sz, cz) = ((math.sin(a / 2.0), math.cos(a / 2.0)) for a in turns)
+    message.transform.rotation = Quaternion(
+        sx * cy * cz - cx * sy * sz,
+        cx * sy * cz + sx * cy * sz,
+        cx * cy * sz - sx * sy * cz,
+        cx * cy * cz + sx * sy * sz,
+    )
     return message
 
 

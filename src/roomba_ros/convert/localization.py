@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 
-from geometry_msgs.msg import PoseArray, PoseWithCovarianceStamped
+from geometry_msgs.msg import Point32, PolygonStamped, PoseArray, PoseWithCovarianceStamped
 from roomba_robot.msg import Localization
 
 from roomba.geometry import Pose
@@ -23,6 +23,8 @@ SAME_TIME = 0.06
 """s; a gyro sample so near to an odometry's time is of the same motion."""
 _PLANAR = (0, 1, 5)
 """Of a covariance's six axes x, y, z and the turns about them: x, y and the turn about z."""
+_CORNERS = 24
+"""Of the outline of the body: within 1 % of its circle."""
 _LEAST_DEVIATION = (0.1, 0.1)
 """m, rad; of a pose whose sender does not say how sure it is."""
 
@@ -54,6 +56,16 @@ def knowledge_of(message: Localization) -> tuple[Knowledge, str]:
         if state == message.state:
             return knowledge, message.message
     raise MessageError(f"expected a state from 0 to {len(STATES) - 1}, got {message.state}")
+
+
+def footprint_message(now: float, pose: Pose, radius: float, frame_id: str) -> PolygonStamped:
+    """Return the outline of a round body of ``radius`` m at a pose; its first corner is ahead."""
+    message = PolygonStamped(header=header(now, frame_id))
+    for corner in range(_CORNERS):
+        bearing = pose.theta + math.tau * corner / _CORNERS
+        x, y = pose.x + radius * math.cos(bearing), pose.y + radius * math.sin(bearing)
+        message.polygon.points.append(Point32(x, y, 0.0))
+    return message
 
 
 def covariance_pose_message(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import rospy
-from geometry_msgs.msg import PoseArray, PoseStamped, PoseWithCovarianceStamped
+from geometry_msgs.msg import PolygonStamped, PoseArray, PoseStamped, PoseWithCovarianceStamped
 from roomba_robot.msg import Localization, RobotPosition
 from tf2_msgs.msg import TFMessage
 
@@ -15,6 +15,7 @@ from roomba.perception.slam.mapper import Mapper
 from roomba_ros.convert.common import pose_message, transform_message
 from roomba_ros.convert.localization import (
     covariance_pose_message,
+    footprint_message,
     localization_message,
     poses_message,
 )
@@ -27,12 +28,13 @@ class PlaceTopics:
     Publishes: ``position`` (RobotPosition, 10 Hz), ``pose`` (PoseStamped, 20 Hz, map frame),
     ``amcl_pose`` (PoseWithCovarianceStamped, 10 Hz), ``localization`` (Localization, at a change
     and 1 Hz, latched), ``particlecloud`` (PoseArray, where it may be, 2 Hz while heard),
+    ``footprint`` (PolygonStamped, the body's outline on the map, 10 Hz while heard),
     ``/tf`` (map -> odom, 10 Hz).
     """
 
-    def __init__(self, periods: PeriodsConfig) -> None:
-        """Connect nothing yet."""
-        self._periods = periods
+    def __init__(self, periods: PeriodsConfig, radius: float) -> None:
+        """Connect nothing yet; ``radius`` is the body's, m."""
+        self._periods, self._radius = periods, radius
         self._ticks = 0
         self._said: tuple[Knowledge, str] | None = None
         self._map_frame, self._odom_frame = "map", frame_id("odom")
@@ -44,6 +46,7 @@ class PlaceTopics:
         self._amcl_pose = rospy.Publisher("amcl_pose", PoseWithCovarianceStamped, queue_size=1)
         self._state = rospy.Publisher("localization", Localization, queue_size=1, latch=True)
         self._cloud = rospy.Publisher("particlecloud", PoseArray, queue_size=1)
+        self._footprint = rospy.Publisher("footprint", PolygonStamped, queue_size=1)
         self._transforms = rospy.Publisher("/tf", TFMessage, queue_size=10)
 
     def tell(
@@ -59,6 +62,9 @@ class PlaceTopics:
             self._position.publish(RobotPosition(estimate.pose.x, estimate.pose.y))
             pose = covariance_pose_message(stamp or now, estimate, self._map_frame)
             self._amcl_pose.publish(pose)
+            if self._footprint.get_num_connections() > 0:
+                place = (estimate.pose, self._radius, self._map_frame)
+                self._footprint.publish(footprint_message(stamp or now, *place))
             odometry = localizer.map_to_odometry
             self._transforms.publish(
                 [transform_message(now, odometry, self._map_frame, self._odom_frame)]

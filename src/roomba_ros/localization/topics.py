@@ -56,7 +56,7 @@ class LocalizationTopics:
         self._new_map: OccupancyMap | None = None
         self._is_asked = False
         self._kept = KeptPose(nodes.memory.pose, nodes.placing)
-        self._place = PlaceTopics(nodes.periods)
+        self._place = PlaceTopics(nodes.periods, config.body.radius)
         self._calibration = CalibrationTopics()
         self.mapper: Mapper | None = None
         """Knows the place instead of the localizer, while a map is being made."""

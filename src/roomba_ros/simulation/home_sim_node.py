@@ -8,7 +8,7 @@ from functools import partial
 from pathlib import Path
 
 import rospy
-from geometry_msgs.msg import PoseStamped, TransformStamped
+from geometry_msgs.msg import PoseStamped
 from geometry_msgs.msg import Twist as TwistMessage
 from nav_msgs.msg import OccupancyGrid, Odometry
 from rosgraph_msgs.msg import Clock
@@ -27,7 +27,6 @@ from roomba.world.layers.layer import load_home
 from roomba.world.simulator import Observation, Simulator
 from roomba_ros.convert.common import (
     map_message,
-    mount_message,
     odometry_message,
     pose_message,
     transform_message,
@@ -56,6 +55,7 @@ from roomba_ros.runtime.senders import SPEED_NODE, OnlyFrom
 from roomba_ros.runtime.subscriptions import subscribe, tell_refusals
 from roomba_ros.runtime.ticker import Ticker
 from roomba_ros.simulation.camera_topics import CameraTopics
+from roomba_ros.simulation.frames import BodyFrames
 from roomba_ros.simulation.sensor_topics import SensorTopics
 from roomba_ros.simulation.sim_services import SimServices
 
@@ -71,8 +71,8 @@ class HomeSimNode:
 
     Publishes: ``/clock`` (20 Hz), ``map`` (latched), ``station_pose`` (PoseStamped, latched: where
     the docked robot stands on that map, its nose to the station), ``odom`` (20 Hz, by the wheel
-    encoders), ``/tf`` (odom -> base_link), ``/tf_static`` (where the sensors are on the body), and
-    what :class:`SensorTopics` and :class:`CameraTopics` tell.
+    encoders), ``/tf`` (odom -> base_link, and of that the wheels), ``/tf_static`` (where the
+    sensors are on the body), and what :class:`SensorTopics` and :class:`CameraTopics` tell.
     Subscribes: ``cmd_vel_out`` (Twist; older than the drive's time-out it stops) and
     ``emergency_stop`` (String; while it says a reason the wheels stand), of ``~drive_owner`` alone;
     ``pose`` (PoseStamped) and the ``progress`` (Time) of :data:`progress.NODES`: a robot that is
@@ -82,6 +82,7 @@ class HomeSimNode:
     Parameters: ``~home`` (name or path), ``~homes_directory``, ``~speed`` (robot seconds per second
     of wall time), ``~seed``, ``~clock`` (false for all but one of several robots, which go by that
     one's clock and do not wait), ``~drive_owner`` (the node that may drive, or any),
+    ``~frames`` (false: robot_state_publisher tells those below base_link),
     ``~sensors`` (ideal or noisy) and ``~wheels`` (factory or worn),
     by default what ``robot_config`` says, ``robot_max_speed``, ``initial_post_x``,
     ``initial_post_y``.
@@ -112,6 +113,7 @@ class HomeSimNode:
         self._told = 0.0
         self._pace = Pace(self._timing.tick, self._speed, self._nodes.pace, self._is_there)
         self._odom_frame, self._base_frame = frame_id("odom"), frame_id("base_link")
+        self._frames = BodyFrames(self._config) if _tells_frames_parameter() else None
         self._connect()
 
     def run(self) -> None:
@@ -164,9 +166,11 @@ class HomeSimNode:
                 now, odometry, observation.odometry_twist, self._odom_frame, self._base_frame
             )
         )
-        self._transforms.publish(
-            [transform_message(now, odometry, self._odom_frame, self._base_frame)]
-        )
+        transforms = [transform_message(now, odometry, self._odom_frame, self._base_frame)]
+        if self._frames is not None:
+            wheels = observation.wheels
+            transforms += self._frames.wheels(now, wheels.left, wheels.right)
+        self._transforms.publish(transforms)
         self._sensors.tell(now, self._ticks, observation)
 
     def _now(self) -> float:
@@ -204,8 +208,9 @@ class HomeSimNode:
             self._clock_publisher = rospy.Publisher("/clock", Clock, queue_size=1, tcp_nodelay=True)
         self._odometry = rospy.Publisher("odom", Odometry, queue_size=1, tcp_nodelay=True)
         self._transforms = rospy.Publisher("/tf", TFMessage, queue_size=10)
-        self._mounts = rospy.Publisher("/tf_static", TFMessage, queue_size=10, latch=True)
-        self._mounts.publish(self._mounted())
+        if self._frames is not None:
+            self._mounts = rospy.Publisher("/tf_static", TFMessage, queue_size=10, latch=True)
+            self._mounts.publish(self._frames.mounted())
         if _tells_map_parameter():
             self._tell_map()
         self._sensors = SensorTopics(
@@ -241,19 +246,6 @@ class HomeSimNode:
         self._map.publish(map_message(self._now(), home.map, "map"))
         self._station = rospy.Publisher("station_pose", PoseStamped, queue_size=1, latch=True)
         self._station.publish(pose_message(self._now(), home.station, "map"))
-
-    def _mounted(self) -> list[TransformStamped]:
-        """Return where the sensors are on the body, which never changes."""
-        camera, lidar = self._config.camera, self._config.lidar
-        forward, up = camera.mount_forward, camera.mount_height
-        return [
-            mount_message(self._base_frame, frame_id("laser"), (0.0, 0.0, lidar.mount_height)),
-            mount_message(self._base_frame, frame_id("imu_link"), (0.0, 0.0, 0.0)),
-            mount_message(self._base_frame, frame_id("camera"), (forward, 0.0, up)),
-            mount_message(
-                frame_id("camera"), frame_id("camera_optical"), (0.0, 0.0, 0.0), is_optical=True
-            ),
-        ]
 
     def _is_there(self, part: str) -> bool:
         return bool(self._parts[part].get_num_connections() > 0)
@@ -298,6 +290,14 @@ def _tells_map_parameter() -> bool:
     if not isinstance(value, str) or not value:
         raise ConfigError(f"parameter ~map: expected given, none, own or a name, got {value!r}")
     return value == "given"
+
+
+def _tells_frames_parameter() -> bool:
+    """Return whether the frames of the body's parts are told here."""
+    value = rospy.get_param("~frames", True)
+    if not isinstance(value, bool):
+        raise ConfigError(f"parameter ~frames: expected true or false, got {value!r}")
+    return value
 
 
 def _speed_parameter() -> float:

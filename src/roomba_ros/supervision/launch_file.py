@@ -6,31 +6,38 @@ code, and no node is to have these.
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
+import shlex
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 from roomba.errors import RoombaError
 from roomba.files.strict_yaml import suggestion
 from roomba_ros.supervision.fork import fork
 from roomba_ros.supervision.launch_xml import elements
 
+_PACKAGE: Final = "roomba_robot"
+
 
 @dataclass(frozen=True, slots=True)
 class ProcessEntry:
     """One node of the table: its ``script`` in the package's folder ``scripts``.
 
-    ``is_required``: all end with it; otherwise it is started anew.
+    ``is_required``: all end with it; otherwise it is started anew, if it ``is_respawned``.
+    ``command`` is of a program of another package, with its arguments; it has no script then.
     """
 
     name: str
     namespace: str
     script: str
     is_required: bool
+    is_respawned: bool = True
+    command: tuple[str, ...] = ()
 
     @property
     def path(self) -> str:
@@ -81,7 +88,10 @@ def read_launch(path: Path, arguments: Sequence[str]) -> Launch:
     found = json.loads(told)
     if "error" in found:
         raise RoombaError(f"{path}: {found['error']}")
-    processes = tuple(ProcessEntry(**entry) for entry in found["processes"])
+    processes = tuple(
+        ProcessEntry(**{**entry, "command": tuple(entry["command"])})
+        for entry in found["processes"]
+    )
     return Launch(processes, found["parameters"])
 
 
@@ -102,14 +112,33 @@ def _loaded(path: Path, arguments: Sequence[str]) -> dict[str, Any]:
     config: Any = ROSLaunchConfig()
     XmlLoader().load(str(path), config, argv=list(arguments), verbose=False)
     return {
-        "processes": [
-            {
-                "name": node.name,
-                "namespace": node.namespace,
-                "script": node.type,
-                "is_required": bool(node.required),
-            }
-            for node in config.nodes
-        ],
+        "processes": [_entry(node) for node in config.nodes],
         "parameters": {parameter.key: parameter.value for parameter in config.params.values()},
     }
+
+
+def _entry(node: Any) -> dict[str, Any]:
+    is_ours = node.package == _PACKAGE
+    return {
+        "name": node.name,
+        "namespace": node.namespace,
+        "script": node.type if is_ours else "",
+        "is_required": bool(node.required),
+        "is_respawned": bool(node.respawn),
+        "command": [] if is_ours else [_program(node.package, node.type), *shlex.split(node.args)],
+    }
+
+
+def _program(package: str, name: str) -> str:
+    """Return the path of a program of another package; raises RoombaError."""
+    from rospkg import ResourceNotFound
+
+    with contextlib.suppress(ResourceNotFound):
+        from roslib.packages import find_node
+
+        for path in find_node(package, name):
+            return str(path)
+    raise RoombaError(
+        f"expected the program {name} of the package {package}, there is none; install that "
+        f"package: ./roomba run installs what it launches if it may, and names it if not"
+    )

@@ -78,8 +78,9 @@ def _run(launch: Launch, scripts: Path) -> int:
             for entry in launch.processes:
                 supervisor.add(
                     entry.name,
-                    partial(_be_node, entry, scripts, logs),
+                    partial(_be_program if entry.command else _be_node, entry, scripts, logs),
                     is_required=entry.is_required,
+                    is_kept=entry.is_respawned,
                 )
             return supervisor.run()
         finally:
@@ -109,7 +110,8 @@ def _set_parameters(launch: Launch, run_id: str) -> None:
 def _import_all(launch: Launch, scripts: Path) -> None:
     """Import what the processes need, once for all of them."""
     for entry in launch.processes:
-        importlib.import_module(_module_of(scripts / entry.script))
+        if not entry.command:
+            importlib.import_module(_module_of(scripts / entry.script))
     # The first call of any compiled function makes numba import most of itself.
     distance_to_nearest(np.ones((2, 2), np.bool_))
 
@@ -136,6 +138,13 @@ def _be_node(entry: ProcessEntry, scripts: Path, logs: Path) -> None:
     os.environ["ROS_NAMESPACE"] = entry.namespace
     rospy.names.reload_mappings(sys.argv)
     runpy.run_path(script, run_name="__main__")
+
+
+def _be_program(entry: ProcessEntry, _: Path, logs: Path) -> NoReturn:
+    """Become a program of another package."""
+    os.environ["ROS_NAMESPACE"] = entry.namespace
+    names = (f"__name:={entry.name}", f"__log:={logs / entry.name}.log")
+    os.execv(entry.command[0], [*entry.command, *names])
 
 
 def run_and_leave() -> NoReturn:

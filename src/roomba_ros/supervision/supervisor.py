@@ -35,6 +35,7 @@ class _Process:
     run: Callable[[], object]
     watch: Watch
     is_required: bool = False
+    is_kept: bool = True
     pid: int = 0
     heart: int = -1
 
@@ -58,9 +59,19 @@ class Supervisor:
         """Whether it was told to end."""
         return self._status is not None
 
-    def add(self, name: str, run: Callable[[], object], *, is_required: bool = False) -> None:
-        """Start a process, unless it is to end, and watch it; all end with one that is required."""
-        process = _Process(run, Watch(name, self._config), is_required)
+    def add(
+        self,
+        name: str,
+        run: Callable[[], object],
+        *,
+        is_required: bool = False,
+        is_kept: bool = True,
+    ) -> None:
+        """Start a process, unless it is to end, and watch it; all end with one that is required.
+
+        One that is not ``is_kept`` may end, as a window that is closed, and is forgotten then.
+        """
+        process = _Process(run, Watch(name, self._config), is_required, is_kept)
         self._processes.append(process)
         if not self.is_ending:
             self._start(process)
@@ -110,10 +121,7 @@ class Supervisor:
             self._status = status
 
     def _start(self, process: _Process) -> None:
-        if process.heart >= 0:
-            with contextlib.suppress(KeyError):
-                self._selector.unregister(process.heart)
-            os.close(process.heart)
+        self._forget_heart(process)
         process.heart, writing = os.pipe()
         for end in (process.heart, writing):
             os.set_blocking(end, False)
@@ -129,6 +137,12 @@ class Supervisor:
         process.watch.started(time.monotonic())
         _say(f"{process.watch.name}: started, process {process.pid}")
 
+    def _forget_heart(self, process: _Process) -> None:
+        if process.heart >= 0:
+            with contextlib.suppress(KeyError):
+                self._selector.unregister(process.heart)
+            os.close(process.heart)
+
     def _hear(self) -> None:
         """Take signs of life as they come, for a moment."""
         for key, _ in self._selector.select(_LOOK):
@@ -136,11 +150,14 @@ class Supervisor:
                 if os.read(key.fd, 1 << 12):
                     key.data.watch.beat(time.monotonic())
                 else:
-                    # It ended, as waitpid tells; the end of its pipe would be told for ever.
+                    # It ended, as waitpid tells, or became a program that tells no such signs.
+                    # The end of its pipe would be told for ever.
                     self._selector.unregister(key.fd)
+                    if key.data.watch.is_running:
+                        key.data.watch.has_no_heart()
 
     def _reap(self, now: float) -> None:
-        for process in self._processes:
+        for process in self._processes.copy():
             if not process.watch.is_running:
                 continue
             pid, status = os.waitpid(process.pid, os.WNOHANG)
@@ -149,6 +166,9 @@ class Supervisor:
             how = told_end(status)
             process.watch.ended(now, how)
             _say(f"{process.watch.name} {how}")
+            if not process.is_kept:
+                self._forget_heart(process)
+                self._processes.remove(process)
             if process.is_required or (process.watch.is_given_up and process is self._processes[0]):
                 _say(f"{process.watch.name} is needed by all others: they end")
                 self._end(max(1, os.waitstatus_to_exitcode(status)))

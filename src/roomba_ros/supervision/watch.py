@@ -30,6 +30,10 @@ class Watch:
         """Note a sign of life."""
         self._beaten = now
 
+    def has_no_heart(self) -> None:
+        """Note that it gives no signs of life: a program of another package, or one that ends."""
+        self._beaten, self._last_end = math.inf, ""
+
     def seen(self, now: float, *, is_stopped: bool) -> None:
         """Note whether it is stopped by a signal or a debugger."""
         if not is_stopped:

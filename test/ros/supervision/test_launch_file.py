@@ -33,9 +33,22 @@ def test_its_arguments_count() -> None:
     assert launch.parameters["/robot_max_speed"] == 0.25
 
 
+def test_programs_of_other_packages_are_found_or_named(tmp_path: Path) -> None:
+    path = tmp_path / "other.launch"
+    node = '<node name="n" pkg="{}" type="{}" args="-d \'a b\'"/>'
+    path.write_text(f"<launch>{node.format('rosbag', 'play')}</launch>", encoding="utf-8")
+    (entry,) = read_launch(path, []).processes
+    assert Path(entry.command[0]).name == "play"
+    assert entry.command[1:] == ("-d", "a b")
+    assert not entry.is_respawned
+    path.write_text(f"<launch>{node.format('nowhere', 'nothing')}</launch>", encoding="utf-8")
+    with pytest.raises(RoombaError, match="the program nothing of the package nowhere"):
+        read_launch(path, [])
+
+
 def test_its_arguments_are_described() -> None:
     lines = described(LAUNCH).splitlines()
-    assert len(lines) == 17
+    assert len(lines) == 19
     (home,) = (line for line in lines if line.startswith("  home:=flat "))
     assert home.endswith("name of a shipped home, or path of a map_server yaml")
 

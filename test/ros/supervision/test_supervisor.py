@@ -159,3 +159,27 @@ def _ignores(pid: int) -> bool:
     lines = Path(f"/proc/{pid}/status").read_text().splitlines()
     (mask,) = (int(line.split()[1], 16) for line in lines if line.startswith("SigIgn"))
     return bool(mask >> (signal.SIGTERM - 1) & 1)
+
+
+def test_a_program_without_signs_of_life_is_watched_for_its_end_alone(run: Run) -> None:
+    sleep = "lambda: os.execv('/bin/sleep', ['sleep', '1000'])"
+    robot = run(f"supervisor.add('one', {sleep})")
+    first = robot.starts("one", 1)
+    os.kill(first, signal.SIGKILL)
+    second = robot.starts("one", 2)
+    os.kill(second, signal.SIGSTOP)
+    assert robot.starts("one", 3) not in (first, second)
+    assert "has not answered" not in robot.program.output
+
+
+def test_what_is_not_kept_may_end(run: Run) -> None:
+    sleep = "lambda: os.execv('/bin/sleep', ['sleep', '1000'])"
+    robot = run("supervisor.add('one', live)", f"supervisor.add('window', {sleep}, is_kept=False)")
+    os.kill(robot.starts("window", 1), signal.SIGTERM)
+    wait_until(lambda: "window was ended by SIGTERM" in robot.program.output, 20.0)
+    one = robot.starts("one", 1)
+    os.kill(one, signal.SIGKILL)
+    robot.starts("one", 2)
+    assert len(robot.pids("window")) == 1
+    assert "it is started anew" in robot.program.output
+    assert "window was ended by SIGTERM; " not in robot.program.output

@@ -80,6 +80,8 @@ IN_BROWSER: dict[str, tuple[str, Callable[[Home], Picture]]] = {
     "report": ("flat", picture_of_report),
 }
 """Pictures that need a browser: made when they are named."""
+IN_RVIZ = "rviz"
+"""The picture that ``./roomba`` lets :mod:`roomba_ros.model.picture` make, as it needs ROS."""
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -87,10 +89,12 @@ def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(prog=spelled("pictures"), description=__doc__)
     parser.add_argument("folder", nargs="?", type=Path, default=_DOCUMENTS)
     parser.add_argument(
-        "--only", nargs="+", choices=[*PICTURES, *IN_BROWSER], default=list(PICTURES)
+        "--only", nargs="+", choices=[*PICTURES, *IN_BROWSER, IN_RVIZ], default=list(PICTURES)
     )
     wanted = parser.parse_args(arguments)
     try:
+        if IN_RVIZ in wanted.only:
+            raise RoombaError("that of RViz needs ROS: ./roomba pictures --only rviz, by itself")
         wanted.folder.mkdir(parents=True, exist_ok=True)
         for name in wanted.only:
             home, picture_of = (PICTURES | IN_BROWSER)[name]
