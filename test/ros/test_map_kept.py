@@ -55,7 +55,7 @@ def names_kept(graph: RosGraph, name: str) -> tuple[str, ...]:
 
 
 def kept_keyframes(graph: RosGraph) -> int:
-    kept = load_mapper(file_of(graph))
+    kept = load_mapper(file_of(graph), pytest.fail)
     return 0 if kept is None else sum(len(submap.keyframes) for submap in kept.state.submaps)
 
 
@@ -182,7 +182,7 @@ def test_what_cannot_be_taken_up_is_said_and_a_new_map_begins(graph: RosGraph) -
         2,
     ):
         wait_until(lambda: kept_keyframes(graph) > 0, 30.0, "it is kept")
-        kept = load_mapper(file_of(graph))
+        kept = load_mapper(file_of(graph), pytest.fail)
         assert kept is not None
         # Else the next process would not know that a map was begun, and leave it unread.
         assert graph.param("/map_to_odometry")

@@ -85,11 +85,11 @@ class PeriodsConfig(Frozen):
 class MemoryConfig(Frozen):
     """What is kept for a node that is killed: how often it is written, and when it is dropped."""
 
-    pose: Positive = 1.0
+    pose: Positive = 0.7
     """s of wall time between two poses that the master keeps."""
-    errand: Positive = 2.0
+    errand: Positive = 0.8
     """s of wall time between two checkpoints of a phase."""
-    map: Positive = 3.0
+    map: Positive = 0.8
     """s of the robot's clock between two writings of the map that is being made,"""
     map_wall_per_byte: Positive = 1e-6
     """and s of wall time for each of its bytes: 1 MB/s is enough for any disk."""

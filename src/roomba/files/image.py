@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from roomba.errors import HomeError
 from roomba.files.bounded import read_bytes
+from roomba.files.kept import SealError, unsealed
 from roomba.grid import MOST_CELLS
 
 PNG_BEGIN = b"\x89PNG\r\n\x1a\n"
@@ -34,7 +35,9 @@ class Image:
 def read_image(path: Path) -> Image:
     """Read a picture; colours are averaged. Raises :class:`HomeError` with file and reason."""
     try:
-        content = read_bytes(path)
+        content = unsealed(read_bytes(path))
+    except SealError as error:
+        raise HomeError(f"{path}: {error}") from error
     except OSError as error:
         raise HomeError(f"expected a picture at {path}, got: {error.strerror or error}") from error
     if content[:2] in (b"P2", b"P5"):

@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from roomba.errors import HomeError
-from roomba.files.atomic import write_whole
 from roomba.files.image import Image, read_image
+from roomba.files.kept import write_kept
 from roomba.files.strict_yaml import YamlFile, read_yaml
 from roomba.grid import COARSEST_CELL, FINEST_CELL, FREE, OCCUPIED, UNKNOWN, GridFrame, OccupancyMap
 
@@ -79,7 +79,8 @@ def load_map(path: Path) -> OccupancyMap:
 def save_map(occupancy: OccupancyMap, path: Path) -> None:
     """Write a map as ``path`` (YAML) and a PGM beside it; :func:`load_map` returns it identically.
 
-    Maps of free, occupied and unknown are written as map_saver does, others in raw mode. Raises
+    Both are sealed in comments. Maps of free, occupied and unknown are written as map_saver does,
+    others in raw mode. Raises
     ValueError for values outside -1..100 and OSError when the disk refuses.
     """
     values = occupancy.values
@@ -91,7 +92,7 @@ def save_map(occupancy: OccupancyMap, path: Path) -> None:
     pixels = _map_saver_pixels(values) if trinary else _raw_pixels(values)
     image = path.with_suffix(".pgm")
     rows, columns = pixels.shape
-    write_whole(image, f"P5\n{columns} {rows}\n255\n".encode() + pixels[::-1].tobytes())
+    write_kept(image, f"P5\n{columns} {rows}\n255\n".encode() + pixels[::-1].tobytes())
     frame = occupancy.frame
     lines = [
         f"image: {image.name}",
@@ -102,7 +103,7 @@ def save_map(occupancy: OccupancyMap, path: Path) -> None:
         "free_thresh: 0.196",
         f"mode: {'trinary' if trinary else 'raw'}",
     ]
-    write_whole(path, ("\n".join(lines) + "\n").encode())
+    write_kept(path, ("\n".join(lines) + "\n").encode())
 
 
 def _image_of(file: YamlFile, description: MapDescription) -> Image:

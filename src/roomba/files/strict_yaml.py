@@ -12,7 +12,8 @@ from pydantic import BaseModel, ValidationError
 from yaml import MappingNode, Node, ScalarNode, SequenceNode, YAMLError
 
 from roomba.errors import HomeError
-from roomba.files.bounded import read_text
+from roomba.files.bounded import read_bytes
+from roomba.files.kept import SealError, unsealed
 from roomba.files.plain_yaml import load_with_nodes
 
 Location = tuple[int | str, ...]
@@ -60,7 +61,12 @@ class YamlFile:
 def read_yaml(path: Path) -> YamlFile:
     """Read a YAML file; raises :class:`HomeError` if it cannot be read or is not a mapping."""
     try:
-        text = read_text(path)
+        content = read_bytes(path)
+        unsealed(content)
+        # The seal is a comment, and lines are counted with it.
+        text = content.decode("utf-8")
+    except SealError as error:
+        raise HomeError(f"{path}: {error}") from error
     except OSError as error:
         raise HomeError(f"{path}: cannot be read: {error.strerror or error}") from error
     except UnicodeDecodeError as error:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated
 
@@ -10,9 +11,7 @@ import yaml
 from pydantic import Field, ValidationError
 
 from roomba.errors import RoombaError
-from roomba.files.atomic import write_whole
-from roomba.files.bounded import read_text
-from roomba.files.damaged import set_aside
+from roomba.files.kept import KeptFileError, read_kept, write_kept
 from roomba.files.plain_yaml import load_yaml
 from roomba.perception.calibration.calibration import Calibration
 from roomba.storage.map_bound import Entry, yaml_text
@@ -46,22 +45,24 @@ def save_calibration(calibration: Calibration, path: Path) -> None:
             "base": calibration.base,
         }
     )
-    write_whole(path, f"# {_COMMENT}\n{text}".encode())
+    write_kept(path, f"# {_COMMENT}\n{text}".encode())
 
 
-def load_calibration(path: Path) -> Calibration | None:
+def load_calibration(path: Path, tell: Callable[[str], object]) -> Calibration | None:
     """Return the calibration that was kept; None if there is none.
 
-    A damaged file is set aside, so that the robot measures anew: raises CalibrationError.
+    A damaged file is set aside, and the one before is used, of which ``tell`` is told. Raises
+    CalibrationError if there is none that can be used, so that the robot measures anew.
     """
     try:
-        text = read_text(path)
-    except FileNotFoundError:
-        return None
-    except (OSError, UnicodeDecodeError) as cause:
-        raise CalibrationError(_set_aside(path, str(cause))) from cause
+        return read_kept(path, _parsed, tell)
+    except KeptFileError as error:
+        raise CalibrationError(f"{error}; the robot measures itself anew") from error
+
+
+def _parsed(content: bytes) -> Calibration:
     try:
-        file = _CalibrationFile.model_validate(load_yaml(text))
+        file = _CalibrationFile.model_validate(load_yaml(content.decode("utf-8")))
         calibration = Calibration(
             np.array(file.errors),
             np.array(file.covariance),
@@ -70,14 +71,11 @@ def load_calibration(path: Path) -> Calibration | None:
             file.base,
         )
     except (yaml.YAMLError, ValidationError, ValueError) as cause:
-        raise CalibrationError(_set_aside(path, str(cause).splitlines()[0])) from cause
+        raise CalibrationError(f"expected a kept calibration ({_first_line(cause)})") from cause
     if not calibration.is_sensible:
-        raise CalibrationError(_set_aside(path, "its numbers are none of a robot"))
+        raise CalibrationError("expected a kept calibration, got numbers that are none of a robot")
     return calibration
 
 
-def _set_aside(path: Path, why: str) -> str:
-    return (
-        f"{path}: expected a kept calibration ({why}); {set_aside(path)}, and the robot measures "
-        "itself anew"
-    )
+def _first_line(cause: Exception) -> str:
+    return str(cause).splitlines()[0]

@@ -1,12 +1,14 @@
 """Checkpoints on disk: the robot's present errand, and where it was dirty.
 
-Each file is replaced atomically: a node that was killed finds the old checkpoint or the new one.
+Each file is replaced atomically, and sealed: a node that was killed finds the old checkpoint or the
+new one, and one that finds a damaged file goes on with the one before.
 """
 
 from __future__ import annotations
 
 import io
 import json
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -14,9 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.errors import RoombaError
-from roomba.files.atomic import UNREADABLE, write_whole
-from roomba.files.bounded import read_bytes, read_text
-from roomba.files.damaged import set_aside
+from roomba.files.kept import KeptFileError, read_kept, remove_kept, write_kept
 from roomba.files.plain_json import load_json
 
 Values = dict[str, Any]
@@ -47,34 +47,44 @@ def save_checkpoint(checkpoint: Checkpoint, run: str, path: Path) -> None:
     """
     values, taken_up, goal = checkpoint
     kept = {"run": run, "taken_up": taken_up, "goal": goal, "mission": values}
-    write_whole(path, json.dumps(kept, allow_nan=False).encode("utf-8"))
+    write_kept(path, json.dumps(kept, allow_nan=False).encode("utf-8"))
 
 
-def load_checkpoint(path: Path, run: str) -> Checkpoint | None:
+def load_checkpoint(path: Path, run: str, tell: Callable[[str], object]) -> Checkpoint | None:
     """Return what was saved in this run; None without a file.
 
     A checkpoint of another run is ignored: after a launch the robot must not begin to drive by
-    itself. A damaged file is set aside: raises CheckpointFileError.
+    itself. A damaged file is set aside, and the one before is used, of which ``tell`` is told.
+    Raises CheckpointFileError if there is none that can be used.
     """
     try:
-        read = load_json(read_text(path))
-        values, its_run, taken_up = read["mission"], read["run"], int(read["taken_up"])
+        found = read_kept(path, _checkpoint_of, tell)
+    except KeptFileError as error:
+        raise CheckpointFileError(str(error)) from error
+    if found is None or found[1] != run:
+        return None
+    return found[0]
+
+
+def _checkpoint_of(content: bytes) -> tuple[Checkpoint, object]:
+    """Return a checkpoint, and its run."""
+    try:
+        read = load_json(content.decode("utf-8"))
+        values, run, taken_up = read["mission"], read["run"], int(read["taken_up"])
         goal = read["goal"]
         if goal is not None:
             action, identity, seconds, nanoseconds = goal
             goal = (str(action), str(identity), int(seconds), int(nanoseconds))
-    except FileNotFoundError:
-        return None
-    except (OSError, ValueError, KeyError, TypeError) as error:
-        raise _damaged(path, f"expected a checkpoint in JSON ({error!r})") from error
+    except (ValueError, KeyError, TypeError, OverflowError) as error:
+        raise CheckpointFileError(f"expected a checkpoint in JSON ({error!r})") from error
     if not isinstance(values, dict):
-        raise _damaged(path, f"expected a mission's values, got {str(values)[:80]}")
-    return Checkpoint(values, taken_up, goal) if its_run == run else None
+        raise CheckpointFileError(f"expected a mission's values, got {str(values)[:80]}")
+    return Checkpoint(values, taken_up, goal), run
 
 
 def remove_checkpoint(path: Path) -> None:
     """Forget the errand; raises OSError when the disk refuses."""
-    path.unlink(missing_ok=True)
+    remove_kept(path)
 
 
 def save_dirt(learned: Floats, path: Path) -> None:
@@ -84,25 +94,24 @@ def save_dirt(learned: Floats, path: Path) -> None:
     """
     packed = io.BytesIO()
     np.savez_compressed(packed, learned=learned)
-    write_whole(path, packed.getvalue())
+    write_kept(path, packed.getvalue())
 
 
-def load_dirt(path: Path, shape: tuple[int, int]) -> Floats | None:
+def load_dirt(path: Path, shape: tuple[int, int], tell: Callable[[str], object]) -> Floats | None:
     """Return where it was dirty, or None if that was never saved.
 
-    A file that is damaged, or of another grid, is set aside: raises CheckpointFileError.
+    A file that is damaged, or of another grid, is set aside, and the one before is used, of which
+    ``tell`` is told. Raises CheckpointFileError if there is none that can be used.
     """
-    if not path.exists():
-        return None
-    try:
-        with np.load(io.BytesIO(read_bytes(path)), allow_pickle=False) as file:
+
+    def parse(content: bytes) -> Floats:
+        with np.load(io.BytesIO(content), allow_pickle=False) as file:
             learned: Floats = np.asarray(file["learned"], np.float32)
-    except UNREADABLE as error:
-        raise _damaged(path, f"expected a dirt map ({error!r})") from error
-    if learned.shape != shape:
-        raise _damaged(path, f"expected a dirt map of shape {shape}, got {learned.shape}")
-    return learned
+        if learned.shape != shape:
+            raise CheckpointFileError(f"expected a dirt map of shape {shape}, got {learned.shape}")
+        return learned
 
-
-def _damaged(path: Path, why: str) -> CheckpointFileError:
-    return CheckpointFileError(f"{path}: {why}; {set_aside(path)}")
+    try:
+        return read_kept(path, parse, tell)
+    except KeptFileError as error:
+        raise CheckpointFileError(f"expected a dirt map: {error}") from error

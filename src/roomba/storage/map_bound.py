@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated, TypeVar
 
@@ -11,11 +12,13 @@ import yaml
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from roomba.errors import RoombaError
-from roomba.files.atomic import write_whole
-from roomba.files.bounded import read_text
+from roomba.files.bounded import read_bytes
+from roomba.files.kept import KeptFileError, read_kept, unsealed, write_kept
 from roomba.files.plain_yaml import load_yaml
 from roomba.grid import OccupancyMap
 
+Tell = Callable[[str], object]
+"""Is told in a sentence when a damaged file was set aside."""
 Number = Annotated[float, Field(ge=-1e5, le=1e5)]
 """m; farther from the origin no home is."""
 
@@ -63,25 +66,46 @@ def save_map_bound(
     # JSON is YAML, and 30 times as fast to write; one entry a line is as good to read.
     lines = [f"- {json.dumps(entry, ensure_ascii=False)}" for entry in entries]
     head = [f"# {comment}", f"map: {map_digest(occupancy)}", f"{key}:" if lines else f"{key}: []"]
-    write_whole(path, "\n".join([*head, *lines, ""]).encode())
+    write_kept(path, "\n".join([*head, *lines, ""]).encode())
 
 
 def load_map_bound(
-    path: Path, occupancy: OccupancyMap, kind: type[_File], what: str, error: type[RoombaError]
-) -> _File:
-    """Return a map's file; ``what`` is in it, in the plural, for people to read.
+    path: Path,
+    occupancy: OccupancyMap,
+    kind: type[_File],
+    what: str,
+    error: type[RoombaError],
+    tell: Tell | None = None,
+) -> _File | None:
+    """Return a map's file, None if there is none; ``what`` is in it, in the plural, for people.
 
+    With ``tell`` a damaged file is set aside, and the one before is used, of which that is told.
     Raises ``error``, which names the file and the reason, for one that cannot be read or is of
     another map.
     """
+
+    def parse(content: bytes) -> _File:
+        try:
+            return kind.model_validate(load_yaml(content.decode("utf-8")))
+        except (UnicodeDecodeError, yaml.YAMLError) as cause:
+            raise error(f"expected a file of {what} in YAML: {cause}") from cause
+        except ValidationError as cause:
+            first = cause.errors()[0]
+            where = ".".join(str(part) for part in first["loc"])
+            raise error(f"{where}: {first['msg']}, got {first['input']!r}") from cause
+
     try:
-        file = kind.model_validate(load_yaml(read_text(path)))
-    except (OSError, UnicodeDecodeError, yaml.YAMLError) as cause:
+        file = read_kept(path, parse, tell) if tell else parse(unsealed(read_bytes(path)))
+    except KeptFileError as cause:
+        raise error(str(cause)) from cause
+    except FileNotFoundError:
+        return None
+    except OSError as cause:
         raise error(f"{path}: expected a file of {what} in YAML: {cause}") from cause
-    except ValidationError as cause:
-        first = cause.errors()[0]
-        where = ".".join(str(part) for part in first["loc"])
-        raise error(f"{path}: {where}: {first['msg']}, got {first['input']!r}") from cause
+    except RoombaError as cause:
+        raise error(f"{path}: {cause}") from cause
+    if file is None:
+        return None
     if file.map != map_digest(occupancy):
         raise error(
             f"{path}: expected the {what} of this map, got those of another; remove the file, or "

@@ -14,8 +14,8 @@ import numpy as np
 import shapely
 
 from roomba.errors import HomeError, RoombaError, RoomsError
-from roomba.files.atomic import write_whole
 from roomba.files.home_layer import LAYER_NAME, MAP_NAME, read_layer
+from roomba.files.kept import write_kept
 from roomba.files.occupancy_map import load_map, save_map
 from roomba.geometry import Pose
 from roomba.grid import OccupancyMap
@@ -77,7 +77,7 @@ def write_map(stored: StoredMap, folder: Path) -> None:
     """
     try:
         save_map(stored.occupancy, folder / MAP_NAME)
-        write_whole(folder / LAYER_NAME, _layer_text(stored).encode())
+        write_kept(folder / LAYER_NAME, _layer_text(stored).encode())
         save_zones(stored.zones, stored.occupancy, folder / ZONES_NAME)
         if stored.rooms is not None:
             save_rooms(stored.rooms, stored.occupancy, folder / ROOMS_NAME)
@@ -101,8 +101,7 @@ def read_map(folder: Path) -> StoredMap:
     try:
         occupancy = load_map(folder / MAP_NAME)
         station = _station_of(folder / LAYER_NAME)
-        rooms_path = folder / ROOMS_NAME
-        rooms = load_rooms(rooms_path, occupancy) if rooms_path.exists() else None
+        rooms = load_rooms(folder / ROOMS_NAME, occupancy)
         zones = load_zones(folder / ZONES_NAME, occupancy)
     except (HomeError, RoomsError, ZonesError, OSError) as error:
         raise MapStoreError(

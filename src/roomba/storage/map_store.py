@@ -1,7 +1,8 @@
 """Several maps of the robot's own, one for each floor, by name, in a folder.
 
 A map is replaced atomically: it is written beside the old one, then renamed. A writer that is
-killed in between leaves the old map or the new one. Symbolic links in the folder are not followed.
+killed in between leaves the old map or the new one. The map that was replaced is kept, and is used
+when the newer one turns out to be damaged. Symbolic links in the folder are not followed.
 """
 
 from __future__ import annotations
@@ -9,6 +10,7 @@ from __future__ import annotations
 import difflib
 import os
 import shutil
+from collections.abc import Callable
 from pathlib import Path
 from typing import Final
 
@@ -22,7 +24,10 @@ _FORBIDDEN: Final = frozenset("/\\.")
 _NEW: Final = "new"
 _OLD: Final = "old"
 _GONE: Final = "gone"
-"""Ends of hidden folders: being written, moved out of the way, being removed."""
+_BEFORE: Final = "before"
+_DAMAGED: Final = "damaged"
+"""Ends of hidden folders: being written, moved out of the way, being removed, the map that was
+replaced, and one that could not be read."""
 
 
 class MapStore:
@@ -32,9 +37,12 @@ class MapStore:
     refuses.
     """
 
-    def __init__(self, folder: Path) -> None:
-        """``folder`` need not be there yet: it is made when the first map is saved."""
-        self.folder = folder
+    def __init__(self, folder: Path, tell: Callable[[str], object] | None = None) -> None:
+        """``folder`` need not be there yet: it is made when the first map is saved.
+
+        ``tell`` is told in a sentence when a damaged map was set aside; without it none is.
+        """
+        self.folder, self._tell = folder, tell
 
     def names(self) -> tuple[str, ...]:
         """Return the names of all maps, sorted; those of broken ones, too."""
@@ -66,11 +74,28 @@ class MapStore:
             place.rename(self._beside(name, _OLD))
         unfinished.rename(place)
         _wait_for_disk(self.folder)
-        shutil.rmtree(self._beside(name, _OLD), ignore_errors=True)
+        self._keep_before(name)
 
     def load(self, name: str) -> StoredMap:
-        """Return a map. Raises MapStoreError, which names the file, for one that is broken."""
-        return read_map(self._folder_of(name))
+        """Return a map. Raises MapStoreError, which names the file, for one that is broken.
+
+        In a store with ``tell`` the map that it replaced takes its place then, if there is one.
+        """
+        folder = self._folder_of(name)
+        try:
+            return read_map(folder)
+        except MapStoreError as error:
+            before = self._beside(name, _BEFORE)
+            if self._tell is None or not _is_folder(before):
+                raise
+            found = read_map(before)
+            damaged = self._beside(name, _DAMAGED)
+            shutil.rmtree(damaged, ignore_errors=True)
+            folder.rename(damaged)
+            before.rename(self.folder / name)
+            _wait_for_disk(self.folder)
+            self._tell(f"{error}; it is set aside as {damaged.name}, and the one before is used")
+            return found
 
     def remove(self, name: str) -> None:
         """Remove a map, also a broken one."""
@@ -78,7 +103,9 @@ class MapStore:
         self._tidy_up(name)
         (self.folder / name).rename(self._beside(name, _GONE))
         _wait_for_disk(self.folder)
-        shutil.rmtree(self._beside(name, _GONE))
+        for end in (_GONE, _BEFORE, _DAMAGED):
+            if _is_folder(self._beside(name, end)):
+                shutil.rmtree(self._beside(name, end))
 
     def rename(self, name: str, new_name: str) -> None:
         """Give a map another name; raises MapStoreError if another map has it."""
@@ -94,13 +121,16 @@ class MapStore:
         self._tidy_up(name)
         self._tidy_up(new_name)
         (self.folder / name).rename(self.folder / new_name)
+        if _is_folder(self._beside(name, _BEFORE)):
+            shutil.rmtree(self._beside(new_name, _BEFORE), ignore_errors=True)
+            self._beside(name, _BEFORE).rename(self._beside(new_name, _BEFORE))
         _wait_for_disk(self.folder)
 
     def _folder_of(self, name: str) -> Path:
         """Return the folder in which a map is whole, also when its writer was killed."""
         _check_name(name)
         for path in (self.folder / name, self._beside(name, _OLD)):
-            if path.is_dir() and not path.is_symlink():
+            if _is_folder(path):
                 return path
         near = difflib.get_close_matches(name, self.names(), 1)
         known = ", ".join(repr(each) for each in self.names()) or "no maps"
@@ -110,8 +140,10 @@ class MapStore:
     def _tidy_up(self, name: str) -> None:
         """Complete or undo what a killed writer began."""
         place, old = self.folder / name, self._beside(name, _OLD)
-        if old.is_dir() and not old.is_symlink() and not place.exists():
+        if _is_folder(old) and not place.exists():
             old.rename(place)
+        elif _is_folder(old):
+            self._keep_before(name)
         for end in (_NEW, _OLD, _GONE):
             beside = self._beside(name, end)
             if beside.is_symlink():
@@ -119,6 +151,19 @@ class MapStore:
                 beside.unlink()
             elif beside.is_dir():
                 shutil.rmtree(beside)
+
+    def _keep_before(self, name: str) -> None:
+        """Keep the map that was replaced, if it is whole, instead of the one from before it."""
+        old = self._beside(name, _OLD)
+        if not _is_folder(old):
+            return
+        try:
+            read_map(old)
+        except MapStoreError:
+            shutil.rmtree(old, ignore_errors=True)
+            return
+        shutil.rmtree(self._beside(name, _BEFORE), ignore_errors=True)
+        old.rename(self._beside(name, _BEFORE))
 
     def _beside(self, name: str, end: str) -> Path:
         """Return a hidden folder on the same file system, where a rename is atomic."""
@@ -146,6 +191,10 @@ def _name_of(entry: Path) -> str:
         return entry.name
     name, _, end = entry.name[1:].rpartition(".")
     return name if end == _OLD else ""
+
+
+def _is_folder(path: Path) -> bool:
+    return path.is_dir() and not path.is_symlink()
 
 
 def _wait_for_disk(path: Path) -> None:

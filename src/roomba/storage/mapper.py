@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.errors import RoombaError
-from roomba.files.atomic import UNREADABLE, write_whole
+from roomba.files.kept import KeptFileError, read_kept, remove_kept, write_kept
 from roomba.geometry import Pose
 from roomba.perception.slam.mapper_state import LidarNumbers, MapperState
 from roomba.perception.slam.scan_matching.surface_kernels import POINT
@@ -24,6 +24,8 @@ Arrays = Mapping[str, NDArray[Any]]
 FORMAT: Final = 1
 """Of the file; another number is another format."""
 _MOST_BEAMS: Final = 100_000
+_MOST_BYTES: Final = 1_000_000_000
+"""Of the file; the points of a drive of hours have a tenth."""
 
 
 class MapperFileError(RoombaError):
@@ -50,28 +52,29 @@ def save_mapper(kept: KeptMap, path: Path) -> None:
     """Write a map that is being made; raises OSError when the disk refuses."""
     packed = io.BytesIO()
     np.savez(packed, **_arrays_of(kept))
-    write_whole(path, packed.getvalue())
+    write_kept(path, packed.getvalue(), FORMAT)
 
 
-def load_mapper(path: Path) -> KeptMap | None:
+def load_mapper(path: Path, tell: Callable[[str], object]) -> KeptMap | None:
     """Return what was saved, bit for bit; None if nothing was.
 
-    Raises MapperFileError for a file that is broken, of something else, or of another format.
+    A file that is broken, of something else, or of another format is set aside, and the one before
+    is used, of which ``tell`` is told. Raises MapperFileError if there is none that can be used.
     """
     try:
-        with np.load(path, allow_pickle=False) as file:
-            return _kept_of(_Fields(file))
-    except FileNotFoundError:
-        return None
-    except UNREADABLE as error:
-        raise MapperFileError(
-            f"{path}: expected a map that is being made: {error}; remove the file"
-        ) from error
+        return read_kept(path, _parsed, tell, version=FORMAT, most=_MOST_BYTES)
+    except KeptFileError as error:
+        raise MapperFileError(f"expected a map that is being made: {error}") from error
+
+
+def _parsed(content: bytes) -> KeptMap:
+    with np.load(io.BytesIO(content), allow_pickle=False) as file:
+        return _kept_of(_Fields(file))
 
 
 def remove_mapper(path: Path) -> None:
     """Forget the map; raises OSError when the disk refuses."""
-    path.unlink(missing_ok=True)
+    remove_kept(path)
 
 
 def _arrays_of(kept: KeptMap) -> dict[str, NDArray[Any]]:

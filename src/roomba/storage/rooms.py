@@ -11,7 +11,7 @@ from pydantic import Field
 from roomba.errors import RoomsError
 from roomba.grid import FREE, OccupancyMap
 from roomba.perception.rooms.rooms import Rooms
-from roomba.storage.map_bound import Entry, MapBound, Number, load_map_bound, save_map_bound
+from roomba.storage.map_bound import Entry, MapBound, Number, Tell, load_map_bound, save_map_bound
 
 Ring = Annotated[
     list[Annotated[list[Number], Field(min_length=2, max_length=2)]], Field(min_length=4)
@@ -37,13 +37,16 @@ def save_rooms(rooms: Rooms, occupancy: OccupancyMap, path: Path) -> None:
     save_map_bound(path, occupancy, "rooms", entries, "Rooms of a map; lengths in m, map frame.")
 
 
-def load_rooms(path: Path, occupancy: OccupancyMap) -> Rooms:
-    """Return the rooms that were saved for a map.
+def load_rooms(path: Path, occupancy: OccupancyMap, tell: Tell | None = None) -> Rooms | None:
+    """Return the rooms that were saved for a map; None if there is no such file.
 
+    With ``tell`` a damaged file is set aside, and the one before is used, of which that is told.
     Raises RoomsError, which names the file and the reason, for a file that cannot be read or is of
     another map.
     """
-    file = load_map_bound(path, occupancy, _RoomsFile, "rooms", RoomsError)
+    file = load_map_bound(path, occupancy, _RoomsFile, "rooms", RoomsError, tell)
+    if file is None:
+        return None
     outlines = [(room.name, _polygon(path, room)) for room in file.rooms]
     try:
         return Rooms.from_outlines(occupancy.frame, occupancy.values == FREE, outlines)

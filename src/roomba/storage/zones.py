@@ -6,7 +6,7 @@ from pathlib import Path
 
 from roomba.grid import OccupancyMap
 from roomba.perception.rooms.zones import Zone, ZoneKind, Zones, ZonesError
-from roomba.storage.map_bound import Entry, MapBound, Number, load_map_bound, save_map_bound
+from roomba.storage.map_bound import Entry, MapBound, Number, Tell, load_map_bound, save_map_bound
 
 _COMMENT = "Zones of a map where the robot must not go; lengths in m, map frame."
 
@@ -37,15 +37,16 @@ def save_zones(zones: Zones, occupancy: OccupancyMap, path: Path) -> None:
     save_map_bound(path, occupancy, "zones", entries, _COMMENT)
 
 
-def load_zones(path: Path, occupancy: OccupancyMap) -> Zones:
+def load_zones(path: Path, occupancy: OccupancyMap, tell: Tell | None = None) -> Zones:
     """Return the zones that were saved for a map; none if there is no such file.
 
+    With ``tell`` a damaged file is set aside, and the one before is used, of which that is told.
     Raises ZonesError, which names the file and the reason, for a file that cannot be read or is of
     another map: without its zones a robot may go where it must not.
     """
-    if not path.exists():
+    file = load_map_bound(path, occupancy, _ZonesFile, "zones", ZonesError, tell)
+    if file is None:
         return Zones()
-    file = load_map_bound(path, occupancy, _ZonesFile, "zones", ZonesError)
     try:
         return Zones(tuple(Zone(zone.name, zone.kind, tuple(zone.points)) for zone in file.zones))
     except ZonesError as error:

@@ -55,7 +55,7 @@ class CalibrationTopics:
         knower.belief["calibration"]["base"] = base
         kept = None
         try:
-            kept = None if self._path is None else load_calibration(self._path)
+            kept = None if self._path is None else load_calibration(self._path, rospy.logwarn)
         except CalibrationError as error:
             rospy.logwarn("%s", error)
         if kept is not None:

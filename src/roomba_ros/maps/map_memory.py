@@ -48,7 +48,7 @@ class MapMemory:
         robot = rospy.get_namespace().strip("/").replace("/", "_") or "robot"
         self._path = maps / FOLDER / robot / "map.npz"
         self._run = str(rospy.get_param("/run_id", ""))
-        self._whole = MapStore(self._path.parent / _WHOLE)
+        self._whole = MapStore(self._path.parent / _WHOLE, rospy.logwarn)
 
     @property
     def is_there(self) -> bool:
@@ -58,7 +58,7 @@ class MapMemory:
     def recall(self) -> KeptMap | None:
         """Return the map that this run of the robot was making when this node ended, if it was."""
         try:
-            kept = load_mapper(self._path)
+            kept = load_mapper(self._path, rospy.logwarn)
             if kept is None or kept.run != self._run:
                 return None
             if kept.taken_up >= self._config.most_taken_up:

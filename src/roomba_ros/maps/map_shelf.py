@@ -36,7 +36,7 @@ class MapShelf:
 
     def start(self) -> None:
         """Read the parameters."""
-        self._store = MapStore(folder_of("~maps_folder", "maps"))
+        self._store = MapStore(folder_of("~maps_folder", "maps"), rospy.logwarn)
         self._zones_folder = folder_of("~zones_folder", "zones")
 
     @property

@@ -288,7 +288,7 @@ class HomeTopics:
     def _kept(self, occupancy: OccupancyMap) -> Zones | None:
         """Return the zones of a map; None when they cannot be read: then nothing is cleaned."""
         try:
-            return load_zones(self._path(), occupancy)
+            return load_zones(self._path(), occupancy, rospy.logerr)
         except ZonesError as error:
             rospy.logerr("%s", error)
             return None

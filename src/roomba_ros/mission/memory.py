@@ -47,7 +47,7 @@ class MissionMemory:
     def recall_dirt(self, dirt: DirtMap) -> None:
         """Let a dirt map know what was learned before."""
         try:
-            learned = load_dirt(self._dirt, dirt.frame.shape)
+            learned = load_dirt(self._dirt, dirt.frame.shape, rospy.logwarn)
         except CheckpointFileError as error:
             rospy.logwarn("where it is dirty is learned anew: %s", error)
             return
@@ -57,7 +57,7 @@ class MissionMemory:
     def recall_errand(self, mission: Mission, senses: Senses) -> Checkpoint | None:
         """Let a mission go on where it was killed; return where that was, None if it does not."""
         try:
-            found = load_checkpoint(self._checkpoint, self._run)
+            found = load_checkpoint(self._checkpoint, self._run, rospy.logwarn)
             if found is None:
                 return None
             if found.taken_up >= self._config.most_taken_up:

@@ -101,11 +101,8 @@ class RoomTopics:
 
     def _kept(self, occupancy: OccupancyMap) -> Rooms | None:
         """Return the rooms that people made of this map, or None."""
-        path = self.path_of(occupancy)
-        if not path.is_file():
-            return None
         try:
-            return load_rooms(path, occupancy)
+            return load_rooms(self.path_of(occupancy), occupancy, rospy.logwarn)
         except RoomsError as error:
             rospy.logwarn("the rooms are cut anew: %s", error)
             return None

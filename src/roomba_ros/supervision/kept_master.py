@@ -24,8 +24,7 @@ import rosgraph.roslogging
 from rosgraph.xmlrpc import XmlRpcNode
 from rosmaster.master_api import ROSMasterHandler
 
-from roomba.files.atomic import write_whole
-from roomba.files.bounded import read_text
+from roomba.files.kept import KeptFileError, read_kept, write_kept
 from roomba_ros.runtime.heart import HEART
 
 WORKERS: Final = 8
@@ -117,20 +116,27 @@ def _listens(address: str) -> bool:
 
 def _keep(memory: Memory, file: Path) -> None:
     try:
-        write_whole(file, xmlrpc.client.dumps((memory,), allow_none=True).encode())
+        write_kept(file, xmlrpc.client.dumps((memory,), allow_none=True).encode())
     except (OSError, TypeError, OverflowError) as error:
         logging.getLogger("rosmaster").error("what the master knows is not kept: %s", error)
 
 
 def _recalled(file: Path) -> Memory | None:
+    log = logging.getLogger("rosmaster")
     try:
-        (memory,), _ = xmlrpc.client.loads(read_text(file))
-    except FileNotFoundError:
+        return read_kept(file, _memory_in, log.error)
+    except KeptFileError as error:
+        log.error("what the last master knew is lost: %s", error)
         return None
-    except (OSError, ValueError, ExpatError, xmlrpc.client.Error) as error:
-        logging.getLogger("rosmaster").error("what the last master knew is lost: %s", error)
-        return None
-    assert isinstance(memory, dict)
+
+
+def _memory_in(content: bytes) -> Memory:
+    try:
+        (memory,), _ = xmlrpc.client.loads(content)
+    except (ExpatError, xmlrpc.client.Error) as error:
+        raise ValueError(f"expected what a master knew: {error}") from error
+    if not isinstance(memory, dict):
+        raise ValueError(f"expected what a master knew, got {type(memory).__name__}")
     return memory
 
 

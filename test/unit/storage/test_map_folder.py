@@ -13,6 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from roomba.errors import HomeError
+from roomba.files.kept import unsealed
 from roomba.files.occupancy_map import load_map
 from roomba.files.shipped import HOMES
 from roomba.geometry import Pose
@@ -147,7 +148,7 @@ def test_a_broken_file_is_named_with_the_reason(
     folder: Path, file: str, old: str, new: str, reason: str
 ) -> None:
     path = folder / file
-    content = path.read_bytes()
+    content = unsealed(path.read_bytes())
     assert old.encode() in content
     path.write_bytes(content.replace(old.encode(), new.encode(), 1))
     with pytest.raises(MapStoreError, match=reason) as error:
@@ -170,7 +171,7 @@ def test_a_folder_that_is_not_there_is_named(tmp_path: Path) -> None:
 
 def test_a_picture_of_another_size_is_noticed(folder: Path) -> None:
     path = folder / "map.pgm"
-    header, rest = path.read_bytes().split(b"\n255\n", 1)
+    header, rest = unsealed(path.read_bytes()).split(b"\n255\n", 1)
     columns, rows = (int(number) for number in header.split()[1:])
     path.write_bytes(f"P5\n{columns} {rows - 1}\n255\n".encode() + rest[: columns * (rows - 1)])
     with pytest.raises(MapStoreError, match="of another"):

@@ -46,11 +46,53 @@ def test_maps_are_kept_by_name(store: MapStore) -> None:
     assert store.load("cellar").is_same(floor(1.2))
 
 
-def test_the_newest_replaces_and_nothing_else_is_left(store: MapStore) -> None:
-    store.save("home", floor(1.0))
-    store.save("home", floor(1.5))
+def test_the_newest_replaces_and_the_one_before_is_left(store: MapStore) -> None:
+    for x in (1.0, 1.2, 1.5):
+        store.save("home", floor(x))
     assert store.load("home").is_same(floor(1.5))
-    assert entries(store) == ["home"]
+    assert entries(store) == [".home.before", "home"]
+    assert store.names() == ("home",)
+
+
+@pytest.mark.parametrize("file", ["map.pgm", "map.yaml", "home.yaml", "zones.yaml"])
+def test_a_damaged_map_is_set_aside_and_the_one_before_is_used(store: MapStore, file: str) -> None:
+    told: list[str] = []
+    store.save("home", floor(1.2))
+    store.save("home", floor(1.5))
+    path = store.folder / "home" / file
+    path.write_bytes(path.read_bytes()[:-1] + b"x")
+    with pytest.raises(MapStoreError, match=f"{file}: .*checksum"):
+        store.load("home")
+    telling = MapStore(store.folder, told.append)
+    assert telling.load("home").is_same(floor(1.2))
+    assert len(told) == 1
+    assert f"{file}: expected what its checksum says" in told[0]
+    assert "set aside as .home.damaged, and the one before is used" in told[0]
+    assert entries(store) == [".home.damaged", "home"]
+    assert store.load("home").is_same(floor(1.2))
+    path.write_bytes(path.read_bytes()[:-1] + b"x")
+    with pytest.raises(MapStoreError, match="checksum"):
+        telling.load("home")
+    store.remove("home")
+    assert entries(store) == []
+
+
+def test_a_damaged_map_does_not_become_the_one_before(store: MapStore) -> None:
+    store.save("home", floor(1.0))
+    store.save("home", floor(1.2))
+    (store.folder / "home" / "map.pgm").write_bytes(b"P5\n")
+    store.save("home", floor(1.5))
+    (store.folder / "home" / "map.pgm").write_bytes(b"P5\n")
+    assert MapStore(store.folder, lambda _: None).load("home").is_same(floor(1.0))
+
+
+def test_the_one_before_goes_with_its_map(store: MapStore) -> None:
+    store.save("home", floor(1.0))
+    store.save("home", floor(1.2))
+    store.rename("home", "house")
+    assert entries(store) == [".house.before", "house"]
+    store.remove("house")
+    assert entries(store) == []
 
 
 def test_a_map_is_removed(store: MapStore) -> None:
@@ -175,7 +217,10 @@ def test_killed_at_any_step_a_save_leaves_the_old_map_or_the_new_one(
     other = MapStore(store.folder)
     other.save("home", floor(1.7))
     assert other.load("home").is_same(floor(1.7))
-    assert entries(store) == ["home"]
+    assert entries(store) == [".home.before", "home"]
+    (store.folder / "home" / "map.pgm").unlink()
+    before = MapStore(store.folder, lambda _: None).load("home")
+    assert before.is_same(floor(1.5 if is_done else 1.0))
 
 
 def test_killed_at_its_first_save_a_map_is_not_there(

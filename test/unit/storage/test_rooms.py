@@ -9,6 +9,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from roomba.errors import RoomsError
+from roomba.files.kept import unsealed
 from roomba.grid import FREE, OCCUPIED, GridFrame, OccupancyMap
 from roomba.perception.rooms.rooms import Rooms
 from roomba.storage.map_bound import map_digest
@@ -33,6 +34,7 @@ def test_rooms_are_read_as_they_were_written(tmp_path: Path) -> None:
     path = tmp_path / "deep" / "rooms.yaml"
     save_rooms(rooms, occupancy, path)
     read = load_rooms(path, occupancy)
+    assert read is not None
     assert read.names == rooms.names
     assert np.array_equal(read.labels, rooms.labels)
     assert [entry.name for entry in path.parent.iterdir()] == ["rooms.yaml"]
@@ -51,7 +53,9 @@ def test_every_name_that_is_taken_comes_back(name: str) -> None:
     with TemporaryDirectory() as folder:
         path = Path(folder) / "rooms.yaml"
         save_rooms(named, occupancy, path)
-        assert name.strip() in load_rooms(path, occupancy).names
+        read = load_rooms(path, occupancy)
+        assert read is not None
+        assert name.strip() in read.names
 
 
 @pytest.mark.parametrize("name", ["a\x85den", "a\u2028den", "a\nden", "a\0", 1_000_000 * "a"])
@@ -95,19 +99,34 @@ def test_a_broken_file_is_named_with_the_reason(tmp_path: Path, text: str, reaso
         load_rooms(path, two_rooms()[0])
 
 
-def test_a_file_that_is_not_there_is_an_error_too(tmp_path: Path) -> None:
-    with pytest.raises(RoomsError, match="nowhere"):
-        load_rooms(tmp_path / "nowhere.yaml", two_rooms()[0])
+def test_without_a_file_there_are_none(tmp_path: Path) -> None:
+    assert load_rooms(tmp_path / "nowhere.yaml", two_rooms()[0]) is None
+
+
+def test_a_damaged_file_is_set_aside_and_the_one_before_is_used(tmp_path: Path) -> None:
+    occupancy, rooms = two_rooms()
+    path, told = tmp_path / "rooms.yaml", list[str]()
+    save_rooms(rooms, occupancy, path)
+    save_rooms(rooms.renamed("Küche", "Bad"), occupancy, path)
+    path.write_bytes(path.read_bytes().replace(b"Bad", b"Rad"))
+    with pytest.raises(RoomsError, match="checksum"):
+        load_rooms(path, occupancy)
+    found = load_rooms(path, occupancy, told.append)
+    assert found is not None
+    assert found.names == rooms.names
+    assert len(told) == 1
+    assert "set aside as rooms.yaml.damaged" in told[0]
+    assert load_rooms(path, occupancy, pytest.fail) is not None
 
 
 def test_rooms_that_overlap_in_the_file_are_refused(tmp_path: Path) -> None:
     occupancy, rooms = two_rooms()
     path = tmp_path / "rooms.yaml"
     save_rooms(rooms, occupancy, path)
-    text = path.read_text(encoding="utf-8")
+    text = unsealed(path.read_bytes()).decode("utf-8")
     half = text[text.index('- {"name"') :]
     path.write_text(text + half.replace("Küche", "third").replace("Room: 2 #x", "fourth"))
-    with pytest.raises(RoomsError, match="overlap"):
+    with pytest.raises(RoomsError, match=r"rooms\.yaml: .*overlap"):
         load_rooms(path, occupancy)
 
 

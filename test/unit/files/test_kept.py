@@ -1,0 +1,200 @@
+"""A kept file is sealed; a damaged one is set aside, told, and the one before is used."""
+
+from __future__ import annotations
+
+import io
+import os
+from pathlib import Path
+
+import numpy as np
+import PIL.Image
+import pytest
+import yaml
+from hypothesis import given
+from hypothesis import strategies as st
+
+from roomba.files.kept import (
+    KeptFileError,
+    SealError,
+    before_of,
+    read_kept,
+    remove_kept,
+    sealed,
+    unsealed,
+    write_kept,
+)
+
+PGM = b"P5\n2 1\n255\n\x00\xfe"
+
+
+def names(folder: Path) -> list[str]:
+    return sorted(entry.name for entry in folder.iterdir())
+
+
+def read(path: Path) -> bytes | None:
+    return read_kept(path, bytes, pytest.fail)
+
+
+def archive() -> bytes:
+    packed = io.BytesIO()
+    np.savez(packed, numbers=np.arange(3.0))
+    return packed.getvalue()
+
+
+@given(st.one_of(st.binary(max_size=300), st.just(PGM), st.just(archive())), st.integers(0, 10**8))
+def test_what_is_sealed_comes_back(content: bytes, version: int) -> None:
+    content, found = unsealed(content, 10**9), sealed(content, version)
+    assert unsealed(found, version) == content
+    assert sealed(found, version) == found
+    if version:
+        with pytest.raises(SealError, match="newer program"):
+            unsealed(found, version - 1)
+
+
+@pytest.mark.parametrize(
+    "content", [b"name: hall\n", PGM, archive(), b'{"run": 1}', b"P5 2 1 255 "]
+)
+def test_no_byte_that_is_sealed_can_change_unnoticed(content: bytes) -> None:
+    found = sealed(content)
+    seal = found.index(b"# kept")
+    for at in range(len(found)):
+        if seal <= at < seal + len(found) - len(content):
+            continue
+        with pytest.raises(SealError, match="checksum"):
+            unsealed(found[:at] + bytes([found[at] ^ 0x10]) + found[at + 1 :])
+
+
+def test_other_programs_take_no_notice_of_a_seal() -> None:
+    assert yaml.safe_load(sealed(b"name: hall\n")) == {"name": "hall"}
+    with np.load(io.BytesIO(sealed(archive()))) as file:
+        assert file["numbers"].tolist() == [0.0, 1.0, 2.0]
+    with PIL.Image.open(io.BytesIO(sealed(PGM))) as picture:
+        assert (picture.size, picture.tobytes()) == ((2, 1), b"\x00\xfe")
+
+
+def test_a_file_without_a_seal_is_read_as_it_is(tmp_path: Path) -> None:
+    path = tmp_path / "old.yaml"
+    assert read(path) is None
+    path.write_bytes(b"name: hall\n")
+    assert read(path) == b"name: hall\n"
+    write_kept(path, b"name: kitchen\n")
+    assert before_of(path).read_bytes() == b"name: hall\n"
+    assert read(path) == b"name: kitchen\n"
+
+
+def damaged(path: Path, how: str) -> None:
+    content = path.read_bytes()
+    match how:
+        case "flipped":
+            path.write_bytes(content[:-2] + bytes([content[-2] ^ 1]) + content[-1:])
+        case "cut":
+            path.write_bytes(content[:-3])
+        case "empty":
+            path.write_bytes(b"")
+        case "a pipe":
+            path.unlink()
+            os.mkfifo(path)
+        case "newer":
+            path.write_bytes(sealed(content, 99))
+
+
+def parsed(content: bytes) -> bytes:
+    if not content:
+        raise ValueError("expected something, got nothing")
+    return content
+
+
+HOW = ("flipped", "cut", "empty", "a pipe", "newer")
+
+
+@pytest.mark.parametrize("how", HOW)
+def test_a_damaged_file_is_set_aside_and_the_one_before_is_used(tmp_path: Path, how: str) -> None:
+    path, told = tmp_path / "map.yaml", list[str]()
+    for number in range(3):
+        write_kept(path, b"number: %d\n" % number)
+    damaged(path, how)
+    assert read_kept(path, parsed, told.append) == b"number: 1\n"
+    (line,) = told
+    assert f"{path}: expected" in line
+    assert "it is set aside as map.yaml.damaged; the one from before is used" in line
+    assert names(tmp_path) == ["map.yaml", "map.yaml.before", "map.yaml.damaged"]
+    assert read(path) == b"number: 1\n"
+
+
+@pytest.mark.parametrize("how", HOW)
+def test_without_one_before_it_is_an_error(tmp_path: Path, how: str) -> None:
+    path = tmp_path / "map.yaml"
+    write_kept(path, b"number: 1\n")
+    damaged(path, how)
+    with pytest.raises(
+        KeptFileError, match=r"map\.yaml: expected.*set aside as map\.yaml\.damaged"
+    ):
+        read_kept(path, parsed, pytest.fail)
+    assert names(tmp_path) == ["map.yaml.damaged"]
+    assert read(path) is None
+
+
+def test_when_both_are_damaged_both_are_told(tmp_path: Path) -> None:
+    path = tmp_path / "map.yaml"
+    write_kept(path, b"number: 1\n")
+    write_kept(path, b"number: 2\n")
+    damaged(path, "flipped")
+    damaged(before_of(path), "cut")
+    with pytest.raises(KeptFileError, match=r"set aside.*; neither can map\.yaml\.before be used"):
+        read_kept(path, parsed, pytest.fail)
+    assert names(tmp_path) == ["map.yaml.before.damaged", "map.yaml.damaged"]
+
+
+@pytest.mark.parametrize("how", HOW)
+def test_a_damaged_file_does_not_become_the_one_before(tmp_path: Path, how: str) -> None:
+    if how == "newer":
+        pytest.skip("it is whole")
+    path = tmp_path / "map.yaml"
+    write_kept(path, b"number: 1\n")
+    write_kept(path, b"number: 2\n")
+    damaged(path, how)
+    write_kept(path, b"number: 3\n")
+    damaged(path, how)
+    assert read_kept(path, parsed, lambda _: None) == b"number: 1\n"
+
+
+def test_a_file_system_without_hard_links_has_a_copy(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refuse(*_: object, **__: object) -> None:
+        raise PermissionError(1, "Operation not permitted")
+
+    monkeypatch.setattr(os, "link", refuse)
+    path = tmp_path / "map.yaml"
+    write_kept(path, b"number: 1\n")
+    write_kept(path, b"number: 2\n")
+    damaged(path, "flipped")
+    assert read_kept(path, parsed, lambda _: None) == b"number: 1\n"
+
+
+@pytest.mark.parametrize("call", ["link", "replace", "fsync"])
+def test_a_writer_that_is_stopped_leaves_the_file_from_before(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, call: str
+) -> None:
+    path = tmp_path / "map.yaml"
+    write_kept(path, b"number: 1\n")
+    write_kept(path, b"number: 2\n")
+
+    def stopped(*_: object, **__: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(os, call, stopped)
+    with pytest.raises(KeyboardInterrupt):
+        write_kept(path, b"number: 3\n")
+    monkeypatch.undo()
+    assert read(path) == b"number: 2\n"
+    assert read(before_of(path)) in (b"number: 1\n", b"number: 2\n")
+
+
+def test_a_file_is_forgotten_with_the_one_before(tmp_path: Path) -> None:
+    path = tmp_path / "errand.json"
+    write_kept(path, b"1")
+    write_kept(path, b"2")
+    remove_kept(path)
+    assert names(tmp_path) == []
+    remove_kept(path)
