@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection
+from dataclasses import dataclass
 from enum import Enum
 from typing import Final
 
@@ -41,6 +42,14 @@ class FanLevel(Enum):
     QUIET = "quiet"
     STANDARD = "standard"
     STRONG = "strong"
+
+
+@dataclass(frozen=True, slots=True)
+class RoomWay:
+    """How one of the rooms of a clean is cleaned: how often, and how strongly it sucks."""
+
+    passes: int = 1
+    fan: FanLevel = FanLevel.STANDARD
 
 
 def fault_of_name(name: str) -> str:

@@ -11,6 +11,8 @@ HAND_SILENCE: Final = 0.5
 """s of wall time; a drive by hand without news for so long ends."""
 SPILL: Final = (0.25, 6.0)
 """m and g of a heap of dirt."""
+STATION_BOX: Final = (0.6, 0.15)
+"""m; how far before the docked robot's middle a box blocks the station, and its radius."""
 
 
 class ObservedRobot(Protocol):
@@ -67,6 +69,9 @@ class ObservedRobot(Protocol):
 
     def drive(self, linear: float, angular: float) -> None:
         """Drive by hand, m/s and rad/s; without another call for 0.5 s the robot stands."""
+
+    def set_top_speed(self, speed: float) -> None:
+        """Set how fast it may drive, m/s."""
 
     def put_zone(self, zone: view.ZoneView) -> None:
         """Add a zone, or replace the one of the same name."""
@@ -149,11 +154,30 @@ class MapKeeper(Protocol):
         """Change the map as it is offered, or leave it and do not ask again."""
 
 
+@runtime_checkable
 class Playground(Protocol):
-    """What can be done to a simulated home and robot, for teaching."""
+    """What can be done to a simulated home and robot, for teaching.
+
+    Which of it a robot offers is in :attr:`roomba.client.view.PageLimits.play`.
+    """
 
     def spill_dirt(self, x: float, y: float) -> None:
         """Spill a heap of dirt."""
 
     def place_chair(self, x: float, y: float) -> None:
-        """Put a round thing where it stands in the way."""
+        """Put a chair where it stands in the way."""
+
+    def block_station(self) -> None:
+        """Put a box before the station."""
+
+    def clear_away(self) -> None:
+        """Take away all that was put down."""
+
+    def set_door(self, name: str, *, is_shut: bool) -> None:
+        """Shut or open a door."""
+
+    def lift(self) -> None:
+        """Lift the robot: its wheels hang."""
+
+    def put_down(self, x: float, y: float, theta: float) -> None:
+        """Put the robot on the floor, m and rad."""

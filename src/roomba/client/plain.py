@@ -8,7 +8,7 @@ from typing import Any
 
 from roomba.client.observed import TimelineView
 from roomba.client.protocol import CleanReport
-from roomba.client.view import HomeView, Point, RobotView, RoomView, ZoneView
+from roomba.client.view import HomeView, Point, RobotView, RoomView, TruthView, ZoneView
 
 Json = dict[str, Any]
 
@@ -35,10 +35,22 @@ def state_of(view: RobotView) -> Json:
             "fraction": round(vacuum.fraction, 4),
             "seconds_to_go": round(vacuum.seconds_to_go, 1),
             "battery": known(vacuum.battery),
+            "battery_seconds": known(view.battery_seconds),
         },
+        "top_speed": known(view.top_speed),
         "scan": (view.scan * 100.0).round().astype(int).ravel().tolist(),
         "path": (view.path * 100.0).round().astype(int).ravel().tolist(),
         "last": None if view.last is None else report_of(view.last),
+        "truth": None if view.truth is None else _truth_of(view.truth),
+    }
+
+
+def _truth_of(truth: TruthView) -> Json:
+    return {
+        "pose": [round(value, 4) for value in truth.pose],
+        "things": [[(round(x, 3), round(y, 3)) for x, y in ring] for ring in truth.things],
+        "doors": [asdict(door) for door in truth.doors],
+        "lifted": truth.is_lifted,
     }
 
 
@@ -80,13 +92,21 @@ def home_of(view: HomeView) -> Json:
         "radius": view.radius,
         "tool": view.tool,
         "rooms": [
-            {"name": room.name, "area": room.area, "anchor": room.anchor, "rings": room.rings}
+            {
+                "name": room.name,
+                "area": room.area,
+                "anchor": room.anchor,
+                "rings": room.rings,
+                "floor": room.floor,
+            }
             for room in view.rooms
         ],
         "zones": [
             {"name": zone.name, "kind": zone.kind, "points": zone.points} for zone in view.zones
         ],
         "furniture": view.furniture,
+        "overhead": view.overhead,
+        "carpets": view.carpets,
         "changes": [asdict(change) for change in view.changes],
     }
 
@@ -98,7 +118,13 @@ def home_from(plain: Json) -> HomeView:
         str(plain["name"]),
         tuple(plain["station"]),
         tuple(
-            RoomView(room["name"], room["area"], tuple(room["anchor"]), _outlines(room["rings"]))
+            RoomView(
+                room["name"],
+                room["area"],
+                tuple(room["anchor"]),
+                _outlines(room["rings"]),
+                room.get("floor", ""),
+            )
             for room in plain["rooms"]
         ),
         tuple(
@@ -108,6 +134,8 @@ def home_from(plain: Json) -> HomeView:
         _outlines(plain["furniture"]),
         float(plain["radius"]),
         float(plain["tool"]),
+        overhead=_outlines(plain.get("overhead", [])),
+        carpets=_outlines(plain.get("carpets", [])),
     )
 
 

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.errors import RoombaError
-from roomba.vocabulary import CleanMode, FanLevel
+from roomba.vocabulary import CleanMode, FanLevel, RoomWay
 
 
 class RobotUnavailableError(RoombaError):
@@ -281,12 +281,14 @@ class RobotClient(Protocol):
         spot: tuple[float, float] | None = None,
         passes: int = 1,
         fan: FanLevel = FanLevel.STANDARD,
+        each: Sequence[RoomWay] = (),
     ) -> CleanHandle:
         """Start cleaning; another clean, or a way to the station, ends.
 
         ``rooms`` are for ROOMS, ``in_order`` or else the shortest way; ``zones`` for ZONES, lowest
         x and y, highest x and y, m; ``spot`` for SPOT, None for where the robot is; ``passes`` 1
-        to 5. Raises RequestRefusedError for what cannot be asked at all, RobotUnavailableError.
+        to 5. ``each`` is how each of the rooms is cleaned, else ``passes`` and ``fan`` hold for
+        all. Raises RequestRefusedError for what cannot be asked at all, RobotUnavailableError.
         """
 
     def dock(self) -> DockingHandle:

@@ -13,7 +13,15 @@ from numpy.typing import NDArray
 
 from roomba.client.protocol import CleanReport, ErrandOutcome, RequestRefusedError, VacuumSnapshot
 from roomba.grid import FREE, OCCUPIED, GridFrame, OccupancyMap
-from roomba.vocabulary import LONGEST_NAME, MOST_CORNERS, MOST_PASSES, MOST_ZONES
+from roomba.vocabulary import (
+    LONGEST_NAME,
+    MOST_CORNERS,
+    MOST_PASSES,
+    MOST_ZONES,
+    CleanMode,
+    FanLevel,
+    RoomWay,
+)
 
 Point = tuple[float, float]
 """x and y, m."""
@@ -26,11 +34,13 @@ class LayerName(Enum):
     """A grid that can be drawn over the floor."""
 
     MAP = "map"
-    """What the robot knows: 0 unknown, 1 free, 2 occupied."""
+    """What the robot knows: 0 unknown, 1 free, 2 occupied, 3 occupied by furniture."""
     COVERAGE = "coverage"
     """How often the present errand, or the last one, swept a cell: 0, 1, 2, 3 or more."""
     DIRT = "dirt"
     """How dirty the robot found the floor: 0 not known, 1 clean, up to 255 the dirtiest."""
+    TRUE_DIRT = "true dirt"
+    """How dirty the floor of a simulated home really is: 0 clean, up to 255 the dirtiest."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -55,12 +65,16 @@ class GridLayer:
 
 @dataclass(frozen=True, slots=True)
 class RoomView:
-    """A room: its free floor in m2, a point well inside, and its outline as closed rings."""
+    """A room: its free floor in m2, a point well inside, and its outline as closed rings.
+
+    ``floor`` is wood, tile, stone or fabric; empty if that is not known.
+    """
 
     name: str
     area: float
     anchor: Point
     rings: tuple[tuple[Point, ...], ...]
+    floor: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,9 +103,10 @@ class ChangeView:
 class HomeView:
     """What seldom changes; ``version`` grows by one when it does.
 
-    ``station`` is x, y and heading of the docked robot; ``furniture`` are outlines of what the
-    map shows as such. ``radius`` is the robot's and ``tool`` the width of its brush, m.
-    ``changes`` are what the robot offers to change of its map.
+    ``station`` is x, y and heading of the docked robot. ``furniture`` are outlines of what stands
+    on the floor, the lowest first, ``overhead`` of what the robot passes below, ``carpets`` of what
+    lies; all three are empty where they are not known. ``radius`` is the robot's and ``tool`` the
+    width of its brush, m. ``changes`` are what the robot offers to change of its map.
     """
 
     version: int
@@ -103,6 +118,47 @@ class HomeView:
     radius: float
     tool: float
     changes: tuple[ChangeView, ...] = ()
+    overhead: tuple[tuple[Point, ...], ...] = ()
+    carpets: tuple[tuple[Point, ...], ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class DoorView:
+    """A door that can be shut: lowest x and y, highest x and y of its opening, m."""
+
+    name: str
+    opening: tuple[float, float, float, float]
+    is_shut: bool
+
+
+@dataclass(frozen=True, slots=True)
+class TruthView:
+    """What is really so in a simulated home, and the robot does not know.
+
+    ``pose`` is where the robot is; ``things`` are outlines of what stands about besides the map.
+    """
+
+    pose: tuple[float, float, float]
+    things: tuple[tuple[Point, ...], ...]
+    doors: tuple[DoorView, ...]
+    is_lifted: bool
+
+
+class PlayAct(Enum):
+    """What can be done to a simulated home and robot, for teaching."""
+
+    SPILL = "spill"
+    """Spill a heap of dirt."""
+    CHAIR = "chair"
+    """Put a chair where it stands in the way."""
+    CLEAR = "clear"
+    """Take away what was put down."""
+    DOOR = "door"
+    """Shut or open a door."""
+    LIFT = "lift"
+    """Lift the robot, and put it down elsewhere."""
+    BLOCK = "block"
+    """Put a box before the station."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -113,7 +169,9 @@ class RobotView:
     ``dirt`` what it picked up since its bin was emptied, g; ``held`` is why the emergency stop
     holds the drive, empty if it does not. ``scan`` is float32 [n, 2], where the lidar's beams met
     something; ``path`` float32 [n, 2], what is left of its way. ``last`` is how the last errand
-    ended.
+    ended. ``battery_seconds`` is when the battery is empty at the present current, or full while it
+    charges, s, and ``top_speed`` how fast it may drive, m/s; NaN if not known. ``truth`` is there
+    for a simulated robot that runs in the program of the page.
     """
 
     time: float
@@ -126,11 +184,19 @@ class RobotView:
     scan: NDArray[np.float32]
     path: NDArray[np.float32]
     last: CleanReport | None
+    battery_seconds: float = math.nan
+    top_speed: float = math.nan
+    truth: TruthView | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class PageLimits:
-    """What may be asked for, so that no interface hard-codes it: m, m/s, rad/s, numbers."""
+    """What may be asked for, so that no interface hard-codes it: m, m/s, rad/s, numbers.
+
+    ``hand_speed`` and ``hand_turning`` are those at which a hand drives; ``camera_angles`` are in
+    degrees to the left, and ``play`` has the values of :class:`PlayAct` that the robot offers.
+    ``each_room`` says that each room of a clean can have passes and a fan level of its own.
+    """
 
     max_speed: float
     max_angular_speed: float
@@ -138,6 +204,14 @@ class PageLimits:
     most_zones: int = MOST_ZONES
     most_corners: int = MOST_CORNERS
     longest_name: int = LONGEST_NAME
+    min_speed: float = 0.1
+    hand_speed: float = 0.25
+    hand_turning: float = 1.0
+    each_room: bool = True
+    modes: tuple[str, ...] = tuple(mode.value for mode in CleanMode)
+    fans: tuple[str, ...] = tuple(level.value for level in FanLevel)
+    camera_angles: tuple[float, ...] = ()
+    play: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -151,6 +225,7 @@ class CleanOrder:
     spot: Point | None = None
     passes: int = 1
     fan: str = "standard"
+    each: tuple[RoomWay, ...] = ()
 
 
 def known_cells(occupancy: OccupancyMap) -> NDArray[np.uint8]:
@@ -159,6 +234,21 @@ def known_cells(occupancy: OccupancyMap) -> NDArray[np.uint8]:
     cells[occupancy.values == FREE] = 1
     cells[occupancy.values >= OCCUPIED] = 2
     return cells
+
+
+def battery_seconds(level: float, rate: float) -> float:
+    """Return when a battery is empty, or full while it charges, s; NaN while neither comes.
+
+    ``level`` is 0..1, ``rate`` how it changes, 1/s.
+    """
+    if rate < 0.0:
+        return level / -rate
+    return (1.0 - level) / rate if rate > 0.0 and level < 1.0 else math.nan
+
+
+def camera_angles(max_pan: float) -> tuple[float, ...]:
+    """Return the five angles at which a camera looks, degrees, from the left to the right."""
+    return max_pan, 0.5 * max_pan, 0.0, -0.5 * max_pan, -max_pan
 
 
 def exploration_as_clean(

@@ -263,6 +263,11 @@ class Brain:
         estimate = self.keeper.place.estimate
         return senses_of(self.readings, estimate.pose, estimate.knowledge, estimate.reason)
 
+    @property
+    def max_speed(self) -> float:
+        """The robot's top speed, m/s."""
+        return self._max_speed
+
     def limit_speed(self, max_speed: float) -> None:
         """Set the robot's top speed, m/s."""
         self._max_speed = max_speed

@@ -58,4 +58,5 @@ def fan_of(mission: Mission) -> FanLevel | None:
     cleaning = mission.cleaning
     if cleaning is None or mission.state.phase is Phase.ERROR:
         return None
-    return cleaning.request.fan
+    stage = cleaning.stage
+    return cleaning.request.way_of("" if stage is None else stage.name).fan

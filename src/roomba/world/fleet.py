@@ -186,6 +186,15 @@ class Fleet:
         discs = self._state.solid.discs[row["discs_at"] : row["discs_end"]]
         return np.stack([discs[name] for name in ("x", "y", "radius")], axis=1)
 
+    def keep_thing(self, world: int, thing: int, *, is_present: bool) -> None:
+        """Let a moving thing stay where it is for the rest of the day, present or not.
+
+        It becomes present as soon as no robot is in its way.
+        """
+        row = self._state.solid.things[self.worlds[world]["things_at"] + thing]
+        rest = self._state.tracks[row["row"] : row["last_row"] + 1]
+        rest[:, 1:] = row["x"], row["y"], row["theta"], float(is_present)
+
     def put_discs(self, world: int, discs: NDArray[np.float64]) -> None:
         """Stand round things on the floor of a world: float64 [discs, 3], x, y and radius, m.
 

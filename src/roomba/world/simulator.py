@@ -23,7 +23,7 @@ from roomba.world.engine.lidar.projection import ScanBuffers
 from roomba.world.engine.state.arrays import Fault, Infrared, Rows, State
 from roomba.world.fleet import Fleet
 from roomba.world.home.dirt import MICROGRAMS_PER_GRAM, DirtField
-from roomba.world.home.home import Home
+from roomba.world.home.home import Home, MovingKind
 from roomba.world.home.turned import placed
 from roomba.world.power import BatteryState, battery_state, noise_level
 
@@ -337,6 +337,17 @@ class Simulator:
     def remove_obstacles(self) -> None:
         """Take all round things away."""
         self._fleet.remove_discs(0)
+
+    def set_door(self, name: str, *, is_shut: bool) -> None:
+        """Shut or open a door with a leaf that moves, for the rest of the day.
+
+        It shuts as soon as the robot is out of its way. Raises ValueError for another name.
+        """
+        things = self.home.exact.moving
+        leaves = {t.name: n for n, t in enumerate(things) if t.kind is MovingKind.DOOR}
+        if name not in leaves:
+            raise ValueError(f"expected a door of: {', '.join(leaves) or 'none'}; got {name!r}")
+        self._fleet.keep_thing(0, leaves[name], is_present=is_shut)
 
     def inject(self, fault: Fault, value: float) -> None:
         """Set a fault, 0..1 (0: none); raises ValueError for another value."""

@@ -33,7 +33,7 @@ from roomba.client.protocol import (
     RobotUnavailableError,
     VacuumSnapshot,
 )
-from roomba.vocabulary import CleanMode, FanLevel
+from roomba.vocabulary import CleanMode, FanLevel, RoomWay
 from roomba_ros.client.ros_errands import RosClean, RosDocking, RosExploring, Server
 from roomba_ros.convert.client import room_names_of, vacuum_of
 from roomba_ros.runtime.calls import call_service
@@ -92,10 +92,12 @@ class RosVacuum:
         spot: tuple[float, float] | None = None,
         passes: int = 1,
         fan: FanLevel = FanLevel.STANDARD,
+        each: Sequence[RoomWay] = (),
     ) -> CleanHandle:
         """Send the goal; raises RobotUnavailableError when no action server answers in time."""
-        if not 1 <= passes <= 255:
-            raise RequestRefusedError(f"expected 1 to 5 passes, got {passes}")
+        for often in (passes, *(way.passes for way in each)):
+            if not 1 <= often <= 255:
+                raise RequestRefusedError(f"expected 1 to 5 passes, got {often}")
         goal = CleanGoal(
             mode=getattr(CleanGoal, mode.name),
             rooms=list(rooms),
@@ -105,6 +107,8 @@ class RosVacuum:
             spot_is_here=spot is None,
             passes=passes,
             fan=getattr(CleanGoal, fan.name),
+            room_passes=[way.passes for way in each],
+            room_fans=[getattr(CleanGoal, way.fan.name) for way in each],
         )
         return RosClean(self._cleans, goal)
 

@@ -40,7 +40,7 @@ from roomba.mission.exploring.exploration import ExploreResult
 from roomba.mission.inputs.senses import Battery
 from roomba.perception.rooms.zones import WALL_WIDTH, Zone, ZoneKind, Zones, ZonesError
 from roomba.perception.swept.coverage_bits import SWEPT, WANTED
-from roomba.vocabulary import CleanMode, FanLevel
+from roomba.vocabulary import CleanMode, FanLevel, RoomWay
 from roomba_ros.convert.common import header, map_message, quaternion_of
 from roomba_ros.convert.errors import MessageError, require_finite
 
@@ -91,12 +91,24 @@ def request_of(goal: CleanGoal) -> CleanRequest:
             goal.passes or 1,
             FANS[goal.fan],
             goal.in_order,
+            _ways_of(goal),
         )
     except CleanRefusedError as error:
         raise CleanGoalError(str(error)) from error
     if not np.isfinite(zones).all():
         raise CleanGoalError(f"expected zones of finite numbers, m, got {zones}")
     return request
+
+
+def _ways_of(goal: CleanGoal) -> tuple[RoomWay, ...]:
+    """Return how each room is cleaned; arrays of uint8 come as bytes."""
+    passes, fans = list(goal.room_passes), list(goal.room_fans)
+    if len(passes) != len(fans) or not set(fans) <= set(FANS):
+        raise CleanGoalError(
+            f"expected as many fan levels from 0 to {len(FANS) - 1} as passes of rooms, got "
+            f"{fans} for {passes}"
+        )
+    return tuple(RoomWay(often, FANS[fan]) for often, fan in zip(passes, fans, strict=True))
 
 
 def _corners(zone: Rectangle) -> tuple[float, float, float, float]:

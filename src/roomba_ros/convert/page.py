@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from actionlib_msgs.msg import GoalStatus
 from geometry_msgs.msg import Point as PointMessage
@@ -17,6 +19,7 @@ from roomba_robot.msg import (
     ZoneArray,
 )
 from roomba_robot.msg import Zone as ZoneMessage
+from sensor_msgs.msg import BatteryState
 
 from roomba.client.protocol import CleanReport, ErrandOutcome, MissedFloor
 from roomba.client.view import (
@@ -25,6 +28,7 @@ from roomba.client.view import (
     Point,
     RoomView,
     ZoneView,
+    battery_seconds,
     exploration_as_clean,
     known_cells,
 )
@@ -50,6 +54,14 @@ def dirt_cells_of(message: OccupancyGrid) -> OccupancyMap:
     """Return how dirty the floor is: 0 not known, 1 clean to 101 the dirtiest."""
     dirt = map_of(message)
     return OccupancyMap(dirt.frame, np.clip(dirt.values + 1, 0, 101).astype(np.int8))
+
+
+def battery_seconds_of(message: BatteryState) -> float:
+    """Return when the battery is empty, or full while it charges, s; NaN if that is not known."""
+    level, current, capacity = message.percentage, message.current, message.capacity
+    if not (0.0 <= level <= 1.0 and math.isfinite(current) and 0.0 < capacity < math.inf):
+        return math.nan
+    return battery_seconds(level, current / (3600.0 * capacity))
 
 
 def shown_path_of(message: Path) -> NDArray[np.float32]:

@@ -24,7 +24,7 @@ from roomba_robot.srv import (
 )
 
 from roomba.client import view
-from roomba.client.observed import HAND_SILENCE, SPILL
+from roomba.client.observed import HAND_SILENCE, SPILL, STATION_BOX
 from roomba.client.protocol import (
     ErrandOutcome,
     RequestRefusedError,
@@ -32,14 +32,14 @@ from roomba.client.protocol import (
     WalkOutcome,
 )
 from roomba.configuration.robot import RobotConfig
-from roomba.geometry import STANDSTILL, Twist
+from roomba.geometry import STANDSTILL, Pose, Twist
 from roomba.vocabulary import CleanMode, FanLevel
 from roomba_ros.client.ros_client import RosCamera, RosRobot
 from roomba_ros.convert.common import twist_message
 from roomba_ros.convert.page import zone_message_of
 from roomba_ros.dashboard.graph_maps import GraphMaps
 from roomba_ros.dashboard.page_topics import PageTopics
-from roomba_ros.runtime.calls import call_service
+from roomba_ros.runtime.calls import call_service, is_offered
 from roomba_ros.runtime.parameters import LiveSeedParameters
 
 _REFUSED_WITHIN: Final = 1.0
@@ -122,8 +122,10 @@ class GraphRobot(GraphMaps):
         """Return what may be asked for."""
         body = self._config.body
         return view.PageLimits(
-            min(self._parameters.values.robot_max_speed, body.max_speed),
+            body.max_speed,
             body.max_angular_speed,
+            camera_angles=view.camera_angles(self._config.camera.max_pan),
+            play=self._acts(),
         )
 
     def robot(self) -> view.RobotView:
@@ -140,7 +142,13 @@ class GraphRobot(GraphMaps):
             scan=self._topics.scan_at(pose),
             path=self._topics.path(),
             last=self._topics.last,
+            battery_seconds=self._topics.battery_seconds,
+            top_speed=self._top_speed,
         )
+
+    @property
+    def _top_speed(self) -> float:
+        return min(self._parameters.values.robot_max_speed, self._config.body.max_speed)
 
     def home(self) -> view.HomeView:
         """Return what seldom changes."""
@@ -166,6 +174,7 @@ class GraphRobot(GraphMaps):
             spot=order.spot,
             passes=order.passes,
             fan=FanLevel(order.fan),
+            each=order.each,
         )
         _require_taken(errand)
 
@@ -226,6 +235,17 @@ class GraphRobot(GraphMaps):
         with self._hand_lock:
             self._by_hand, self._hand_heard = Twist(linear, angular), time.monotonic()
 
+    def set_top_speed(self, speed: float) -> None:
+        """Set the report's parameter, which all nodes look at."""
+        limits = self.limits()
+        if not limits.min_speed <= speed <= limits.max_speed:
+            raise RequestRefusedError(
+                f"expected a speed from {limits.min_speed:g} to {limits.max_speed:g} m/s, "
+                f"got {speed:g}"
+            )
+        key = rospy.search_param("robot_max_speed") or "/robot_max_speed"
+        rospy.set_param(key, speed)
+
     # ---------------------------------------------------------------- rooms and zones
 
     def put_zone(self, zone: view.ZoneView) -> None:
@@ -257,7 +277,40 @@ class GraphRobot(GraphMaps):
 
     def place_chair(self, x: float, y: float) -> None:
         """Put a chair in the way; a simulated home only."""
-        self._call("sim/inject_fault", "moved_chair", 1.0, x, y, 0.0)
+        self._interfere("moved_chair", 1.0, x, y)
+
+    def block_station(self) -> None:
+        """Put a box before the station."""
+        before, radius = STATION_BOX
+        place = Pose(*self.home().station).compose(Pose(-before, 0.0, 0.0))
+        self._interfere("obstacle", radius, place.x, place.y)
+
+    def clear_away(self) -> None:
+        """Take away all that was put down."""
+        self._interfere("no_obstacles")
+
+    def set_door(self, name: str, *, is_shut: bool) -> None:
+        """Refuse: the simulation of the graph has no such service."""
+        raise RequestRefusedError("doors cannot be moved here; `./roomba play` has doors that can")
+
+    def lift(self) -> None:
+        """Lift the robot: its wheels hang."""
+        self._interfere("lifted", 1.0)
+
+    def put_down(self, x: float, y: float, theta: float) -> None:
+        """Put the robot on the floor."""
+        self._interfere("put", 1.0, x, y, theta)
+
+    def _interfere(
+        self, fault: str, value: float = 1.0, x: float = 0.0, y: float = 0.0, theta: float = 0.0
+    ) -> None:
+        self._call("sim/inject_fault", fault, value, x, y, theta)
+
+    def _acts(self) -> tuple[str, ...]:
+        """Return what can be done to a simulated home; nothing to a real one."""
+        if not is_offered("sim/inject_fault"):
+            return ()
+        return tuple(act.value for act in view.PlayAct if act is not view.PlayAct.DOOR)
 
     # ---------------------------------------------------------------- inside
 

@@ -22,7 +22,7 @@ from roomba_robot.msg import (
     RoomArray,
     ZoneArray,
 )
-from sensor_msgs.msg import LaserScan
+from sensor_msgs.msg import BatteryState, LaserScan
 from std_msgs.msg import Float32, String
 from tf2_msgs.msg import TFMessage
 
@@ -36,6 +36,7 @@ from roomba_ros.convert.client import doubt_of
 from roomba_ros.convert.common import pose_in_map
 from roomba_ros.convert.mounts import Mounts, transforms_of
 from roomba_ros.convert.page import (
+    battery_seconds_of,
     changes_of,
     clean_report_of,
     covered_cells_of,
@@ -60,9 +61,10 @@ _NO_POINTS: Final[NDArray[np.float32]] = np.empty((0, 2), np.float32)
 class PageTopics:
     """The newest of each topic.
 
-    Subscribes: ``pose``, ``localization``, ``speed``, ``bin_level``, ``emergency_stop``, ``scan``,
-    ``plan``, ``map``, ``coverage_map``, ``dirt_map``, ``rooms``, ``zones``, ``station_pose``,
-    ``trouble``, ``map/update``, ``clean/result``, ``explore/result``, ``/tf_static``.
+    Subscribes: ``pose``, ``localization``, ``speed``, ``bin_level``, ``battery_state``,
+    ``emergency_stop``, ``scan``, ``plan``, ``map``, ``coverage_map``, ``dirt_map``, ``rooms``,
+    ``zones``, ``station_pose``, ``trouble``, ``map/update``, ``clean/result``,
+    ``explore/result``, ``/tf_static``.
     """
 
     def __init__(self, config: RobotConfig) -> None:
@@ -79,7 +81,7 @@ class PageTopics:
         self._layers: dict[LayerName, GridLayer] = {}
         self.doubt, self.held, self.trouble = "", "", ""
         self.last: CleanReport | None = None
-        self.speed, self.in_bin = 0.0, 0.0
+        self.speed, self.in_bin, self.battery_seconds = 0.0, 0.0, math.nan
         self._mounts = Mounts()
         self._decoder = ScanDecoder.on_robot(self._mounts, frame_id("base_link"))
 
@@ -90,6 +92,8 @@ class PageTopics:
         subscribe("localization", Localization, doubt_of, partial(self._set, "doubt"))
         subscribe("speed", Float32, number_of, partial(self._set, "speed"))
         subscribe("bin_level", Float32, number_of, self._on_bin_level)
+        battery = partial(self._set, "battery_seconds")
+        subscribe("battery_state", BatteryState, battery_seconds_of, battery)
         drive, supervisor = OnlyFrom(SPEED_NODE), OnlyFrom(SUPERVISOR)
         subscribe("trouble", String, data_of, partial(self._set, "trouble"), senders=supervisor)
         subscribe("emergency_stop", String, data_of, partial(self._set, "held"), senders=drive)

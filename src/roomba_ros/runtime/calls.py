@@ -8,6 +8,7 @@ import threading
 import time
 from typing import Any
 
+import rosgraph
 import rospy
 
 from roomba.client.protocol import RequestRefusedError, RobotUnavailableError
@@ -46,6 +47,15 @@ def call_service(service: rospy.ServiceProxy, *arguments: object) -> Any:
     if isinstance(answer, RoombaError):
         raise answer
     return answer
+
+
+def is_offered(name: str) -> bool:
+    """Whether a node offers a service, as the master knows; False when it does not answer."""
+    try:
+        rosgraph.Master(rospy.get_name()).lookupService(rospy.resolve_name(name))
+    except (OSError, rosgraph.MasterException):
+        return False
+    return True
 
 
 def _next(answers: queue.SimpleQueue[Any]) -> Any:

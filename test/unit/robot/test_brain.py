@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from fixtures.missions import HOME, STATION
+from fixtures.missions import DEN, HALL, HOME, STATION, TWO_ROOMS, two_rooms
 from fixtures.worlds import NOISY
 
 from roomba.configuration.docking import DockingConfig
@@ -25,7 +25,7 @@ from roomba.planning.path.planner import NoPathError
 from roomba.robot.brain import Brain
 from roomba.robot.command import Command
 from roomba.robot.readings import CliffReading, Readings
-from roomba.vocabulary import FanLevel
+from roomba.vocabulary import CleanMode, FanLevel, RoomWay
 
 ON_FLOOR = Pose(0.9, 0.5, 0.0)
 DOCKED = Readings(0.0, Pose(), battery=Battery(1.0, 26.0, is_docked=True))
@@ -79,6 +79,23 @@ def test_told_to_clean_it_drives_off_with_the_fan_that_is_asked_for(fan: FanLeve
     commands = [robot.tick(replace(DOCKED, time=0.05 * tick)) for tick in range(1, 4)]
     assert commands[-1].twist != STANDSTILL
     assert commands[-1].fan == robot.robot.fan.duty_at(fan)
+
+
+def test_each_room_is_cleaned_with_the_fan_that_it_is_given() -> None:
+    robot = Brain(
+        TWO_ROOMS.map,
+        TWO_ROOMS.station,
+        NOISY,
+        MissionConfig(),
+        DockingConfig(),
+        rooms=two_rooms(),
+    )
+    robot.tick(DOCKED)
+    ways = RoomWay(1, FanLevel.STRONG), RoomWay(1, FanLevel.QUIET)
+    order = CleanRequest(CleanMode.ROOMS, (HALL, DEN), in_order=True, each=ways)
+    robot.mission.clean(order, robot.senses())
+    commands = [robot.tick(replace(DOCKED, time=0.05 * tick)) for tick in range(1, 4)]
+    assert commands[-1].fan == robot.robot.fan.duty_at(FanLevel.STRONG)
 
 
 def test_no_command_is_faster_than_the_robot() -> None:

@@ -20,7 +20,7 @@ from roomba.client.protocol import (
     RobotUnavailableError,
     VacuumSnapshot,
 )
-from roomba.vocabulary import CleanMode, FanLevel
+from roomba.vocabulary import CleanMode, FanLevel, RoomWay
 
 if TYPE_CHECKING:
     from roomba.client.clock import Clock
@@ -71,6 +71,7 @@ class FakeVacuum:
         spot: tuple[float, float] | None = None,
         passes: int = 1,
         fan: FanLevel = FanLevel.STANDARD,
+        each: Sequence[RoomWay] = (),
     ) -> FakeClean:
         """Start the next scripted clean; what was under way ends."""
         script = self._next_script()
@@ -81,7 +82,8 @@ class FakeVacuum:
             script = ErrandScript(ErrandOutcome.REFUSED, message=message)
         is_small = mode in (CleanMode.SPOT, CleanMode.ZONES)
         wanted = SPOT_AREA if is_small else ROOM_AREA * max(1, len(names))
-        clean = FakeClean(script, self.clock, passes * wanted, names, self._battery)
+        often = sum(way.passes for way in each) / len(each) if each else passes
+        clean = FakeClean(script, self.clock, often * wanted, names, self._battery)
         self.asked.append((mode, tuple(rooms)))
         self.cleans.append(clean)
         return self._begin(clean, script)

@@ -6,7 +6,7 @@ import argparse
 import math
 
 from roomba.commands.options import number
-from roomba.commands.trials.homes import home_of, rooms_of
+from roomba.commands.trials.homes import playable_home_of, rooms_of
 from roomba.commands.trials.runs import mission_config, robot_config_of
 from roomba.commands.trials.trial import Trial, Wheels
 from roomba.configuration.docking import DockingConfig
@@ -42,7 +42,7 @@ def live_client(
     """Return a robot in a home; raises RoombaError."""
     trial = Trial(home=name, seed=seed, bin=bin_grams, wheels=wheels)
     robot = robot_config_of(trial)
-    home = home_of(trial, robot.body)
+    home = playable_home_of(trial, robot.body)
     docking = load_config(DockingConfig, CONFIGURATION / "docking.yaml")
     rooms = rooms_of(home) if knows_map else None
     mission = HeadlessMission(

@@ -14,6 +14,7 @@ from roomba.errors import RoomsError
 from roomba.files.shipped import HOMES
 from roomba.grid import FREE
 from roomba.perception.rooms.rooms import Rooms, segment
+from roomba.world.home.doors import with_leaves
 from roomba.world.home.home import Home, MovingKind
 from roomba.world.home.raster import covered_cells, outline
 from roomba.world.home.turned import turned_home, with_steps
@@ -31,6 +32,11 @@ def home_of(trial: Trial, body: BodyConfig) -> Home:
         home = load_home(trial.home, HOMES, body, trial.station)
     home = with_doors_shut(home) if trial.shut_doors else home
     return turned_home(home, math.radians(trial.turned)) if trial.turned else home
+
+
+def playable_home_of(trial: Trial, body: BodyConfig) -> Home:
+    """Return the home of a trial with doors that can be shut while the robot lives in it."""
+    return with_leaves(home_of(trial, body))
 
 
 def with_doors_shut(home: Home) -> Home:

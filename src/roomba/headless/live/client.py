@@ -17,6 +17,7 @@ from roomba.headless.cleaner import HeadlessMission
 from roomba.headless.live.camera import LiveCamera
 from roomba.headless.live.errands import begin_exploring
 from roomba.headless.live.floor_plan import FloorPlan, made
+from roomba.headless.live.playing import Playing
 from roomba.headless.live.robot import LiveRobot
 from roomba.headless.live.snapshots import ErrandsEnded, Snapshots
 from roomba.mission.cleaning.request import CleanRequest
@@ -24,6 +25,7 @@ from roomba.mission.phases.machine import Event, Phase
 from roomba.perception.rooms.rooms import Rooms
 from roomba.vocabulary import CleanMode, FanLevel
 from roomba.world.home.home import Home
+from roomba.world.simulator import Simulator
 
 _Answer = TypeVar("_Answer")
 Watcher = Callable[[HeadlessMission, ErrandsEnded], None]
@@ -37,12 +39,18 @@ class LiveClient:
         self, home: Home, robot: HeadlessMission, rooms: Rooms | None, speed: float
     ) -> None:
         """Start nothing yet."""
-        self._snapshots = Snapshots(home, robot, FloorPlan(rooms))
+        self._playing = Playing(home)
+        self._snapshots = Snapshots(home, robot, FloorPlan(rooms), self._playing)
         self._live = LiveRobot(robot, speed, self._observe)
         self._watchers: list[Watcher] = []
         self._camera = LiveCamera(home, robot.robot.camera)
         body = robot.robot.body
-        self._limits = view.PageLimits(body.max_speed, body.max_angular_speed)
+        self._limits = view.PageLimits(
+            body.max_speed,
+            body.max_angular_speed,
+            camera_angles=view.camera_angles(robot.robot.camera.max_pan),
+            play=self._playing.acts,
+        )
 
     def start(self) -> None:
         """Let the robot live."""
@@ -98,6 +106,8 @@ class LiveClient:
 
     def robot(self) -> view.RobotView:
         """Return the newest state."""
+        if self.ending:
+            raise RobotUnavailableError(f"{self.ending}; start it again")
         return self._snapshots.robot()
 
     def home(self) -> view.HomeView:
@@ -110,6 +120,8 @@ class LiveClient:
             return self._snapshots.map()
         if name is view.LayerName.COVERAGE:
             return self._snapshots.coverage()
+        if name is view.LayerName.TRUE_DIRT:
+            return self._live.carry_out(self._playing.dirt)
         return self._live.carry_out(self._snapshots.dirt)
 
     def picture(self, degrees: float) -> NDArray[np.uint8]:
@@ -198,6 +210,15 @@ class LiveClient:
             )
         )
 
+    def set_top_speed(self, speed: float) -> None:
+        """Set how fast it may drive, m/s."""
+        low, high = self._limits.min_speed, self._limits.max_speed
+        if not low <= speed <= high:
+            raise RequestRefusedError(
+                f"expected a speed from {low:g} to {high:g} m/s, got {speed:g}"
+            )
+        self.obey(lambda robot: robot.brain.limit_speed(speed))
+
     # ---------------------------------------------------------------- rooms and zones
 
     def put_zone(self, zone: view.ZoneView) -> None:
@@ -229,11 +250,38 @@ class LiveClient:
 
     def spill_dirt(self, x: float, y: float) -> None:
         """Spill a heap of dirt."""
-        self.obey(lambda robot: robot.simulator.spill(x, y, *SPILL))
+        self._play(lambda simulator: simulator.spill(x, y, *SPILL))
 
     def place_chair(self, x: float, y: float) -> None:
         """Put a chair where it stands in the way."""
-        self.obey(lambda robot: robot.simulator.place_chair(Pose(x, y, 0.0)))
+        self._play(lambda simulator: simulator.place_chair(Pose(x, y, 0.0)))
+
+    def block_station(self) -> None:
+        """Put a box before the station."""
+        self._play(self._playing.block_station)
+
+    def clear_away(self) -> None:
+        """Take away all that was put down."""
+        self._play(lambda simulator: simulator.remove_obstacles())
+
+    def set_door(self, name: str, *, is_shut: bool) -> None:
+        """Shut or open a door; it shuts as soon as the robot is out of its way."""
+        self._play(lambda simulator: simulator.set_door(name, is_shut=is_shut))
+
+    def lift(self) -> None:
+        """Lift the robot: its wheels hang."""
+        self._play(self._playing.lift)
+
+    def put_down(self, x: float, y: float, theta: float) -> None:
+        """Put the robot on the floor; refused where it does not fit."""
+        self._play(lambda simulator: self._playing.put_down(simulator, Pose(x, y, theta)))
+
+    def _play(self, act: Callable[[Simulator], None]) -> None:
+        def play(robot: HeadlessMission) -> None:
+            act(robot.simulator)
+            robot.body.seen = robot.simulator.observe()
+
+        self.obey(play)
 
     # ---------------------------------------------------------------- in the robot's thread
 
@@ -260,5 +308,6 @@ def _request_of(order: view.CleanOrder) -> CleanRequest:
             order.passes,
             FanLevel[order.fan.upper()],
             order.in_order,
+            order.each,
         )
     )

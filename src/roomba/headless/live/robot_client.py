@@ -31,7 +31,7 @@ from roomba.headless.live.views import vacuum_snapshot
 from roomba.mission.cleaning.request import CleanRequest
 from roomba.mission.phases.machine import Event
 from roomba.perception.localization.estimate import Knowledge
-from roomba.vocabulary import CleanMode, FanLevel
+from roomba.vocabulary import CleanMode, FanLevel, RoomWay
 
 _AnyErrand = LiveErrand[Any, Any]
 _Begun = TypeVar("_Begun", bound=_AnyErrand)
@@ -83,9 +83,10 @@ class LiveRobotClient:
         spot: tuple[float, float] | None = None,
         passes: int = 1,
         fan: FanLevel = FanLevel.STANDARD,
+        each: Sequence[RoomWay] = (),
     ) -> CleanHandle:
         """Start cleaning."""
-        wish = mode, tuple(rooms), tuple(zones), spot, passes, fan, in_order
+        wish = mode, tuple(rooms), tuple(zones), spot, passes, fan, in_order, tuple(each)
         return self._begin(LiveClean(*self._parts, made(lambda: CleanRequest(*wish))))
 
     def dock(self) -> DockingHandle:

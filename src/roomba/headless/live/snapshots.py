@@ -7,14 +7,16 @@ import threading
 from dataclasses import dataclass
 
 from roomba.client.protocol import CleanReport, ExploreReport, RobotUnavailableError
-from roomba.client.view import GridLayer, HomeView, RobotView, exploration_as_clean, known_cells
+from roomba.client.view import GridLayer, HomeView, RobotView, exploration_as_clean
 from roomba.headless.cleaner import HeadlessMission
 from roomba.headless.live.floor_plan import FloorPlan
+from roomba.headless.live.playing import Playing
 from roomba.headless.live.views import (
     clean_report,
     dirt_layer,
     exploration_report,
     home_view,
+    map_cells,
     robot_view,
 )
 from roomba.perception.rooms.rooms import segment
@@ -33,9 +35,11 @@ class ErrandsEnded:
 class Snapshots:
     """The newest snapshots; they may be read from any thread, all else is for the robot's own."""
 
-    def __init__(self, home: Home, robot: HeadlessMission, plan: FloorPlan) -> None:
+    def __init__(
+        self, home: Home, robot: HeadlessMission, plan: FloorPlan, playing: Playing
+    ) -> None:
         """Begin before the first frame."""
-        self._home, self.plan = home, plan
+        self._home, self.plan, self._playing = home, plan, playing
         self._lock = threading.Lock()
         self._versions = itertools.count(1)
         self._view: RobotView | None = None
@@ -88,7 +92,7 @@ class Snapshots:
         if self._home_view is None:
             self._look_at_home(robot)
         self._follow_map(robot)
-        self._view = robot_view(robot, self._last)
+        self._view = robot_view(robot, self._last, self._playing.truth(robot))
 
     def begin_coverage(self) -> None:
         """Count sweeps from nothing on."""
@@ -139,7 +143,8 @@ class Snapshots:
             if self._map is None or self._map.cells.shape != occupancy.frame.shape:
                 self._shape += 1
                 self._visits = Visits(occupancy.frame, robot.robot.brush.width)
-            self._map = GridLayer.over(occupancy.frame, known_cells(occupancy), self._shape)
+            cells = map_cells(self._home, robot, occupancy)
+            self._map = GridLayer.over(occupancy.frame, cells, self._shape)
         self._find_rooms(robot)
         self._look_at_home(robot)
 

@@ -23,8 +23,12 @@ from roomba.client.view import (
     Point,
     RobotView,
     RoomView,
+    TruthView,
     ZoneView,
+    battery_seconds,
+    known_cells,
 )
+from roomba.grid import OccupancyMap
 from roomba.headless.cleaner import HeadlessMission
 from roomba.mission.cleaning.request import CleanResult
 from roomba.mission.exploring.exploration import ExploreResult
@@ -34,16 +38,23 @@ from roomba.perception.rooms.rooms import Rooms
 from roomba.perception.rooms.zones import Zones
 from roomba.perception.swept.dirt_map import DirtMap
 from roomba.world.home.home import Home
-from roomba.world.home.raster import footprint
+from roomba.world.home.materials import MATERIALS
+from roomba.world.home.raster import footprint, outline
 
+_CLEARANCE: Final = 0.12
+"""m; below what begins higher the robot passes."""
 _DIRTIEST: Final = 8000.0
 """Grains/m2 that are drawn as the dirtiest floor there is: sixteen times where dirt begins."""
 
 
-def robot_view(robot: HeadlessMission, last: CleanReport | None) -> RobotView:
-    """Return the robot as it is now, by what it believes."""
+def robot_view(
+    robot: HeadlessMission, last: CleanReport | None, truth: TruthView | None = None
+) -> RobotView:
+    """Return the robot as it is now, by what it believes; the truth is told beside."""
     seen, estimate = robot.seen, robot.brain.keeper.place.estimate
     pose, mission = estimate.pose, robot.mission
+    battery = seen.battery
+    share = battery.voltage / (3600.0 * battery.capacity)
     held = mission.message if mission.state.phase is Phase.EMERGENCY else ""
     return RobotView(
         time=seen.time,
@@ -56,6 +67,9 @@ def robot_view(robot: HeadlessMission, last: CleanReport | None) -> RobotView:
         scan=robot.lidar.view(robot.simulator.ranges).ends_at(pose),
         path=_path(robot),
         last=last,
+        battery_seconds=battery_seconds(battery.level, battery.current * share),
+        top_speed=robot.brain.max_speed,
+        truth=truth,
     )
 
 
@@ -107,6 +121,14 @@ def dirt_layer(dirt: DirtMap, shape: int) -> GridLayer:
     return GridLayer.over(dirt.frame, dirt_cells(dirt), shape)
 
 
+def map_cells(home: Home, robot: HeadlessMission, occupancy: OccupancyMap) -> NDArray[np.uint8]:
+    """Return the cells of the map; on the home's own one furniture is told from walls."""
+    cells = known_cells(occupancy)
+    if _knows_home(robot) and home.turned is None and occupancy.frame == home.frame:
+        cells[(cells == 2) & ~home.walls] = 3
+    return cells
+
+
 # ---------------------------------------------------------------- the home
 
 
@@ -115,22 +137,33 @@ def home_view(
 ) -> HomeView:
     """Return what seldom changes."""
     station = robot.mission.context.station
+    knows_home = _knows_home(robot)
     return HomeView(
         version=version,
         name=home.name,
         station=(station.x, station.y, station.theta),
-        rooms=() if rooms is None else tuple(_room_views(rooms)),
+        rooms=() if rooms is None else tuple(_room_views(rooms, home if knows_home else None)),
         zones=tuple(ZoneView(zone.name, zone.kind.value, zone.points) for zone in zones.all),
-        furniture=tuple(_outlines(home)) if robot.brain.mapper is None else (),
+        furniture=tuple(_outlines(home, is_overhead=False)) if knows_home else (),
         radius=robot.robot.body.radius,
         tool=robot.robot.brush.width,
+        overhead=tuple(_outlines(home, is_overhead=True)) if knows_home else (),
+        carpets=tuple(_carpets(home)) if knows_home else (),
     )
 
 
-def _room_views(rooms: Rooms) -> Iterator[RoomView]:
+def _knows_home(robot: HeadlessMission) -> bool:
+    """Whether it goes by the map of the home, with which its plan is known."""
+    return robot.brain.mapper is None
+
+
+def _room_views(rooms: Rooms, home: Home | None) -> Iterator[RoomView]:
     for label, name in enumerate(rooms.names, 1):
         rings = tuple(_rings(rooms.outline(label)))
-        yield RoomView(name, rooms.area(label), rooms.anchor(label), rings)
+        anchor = rooms.anchor(label)
+        room = None if home is None else home.room_at(*anchor)
+        floor = "" if room is None else MATERIALS[room.floor].texture
+        yield RoomView(name, rooms.area(label), anchor, rings, floor)
 
 
 def _rings(outline: shapely.Polygon | shapely.MultiPolygon) -> Iterator[tuple[Point, ...]]:
@@ -140,13 +173,17 @@ def _rings(outline: shapely.Polygon | shapely.MultiPolygon) -> Iterator[tuple[Po
             yield tuple((float(x), float(y)) for x, y in ring.coords)
 
 
-def _outlines(home: Home) -> Iterator[tuple[Point, ...]]:
-    """Yield the outlines of the boxes of all furniture that the map shows."""
-    for piece in home.furniture:
-        if not piece.on_map:
-            continue
-        for box in piece.boxes:
+def _outlines(home: Home, *, is_overhead: bool) -> Iterator[tuple[Point, ...]]:
+    """Yield the outlines of the boxes of all furniture that the map shows, the lowest first."""
+    boxes = [box for piece in home.furniture if piece.on_map for box in piece.boxes]
+    for box in sorted(boxes, key=lambda box: box.top):
+        if (box.bottom > _CLEARANCE) is is_overhead:
             yield tuple((x, y) for x, y in footprint(box).exterior.coords[:-1])
+
+
+def _carpets(home: Home) -> Iterator[tuple[Point, ...]]:
+    for carpet in home.carpets:
+        yield tuple((x, y) for x, y in outline(carpet.area).exterior.coords[:-1])
 
 
 # ---------------------------------------------------------------- results

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from roomba.errors import RoombaError
 from roomba.mission.cleaning.request import CleanRequest
-from roomba.vocabulary import CleanMode, FanLevel
+from roomba.vocabulary import CleanMode, FanLevel, RoomWay
 
 VERSION: Final = 3
 Mask = NDArray[np.bool_]
@@ -56,6 +56,7 @@ def request_values(request: CleanRequest) -> Values:
         "passes": request.passes,
         "fan": request.fan.name,
         "in_order": request.in_order,
+        "each": [[way.passes, way.fan.name] for way in request.each],
     }
 
 
@@ -70,4 +71,5 @@ def request_of(values: Values) -> CleanRequest:
         int(values["passes"]),
         FanLevel[values["fan"]],
         bool(values["in_order"]),
+        tuple(RoomWay(int(passes), FanLevel[fan]) for passes, fan in values["each"]),
     )

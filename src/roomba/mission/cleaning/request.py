@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from enum import Enum
 
 from roomba.errors import RoombaError
-from roomba.vocabulary import MOST_PASSES, MOST_ZONES, CleanMode, FanLevel, fault_of_name
+from roomba.vocabulary import MOST_PASSES, MOST_ZONES, CleanMode, FanLevel, RoomWay, fault_of_name
 
 
 class CleanRefusedError(RoombaError):
@@ -19,7 +19,11 @@ Rectangle = tuple[float, float, float, float]
 
 @dataclass(frozen=True, slots=True)
 class CleanRequest:
-    """``rooms`` for ROOMS, in order if ``in_order``; ``zones`` for ZONES; ``spot`` for SPOT."""
+    """``rooms`` for ROOMS, in order if ``in_order``; ``zones`` for ZONES; ``spot`` for SPOT.
+
+    ``each`` is how each of the rooms is cleaned, in their order; empty if ``passes`` and ``fan``
+    hold for all.
+    """
 
     mode: CleanMode = CleanMode.WHOLE
     rooms: tuple[str, ...] = ()
@@ -28,11 +32,18 @@ class CleanRequest:
     passes: int = 1
     fan: FanLevel = FanLevel.STANDARD
     in_order: bool = False
+    each: tuple[RoomWay, ...] = ()
 
     def __post_init__(self) -> None:
         """Check what can be checked without a map. Raises CleanRefusedError."""
-        if not 1 <= self.passes <= MOST_PASSES:
-            raise CleanRefusedError(f"expected 1 to {MOST_PASSES} passes, got {self.passes}")
+        for passes in (self.passes, *(way.passes for way in self.each)):
+            if not 1 <= passes <= MOST_PASSES:
+                raise CleanRefusedError(f"expected 1 to {MOST_PASSES} passes, got {passes}")
+        if self.each and (self.mode is not CleanMode.ROOMS or len(self.each) != len(self.rooms)):
+            raise CleanRefusedError(
+                f"expected a way to clean for each of the {len(self.rooms)} rooms, or none; "
+                f"got {len(self.each)} for mode {self.mode.value}"
+            )
         if self.mode is CleanMode.ROOMS and not self.rooms:
             raise CleanRefusedError("expected the names of rooms to clean, got none")
         if self.mode is CleanMode.ZONES and not self.zones:
@@ -49,6 +60,17 @@ class CleanRequest:
                     "expected zones as lowest x, lowest y, highest x, highest y, m, "
                     f"got {', '.join(f'{value:g}' for value in zone)}"
                 )
+
+    @property
+    def most_passes(self) -> int:
+        """How often the floor is cleaned that is cleaned the most often."""
+        return max((way.passes for way in self.each), default=self.passes)
+
+    def way_of(self, room: str) -> RoomWay:
+        """Return how a room is cleaned; what is none of its rooms, as all else."""
+        if self.each and room in self.rooms:
+            return self.each[self.rooms.index(room)]
+        return RoomWay(self.passes, self.fan)
 
 
 class CleanOutcome(Enum):

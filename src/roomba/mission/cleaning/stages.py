@@ -40,8 +40,9 @@ def stages_of(
     once = _parts(request, context, dirt, coverable, here)
     return [
         Stage(part.name, part.floor, again=number > 0)
-        for number in range(request.passes)
+        for number in range(request.most_passes)
         for part in once
+        if number < request.way_of(part.name).passes
     ]
 
 

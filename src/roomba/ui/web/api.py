@@ -15,7 +15,7 @@ from roomba.client.observed import MapKeeper, ObservedRobot, Timeline
 from roomba.client.plain import home_of, replay_of, state_of
 from roomba.client.protocol import CameraClient, RequestRefusedError, RobotUnavailableError
 from roomba.client.view import CleanOrder, ZoneView
-from roomba.vocabulary import LONGEST_NAME, MOST_CORNERS, MOST_PASSES
+from roomba.vocabulary import LONGEST_NAME, MOST_CORNERS, MOST_PASSES, FanLevel, RoomWay
 
 _Value = TypeVar("_Value")
 _QUALITY: Final = 85
@@ -30,8 +30,19 @@ class Wish(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
 
+class RoomWish(Wish):
+    """How one room is cleaned."""
+
+    passes: int = Field(default=1, ge=1, le=MOST_PASSES)
+    fan: Literal["quiet", "standard", "strong"] = "standard"
+
+
 class CleanWish(Wish):
-    """What is to be cleaned; zones are lowest x and y, highest x and y, m, map frame."""
+    """What is to be cleaned; zones are lowest x and y, highest x and y, m, map frame.
+
+    ``each`` is how each of the rooms is cleaned, in their order; without it ``passes`` and ``fan``
+    hold for all.
+    """
 
     mode: Literal["whole", "rooms", "zones", "spot", "edges", "dirtiest"] = "whole"
     rooms: list[Name] = Field(default=[], max_length=100, examples=[["Kitchen", "Hall"]])
@@ -42,6 +53,7 @@ class CleanWish(Wish):
     spot: tuple[Coordinate, Coordinate] | None = None
     passes: int = Field(default=1, ge=1, le=MOST_PASSES)
     fan: Literal["quiet", "standard", "strong"] = "standard"
+    each: list[RoomWish] = Field(default=[], max_length=100)
 
 
 class DriveWish(Wish):
@@ -105,6 +117,12 @@ class ChangeWish(Wish):
     accept: bool
 
 
+class SpeedWish(Wish):
+    """How fast the robot may drive, m/s."""
+
+    speed: float = Field(gt=0.0, le=2.0, allow_inf_nan=False)
+
+
 class CameraWish(Wish):
     """An angle of the camera, degrees, positive to the left."""
 
@@ -131,7 +149,6 @@ def api_of(robot: ObservedRobot) -> APIRouter:
     _add_views(api, robot)
     _add_errands(api, robot)
     _add_edits(api, robot)
-    _add_play(api, robot)
     _add_replay(api, robot)
     _add_camera(api, robot)
     _add_maps(api, robot)
@@ -164,8 +181,9 @@ def _add_errands(api: APIRouter, robot: ObservedRobot) -> None:
             wish.spot,
             wish.passes,
             wish.fan,
+            tuple(RoomWay(way.passes, FanLevel(way.fan)) for way in wish.each),
         )
-        return _obeyed(lambda: robot.clean(order))
+        return obeyed(lambda: robot.clean(order))
 
     plain: tuple[tuple[str, str, Callable[[], None]], ...] = (
         ("explore", "Look at what the map does not show yet", robot.explore),
@@ -179,43 +197,47 @@ def _add_errands(api: APIRouter, robot: ObservedRobot) -> None:
     )
     for name, summary, command in plain:
         api.add_api_route(
-            f"/{name}", _obeying(command), methods=["POST"], summary=summary, name=name
+            f"/{name}", obeying(command), methods=["POST"], summary=summary, name=name
         )
 
     @api.post("/go", summary="Walk to a point")
     def go_to(wish: PlaceWish) -> Answer:
-        return _obeyed(lambda: robot.go_to(wish.x, wish.y))
+        return obeyed(lambda: robot.go_to(wish.x, wish.y))
 
     @api.post("/emergency_stop", summary="Hold the drive until it is released")
     def emergency_stop(wish: StopWish) -> Answer:
-        return _obeyed(lambda: robot.emergency_stop(wish.reason))
+        return obeyed(lambda: robot.emergency_stop(wish.reason))
+
+    @api.post("/speed", summary="Set how fast the robot may drive")
+    def top_speed(wish: SpeedWish) -> Answer:
+        return obeyed(lambda: robot.set_top_speed(wish.speed))
 
     @api.post("/drive", summary="Drive by hand")
     def drive(wish: DriveWish) -> Answer:
-        return _obeyed(lambda: robot.drive(wish.linear, wish.angular))
+        return obeyed(lambda: robot.drive(wish.linear, wish.angular))
 
 
 def _add_edits(api: APIRouter, robot: ObservedRobot) -> None:
     @api.put("/zones", summary="Add a zone, or replace the one of the same name")
     def put_zone(wish: ZoneWish) -> Answer:
         zone = ZoneView(wish.name, wish.kind, tuple(wish.points))
-        return _obeyed(lambda: robot.put_zone(zone))
+        return obeyed(lambda: robot.put_zone(zone))
 
     @api.delete("/zones/{name}", summary="Remove a zone")
     def remove_zone(name: str) -> Answer:
-        return _obeyed(lambda: robot.remove_zone(name))
+        return obeyed(lambda: robot.remove_zone(name))
 
     @api.post("/rooms/rename", summary="Give a room another name")
     def rename_room(wish: RoomName) -> Answer:
-        return _obeyed(lambda: robot.rename_room(wish.name, wish.new_name))
+        return obeyed(lambda: robot.rename_room(wish.name, wish.new_name))
 
     @api.post("/rooms/join", summary="Make rooms that touch one")
     def join_rooms(wish: RoomNames) -> Answer:
-        return _obeyed(lambda: robot.join_rooms(tuple(wish.names)))
+        return obeyed(lambda: robot.join_rooms(tuple(wish.names)))
 
     @api.post("/rooms/split", summary="Cut a room along a line")
     def split_room(wish: RoomCut) -> Answer:
-        return _obeyed(lambda: robot.split_room(wish.name, wish.start, wish.end))
+        return obeyed(lambda: robot.split_room(wish.name, wish.start, wish.end))
 
 
 def _add_maps(api: APIRouter, robot: ObservedRobot) -> None:
@@ -230,19 +252,19 @@ def _add_maps(api: APIRouter, robot: ObservedRobot) -> None:
 
     @api.post("/maps/save", summary="Save the map by a name")
     def save(wish: MapName) -> Answer:
-        return _obeyed(lambda: robot.save_map(wish.name))
+        return obeyed(lambda: robot.save_map(wish.name))
 
     @api.post("/maps/load", summary="Go by a saved map")
     def load(wish: MapName) -> Answer:
-        return _obeyed(lambda: robot.load_map(wish.name))
+        return obeyed(lambda: robot.load_map(wish.name))
 
     @api.delete("/maps/{name}", summary="Forget a saved map")
     def remove(name: str) -> Answer:
-        return _obeyed(lambda: robot.remove_map(name))
+        return obeyed(lambda: robot.remove_map(name))
 
     @api.post("/maps/change", summary="Change the map as it is offered, or leave it")
     def change(wish: ChangeWish) -> Answer:
-        return _obeyed(lambda: robot.change_map(is_accepted=wish.accept))
+        return obeyed(lambda: robot.change_map(is_accepted=wish.accept))
 
 
 def _add_camera(api: APIRouter, robot: ObservedRobot) -> None:
@@ -274,29 +296,17 @@ def _add_replay(api: APIRouter, robot: ObservedRobot) -> None:
         return replay_of(robot.timeline())
 
 
-def _add_play(api: APIRouter, robot: ObservedRobot) -> None:
-    """Add what can be done to a simulated home, if it is one."""
-    spill, chair = getattr(robot, "spill_dirt", None), getattr(robot, "place_chair", None)
-    if spill is None or chair is None:
-        return
+def obeying(command: Callable[[], None]) -> Callable[[], Answer]:
+    """Return what answers a request by a command."""
 
-    @api.post("/play/spill", summary="Spill a heap of dirt")
-    def spill_dirt(wish: PlaceWish) -> Answer:
-        return _obeyed(lambda: spill(wish.x, wish.y))
-
-    @api.post("/play/chair", summary="Put a chair in the way")
-    def place_chair(wish: PlaceWish) -> Answer:
-        return _obeyed(lambda: chair(wish.x, wish.y))
-
-
-def _obeying(command: Callable[[], None]) -> Callable[[], Answer]:
     def obey() -> Answer:
-        return _obeyed(command)
+        return obeyed(command)
 
     return obey
 
 
-def _obeyed(command: Callable[[], None]) -> Answer:
+def obeyed(command: Callable[[], None]) -> Answer:
+    """Let the robot obey; its refusal is 409 with its sentence, its silence 503."""
     _asked(command)
     return Answer()
 

@@ -15,13 +15,14 @@ from fastapi.responses import JSONResponse
 from fastapi.staticfiles import StaticFiles
 from starlette.types import ASGIApp, Receive, Scope, Send
 
-from roomba.client.observed import MapKeeper, ObservedRobot
+from roomba.client.observed import MapKeeper, ObservedRobot, Playground
 from roomba.client.protocol import CameraClient, RequestRefusedError, RobotUnavailableError
 from roomba.history.recorder import HistoryKeeper
 from roomba.ui.web.api import DriveWish, api_of
 from roomba.ui.web.feed import Feed
 from roomba.ui.web.guard import Guard
 from roomba.ui.web.past import Replays, history_api
+from roomba.ui.web.playing import playing_api
 
 STATIC: Final = Path(__file__).parent / "static"
 _MOST_BODY: Final = 65536
@@ -60,6 +61,8 @@ def create_app(robot: ObservedRobot, guard: Guard, keeper: HistoryKeeper | None 
     }
     app = FastAPI(title="roomba_robot", lifespan=life, docs_url=None, redoc_url=None)
     app.include_router(api_of(robot))
+    if isinstance(robot, Playground):
+        app.include_router(playing_api(robot))
 
     @app.websocket("/live")
     async def live(socket: WebSocket) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Final, TypeVar
 
 from roomba.files.home_layer import DAY, Layer, MovingEntry
@@ -11,9 +12,8 @@ from roomba.files.strict_yaml import Location, suggestion
 from roomba.geometry import Pose, wrap_angle
 from roomba.world.catalogue import FIXTURES
 from roomba.world.catalogue.parts import block
+from roomba.world.home.doors import leaf_of
 from roomba.world.home.home import (
-    LEAF_HEIGHT,
-    Box,
     Door,
     Furniture,
     Move,
@@ -79,23 +79,13 @@ def _leaf(
     check: Checker,
 ) -> MovingThing:
     door = _known(location, MovingKind.DOOR, name, {door.name: door for door in doors}, check)
-    area = door.opening
-    size_x, size_y = area.x_max - area.x_min, area.y_max - area.y_min
-    pose = Pose((area.x_min + area.x_max) / 2.0, (area.y_min + area.y_max) / 2.0, 0.0)
-    height = min(LEAF_HEIGHT, wall_height)
+    leaf = leaf_of(door, wall_height)
     moves = [
-        Move(time, 0.0, pose, is_shut)
+        Move(time, 0.0, leaf.pose, is_shut)
         for interval in entry.close
         for time, is_shut in zip(interval, (True, False), strict=True)
     ]
-    return MovingThing(
-        name,
-        MovingKind.DOOR,
-        (Box(0.0, 0.0, 0.0, size_x, size_y, 0.0, height, "door"),),
-        pose,
-        not door.is_open,
-        Script(tuple(moves), entry.every, entry.jitter),
-    )
+    return replace(leaf, script=Script(tuple(moves), entry.every, entry.jitter))
 
 
 def _moved_piece(

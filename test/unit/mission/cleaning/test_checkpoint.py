@@ -23,7 +23,7 @@ from roomba.mission.cleaning.checkpoint import (
     unpacked,
 )
 from roomba.mission.cleaning.request import CleanRequest
-from roomba.vocabulary import MOST_PASSES, CleanMode, FanLevel, fault_of_name
+from roomba.vocabulary import MOST_PASSES, CleanMode, FanLevel, RoomWay, fault_of_name
 
 sizes = st.tuples(st.integers(1, 40), st.integers(1, 40))
 numbers = st.floats(-50.0, 50.0)
@@ -84,14 +84,18 @@ def requests(draw: st.DrawFn) -> CleanRequest:
             )
         )
     ]
+    mode, rooms = draw(st.sampled_from(CleanMode)), draw(st.lists(NAMES, min_size=1, max_size=3))
+    ways = st.builds(RoomWay, st.integers(1, MOST_PASSES), st.sampled_from(FanLevel))
+    each = draw(st.lists(ways, min_size=len(rooms), max_size=len(rooms)))
     return CleanRequest(
-        draw(st.sampled_from(CleanMode)),
-        tuple(draw(st.lists(NAMES, min_size=1, max_size=3))),
+        mode,
+        tuple(rooms),
         tuple(zones),
         draw(st.none() | st.tuples(numbers, numbers)),
         draw(st.integers(1, MOST_PASSES)),
         draw(st.sampled_from(FanLevel)),
         draw(st.booleans()),
+        tuple(each) if mode is CleanMode.ROOMS and draw(st.booleans()) else (),
     )
 
 

@@ -14,7 +14,7 @@ from roomba.mission.cleaning.request import (
     CleanResult,
     Rectangle,
 )
-from roomba.vocabulary import LONGEST_NAME, MOST_PASSES, MOST_ZONES, CleanMode, FanLevel
+from roomba.vocabulary import LONGEST_NAME, MOST_PASSES, MOST_ZONES, CleanMode, FanLevel, RoomWay
 
 
 def test_without_more_words_all_is_cleaned_once() -> None:
@@ -34,6 +34,25 @@ def test_too_few_or_many_passes_are_refused(passes: int) -> None:
 
 def test_as_many_passes_as_allowed_are_taken() -> None:
     assert CleanRequest(passes=MOST_PASSES).passes == MOST_PASSES
+
+
+def test_each_room_has_its_own_way_or_all_have_the_same() -> None:
+    ways = RoomWay(3, FanLevel.QUIET), RoomWay(1, FanLevel.STRONG)
+    request = CleanRequest(CleanMode.ROOMS, ("den", "hall"), passes=2, each=ways)
+    assert (request.way_of("den"), request.way_of("hall")) == ways
+    assert request.way_of("what was out of reach") == RoomWay(2, FanLevel.STANDARD)
+    assert request.most_passes == 3
+    alike = CleanRequest(CleanMode.ROOMS, ("den",), passes=2)
+    assert (alike.way_of("den"), alike.most_passes) == (RoomWay(2), 2)
+
+
+def test_ways_for_other_than_each_room_are_refused() -> None:
+    with pytest.raises(CleanRefusedError, match="each of the 2 rooms, or none; got 1"):
+        CleanRequest(CleanMode.ROOMS, ("den", "hall"), each=(RoomWay(),))
+    with pytest.raises(CleanRefusedError, match="for mode whole"):
+        CleanRequest(each=(RoomWay(),))
+    with pytest.raises(CleanRefusedError, match="passes, got 0"):
+        CleanRequest(CleanMode.ROOMS, ("den",), each=(RoomWay(0),))
 
 
 def test_rooms_and_zones_must_be_told() -> None:

@@ -14,7 +14,7 @@ from roomba.mission.cleaning.request import CleanRefusedError, CleanRequest
 from roomba.mission.cleaning.stages import Stage, stages_of
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.perception.swept.dirt_map import DirtMap
-from roomba.vocabulary import CleanMode
+from roomba.vocabulary import CleanMode, RoomWay
 from roomba.world.home.home import Home
 
 HERE = Pose(0.85, 1.2, 0.0)
@@ -47,6 +47,18 @@ def test_a_whole_clean_is_all_that_can_be_covered_once_for_each_pass() -> None:
     found = stages(CleanRequest(passes=3), place)
     assert [stage.again for stage in found] == [False, True, True]
     assert all(np.array_equal(stage.floor, place.coverable()) for stage in found)
+
+
+def test_each_room_has_as_many_passes_as_it_is_given() -> None:
+    request = CleanRequest(
+        CleanMode.ROOMS, (DEN, HALL), in_order=True, each=(RoomWay(1), RoomWay(2))
+    )
+    found = stages(request, context())
+    assert [(stage.name, stage.again) for stage in found] == [
+        (DEN, False),
+        (HALL, False),
+        (HALL, True),
+    ]
 
 
 def test_edges_are_the_floor_within_a_tool_s_width_of_where_it_ends() -> None:

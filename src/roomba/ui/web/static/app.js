@@ -9,14 +9,16 @@ import * as history from "./panels/history.js";
 import * as keys from "./panels/keys.js";
 import * as maps from "./panels/maps.js";
 import * as offer from "./panels/offer.js";
+import * as play from "./panels/play.js";
 import * as replay from "./panels/replay.js";
 import * as rooms from "./panels/rooms.js";
+import * as sheet from "./panels/sheet.js";
 import * as status from "./panels/status.js";
 import * as tools from "./panels/view.js";
 import * as zones from "./panels/zones.js";
 import { connect } from "./link.js";
 
 draw.begin();
-gestures.begin(offer.tapped, zones.drawn);
-for (const panel of [status, actions, rooms, zones, drive, tools, keys, replay, maps, camera, charts, history]) panel.begin();
+gestures.begin({ tapped: offer.tapped, drawn: zones.drawn, changed: zones.change, mayCarry: play.mayCarry, carried: play.carried });
+for (const panel of [status, actions, rooms, zones, drive, play, tools, keys, replay, maps, camera, charts, history, sheet]) panel.begin();
 connect();

@@ -7,3 +7,27 @@ export const $ = (id) => document.getElementById(id);
 export function put(element, text) {
   if (element.textContent !== text) element.textContent = text;
 }
+
+/** Return a button that does something; its label, where the text alone does not say it. */
+export function button(text, act, label) {
+  const made = document.createElement("button");
+  made.type = "button";
+  made.textContent = text;
+  if (label) made.setAttribute("aria-label", label);
+  made.onclick = act;
+  return made;
+}
+
+/** Return a part of a line of text. */
+export function span(kind, text) {
+  const made = document.createElement("span");
+  made.className = kind;
+  made.textContent = text;
+  return made;
+}
+
+/** Let a select offer [value, words], and keep what is chosen if it is still there. */
+export function offer(select, options, chosen = select.value) {
+  select.replaceChildren(...options.map(([value, words]) => new Option(words, value)));
+  if (options.some(([value]) => String(value) === String(chosen))) select.value = String(chosen);
+}

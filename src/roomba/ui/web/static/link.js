@@ -5,9 +5,11 @@ import { takeTiles } from "./map/grids.js";
 const STALE = 1500; // ms without news after which what is shown is told to be old
 const RETRY = [300, 1000, 2000, 4000]; // ms before another attempt
 
+const timers = {};
 let socket = null;
 let attempts = 0;
-let heard = 0;
+let heard = 0; // ms of the page's clock
+let heardAt = 0; // and of the day
 
 /** The token of the printed address; it is kept for this tab alone. */
 function token() {
@@ -33,6 +35,7 @@ export function connect() {
   };
   socket.onmessage = (event) => {
     heard = performance.now();
+    heardAt = Date.now();
     if (event.data instanceof ArrayBuffer) takeTiles(event.data);
     else take(JSON.parse(event.data));
   };
@@ -53,6 +56,7 @@ function take(message) {
     case "state":
       set("state", message.pose ? { ...message, at: performance.now() } : get("state"));
       set("reason", message.reason ?? "");
+      if (message.link === "live") set("seenAt", heardAt);
       set("link", message.link);
       break;
     case "home": set("home", message); break;
@@ -66,18 +70,28 @@ function take(message) {
       set("hasHistory", message.history);
       set("hasCamera", message.camera);
       set("hasMaps", message.maps);
+      ask("limits").then((limits) => { if (limits) set("limits", limits); });
       break;
     case "refused": refuse(message.reason); break;
   }
 }
 
 /** Show the robot's sentence for a while. */
-export function refuse(reason) {
-  const place = document.getElementById("refusal");
-  place.textContent = reason;
+export function refuse(reason) { show("refusal", reason, 6000); }
+
+/** Tell what was done for a while, and offer to undo it where that is possible. */
+export function note(text, undo) {
+  document.getElementById("note-undo").hidden = !undo;
+  document.getElementById("note-undo").onclick = () => { document.getElementById("note").hidden = true; undo(); };
+  show("note", text, 10000);
+}
+
+function show(id, text, period) {
+  const place = document.getElementById(id);
+  (place.firstElementChild ?? place).textContent = text;
   place.hidden = false;
-  clearTimeout(refuse.timer);
-  refuse.timer = setTimeout(() => { place.hidden = true; }, 6000);
+  clearTimeout(timers[id]);
+  timers[id] = setTimeout(() => { place.hidden = true; }, period);
 }
 
 /** Ask the robot for something; what it refuses is shown. Returns whether it obeys. */

@@ -2,9 +2,9 @@
 
 /** @type {Record<string, any>} */
 const values = {
-  link: "connecting", age: 0, state: null, home: null, mayChange: false, hasHistory: false, hasCamera: false, hasMaps: false,
-  trail: [], chosen: [], drawing: null, selection: null,
-  layers: { coverage: true, trail: true, scan: false, dirt: false, furniture: true, rooms: true, zones: true, path: true },
+  link: "connecting", age: 0, state: null, home: null, limits: null, mayChange: false, hasHistory: false, hasCamera: false, hasMaps: false,
+  trail: [], chosen: [], hows: {}, drawing: null, zone: null, carried: null,
+  layers: { coverage: true, trail: true, path: true, rooms: true, furniture: true, zones: true, scan: false, dirt: false, truth: false },
 };
 const listeners = new Map();
 
@@ -25,3 +25,6 @@ export function on(names, listener) {
   }
   listener();
 }
+
+/** Whether the robot offers a way to play with its home. */
+export function offers(act) { return Boolean(get("limits")?.play.includes(act)); }

@@ -1,17 +1,18 @@
 /** The robot's state in words that a person would say. */
 
 const SOON = 90; // s
+const LATER = 7200; // s from which minutes do not matter
 const MOVES = 0.02; // m/s
 
 /** Return the headline for a state. */
 export function headline(link, state) {
   if (link === "connecting") return "Connecting …";
-  if (!state) return link === "gone" ? "The robot does not answer" : "Connecting again …";
   if (link === "gone") return "The robot does not answer";
-  if (link === "reconnecting") return "Connecting again …";
+  if (!state || link === "reconnecting") return "Connecting again …";
   if (state.replay) return `Recorded: ${headline(link, { ...state, replay: null })}`;
   const { vacuum } = state, room = vacuum.room ? ` · ${vacuum.room}` : "";
   const togo = vacuum.seconds_to_go > 0 && vacuum.state === "cleaning" ? ` · ${duration(vacuum.seconds_to_go)} to go` : "";
+  if (state.truth?.lifted) return "Lifted off the floor";
   switch (vacuum.phase) {
     case "docked": return "On its station, ready";
     case "charging": return "Charging, then it goes on";
@@ -30,27 +31,42 @@ export function headline(link, state) {
 }
 
 /** Return why it does not do what was asked, and what helps; empty when all is well. */
-export function explanation(link, state, reason, age) {
-  if (link === "gone") return reason;
+export function explanation(link, state, reason, age, heardAt) {
+  const seen = heardAt ? ` Last seen at ${new Date(heardAt).toLocaleTimeString()}.` : "";
+  if (link === "gone") return `${sentence(reason)}${seen}`;
   if (link === "stale") return `No news for ${Math.round(age / 1000)} s; what is shown is old.`;
-  if (link === "reconnecting") return "The page comes back by itself as soon as the robot's program answers.";
+  if (link === "reconnecting") return `The page comes back by itself as soon as the robot's program answers.${seen}`;
   if (!state) return "";
   if (state.held) return `The drive is held: ${state.held}. “Release” lets it go.`;
-  return state.vacuum.message || state.doubt;
+  if (state.truth?.lifted) return "Put it down: drag it, or tap the floor and “Put the robot here”.";
+  return sentence(state.vacuum.message || state.doubt);
 }
+
+/** Return a text as a sentence. */
+function sentence(text) {
+  return text ? title(text) + (/[.!?]$/.test(text) ? "" : ".") : "";
+}
+
+/** Return a name as a title. */
+export function title(name) { return name.charAt(0).toUpperCase() + name.slice(1); }
 
 /** Return a time, s, in words. */
 export function duration(seconds) {
   if (seconds < SOON) return `${Math.round(seconds)} s`;
   const minutes = Math.round(seconds / 60);
-  return minutes < 90 ? `${minutes} min` : `${Math.floor(minutes / 60)} h ${minutes % 60} min`;
+  if (minutes < 90) return `${minutes} min`;
+  const shown = seconds < LATER ? minutes : 10 * Math.round(minutes / 10);
+  return `${Math.floor(shown / 60)} h ${shown % 60} min`;
 }
 
 /** Return how the last run ended. */
 export function lastRun(report) {
-  const parts = [report.outcome[0].toUpperCase() + report.outcome.slice(1)];
+  const parts = [title(report.outcome)];
   if (report.wanted) parts.push(`${report.covered.toFixed(1)} of ${report.wanted.toFixed(1)} m²`);
   if (report.duration) parts.push(duration(report.duration));
   if (report.dirt) parts.push(`${report.dirt.toFixed(1)} g of dirt`);
-  return parts.join(" · ") + (report.message ? `. ${report.message}` : "");
+  return parts.join(" · ") + (report.message ? `. ${sentence(report.message)}` : "");
 }
+
+/** What is said of ways to clean that need no more than their name. */
+export const MODES = { whole: "all floor", edges: "edges only", dirtiest: "dirtiest rooms first" };

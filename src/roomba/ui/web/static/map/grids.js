@@ -1,10 +1,12 @@
 /** Grids that are drawn over the floor: a canvas each, of which only changed tiles are redrawn. */
 
-const grids = new Map();
-let shown = 0; // grows when something changed
+import { onColours, palette } from "./palette.js";
 
-/** How often any grid has changed. */
-export function version() { return shown; }
+const grids = new Map();
+const versions = new Map(); // how often each grid has changed
+
+/** How often a grid has changed. */
+export function version(name) { return versions.get(name) ?? 0; }
 
 /** Take a message of tiles: header's length, header, cells (see tiles.py). */
 export function takeTiles(buffer) {
@@ -27,41 +29,44 @@ export function takeTiles(buffer) {
       grid.cells.set(new Uint8Array(buffer, at, width), (row + line) * grid.columns + column);
     paint(header.layer, grid, row, column, height, width);
   }
-  shown++;
+  versions.set(header.layer, version(header.layer) + 1);
 }
 
 /** Draw all cells anew, as for other colours. */
-export function repaint() {
-  for (const [name, grid] of grids) paint(name, grid, 0, 0, grid.rows, grid.columns);
-  shown++;
+function repaint() {
+  for (const [name, grid] of grids) {
+    paint(name, grid, 0, 0, grid.rows, grid.columns);
+    versions.set(name, version(name) + 1);
+  }
 }
 
 /** Return a grid by its name, or nothing. */
 export function grid(name) { return grids.get(name); }
 
-const dark = matchMedia("(prefers-color-scheme: dark)");
-dark.addEventListener("change", repaint);
+onColours(repaint);
 
+/** Return what colours the cells of a grid, as red, green, blue and opacity. */
 function colours(name) {
-  const night = dark.matches;
-  if (name === "map")
-    return (value) => value === 1 ? (night ? [46, 48, 53, 255] : [252, 250, 245, 255])
-      : value === 2 ? (night ? [168, 160, 148, 255] : [112, 104, 94, 255]) : [0, 0, 0, 0];
-  if (name === "coverage")
-    return (value) => value === 0 ? [0, 0, 0, 0] : night
-      ? [[0, 0, 0, 0], [38, 105, 82, 235], [30, 140, 103, 235], [32, 176, 128, 235]][value]
-      : [[0, 0, 0, 0], [199, 231, 217, 235], [146, 207, 181, 235], [92, 178, 143, 235]][value];
-  return (value) => value === 0 ? [0, 0, 0, 0] : [190, 110, 20, Math.min(210, value)];
+  const { free, wall, furniture, swept, sweptAlpha, dirt } = palette().cells, none = [0, 0, 0, 0];
+  if (name === "map") {
+    const looks = [none, [...free, 255], [...wall, 255], [...furniture, 255]];
+    return (value) => looks[value];
+  }
+  if (name === "coverage") {
+    const looks = [none, ...swept.map((colour) => [...colour, sweptAlpha])];
+    return (value) => looks[Math.min(value, 3)];
+  }
+  return (value) => [...dirt, Math.min(210, value)];
 }
 
 function paint(name, grid, row, column, height, width) {
   const context = grid.canvas.getContext("2d");
   const image = context.createImageData(width, height);
-  const colour = colours(name);
+  const colour = colours(name), { data } = image;
   for (let y = 0; y < height; y++)
     for (let x = 0; x < width; x++) {
       const value = grid.cells[(row + y) * grid.columns + column + x];
-      image.data.set(colour(value), 4 * ((height - 1 - y) * width + x)); // row 0 is the lowest
+      data.set(colour(value), 4 * ((height - 1 - y) * width + x)); // row 0 is the lowest
     }
   context.putImageData(image, column, grid.rows - row - height);
 }

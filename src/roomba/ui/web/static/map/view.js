@@ -3,6 +3,9 @@
 export const view = { x: 0, y: 0, scale: 60, width: 1, height: 1, isFitted: false };
 
 const LEAST = 8, MOST = 600; // pixels per metre
+const SIDE = 24, BELOW = 64; // pixels that stay free around the home; the tools lie below
+
+let box = null; // lowest x and y, highest x and y of what is known, m
 
 /** Return pixels of a place, m. */
 export function toScreen(x, y) {
@@ -14,10 +17,11 @@ export function toFloor(px, py) {
   return [view.x + (px - view.width / 2) / view.scale, view.y - (py - view.height / 2) / view.scale];
 }
 
-/** Move what is seen by pixels. */
+/** Move what is seen by pixels; the middle stays over the home. */
 export function pan(dx, dy) {
-  view.x -= dx / view.scale;
-  view.y += dy / view.scale;
+  const [left, bottom, right, top] = box ?? [-Infinity, -Infinity, Infinity, Infinity];
+  view.x = between(view.x - dx / view.scale, Math.min(left, view.x), Math.max(right, view.x));
+  view.y = between(view.y + dy / view.scale, Math.min(bottom, view.y), Math.max(top, view.y));
   view.isFitted = true;
 }
 
@@ -31,10 +35,16 @@ export function zoom(factor, px = view.width / 2, py = view.height / 2) {
   view.isFitted = true;
 }
 
-/** Show a box of the floor as large as it goes: lowest x and y, highest x and y, m. */
-export function fit([left, bottom, right, top]) {
+/** Tell what is known of the floor: lowest x and y, highest x and y, m. */
+export function bound(known) { box = known; }
+
+/** Show all that is known as large as it goes. */
+export function fit() {
+  if (!box) return;
+  const [left, bottom, right, top] = box, width = view.width - 2 * SIDE, height = view.height - SIDE - BELOW;
+  view.scale = Math.min(MOST, Math.max(LEAST, Math.min(width / (right - left), height / (top - bottom))));
   view.x = (left + right) / 2;
-  view.y = (bottom + top) / 2;
-  view.scale = Math.min(MOST, Math.max(LEAST,
-    Math.min(view.width / (right - left), view.height / (top - bottom)) * 0.92));
+  view.y = (bottom + top) / 2 - (BELOW - SIDE) / 2 / view.scale;
 }
+
+function between(value, least, most) { return Math.max(least, Math.min(value, most)); }

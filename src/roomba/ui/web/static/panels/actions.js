@@ -1,9 +1,11 @@
-/** The buttons: clean, pause, dock, stop, explore, emergency stop. */
-import { $, put } from "../dom.js";
+/** The buttons: clean, pause, dock, stop, explore, emergency stop; and how is cleaned. */
+import { $, offer, put } from "../dom.js";
 import { wish } from "../link.js";
 import { get, on, set } from "../store.js";
+import { MODES } from "../words.js";
 
 const STANDS = ["docked", "idle"];
+const STEP = 0.1; // m/s between two top speeds that can be chosen
 
 /** Connect the buttons. */
 export function begin() {
@@ -13,7 +15,10 @@ export function begin() {
   $("stop").onclick = () => wish("stop");
   $("explore").onclick = () => wish("explore");
   $("bin").onclick = () => wish("empty_bin");
+  $("locate").onclick = () => wish("locate");
   $("emergency").onclick = () => (get("state")?.held ? wish("release") : emergency());
+  $("top-speed").onchange = () => wish("speed", { speed: Number($("top-speed").value) });
+  on("limits", showLimits);
   on("state chosen home mayChange", show);
 }
 
@@ -32,23 +37,43 @@ export function how() {
 }
 
 async function clean() {
-  const chosen = get("chosen");
+  const chosen = get("chosen"), hows = get("hows"), usual = how();
   const order = chosen.length ? { mode: "rooms", rooms: chosen, in_order: true } : { mode: $("mode").value };
-  if (await wish("clean", { ...order, ...how() })) set("chosen", []);
+  if (chosen.some((name) => hows[name]))
+    order.each = chosen.map((name) => ({ ...usual, ...hows[name] }));
+  if (await wish("clean", { ...order, ...usual })) set("chosen", []);
 }
+
+function showLimits() {
+  const limits = get("limits");
+  if (!limits) return;
+  offer($("passes"), numbers(limits.most_passes), $("passes").value || 1);
+  offer($("fan"), limits.fans.map((fan) => [fan, fan]), $("fan").value || "standard");
+  offer($("mode"), limits.modes.filter((mode) => mode in MODES).map((mode) => [mode, MODES[mode]]));
+  const speeds = [];
+  for (let speed = limits.min_speed; speed < limits.max_speed + 0.01; speed += STEP) speeds.push([speed.toFixed(1), speed.toFixed(1)]);
+  offer($("top-speed"), speeds, limits.max_speed.toFixed(1));
+}
+
+/** Return the numbers from 1 to the most, as a select offers them. */
+export function numbers(most) { return Array.from({ length: most }, (_, index) => [index + 1, String(index + 1)]); }
 
 function show() {
   const state = get("state"), chosen = get("chosen"), phase = state?.vacuum.phase ?? "";
-  const stands = STANDS.includes(phase), isHeld = Boolean(state?.held);
+  const stands = STANDS.includes(phase), isHeld = Boolean(state?.held), home = get("home");
   const isPaused = phase === "paused" || phase === "error";
   put($("clean"), chosen.length ? `Clean ${chosen.length} room${chosen.length > 1 ? "s" : ""}` : "Clean all");
   put($("pause"), isPaused ? "Go on" : "Pause");
+  const isUnderWay = !stands && !isHeld && phase !== "" && chosen.length === 0;
+  $("pause").classList.toggle("first", isUnderWay);
+  $("clean").classList.toggle("first", !isUnderWay);
   $("pause").disabled = stands || isHeld;
   $("stop").disabled = (stands && !state?.speed) || isHeld;
   $("clean").disabled = isHeld;
   $("dock").disabled = phase === "docked" || isHeld;
   $("mode").disabled = chosen.length > 0;
-  $("explore").hidden = (get("home")?.furniture.length ?? 0) > 0 || (get("home")?.rooms.length ?? 0) > 0;
+  if (state?.top_speed && document.activeElement !== $("top-speed")) $("top-speed").value = state.top_speed.toFixed(1);
+  $("no-map").hidden = !home || home.furniture.length > 0 || home.rooms.length > 0 || !stands || isHeld || Boolean(state?.replay);
   $("bin").hidden = !/bin/.test(state?.vacuum.message ?? "") && phase !== "bin full";
   put($("emergency"), isHeld ? "Release" : "Stop now");
   for (const button of document.querySelectorAll(".panel button, .emergency"))

@@ -1,8 +1,8 @@
 /** Driving by hand: a stream of twists while a button or key is held, and none when the page is hidden. */
 import { drive } from "../link.js";
+import { get } from "../store.js";
 
 const PERIOD = 100; // ms
-const SPEED = 0.25, TURNING = 1.0; // m/s, rad/s
 
 const held = new Map();
 let timer = null;
@@ -47,5 +47,6 @@ function releaseAll() {
 function send() {
   let ahead = 0, aside = 0;
   for (const [one, other] of held.values()) { ahead += one; aside += other; }
-  drive(Math.sign(ahead) * SPEED, Math.sign(aside) * TURNING);
+  const limits = get("limits");
+  if (limits) drive(Math.sign(ahead) * limits.hand_speed, Math.sign(aside) * limits.hand_turning);
 }

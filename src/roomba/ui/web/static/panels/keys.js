@@ -1,34 +1,51 @@
 /** The keyboard. */
-import { pan, zoom } from "../map/view.js";
+import { $ } from "../dom.js";
+import { pan, toFloor, view, zoom } from "../map/view.js";
+import { isInside } from "../map/zones.js";
+import { get, set } from "../store.js";
 import { emergency, pauseOrResume } from "./actions.js";
 import { hold, isOpen, release } from "./drive.js";
-import { close } from "./offer.js";
+import { close, offerPlace } from "./offer.js";
 import * as replay from "./replay.js";
 import { toggleNumber } from "./rooms.js";
+import * as zones from "./zones.js";
 
 const ARROWS = { ArrowUp: [1, 0], ArrowDown: [-1, 0], ArrowLeft: [0, 1], ArrowRight: [0, -1] };
 const STEP = 60; // pixels
 
 /** Listen to keys. */
 export function begin() {
-  document.getElementById("help").onclick = () => document.getElementById("keys").showModal();
+  $("help").onclick = () => $("keys").showModal();
   document.addEventListener("keydown", down);
   document.addEventListener("keyup", (event) => { if (event.key in ARROWS) release(event.key); });
 }
 
 function down(event) {
-  if (event.key === "Escape") { close(); if (!replay.isShown()) emergency(); return; }
-  const writes = event.target.matches?.("input, select, textarea");
+  if (event.key === "Escape") {
+    close();
+    set("drawing", null);
+    if (!replay.isShown()) emergency();
+    return;
+  }
+  const writes = event.target.matches?.("input, select, textarea"), onButton = event.target.matches?.("button, summary, a");
   if (writes || event.ctrlKey || event.metaKey || event.altKey || document.querySelector("dialog[open]")) return;
-  if (event.key in ARROWS) {
+  if (!onButton && zones.key(event)) event.preventDefault();
+  else if (event.key in ARROWS && !event.target.closest?.(".wide, .parts, .history")?.matches(":focus")) {
     event.preventDefault();
     const [ahead, aside] = ARROWS[event.key];
     if (isOpen()) hold(event.key, ahead, aside); else pan(aside * STEP, ahead * STEP);
-  } else if (event.key === " " && !event.target.matches?.("button, summary")) {
+  } else if (event.key === " " && !onButton) {
     event.preventDefault();
     if (replay.isShown()) replay.playOrPause(); else pauseOrResume();
-  } else if (event.key === "+" || event.key === "=") zoom(1.4);
+  } else if (event.key === "Enter" && event.target === $("floor") && !replay.isShown()) offerMiddle();
+  else if (event.key === "+" || event.key === "=") zoom(1.4);
   else if (event.key === "-") zoom(1 / 1.4);
-  else if (event.key === "?") document.getElementById("keys").showModal();
+  else if (event.key === "?") $("keys").showModal();
   else if (/^[1-9]$/.test(event.key)) toggleNumber(Number(event.key));
+}
+
+/** Offer what can be done in the middle of the map. */
+function offerMiddle() {
+  const [x, y] = toFloor(view.width / 2, view.height / 2);
+  offerPlace(x, y, get("home")?.rooms.find((one) => isInside(one.rings, x, y)));
 }

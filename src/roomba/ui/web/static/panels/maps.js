@@ -3,6 +3,7 @@ import { $, put } from "../dom.js";
 import { ask, wish } from "../link.js";
 import { get, on } from "../store.js";
 import { askName, askYes } from "./ask.js";
+import { open } from "./sheet.js";
 
 /** Connect the buttons, and keep the offer up to date. */
 export function begin() {
@@ -17,6 +18,7 @@ export function begin() {
 function showOffer() {
   const changes = get("home")?.changes ?? [];
   $("map-offer").hidden = changes.length === 0;
+  if (changes.length && !document.querySelector(".panel").dataset.open) open("rooms");
   const appeared = changes.filter((change) => change.appeared).length, gone = changes.length - appeared;
   const parts = [[appeared, "new"], [gone, "gone"]].filter(([count]) => count).map(([count, what]) => `${count} ${what}`);
   put($("map-offer-text"), `Something stands otherwise than on the map (${parts.join(", ")}): see the dashed outlines. Change the map?`);

@@ -1,7 +1,8 @@
-/** The rooms: choose them in order, rename, join, split. */
-import { $ } from "../dom.js";
-import { wish } from "../link.js";
+/** The rooms: choose them in order, each its own way; rename, join, split. */
+import { $, offer, span } from "../dom.js";
+import { note, wish } from "../link.js";
 import { get, on, set } from "../store.js";
+import { how, numbers } from "./actions.js";
 import { askName } from "./ask.js";
 
 /** Keep the list up to date. */
@@ -9,7 +10,7 @@ export function begin() {
   $("rename").onclick = rename;
   $("join").onclick = join;
   $("split").onclick = () => set("drawing", { kind: "split", room: get("chosen")[0] });
-  on("home chosen", show);
+  on("home chosen limits", show);
 }
 
 /** Choose a room as the next one, or leave it out again. */
@@ -27,7 +28,9 @@ export function toggleNumber(number) {
 async function rename() {
   const [name] = get("chosen");
   const given = await askName(`Another name for ${name}`, name);
-  if (given && given !== name && await wish("rooms/rename", { name, new_name: given })) set("chosen", []);
+  if (!given || given === name || !await wish("rooms/rename", { name, new_name: given })) return;
+  set("chosen", []);
+  note(`${name} is ${given} now.`, () => wish("rooms/rename", { name: given, new_name: name }));
 }
 
 async function join() {
@@ -39,7 +42,7 @@ function show() {
   const chosen = get("chosen").filter((name) => names.includes(name));
   if (chosen.length !== get("chosen").length) { set("chosen", chosen); return; }
   $("rooms-hint").textContent = rooms.length
-    ? "Choose rooms in the order in which they shall be cleaned."
+    ? "Tap them, here or on the map, in the order in which they shall be cleaned."
     : "There are no rooms yet: the robot finds them when its map is whole.";
   $("room-actions").hidden = chosen.length === 0;
   $("rename").disabled = chosen.length !== 1;
@@ -51,20 +54,29 @@ function show() {
 }
 
 function entry(room, order) {
-  const item = document.createElement("li"), button = document.createElement("button");
-  button.type = "button";
-  button.className = "room";
-  button.dataset.room = room.name;
-  button.setAttribute("aria-pressed", String(order >= 0));
-  button.append(part("order", order >= 0 ? String(order + 1) : ""), part("name", room.name), part("area", `${room.area.toFixed(1)} m²`));
-  button.onclick = () => toggle(room.name);
-  item.append(button);
+  const item = document.createElement("li"), choice = document.createElement("button");
+  choice.type = "button";
+  choice.className = "room";
+  choice.dataset.room = room.name;
+  choice.setAttribute("aria-pressed", String(order >= 0));
+  choice.append(span("order", order >= 0 ? String(order + 1) : ""), span("name", room.name), span("area", `${room.area.toFixed(1)} m²`));
+  choice.onclick = () => toggle(room.name);
+  item.append(choice);
+  const limits = get("limits");
+  if (order >= 0 && limits?.each_room) {
+    item.append(
+      own(room.name, "passes", numbers(limits.most_passes).map(([value]) => [value, `${value} ×`]), `Passes of ${room.name}`, Number),
+      own(room.name, "fan", limits.fans.map((fan) => [fan, fan]), `Fan of ${room.name}`, String),
+    );
+  }
   return item;
 }
 
-function part(kind, text) {
-  const span = document.createElement("span");
-  span.className = kind;
-  span.textContent = text;
-  return span;
+/** Return a choice that holds for one room. */
+function own(name, what, options, label, read) {
+  const select = document.createElement("select");
+  select.setAttribute("aria-label", label);
+  offer(select, options, get("hows")[name]?.[what] ?? how()[what]);
+  select.onchange = () => set("hows", { ...get("hows"), [name]: { ...get("hows")[name], [what]: read(select.value) } });
+  return select;
 }

@@ -1,7 +1,9 @@
-/** The state line: headline, explanation, figures, and how the last run ended. */
-import { $, put } from "../dom.js";
+/** The state line: headline, explanation, figures, progress, and how the last run ended. */
+import { $, put, span } from "../dom.js";
 import { get, on } from "../store.js";
-import { explanation, headline, lastRun } from "../words.js";
+import { duration, explanation, headline, lastRun } from "../words.js";
+
+const WORKS = ["cleaning", "undocking", "returning", "docking", "exploring"];
 
 /** Keep it up to date. */
 export function begin() {
@@ -9,21 +11,40 @@ export function begin() {
 }
 
 function show() {
-  const link = get("link"), state = get("state");
-  const told = explanation(link, state, get("reason"), get("age"));
+  const link = get("link"), state = get("state"), { body } = document;
+  const told = explanation(link, state, get("reason"), get("age"), get("seenAt"));
   put($("headline"), headline(link, state));
   put($("explanation"), told);
-  document.body.dataset.link = link;
-  document.body.dataset.attention = told ? "yes" : "no";
-  document.body.dataset.held = state?.held ? "yes" : "no";
+  body.dataset.link = link;
+  body.dataset.attention = told ? "yes" : "no";
+  body.dataset.held = state?.held ? "yes" : "no";
   if (!state) return;
   const { vacuum } = state;
-  document.body.dataset.phase = vacuum.phase;
-  put($("battery"), vacuum.battery === null ? "–" : `${Math.floor(100 * vacuum.battery)} %`);
-  put($("covered"), vacuum.wanted ? `${vacuum.covered.toFixed(1)} of ${vacuum.wanted.toFixed(1)} m²` : "–");
-  put($("dirt"), `${state.dirt.toFixed(1)} g`);
+  body.dataset.phase = vacuum.phase;
+  body.dataset.works = WORKS.includes(vacuum.phase) ? "yes" : "no";
+  figure("battery", vacuum.battery === null ? "–" : `${Math.floor(100 * vacuum.battery)} %`, batteryTime(vacuum));
+  const share = vacuum.wanted ? Math.floor(100 * vacuum.fraction) : null;
+  figure("covered", share === null ? "–" : `${share} %`, share === null ? "" : `${vacuum.covered.toFixed(1)} of ${vacuum.wanted.toFixed(1)} m²`);
+  figure("dirt", `${state.dirt.toFixed(1)} g`);
+  $("progress").hidden = share === null;
+  $("progress").setAttribute("aria-valuenow", String(share ?? 0));
+  $("progress").firstElementChild.style.width = `${share ?? 0}%`;
   $("last").hidden = !state.last;
   if (state.last) showLast(state.last);
+}
+
+function batteryTime({ battery, battery_seconds: seconds, phase }) {
+  if (seconds === null || seconds === undefined) return "";
+  return battery < 1 && ["docked", "charging"].includes(phase) ? `full in ${duration(seconds)}` : duration(seconds);
+}
+
+function figure(id, text, beside = "") {
+  const key = `${text}|${beside}`;
+  if ($(id).dataset.shown === key) return;
+  $(id).dataset.shown = key;
+  const small = document.createElement("small");
+  small.textContent = beside ? ` ${beside}` : "";
+  $(id).replaceChildren(span("number", text), small);
 }
 
 function showLast(report) {

@@ -1,10 +1,11 @@
 /** The tools of the map: zoom, layers, scale, a picture to save. */
 import { $ } from "../dom.js";
 import * as draw from "../map/draw.js";
+import { onColours, palette } from "../map/palette.js";
 import { view, zoom } from "../map/view.js";
-import { get, set } from "../store.js";
+import { get, on, set } from "../store.js";
 
-const NAMES = { coverage: "Coverage", trail: "Way so far", path: "Way to go", rooms: "Rooms", furniture: "Furniture", zones: "Zones", dirt: "Dirt found", scan: "Lidar" };
+const NAMES = { coverage: "Clean: once, twice, more", trail: "Way so far", path: "Way to go", rooms: "Rooms", furniture: "Furniture", zones: "Zones", dirt: "Dirt found", scan: "Lidar", truth: "The truth" };
 const STEP = 1.4;
 
 /** Connect the tools. */
@@ -13,15 +14,34 @@ export function begin() {
   $("farther").onclick = () => zoom(1 / STEP);
   $("whole").onclick = () => { view.isFitted = false; };
   $("picture").onclick = save;
+  const boxes = {};
   for (const [name, words] of Object.entries(NAMES)) {
     const label = document.createElement("label"), box = document.createElement("input");
     box.type = "checkbox";
     box.checked = get("layers")[name];
     box.onchange = () => set("layers", { ...get("layers"), [name]: box.checked });
     label.append(box, words);
+    boxes[name] = label;
     $("layers").append(label);
   }
+  boxes.coverage.append(swatches());
+  on("layers", () => { for (const [name, label] of Object.entries(boxes)) label.firstElementChild.checked = get("layers")[name]; });
+  on("state", () => { boxes.truth.hidden = !get("state")?.truth; });
   setInterval(scale, 250);
+}
+
+function swatches() {
+  const place = document.createElement("span");
+  place.className = "swatches";
+  place.setAttribute("aria-hidden", "true");
+  const fill = () => place.replaceChildren(...palette().cells.swept.map((colour) => {
+    const swatch = document.createElement("i");
+    swatch.style.background = `rgb(${colour.join(" ")})`;
+    return swatch;
+  }));
+  onColours(fill);
+  fill();
+  return place;
 }
 
 function save() {
@@ -32,7 +52,7 @@ function save() {
 }
 
 function scale() {
-  const metres = [0.2, 0.5, 1, 2, 5, 10, 20].find((length) => length * view.scale > 60) ?? 50;
+  const metres = [0.2, 0.5, 1, 2, 5, 10, 20].find((length) => length * view.scale > 40) ?? 50;
   $("scale-bar").style.width = `${metres * view.scale}px`;
   $("scale-text").textContent = `${metres} m`;
 }

@@ -1,28 +1,109 @@
 /** Zones: what the robot must not enter, and what is to be cleaned once. */
-import { $ } from "../dom.js";
-import { wish } from "../link.js";
+import { $, button } from "../dom.js";
+import { note, wish } from "../link.js";
+import { toFloor, view } from "../map/view.js";
+import { shifted, withCorner } from "../map/zones.js";
 import { get, on, set } from "../store.js";
 import { how } from "./actions.js";
+import * as offer from "./offer.js";
 
 const DRAWS = { "draw-clean": "clean", "draw-no-go": "no-go", "draw-wall": "wall" };
+const HINTS = { clean: "Drag over the floor to be cleaned.", "no-go": "Drag over the floor that it shall not enter.", wall: "Drag a line that it shall not cross.", split: "Drag a line through the room." };
+const STEP = 0.1; // m that an arrow moves
+const FIRST = 0.5; // m; half the side of what is drawn with keys
 
 /** Connect the buttons, and keep the list up to date. */
 export function begin() {
   for (const [id, kind] of Object.entries(DRAWS))
-    $(id).onclick = () => set("drawing", get("drawing")?.kind === kind ? null : { kind });
-  on("home", showZones);
+    $(id).onclick = (event) => {
+      set("zone", null);
+      set("drawing", get("drawing")?.kind === kind ? null : { kind });
+      if (event.detail === 0) $("floor").focus(); // with keys it is drawn on the map
+    };
+  on("home zone", showZones);
   on("drawing", showDrawing);
 }
 
 /** Ask for what a draft on the map stands for. */
-export function drawn({ kind, room, from, to }) {
+export function drawn(draft) {
+  if (draft.kind === "any") { offerKinds(draft); return; }
+  set("drawing", null);
+  make(draft);
+}
+
+function offerKinds(draft) {
+  const as = (kind) => () => { set("drawing", null); make({ ...draft, kind }); };
+  offer.open("What shall this be?", [
+    ["Clean it now", as("clean")], ["No-go zone", as("no-go")], ["Virtual wall", as("wall")], ["Nothing", () => set("drawing", null)],
+  ], draft.to);
+}
+
+async function make({ kind, room, from, to }) {
   if (kind === "split") return wish("rooms/split", { name: room, start: from, end: to });
   const [left, right] = [Math.min(from[0], to[0]), Math.max(from[0], to[0])];
   const [low, high] = [Math.min(from[1], to[1]), Math.max(from[1], to[1])];
   if (kind === "clean") return wish("clean", { mode: "zones", zones: [[left, low, right, high]], ...how() });
   const points = kind === "wall" ? [from, to] : [[left, low], [right, low], [right, high], [left, high]];
-  return wish("zones", { name: newName(kind), kind, points }, "PUT");
+  const name = newName(kind);
+  if (await change({ name, kind, points })) note(`${name} is drawn. Tap it to move it.`, () => wish(path(name), {}, "DELETE"));
 }
+
+/** Put a zone where it was drawn or dragged to. */
+export async function change(zone) {
+  const isDone = await wish("zones", zone, "PUT");
+  if (!isDone && get("zone")?.name === zone.name) select(get("home").zones.find((one) => one.name === zone.name) ?? null);
+  return isDone;
+}
+
+/** Choose a zone, to be moved or removed. */
+export function select(zone) { set("zone", zone && { ...zone }); }
+
+/** Remove a zone; it can be brought back. */
+export async function remove(zone) {
+  if (!await wish(path(zone.name), {}, "DELETE")) return;
+  set("zone", null);
+  note(`${zone.name} is removed.`, () => wish("zones", zone, "PUT"));
+}
+
+/** Offer what can be done with the zone that is chosen. */
+export function offerZone(zone) {
+  select(zone);
+  offer.open(`${zone.name}: drag it, or a corner`, [["Remove", () => remove(get("zone") ?? zone)], ["Done", () => set("zone", null)]], zone.points[0]);
+}
+
+/** Draw or move with keys; returns whether the key meant something here. */
+export function key(event) {
+  const draft = get("drawing"), zone = get("zone");
+  const [dx, dy] = { ArrowUp: [0, STEP], ArrowDown: [0, -STEP], ArrowLeft: [-STEP, 0], ArrowRight: [STEP, 0] }[event.key] ?? [0, 0];
+  const ends = ["Delete", "Backspace"].includes(event.key);
+  if (draft) {
+    if (ends) set("drawing", null);
+    else if (event.key === "Enter" && !draft.from) set("drawing", { ...draft, ...inTheMiddle(draft) });
+    else if (event.key === "Enter") drawn(draft);
+    else if ((dx || dy) && draft.from) {
+      const move = ([x, y]) => [x + dx, y + dy];
+      set("drawing", { ...draft, from: event.shiftKey ? draft.from : move(draft.from), to: move(draft.to) });
+    } else return false;
+    return true;
+  }
+  if (!zone) return false;
+  if (ends) remove(zone);
+  else if (event.key === "Enter") set("zone", null);
+  else if (dx || dy) {
+    const corner = zone.points.length === 2 ? 1 : 2, [x, y] = zone.points[corner];
+    select(event.shiftKey ? withCorner(zone, corner, x + dx, y + dy) : shifted(zone, dx, dy));
+    change(get("zone"));
+  } else return false;
+  return true;
+}
+
+function inTheMiddle(draft) {
+  const room = get("home")?.rooms.find((one) => one.name === (draft.room ?? get("chosen")[0]));
+  const [x, y] = room?.anchor ?? toFloor(view.width / 2, view.height / 2);
+  return { from: [x - FIRST, y - FIRST], to: [x + FIRST, y + FIRST] };
+}
+
+function path(name) { return `zones/${encodeURIComponent(name)}`; }
 
 function newName(kind) {
   const names = (get("home")?.zones ?? []).map((zone) => zone.name), word = kind === "wall" ? "Wall" : "Zone";
@@ -32,21 +113,27 @@ function newName(kind) {
 }
 
 function showDrawing() {
-  const kind = get("drawing")?.kind;
+  const drawing = get("drawing"), kind = drawing?.kind;
   for (const [id, own] of Object.entries(DRAWS)) $(id).setAttribute("aria-pressed", String(kind === own));
   $("floor").classList.toggle("drawing", Boolean(kind));
+  const byKeys = drawing?.from ? "Arrows move it, Shift and arrows its size; Enter accepts." : "With keys: Enter begins.";
+  $("hint").hidden = !(kind in HINTS);
+  $("hint").textContent = kind in HINTS ? `${HINTS[kind]} ${document.activeElement === $("floor") ? byKeys : ""}` : "";
 }
 
 function showZones() {
-  $("zones").replaceChildren(...(get("home")?.zones ?? []).map((zone) => {
-    const item = document.createElement("li"), name = document.createElement("span"), remove = document.createElement("button");
-    name.className = "name";
-    name.textContent = `${zone.name} (${zone.kind === "wall" ? "virtual wall" : "no-go"})`;
-    remove.type = "button";
-    remove.textContent = "Remove";
-    remove.setAttribute("aria-label", `Remove ${zone.name}`);
-    remove.onclick = () => wish(`zones/${encodeURIComponent(zone.name)}`, {}, "DELETE");
-    item.append(name, remove);
+  const zones = get("home")?.zones ?? [], selected = get("zone");
+  if (selected && !zones.some((zone) => zone.name === selected.name)) { set("zone", null); return; }
+  const focused = document.activeElement?.dataset?.zone;
+  $("zones").replaceChildren(...zones.map((zone) => {
+    const item = document.createElement("li");
+    const pick = button(`${zone.name} (${zone.kind === "wall" ? "virtual wall" : "no-go"})`, () => (selected?.name === zone.name ? set("zone", null) : select(zone)), `Move ${zone.name}`);
+    pick.className = "pick";
+    pick.dataset.zone = zone.name;
+    pick.setAttribute("aria-pressed", String(selected?.name === zone.name));
+    item.append(pick, button("Remove", () => remove(zone), `Remove ${zone.name}`));
+    item.lastElementChild.classList.add("live-only");
     return item;
   }));
+  if (focused) [...$("zones").querySelectorAll("button")].find((one) => one.dataset.zone === focused)?.focus();
 }
