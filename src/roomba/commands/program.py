@@ -20,6 +20,7 @@ _COMMANDS: Final = {
     "localize": "roomba.commands.localize.command",
     "play": "roomba.commands.play.command",
     "replay": "roomba.commands.play.replay",
+    "emulate": "roomba.commands.emulate.command",
     "status": "roomba.commands.status.command",
     "report": "roomba.commands.report.command",
     "import": "roomba.commands.valetudo.import_command",
@@ -48,6 +49,7 @@ usage: roomba COMMAND ...
   control --demo [ARGS]
                    the menu in the terminal over a robot that lives in a home: --home NAME,
                    --speed N, --map none (see --demo --help)
+  emulate neato    a made-up Neato on a pseudo terminal: --link NAME, --home NAME
   status [ARGS]    what a robot with a page does now: --json, --watch
   report [RUN]     the runs that were kept: a list, or a report as HTML: --out FILE.html,
                    --compare A B, --csv FILE (see --help)
@@ -66,7 +68,7 @@ there it is ./roomba COMMAND.
 """
 _MODULES: Final = (
     "cv2", "fastapi", "matplotlib", "numba", "numpy", "PIL", "pydantic", "rich", "rosbags", "scipy",
-    "shapely", "typer", "uvicorn", "websockets", "yaml",
+    "serial", "shapely", "typer", "uvicorn", "websockets", "yaml",
 )  # fmt: skip
 _EXTRAS: Final = {"gymnasium": "gym"}
 

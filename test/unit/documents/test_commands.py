@@ -28,12 +28,13 @@ MODULES = {
     "pictures": "roomba.commands.pictures.__main__",
     "bench": "benchmarks.__main__",
     "soak": "soak.__main__",
+    "emulate": "roomba.commands.emulate.command",
     "localize": "roomba.commands.localize.command",
 }
 """The module whose ``main`` parses what follows a command; the others are told below."""
 PROGRAMS = {"rostopic", "rosservice", "roscore", "rosparam", "rosbag", "bash"}
 """What ``./roomba exec`` runs of others, whose arguments are theirs."""
-MENTIONED = {"import valetudo", "map --bag"}
+MENTIONED = {"import valetudo", "map --bag", "emulate"}
 """What the text names without the rest of the line."""
 SUITES = {"lint", "unit", "conformance", "web", "contract", "ros", "system", "missions", "install"}
 

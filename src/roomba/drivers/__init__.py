@@ -1,0 +1,1 @@
+"""Robots that people own, as bodies of the brain: what is said on their lines."""

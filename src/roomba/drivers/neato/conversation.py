@@ -1,0 +1,50 @@
+"""Questions and answers on a Neato's line: one command at a time, each answer ends with 0x1A."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Final
+
+from roomba.drivers.line import Line, LineError
+
+END: Final = b"\x1a"
+_LONGEST: Final = 65_536
+"""Bytes; a scan has some 6,000."""
+
+
+class Conversation:
+    """Asks over a line. Not for several threads: an answer would be another one's."""
+
+    def __init__(self, line: Line, now: Callable[[], float]) -> None:
+        """Ask over ``line``; ``now`` is a clock that never goes back, s."""
+        self._line, self._now = line, now
+
+    def ask(self, command: str, within: float) -> list[str]:
+        """Return the lines of the answer, without the echo of the command.
+
+        What an earlier question left on the line is forgotten; an answer that echoes another
+        command is passed over. Raises LineError when nothing whole came ``within`` s.
+        """
+        end = self._now() + within
+        self._line.discard()
+        self._line.write(command.encode("ascii") + b"\n")
+        came = b""
+        while True:
+            answer, separator, rest = came.partition(END)
+            if separator:
+                came = rest
+                lines = answer.decode("ascii", "replace").splitlines()
+                if lines and lines[0].strip().lower() == command.lower():
+                    return [line.strip() for line in lines[1:] if line.strip()]
+                continue
+            left = end - self._now()
+            if left <= 0.0 or len(came) > _LONGEST:
+                raise LineError(
+                    f"expected an answer to {command!r} within {within:g} s, got "
+                    f"{len(came)} bytes without an end"
+                )
+            came += self._line.read(left)
+
+    def close(self) -> None:
+        """Let go of the line."""
+        self._line.close()

@@ -1,0 +1,70 @@
+"""A serial line made up: a pseudo terminal with the timing of a real line."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import pty
+import select
+import termios
+import time
+import tty
+from pathlib import Path
+from typing import Final
+
+from roomba.errors import RoombaError
+
+_BITS: Final = 10
+"""Of a byte on a serial line: start, eight, stop."""
+_PIECE: Final = 256
+"""Bytes."""
+
+
+class PseudoTerminal:
+    """The robot's end of a line; ``name`` is the device that a program opens at the other end.
+
+    Raises RoombaError where ``link``, a name to find it by, is taken by a file that is no link.
+    """
+
+    def __init__(self, link: Path | None = None, baud: int | None = None) -> None:
+        """``baud`` bits a second go over the line; None: as over USB, at once."""
+        self._master, self._slave = pty.openpty()
+        tty.setraw(self._slave, termios.TCSANOW)
+        os.set_blocking(self._master, False)
+        self.name, self._baud, self._link = os.ttyname(self._slave), baud, link
+        if link is not None:
+            if link.exists() and not link.is_symlink():
+                raise RoombaError(f"expected a new name for the line, got {link}: a file is there")
+            link.unlink(missing_ok=True)
+            link.symlink_to(self.name)
+
+    def read(self, seconds: float) -> bytes:
+        """Return what a program sent, as soon as something is there; b"" after ``seconds``."""
+        readable, _, _ = select.select([self._master], [], [], max(0.0, seconds))
+        if not readable:
+            return b""
+        try:
+            return os.read(self._master, _PIECE)
+        except (BlockingIOError, OSError):
+            return b""
+
+    def write(self, data: bytes) -> None:
+        """Send bytes as quickly as the line takes them; what no program reads is lost."""
+        began, sent = time.monotonic(), 0
+        while sent < len(data):
+            piece = data[sent : sent + _PIECE]
+            try:
+                sent += os.write(self._master, piece)
+            except BlockingIOError:
+                return
+            if self._baud is not None:
+                ends = began + sent * _BITS / self._baud
+                time.sleep(max(0.0, ends - time.monotonic()))
+
+    def close(self) -> None:
+        """Unplug it."""
+        for end in (self._master, self._slave):
+            with contextlib.suppress(OSError):
+                os.close(end)
+        if self._link is not None:
+            self._link.unlink(missing_ok=True)

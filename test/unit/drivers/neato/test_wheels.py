@@ -1,0 +1,43 @@
+"""Twists as distances of wheels, and back by the made-up robot's drive."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from roomba.drivers.neato.wheels import WheelCommand, wheel_command
+from roomba.geometry import Twist
+
+TRACK = 0.248
+SPEEDS = st.floats(-0.5, 0.5)
+TURNS = st.floats(-4.0, 4.0)
+
+
+@given(SPEEDS, TURNS)
+def test_the_curve_is_that_of_the_twist_and_no_wheel_is_faster_than_it_can(
+    linear: float, angular: float
+) -> None:
+    command = wheel_command(Twist(linear, angular), TRACK, 0.3)
+    if command is None:
+        assert abs(linear) + 0.5 * TRACK * abs(angular) < 0.01
+        return
+    assert 0 < command.speed <= 300
+    assert max(abs(command.left), abs(command.right)) <= 0.3 * 300 + 1
+    wanted = [linear - 0.5 * TRACK * angular, linear + 0.5 * TRACK * angular]
+    scale = min(1.0, 0.3 / max(map(abs, wanted)))
+    assert command.left == pytest.approx(300.0 * scale * wanted[0], abs=0.51)
+    assert command.right == pytest.approx(300.0 * scale * wanted[1], abs=0.51)
+
+
+def test_it_is_sent_with_names() -> None:
+    command = WheelCommand(60, -60, 200)
+    assert command.text == "SetMotor LWheelDist 60 RWheelDist -60 Speed 200 Accel 300"
+
+
+def test_standing_is_no_distance_and_nonsense_is_refused() -> None:
+    assert wheel_command(Twist(), TRACK, 0.3) is None
+    with pytest.raises(ValueError, match="expected a finite twist"):
+        wheel_command(Twist(math.nan, 0.0), TRACK, 0.3)
