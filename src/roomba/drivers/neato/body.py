@@ -114,12 +114,7 @@ class NeatoBody:
                 scan,
                 touches.bumper_left,
                 touches.bumper_right,
-                CliffReading(
-                    self._drops.left > self._model.drop,
-                    False,
-                    False,
-                    self._drops.right > self._model.drop,
-                ),
+                CliffReading(drops.left > deep, False, False, drops.right > deep),
                 touches.dropped_left,
                 touches.dropped_right,
                 battery=Battery(charge.level, self._model.capacity, charge.has_power),
