@@ -83,11 +83,32 @@ SLOW = (
 """Folders and files whose tests take two thirds of the time of all unit tests."""
 
 
+TIMED = (
+    "contract/test_seed.py",
+    "ros/runtime",
+    "ros/supervision",
+    "ros/test_control_node.py",
+    "ros/test_dirt_pub_node.py",
+    "ros/test_home_sim_node.py",
+    "ros/test_pace.py",
+    "ros/test_position_pub_node.py",
+    "ros/test_speed_pub_node.py",
+    "system/faults",
+    "system/test_isolation.py",
+    "system/test_walk.py",
+)
+"""Folders and files that assert promises of tenths of a second, or rates: nothing computes beside
+them."""
+
+
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Let the files that take longest come first, and mark what is slow."""
+    """Let the files that take longest come first, and mark what is slow, and what is timed."""
     for item in items:
-        if item.path.relative_to(TESTS).as_posix().startswith(SLOW):
+        path = item.path.relative_to(TESTS).as_posix()
+        if path.startswith(SLOW):
             item.add_marker(pytest.mark.slow)
+        if path.startswith(TIMED):
+            item.add_marker(pytest.mark.timed)
     rank = {name: rank for rank, name in enumerate(LONGEST_FIRST)}
     items.sort(key=lambda item: rank.get(item.path.name, len(rank)))
 
