@@ -59,7 +59,7 @@ def test_far_behind_it_goes_on_slower_and_says_so() -> None:
 def test_a_robot_that_is_late_is_waited_for() -> None:
     wall = Wall()
     wall.pace.heard(PART, 7.6)
-    assert wall.ticks(1, robot=7.7) == pytest.approx(PERIOD)
+    assert wall.ticks(1, robot=7.65) == pytest.approx(PERIOD)
     wall.events = [(wall.now + 0.2, 8.0)]
     assert wall.ticks(1, robot=8.1) == pytest.approx(0.2, abs=0.002)
 

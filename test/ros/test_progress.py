@@ -35,20 +35,20 @@ def started(name: str) -> Progress:
     return progress
 
 
-def test_it_tells_ten_times_a_second_up_to_when_the_work_is_done(
+def test_it_tells_each_tick_up_to_when_the_work_is_done(
     publisher: type[Publisher],
 ) -> None:
     progress = started(NODES[0])
-    for tick in range(81, 101):
-        progress.tell(0.05 * tick)
-    assert publisher.told == pytest.approx([0.05 * tick for tick in range(81, 101, 2)])
+    for tick in range(162, 202):
+        progress.tell(0.025 * tick)
+    assert publisher.told == pytest.approx([0.05 * tick for tick in range(81, 101)])
 
 
 def test_a_clock_that_was_set_back_is_told_at_once(publisher: type[Publisher]) -> None:
     progress = started(NODES[0])
-    for now in (500.0, 3.0, 3.05, 3.1):
+    for now in (500.0, 3.0, 3.03, 3.05):
         progress.tell(now)
-    assert publisher.told == pytest.approx([500.0, 3.0, 3.1])
+    assert publisher.told == pytest.approx([500.0, 3.0, 3.05])
 
 
 def test_a_node_that_drives_nothing_tells_nothing(publisher: type[Publisher]) -> None:

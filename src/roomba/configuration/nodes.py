@@ -118,9 +118,10 @@ class PaceConfig(Frozen):
 
     latest: Positive = 0.5
     """Farther behind, the simulation goes on slower than asked for."""
-    most_behind: Positive = 0.12
+    most_behind: Positive = 0.07
     """s of the robot's clock; a robot that thinks of longer ago is waited for. One that keeps up is
-    two ticks behind at most; at 0.3 s a turn on the spot ends no more: it swings to and fro."""
+    a tick behind at most. So much later than promised a robot may stand; at 0.3 s a turn on the
+    spot ends no more: it swings to and fro."""
     longest_hold: Positive = 2.0
     """A node that is silent for longer is not waited for any more."""
     longest_absence: Positive = 60.0

@@ -11,8 +11,8 @@ from roomba_ros.convert.common import stamp_of
 
 NODES: Final = ("speed_pub_node", "walk_to_point_action_server_node", "mission_node")
 """Nodes that drive, so the simulation waits for them; ``/pose`` tells it of position_pub_node."""
-_PERIOD: Final = 0.1
-"""s of the ROS clock between two messages."""
+_PERIOD: Final = 0.05
+"""s of the ROS clock between two messages: a tick, so that a node that is late is seen to be."""
 
 
 class Progress:
