@@ -20,11 +20,13 @@ from roomba_ros.runtime.action_client import ActionClient
 ACTIONS = ("walk_to_point", "move_base", "clean", "dock", "undock", "explore")
 PERIOD = 0.05
 """s between two messages of the clock."""
+SPEED = 3.0
+"""Robot seconds per second."""
 HOUR = 3600.0
 
 
 class OwnClock:
-    """Publishes a clock in real time, which can be set."""
+    """Publishes a clock that can be set."""
 
     def __init__(self) -> None:
         self._publisher = rospy.Publisher("/clock", Clock, queue_size=1, tcp_nodelay=True)
@@ -33,7 +35,7 @@ class OwnClock:
 
     def _run(self) -> None:
         while not rospy.is_shutdown():
-            time.sleep(PERIOD)
+            time.sleep(PERIOD / SPEED)
             self.now += PERIOD
             self._publisher.publish(rospy.Time.from_sec(self.now))
 
@@ -60,7 +62,7 @@ def tells_states(probe: Probe) -> None:
 def is_told(probe: Probe, clock: OwnClock) -> bool:
     """Whether the newest state is of the time that the clock shows."""
     stamp = probe.newest["/vacuum/state"].header.stamp.to_sec()
-    return bool(abs(stamp - clock.now) < 2.0)
+    return bool(abs(stamp - clock.now) < 2.0 * SPEED)
 
 
 def goes_on(probe: Probe) -> None:

@@ -66,10 +66,15 @@ def stands(probe: Probe) -> None:
 # Those with a graph of their own come first: a robot that others share would work all the while.
 
 
-def test_at_a_faster_clock_it_walks_and_ctrl_c_ends_it_without_violence(tmp_path: Path) -> None:
-    """Ctrl-C while it walks: each node ends by itself, and none has to be killed."""
+def test_at_a_faster_clock_a_killed_server_walks_again_and_ctrl_c_ends_it_without_violence(
+    tmp_path: Path,
+) -> None:
+    """The walk after that is like any other: as quick, and to its goal. Ctrl-C comes while it
+    walks: each node ends by itself, and none has to be killed.
+    """
     with RosGraph(tmp_path) as graph:
         launch = graph.launch(f"speed:={FAST}")
+        run_forked(lambda: walk_again(graph))
         run_forked(lambda: walk_fast(graph))
         pids = [graph.pid(node) for node in LAUNCHED]
         launch.send_to_leader(signal.SIGINT)
@@ -80,27 +85,20 @@ def test_at_a_faster_clock_it_walks_and_ctrl_c_ends_it_without_violence(tmp_path
 
 
 def walk_fast(graph: RosGraph) -> None:
-    """Walk to the farthest corner; begin to walk back."""
+    """Walk from the farthest corner to the station; begin to walk back."""
     probe = Probe(graph)
     walker = Walker()
     probe.position()
     begin, robot_begin = time.monotonic(), rospy.get_time()
-    walker.send(3.0, 4.0)
+    walker.send(0.0, 0.0)
     walker.arrives(40.0)
     assert 10.0 <= walker.time_spent < 15.0
     # A busy machine may be slower than asked for.
     passed = (rospy.get_time() - robot_begin) / (time.monotonic() - begin)
     assert passed < 1.3 * FAST
     assert passed > 1.0 or "too slow for speed" in graph.programs[0].output
-    walker.send(0.0, 0.0)
+    walker.send(3.0, 4.0)
     wait_until(lambda: probe.speed() > 0.45, 15.0, "full speed")
-
-
-def test_at_a_faster_clock_a_killed_server_comes_back_and_walks_again(tmp_path: Path) -> None:
-    """The walk after that is like any other: as quick, and to its goal."""
-    with RosGraph(tmp_path) as graph:
-        graph.launch(f"speed:={FAST}")
-        run_forked(lambda: walk_again(graph))
 
 
 def walk_again(graph: RosGraph) -> None:
