@@ -10,12 +10,11 @@ import subprocess
 import sys
 from collections.abc import Callable, Iterator
 from functools import partial
-from pathlib import Path
 
 import pytest
 from fixtures.forked import run_forked
 from fixtures.graph import START_DEADLINE, RosGraph
-from fixtures.processes import Program
+from fixtures.processes import Program, listening, processes_of
 from fixtures.waiting import promised, wait_until
 
 from roomba_ros.supervision.isolation import FLAG
@@ -79,34 +78,12 @@ def inside(graph: RosGraph, *command: str) -> subprocess.CompletedProcess[str]:
     )
 
 
-def processes_of(run: Program) -> list[int]:
-    """Return the watcher and all that it started."""
-    leader = run.process.pid
-    children = Path(f"/proc/{leader}/task/{leader}/children").read_text("ascii").split()
-    return [leader, *map(int, children)]
-
-
-def listening_here(processes: list[int]) -> set[int]:
-    """Return the ports of this network, not of the robot's, at which processes listen."""
-    lines = Path("/proc/self/net/tcp").read_text("ascii").splitlines()[1:]
-    rows = [line.split() for line in lines]
-    ports = {row[9]: int(row[1].rpartition(":")[2], 16) for row in rows if row[3] == "0A"}
-    held = set()
-    for process in processes:
-        for descriptor in Path(f"/proc/{process}/fd").iterdir():
-            try:
-                held.add(os.readlink(descriptor).removeprefix("socket:[").rstrip("]"))
-            except FileNotFoundError:
-                continue
-    return {port for inode, port in ports.items() if inode in held}
-
-
 @needs_namespaces
 def test_only_the_page_is_reached_from_outside(isolated: RosGraph) -> None:
     (run,) = isolated.programs
     port = page_port(run)
     wait_until(lambda: state_code(port) == 200, 30.0, "the page tells the robot's state")
-    assert listening_here(processes_of(run)) == {port}
+    assert listening(processes_of(run.process.pid)) == {("127.0.0.1", port)}
     assert not isolated.master_answers()
 
 
@@ -139,7 +116,7 @@ def test_a_page_that_was_killed_is_back_at_its_port(isolated: RosGraph) -> None:
 @needs_namespaces
 def test_it_ends_as_any_robot_and_leaves_nothing(isolated: RosGraph) -> None:
     (run, *_) = isolated.programs
-    processes = processes_of(run)
+    processes = processes_of(run.process.pid)
     os.kill(run.process.pid, signal.SIGINT)
     promised(lambda: run.status is not None, ENDED, "it has ended")
     assert "has not ended yet" not in run.output

@@ -79,12 +79,12 @@ class MissionTopics:
         """Publish what is due; return the state if it is told now."""
         self._show_plan(now, mission)
         self._show_maps(now, mission)
-        trouble = self._trouble or self._background.trouble
-        said = (mission.state, mission.message, trouble)
-        if not self._is_due(now, said):
+        # A process that does not work first: it may be the reason of all else.
+        told = (self._trouble, mission.message or self._background.trouble)
+        if not self._is_due(now, (mission.state, *told)):
             return None
         state = state_of(now, mission, senses)
-        state.message = state.message or trouble
+        state.message = "; ".join(filter(None, told))
         self._state.publish(state)
         return state
 
