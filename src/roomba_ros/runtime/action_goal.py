@@ -6,7 +6,7 @@ import threading
 import time
 from abc import ABC, abstractmethod
 from collections.abc import Callable
-from typing import Final, NamedTuple, TypeVar
+from typing import Any, Final, NamedTuple, TypeVar
 
 import actionlib
 import rospy
@@ -19,6 +19,9 @@ from roomba_ros.runtime.subscriptions import refuse
 
 _STATUS_PERIOD: Final = 0.2
 """s of wall time between two messages of the states of goals, as the library has it."""
+MOST_GOALS: Final = 200
+"""Goals, and cancels of goals to come, that a server tells of at the same time. Each message of
+states has all of them, until 5 s after their end; more that come are refused."""
 
 
 class GoalIdentity(NamedTuple):
@@ -63,13 +66,15 @@ class ActionGoal(ABC):
 
 
 class SteadyActionServer(actionlib.ActionServer):
-    """The library's server, mended in two places.
+    """The library's server, mended in three places.
 
     It tells the states of its goals also when the clock is set: the library has a timer for that by
     the ROS clock, which ends when that clock is set back, and clients take the server for gone.
 
     A cancel that comes before its goal, or long after its end, may come again: the library logs
     errors then, as it looks for the goal of each cancel that it keeps.
+
+    A flood of goals or cancels would be told of in ever longer messages of states.
     """
 
     def initialize(self) -> None:
@@ -90,10 +95,26 @@ class SteadyActionServer(actionlib.ActionServer):
     def internal_cancel_callback(self, goal_id: GoalID) -> None:
         """Cancel goals, of which one may not have come yet."""
         with self.lock:
+            is_known = any(each.status.goal_id.id == goal_id.id for each in self.status_list)
+            if goal_id.id and not is_known and self._is_full("cancel"):
+                return
             super().internal_cancel_callback(goal_id)
             for tracker in self.status_list:
                 if tracker.goal is None:
                     tracker.goal = self.ActionGoal(goal_id=tracker.status.goal_id)
+
+    def internal_goal_callback(self, goal: Any) -> None:
+        """Take a goal, unless too many came."""
+        with self.lock:
+            if not self._is_full("goal"):
+                super().internal_goal_callback(goal)
+
+    def _is_full(self, topic: str) -> bool:
+        if len(self.status_list) < MOST_GOALS:
+            return False
+        fault = f"expected at most {MOST_GOALS} goals at the same time, got one more"
+        refuse(f"{self.ns}/{topic}", MessageError(fault))
+        return True
 
     def adopt(self, identity: GoalIdentity) -> actionlib.ServerGoalHandle:
         """Return a handle of a goal that a server before this one had accepted.

@@ -2,13 +2,13 @@
 
 import pytest
 import rospy
-from actionlib_msgs.msg import GoalID, GoalStatus
+from actionlib_msgs.msg import GoalID, GoalStatus, GoalStatusArray
 from fixtures.graph import RosGraph
 from fixtures.probe import Probe
 from fixtures.waiting import wait_until
 from roomba_robot.msg import DockAction, DockActionGoal, DockActionResult
 
-from roomba_ros.runtime.action_goal import ActionGoal, GoalIdentity, server_of
+from roomba_ros.runtime.action_goal import MOST_GOALS, ActionGoal, GoalIdentity, server_of
 
 
 class Errand(ActionGoal):
@@ -43,3 +43,27 @@ def test_cancels_of_a_goal_to_come_are_no_errors_and_end_it(
     assert (result.status.goal_id.id, result.status.status) == ("late", GoalStatus.RECALLED)
     assert [goal.identity.identity for goal in taken] == ["other"]
     assert (cancelled, errors) == ([], [])
+
+
+def test_of_a_flood_of_goals_and_cancels_the_first_are_taken(master: RosGraph) -> None:
+    probe = Probe(master)
+    taken: list[Errand] = []
+    cancelled: list[GoalIdentity] = []
+    server_of(Errand, taken.append, cancelled.append).start()
+    longest: list[int] = []
+    rospy.Subscriber(
+        "/errand/status", GoalStatusArray, lambda told: longest.append(len(told.status_list))
+    )
+    goals = probe.publisher("/errand/goal", DockActionGoal)
+    cancels = probe.publisher("/errand/cancel", GoalID)
+    wait_until(lambda: goals.get_num_connections() and cancels.get_num_connections(), 20.0)
+    for number in range(2 * MOST_GOALS):
+        goals.publish(DockActionGoal(goal_id=GoalID(rospy.Time.now(), f"goal {number}")))
+        cancels.publish(GoalID(id=f"cancel {number}"))
+    wait_until(lambda: longest and longest[-1] == MOST_GOALS, 20.0, lambda: f"{longest[-3:]}")
+    assert 0 < len(taken) <= MOST_GOALS
+    assert max(longest) == MOST_GOALS
+    # One that it knows can be cancelled all the same.
+    probe.send("/errand/cancel", GoalID(id=taken[0].identity.identity))
+    wait_until(lambda: cancelled, 20.0, "it is cancelled")
+    assert [identity.identity for identity in cancelled] == [taken[0].identity.identity]
