@@ -71,6 +71,17 @@ def test_exec_hands_back_the_status() -> None:
     assert run(["./roomba", "exec", "bash", "-c", "exit 7"], REPOSITORY).returncode == 7
 
 
+@pytest.mark.parametrize("command", [["exec", "true"], ["control"], ["camera"]])
+def test_without_an_isolated_robot_commands_for_it_say_so(
+    command: list[str], tmp_path: Path
+) -> None:
+    name, *words = command
+    home = f"ROS_HOME={tmp_path}"
+    done = run(["env", home, "./roomba", name, "--isolated", *words], REPOSITORY)
+    assert done.returncode == 1
+    assert "expected an isolated robot, and none runs" in done.stderr
+
+
 def test_rosrun_of_the_one_command_finds_a_script_without_asking() -> None:
     command = ["./roomba", "exec", "rosrun", "--prefix", "echo", "roomba_robot", "control_node.py"]
     done = run(command, REPOSITORY)

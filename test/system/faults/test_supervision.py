@@ -145,13 +145,14 @@ def test_a_second_run_beside_the_first_is_refused(shared_robot: RosGraph) -> Non
 
 
 def test_a_killed_run_leaves_nothing_and_the_next_one_is_whole(tmp_path: Path) -> None:
+    home = f"home:={tiny_home(tmp_path)}"
     with RosGraph(tmp_path) as graph:
-        run = graph.launch()
+        run = graph.launch(home)
         pids = [graph.pid(node) for node in LAUNCHED]
         run.send_to_leader(signal.SIGKILL)
         promised(lambda: not any(os.path.exists(f"/proc/{pid}/exe") for pid in pids), 3.0, "gone")
         run.ends(10.0)
-        again = graph.launch()
+        again = graph.launch(home)
         run_forked(lambda: Probe(graph).next("/odom", Odometry))
         again.send_to_leader(signal.SIGINT)
         assert again.ends(10.0) == 0
