@@ -180,6 +180,8 @@ TESTED_BY: dict[str, tuple[str, str]] = {
     "roomba/robot/": ("unit/robot/test_parts.py", "the parts of one robot"),
     "roomba/storage/map_bound": ("unit/storage/test_rooms.py", "a base of what it stores"),
     "roomba/ui/errand_progress": ("unit/ui/test_cleaning.py", "shown by the menu for cleaning"),
+    "roomba/ui/state_words": ("unit/commands/status/test_command.py", "told by the command"),
+    "roomba/ui/top/link": ("unit/ui/top/test_app.py", "what the view follows"),
     "roomba/ui/web/api": ("unit/ui/web/test_app.py", "routes of the application"),
     "roomba/ui/web/feed": ("unit/ui/web/test_app.py", "what viewers of the application get"),
     "roomba/ui/prompt": ("unit/ui/test_menu.py", "asked by the menu"),

@@ -22,6 +22,7 @@ _COMMANDS: Final = {
     "replay": "roomba.commands.play.replay",
     "emulate": "roomba.commands.emulate.command",
     "status": "roomba.commands.status.command",
+    "top": "roomba.commands.top.command",
     "report": "roomba.commands.report.command",
     "import": "roomba.commands.valetudo.import_command",
     "export": "roomba.commands.valetudo.export_command",
@@ -51,6 +52,8 @@ usage: roomba COMMAND ...
                    --speed N, --map none (see --demo --help)
   emulate neato    a made-up Neato on a pseudo terminal: --link NAME, --home NAME
   status [ARGS]    what a robot with a page does now: --json, --watch
+  top [ADDRESS]    the same on a whole terminal, with map, log, and keys that command it; --demo:
+                   of a robot that lives in a home meanwhile
   report [RUN]     the runs that were kept: a list, or a report as HTML: --out FILE.html,
                    --compare A B, --csv FILE (see --help)
   replay [RUN|FILE.run]
@@ -68,7 +71,7 @@ there it is ./roomba COMMAND.
 """
 _MODULES: Final = (
     "cv2", "fastapi", "matplotlib", "numba", "numpy", "PIL", "pydantic", "rich", "rosbags", "scipy",
-    "serial", "shapely", "typer", "uvicorn", "websockets", "yaml",
+    "serial", "shapely", "textual", "typer", "uvicorn", "websockets", "yaml",
 )  # fmt: skip
 _EXTRAS: Final = {"gymnasium": "gym"}
 

@@ -21,6 +21,7 @@ MODULES = {
     "map --bag": "roomba.commands.map.drive.command",
     "control": "roomba.commands.control.command",
     "play": "roomba.commands.play.command",
+    "top": "roomba.commands.top.command",
     "replay": "roomba.commands.play.replay",
     "report": "roomba.commands.report.command",
     "import": "roomba.commands.valetudo.import_command",

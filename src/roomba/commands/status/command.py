@@ -17,7 +17,7 @@ from rich.table import Table
 from roomba.client.ports import DEFAULT_PORT, PORTS
 from roomba.commands.spelling import spelled
 from roomba.commands.status.asking import NoRobotError, find_robot, state_at
-from roomba.commands.status.words import lines_of
+from roomba.ui.state_words import lines_of
 
 PROGRAM: Final = spelled("status")
 _PERIOD: Final = 1.0

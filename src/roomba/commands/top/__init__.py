@@ -1,0 +1,1 @@
+"""`./roomba top`: the robot of `run` or `play` on a whole terminal."""

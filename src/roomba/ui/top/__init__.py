@@ -1,0 +1,1 @@
+"""`./roomba top`: the robot on a whole terminal, by the server of its page."""
