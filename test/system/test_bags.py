@@ -3,6 +3,7 @@
 import json
 import math
 import signal
+import sys
 from pathlib import Path
 
 import pytest
@@ -14,10 +15,14 @@ from fixtures.probe import Probe, Walker
 from fixtures.waiting import wait_until
 from geometry_msgs.msg import Pose as PoseMessage
 from geometry_msgs.msg import PoseStamped, PoseWithCovarianceStamped
+from mcap.reader import make_reader
+from mcap_ros2.decoder import DecoderFactory
 from roomba_robot.msg import Localization, RobotPosition
 
 from roomba.commands.localize.command import main
 from roomba.files.shipped import HOMES
+from roomba.recordings.bags.exporting import Form, export_bag
+from roomba.recordings.bags.mending import mend_bag, needs_mending
 
 NAMES = ("pose", "amcl")
 
@@ -34,19 +39,22 @@ def bag(tmp_path_factory: pytest.TempPathFactory) -> Path:
     with RosGraph(folder) as graph:
         graph.launch("speed:=3")
         recorder = graph.run("rosbag", "record", "-a", "-O", str(path))
+        own = graph.run(sys.executable, "-m", "roomba_ros.bags.record", str(folder / "own.bag"))
         wait_until(lambda: path.with_suffix(".bag.active").exists(), 30.0, "the recorder records")
         sensors = ("/odom", "/imu", "/scan", "/clock", "/tf", "/tf_static", "/amcl_pose")
         topics = (*sensors, "/position", "/walk_to_point/status", "/map")
         wait_until(lambda: recording(graph, *topics), 30.0, "the recorder hears the robot")
         run_forked(lambda: walk(graph))
+        own.send(signal.SIGKILL)
         recorder.send(signal.SIGINT)
         wait_until(path.exists, 30.0, "the recorder closes the bag")
     return path
 
 
 def recording(graph: RosGraph, *topics: str) -> bool:
+    """Whether both recorders hear topics."""
     _, subscribers, _ = graph.system_state()
-    return all(any("record" in node for node in subscribers.get(t, [])) for t in topics)
+    return all(sum("record" in node for node in subscribers.get(t, [])) == 2 for t in topics)
 
 
 def walk(graph: RosGraph) -> None:
@@ -54,7 +62,7 @@ def walk(graph: RosGraph) -> None:
     probe.position()
     walker = Walker()
     # The recorder looks for new topics once a second; this client has just made these.
-    wait_until(lambda: walker.listeners >= 2, 30.0, "server and recorder hear the client")
+    wait_until(lambda: walker.listeners >= 3, 30.0, "server and recorders hear the client")
     walker.send(1.5, 2.0)
     walker.arrives(30.0)
     # A busy recorder hears of that later than this client.
@@ -65,6 +73,39 @@ def walk(graph: RosGraph) -> None:
 def positions(path: Path) -> list[tuple[float, float]]:
     with rosbag.Bag(str(path)) as recorded:
         return [(m.pos_x, m.pos_y) for _, m, _ in recorded.read_messages("/position")]
+
+
+def test_our_own_recorder_loses_less_than_a_second_when_it_is_killed(bag: Path) -> None:
+    own = bag.with_name("own.bag")
+    mended = mend_bag(own) if needs_mending(own) else None
+    assert mended is None or mended.messages > 1000
+    with rosbag.Bag(str(bag)) as theirs, rosbag.Bag(str(own)) as ours:
+        told = [(m.pos_x, m.pos_y) for _, m, _ in theirs.read_messages("/position")]
+        kept = [(m.pos_x, m.pos_y) for _, m, _ in ours.read_messages("/position")]
+        # Three of the robot's seconds are one, in which it tells thirty positions.
+        begin = told.index(kept[0])
+        assert told[begin : begin + len(kept)] == kept
+        assert len(told) - begin - len(kept) <= 30
+        topics = ours.get_type_and_topic_info().topics
+        everything = theirs.get_type_and_topic_info().topics
+    missing = {name for name in everything if "/camera/" not in name} - topics.keys()
+    assert missing <= {"/rosout", "/rosout_agg"}
+    assert not any("/camera/" in name for name in topics)
+
+
+def test_it_is_exported_with_the_types_of_this_robot(bag: Path) -> None:
+    path = bag.with_name("own.mcap")
+    export_bag(bag.with_name("own.bag"), path, Form.MCAP)
+    with path.open("rb") as file:
+        reader = make_reader(file, decoder_factories=[DecoderFactory()])
+        newest = {
+            channel.topic: message for _, channel, _, message in reader.iter_decoded_messages()
+        }
+    assert newest["/vacuum/state"].state in ("idle", "docked")
+    assert newest["/walk_to_point/result"].status.status == 3
+    assert newest["/map"].info.width > 100
+    with rosbag.Bag(str(bag.with_name("own.bag"))) as ours:
+        assert newest.keys() == ours.get_type_and_topic_info().topics.keys()
 
 
 def test_every_topic_is_recorded(bag: Path) -> None:

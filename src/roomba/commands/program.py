@@ -25,16 +25,18 @@ _COMMANDS: Final = {
     "top": "roomba.commands.top.command",
     "report": "roomba.commands.report.command",
     "import": "roomba.commands.valetudo.import_command",
-    "export": "roomba.commands.valetudo.export_command",
+    "export": "roomba.commands.export.command",
     "pictures": "roomba.commands.pictures.__main__",
     "doctor": __name__,
 }
 """The module whose ``main`` is the command; each is loaded when it is asked for."""
 _OF_RECORDINGS: Final = {"map": "roomba.commands.map.drive.command"}
 """The same of a command with ``--bag``."""
+_OF_VALETUDO: Final = {"export": "roomba.commands.valetudo.export_command"}
+"""The same of a command whose first word is valetudo."""
 _DEMOS: Final = {"control": "roomba.commands.control.command"}
 """The same of a command that needs ROS, but not with ``--demo``."""
-_NEED_ROS: Final = ("run", "control", "camera", "exec")
+_NEED_ROS: Final = ("run", "control", "camera", "exec", "record")
 _NEED_CHECKOUT: Final = ("test", "bench")
 _USAGE: Final = """\
 usage: roomba COMMAND ...
@@ -62,12 +64,14 @@ usage: roomba COMMAND ...
                    a home of a map of Valetudo: rooms, station, zones
   export valetudo HOME [--out FILE.json]
                    the other way round
+  export FILE.bag --to mcap|ros2 [--out PATH]
+                   a recording for other programs
   pictures [ARGS]  make the pictures of the documents: [FOLDER] [--only NAME ...]
   doctor [--json]  what is missing, and how to mend it
   help             this text
 
-The commands run, camera, exec, and control without --demo, need ROS, test and bench the checkout:
-there it is ./roomba COMMAND.
+The commands run, camera, exec, record, and control without --demo, need ROS, test and bench the
+checkout: there it is ./roomba COMMAND.
 """
 _MODULES: Final = (
     "cv2", "fastapi", "matplotlib", "numba", "numpy", "PIL", "pydantic", "rich", "rosbags", "scipy",
@@ -94,6 +98,8 @@ def program() -> int:
         return _refused(f"expected a command of `roomba help`, got {command!r}")
     has_recording = any(word.split("=")[0] == "--bag" for word in arguments)
     modules = {**_COMMANDS, **(_OF_RECORDINGS if has_recording else {})}
+    if arguments[:1] == ["valetudo"]:
+        modules |= _OF_VALETUDO
     return int(importlib.import_module(modules[command]).main(arguments))
 
 

@@ -25,7 +25,9 @@ MODULES = {
     "replay": "roomba.commands.play.replay",
     "report": "roomba.commands.report.command",
     "import": "roomba.commands.valetudo.import_command",
-    "export": "roomba.commands.valetudo.export_command",
+    "export": "roomba.commands.export.command",
+    "export valetudo": "roomba.commands.valetudo.export_command",
+    "record": "roomba_ros.bags.record",
     "pictures": "roomba.commands.pictures.__main__",
     "bench": "benchmarks.__main__",
     "soak": "soak.__main__",
@@ -114,6 +116,8 @@ def take(line: str, monkeypatch: pytest.MonkeyPatch) -> None:
         command = "map --bag"
     if command in ("run", "exec", "control", "camera") and words[:1] == ["--isolated"]:
         words = words[1:]
+    if command == "export" and words[0] == "valetudo":
+        command = "export valetudo"
     if command == "run":
         take_launch_arguments(words)
     elif command == "exec":
@@ -123,7 +127,7 @@ def take(line: str, monkeypatch: pytest.MonkeyPatch) -> None:
     elif command == "doctor":
         assert set(words) <= {"--json"}
     elif command in MODULES:
-        if command == "localize":
+        if command in ("localize", "record"):
             pytest.importorskip("roomba_robot.msg", reason="needs ROS, as the command does")
         parse(importlib.import_module(MODULES[command]), words, monkeypatch)
     else:

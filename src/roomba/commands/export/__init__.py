@@ -1,0 +1,1 @@
+"""`./roomba export FILE --to mcap|ros2`: recordings for other programs."""

@@ -1,0 +1,56 @@
+"""``roomba export FILE --to mcap|ros2``: a recording for Foxglove or ROS 2, types included."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+from typing import Final
+
+from roomba.commands.spelling import spelled
+from roomba.errors import RoombaError
+from roomba.recordings.bags.exporting import Form, export_bag
+
+PROGRAM: Final = spelled("export")
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Write the export; returns 0, or 2 with the reason on standard error."""
+    given = _parser().parse_args(arguments)
+    form = Form(given.to)
+    source: Path = given.file
+    target = given.out or source.with_suffix(".mcap" if form is Form.MCAP else "")
+    try:
+        mended = export_bag(source, target, form)
+    except (RoombaError, OSError) as error:
+        print(f"{PROGRAM}: {error}", file=sys.stderr)
+        return 2
+    if mended is not None:
+        print(
+            f"{source}: its recorder was killed; it has an index again, with {mended.messages} "
+            f"messages; {mended.torn} bytes of a torn end were cut off"
+        )
+    print(target)
+    return 0
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog=PROGRAM,
+        description="A recording for other programs. (export valetudo HOME: a home as a map.)",
+    )
+    parser.add_argument("file", type=Path, metavar="FILE.bag", help="of ./roomba record, or any")
+    parser.add_argument(
+        "--to",
+        required=True,
+        choices=[form.value for form in Form],
+        help="mcap: one file, which Foxglove and Lichtblick open; ros2: a folder for ros2 bag",
+    )
+    parser.add_argument(
+        "--out", type=Path, metavar="PATH", help="where to (default: beside it, by its name)"
+    )
+    return parser
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,71 @@
+"""A recording in a form of ROS 2: a folder with a database, or one file of MCAP; types included."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import shutil
+import tempfile
+from enum import Enum
+from pathlib import Path
+from typing import Final
+
+from rosbags.convert import ConverterError, convert
+
+from roomba.recordings.bags.mending import Mended, mend_bag, needs_mending
+from roomba.recordings.readings import LogError
+
+_VERSION: Final = 9
+"""Of the form of ROS 2's bags: the first that has the types of messages in it."""
+
+
+class Form(Enum):
+    """What a recording is exported to."""
+
+    MCAP = "mcap"
+    """One file, for Foxglove and others."""
+    ROS2 = "ros2"
+    """A folder, for ``ros2 bag``."""
+
+
+def export_bag(source: Path, target: Path, form: Form) -> Mended | None:
+    """Write a recording in another form; raises LogError, or OSError.
+
+    A bag whose recorder was killed is mended before, and what came of that is returned.
+    """
+    if not source.exists():
+        raise LogError(f"{source}: expected a recording, there is no such file")
+    if target.exists():
+        raise LogError(f"{target}: there is something already; name another place by --out")
+    mended = mend_bag(source) if source.is_file() and needs_mending(source) else None
+    target.parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(prefix=".export_", dir=target.parent) as folder:
+        made = Path(folder) / target.stem
+        _convert(source, made, form)
+        if form is Form.MCAP:
+            (made,) = made.glob("*.mcap")
+        shutil.move(made, target)
+    return mended
+
+
+def _convert(source: Path, made: Path, form: Form) -> None:
+    storage = "mcap" if form is Form.MCAP else "sqlite3"
+    try:
+        # It prints which types differ between ROS 1 and 2.
+        with contextlib.redirect_stdout(io.StringIO()):
+            convert(
+                srcs=[source],
+                dst=made,
+                dst_storage=storage,
+                dst_version=_VERSION,
+                compress=None,
+                compress_mode="none",
+                default_typestore=None,
+                typestore=None,
+                exclude_topics=[],
+                include_topics=[],
+                exclude_msgtypes=[],
+                include_msgtypes=[],
+            )
+    except ConverterError as error:
+        raise LogError(f"{source}: cannot be exported: {error}") from error

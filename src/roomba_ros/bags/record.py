@@ -1,0 +1,200 @@
+"""``./roomba record``: the graph as a bag that a kill leaves whole, or what was before a mishap."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import re
+import sys
+import threading
+import time
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Final
+
+import rospkg
+
+from roomba.errors import RoombaError
+from roomba.recordings.bags.ring import Message, Ring, keep_newest, save
+from roomba.recordings.bags.writer import BagWriter
+from roomba_ros.bags.recorder import GraphEar
+from roomba_ros.bags.wrongs import Wrongs
+from roomba_ros.runtime.node import leave, register, require_master, told_to_end
+
+_FLUSH: Final = 0.4
+"""s of wall time; no message is longer in memory alone."""
+_LOOK: Final = 1.0
+"""s of wall time between two looks for new topics."""
+_PAUSE: Final = 0.05
+_AFTER: Final = 2.0
+"""s of wall time that are recorded after something went wrong."""
+_REST: Final = 30.0
+"""s of wall time between two mishaps that are saved: one is often told in several ways."""
+_MOST_BYTES: Final = 64 << 20
+"""Bytes of messages of the last seconds that are kept in memory."""
+_MOST_FILES: Final = 20
+_MOST_DISK: Final = 500 << 20
+"""Files of mishaps, and their bytes, that are kept in a folder."""
+_PATTERN: Final = "wrong-*.bag"
+
+
+class Recording:
+    """All that comes, in one bag; flushed in time."""
+
+    def __init__(self, path: Path) -> None:
+        """Begin the bag; raises OSError."""
+        self._bag = BagWriter(path)
+        self._lock = threading.Lock()
+        self._flushed = time.monotonic()
+        self._error: OSError | None = None
+        self.messages = 0
+
+    def take(self, message: Message) -> None:
+        """Write a message; what a disk refuses is told by :meth:`tick`."""
+        with self._lock:
+            if self._error is not None:
+                return
+            try:
+                self._bag.write(*message)
+                self.messages += 1
+            except OSError as error:
+                self._error = error
+
+    def tick(self) -> None:
+        """Flush if it is time to; raises OSError."""
+        now = time.monotonic()
+        with self._lock:
+            if self._error is not None:
+                raise self._error
+            if now - self._flushed >= _FLUSH:
+                self._flushed = now
+                self._bag.flush()
+
+    def close(self) -> str:
+        """Close the bag; return what is told of it. Raises OSError."""
+        with self._lock:
+            self._bag.close()
+        return f"{self._bag.path}: {self.messages} messages, {self._bag.size / 1e6:.1f} MB"
+
+
+class BlackBox:
+    """The last seconds, saved when something goes wrong."""
+
+    def __init__(self, folder: Path, seconds: float) -> None:
+        """Keep nothing yet; raises OSError if there can be no such folder."""
+        folder.mkdir(parents=True, exist_ok=True)
+        self._folder, self._ring, self._wrongs = folder, Ring(seconds, _MOST_BYTES), Wrongs()
+        self._lock = threading.Lock()
+        self._reason, self._due, self._rests_until = "", 0.0, 0.0
+        self.saved = 0
+
+    def take(self, message: Message) -> None:
+        """Keep a message, and notice what it says."""
+        self._ring.add(message)
+        with self._lock:
+            reason = self._wrongs.heard(message)
+            now = time.monotonic()
+            if reason and not self._reason and now >= self._rests_until:
+                self._reason, self._due = reason, now + _AFTER
+
+    def tick(self) -> None:
+        """Save what is due; raises OSError."""
+        now = time.monotonic()
+        with self._lock:
+            if not self._reason or now < self._due:
+                return
+            reason, self._reason, self._rests_until = self._reason, "", now + _REST
+        self._save(reason)
+
+    def close(self) -> str:
+        """Save what is still to be saved; return what is told. Raises OSError."""
+        with self._lock:
+            reason, self._reason = self._reason, ""
+        if reason:
+            self._save(reason)
+        return f"{self._folder}: {self.saved} mishaps saved"
+
+    def _save(self, reason: str) -> None:
+        begun = time.strftime("%Y%m%d-%H%M%S", time.gmtime())
+        words = re.sub(r"[^a-z0-9]+", "-", reason.lower()).strip("-")[:60]
+        path = self._folder / f"wrong-{begun}-{words}.bag"
+        save(self._ring.messages(), path)
+        self.saved += 1
+        print(f"{reason}\n    saved as {path}", flush=True)
+        for old in keep_newest(self._folder, _PATTERN, _MOST_FILES, _MOST_DISK):
+            print(f"    {old.name} was removed: the folder has enough of them", flush=True)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Record until Ctrl-C; returns the exit status."""
+    wanted = _parser().parse_args(arguments)
+    require_master()
+    register(f"record_{os.getpid()}")
+    try:
+        kept = _begun(wanted)
+        ear = GraphEar(kept.take, only=wanted.topics, has_camera=wanted.camera)
+        _record(ear, kept)
+        print(f"\n{kept.close()}", flush=True)
+    except (RoombaError, OSError) as error:
+        print(f"./roomba record: {error}", file=sys.stderr, flush=True)
+        return 1
+    return 0
+
+
+def _begun(wanted: argparse.Namespace) -> Recording | BlackBox:
+    if wanted.when_wrong:
+        folder = wanted.file or Path(rospkg.get_ros_home()) / "roomba_robot" / "mishaps"
+        print(
+            f"The last {wanted.seconds:g} s are saved in {folder} when something goes wrong; "
+            "Ctrl-C ends it.",
+            flush=True,
+        )
+        return BlackBox(folder, wanted.seconds)
+    path = wanted.file or Path(time.strftime("%Y-%m-%d-%H-%M-%S.bag"))
+    begun = Recording(path)
+    print(f"Recording into {path}; Ctrl-C ends it.", flush=True)
+    return begun
+
+
+def _record(ear: GraphEar, kept: Recording | BlackBox) -> None:
+    """Hear the graph until a signal, or the master's word, ends it; raises OSError."""
+    looked = -_LOOK
+    while not told_to_end():
+        now = time.monotonic()
+        if now - looked >= _LOOK:
+            looked = now
+            ear.look()
+        kept.tick()
+        time.sleep(_PAUSE)
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog="./roomba record", description=__doc__)
+    parser.add_argument(
+        "file",
+        nargs="?",
+        type=Path,
+        metavar="FILE.bag|FOLDER",
+        help="where to (default: a bag named after the time; with --when-wrong "
+        "roomba_robot/mishaps in the ROS home folder)",
+    )
+    parser.add_argument(
+        "--topics", nargs="+", default=[], metavar="NAME", help="only these, with their slashes"
+    )
+    parser.add_argument(
+        "--camera", action="store_true", help="the camera's pictures as well: it draws for that"
+    )
+    parser.add_argument(
+        "--when-wrong",
+        action="store_true",
+        help="keep the last seconds in memory, and save them when something goes wrong: trouble, "
+        "an error of the robot, an emergency stop",
+    )
+    parser.add_argument(
+        "--seconds", type=float, default=60.0, metavar="S", help="how many of them (default: 60)"
+    )
+    return parser
+
+
+if __name__ == "__main__":
+    leave(main())

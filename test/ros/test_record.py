@@ -1,0 +1,142 @@
+"""``./roomba record`` over a graph: all that is told, also after a kill, and mishaps."""
+
+from __future__ import annotations
+
+import signal
+import sys
+from pathlib import Path
+
+import rosbag
+import rospy
+from fixtures.graph import RosGraph
+from fixtures.probe import Probe
+from fixtures.processes import Program
+from fixtures.waiting import unchanged, wait_until
+from roomba_robot.msg import VacuumState
+from std_msgs.msg import Float32, String
+
+from roomba.recordings.bags.mending import mend_bag, needs_mending
+
+
+def record(graph: RosGraph, *arguments: str) -> Program:
+    return graph.run(sys.executable, "-m", "roomba_ros.bags.record", *arguments)
+
+
+class Teller(Probe):
+    """A node that tells a count on one topic as often as it can be heard, and a map once."""
+
+    def __init__(self, graph: RosGraph) -> None:
+        super().__init__(graph, "teller")
+        self.map = rospy.Publisher("/map", String, queue_size=1, latch=True)
+        self.map.publish("a map")
+        self.count = rospy.Publisher("/count", Float32, queue_size=100)
+        self.told = 0
+        self.at: list[float] = []
+
+    def tell(self, times: int) -> None:
+        """Tell so many numbers, fifty a second."""
+        for _ in range(times):
+            self.count.publish(float(self.told))
+            self.at.append(rospy.get_time())
+            self.told += 1
+            rospy.sleep(0.02)
+
+    def is_heard(self) -> bool:
+        return all(each.get_num_connections() > 0 for each in (self.count, self.map))
+
+
+def counts(path: Path) -> list[int]:
+    with rosbag.Bag(str(path)) as bag:
+        return [int(message.data) for _, message, _ in bag.read_messages("/count")]
+
+
+def test_all_is_recorded_until_it_is_told_to_end(graph: RosGraph, tmp_path: Path) -> None:
+    teller, path = Teller(graph), tmp_path / "run.bag"
+    recorder = record(graph, str(path))
+    wait_until(teller.is_heard, 30.0, lambda: recorder.output)
+    teller.tell(60)
+    recorder.send(signal.SIGINT)
+    assert recorder.ends(20.0) == 0, recorder.output
+    assert not needs_mending(path)
+    assert counts(path) == list(range(60))
+    with rosbag.Bag(str(path)) as bag:
+        assert [message.data for _, message, _ in bag.read_messages("/map")] == ["a map"]
+        types = {name: each.msg_type for name, each in bag.get_type_and_topic_info().topics.items()}
+    assert types["/count"] == "std_msgs/Float32"
+    again = record(graph, str(path))
+    assert again.ends(30.0) == 1
+    assert "File exists" in again.output
+
+
+def test_a_kill_loses_no_more_than_a_second(graph: RosGraph, tmp_path: Path) -> None:
+    teller, path = Teller(graph), tmp_path / "killed.bag"
+    recorder = record(graph, str(path))
+    wait_until(teller.is_heard, 30.0, lambda: recorder.output)
+    teller.tell(150)
+    killed = rospy.get_time()
+    recorder.send(signal.SIGKILL)
+    recorder.ends(10.0)
+    assert needs_mending(path)
+    mended = mend_bag(path)
+    kept = counts(path)
+    assert kept == list(range(len(kept)))
+    assert killed - teller.at[len(kept) - 1] <= 1.0
+    assert mended.messages > len(kept) > 50
+
+
+def test_only_what_is_asked_for(graph: RosGraph, tmp_path: Path) -> None:
+    teller, path = Teller(graph), tmp_path / "one.bag"
+    recorder = record(graph, str(path), "--topics", "/count")
+    wait_until(lambda: teller.count.get_num_connections() > 0, 30.0, lambda: recorder.output)
+    teller.tell(20)
+    recorder.send(signal.SIGINT)
+    assert recorder.ends(20.0) == 0
+    with rosbag.Bag(str(path)) as bag:
+        assert set(bag.get_type_and_topic_info().topics) == {"/count"}
+
+
+def test_what_goes_wrong_is_saved_with_what_was_before(graph: RosGraph, tmp_path: Path) -> None:
+    teller, folder = Teller(graph), tmp_path / "mishaps"
+    trouble = rospy.Publisher("/trouble", String, queue_size=1, latch=True)
+    state = rospy.Publisher("/vacuum/state", VacuumState, queue_size=1, latch=True)
+    trouble.publish("")
+    state.publish(VacuumState(state="cleaning", message="its bin is nearly full"))
+    recorder = record(graph, "--when-wrong", str(folder), "--seconds", "3")
+    wait_until(
+        lambda: (
+            teller.is_heard()
+            and trouble.get_num_connections() > 0
+            and state.get_num_connections() > 0
+        ),
+        30.0,
+        lambda: recorder.output,
+    )
+    teller.tell(200)
+    assert unchanged(lambda: list(folder.iterdir()), 0.1)
+    assert list(folder.iterdir()) == []
+    wrong = teller.told
+    trouble.publish("speed_pub_node was ended by SIGKILL; it is started anew")
+    state.publish(VacuumState(state="error", message="both wheels spin"))
+    teller.tell(150)
+    wait_until(lambda: list(folder.glob("wrong-*.bag")), 30.0, lambda: recorder.output)
+    # Told in two ways, it is one mishap.
+    (path,) = folder.iterdir()
+    assert "speed-pub-node" in path.name or "both-wheels-spin" in path.name
+    kept = counts(path)
+    assert kept == list(range(kept[0], kept[0] + len(kept)))
+    assert wrong - 90 < kept[0] < wrong < kept[-1]
+    with rosbag.Bag(str(path)) as bag:
+        assert [message.data for _, message, _ in bag.read_messages("/map")] == ["a map"]
+        said = [message.data for _, message, _ in bag.read_messages("/trouble")]
+    assert said[-1].startswith("speed_pub_node was ended")
+    recorder.send(signal.SIGINT)
+    assert recorder.ends(20.0) == 0
+    assert "1 mishaps saved" in recorder.output
+
+
+def test_without_a_master_it_says_so(tmp_path: Path) -> None:
+    with RosGraph(tmp_path) as graph:
+        recorder = record(graph, str(tmp_path / "a.bag"))
+        assert recorder.ends(30.0) == 1
+        assert "no ROS master answers" in recorder.output
+    assert not (tmp_path / "a.bag").exists()
