@@ -26,8 +26,9 @@ signal.signal(signal.SIGINT, signal.default_int_handler)
 
 @pytest.fixture(scope="session", autouse=True)
 def own_history(tmp_path_factory: pytest.TempPathFactory) -> None:
-    """Keep the runs of the tests, and of programs that they start, away from the user's own."""
+    """Keep runs and token of the tests, and of programs that they start, away from the user's."""
     os.environ["ROOMBA_HISTORY"] = str(tmp_path_factory.mktemp("history"))
+    os.environ["ROOMBA_TOKEN_FILE"] = str(tmp_path_factory.mktemp("token") / "token")
 
 
 TESTS = Path(__file__).resolve().parent

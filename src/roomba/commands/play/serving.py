@@ -12,7 +12,8 @@ from roomba.client.observed import ObservedRobot
 from roomba.client.ports import DEFAULT_PORT
 from roomba.history.recorder import HistoryKeeper
 from roomba.ui.web.app import create_app
-from roomba.ui.web.guard import Guard, new_token
+from roomba.ui.web.guard import Guard
+from roomba.ui.web.kept_token import kept_token
 from roomba.ui.web.server import PageServer, listen
 
 
@@ -40,7 +41,7 @@ def serve_page(
     keeper: HistoryKeeper | None = None,
 ) -> None:
     """Print the address, and serve the page of a robot until Ctrl-C."""
-    guard = Guard(new_token())
+    guard = Guard(kept_token())
     server = PageServer(create_app(robot, guard, keeper), bound)
     address = f"{server.address}#token={guard.token}"
     print(f"{told}\n\n    {address}\n\nCtrl-C ends it.")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Annotated, Any, Final, Literal, TypeVar
 
 from fastapi import APIRouter, HTTPException, Response
@@ -143,10 +143,10 @@ class Answer(BaseModel):
     ok: Literal[True] = True
 
 
-def api_of(robot: ObservedRobot) -> APIRouter:
-    """Return the routes for one robot."""
+def api_of(robot: ObservedRobot, limits: Mapping[str, Any]) -> APIRouter:
+    """Return the routes for one robot; ``limits`` are those of its server."""
     api = APIRouter(prefix="/api/v1")
-    _add_views(api, robot)
+    _add_views(api, robot, limits)
     _add_errands(api, robot)
     _add_edits(api, robot)
     _add_replay(api, robot)
@@ -155,7 +155,7 @@ def api_of(robot: ObservedRobot) -> APIRouter:
     return api
 
 
-def _add_views(api: APIRouter, robot: ObservedRobot) -> None:
+def _add_views(api: APIRouter, robot: ObservedRobot, of_server: Mapping[str, Any]) -> None:
     @api.get("/state", summary="The robot now")
     def state() -> dict[str, Any]:
         return _asked(lambda: state_of(robot.robot()))
@@ -167,7 +167,8 @@ def _add_views(api: APIRouter, robot: ObservedRobot) -> None:
     @api.get("/limits", summary="What may be asked for")
     def limits() -> dict[str, Any]:
         found = _asked(robot.limits)
-        return {name: getattr(found, name) for name in found.__slots__}
+        of_robot = {name: getattr(found, name) for name in found.__slots__}
+        return {**of_robot, **of_server}
 
 
 def _add_errands(api: APIRouter, robot: ObservedRobot) -> None:

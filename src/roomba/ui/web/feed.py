@@ -1,21 +1,24 @@
 """One look at the robot for all viewers: its state, layers and home, ten times a second.
 
-However many viewers there are, the robot is asked once. A viewer takes the newest when it is ready
-for more; there is no queue.
+However many viewers there are, the robot is asked once, and what they get is made text once. A
+viewer takes the newest when it is ready for more; there is no queue.
 """
 
 from __future__ import annotations
 
 import asyncio
 import math
+import time
 from typing import Final
 
 from roomba.client.observed import ObservedRobot, Timeline
-from roomba.client.plain import Json, home_of, replay_of, state_of
+from roomba.client.plain import home_of, replay_of, state_of
 from roomba.client.protocol import RobotUnavailableError
 from roomba.client.view import HomeView, LayerName, RobotView
 from roomba.errors import RoombaError
 from roomba.history.recorder import HistoryKeeper
+from roomba.ui.web.streams.events import Events
+from roomba.ui.web.streams.told import Told
 from roomba.ui.web.tiles import TiledLayer
 
 PERIOD: Final = 0.1
@@ -35,15 +38,17 @@ class Feed:
         """Begin with nothing; the keeper, if there is one, is shown each look."""
         self._robot, self._keeper = robot, keeper
         self._recorded = robot if isinstance(robot, Timeline) else None
-        self._looked = asyncio.Condition()
+        self._looked = asyncio.Event()
         self._looks = 0
         self.number = 0
-        self.state: Json = {"type": "state", "link": "connecting"}
-        self.home: Json | None = None
+        self.events = Events()
+        self.state = Told({"type": "state", "link": "connecting"})
+        self.home: Told | None = None
         self.home_version = 0
         self.layers = {name: TiledLayer(name.value) for name in LayerName}
         self.trail: list[tuple[float, float]] = []
         self.trail_began = 0
+        self._trails: dict[int, Told] = {}
         self._jumps = 0
 
     async def run(self) -> None:
@@ -59,38 +64,48 @@ class Feed:
             view, home = await asyncio.to_thread(self._look_at_robot)
         except (RobotUnavailableError, RoombaError) as reason:
             # What was seen last stays on the page, greyed, with the reason.
-            self.state = {**self.state, "link": "gone", "reason": str(reason)}
+            self.state = Told({**self.state.value, "link": "gone", "reason": str(reason)})
+            self.events.note_gone(str(reason))
         else:
-            if self._recorded is not None:
-                self._follow_jumps(self._recorded)
-            self._follow(view.pose[0], view.pose[1])
-            self.state = state_of(view)
-            if self._recorded is not None:
-                self.state["replay"] = replay_of(self._recorded.timeline())
-            if home.version != self.home_version:
-                self.home, self.home_version = home_of(home), home.version
-        async with self._looked:
-            self.number += 1
-            self._looked.notify_all()
+            self._show(view, home)
+            self.events.note(view)
+        self.number += 1
+        looked, self._looked = self._looked, asyncio.Event()
+        looked.set()
 
     async def newer(self, number: int) -> int:
         """Wait for a look after number ``number``; return the number of the newest."""
-        async with self._looked:
-            await self._looked.wait_for(lambda: self.number > number)
+        while self.number <= number:
+            await self._looked.wait()
         return self.number
 
-    def trail_since(self, count: int) -> Json | None:
+    def trail_since(self, count: int) -> Told | None:
         """Return the places of the trail after the first ``count`` of all that there ever were."""
-        first = max(count - self.trail_began, 0)
-        points = self.trail[first:]
-        if not points and count >= self.trail_began:
-            return None
-        return {
-            "type": "trail",
-            "whole": count < self.trail_began or count == 0,
-            "end": self.trail_began + len(self.trail),
-            "points": points,
-        }
+        if count not in self._trails:
+            first = max(count - self.trail_began, 0)
+            if first >= len(self.trail) and count >= self.trail_began:
+                return None
+            self._trails[count] = Told(
+                {
+                    "type": "trail",
+                    "whole": count < self.trail_began or count == 0,
+                    "end": self.trail_began + len(self.trail),
+                    "points": self.trail[first:],
+                }
+            )
+        return self._trails[count]
+
+    def _show(self, view: RobotView, home: HomeView) -> None:
+        """Let viewers have what was seen."""
+        if self._recorded is not None:
+            self._follow_jumps(self._recorded)
+        self._follow(view.pose[0], view.pose[1])
+        state = {**state_of(view), "looked": round(time.time(), 3)}
+        if self._recorded is not None:
+            state["replay"] = replay_of(self._recorded.timeline())
+        self.state = Told(state)
+        if home.version != self.home_version:
+            self.home, self.home_version = Told(home_of(home)), home.version
 
     def _look_at_robot(self) -> tuple[RobotView, HomeView]:
         view, home = self._robot.robot(), self._robot.home()
@@ -113,12 +128,14 @@ class Feed:
             return
         self._jumps = jumps
         places = recorded.way()
+        self._trails.clear()
         self.trail_began += len(self.trail) + 1
         self.trail = [(round(x, 3), round(y, 3)) for x, y in places[-_MOST_TRAIL:]]
 
     def _follow(self, x: float, y: float) -> None:
         if self.trail and math.dist(self.trail[-1], (x, y)) < _STEP:
             return
+        self._trails.clear()
         self.trail.append((round(x, 3), round(y, 3)))
         surplus = len(self.trail) - _MOST_TRAIL
         if surplus > 0:

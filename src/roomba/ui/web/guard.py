@@ -14,11 +14,12 @@ from dataclasses import dataclass, field
 from typing import Final
 from urllib.parse import urlsplit
 
+from roomba.ui.web.bounded.limits import MOST_GUESSES
+
 _TOKEN_BYTES: Final = 24
 """192 bits."""
-_MOST_GUESSES: Final = 10
 _GUESSING_PERIOD: Final = 60.0
-"""Wrong tokens that are answered in so many s; more are refused unseen."""
+"""s in which so many wrong tokens are answered."""
 _LOOPBACK: Final = ("127.0.0.1", "localhost", "::1")
 
 
@@ -39,22 +40,28 @@ class Guard:
         """Whether a request's Host header names this server."""
         if not host:
             return False
-        return urlsplit(f"//{host}").hostname in self.hosts
+        try:
+            return urlsplit(f"//{host}").hostname in self.hosts
+        except ValueError:
+            return False
 
     def is_origin(self, origin: str | None, host: str | None) -> bool:
         """Whether a request's Origin header, if there is one, is a page of this server."""
         if origin is None:
             return True
-        asked = urlsplit(origin)
+        try:
+            asked = urlsplit(origin)
+        except ValueError:
+            return False
         return asked.scheme in ("http", "https") and asked.netloc == host
 
     def is_token(self, given: str, now: float) -> bool:
         """Whether a token is the right one; after ten wrong ones in a minute none is at all."""
         while self._guesses and now - self._guesses[0] > _GUESSING_PERIOD:
             self._guesses.popleft()
-        if len(self._guesses) >= _MOST_GUESSES:
+        if len(self._guesses) >= MOST_GUESSES:
             return False
-        if hmac.compare_digest(given.encode(), self.token.encode()):
+        if hmac.compare_digest(given.encode("utf-8", "surrogatepass"), self.token.encode()):
             return True
         self._guesses.append(now)
         return False

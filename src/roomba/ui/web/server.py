@@ -12,6 +12,8 @@ from fastapi import FastAPI
 
 from roomba.client.ports import PORTS
 from roomba.errors import RoombaError
+from roomba.ui.web.bounded.connections import GuardedConnection, GuardedSocket
+from roomba.ui.web.bounded.limits import BACKLOG, MOST_BODY, PING, SENT_AHEAD
 
 _START: Final = 10.0
 """s of wall time within which the server must be up."""
@@ -30,6 +32,8 @@ def listen(host: str, port: int, *, is_fixed: bool) -> socket.socket:
     for tried in range(port, last + 1):
         bound = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
         bound.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        # Of each connection: the system would take megabytes for a slow viewer, all out of date.
+        bound.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, SENT_AHEAD)
         try:
             bound.bind((host, tried))
         except OSError as error:
@@ -53,14 +57,27 @@ class PageServer:
         self._server = uvicorn.Server(
             uvicorn.Config(
                 app,
-                log_level="warning",
+                http=GuardedConnection,
+                ws=GuardedSocket,
+                # Not of each request that is none, nor of addresses with tokens in them.
+                log_level="error",
                 access_log=False,
-                ws_max_size=65536,
+                ws_max_size=MOST_BODY,
+                # Loopback is fast, and each viewer would have to be compressed for by itself.
+                ws_per_message_deflate=False,
+                ws_ping_interval=PING,
+                ws_ping_timeout=PING,
+                backlog=BACKLOG,
                 timeout_graceful_shutdown=1,
                 lifespan="on",
             )
         )
         self._thread: threading.Thread | None = None
+
+    @property
+    def connections(self) -> int:
+        """How many there are."""
+        return len(self._server.server_state.connections)
 
     def serve(self) -> None:
         """Serve until the process is told to end."""

@@ -33,6 +33,8 @@ class TiledLayer:
     def update(self, layer: GridLayer) -> None:
         """Take the layer as it is now."""
         before = self._layer
+        if layer is before:
+            return
         if before is None or before.shape != layer.shape or before.cells.shape != layer.cells.shape:
             rows, columns = (-(-side // TILE) for side in layer.cells.shape)
             self.version += 1

@@ -1,0 +1,1 @@
+"""What the server takes at most, and connections that are held to it."""

@@ -1,0 +1,119 @@
+"""Requests are looked at before they are read: of this server's pages, and with the token."""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from typing import Any, Final
+
+from fastapi import Request, WebSocket
+from fastapi.responses import JSONResponse
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from roomba.ui.web.bounded.limits import BODY_WITHIN, MOST_BODY
+from roomba.ui.web.guard import Guard
+
+_SAFE_METHODS: Final = ("GET", "HEAD", "OPTIONS")
+_POLICY: Final = (
+    "default-src 'self'; connect-src 'self'; img-src 'self' data: blob:; object-src 'none'; "
+    "base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+)
+_FOREIGN: Final = 4403
+"""The code with which a WebSocket of another site is closed."""
+
+
+class GuardedRequests:
+    """Refuses requests of other sites, and changes without the token, before they are read.
+
+    A WebSocket changes nothing by being opened; what it may do it proves by what it says.
+    """
+
+    def __init__(self, app: ASGIApp, guard: Guard) -> None:
+        """Stand before ``app``."""
+        self._app, self._guard = app, guard
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Pass a request on, or refuse it."""
+        if scope["type"] == "websocket":
+            await self._pass_socket(scope, receive, send)
+        elif scope["type"] == "http":
+            await self._pass_request(scope, receive, send)
+        else:
+            await self._app(scope, receive, send)
+
+    async def _pass_socket(self, scope: Scope, receive: Receive, send: Send) -> None:
+        socket = WebSocket(scope, receive, send)
+        host = socket.headers.get("host")
+        if self._guard.is_host(host) and self._guard.is_origin(socket.headers.get("origin"), host):
+            await self._app(scope, receive, send)
+        else:
+            await socket.close(_FOREIGN)
+
+    async def _pass_request(self, scope: Scope, receive: Receive, send: Send) -> None:
+        refusal = self._refusal(Request(scope))
+        if refusal is not None:
+            await JSONResponse({"detail": refusal[1]}, refusal[0])(scope, receive, send)
+            return
+        await self._app(scope, _in_time(receive), _with_policy(send))
+
+    def _refusal(self, request: Request) -> tuple[int, str] | None:
+        headers = request.headers
+        host = headers.get("host")
+        if not self._guard.is_host(host):
+            return 421, "this server is not called so; use the address that it printed"
+        if not self._guard.is_origin(headers.get("origin"), host):
+            return 403, "requests of other sites are refused"
+        if request.method in _SAFE_METHODS:
+            return None
+        length = headers.get("content-length", "")
+        if not (length.isascii() and length.isdigit() and len(length) < 10) or (
+            int(length) > MOST_BODY
+        ):
+            return 413, f"expected a body with a length of at most {MOST_BODY} bytes"
+        if int(length) and headers.get("content-type", "").split(";")[0] != "application/json":
+            return 415, "expected a body of application/json"
+        scheme, _, token = headers.get("authorization", "").partition(" ")
+        if scheme != "Bearer" or not self._guard.is_token(token, time.monotonic()):
+            return 401, "expected the token of the printed address (Authorization: Bearer TOKEN)"
+        return None
+
+
+def _in_time(receive: Receive) -> Receive:
+    """Return a receiver that takes a body which does not come for the end of the request."""
+    is_whole = False
+
+    async def receiving() -> Message:
+        nonlocal is_whole
+        if is_whole:
+            return await receive()
+        try:
+            message = await asyncio.wait_for(receive(), BODY_WITHIN)
+        except asyncio.TimeoutError:
+            return {"type": "http.disconnect"}
+        is_whole = not message.get("more_body", False)
+        return message
+
+    return receiving
+
+
+def _with_policy(send: Send) -> Send:
+    """Return a sender that adds the headers which bind a browser."""
+
+    async def sending(message: Any) -> None:
+        if message["type"] == "http.response.start":
+            own = [] if _has_policy(message) else [(b"content-security-policy", _POLICY.encode())]
+            message["headers"] = [
+                *message["headers"],
+                *own,
+                (b"x-content-type-options", b"nosniff"),
+                (b"referrer-policy", b"no-referrer"),
+                (b"cache-control", b"no-cache"),
+            ]
+        await send(message)
+
+    return sending
+
+
+def _has_policy(message: Any) -> bool:
+    """Whether a response binds a browser more tightly itself."""
+    return any(name == b"content-security-policy" for name, _ in message["headers"])

@@ -1,0 +1,28 @@
+"""The token that a page's server goes by: the one from before, so that open pages keep theirs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from roomba.client.token import read_token, token_file
+from roomba.files.atomic import write_whole
+from roomba.ui.web.guard import new_token
+
+
+def kept_token(path: Path | None = None) -> str:
+    """Return this user's token, and make it if there is none.
+
+    One that others could read, or whose form is wrong, is replaced. Where nothing can be written
+    the token is of this server alone.
+    """
+    file = path or token_file()
+    kept = read_token(file)
+    if kept is not None:
+        return kept
+    made = new_token()
+    try:
+        file.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
+        write_whole(file, made.encode() + b"\n")
+    except OSError:
+        return made
+    return read_token(file) or made

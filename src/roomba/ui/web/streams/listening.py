@@ -1,0 +1,72 @@
+"""The stream of events for programs: server-sent events over HTTP."""
+
+from __future__ import annotations
+
+from collections.abc import AsyncIterator
+from typing import Annotated, Final
+
+from fastapi import APIRouter, Header, HTTPException, Query
+from fastapi.responses import StreamingResponse
+
+from roomba.ui.web.bounded.limits import MOST_LISTENERS
+from roomba.ui.web.streams.events import Events
+
+_EXAMPLE: Final = """id: 7
+event: state
+data: {"type":"state","at":1760000000.1,"time":63.2,"state":"cleaning","phase":"cleaning",\
+"room":"Kitchen","battery":0.93}
+
+id: 8
+event: trouble
+data: {"type":"trouble","at":1760000009.3,"time":72.4,"message":"the dust bin is full"}
+
+"""
+_ABOUT: Final = """Each event has a number (`id`), a name (`event`) and JSON (`data`), in which `at`
+is the time of day and `time` that of the robot's clock, s:
+
+- `state`: what it does changed: `state`, `phase`, `room`, `battery`
+- `begun`: a run began
+- `ended`: a run ended: `outcome`, `message`, `covered`, `wanted`, `missed` …
+- `trouble`: what is wrong, in words; empty when all is well again
+- `missed`: that many older events (`count`) are not kept any more
+
+The stream begins with what comes next, or after the number in `Last-Event-ID` (or `after`); 200
+events are kept. Every 15 s of silence an empty line comes."""
+
+
+def events_api(events: Events) -> APIRouter:
+    """Return the route of a robot's events."""
+    api = APIRouter(prefix="/api/v1")
+    listeners: set[object] = set()
+
+    async def stream(after: int) -> AsyncIterator[str]:
+        me = object()
+        listeners.add(me)
+        try:
+            # At once, so that a program knows that it listens.
+            yield ":\n\n"
+            async for text in events.after(after):
+                yield text
+        finally:
+            listeners.discard(me)
+
+    @api.get(
+        "/events",
+        summary="What happens, as it happens",
+        description=_ABOUT,
+        response_class=StreamingResponse,
+        responses={200: {"content": {"text/event-stream": {"example": _EXAMPLE}}}},
+    )
+    async def listen(
+        after: Annotated[int | None, Query(ge=0, le=2**53)] = None,
+        last_event_id: Annotated[int | None, Header(ge=0, le=2**53)] = None,
+    ) -> StreamingResponse:
+        if len(listeners) >= MOST_LISTENERS:
+            raise HTTPException(503, f"expected at most {MOST_LISTENERS} listeners at a time")
+        wanted = after if last_event_id is None else last_event_id
+        # A number from before the server was started anew is none of its own.
+        newest = events.newest
+        start = newest if wanted is None else 0 if wanted > newest else wanted
+        return StreamingResponse(stream(start), media_type="text/event-stream")
+
+    return api

@@ -1,0 +1,101 @@
+"""Viewers of the page: each is shown the newest that it has not seen, and may drive by hand."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import json
+import time
+from typing import Final
+
+from fastapi import WebSocket, WebSocketDisconnect
+
+from roomba.client.observed import ObservedRobot
+from roomba.client.protocol import RequestRefusedError, RobotUnavailableError
+from roomba.ui.web.api import DriveWish
+from roomba.ui.web.bounded.limits import MOST_GARBAGE
+from roomba.ui.web.feed import Feed
+from roomba.ui.web.guard import Guard
+from roomba.ui.web.streams.told import text_of
+
+SENSELESS: Final = 1008
+"""The code with which a WebSocket is closed that says nothing sensible."""
+
+
+class Viewers:
+    """Serves the WebSockets of pages."""
+
+    def __init__(
+        self, feed: Feed, robot: ObservedRobot, guard: Guard, abilities: dict[str, bool]
+    ) -> None:
+        """Serve none yet; ``abilities`` are told to each page that says hello."""
+        self._feed, self._robot, self._guard = feed, robot, guard
+        self._abilities = abilities
+
+    async def serve(self, socket: WebSocket) -> None:
+        """Show a viewer all that changes, until it goes."""
+        await socket.accept()
+        hearing = asyncio.create_task(self._hear(socket))
+        showing = asyncio.create_task(self._show(socket))
+        await until_one_ends(hearing, showing)
+
+    async def _show(self, socket: WebSocket) -> None:
+        """Send the newest whenever the last was taken: a slow viewer skips what is out of date."""
+        feed = self._feed
+        number, home, trail = 0, 0, 0
+        versions = dict.fromkeys(feed.layers, 0)
+        while True:
+            number = await feed.newer(number)
+            if feed.home is not None and feed.home_version != home:
+                home = feed.home_version
+                await socket.send_text(feed.home.text)
+            for name, layer in feed.layers.items():
+                changes = layer.since(versions[name])
+                if changes is not None:
+                    versions[name] = layer.version
+                    await socket.send_bytes(changes)
+            walked = feed.trail_since(trail)
+            if walked is not None:
+                trail = walked.value["end"]
+                await socket.send_text(walked.text)
+            await socket.send_text(feed.state.text)
+
+    async def _hear(self, socket: WebSocket) -> None:
+        """Take a viewer's stream of drives by hand, which begins with the token."""
+        may_drive, garbage = False, 0
+        while garbage < MOST_GARBAGE:
+            try:
+                told = json.loads(await socket.receive_text())
+                kind = told.get("type") if isinstance(told, dict) else None
+                if kind == "hello":
+                    token = str(told.get("token", ""))
+                    may_drive = self._guard.is_token(token, time.monotonic())
+                    welcome = {"type": "welcome", "may_change": may_drive, **self._abilities}
+                    await socket.send_text(text_of(welcome))
+                elif kind == "drive":
+                    wish = DriveWish(linear=told.get("linear"), angular=told.get("angular"))
+                    if may_drive:
+                        await asyncio.to_thread(self._robot.drive, wish.linear, wish.angular)
+                else:
+                    raise ValueError(f"unknown type {kind!r}")
+                garbage = 0
+            except (RequestRefusedError, RobotUnavailableError) as refusal:
+                await socket.send_text(text_of({"type": "refused", "reason": str(refusal)}))
+            except (ValueError, KeyError, RecursionError):
+                garbage += 1
+                reason = "expected JSON with a type that is known"
+                await socket.send_text(text_of({"type": "refused", "reason": reason}))
+            # Messages that are there already come without waiting: others have their turn, too.
+            await asyncio.sleep(0)
+        await socket.close(SENSELESS, "expected JSON with a type that is known")
+
+
+async def until_one_ends(*tasks: asyncio.Task[None]) -> None:
+    """Wait until one of the tasks of a WebSocket ends, and end the others."""
+    try:
+        await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
+    finally:
+        for task in tasks:
+            task.cancel()
+            with contextlib.suppress(asyncio.CancelledError, WebSocketDisconnect, RuntimeError):
+                await task
