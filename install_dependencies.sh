@@ -161,7 +161,8 @@ system_packages() { # runtime|dev|bench, or on asking: rviz|screen|robot_state_p
     python3-visualization-msgs ros-visualization-msgs
   )
   if [[ $1 == dev ]]; then
-    packages+=(catkin-lint git systemd)
+    packages+=(catkin-lint git nodejs systemd)
+    command -v npm >/dev/null || packages+=(npm) # some packages of nodejs have it in them
     # Ubuntu's package only fetches a snap.
     ! grep -qx 'ID=debian' /etc/os-release || packages+=(chromium)
   fi
@@ -323,6 +324,25 @@ make_python_environment() { # runtime|dev
   [[ $1 != dev ]] || python_hash dev >"$VENV/.stamp-dev"
 }
 
+# ---------------------------------------------------------------- step: npm packages of the tests
+
+npm_hash() {
+  (cd "$REPOSITORY" && hash_of test/npm/package.json test/npm/package-lock.json </dev/null)
+}
+
+npm_is_current() {
+  [[ -d $CACHE/npm/node_modules ]] && stamp_is "$CACHE/npm/.stamp" "$(npm_hash)"
+}
+
+# Programs of other people that tests run as they are; none of their scripts is run.
+install_npm_packages() {
+  mkdir -p "$CACHE/npm"
+  rm -f "$CACHE/npm/.stamp"
+  cp "$REPOSITORY/test/npm/package.json" "$REPOSITORY/test/npm/package-lock.json" "$CACHE/npm"
+  (cd "$CACHE/npm" && npm ci --ignore-scripts --no-audit --no-fund)
+  npm_hash >"$CACHE/npm/.stamp"
+}
+
 # ---------------------------------------------------------------- step: the peers of the benchmarks
 
 bench_hash() {
@@ -434,6 +454,9 @@ install_dependencies() { # library|runtime|dev
   fi
   if ! python_is_current "$1"; then
     run_step "Installing Python packages into .venv" make_python_environment "$1"
+  fi
+  if [[ $1 == dev ]] && ! npm_is_current; then
+    run_step "Installing npm packages for the tests into .cache/npm" install_npm_packages
   fi
 }
 

@@ -28,6 +28,16 @@ NODE = "a part of a node, tested with the node in a graph"
 WARM = "compiles ahead of time what others test"
 
 TESTED_BY: dict[str, tuple[str, str]] = {
+    "roomba_ros/plain/details": ("ros/rosbridge/test_programs.py", NODE),
+    "roomba_ros/rosbridge/": ("ros/rosbridge/test_bridge.py", NODE),
+    "roomba/client/token": ("unit/ui/web/test_kept_token.py", "read as it is written"),
+    "roomba/ui/web/examples": ("unit/ui/web/test_guarded_routes.py", VALUES),
+    "roomba/ui/web/guarding": ("unit/ui/web/test_guarded_routes.py", "guards every route"),
+    "roomba/ui/web/bounded/limits": ("unit/ui/web/bounded/test_connections.py", VALUES),
+    "roomba/ui/web/streams/listening": ("unit/ui/web/streams/test_events.py", "their route"),
+    "roomba/ui/web/speaking": ("unit/ui/web/test_guarded_routes.py", "guards a bridge"),
+    "roomba/ui/web/streams/told": ("unit/ui/web/bounded/test_connections.py", VALUES),
+    "roomba/ui/web/viewers": ("unit/ui/web/bounded/test_connections.py", "tested by viewers"),
     "roomba_ros/supervision/enter": ("system/test_isolation.py", NODE),
     "roomba_ros/supervision/isolation": ("system/test_isolation.py", NODE),
     "roomba_ros/supervision/namespace": ("system/test_isolation.py", NODE),

@@ -15,9 +15,11 @@ from roomba.history.folder import history_folder
 from roomba.history.recorder import HistoryKeeper
 from roomba.history.run import RunSource
 from roomba.ui.web.app import create_app
-from roomba.ui.web.guard import Guard, new_token
+from roomba.ui.web.guard import Guard
+from roomba.ui.web.kept_token import kept_token
 from roomba.ui.web.server import PageServer, listen
 from roomba_ros.dashboard.graph_robot import GraphRobot
+from roomba_ros.rosbridge.bridge import RosBridge
 from roomba_ros.runtime.node import run_node
 from roomba_ros.runtime.parameters import read_robot_config
 
@@ -33,7 +35,8 @@ class DashboardNode:
     With a socket that :data:`PAGE_SOCKET` names it serves there: that of an isolated robot is
     reached from outside.
 
-    Publishes, subscribes and calls what :class:`GraphRobot` does.
+    Programs reach the graph over the same server, by rosbridge. Publishes, subscribes and calls
+    what :class:`GraphRobot` does, and what programs ask :class:`RosBridge` for.
     Parameters: ``~port`` (by default -1: 8400, or the next that is free; 0: any), ``~home`` (what
     runs are kept under in the history).
     """
@@ -42,10 +45,12 @@ class DashboardNode:
 
     def start(self) -> None:
         """Connect and serve; raises ServerError when no port is free."""
+        bridge = RosBridge()
         self._robot = GraphRobot(read_robot_config())
         self._robot.start()
-        guard = Guard(new_token())
-        self._server = PageServer(create_app(self._robot, guard, _keeper()), _bound())
+        guard = Guard(kept_token())
+        app = create_app(self._robot, guard, _keeper(), bridge)
+        self._server = PageServer(app, _bound())
         self._server.start()
         # Not to the log, which every program on the graph can read.
         print(f"The page: {self._server.address}#token={guard.token}", flush=True)

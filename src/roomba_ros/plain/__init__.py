@@ -1,0 +1,1 @@
+"""Any message as plain values for JSON, and back."""

@@ -1,0 +1,34 @@
+"""What all programs of a bridge share: topics, publishers, and threads that may wait."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from typing import TypeVar
+
+from roomba.client.protocol import RobotUnavailableError
+from roomba_ros.rosbridge.hearing import Topics
+from roomba_ros.rosbridge.limits import MOST_CALLS
+from roomba_ros.rosbridge.publishing import Publishers
+
+Value = TypeVar("Value")
+
+
+class Shared:
+    """Made in the thread of the server."""
+
+    def __init__(self) -> None:
+        """Begin with nothing."""
+        # Of its own: calls that hang keep no thread from the page.
+        self._waiting = ThreadPoolExecutor(MOST_CALLS, thread_name_prefix="rosbridge")
+        self.topics = Topics()
+        self.publishers = Publishers(self._waiting)
+
+    async def wait(self, ask: Callable[..., Value], *arguments: object) -> Value:
+        """Return an answer that may take a while; RobotUnavailableError without a master."""
+        loop = asyncio.get_running_loop()
+        try:
+            return await loop.run_in_executor(self._waiting, ask, *arguments)
+        except OSError as error:
+            raise RobotUnavailableError(f"the master does not answer: {error}") from error
