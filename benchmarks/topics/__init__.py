@@ -23,6 +23,7 @@ TOPICS: MappingProxyType[str, str] = MappingProxyType(
         "mapping": "homes explored without a map: how true the map becomes, and what that takes",
         "slam": "recorded drives of real robots, of --logs FOLDER: errors, speed, pictures",
         "ros": "round trips, and the speed of the whole graph",
+        "page": "what the page costs with one viewer and with a hundred, and how old they see it",
     }
 )
 """What each topic is about, by name, in the order in which ``./roomba bench`` runs them all."""
