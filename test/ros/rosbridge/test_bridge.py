@@ -6,6 +6,7 @@ import contextlib
 import json
 import os
 import time
+import urllib.request
 from collections.abc import Iterator
 from typing import Any
 
@@ -14,6 +15,8 @@ import rospy
 from fixtures.graph import RosGraph
 from fixtures.probe import Probe
 from fixtures.waiting import wait_until
+from geometry_msgs.msg import Point
+from roomba_robot.msg import Zone, ZoneArray
 from ros.rosbridge.conftest import Served
 from sensor_msgs.msg import Image
 from std_msgs.msg import Float32, String
@@ -143,14 +146,22 @@ def test_one_subscription_however_many_programs_listen_and_each_gets_what_is_lat
     wait_until(lambda: not heard_by_page(bridge_graph, "/newest"), WITHIN, "it hears no more")
 
 
-def test_what_the_page_hears_already_is_given_too(bridge_graph: RosGraph, reader: str) -> None:
+def test_what_the_page_has_heard_already_is_given_too(
+    bridge_graph: RosGraph, served: Served, reader: str
+) -> None:
     Probe(bridge_graph)
-    publisher = latched("/trouble", String)
-    publisher.publish("a wheel is stuck")
-    wait_until(lambda: publisher.get_num_connections() == 1, WITHIN, "the page hears it")
+    corners = [Point(0.0, 0.0, 0.0), Point(1.0, 0.0, 0.0), Point(1.0, 1.0, 0.0)]
+    latched("/zones", ZoneArray).publish(ZoneArray(zones=[Zone(name="Cables", points=corners)]))
+    home = f"http://127.0.0.1:{served.port}/api/v1/home"
+
+    def is_shown() -> bool:
+        with urllib.request.urlopen(home, timeout=WITHIN) as answer:
+            return bool(json.load(answer)["zones"])
+
+    wait_until(is_shown, WITHIN, "the page has heard it")
     with talking(reader) as program:
-        program.say(op="subscribe", topic="/trouble")
-        assert program.hear()["msg"]["data"] == "a wheel is stuck"
+        program.say(op="subscribe", topic="/zones")
+        assert program.hear()["msg"]["zones"][0]["name"] == "Cables"
 
 
 def test_a_throttled_program_gets_the_newest_and_in_the_end_the_last(

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import asyncio
 import time
 from typing import Any, Final
 
 from fastapi import Request, WebSocket
 from fastapi.responses import JSONResponse
-from starlette.types import ASGIApp, Message, Receive, Scope, Send
+from starlette.types import ASGIApp, Receive, Scope, Send
 
-from roomba.ui.web.bounded.limits import BODY_WITHIN, MOST_BODY
+from roomba.ui.web.bounded.limits import MOST_BODY
 from roomba.ui.web.guard import Guard
 
 _SAFE_METHODS: Final = ("GET", "HEAD", "OPTIONS")
@@ -54,7 +53,7 @@ class GuardedRequests:
         if refusal is not None:
             await JSONResponse({"detail": refusal[1]}, refusal[0])(scope, receive, send)
             return
-        await self._app(scope, _in_time(receive), _with_policy(send))
+        await self._app(scope, receive, _with_policy(send))
 
     def _refusal(self, request: Request) -> tuple[int, str] | None:
         headers = request.headers
@@ -76,24 +75,6 @@ class GuardedRequests:
         if scheme != "Bearer" or not self._guard.is_token(token, time.monotonic()):
             return 401, "expected the token of the printed address (Authorization: Bearer TOKEN)"
         return None
-
-
-def _in_time(receive: Receive) -> Receive:
-    """Return a receiver that takes a body which does not come for the end of the request."""
-    is_whole = False
-
-    async def receiving() -> Message:
-        nonlocal is_whole
-        if is_whole:
-            return await receive()
-        try:
-            message = await asyncio.wait_for(receive(), BODY_WITHIN)
-        except asyncio.TimeoutError:
-            return {"type": "http.disconnect"}
-        is_whole = not message.get("more_body", False)
-        return message
-
-    return receiving
 
 
 def _with_policy(send: Send) -> Send:

@@ -22,7 +22,7 @@ from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import ClientConnection, connect
 
 from roomba.ui.web.app import create_app
-from roomba.ui.web.bounded.limits import BACKLOG, MOST_CONNECTIONS
+from roomba.ui.web.bounded.limits import BACKLOG, MOST_CONNECTIONS, PING
 from roomba.ui.web.guard import Guard
 from roomba.ui.web.server import PageServer, listen
 from roomba.ui.web.streams import told
@@ -45,7 +45,16 @@ def robot() -> WrittenRobot:
 
 
 @pytest.fixture
-def server(robot: WrittenRobot) -> Iterator[PageServer]:
+def sign_of_life() -> float:
+    """s after which a viewer must give one; a test may want it sooner or later."""
+    return PING
+
+
+@pytest.fixture
+def server(
+    robot: WrittenRobot, sign_of_life: float, monkeypatch: pytest.MonkeyPatch
+) -> Iterator[PageServer]:
+    monkeypatch.setattr("roomba.ui.web.server.PING", sign_of_life)
     server = PageServer(create_app(robot, Guard(TOKEN)), listen("127.0.0.1", 0, is_fixed=True))
     server.start()
     yield server
@@ -142,19 +151,20 @@ def test_a_slow_viewer_skips_what_is_out_of_date(
     assert len(set(times)) < 100
 
 
-def test_who_never_reads_is_closed(robot: WrittenRobot, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("roomba.ui.web.server.PING", 0.3)
+@pytest.mark.parametrize("sign_of_life", [0.3])
+def test_who_never_reads_is_closed(
+    server: PageServer, robot: WrittenRobot, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr("roomba.ui.web.feed.PERIOD", 0.01)
     robot.view = replace(VIEW, scan=np.random.default_rng(1).random((9000, 2), np.float32))
-    server = PageServer(create_app(robot, Guard(TOKEN)), listen("127.0.0.1", 0, is_fixed=True))
-    server.start()
     with plug(server) as silent:
         silent.sendall(UPGRADE.format(port=port_of(server)).encode())
         wait_until(lambda: server.connections == 1, DEADLINE, "it is connected")
         wait_until(lambda: server.connections == 0, DEADLINE, "it is closed")
-    server.stop()
 
 
+# Not because it gives no sign of life.
+@pytest.mark.parametrize("sign_of_life", [1000.0])
 @pytest.mark.parametrize("frame", [b"\x89\xfd" + 4 * b"\0" + 125 * b"x", b"\x00\x80" + 4 * b"\0"])
 def test_pings_and_parts_without_end_are_ended(server: PageServer, frame: bytes) -> None:
     with plug(server) as flood:
@@ -175,7 +185,6 @@ def test_pings_and_parts_without_end_are_ended(server: PageServer, frame: bytes)
 def hasty(monkeypatch: pytest.MonkeyPatch) -> None:
     """Let requests come whole within a moment."""
     monkeypatch.setattr("roomba.ui.web.bounded.connections.BODY_WITHIN", 0.3)
-    monkeypatch.setattr("roomba.ui.web.guarding.BODY_WITHIN", 0.3)
 
 
 POST = f"POST /api/v1/clean HTTP/1.1\r\nHost: 127.0.0.1\r\nAuthorization: Bearer {TOKEN}\r\n"
