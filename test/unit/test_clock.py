@@ -21,6 +21,11 @@ def test_a_jump_is_back_or_farther_than_a_clock_goes(now: float, jump: float) ->
     assert ClockJumps(last=10.0, longest=2.0, tolerance=0.125).at(now) == pytest.approx(jump)
 
 
+def test_the_tolerance_belongs_to_the_time_that_goes_on() -> None:
+    assert ClockJumps(last=10.0, tolerance=0.125).at(9.875) == 0.0
+    assert ClockJumps(last=10.0).at(9.875) == -0.125
+
+
 def test_without_limits_only_going_back_is_a_jump() -> None:
     clock = ClockJumps(last=10.0)
     assert (clock.at(1e9), clock.at(1e9), clock.at(5.0)) == (0.0, 0.0, 5.0 - 1e9)
@@ -48,3 +53,7 @@ def test_what_is_younger_is_recent(since: float) -> None:
 def test_what_is_as_old_or_of_the_future_is_not_recent(since: float) -> None:
     heard = 1_795_391_806.4
     assert not is_recent(heard + since, heard, 0.15)
+
+
+def test_what_is_as_old_but_for_rounding_is_not_recent() -> None:
+    assert not is_recent(0.5 - 1e-6, 0.0, 0.5)

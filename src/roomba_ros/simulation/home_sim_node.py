@@ -9,19 +9,17 @@ from pathlib import Path
 
 import rospy
 from geometry_msgs.msg import PoseStamped
-from geometry_msgs.msg import Twist as TwistMessage
 from nav_msgs.msg import OccupancyGrid, Odometry
 from rosgraph_msgs.msg import Clock
-from std_msgs.msg import Float32, String, Time
+from std_msgs.msg import Float32, Time
 from tf2_msgs.msg import TFMessage
 
 from roomba.clock import ClockJumps
 from roomba.configuration.seed import SeedParameters
 from roomba.configuration.simulation import SimulatedRobotConfig
-from roomba.control.drive_gate import DriveGate
 from roomba.errors import ConfigError, RoombaError
 from roomba.files.shipped import HOMES
-from roomba.geometry import Pose, Twist
+from roomba.geometry import Pose
 from roomba.world.home.home import Home
 from roomba.world.layers.layer import load_home
 from roomba.world.simulator import Observation, Simulator
@@ -30,10 +28,9 @@ from roomba_ros.convert.common import (
     odometry_message,
     pose_message,
     transform_message,
-    twist_of,
 )
 from roomba_ros.convert.readings import StampedPose, stamped_pose_of
-from roomba_ros.convert.values import data_of, duty_of, time_of
+from roomba_ros.convert.values import duty_of, time_of
 from roomba_ros.localization import kept_pose
 from roomba_ros.runtime import progress
 from roomba_ros.runtime.node import (
@@ -51,10 +48,10 @@ from roomba_ros.runtime.parameters import (
     read_nodes_config,
     read_simulated_config,
 )
-from roomba_ros.runtime.senders import SPEED_NODE, OnlyFrom
 from roomba_ros.runtime.subscriptions import subscribe, tell_refusals
 from roomba_ros.runtime.ticker import Ticker
 from roomba_ros.simulation.camera_topics import CameraTopics
+from roomba_ros.simulation.drive_link import DriveLink
 from roomba_ros.simulation.frames import BodyFrames
 from roomba_ros.simulation.sensor_topics import SensorTopics
 from roomba_ros.simulation.sim_services import SimServices
@@ -73,11 +70,10 @@ class HomeSimNode:
     the docked robot stands on that map, its nose to the station), ``odom`` (20 Hz, by the wheel
     encoders), ``/tf`` (odom -> base_link, and of that the wheels), ``/tf_static`` (where the
     sensors are on the body), and what :class:`SensorTopics` and :class:`CameraTopics` tell.
-    Subscribes: ``cmd_vel_out`` (Twist; older than the drive's time-out it stops) and
-    ``emergency_stop`` (String; while it says a reason the wheels stand), of ``~drive_owner`` alone;
-    ``pose`` (PoseStamped) and the ``progress`` (Time) of :data:`progress.NODES`: a robot that is
-    late, on a busy machine, is waited for; ``main_brush_motor``, ``vacuum_motor`` (Float32, duty
-    0..1, of brush and fan).
+    Subscribes: what :class:`DriveLink` hears (``cmd_vel_out``, ``emergency_stop``); ``pose``
+    (PoseStamped) and the ``progress`` (Time) of :data:`progress.NODES`: a robot that is late, on a
+    busy machine, is waited for; ``main_brush_motor``, ``vacuum_motor`` (Float32, duty 0..1, of
+    brush and fan).
     Services: those of :class:`CameraTopics` and :class:`SimServices`.
     Parameters: ``~home`` (name or path), ``~homes_directory``, ``~speed`` (robot seconds per second
     of wall time), ``~seed``, ``~clock`` (false for all but one of several robots, which go by that
@@ -103,10 +99,9 @@ class HomeSimNode:
         self._owns_clock = rospy.get_param("~clock", True)
         if not isinstance(self._owns_clock, bool):
             raise ConfigError(f"parameter ~clock: expected true or false, got {self._owns_clock!r}")
-        self._drive_owner = _drive_owner_parameter()
-        self._simulator = self._make_simulator()
         self._lock = threading.Lock()
-        self._gate = DriveGate(self._config.body.command_timeout)
+        self._drive = DriveLink(self._config.body.command_timeout, self._lock)
+        self._simulator = self._make_simulator()
         self._clock = self._first_clock()
         self._jumps = ClockJumps(last=self._now(), longest=_LONGEST_STEP)
         self._ticks = 0
@@ -149,7 +144,7 @@ class HomeSimNode:
             self._simulator.max_speed = max_speed
             step = self._timing.world_step
             for _ in range(self._timing.steps_per_tick):
-                self._simulator.advance(self._gate.step(step), step, 1)
+                self._simulator.advance(self._drive.step(step), step, 1)
             observation = self._simulator.observe()
             self._clock += self._nanoseconds
             now = self._told = self._now()
@@ -220,11 +215,7 @@ class HomeSimNode:
             self._simulator, self._config.camera, self._nodes.periods.pictures, self._lock
         )
         self._services = SimServices(self._simulator, self._lock)
-        for topic, kind, convert, take in (
-            ("cmd_vel_out", TwistMessage, twist_of, self._on_command),
-            ("emergency_stop", String, data_of, self._on_emergency_stop),
-        ):
-            subscribe(topic, kind, convert, take, tcp_nodelay=True, senders=self._drive_owner)
+        self._drive.start()
         self._parts = {
             _POSE: subscribe("pose", PoseStamped, stamped_pose_of, self._on_pose, tcp_nodelay=True)
         }
@@ -253,14 +244,6 @@ class HomeSimNode:
     def _on_pose(self, told: StampedPose) -> None:
         self._pace.heard(_POSE, told.stamp)
 
-    def _on_command(self, twist: Twist) -> None:
-        with self._lock:
-            self._gate.command(twist)
-
-    def _on_emergency_stop(self, reason: str) -> None:
-        with self._lock:
-            self._gate.hold(bool(reason))
-
     def _on_power(self, motor: str, duty: float) -> None:
         with self._lock:
             self._simulator.set_power(**{motor: duty})
@@ -274,14 +257,6 @@ def _config_with_sensors(config: SimulatedRobotConfig) -> SimulatedRobotConfig:
     if wheels not in ("factory", "worn"):
         raise ConfigError(f"parameter ~wheels: expected factory or worn, got {wheels!r}")
     return config.with_sensors(sensors).with_wheels(wheels)
-
-
-def _drive_owner_parameter() -> OnlyFrom | None:
-    """Return which nodes may drive; None: any."""
-    name = rospy.get_param("~drive_owner", SPEED_NODE)
-    if not isinstance(name, str) or not name:
-        raise ConfigError(f"parameter ~drive_owner: expected a node's name, or any, got {name!r}")
-    return None if name == "any" else OnlyFrom(name)
 
 
 def _tells_map_parameter() -> bool:

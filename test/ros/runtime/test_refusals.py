@@ -40,6 +40,13 @@ def test_a_refusal_is_news_for_ten_seconds() -> None:
     assert not refusals.is_recent(20.0)
 
 
+def test_several_topics_are_summed_up_one_after_the_other() -> None:
+    refusals = Refusals()
+    for topic in ("b", "a", "a", "c"):
+        refusals.note(1.0, topic, NAN)
+    assert refusals.take_line(1.0) == f"c refused: {NAN}; 3 more refused: 2 on a, 1 on b"
+
+
 @given(st.lists(st.tuples(st.floats(0.0, 0.7), st.sampled_from("abc")), min_size=1, max_size=80))
 def test_lines_are_a_second_apart_and_tell_every_message(
     noted: list[tuple[float, str]],

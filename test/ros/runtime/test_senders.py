@@ -26,6 +26,14 @@ def test_only_the_named_node_is_let_through() -> None:
         rule.check("/evil")
 
 
+def test_before_a_message_there_is_no_conflict(clock: list[float]) -> None:
+    clock[0] = 0.0
+    assert OneSender().conflict == ""
+    rule = OneSender()
+    rule.check("/own")
+    assert rule.conflict == ""
+
+
 def test_the_first_sender_counts_and_a_second_one_is_noticed(clock: list[float]) -> None:
     rule = OneSender()
     rule.check("/own")

@@ -16,6 +16,16 @@ def test_it_stands_before_a_command() -> None:
     assert DriveGate(TIMEOUT).step(STEP) == STANDSTILL
 
 
+def test_it_is_not_held_at_first() -> None:
+    assert DriveGate(TIMEOUT).is_held is False
+
+
+def test_a_step_that_begins_within_the_time_out_is_driven() -> None:
+    gate = DriveGate(0.5)
+    gate.command(AHEAD)
+    assert [gate.step(1.0), gate.step(1.0)] == [AHEAD, STANDSTILL]
+
+
 def test_a_command_counts_until_its_time_out() -> None:
     gate = DriveGate(TIMEOUT)
     gate.command(AHEAD)

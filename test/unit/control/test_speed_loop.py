@@ -115,6 +115,43 @@ def test_a_pressed_bumper_makes_it_back_off_a_little_and_never_push() -> None:
     assert speed_loop.tick(2.0) == (Twist(-BODY.backing_speed, 0.0), Hold.BUMPER)
 
 
+def test_a_hazard_that_is_told_again_and_again_does_not_begin_anew() -> None:
+    for hazard, lasts in (
+        (Hazards(bumper=True), BODY.bumper_backing_time),
+        (Hazards(cliff=True), BODY.cliff_backing_time),
+    ):
+        speed_loop = loop()
+        for tick in range(60):
+            now = 0.125 * tick
+            speed_loop.set_hazards(hazard)
+            speed_loop.command(now, Twist(0.3, 0.0))
+            backs_off = speed_loop.tick(now)[0].linear < 0.0
+            assert backs_off == (now <= lasts), now
+
+
+def test_it_backs_off_to_the_end_of_its_time() -> None:
+    speed_loop = loop()
+    speed_loop.set_hazards(Hazards(bumper=True))
+    for now, backs_off in ((0.0, True), (BODY.bumper_backing_time, True), (0.61, False)):
+        speed_loop.command(now, Twist(0.3, 0.0))
+        assert (speed_loop.tick(now)[0].linear < 0.0) == backs_off
+
+
+def test_it_is_not_held_at_first() -> None:
+    assert loop().emergency is False
+
+
+def test_after_the_clock_was_set_back_it_backs_off_no_longer_than_ever() -> None:
+    speed_loop = loop()
+    speed_loop.set_hazards(Hazards(cliff=True))
+    for began in (1000.0, 10.0):
+        for tick in range(40):
+            now = began + 0.125 * tick
+            speed_loop.command(now, Twist(0.3, 0.0))
+            backs_off = speed_loop.tick(now)[0].linear < 0.0
+            assert backs_off == (now - began <= BODY.cliff_backing_time), now
+
+
 def test_a_pressed_bumper_lets_it_turn_and_drive_backwards() -> None:
     speed_loop = loop()
     speed_loop.set_hazards(Hazards(bumper=True))

@@ -39,7 +39,18 @@ PROGRAMS = {"rostopic", "rosservice", "roscore", "rosparam", "rosbag", "bash"}
 """What ``./roomba exec`` runs of others, whose arguments are theirs."""
 MENTIONED = {"import valetudo", "map --bag", "emulate"}
 """What the text names without the rest of the line."""
-SUITES = {"lint", "unit", "conformance", "web", "contract", "ros", "system", "missions", "install"}
+SUITES = {
+    "lint",
+    "unit",
+    "conformance",
+    "safety",
+    "web",
+    "contract",
+    "ros",
+    "system",
+    "missions",
+    "install",
+}
 
 
 class Parsed(Exception):  # noqa: N818 - it is no error

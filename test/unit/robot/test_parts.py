@@ -23,7 +23,7 @@ from roomba.perception.localization.estimate import Estimate, Knowledge
 from roomba.perception.matching.scan_view import LidarModel, PlacedScan
 from roomba.robot.command import Command
 from roomba.robot.place import PlaceKeeper
-from roomba.robot.readings import Readings, ScanReading, senses_of
+from roomba.robot.readings import CliffReading, Readings, ScanReading, senses_of
 from roomba.world.engine.state.arrays import Fault
 
 LIDAR = LidarModel.all_around(8, 0.1, 5.0)
@@ -84,6 +84,29 @@ def test_senses_are_what_sensors_tell_and_where_it_believes_to_be() -> None:
     assert senses.beams == StationBeams()
     robot.simulator.inject(Fault.LIFTED, 1.0)
     assert senses_of(passed(robot), *believed).lifted
+
+
+@pytest.mark.parametrize("sensor", ["left", "front_left", "front_right", "right"])
+def test_each_cliff_sensor_is_one_of_a_side(sensor: str) -> None:
+    readings = Readings(1.0, Pose(), cliff=CliffReading(**{sensor: True}))
+    senses = senses_of(readings, Pose(), Knowledge.KNOWN)
+    assert readings.hazards == Hazards(cliff=True)
+    assert (senses.cliff_left, senses.cliff_right) == ("left" in sensor, "right" in sensor)
+
+
+@pytest.mark.parametrize("side", ["left", "right"])
+def test_one_side_of_the_bumper_and_one_wheel_are_enough(side: str) -> None:
+    pressed = Readings(1.0, Pose(), **{f"bumper_{side}": True})  # type: ignore[arg-type]
+    assert pressed.hazards == Hazards(bumper=True)
+    dropped = Readings(1.0, Pose(), **{f"dropped_{side}": True})  # type: ignore[arg-type]
+    assert dropped.hazards == Hazards(wheel_drop=True)
+    assert senses_of(dropped, Pose(), Knowledge.KNOWN).lifted
+    assert not dropped.is_lifted
+
+
+def test_what_is_counted_and_weighed_is_sensed_at_its_time() -> None:
+    senses = senses_of(Readings(7.5, Pose(), grains=3.0, in_bin=0.5), Pose(), Knowledge.KNOWN)
+    assert (senses.now, senses.grains, senses.in_bin, senses.trouble) == (7.5, 3.0, 0.5, "")
 
 
 def test_without_a_gyro_the_wheels_tell_how_it_turns() -> None:

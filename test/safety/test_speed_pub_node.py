@@ -1,0 +1,364 @@
+"""The speed node without a graph: what it tells the drive, and when."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Any
+
+import pytest
+import rospy
+from fixtures.lockstep import Lockstep
+from geometry_msgs.msg import Twist as TwistMessage
+from nav_msgs.msg import Odometry
+from roomba_robot.msg import Bumper, Cliff, WheelDrop
+from roomba_robot.srv import EmergencyStop, EmergencyStopRequest
+from std_msgs.msg import Float32, String
+
+from roomba.geometry import STANDSTILL, Twist
+from roomba_ros.convert.common import twist_message, twist_of
+from roomba_ros.speed import speed_pub_node
+from roomba_ros.speed.speed_pub_node import EMERGENCY_PARAMETER, SpeedPubNode
+
+TICK = 0.05
+AHEAD = Twist(0.3, 0.1)
+
+
+@dataclass
+class Rig:
+    """The node, and what it told."""
+
+    graph: Lockstep
+    node: SpeedPubNode = field(default_factory=SpeedPubNode)
+    driven: list[Twist] = field(default_factory=list)
+    speeds: list[float] = field(default_factory=list)
+    held: list[str] = field(default_factory=list)
+
+    def start(self, **parameters: object) -> Rig:
+        """Start the node and listen to it."""
+        for name, value in parameters.items():
+            self.graph.parameters[f"/{name}"] = value
+        self.graph.hear("cmd_vel_out", lambda told: self.driven.append(twist_of(told)))
+        self.graph.hear("speed", lambda told: self.speeds.append(told.data))
+        self.graph.hear("emergency_stop", lambda told: self.held.append(told.data))
+        self.graph.start("speed_pub_node", self.node)
+        return self
+
+    def told(self, topic: str, message: Any) -> list[Twist]:
+        """Return what the drive is told at once when a message comes."""
+        before = len(self.driven)
+        self.graph.publish(topic, message)
+        return self.driven[before:]
+
+    def ticked(self, seconds: float = TICK) -> list[Twist]:
+        """Return what the drive is told at a tick."""
+        before = len(self.driven)
+        self.graph.tick(seconds)
+        return self.driven[before:]
+
+    def stop(self, reason: str = "fire", *, engage: bool = True) -> str:
+        """Call the emergency stop; return its answer."""
+        request = EmergencyStopRequest(engage, reason)
+        answer = self.graph.call("/emergency_stop", request)
+        self.graph.deliver()
+        assert answer.success
+        return str(answer.message)
+
+
+@pytest.fixture
+def rig() -> Iterator[Rig]:
+    with Lockstep().installed() as graph:
+        yield Rig(graph)
+
+
+def test_a_command_is_passed_on_at_once_and_then_at_ticks_until_it_is_old(rig: Rig) -> None:
+    rig.start()
+    assert rig.node.period == TICK
+    assert rig.told("cmd_vel", twist_message(AHEAD)) == [AHEAD]
+    assert [rig.ticked() for _ in range(4)] == [[AHEAD], [AHEAD], [STANDSTILL], [STANDSTILL]]
+
+
+def test_of_a_flood_the_first_message_of_each_topic_is_passed_on_between_ticks(rig: Rig) -> None:
+    rig.start()
+    for _ in range(3):
+        assert rig.told("cmd_vel", twist_message(AHEAD)) == [AHEAD]
+        assert rig.told("cmd_vel", twist_message(Twist(0.1, 0.0))) == []
+        assert rig.told("cmd_vel", twist_message(AHEAD)) == []
+        assert rig.told("cmd_vel_mission", twist_message(Twist(0.1, 0.0))) == [AHEAD]
+        assert rig.told("change_speed", Float32(0.4)) == [AHEAD]
+        assert rig.told("change_speed", Float32(0.45)) == []
+        assert rig.ticked() == [AHEAD]
+
+
+@pytest.mark.parametrize("parts", [(math.nan, 0.0), (0.0, math.inf)])
+def test_what_is_no_number_drives_nothing(rig: Rig, parts: tuple[float, float]) -> None:
+    rig.start()
+    message = TwistMessage()
+    message.linear.x, message.angular.z = parts
+    assert rig.told("cmd_vel", message) == []
+    assert rig.ticked() == [STANDSTILL]
+
+
+def test_a_speed_that_is_wanted_limits_what_is_driven(rig: Rig) -> None:
+    rig.start()
+    rig.told("change_speed", Float32(0.1))
+    assert rig.told("cmd_vel", twist_message(Twist(0.3, 0.3))) == [Twist(0.1, 0.1)]
+    assert rig.told("change_speed", Float32(-1.0)) == []
+    assert rig.ticked() == [Twist(0.1, 0.1)]
+
+
+def test_the_robots_top_speed_limits_what_is_driven_from_the_next_tick_on(rig: Rig) -> None:
+    rig.start(robot_max_speed=0.2)
+    assert rig.told("cmd_vel", twist_message(Twist(0.4, 0.4))) == [Twist(0.2, 0.2)]
+    rospy.set_param("/robot_max_speed", -9.0)
+    rig.graph.tick(TICK)
+    assert rospy.get_param("/robot_max_speed") == 0.2
+    rospy.set_param("/robot_max_speed", 0.1)
+    rig.graph.tick(TICK)
+    rig.told("cmd_vel", twist_message(Twist(0.4, 0.4)))
+    assert rig.ticked() == [Twist(0.1, 0.1)]
+
+
+@pytest.mark.parametrize(
+    ("topic", "on", "off", "driven"),
+    [
+        ("bumper", Bumper(is_left_pressed=True), Bumper(), Twist(-0.1, 0.0)),
+        ("bumper", Bumper(is_right_pressed=True), Bumper(), Twist(-0.1, 0.0)),
+        ("cliff", Cliff(is_cliff_front_left=True), Cliff(), Twist(-0.1, 0.0)),
+        ("wheel_drop", WheelDrop(is_left_dropped=True), WheelDrop(), STANDSTILL),
+        ("wheel_drop", WheelDrop(is_right_dropped=True), WheelDrop(), STANDSTILL),
+    ],
+)
+def test_a_hazard_is_obeyed_at_once_and_its_end_at_the_next_tick(
+    rig: Rig, topic: str, on: Any, off: Any, driven: Twist
+) -> None:
+    rig.start()
+    rig.told("cmd_vel", twist_message(AHEAD))
+    assert rig.told(topic, on) == [driven]
+    assert rig.told(topic, on) == []
+    assert rig.ticked() == [driven]
+    assert rig.told(topic, off) == []
+    rig.told("cmd_vel", twist_message(AHEAD))
+    assert rig.ticked() == [AHEAD]
+
+
+def test_hazards_and_a_wanted_speed_do_not_use_up_each_others_turn(rig: Rig) -> None:
+    rig.start()
+    rig.told("cmd_vel", twist_message(AHEAD))
+    assert rig.told("change_speed", Float32(0.4)) == [AHEAD]
+    assert rig.told("bumper", Bumper(is_left_pressed=True)) == [Twist(-0.1, 0.0)]
+    assert rig.told("wheel_drop", WheelDrop(is_left_dropped=True)) == [STANDSTILL]
+
+
+def test_one_hazard_ends_and_the_other_stays(rig: Rig) -> None:
+    rig.start()
+    rig.told("wheel_drop", WheelDrop(is_left_dropped=True))
+    rig.told("bumper", Bumper(is_left_pressed=True))
+    rig.told("bumper", Bumper())
+    rig.told("cmd_vel", twist_message(AHEAD))
+    assert rig.ticked() == [STANDSTILL]
+
+
+def test_why_the_drive_is_held_is_logged_once(rig: Rig, monkeypatch: pytest.MonkeyPatch) -> None:
+    lines: list[str] = []
+    monkeypatch.setattr(rospy, "loginfo", lambda text, *rest: lines.append(text % rest))
+    rig.start()
+    rig.ticked()
+    rig.told("bumper", Bumper(is_left_pressed=True))
+    for _ in range(3):
+        rig.told("cmd_vel", twist_message(AHEAD))
+        rig.ticked()
+    rig.told("bumper", Bumper())
+    rig.told("cmd_vel", twist_message(AHEAD))
+    rig.ticked()
+    for _ in range(5):
+        rig.ticked()
+    assert lines == ["the drive is held: the bumper is pressed"]
+
+
+def test_the_services_and_topics_that_wait_are_by_their_types(
+    rig: Rig, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    served: list[object] = []
+    serve = rospy.Service
+
+    def watched(name: str, kind: type, handler: Any) -> Any:
+        served.extend((name, kind))
+        return serve(name, kind, handler)
+
+    monkeypatch.setattr(rospy, "Service", watched)
+    rig.start()
+    assert served == ["emergency_stop", EmergencyStop]
+
+
+def test_the_emergency_stop_holds_at_once_is_told_and_answered(rig: Rig) -> None:
+    rig.start()
+    assert rig.held == [""]
+    rig.told("cmd_vel", twist_message(AHEAD))
+    before = len(rig.driven)
+    assert rig.stop("smoke") == "the drive is held: smoke"
+    assert rig.driven[before:] == [STANDSTILL]
+    assert rig.held == ["", "smoke"]
+    assert rospy.get_param(EMERGENCY_PARAMETER) == "smoke"
+    assert rig.ticked() == [STANDSTILL]
+    assert rig.told("cmd_vel", twist_message(AHEAD)) == [STANDSTILL]
+    before = len(rig.driven)
+    assert rig.stop("ignored", engage=False) == "the drive is free again"
+    assert rig.driven[before:] == [STANDSTILL]
+    assert rig.held == ["", "smoke", ""]
+    assert rospy.get_param(EMERGENCY_PARAMETER) == ""
+    assert rig.ticked() == [STANDSTILL]
+    assert rig.told("cmd_vel", twist_message(AHEAD)) == [AHEAD]
+    assert rig.stop(engage=False) == "the drive was not held"
+    assert rig.graph.logged == [
+        "emergency stop: smoke",
+        "emergency stop released",
+        "emergency stop released",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("reason", "shown"),
+    [
+        ("", "no reason was given"),
+        (" \n\0 ", "no reason was given"),
+        ("  a\nb\x1b[31m ", "a b [31m"),
+        (1000 * "a", 200 * "a"),
+        ("100 % sure: %s %d", "100 % sure: %s %d"),
+    ],
+)
+def test_no_text_of_a_reason_keeps_the_robot_from_it(rig: Rig, reason: str, shown: str) -> None:
+    rig.start()
+    assert rig.stop(reason) == f"the drive is held: {shown}"
+    assert rig.held == ["", shown]
+    assert rig.graph.logged == [f"emergency stop: {shown}"]
+    rig.told("cmd_vel", twist_message(AHEAD))
+    assert rig.ticked() == [STANDSTILL]
+
+
+def test_a_node_that_was_killed_holds_again(rig: Rig) -> None:
+    rig.start(emergency_stop="smoke")
+    assert rig.held == ["smoke"]
+    assert rig.graph.logged == ["the emergency stop still holds the drive: smoke"]
+    rig.told("cmd_vel", twist_message(AHEAD))
+    assert rig.ticked() == [STANDSTILL]
+    assert rig.stop(engage=False) == "the drive is free again"
+
+
+@pytest.mark.parametrize("kept", ["", 7, True, ["fire"], None])
+def test_what_is_kept_and_no_reason_holds_nothing(rig: Rig, kept: object) -> None:
+    rig.start(emergency_stop=kept)
+    assert rig.held == [""]
+    assert rig.graph.logged == []
+    assert rig.told("cmd_vel", twist_message(AHEAD)) == [AHEAD]
+
+
+def test_a_master_that_is_gone_does_not_keep_it_from_holding(
+    rig: Rig, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    rig.start()
+
+    def gone(*_: object) -> None:
+        raise ConnectionRefusedError(111, "refused")
+
+    monkeypatch.setattr(rospy, "set_param", gone)
+    answer = rig.stop("smoke")
+    assert answer.startswith(
+        "the drive is held: smoke; but the master does not keep that, should this node end: "
+    )
+    assert "refused" in answer
+    rig.told("cmd_vel", twist_message(AHEAD))
+    assert rig.ticked() == [STANDSTILL]
+
+
+def odometry(linear: float) -> Odometry:
+    message = Odometry()
+    message.pose.pose.orientation.w = 1.0
+    message.twist.twist.linear.x = linear
+    return message
+
+
+def test_the_speed_is_told_ten_times_a_second_once_the_wheels_say_it(rig: Rig) -> None:
+    rig.start()
+    for _ in range(4):
+        rig.ticked()
+    assert rig.speeds == []
+    for number in range(1, 9):
+        rig.graph.publish("odom", odometry(-0.01 * number))
+        rig.ticked()
+    assert rig.speeds == pytest.approx([0.01, 0.03, 0.05, 0.07])
+
+
+def test_the_speed_is_told_after_the_clock_was_set_back(rig: Rig) -> None:
+    rig.start()
+    rig.graph.publish("odom", odometry(0.2))
+    rig.node.tick(1000.0)
+    rig.node.tick(900.0)
+    rig.node.tick(900.05)
+    rig.graph.deliver()
+    assert rig.speeds == pytest.approx([0.2, 0.2])
+
+
+def test_the_speed_is_told_once_while_the_clock_stands(rig: Rig) -> None:
+    rig.start()
+    rig.graph.publish("odom", odometry(0.2))
+    for _ in range(3):
+        rig.node.tick(1000.0)
+    rig.graph.deliver()
+    assert rig.speeds == pytest.approx([0.2])
+
+
+def test_it_stops_the_drive_when_it_ends(rig: Rig) -> None:
+    rig.start()
+    rig.told("cmd_vel", twist_message(AHEAD))
+    rig.node.stop()
+    rig.graph.deliver()
+    assert rig.driven[-1] == STANDSTILL
+
+
+def test_it_runs_under_its_name(monkeypatch: pytest.MonkeyPatch) -> None:
+    ran: list[object] = []
+    monkeypatch.setattr(speed_pub_node, "run_node", lambda *about: ran.extend(about))
+    speed_pub_node.main()
+    assert ran == ["speed_pub_node", SpeedPubNode]
+
+
+def test_the_newest_message_alone_waits_and_commands_go_out_without_delay(
+    rig: Rig, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A queue would be driven later; Nagle's algorithm holds small messages back."""
+    publishers: dict[str, dict[str, Any]] = {}
+    advertise = rospy.Publisher
+
+    def watched(name: str, kind: type, **options: Any) -> Any:
+        publishers[name] = {"kind": kind, **options}
+        return advertise(name, kind, **options)
+
+    subscribers: dict[str, dict[str, Any]] = {}
+    subscribe = rospy.Subscriber
+
+    def heard(name: str, kind: type, hear: Any, **options: Any) -> Any:
+        subscribers[name] = {"kind": kind, **options}
+        return subscribe(name, kind, hear, **options)
+
+    monkeypatch.setattr(rospy, "Publisher", watched)
+    monkeypatch.setattr(rospy, "Subscriber", heard)
+    rig.start()
+    assert publishers == {
+        "speed": {"kind": Float32, "queue_size": 1},
+        "cmd_vel_out": {"kind": TwistMessage, "queue_size": 1, "tcp_nodelay": True},
+        "emergency_stop": {"kind": String, "queue_size": 1, "latch": True},
+    }
+    at_once = {
+        "bumper": Bumper,
+        "cliff": Cliff,
+        "wheel_drop": WheelDrop,
+        "cmd_vel": TwistMessage,
+        "cmd_vel_mission": TwistMessage,
+    }
+    later = {"odom": Odometry, "change_speed": Float32}
+    assert subscribers == {
+        name: {"kind": kind, "queue_size": 1, "tcp_nodelay": name in at_once}
+        for name, kind in (at_once | later).items()
+    }
