@@ -1,5 +1,6 @@
 """What becomes of the mission's messages; no graph is needed for that."""
 
+import io
 import math
 
 import numpy as np
@@ -29,7 +30,7 @@ from roomba.perception.matching.surface_field import SurfaceField
 from roomba.perception.rooms.rooms import Rooms
 from roomba.perception.rooms.zones import Zone, ZoneKind, Zones, ZonesError
 from roomba.perception.swept.coverage_bits import SWEPT, WANTED
-from roomba.vocabulary import CleanMode, FanLevel
+from roomba.vocabulary import CleanMode, FanLevel, RoomWay
 from roomba_ros.convert.mission import (
     battery_of,
     beams_of,
@@ -65,6 +66,22 @@ def test_goals_say_what_is_wanted() -> None:
     assert request_of(spot).spot == (1.0, 2.0)
     spot.spot_is_here = True
     assert request_of(spot).spot is None
+
+
+def test_each_room_of_a_goal_can_have_its_own_way() -> None:
+    goal = CleanGoal(
+        mode=CleanGoal.ROOMS, rooms=["Kitchen", "Hall"], room_passes=[2, 1], room_fans=[1, 2]
+    )
+    ways = RoomWay(2, FanLevel.QUIET), RoomWay(1, FanLevel.STRONG)
+    assert request_of(goal).each == ways
+    sent = io.BytesIO()
+    goal.serialize(sent)
+    came = CleanGoal().deserialize(sent.getvalue())
+    assert request_of(came).each == ways
+    for passes, fans in (([2], []), ([2, 1], [1, 7]), ([2], [1])):
+        goal.room_passes, goal.room_fans = passes, fans
+        with pytest.raises(CleanRefusedError, match=r"each of the 2 rooms|passes of rooms"):
+            request_of(goal)
 
 
 @pytest.mark.parametrize(

@@ -16,6 +16,12 @@ from roomba.ui.web.guard import Guard, new_token
 from roomba.ui.web.server import PageServer, listen
 
 SIZES = {"desktop": (1440, 900), "phone": (390, 844)}
+PIXELS = """async ([x, y]) => {
+    const { toScreen } = await import("/map/view.js");
+    const box = document.getElementById("floor").getBoundingClientRect();
+    const [px, py] = toScreen(x, y);
+    return [px + box.left, py + box.top];
+}"""
 
 
 @dataclass
@@ -29,6 +35,36 @@ class Opened:
 
     def phase(self) -> str:
         return self.robot.robot().vacuum.phase
+
+    def show(self, part: str) -> None:
+        """Open a part of the commands: on a phone they lie in a sheet."""
+        tab = self.page.locator(f"[data-tab={part}]")
+        if tab.is_visible() and tab.get_attribute("aria-expanded") == "false":
+            tab.click()
+
+    def show_map(self) -> None:
+        """Close the sheet again, if there is one."""
+        for tab in self.page.locator("[data-tab][aria-expanded=true]").all():
+            if tab.is_visible():
+                tab.click()
+
+    def pixels(self, x: float, y: float) -> tuple[float, float]:
+        """Return where a place of the floor is on the window."""
+        left, top = self.page.evaluate(PIXELS, [x, y])
+        return left, top
+
+    def tap(self, x: float, y: float) -> None:
+        """Tap a place of the floor, m."""
+        self.page.mouse.click(*self.pixels(x, y))
+
+    def drag(self, *places: tuple[float, float]) -> None:
+        """Drag with the mouse over places of the floor, m."""
+        mouse, (first, *others) = self.page.mouse, places
+        mouse.move(*self.pixels(*first))
+        mouse.down()
+        for place in others:
+            mouse.move(*self.pixels(*place), steps=3)
+        mouse.up()
 
     def wait_for_phase(self, phase: str) -> None:
         """Wait until the page says that the robot is in a phase."""

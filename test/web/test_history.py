@@ -58,6 +58,7 @@ def test_a_run_that_ended_is_looked_back_at(opened: Opened, history: History) ->
     page = opened.page
     page.get_by_role("button", name="Clean all").click()
     opened.wait_for_phase("cleaning")
+    opened.show("more")
     page.locator("#charts summary").click()
     page.wait_for_function(
         """() => {
@@ -83,6 +84,7 @@ def test_a_run_that_ended_is_looked_back_at(opened: Opened, history: History) ->
 
 def test_reports_open_and_two_are_compared(opened: Opened) -> None:
     page = opened.page
+    opened.show("more")
     page.get_by_role("button", name="History").click()
     with page.context.expect_page() as shown:
         page.get_by_role("link", name="Report of run 2").click()
@@ -107,6 +109,7 @@ def test_reports_open_and_two_are_compared(opened: Opened) -> None:
 def test_it_can_be_read_and_touched(opened: Opened, scheme: str) -> None:
     page = opened.page
     page.emulate_media(color_scheme="dark" if scheme == "dark" else "light")
+    opened.show("more")
     page.get_by_role("button", name="History").click()
     page.locator("#history-runs tr").first.wait_for()
     assert [(text, ratio) for text, ratio in page.evaluate(CONTRASTS) if ratio < 4.5] == []

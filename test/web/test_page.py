@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
 import pytest
 from fixtures.waiting import wait_until
+from PIL import Image
 from web.conftest import Opened
 
+from roomba.headless.cleaner import HeadlessMission
 from roomba.ui.web.app import create_app
 from roomba.ui.web.server import PageServer, listen
+from roomba.vocabulary import FanLevel, RoomWay
 
 DEADLINE = 20.0
 """s of wall time."""
@@ -53,20 +57,6 @@ CONTROLS = """() => [...document.querySelectorAll("button, select, summary, canv
     })"""
 
 
-def pixels(opened: Opened, x: float, y: float) -> tuple[float, float]:
-    """Return where a place of the floor is on the window."""
-    place = opened.page.evaluate(
-        """async ([x, y]) => {
-            const { toScreen } = await import("/map/view.js");
-            const box = document.getElementById("floor").getBoundingClientRect();
-            const [px, py] = toScreen(x, y);
-            return [px + box.left, py + box.top];
-        }""",
-        [x, y],
-    )
-    return place[0], place[1]
-
-
 def colours(opened: Opened) -> int:
     """Return how many different colours the map has."""
     return int(opened.page.evaluate(COUNT_COLOURS))
@@ -77,12 +67,15 @@ def test_the_map_is_drawn_and_the_state_is_said(opened: Opened) -> None:
     assert page.inner_text("#headline") == "On its station, ready"
     assert "%" in page.inner_text("#battery")
     names = [room.name for room in opened.robot.home().rooms]
-    assert page.locator("#rooms .name").all_inner_texts() == names
+    opened.show("rooms")
+    shown = page.locator("#rooms .name").all_text_contents()
+    assert shown == names
     assert colours(opened) > 20
 
 
 def test_a_person_cleans_two_rooms_in_order(opened: Opened) -> None:
     page = opened.page
+    opened.show("rooms")
     kitchen = page.get_by_role("button", name="kitchen")
     page.get_by_role("button", name="hallway").click()
     kitchen.click()
@@ -108,35 +101,39 @@ def test_a_person_cleans_two_rooms_in_order(opened: Opened) -> None:
 def test_tapping_the_map_chooses_a_room_or_cleans_a_spot(opened: Opened) -> None:
     page = opened.page
     room = opened.robot.home().rooms[0]
-    page.mouse.click(*pixels(opened, *room.anchor))
-    page.get_by_role("button", name=f"Choose {room.name}").click()
-    assert page.locator("#rooms [aria-pressed=true] .name").inner_text() == room.name
-    page.mouse.click(*pixels(opened, *room.anchor))
+    opened.tap(*room.anchor)
+    page.get_by_text(f"{room.name} is number 1", exact=False).wait_for()
+    assert page.inner_text("#clean") == "Clean 1 room"
+    opened.tap(*room.anchor)
+    assert page.inner_text("#clean") == "Clean all"
     page.get_by_role("button", name="Clean here").click()
     opened.wait_for_phase("cleaning")
     assert opened.robot.robot().vacuum.wanted <= 1.5**2 + 0.1
+    assert page.inner_text("#clean") == "Clean 1 room"
 
 
 @pytest.mark.parametrize("kind", ["No-go zone", "Virtual wall"])
 def test_a_zone_is_drawn_and_removed(opened: Opened, kind: str) -> None:
     page = opened.page
+    opened.show("zones")
     page.get_by_role("button", name=kind).click()
+    opened.show_map()
     x, y = opened.robot.home().rooms[0].anchor
-    page.mouse.move(*pixels(opened, x - 0.5, y - 0.3))
-    page.mouse.down()
-    page.mouse.move(*pixels(opened, x, y))
-    page.mouse.move(*pixels(opened, x + 0.5, y + 0.4))
-    page.mouse.up()
+    opened.drag((x - 0.5, y - 0.3), (x, y), (x + 0.5, y + 0.4))
     wait_until(lambda: len(opened.robot.home().zones) == 1, DEADLINE, "a zone")
     (zone,) = opened.robot.home().zones
     assert zone.points[0] == pytest.approx((x - 0.5, y - 0.3), abs=0.05)
     assert len(zone.points) == (4 if kind == "No-go zone" else 2)
+    opened.show("zones")
     page.get_by_role("button", name=f"Remove {zone.name}").click()
     wait_until(lambda: not opened.robot.home().zones, DEADLINE, "no zone")
+    page.get_by_role("button", name="Undo").click()
+    wait_until(lambda: opened.robot.home().zones == (zone,), DEADLINE, "the zone again")
 
 
 def test_a_room_gets_another_name(opened: Opened) -> None:
     page = opened.page
+    opened.show("rooms")
     page.get_by_role("button", name="kitchen").click()
     page.get_by_role("button", name="Rename").click()
     page.get_by_role("textbox", name="Name").fill("Cook's den")
@@ -160,18 +157,12 @@ def test_the_emergency_stop_is_a_button_and_a_key(opened: Opened) -> None:
 
 def test_what_the_robot_refuses_is_said(opened: Opened) -> None:
     page = opened.page
-    page.get_by_role("button", name="Virtual wall").click()
-    page.keyboard.press("2")
     x, y = opened.robot.home().rooms[0].anchor
-    page.mouse.move(*pixels(opened, x, y))
-    page.mouse.down()
-    page.mouse.move(*pixels(opened, x + 0.4, y))
-    page.mouse.up()
+    page.keyboard.press("1")
+    opened.show("rooms")
     page.get_by_role("button", name="Split").click()
-    page.mouse.move(*pixels(opened, x, y))
-    page.mouse.down()
-    page.mouse.move(*pixels(opened, x + 0.2, y))
-    page.mouse.up()
+    opened.show_map()
+    opened.drag((x, y), (x + 0.2, y))
     page.wait_for_selector("#refusal:not([hidden])")
     assert page.inner_text("#refusal")
 
@@ -182,6 +173,7 @@ def test_driving_by_hand_lasts_as_long_as_a_key_is_held(opened: Opened) -> None:
     opened.wait_for_phase("cleaning")
     page.get_by_role("button", name="Pause").click()
     opened.wait_for_phase("paused")
+    opened.show("more")
     page.get_by_text("Drive by hand", exact=True).click()
     before = opened.robot.robot().pose
     page.keyboard.down("ArrowLeft")
@@ -194,6 +186,23 @@ def test_driving_by_hand_lasts_as_long_as_a_key_is_held(opened: Opened) -> None:
         one = opened.robot.robot()
         wait_until(lambda: opened.robot.robot().time > one.time + 5.0, DEADLINE, "time to pass")
         return math.isclose(opened.robot.robot().pose[2], one.pose[2], abs_tol=0.02)
+
+    wait_until(stands, DEADLINE, "the robot to stand")
+
+
+def test_a_page_that_is_closed_while_a_key_is_held_lets_the_robot_stand(opened: Opened) -> None:
+    page = opened.page
+    opened.show("more")
+    page.get_by_text("Drive by hand", exact=True).click()
+    before = opened.robot.robot().pose
+    page.keyboard.down("ArrowDown")
+    wait_until(lambda: math.dist(opened.robot.robot().pose[:2], before[:2]) > 0.2, DEADLINE, "it")
+    page.close()
+
+    def stands() -> bool:
+        one = opened.robot.robot()
+        wait_until(lambda: opened.robot.robot().time > one.time + 2.0, DEADLINE, "time to pass")
+        return math.dist(opened.robot.robot().pose[:2], one.pose[:2]) < 0.01
 
     wait_until(stands, DEADLINE, "the robot to stand")
 
@@ -244,6 +253,7 @@ def test_keys_alone_do(opened: Opened) -> None:
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 def test_texts_have_contrast(opened: Opened, scheme: str) -> None:
     page = opened.page
+    opened.show("more")
     page.emulate_media(color_scheme="dark" if scheme == "dark" else "light")
     ratios = page.evaluate(CONTRASTS)
     assert len(ratios) > 15
@@ -251,15 +261,18 @@ def test_texts_have_contrast(opened: Opened, scheme: str) -> None:
 
 
 def test_every_control_has_a_name_and_is_large_enough_to_touch(opened: Opened) -> None:
-    controls = opened.page.evaluate(CONTROLS)
-    assert len(controls) > 12
-    for identity, name, width, height in controls:
-        assert name, identity
-        assert min(width, height) >= 24, (identity, name)
+    for part in ("rooms", "zones", "more"):
+        opened.show(part)
+        controls = opened.page.evaluate(CONTROLS)
+        assert len(controls) > 12
+        for identity, name, width, height in controls:
+            assert name, identity
+            assert min(width, height) >= 24, (identity, name)
 
 
 def test_the_camera_shows_what_it_sees_at_an_angle(opened: Opened) -> None:
     page = opened.page
+    opened.show("more")
     page.locator("#camera summary").click()
     looks = """(side) => {
         const image = document.getElementById("camera-picture");
@@ -268,7 +281,45 @@ def test_the_camera_shows_what_it_sees_at_an_angle(opened: Opened) -> None:
     page.wait_for_function(looks, arg="ahead", timeout=60_000)
     page.select_option("#camera-angle", "30")
     page.wait_for_function(looks, arg="30° to the left", timeout=60_000)
+    page.locator("#camera-latest a").nth(1).wait_for()
     refused = opened.page.context.request.post(
         f"{opened.server.address}api/v1/camera", data={"angle": 0.0}
     )
     assert refused.status == 401
+
+
+def test_each_room_has_its_own_passes_and_fan_and_the_speed_is_set(opened: Opened) -> None:
+    page = opened.page
+    opened.show("rooms")
+    page.get_by_role("button", name="kitchen").click()
+    page.get_by_role("button", name="bathroom").click()
+    page.get_by_label("Passes of kitchen").select_option("2")
+    page.get_by_label("Fan of bathroom").select_option("quiet")
+    page.get_by_label("Top speed").select_option("0.3")
+    wait_until(lambda: opened.robot.robot().top_speed == 0.3, DEADLINE, "another top speed")
+    page.get_by_role("button", name="Clean 2 rooms").click()
+    opened.wait_for_phase("cleaning")
+
+    def ways(robot: HeadlessMission) -> tuple[RoomWay, ...]:
+        cleaning = robot.mission.cleaning
+        return () if cleaning is None else cleaning.request.each
+
+    expected = RoomWay(2, FanLevel.STANDARD), RoomWay(1, FanLevel.QUIET)
+    assert opened.robot.ask(ways) == expected
+
+
+def test_layers_are_switched_and_the_picture_is_saved(opened: Opened, tmp_path: Path) -> None:
+    page = opened.page
+    opened.show_map()
+    page.locator(".layers summary").click()
+    before = colours(opened)
+    page.get_by_role("checkbox", name="Furniture").uncheck()
+    page.get_by_role("checkbox", name="Rooms").uncheck()
+    wait_until(lambda: colours(opened) < before, DEADLINE, "fewer colours")
+    with page.expect_download() as saved:
+        page.get_by_role("button", name="Save picture").click()
+    assert saved.value.suggested_filename == "flat.png"
+    saved.value.save_as(tmp_path / "flat.png")
+    with Image.open(tmp_path / "flat.png") as picture:
+        assert picture.size[0] >= 300
+        assert len(set(picture.convert("RGB").resize((200, 200)).tobytes())) > 20

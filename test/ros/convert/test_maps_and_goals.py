@@ -11,12 +11,14 @@ from hypothesis import strategies as st
 from nav_msgs.msg import OccupancyGrid
 from roomba_robot.msg import CleanGoal, Rectangle, RoomArray, ZoneArray
 from rospy import Time
+from sensor_msgs.msg import BatteryState
 
 from roomba.grid import MOST_CELLS
 from roomba.mission.cleaning.request import CleanRefusedError
 from roomba_ros.convert.common import map_of, told_map_of
 from roomba_ros.convert.errors import MessageError
 from roomba_ros.convert.mission import outlines_of, request_of, zones_of
+from roomba_ros.convert.page import battery_seconds_of
 
 BAD = (math.nan, math.inf, -math.inf)
 
@@ -136,3 +138,19 @@ def test_goals_with_numbers_that_are_not_finite_are_refused(mode: int, number: f
         with pytest.raises(MessageError) as refused:
             request_of(goal)
         assert isinstance(refused.value, CleanRefusedError)
+
+
+@pytest.mark.parametrize(
+    ("values", "seconds"),
+    [
+        ({"percentage": 0.5, "current": -1.0, "capacity": 2.0}, 3600.0),
+        ({"percentage": 0.5, "current": 2.0, "capacity": 2.0}, 1800.0),
+        ({"percentage": 0.5, "current": 0.0, "capacity": 2.0}, math.nan),
+        ({"percentage": math.nan, "current": -1.0, "capacity": 2.0}, math.nan),
+        ({"percentage": 0.5, "current": math.inf, "capacity": 2.0}, math.nan),
+        ({"percentage": 0.5, "current": -1.0, "capacity": math.nan}, math.nan),
+    ],
+)
+def test_how_long_a_battery_lasts(values: dict[str, float], seconds: float) -> None:
+    found = battery_seconds_of(BatteryState(**values))
+    assert found == pytest.approx(seconds, nan_ok=True)

@@ -10,18 +10,21 @@ import functools
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from typing import Final
 
 import cv2
+from PIL import Image
 
 from roomba.commands.pictures.cleaning import picture_of_cleaning
 from roomba.commands.pictures.layers import picture_of_layers
 from roomba.commands.pictures.localization import picture_of_localization, picture_of_relocation
 from roomba.commands.pictures.mapping import picture_of_map_errors, picture_of_mapping
 from roomba.commands.pictures.page import (
-    picture_of_page,
+    frames_of_page,
     picture_of_phone,
     picture_of_replay,
     picture_of_report,
+    picture_of_way,
 )
 from roomba.commands.pictures.rooms import picture_of_rooms
 from roomba.commands.pictures.sensors.battery import picture_of_battery, picture_of_levels
@@ -74,12 +77,20 @@ PICTURES: dict[str, tuple[str, Callable[[Home], Picture]]] = {
 }
 """Each picture by the name of its file: the home that it is of, and what makes it."""
 IN_BROWSER: dict[str, tuple[str, Callable[[Home], Picture]]] = {
-    "page": ("flat", picture_of_page),
     "page_phone": ("flat", picture_of_phone),
+    "page_way": ("flat", picture_of_way),
     "replay": ("flat", picture_of_replay),
     "report": ("flat", picture_of_report),
 }
 """Pictures that need a browser: made when they are named."""
+FILMS: dict[str, tuple[str, Callable[[Home], list[Picture]]]] = {
+    "page_animation": ("flat", frames_of_page),
+}
+"""Short films that need a browser: made when they are named."""
+FRAME_TIME: Final = 120
+"""ms that a frame of a film is seen."""
+MOST_BYTES: Final = 2_000_000
+"""Of a film."""
 IN_RVIZ = "rviz"
 """The picture that ``./roomba`` lets :mod:`roomba_ros.model.picture` make, as it needs ROS."""
 
@@ -89,7 +100,10 @@ def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(prog=spelled("pictures"), description=__doc__)
     parser.add_argument("folder", nargs="?", type=Path, default=_DOCUMENTS)
     parser.add_argument(
-        "--only", nargs="+", choices=[*PICTURES, *IN_BROWSER, IN_RVIZ], default=list(PICTURES)
+        "--only",
+        nargs="+",
+        choices=[*PICTURES, *IN_BROWSER, *FILMS, IN_RVIZ],
+        default=list(PICTURES),
     )
     wanted = parser.parse_args(arguments)
     try:
@@ -97,6 +111,10 @@ def main(arguments: list[str] | None = None) -> int:
             raise RoombaError("that of RViz needs ROS: ./roomba pictures --only rviz, by itself")
         wanted.folder.mkdir(parents=True, exist_ok=True)
         for name in wanted.only:
+            if name in FILMS:
+                home, frames_of = FILMS[name]
+                _write_film(wanted.folder / f"{name}.webp", frames_of(load_home(home, HOMES)))
+                continue
             home, picture_of = (PICTURES | IN_BROWSER)[name]
             _write(wanted.folder / f"{name}.png", picture_of(load_home(home, HOMES)))
     except (RoombaError, OSError) as error:
@@ -108,6 +126,24 @@ def main(arguments: list[str] | None = None) -> int:
 def _write(path: Path, picture: Picture) -> None:
     if not cv2.imwrite(str(path), picture[:, :, ::-1], [cv2.IMWRITE_PNG_COMPRESSION, 9]):
         raise OSError(f"{path}: cannot be written")
+    print(path)
+
+
+def _write_film(path: Path, frames: list[Picture]) -> None:
+    """Write an animated WebP that goes on for ever; OSError if it is too large for a document."""
+    first, *others = (Image.fromarray(frame) for frame in frames)
+    first.save(
+        path,
+        save_all=True,
+        append_images=others,
+        duration=FRAME_TIME,
+        loop=0,
+        quality=70,
+        method=4,
+    )
+    size = path.stat().st_size
+    if size > MOST_BYTES:
+        raise OSError(f"{path}: expected a film of at most {MOST_BYTES} bytes, got {size}")
     print(path)
 
 

@@ -1,9 +1,11 @@
-"""Pictures of the web page while a robot cleans, and of a report, made in a real browser."""
+"""Pictures and a film of the web page while a robot cleans, and of a report, made in a browser."""
 
 from __future__ import annotations
 
+import contextlib
 import shutil
 import time
+from collections.abc import Iterator
 from typing import Any, Final
 
 import cv2
@@ -34,17 +36,45 @@ _IS_COVERED: Final = """async () => {
     const { grid } = await import("/map/grids.js");
     return grid("coverage")?.cells.some((value) => value > 0);
 }"""
+_PHONE: Final = {"width": 390, "height": 844}
+"""px."""
+_GAP: Final = 24
+"""px between two windows."""
+_FILM_SIZE: Final = {"width": 960, "height": 640}
+"""px."""
+_FILM_SPEED: Final = 12.0
+"""The robot's seconds per second of a film."""
+_FILM_ROOMS: Final = ("living room", "kitchen")
+_FRAMES: Final = 70
+"""Of a film, while the robot cleans."""
+_HAS_ROOMS: Final = """async () => {
+    const { get } = await import("/store.js"), { grid } = await import("/map/grids.js");
+    return get("home")?.rooms.length > 0 && get("limits") && grid("map");
+}"""
+_TAP: Final = """async (name) => {
+    const { get } = await import("/store.js"), { tapped } = await import("/panels/offer.js");
+    const { toScreen } = await import("/map/view.js"), rooms = get("home").rooms;
+    const [x, y] = rooms.find((room) => room.name === name).anchor;
+    tapped(x, y, ...toScreen(x, y));
+}"""
 _BROWSERS: Final = ("chromium", "chromium-browser", "google-chrome")
 
 
-def picture_of_page(home: Home) -> Picture:
-    """Return a desktop's window: two rooms are cleaned in order, with a zone to be left out."""
-    return _picture(home, {"width": 1280, "height": 800}, "light")
-
-
 def picture_of_phone(home: Home) -> Picture:
-    """Return the same on a phone, in the dark."""
-    return _picture(home, {"width": 390, "height": 844}, "dark")
+    """Return a phone's window in the dark: two rooms are cleaned in order."""
+    with _served(home, _SPEED) as address, _playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=_browser(), args=["--no-sandbox"])
+        page = browser.new_context(viewport=_PHONE, color_scheme="dark").new_page()
+        page.goto(address)
+        page.wait_for_selector("body[data-phase='docked']")
+        page.wait_for_function(_HAS_ROOMS)
+        for name in _FILM_ROOMS:
+            page.evaluate(_TAP, name)
+        page.click("#clean")
+        _wait_for_covered(page)
+        picture = _decoded(page.screenshot())
+        browser.close()
+    return picture
 
 
 def _recorded_clean(home: Home) -> tuple[RunFigures, RunRecording]:
@@ -90,37 +120,64 @@ def picture_of_report(home: Home) -> Picture:
     return picture
 
 
-def _picture(home: Home, size: dict[str, int], scheme: str) -> Picture:
-    robot = live_client(home.name, seed=1, speed=_SPEED, knows_map=True)
+@contextlib.contextmanager
+def _served(home: Home, speed: float) -> Iterator[str]:
+    """Serve the page of a robot in a home; yields its address."""
+    robot = live_client(home.name, seed=1, speed=speed, knows_map=True)
     guard = Guard(new_token())
     server = PageServer(create_app(robot, guard), listen("127.0.0.1", 0, is_fixed=True))
     robot.start()
     server.start()
     try:
-        return _looked_at(f"{server.address}#token={guard.token}", size, scheme)
+        yield f"{server.address}#token={guard.token}"
     finally:
         server.stop()
         robot.end()
 
 
-def _looked_at(address: str, size: dict[str, int], scheme: str) -> Picture:
-    """Open the page, let the robot clean for a while, and return what is seen."""
-    with _playwright() as playwright:
+def frames_of_page(home: Home) -> list[Picture]:
+    """Return a short film of the page: two rooms are tapped, and the robot cleans them."""
+    with _served(home, _FILM_SPEED) as address, _playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=_browser(), args=["--no-sandbox"])
-        page = browser.new_context(viewport=size, color_scheme=scheme).new_page()
+        page = browser.new_context(viewport=_FILM_SIZE, color_scheme="light").new_page()
         page.goto(address)
         page.wait_for_selector("body[data-phase='docked']")
-        for room in ("living room", "kitchen"):
-            page.get_by_role("button", name=room).click()
+        page.wait_for_function(_HAS_ROOMS)
+        frames = [_decoded(page.screenshot())] * 4
+        for name in _FILM_ROOMS:
+            page.evaluate(_TAP, name)
+            frames += [_decoded(page.screenshot())] * 4
         page.click("#clean")
-        ends = time.monotonic() + _DEADLINE
-        while _covered(page.inner_text("#covered")) < _CLEANED:
-            if time.monotonic() > ends:
-                raise RoombaError(f"expected {_CLEANED} m2 clean within {_DEADLINE:g} s")
-            page.wait_for_timeout(200)
-        picture = _decoded(page.screenshot())
+        frames += [_decoded(page.screenshot()) for _ in range(_FRAMES)]
         browser.close()
-    return picture
+    return frames
+
+
+def picture_of_way(home: Home) -> Picture:
+    """Return four windows of a phone: it is ready, rooms are tapped, it cleans, and it tells."""
+    with _served(home, _SPEED) as address, _playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=_browser(), args=["--no-sandbox"])
+        page = browser.new_context(viewport=_PHONE, color_scheme="light", has_touch=True).new_page()
+        page.goto(address)
+        page.wait_for_selector("body[data-phase='docked']")
+        page.wait_for_function(_HAS_ROOMS)
+        page.wait_for_timeout(500)
+        seen = [_decoded(page.screenshot())]
+        for name in _FILM_ROOMS:
+            page.evaluate(_TAP, name)
+        page.wait_for_timeout(300)
+        seen.append(_decoded(page.screenshot()))
+        page.click("#clean")
+        _wait_for_covered(page)
+        seen.append(_decoded(page.screenshot()))
+        page.click("#stop")
+        page.click("[data-tab=more]")
+        page.wait_for_selector("#last:not([hidden])")
+        page.wait_for_timeout(300)
+        seen.append(_decoded(page.screenshot()))
+        browser.close()
+    gap = np.full((seen[0].shape[0], _GAP, 3), 255, np.uint8)
+    return np.hstack([part for picture in seen for part in (picture, gap)][:-1])
 
 
 def _decoded(screenshot: bytes) -> Picture:
@@ -129,10 +186,18 @@ def _decoded(screenshot: bytes) -> Picture:
     return picture
 
 
-def _covered(shown: str) -> float:
-    """Return the area of "1.5 of 14.6 m²"; 0 for what is not known."""
-    first = shown.split(" ")[0]
-    return float(first) if first.replace(".", "").isdigit() else 0.0
+def _wait_for_covered(page: Any) -> None:
+    ends = time.monotonic() + _DEADLINE
+    while _covered(page) < _CLEANED:
+        if time.monotonic() > ends:
+            raise RoombaError(f"expected {_CLEANED} m2 clean within {_DEADLINE:g} s")
+        page.wait_for_timeout(200)
+
+
+def _covered(page: Any) -> float:
+    """Return what is clean, m2, as the page knows it."""
+    state = "async () => (await import('/store.js')).get('state')?.vacuum.covered ?? 0"
+    return float(page.evaluate(state))
 
 
 def _playwright() -> Any:

@@ -20,5 +20,5 @@ import { connect } from "./link.js";
 
 draw.begin();
 gestures.begin({ tapped: offer.tapped, drawn: zones.drawn, changed: zones.change, mayCarry: play.mayCarry, carried: play.carried });
-for (const panel of [status, actions, rooms, zones, drive, play, tools, keys, replay, maps, camera, charts, history, sheet]) panel.begin();
+for (const panel of [status, offer, actions, rooms, zones, drive, play, tools, keys, replay, maps, camera, charts, history, sheet]) panel.begin();
 connect();

@@ -48,11 +48,20 @@ function playful(x, y) {
   return acts;
 }
 
-/** Open a card with a title and [words, act] for each button, beside a place, m. */
-export function open(words, acts, at) {
+let dismiss = null; // what is to be done when the card is closed without a choice
+
+/** Let the card close when something else is touched. */
+export function begin() {
+  document.addEventListener("pointerdown", (event) => { if (!event.target.closest("#offer")) close(); }, true);
+}
+
+/** Open a card with a title and [words, act] for each button, beside a place, m; `otherwise` is done without a choice. */
+export function open(words, acts, at, otherwise = null) {
   const place = $("offer");
+  close();
+  dismiss = otherwise;
   $("offer-title").textContent = words;
-  $("offer-acts").replaceChildren(...acts.map(([text, act]) => button(text, () => { close(); act(); })));
+  $("offer-acts").replaceChildren(...acts.map(([text, act]) => button(text, () => { dismiss = null; close(); act(); })));
   place.hidden = false;
   const { clientWidth: width, clientHeight: height } = place.parentElement, { offsetWidth, offsetHeight } = place, [px, py] = toScreen(...at);
   const above = py - BESIDE - offsetHeight, below = py + BESIDE;
@@ -64,4 +73,8 @@ export function open(words, acts, at) {
 function between(value, least, most) { return Math.max(least, Math.min(value, most)); }
 
 /** Take the card away. */
-export function close() { $("offer").hidden = true; }
+export function close() {
+  $("offer").hidden = true;
+  dismiss?.();
+  dismiss = null;
+}

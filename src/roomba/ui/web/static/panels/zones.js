@@ -35,7 +35,7 @@ function offerKinds(draft) {
   const as = (kind) => () => { set("drawing", null); make({ ...draft, kind }); };
   offer.open("What shall this be?", [
     ["Clean it now", as("clean")], ["No-go zone", as("no-go")], ["Virtual wall", as("wall")], ["Nothing", () => set("drawing", null)],
-  ], draft.to);
+  ], draft.to, () => set("drawing", null));
 }
 
 async function make({ kind, room, from, to }) {

@@ -1,0 +1,64 @@
+"""The page can be used: axe-core finds no serious fault, it is light, and nothing is outside."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+from axe_playwright_python.sync_playwright import Axe
+from playwright.sync_api import Route
+from web.conftest import Opened
+
+from roomba.ui.web.app import STATIC
+
+MOST_BYTES = 300_000
+GRAVE = ("serious", "critical")
+OPEN_ALL = """() => {
+    for (const part of document.querySelectorAll("details")) part.open = true;
+}"""
+
+
+def faults(opened: Opened) -> list[tuple[str, str, Any]]:
+    """Return what axe-core calls serious or critical: how grave, rule, elements."""
+    found = Axe().run(opened.page).response["violations"]
+    return [
+        (fault["impact"], fault["id"], [node["target"] for node in fault["nodes"]])
+        for fault in found
+        if fault["impact"] in GRAVE
+    ]
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_axe_finds_no_serious_fault(opened: Opened, scheme: str) -> None:
+    page = opened.page
+    page.emulate_media(color_scheme="dark" if scheme == "dark" else "light")
+    assert faults(opened) == []
+    page.evaluate(OPEN_ALL)
+    opened.tap(*opened.robot.home().rooms[0].anchor)
+    for part in ("rooms", "zones", "more"):
+        opened.show(part)
+        assert faults(opened) == [], part
+    opened.show_map()
+    page.keyboard.press("Escape")
+    opened.wait_for_phase("emergency stop")
+    page.keyboard.press("?")
+    assert faults(opened) == []
+
+
+def test_the_page_is_light() -> None:
+    sizes = {file: file.stat().st_size for file in STATIC.rglob("*") if file.is_file()}
+    assert 50_000 < sum(sizes.values()) <= MOST_BYTES
+
+
+def test_nothing_comes_from_outside(opened: Opened) -> None:
+    asked: list[str] = []
+
+    def note(route: Route) -> None:
+        asked.append(route.request.url)
+        route.continue_()
+
+    opened.page.route("**/*", note)
+    opened.page.reload()
+    opened.wait_for_phase("docked")
+    assert len(asked) > 20
+    assert [url for url in asked if not url.startswith(opened.server.address)] == []

@@ -1,0 +1,172 @@
+"""A person's way over the page: by mouse, by touch, by keys alone, and with the network cut."""
+
+from __future__ import annotations
+
+import pytest
+from fixtures.waiting import wait_until
+from playwright.sync_api import CDPSession
+from web.conftest import SIZES, Opened
+from web.test_page import DEADLINE
+
+from roomba.client.view import ZoneView
+from roomba.ui.web.app import create_app
+from roomba.ui.web.server import PageServer, listen
+
+
+@pytest.fixture
+def home() -> str:
+    return "flat"
+
+
+@pytest.fixture
+def speed() -> float:
+    return 20.0
+
+
+class Finger:
+    """A finger on the map."""
+
+    def __init__(self, opened: Opened) -> None:
+        self._opened = opened
+        self._touch: CDPSession = opened.page.context.new_cdp_session(opened.page)
+
+    def tap(self, x: float, y: float) -> None:
+        self._opened.page.touchscreen.tap(*self._opened.pixels(x, y))
+
+    def press_and_drag(self, start: tuple[float, float], end: tuple[float, float]) -> None:
+        """Hold a place until something begins there, and drag from it, m."""
+        self._send("touchStart", start)
+        self._opened.page.wait_for_function(
+            "async () => Boolean((await import('/store.js')).get('drawing'))"
+        )
+        for share in (0.3, 0.6, 1.0):
+            x, y = (one + share * (other - one) for one, other in zip(start, end, strict=True))
+            self._send("touchMove", (x, y))
+        self._send("touchEnd")
+
+    def _send(self, kind: str, *places: tuple[float, float]) -> None:
+        points = [dict(zip("xy", self._opened.pixels(*place), strict=True)) for place in places]
+        self._touch.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+
+
+def look_back(opened: Opened, how: str) -> None:
+    """Read how the run ended."""
+    opened.show("more")
+    opened.page.wait_for_selector("#last:not([hidden])")
+    assert how in opened.page.inner_text("#last-text").lower()
+
+
+def wait_for_zone(opened: Opened, kind: str) -> ZoneView:
+    wait_until(lambda: len(opened.robot.home().zones) == 1, DEADLINE, "a zone")
+    (zone,) = opened.robot.home().zones
+    assert zone.kind == kind
+    return zone
+
+
+@pytest.mark.parametrize("size", [SIZES["desktop"]])
+def test_by_mouse(opened: Opened) -> None:
+    page, rooms = opened.page, {room.name: room for room in opened.robot.home().rooms}
+    opened.tap(*rooms["kitchen"].anchor)
+    opened.tap(*rooms["hallway"].anchor)
+    page.get_by_role("button", name="Clean 2 rooms").click()
+    opened.wait_for_phase("cleaning")
+    page.get_by_role("button", name="Pause").click()
+    opened.wait_for_phase("paused")
+    page.get_by_role("button", name="No-go zone").click()
+    x, y = rooms["hallway"].anchor
+    opened.drag((x - 0.4, y - 0.4), (x + 0.4, y + 0.4))
+    wait_for_zone(opened, "no-go")
+    page.get_by_role("button", name="Go on").click()
+    opened.wait_for_phase("cleaning")
+    page.get_by_role("button", name="Dock").click()
+    opened.wait_for_phase("docked")
+    look_back(opened, "stopped")
+
+
+@pytest.mark.parametrize("size", [SIZES["phone"]])
+def test_by_touch(opened: Opened) -> None:
+    page, rooms = opened.page, {room.name: room for room in opened.robot.home().rooms}
+    finger = Finger(opened)
+    finger.tap(*rooms["kitchen"].anchor)
+    finger.tap(*rooms["bedroom"].anchor)
+    page.get_by_role("button", name="Clean 2 rooms").tap()
+    opened.wait_for_phase("cleaning")
+    page.get_by_role("button", name="Pause").tap()
+    opened.wait_for_phase("paused")
+    x, y = rooms["living room"].anchor
+    finger.press_and_drag((x - 0.5, y + 0.5), (x + 0.5, y + 1.5))
+    page.get_by_role("button", name="No-go zone").first.tap()
+    zone = wait_for_zone(opened, "no-go")
+    assert zone.points[0] == pytest.approx((x - 0.5, y + 0.5), abs=0.05)
+    page.get_by_role("button", name="Go on").tap()
+    opened.wait_for_phase("cleaning")
+    page.get_by_role("button", name="Dock").tap()
+    opened.wait_for_phase("docked")
+    look_back(opened, "stopped")
+
+
+@pytest.mark.parametrize("size", [SIZES["desktop"]])
+def test_by_keys_alone(opened: Opened) -> None:
+    page, keys = opened.page, opened.page.keyboard
+
+    def walk_to(name: str) -> None:
+        """Press Tab until a button has the focus."""
+        for _ in range(60):
+            focused = page.evaluate("() => document.activeElement.textContent")
+            if focused == name:
+                return
+            keys.press("Tab")
+        pytest.fail(f"expected to come to {name!r} by Tab")
+
+    keys.press("2")
+    keys.press("3")
+    walk_to("Clean 2 rooms")
+    keys.press("Enter")
+    opened.wait_for_phase("cleaning")
+    walk_to("Pause")
+    keys.press(" ")
+    opened.wait_for_phase("paused")
+    walk_to("No-go zone")
+    keys.press("Enter")
+    assert page.evaluate("() => document.activeElement.id") == "floor"
+    keys.press("Enter")
+    for key in ("ArrowRight", "ArrowRight", "Shift+ArrowUp"):
+        keys.press(key)
+    keys.press("Enter")
+    zone = wait_for_zone(opened, "no-go")
+    (left, low), (right, high) = zone.points[0], zone.points[2]
+    assert (right - left, high - low) == pytest.approx((1.0, 1.1))
+    keys.press(" ")
+    opened.wait_for_phase("cleaning")
+    keys.press("Escape")
+    opened.wait_for_phase("emergency stop")
+    page.locator("#emergency").focus()
+    keys.press("Enter")
+    opened.wait_for_phase("idle")
+    walk_to("Dock")
+    keys.press("Enter")
+    opened.wait_for_phase("docked")
+    look_back(opened, "emergency stop")
+
+
+@pytest.mark.parametrize("size", [SIZES["desktop"]])
+def test_the_network_is_cut_and_back_while_it_cleans(opened: Opened) -> None:
+    page = opened.page
+    page.get_by_role("button", name="Clean all").click()
+    opened.wait_for_phase("cleaning")
+    port = int(opened.server.address.rsplit(":", 1)[1].strip("/"))
+    opened.server.stop()
+    page.wait_for_selector("body[data-link='reconnecting']")
+    assert "Last seen at" in page.inner_text("#explanation")
+    covered = opened.robot.robot().vacuum.covered
+    wait_until(lambda: opened.robot.robot().vacuum.covered > covered, DEADLINE, "it to go on")
+    again = PageServer(
+        create_app(opened.robot, opened.guard), listen("127.0.0.1", port, is_fixed=True)
+    )
+    again.start()
+    try:
+        page.wait_for_selector("body[data-link='live']")
+        page.get_by_role("button", name="Pause").click()
+        opened.wait_for_phase("paused")
+    finally:
+        again.stop()

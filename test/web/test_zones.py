@@ -1,0 +1,113 @@
+"""Zones on the map are drawn, dragged, resized, brought back; the map stays under the fingers."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+from fixtures.waiting import wait_until
+from web.conftest import SIZES, Opened
+from web.test_page import DEADLINE
+
+from roomba.client.view import ZoneView
+
+DESKTOP = pytest.mark.parametrize("size", [SIZES["desktop"]])
+CORNERS = ((1.0, 1.6), (2.0, 1.6), (2.0, 2.4), (1.0, 2.4))
+VIEW = """async () => {
+    const { toFloor, view } = await import("/map/view.js");
+    return { scale: view.scale, at: toFloor(200, 150) };
+}"""
+PLACE = """async ([px, py]) => (await import("/map/view.js")).toFloor(px, py)"""
+
+
+def points_of(opened: Opened) -> tuple[tuple[float, float], ...]:
+    zones = opened.robot.home().zones
+    return zones[0].points if zones else ()
+
+
+def wait_for_points(opened: Opened, points: tuple[tuple[float, float], ...]) -> None:
+    def are_there() -> bool:
+        now = points_of(opened)
+        return len(now) == len(points) and all(
+            math.dist(one, other) < 0.06 for one, other in zip(now, points, strict=True)
+        )
+
+    wait_until(are_there, DEADLINE, lambda: f"{points}, not {points_of(opened)}")
+
+
+@pytest.fixture
+def zoned(opened: Opened) -> Opened:
+    """The page of a robot with a no-go zone."""
+    opened.robot.put_zone(ZoneView("Zone 1", "no-go", CORNERS))
+    opened.page.locator("#zones li").wait_for(state="attached")
+    return opened
+
+
+@DESKTOP
+def test_a_zone_is_chosen_dragged_and_resized(zoned: Opened) -> None:
+    page = zoned.page
+    zoned.tap(1.5, 2.0)
+    page.get_by_text("Zone 1: drag it, or a corner").wait_for()
+    zoned.drag((1.5, 2.0), (1.7, 2.1))
+    moved = tuple((x + 0.2, y + 0.1) for x, y in CORNERS)
+    wait_for_points(zoned, moved)
+    zoned.drag((2.2, 2.5), (2.4, 2.7))
+    wait_for_points(zoned, ((1.2, 1.7), (2.4, 1.7), (2.4, 2.7), (1.2, 2.7)))
+    page.locator("#floor").focus()
+    page.keyboard.press("ArrowLeft")
+    wait_for_points(zoned, ((1.1, 1.7), (2.3, 1.7), (2.3, 2.7), (1.1, 2.7)))
+    page.keyboard.press("Delete")
+    wait_until(lambda: points_of(zoned) == (), DEADLINE, "no zone")
+    page.get_by_role("button", name="Undo").click()
+    wait_for_points(zoned, ((1.1, 1.7), (2.3, 1.7), (2.3, 2.7), (1.1, 2.7)))
+
+
+@DESKTOP
+def test_what_is_drawn_can_be_taken_back(opened: Opened) -> None:
+    page = opened.page
+    page.get_by_role("button", name="Virtual wall").click()
+    opened.drag((1.0, 1.6), (2.0, 2.4))
+    wait_for_points(opened, ((1.0, 1.6), (2.0, 2.4)))
+    page.get_by_role("button", name="Undo").click()
+    wait_until(lambda: points_of(opened) == (), DEADLINE, "no wall")
+
+
+@DESKTOP
+def test_the_wheel_zooms_around_the_mouse_and_the_map_stays_under_it(opened: Opened) -> None:
+    page = opened.page
+    box = page.locator("#floor").bounding_box()
+    assert box is not None
+    page.mouse.move(box["x"] + 200, box["y"] + 150)
+    before = page.evaluate(VIEW)
+    for step in (-240, -240, 120):
+        page.mouse.wheel(0, step)
+    page.wait_for_function(
+        "async (scale) => (await import('/map/view.js')).view.scale > 1.5 * scale",
+        arg=before["scale"],
+    )
+    after = page.evaluate(VIEW)
+    assert after["at"] == pytest.approx(before["at"], abs=1e-6)
+
+
+@pytest.mark.parametrize("size", [SIZES["phone"]])
+def test_two_fingers_zoom_and_the_map_stays_under_them(opened: Opened) -> None:
+    page = opened.page
+    box = page.locator("#floor").bounding_box()
+    assert box is not None
+    touch = page.context.new_cdp_session(page)
+
+    def fingers(kind: str, *places: tuple[float, float]) -> None:
+        points = [{"x": x + box["x"], "y": y + box["y"]} for x, y in places]
+        touch.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+
+    one, other = (150.0, 250.0), (250.0, 250.0)
+    under = [page.evaluate(PLACE, place) for place in (one, other)]
+    fingers("touchStart", one, other)
+    for _ in range(6):
+        one, other = (one[0] - 10.0, one[1] + 4.0), (other[0] + 10.0, other[1] + 4.0)
+        fingers("touchMove", one, other)
+    now = [page.evaluate(PLACE, place) for place in (one, other)]
+    fingers("touchEnd")
+    for before, after in zip(under, now, strict=True):
+        assert math.dist(before, after) < 0.02
+    assert opened.page.inner_text("#clean") == "Clean all"
