@@ -10,10 +10,10 @@ import math
 from typing import Any, Final, NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from roomba.angles import wrapped
+from roomba.compilation import entry, inner_part
 
 Floats = NDArray[np.float64]
 
@@ -58,7 +58,7 @@ class Course(NamedTuple):
     halves: Floats
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@entry
 def track(
     state: Row, course: Course, x: float, y: float, theta: float, limit: float
 ) -> tuple[float, float]:
@@ -93,7 +93,7 @@ def track(
     return 0.0, 0.0
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_part
 def turn_speed(state: Row, error: float) -> float:
     """Return the turning speed, rad/s, that ends a turn on the spot without overshoot."""
     size = abs(error)
@@ -103,7 +103,7 @@ def turn_speed(state: Row, error: float) -> float:
     return math.copysign(min(speed, size / state.period), error)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_part
 def drive(
     state: Row, course: Course, error: float, left: float, limit: float
 ) -> tuple[float, float]:
@@ -121,7 +121,7 @@ def drive(
     return speed, min(max(turn, -state.turning_speed), state.turning_speed)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_part
 def corner_limit(state: Row, course: Course, left: float, limit: float) -> float:
     """Return the fastest speed, m/s, from which it can brake for all corners ahead."""
     last = course.headings.size - 1
@@ -146,7 +146,7 @@ def corner_limit(state: Row, course: Course, left: float, limit: float) -> float
     return speed
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_part
 def stopping_speed(state: Row, way: float) -> float:
     """Return the speed, m/s, from which it stops within ``way``, m.
 
@@ -157,7 +157,7 @@ def stopping_speed(state: Row, way: float) -> float:
     return speed
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_part
 def blended(state: Row, course: Course, left: float, lead: float) -> tuple[float, float]:
     """Return by how much the wanted heading differs from the leg's, rad, and the curvature, 1/m.
 

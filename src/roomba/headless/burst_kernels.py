@@ -10,9 +10,8 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from numba import njit
-
 from roomba.angles import wrapped
+from roomba.compilation import entry, inner_part
 from roomba.control.tracking_kernels import track
 from roomba.headless.burst_place_kernels import believed, follow
 from roomba.headless.burst_state import Drive, Floats, Floor, PlaceParts, Rows, Sight, World
@@ -25,7 +24,7 @@ from roomba.perception.things.kernels import Things
 from roomba.world.engine.step_kernels import advance
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@entry
 def run(
     bursts: Rows,
     world: World,
@@ -67,7 +66,7 @@ def run(
     return ticks
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_part
 def comes_up(
     burst: Any, robot: Any, drive: Drive, things: Things, x: float, y: float, now: float
 ) -> bool:
@@ -91,14 +90,14 @@ def comes_up(
     return bool(mark_progress(drive.progress, along, tracker.leg, now) > burst.progress_timeout)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_part
 def may_be_full(burst: Any, robot: Any, floor: Floor) -> bool:
     """Tell whether the dust bin may have become full, by its level or as no grain comes in."""
     silent = floor.dust[0].silent_cells * burst.cell_area
     return bool(robot.in_bin >= burst.most_in_bin or silent >= burst.most_silent)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_part
 def is_in_danger(robot: Any) -> bool:
     """Tell whether there is no floor below a part of the robot."""
     return bool(
@@ -112,7 +111,7 @@ def is_in_danger(robot: Any) -> bool:
     )
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_part
 def wanted(burst: Any, drive: Drive, x: float, y: float, theta: float) -> tuple[float, float, bool]:
     """Return the twist, m/s and rad/s, along the path, and whether that has ended.
 
@@ -130,7 +129,7 @@ def wanted(burst: Any, drive: Drive, x: float, y: float, theta: float) -> tuple[
     return linear, angular, False
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_part
 def account(burst: Any, robot: Any, floor: Floor, now: float, x: float, y: float) -> None:
     """Note the way since the last tick began, and what floor was cleaned on it."""
     way = math.hypot(x - burst.last[1], y - burst.last[2])
@@ -146,7 +145,7 @@ def account(burst: Any, robot: Any, floor: Floor, now: float, x: float, y: float
     burst.last[0], burst.last[1], burst.last[2] = now, x, y
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_part
 def told(burst: Any, robot: Any) -> tuple[float, float, float]:
     """Return the true pose, x, y, theta, in the frame in which poses are told."""
     if not burst.is_turned:
@@ -159,7 +158,7 @@ def told(burst: Any, robot: Any) -> tuple[float, float, float]:
     )
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_part
 def sweep_truth(burst: Any, robot: Any, floor: Floor, x: float, y: float) -> None:
     """Note what floor the tool, now at a place, really passed over, with room for its dust."""
     if robot.in_bin >= burst.bin_capacity:
@@ -170,7 +169,7 @@ def sweep_truth(burst: Any, robot: Any, floor: Floor, x: float, y: float) -> Non
     burst.true_at[0], burst.true_at[1] = x, y
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_part
 def write_down(
     row: Floats,
     now: float,

@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from roomba.compilation import allocating_part, inner_part
 from roomba.headless.burst_state import PlaceParts, Sight, World
 from roomba.perception.localization.belief.correct_kernels import (
     calibrate,
@@ -25,7 +25,7 @@ from roomba.perception.slam.following.scan_kernels import IS_DONE, IS_LEFT, take
 from roomba.perception.things.kernels import note
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_part
 def believed(burst: Any, place: PlaceParts) -> tuple[float, float, float]:
     """Return where the robot takes itself to be, x, y, theta, map."""
     if burst.is_mapping:
@@ -35,7 +35,7 @@ def believed(burst: Any, place: PlaceParts) -> tuple[float, float, float]:
     return pose[0], pose[1], pose[2]
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_part
 def follow(burst: Any, world: World, place: PlaceParts, sight: Sight, now: float) -> bool:
     """Go on by wheels, gyro and scans; tell whether the place is known and all of it is done."""
     robot: Any = world.state.solid.robots[0]
@@ -63,7 +63,7 @@ def follow(burst: Any, world: World, place: PlaceParts, sight: Sight, now: float
     return bool(is_calm(place.belief, place.numbers, now))
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@allocating_part
 def localize(
     burst: Any,
     place: PlaceParts,
@@ -95,7 +95,7 @@ def localize(
     return True
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_part
 def map_on(
     burst: Any, place: PlaceParts, sight: Sight, ranges: NDArray[np.float32], stamp: float
 ) -> bool:

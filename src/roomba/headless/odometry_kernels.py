@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from roomba.compilation import entry
 from roomba.perception.localization.belief.belief import Rows
 from roomba.perception.localization.belief.reckon_kernels import reckon
 
 Floats = NDArray[np.float64]
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@entry
 def reckon_rows(beliefs: Rows, numbers: Rows, told: Floats, poses: Floats) -> None:
     """Fill ``poses`` [n, 3] with where dead reckoning has the robot at each tick.
 

@@ -6,9 +6,9 @@ import math
 from typing import Any, TypeVar
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from roomba.compilation import entry
 from roomba.geometry import Pose
 from roomba.grid import GridFrame
 
@@ -37,7 +37,7 @@ def _place(frame: GridFrame) -> Place:
     return frame.origin_x, frame.origin_y, frame.resolution
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@entry
 def _carry(values: Any, old: Place, over: Any, new: Place, back: Place) -> None:
     """Fill ``over``; places are x, y, m, and the resolution, m, or the heading, rad."""
     cos, sin = math.cos(back[2]), math.sin(back[2])

@@ -10,8 +10,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from roomba.compilation import allocating_entry, inner_part
 
 _FAR = 1e12
 
@@ -26,7 +27,7 @@ def distance_to_nearest(targets: NDArray[np.bool_]) -> NDArray[np.float32]:
     return distances
 
 
-@njit(cache=True, nogil=True)
+@allocating_entry
 def _transform(targets: NDArray[np.bool_], distances: NDArray[np.float32]) -> None:
     rows, columns = targets.shape
     squared = np.empty((rows, columns), np.float64)
@@ -37,7 +38,7 @@ def _transform(targets: NDArray[np.bool_], distances: NDArray[np.float32]) -> No
         _along_row(squared[row], feet, bounds, distances[row])
 
 
-@njit(cache=True, nogil=True)
+@inner_part
 def _along_columns(targets: NDArray[np.bool_], squared: NDArray[np.float64]) -> None:
     """Write the squared distance to the nearest true cell of the same column."""
     rows, columns = targets.shape
@@ -57,7 +58,7 @@ def _along_columns(targets: NDArray[np.bool_], squared: NDArray[np.float64]) -> 
             squared[row, column] *= squared[row, column]
 
 
-@njit(cache=True, nogil=True)
+@inner_part
 def _along_row(
     squared: NDArray[np.float64],
     feet: NDArray[np.int64],

@@ -6,8 +6,9 @@ OpenCV does both, but costs each process that loads it 100 MB (ADR 4).
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from roomba.compilation import allocating_entry, entry, part
 
 Mask = NDArray[np.bool_]
 Labels = NDArray[np.int32]
@@ -31,7 +32,7 @@ def numbered_regions(mask: Mask) -> Labels:
     return labels
 
 
-@njit(cache=True, nogil=True)
+@allocating_entry
 def _grow(mask: Mask, heights: NDArray[np.int16], grown: Mask) -> None:
     """Set the cells that have a true cell near enough in their column or one beside it.
 
@@ -53,7 +54,7 @@ def _grow(mask: Mask, heights: NDArray[np.int16], grown: Mask) -> None:
                 into[column] |= beside[column] <= height
 
 
-@njit(cache=True, nogil=True)
+@part
 def cells_along_columns(mask: Mask, most: int, away: NDArray[np.int16]) -> None:
     """Write how many cells it is to the nearest true one of the same column, at most ``most``."""
     rows, columns = mask.shape
@@ -68,7 +69,7 @@ def cells_along_columns(mask: Mask, most: int, away: NDArray[np.int16]) -> None:
             away[row, column] = min(away[row, column], away[row + 1, column] + 1)
 
 
-@njit(cache=True, nogil=True)
+@entry
 def root_of(parents: Labels, label: int) -> int:
     """Return the first of the labels that were joined; shortens the way to it (union-find)."""
     while parents[label] != label:
@@ -77,7 +78,7 @@ def root_of(parents: Labels, label: int) -> int:
     return label
 
 
-@njit(cache=True, nogil=True)
+@entry
 def join(parents: Labels, one: int, other: int) -> int:
     """Make the regions of two labels one; return the first of its labels (union-find)."""
     low, high = root_of(parents, one), root_of(parents, other)
@@ -85,7 +86,7 @@ def join(parents: Labels, one: int, other: int) -> int:
     return min(low, high)
 
 
-@njit(cache=True, nogil=True)
+@allocating_entry
 def _number(mask: Mask, labels: Labels) -> None:
     """Two passes with union-find; the numbers are in the order of the regions' first cells."""
     rows, columns = mask.shape

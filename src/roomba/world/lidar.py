@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.compilation import entry
 from roomba.configuration.sensors import LidarConfig
 from roomba.geometry import Pose
 from roomba.grid import GridFrame
@@ -25,7 +26,6 @@ from roomba.world.engine.lidar.projection import (
 )
 from roomba.world.engine.lidar.scan_kernels import scan_faces
 from roomba.world.engine.state.arrays import FACE, HOME, Edges, Rows
-from roomba.world.engine.state.compilation import entry
 from roomba.world.home.home import Home
 from roomba.world.home.surface import Finish
 from roomba.world.home.turned import placed

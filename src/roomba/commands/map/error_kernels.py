@@ -6,8 +6,9 @@ import math
 from typing import Final, NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from roomba.compilation import entry, part
 
 Mask = NDArray[np.bool_]
 Floats = NDArray[np.float64]
@@ -27,7 +28,7 @@ class TrueSurfaces(NamedTuple):
     place: Floats
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@entry
 def nearest_sides(ground: TrueSurfaces, points: Floats, reach: float, away: Floats) -> None:
     """Fill ``away`` [n], m, with how far ``points`` [n, 2] are from the nearest true side.
 
@@ -53,7 +54,7 @@ def nearest_sides(ground: TrueSurfaces, points: Floats, reach: float, away: Floa
         away[index] = far if far <= reach else math.inf
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@entry
 def offsets(
     ground: TrueSurfaces, points: Floats, facings: NDArray[np.int64], reach: float, off: Floats
 ) -> None:
@@ -84,7 +85,7 @@ def offsets(
                 off[index] = before
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@entry
 def count_surfaces(
     ground: TrueSurfaces, points: Floats, facings: NDArray[np.int64], behind: float, beside: float,
     counts: NDArray[np.int64],
@@ -119,7 +120,7 @@ def count_surfaces(
         counts[index] = most
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@part
 def is_side(ground: TrueSurfaces, row: int, column: int, facing: int) -> bool:
     """Whether a cell is solid, and the one beside it on that side seen."""
     rows, columns = ground.solid.shape
@@ -129,7 +130,7 @@ def is_side(ground: TrueSurfaces, row: int, column: int, facing: int) -> bool:
     return bool(ground.solid[row, column] and ground.seen[beside_row, beside_column])
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@part
 def _before_side(
     u: float, v: float, row: int, column: int, step_row: int, step_column: int
 ) -> float:
@@ -140,7 +141,7 @@ def _before_side(
     return (along - plane) * (step_column + step_row)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@part
 def _square_to_side(u: float, v: float, row: int, column: int, facing: int) -> float:
     """Return the squared distance, cells, from a point to one side of a cell."""
     if facing % 2 == 0:
@@ -152,7 +153,7 @@ def _square_to_side(u: float, v: float, row: int, column: int, facing: int) -> f
     return along * along + across * across
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@entry
 def see_around(
     solid: Mask, rows: NDArray[np.int64], columns: NDArray[np.int64], beams: int, reach: float,
     seen: Mask,

@@ -6,9 +6,9 @@ import math
 from typing import Any, Final
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from roomba.compilation import entry, inner_part
 from roomba.control.tracking_kernels import Course
 
 Rows = NDArray[np.void]
@@ -29,7 +29,7 @@ PROGRESS: Final = np.dtype(
 """What a drive remembers of its progress, one row."""
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_part
 def along_of(track: Row, course: Course) -> float:
     """Return how far along its path a tracker, a row of TRACK, is, m."""
     last = course.stations.size - 1
@@ -39,7 +39,7 @@ def along_of(track: Row, course: Course) -> float:
     return float(min(max(first + track.along, first), end))
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_part
 def off_path(track: Row, course: Course, x: float, y: float) -> float:
     """Return how far a place is from the leg that a tracker is on, m."""
     first_x, first_y = course.points[0, 0], course.points[0, 1]
@@ -53,7 +53,7 @@ def off_path(track: Row, course: Course, x: float, y: float) -> float:
     return math.hypot(x - (first_x + share * way_x), y - (first_y + share * way_y))
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@entry
 def mark_progress(rows: Rows, along: float, leg: int, now: float) -> float:
     """Remember whether a drive came farther by a time, s; return for how long it has not."""
     progress = rows[0]

@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import Any, Final
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from roomba.compilation import entry
 
 DUST: Final = np.dtype(
     [
@@ -20,7 +21,7 @@ DUST: Final = np.dtype(
 """What the dirt sensor tells of the bin, one row."""
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@entry
 def note_dust(rows: NDArray[np.void], grains: float, way: float, cells: int) -> None:
     """Note what the dirt sensor counts, 1/s, over ``way`` m that made so many cells clean."""
     row: Any = rows[0]

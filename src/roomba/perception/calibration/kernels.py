@@ -12,10 +12,10 @@ import math
 from typing import Final
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from roomba.angles import wrapped
+from roomba.compilation import entry, inner_part, part
 from roomba.perception.calibration.state import (
     AHEAD,
     DRIFT,
@@ -42,7 +42,7 @@ _FINER: Final = 0.25
 """Share of what is left alone, and of what must be sure, for an error that is corrected already."""
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@entry
 def corrected(row: Row, ahead: float, aside: float, turn: float) -> tuple[float, float, float]:
     """Return a step of odometry in the robot's frame, m and rad, without the wheels' errors."""
     if not row.is_applied:
@@ -60,7 +60,7 @@ def corrected(row: Row, ahead: float, aside: float, turn: float) -> tuple[float,
     )
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@entry
 def note_step(row: Row, ahead: float, aside: float, turn: float) -> None:
     """Add a step of odometry, as it tells it, to the window: m and rad."""
     if not row.is_open:
@@ -86,7 +86,7 @@ def note_step(row: Row, ahead: float, aside: float, turn: float) -> None:
     row.turned += abs(turn)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@entry
 def note_gyro(row: Row, turn: float, elapsed: float) -> None:
     """Add what the gyro tells of a step, rad, less its bias, nan without it; it took so long, s."""
     if math.isnan(turn):
@@ -96,7 +96,7 @@ def note_gyro(row: Row, turn: float, elapsed: float) -> None:
     row.time += elapsed
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@entry
 def note_place(
     row: Row, pose: tuple[float, float, float], variance: float, turn_variance: float
 ) -> None:
@@ -115,19 +115,19 @@ def note_place(
     row.has_gyro = row.is_open = True
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@part
 def _rolled(ahead: float, aside: float, turn: float) -> float:
     """Return the way along an arc whose chord is given, m, negative backwards."""
     return math.cos(0.5 * turn) * ahead + math.sin(0.5 * turn) * aside
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@entry
 def drop_window(row: Row) -> None:
     """Begin a window anew: the place is not known, or told in another frame from now on."""
     row.is_open = False
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_part
 def _measure(
     row: Row, lidar: tuple[float, float, float], variance: float, turn_variance: float
 ) -> None:
@@ -152,7 +152,7 @@ def _measure(
     _apply(row)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_part
 def _expect(row: Row, slopes: Floats, told: Floats) -> None:
     """Fill ``told`` [4] with how the lidar should have moved: ahead, left, turned, by gyro turned.
 
@@ -181,7 +181,7 @@ def _expect(row: Row, slopes: Floats, told: Floats) -> None:
     slopes[3, GYRO] = row.gyro
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_part
 def _doubt(row: Row, unsure: Floats, variance: float, turn_variance: float) -> None:
     """Fill ``unsure`` [4] with the variances of how the lidar moved, against what is expected."""
     way, turned = row.way, row.turned
@@ -200,7 +200,7 @@ def _doubt(row: Row, unsure: Floats, variance: float, turn_variance: float) -> N
     unsure[3] = of_heading + of_turn + drift * drift + row.drift_variance * row.time
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_part
 def _forget(row: Row) -> None:
     """Be a little less sure for each metre, but not less than at first: robots wear."""
     share = row.way / row.forgetting_way
@@ -209,7 +209,7 @@ def _forget(row: Row) -> None:
         row.covariance[error, error] += share * max(0.0, prior - variance)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_part
 def _correct(
     row: Row, slope: Floats, off: float, unsure: float, step: Floats, reach: Floats
 ) -> None:
@@ -237,7 +237,7 @@ def _correct(
             covariance[error, other] -= share * reach[error] * reach[other]
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_part
 def _apply(row: Row) -> None:
     """Let dead reckoning go by what is sure by now, and tell whether the lidar may do so."""
     row.is_lidar_due = False
@@ -251,7 +251,7 @@ def _apply(row: Row) -> None:
             row.is_lidar_due = True
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_part
 def _is_due(row: Row, error: int) -> bool:
     """Whether an error is sure to be another one than is gone by, and by more than matters."""
     applied = row.applied[error]
@@ -263,7 +263,7 @@ def _is_due(row: Row, error: int) -> bool:
     return is_due
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@entry
 def apply_lidar(row: Row) -> None:
     """Go by what is sure of the lidar by now."""
     for error in (AHEAD, LEFT, TURNED):

@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import Final
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from roomba.compilation import inner_part
 from roomba.perception.calibration.kernels import drop_window, note_place
 from roomba.perception.calibration.state import Row
 
@@ -19,7 +19,7 @@ _SURE_TURN: Final = 0.01
 reckoning would be measured by itself."""
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_part
 def note_pose(
     row: Row, pose: tuple[float, float, float], covariance: Floats, of_map: Floats
 ) -> None:

@@ -6,9 +6,9 @@ import math
 from typing import Final
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from roomba.compilation import allocating_entry, entry
 from roomba.perception.slam.drawing.drawing_kernels import CountArrays, draw
 from roomba.perception.slam.scan_matching.surface_kernels import NORMAL_X, NORMAL_Y, X, Y
 
@@ -20,7 +20,7 @@ NO_BOUNDS: Final = np.array([2**40, -1, 2**40, -1])
 """First and last row and column with counts, while there are none."""
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@entry
 def count_scan(
     cells: CountArrays,
     ranges: NDArray[np.float32],
@@ -52,7 +52,7 @@ def count_scan(
     draw(cells, points[:count], mount[:2], pose)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@allocating_entry
 def score_look(
     cells: CountArrays, scores: NDArray[np.int8], least: int, solid_share: float, open_share: float
 ) -> None:

@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import Final, NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from roomba.compilation import entry
 
 Floats = NDArray[np.float64]
 
@@ -30,7 +31,7 @@ class Sights(NamedTuple):
     apart: float
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@entry
 def note_sight(sights: Sights, stamp: float, place: Floats, ends: Floats, count: int) -> None:
     """Keep a scan, the first ``count`` of ``ends`` [n, 4], taken at a time, s, and a place [3]."""
     ring = sights.ring
@@ -52,7 +53,7 @@ def note_sight(sights: Sights, stamp: float, place: Floats, ends: Floats, count:
     ring[1] = min(ring[1] + 1, KEPT)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@entry
 def newest_of(ring: NDArray[np.int64], number: int) -> int:
     """Return where in the ring the newest scan but ``number`` is."""
     return int((ring[0] - 1 - number) % KEPT)

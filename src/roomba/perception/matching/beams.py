@@ -6,8 +6,9 @@ import math
 from typing import Final, NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from roomba.compilation import part
 
 Floats = NDArray[np.float64]
 
@@ -37,7 +38,7 @@ class LidarBeams(NamedTuple):
     lanes: Floats
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@part
 def is_all_around(beams: int, step: float) -> bool:
     """Whether so many beams, ``step`` rad from one to the next, go all around."""
     return beams * abs(step) > 2.0 * math.pi - _ALL_AROUND

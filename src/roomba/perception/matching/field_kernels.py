@@ -6,9 +6,9 @@ import math
 from typing import Final
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from roomba.compilation import allocating_entry, allocating_part, entry, inlined_entry
 from roomba.raster.regions import cells_along_columns
 
 Field = NDArray[np.float32]
@@ -24,7 +24,7 @@ _LEAST_STEP: Final = 0.02
 """m; a ray that grazes a surface goes on by at least this."""
 
 
-@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+@inlined_entry
 def look(field: Field, place: Place, x: float, y: float) -> tuple[float, float, float]:
     """Return the distance to the nearest surface at a point, m, and its gradient along x and y.
 
@@ -45,7 +45,7 @@ def look(field: Field, place: Place, x: float, y: float) -> tuple[float, float, 
     return lower + b * (upper - lower), slope_x, (upper - lower) * inverse
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@entry
 def expected_range(
     field: Field, place: Place, x: float, y: float, cosine: float, sine: float, most: float
 ) -> float:
@@ -62,7 +62,7 @@ def expected_range(
     return most
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@allocating_entry
 def fill_near_surfaces(
     solid: NDArray[np.bool_], metres: NDArray[np.float32], values: Field
 ) -> None:
@@ -88,7 +88,7 @@ def fill_near_surfaces(
             values[row, column] = off if free[row, column] else -off
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@allocating_part
 def _nearest_squares(up: NDArray[np.int16], most: int, squares: NDArray[np.int32]) -> None:
     """Fill a row with the least squared distance, from how far it is along each column, in cells.
 

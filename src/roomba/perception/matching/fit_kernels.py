@@ -6,9 +6,9 @@ import math
 from typing import Final
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from roomba.compilation import allocating_entry, allocating_part, any_order_entry
 from roomba.perception.matching.field_kernels import OFF_MAP, Field, Place, look
 
 Floats = NDArray[np.float64]
@@ -54,7 +54,7 @@ _SHARE: Final = 0.1
 """Weight of one beam: neighbours, and scans from nearby places, are not independent."""
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@allocating_entry
 def judge(
     field: Field,
     place: Place,
@@ -108,7 +108,7 @@ def judge(
         )
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@allocating_part
 def _trace(field: Field, place: Place, x: float, y: float, lanes: Floats, rays: int) -> None:
     """Mark the rays from a point, m, that meet a surface before their end.
 
@@ -137,7 +137,7 @@ def _trace(field: Field, place: Place, x: float, y: float, lanes: Floats, rays: 
         rays = left
 
 
-@njit(cache=True, nogil=True, error_model="numpy", fastmath={"nsz", "arcp", "contract", "reassoc"})
+@any_order_entry
 def _stride(
     cells: Field,
     rows: int,

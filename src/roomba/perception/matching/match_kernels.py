@@ -11,9 +11,9 @@ import math
 from typing import Final
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from roomba.compilation import allocating_entry, allocating_part, any_order_entry, entry
 from roomba.perception.matching.field_kernels import Field, Place
 
 Floats = NDArray[np.float64]
@@ -25,7 +25,7 @@ MATCH_WORK: Final = 10
 """Rows of the work array of :func:`match_in`."""
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@entry
 def beam_ends(
     ranges: NDArray[np.float32],
     directions: Floats,
@@ -56,7 +56,7 @@ def beam_ends(
     return count
 
 
-@njit(cache=True, nogil=True, error_model="numpy", fastmath={"nsz", "arcp", "contract", "reassoc"})
+@any_order_entry
 def add_beams(
     field: Field,
     place: Place,
@@ -122,7 +122,7 @@ def add_beams(
     gradient[2] += certainty * gt
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@entry
 def invert(matrix: Floats, out: Floats) -> bool:
     """Fill ``out`` with the inverse of a symmetric positive definite matrix.
 
@@ -145,7 +145,7 @@ def invert(matrix: Floats, out: Floats) -> bool:
     return True
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@allocating_entry
 def match(
     field: Field,
     place: Place,
@@ -170,7 +170,7 @@ def match(
     )
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@allocating_part
 def match_in(
     field: Field,
     place: Place,

@@ -5,15 +5,15 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from roomba.angles import wrapped
+from roomba.compilation import entry
 
 Floats = NDArray[np.float64]
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@entry
 def beyond(
     x: float, y: float, theta: float, ahead: float, aside: float, turn: float
 ) -> tuple[float, float, float]:
@@ -29,7 +29,7 @@ def beyond(
     )
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@entry
 def seen_from(pose: Floats, other: Floats) -> tuple[float, float, float]:
     """Return how a pose [3] sees another one, [3]: ahead and to the left, m, and turned, rad."""
     off_x, off_y = other[0] - pose[0], other[1] - pose[1]
@@ -37,7 +37,7 @@ def seen_from(pose: Floats, other: Floats) -> tuple[float, float, float]:
     return cosine * off_x + sine * off_y, cosine * off_y - sine * off_x, wrapped(other[2] - pose[2])
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@entry
 def pose_then(pose: Floats, reckoned: Floats, then: Floats) -> tuple[float, float, float]:
     """Return where a robot was on the map, x, y, theta, that is at ``pose`` [3] now.
 
@@ -47,7 +47,7 @@ def pose_then(pose: Floats, reckoned: Floats, then: Floats) -> tuple[float, floa
     return beyond(pose[0], pose[1], pose[2], back[0], back[1], back[2])
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@entry
 def is_apart(pose: Floats, other: Floats, way: float, turn: float) -> bool:
     """Whether two poses [3] are ``way``, m, apart or turned by ``turn``, rad, or more."""
     away = math.hypot(pose[0] - other[0], pose[1] - other[1])

@@ -11,8 +11,9 @@ import math
 from typing import Final
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from roomba.compilation import entry, inner_part
 
 Rows = NDArray[np.void]
 
@@ -54,7 +55,7 @@ def unknown_noise() -> Rows:
     return noise
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@entry
 def measure_noise(
     noises: Rows, ranges: NDArray[np.float32], nearest: float, farthest: float
 ) -> None:
@@ -76,7 +77,7 @@ def measure_noise(
             noise.total += counts[place]
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_part
 def _count(
     ranges: NDArray[np.float32], nearest: float, farthest: float, counts: NDArray[np.int64]
 ) -> int:

@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import Final, NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from roomba.angles import wrapped
+from roomba.compilation import entry, inner_part
 
 Floats = NDArray[np.float64]
 
@@ -39,13 +39,13 @@ class ReckonedPath(NamedTuple):
         return ReckonedPath(np.zeros((_MOST, 4)), np.zeros(2, np.int64))
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@entry
 def forget_path(path: ReckonedPath) -> None:
     """Forget all poses."""
     path.ends[_COUNT] = 0
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@entry
 def remember(path: ReckonedPath, stamp: float, pose: Floats) -> None:
     """Add a pose [3] that is newer than all others, and forget those of long ago."""
     rows, ends = path.rows, path.ends
@@ -61,7 +61,7 @@ def remember(path: ReckonedPath, stamp: float, pose: Floats) -> None:
     ends[_COUNT] = count
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@entry
 def pose_at(path: ReckonedPath, stamp: float, pose: Floats) -> bool:
     """Fill ``pose`` [3] with that at a time, between those that are known; the newest ones after.
 
@@ -89,7 +89,7 @@ def pose_at(path: ReckonedPath, stamp: float, pose: Floats) -> bool:
     return False
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_part
 def pose_beyond(path: ReckonedPath, stamp: float, pose: Floats) -> None:
     """Fill ``pose`` [3] with that at a time, also a little before or beyond all that are known.
 

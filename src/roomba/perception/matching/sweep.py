@@ -11,10 +11,10 @@ import math
 from typing import Final
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from roomba.angles import wrapped
+from roomba.compilation import entry, inner_part, part
 from roomba.perception.matching.beams import LidarBeams, is_all_around
 from roomba.perception.matching.reckoned_path import ReckonedPath, pose_beyond
 
@@ -32,7 +32,7 @@ SWEEP_WORK: Final = 3
 """Rows of what :func:`at_once` works in."""
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@entry
 def at_once(
     ranges: Ranges,
     lidar: LidarBeams,
@@ -63,7 +63,7 @@ def at_once(
         _interpolate(still, lidar.step, places, lengths, beam, is_around)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_part
 def _see_from_first(
     ranges: Ranges,
     lidar: LidarBeams,
@@ -107,7 +107,7 @@ def _see_from_first(
         lengths[beam] = math.hypot(end_x, end_y)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_part
 def _interpolate(
     still: Ranges, step: float, places: Floats, lengths: Floats, beam: int, is_around: bool
 ) -> None:
@@ -129,7 +129,7 @@ def _interpolate(
             _put(still, place, length, is_around)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@part
 def _put(still: Ranges, place: int, length: float, is_around: bool) -> None:
     """Set the range in a direction, in beams, if there is one."""
     if is_around:

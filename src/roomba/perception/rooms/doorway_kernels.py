@@ -8,9 +8,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from roomba.compilation import allocating_entry, allocating_part, entry, inner_part
 from roomba.raster.regions import root_of
 
 Mask = NDArray[np.bool_]
@@ -23,7 +23,7 @@ NOWHERE = 1e9
 """Cells; how far one has to go for what is not found."""
 
 
-@njit(cache=True, nogil=True)
+@allocating_entry
 def flood_basins(
     order: NDArray[np.int64], clearance: Clearance, least_step: float, basins: Labels
 ) -> NDArray[np.float32]:
@@ -63,7 +63,7 @@ def flood_basins(
     return _renumbered(basins, parents, peaks, count)
 
 
-@njit(cache=True, nogil=True)
+@allocating_part
 def _renumbered(
     basins: Labels, parents: Labels, peaks: NDArray[np.float32], count: int
 ) -> NDArray[np.float32]:
@@ -84,7 +84,7 @@ def _renumbered(
     return kept_peaks
 
 
-@njit(cache=True, nogil=True)
+@entry
 def opening_at(solid: Mask, row: int, column: int, clearance: float) -> tuple[int, int, int, int]:
     """Return row and column of the nearest solid cell, and of the nearest on the other side.
 
@@ -117,7 +117,7 @@ def opening_at(solid: Mask, row: int, column: int, clearance: float) -> tuple[in
     return first_row, first_column, second_row, second_column
 
 
-@njit(cache=True, nogil=True)
+@allocating_entry
 def wall_thicknesses(
     solid: Mask,
     row: int,
@@ -157,7 +157,7 @@ def wall_thicknesses(
     return thickness[0], thickness[1]
 
 
-@njit(cache=True, nogil=True)
+@inner_part
 def _is_free_along(
     solid: Mask, row: float, column: float, row_step: float, column_step: float, length: float
 ) -> bool:
@@ -168,7 +168,7 @@ def _is_free_along(
     return True
 
 
-@njit(cache=True, nogil=True)
+@inner_part
 def _is_solid(solid: Mask, row: float, column: float) -> bool:
     at_row, at_column = math.floor(row + 0.5), math.floor(column + 0.5)
     if not (0 <= at_row < solid.shape[0] and 0 <= at_column < solid.shape[1]):
@@ -176,7 +176,7 @@ def _is_solid(solid: Mask, row: float, column: float) -> bool:
     return bool(solid[at_row, at_column])
 
 
-@njit(cache=True, nogil=True)
+@allocating_entry
 def gaps(
     solid: Mask, narrowest: float, widest: float, thickest: int, jamb: float
 ) -> NDArray[np.int32]:
@@ -212,7 +212,7 @@ def gaps(
     return found[:count]
 
 
-@njit(cache=True, nogil=True)
+@allocating_part
 def _corners(solid: Mask) -> NDArray[np.int32]:
     """Return the solid cells with free cells above or below and beside, in the order of rows."""
     rows, columns = solid.shape
@@ -232,7 +232,7 @@ def _corners(solid: Mask) -> NDArray[np.int32]:
     return corners
 
 
-@njit(cache=True, nogil=True)
+@inner_part
 def _sees(solid: Mask, row: int, column: int, to_row: int, to_column: int) -> bool:
     """Whether all cells on the line between two cells are free."""
     length = math.hypot(to_row - row, to_column - column)

@@ -6,14 +6,15 @@ Grids are [rows, columns]; lengths in cells; label 0 is nothing.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from roomba.compilation import allocating_entry, allocating_part, entry
 
 Mask = NDArray[np.bool_]
 Labels = NDArray[np.int32]
 
 
-@njit(cache=True, nogil=True)
+@allocating_entry
 def clear_small_things(solid: Mask, longest: int) -> None:
     """Free what stands alone: true cells, connected over sides and corners, in a small square.
 
@@ -47,7 +48,7 @@ def clear_small_things(solid: Mask, longest: int) -> None:
                 solid[queue[index] // columns, queue[index] % columns] = False
 
 
-@njit(cache=True, nogil=True)
+@allocating_entry
 def grow(labels: Labels, allowed: Mask, reach: int) -> None:
     """Give unlabelled ``allowed`` cells the label from which the fewest steps lead to them.
 
@@ -78,7 +79,7 @@ def grow(labels: Labels, allowed: Mask, reach: int) -> None:
                 count += 1
 
 
-@njit(cache=True, nogil=True)
+@allocating_entry
 def connected_parts(labels: Labels) -> Labels:
     """Return the parts of labelled regions that are connected over sides, numbered from 1."""
     rows, columns = labels.shape
@@ -109,7 +110,7 @@ def connected_parts(labels: Labels) -> Labels:
     return parts
 
 
-@njit(cache=True, nogil=True)
+@allocating_entry
 def contacts(labels: Labels) -> NDArray[np.int32]:
     """Return where regions touch over a side: int32 [n, 5] of lower and higher label, place.
 
@@ -145,7 +146,7 @@ def contacts(labels: Labels) -> NDArray[np.int32]:
     return found
 
 
-@njit(cache=True, nogil=True)
+@allocating_part
 def _number_openings(found: NDArray[np.int32], at: Labels) -> None:
     rows, columns = at.shape
     queue = np.empty(found.shape[0], np.int32)
@@ -172,7 +173,7 @@ def _number_openings(found: NDArray[np.int32], at: Labels) -> None:
         openings += 1
 
 
-@njit(cache=True, nogil=True)
+@entry
 def draw_line(mask: Mask, row: int, column: int, to_row: int, to_column: int) -> None:
     """Set the cells from one cell to another, so that no step over a side leads across."""
     steps = max(abs(to_row - row), abs(to_column - column))
@@ -184,7 +185,7 @@ def draw_line(mask: Mask, row: int, column: int, to_row: int, to_column: int) ->
             mask[at_row, at_column] = True
 
 
-@njit(cache=True, nogil=True)
+@allocating_entry
 def border_counts(
     labels: Labels, unknown: Mask, count: int
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:

@@ -6,9 +6,9 @@ import math
 from typing import Final
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from roomba.compilation import allocating_entry, entry, inner_part, part
 from roomba.perception.swept.coverage_bits import SWEPT, WANTED
 
 Cells = NDArray[np.uint8]
@@ -17,7 +17,7 @@ LONGEST_STEP: Final = 0.3
 """m; a larger step between two ticks means that the robot was carried."""
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@entry
 def swept_from(last_x: float, last_y: float, x: float, y: float) -> tuple[float, float]:
     """Return where the tool swept from to a place, m: from the last one, if it drove from there.
 
@@ -28,7 +28,7 @@ def swept_from(last_x: float, last_y: float, x: float, y: float) -> tuple[float,
     return x, y
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@entry
 def sweep(
     cells: Cells,
     place: NDArray[np.float64],
@@ -63,7 +63,7 @@ def sweep(
     return found
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@entry
 def visit(
     counts: Cells,
     swept_at: NDArray[np.float64],
@@ -97,7 +97,7 @@ def visit(
                 swept_at[row, column] = now
 
 
-@njit(cache=True, nogil=True)
+@allocating_entry
 def swept_or(cells: Cells, ever: NDArray[np.bool_]) -> int:
     """Return how many WANTED cells are SWEPT, or true in ``ever``, bool of the same shape."""
     values, once = cells.ravel(), ever.ravel()
@@ -108,7 +108,7 @@ def swept_or(cells: Cells, ever: NDArray[np.bool_]) -> int:
     return found
 
 
-@njit(cache=True, nogil=True)
+@allocating_entry
 def missed_of(cells: Cells, floor: NDArray[np.bool_]) -> int:
     """Return how many WANTED cells of ``floor``, bool of the same shape, are not SWEPT."""
     values, is_of_it = cells.ravel(), floor.ravel()
@@ -118,7 +118,7 @@ def missed_of(cells: Cells, floor: NDArray[np.bool_]) -> int:
     return found
 
 
-@njit(cache=True, nogil=True)
+@inner_part
 def _window(
     shape: tuple[int, ...],
     place: NDArray[np.float64],
@@ -139,14 +139,14 @@ def _window(
     )
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@part
 def _inverse_square(way_x: float, way_y: float) -> float:
     """Return one over the squared length of a way, or 0 of one without length."""
     square = way_x * way_x + way_y * way_y
     return 1.0 / square if square > 0.0 else 0.0
 
 
-@njit(cache=True, nogil=True)
+@part
 def _squared_distance(
     dx: float, dy: float, way_x: float, way_y: float, inverse_square: float
 ) -> float:

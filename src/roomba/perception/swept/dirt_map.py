@@ -6,9 +6,9 @@ import math
 from typing import Final
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from roomba.compilation import entry
 from roomba.geometry import Pose
 from roomba.grid import GridFrame, OccupancyMap
 from roomba.raster.carried import carried
@@ -117,7 +117,7 @@ def dirty_from(density: Floats, times: float, least: float) -> float:
     return max(times * usual, least)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@entry
 def note_dirt(
     grains_of: Floats,
     way_of: Floats,

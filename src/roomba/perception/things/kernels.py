@@ -11,9 +11,9 @@ import math
 from typing import Any, Final, NamedTuple, TypeAlias
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from roomba.compilation import entry, inner_part
 from roomba.perception.matching.beams import LidarBeams
 from roomba.perception.matching.field_kernels import OFF_MAP, Field, Place, look
 
@@ -58,7 +58,7 @@ class Things(NamedTuple):
     spots: NDArray[np.float32]
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@entry
 def note(
     things: Things,
     field: Field,
@@ -86,7 +86,7 @@ def note(
         layer.version += 1
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_part
 def _add_ends(
     things: Things,
     layer: Row,
@@ -139,7 +139,7 @@ def _add_ends(
     return has_come
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_part
 def _take_seen_through(
     things: Things,
     layer: Row,
@@ -185,7 +185,7 @@ def _take_seen_through(
     return has_gone
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_part
 def _is_passed(
     ranges: NDArray[np.float32], beams: int, around: int, middle: int, aside: int, way: float
 ) -> bool:
@@ -201,7 +201,7 @@ def _is_passed(
     return does_tell
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@entry
 def first_blocked(
     things: Things,
     points: Floats,
@@ -242,7 +242,7 @@ def first_blocked(
     return nearest if nearest < math.inf else math.nan
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@entry
 def forget_around(things: Things, place: Place, columns: int, x: float, y: float, r: float) -> None:
     """Forget all cells whose middle is nearer than ``r`` to a point, m."""
     layer = things.layer[0]

@@ -6,9 +6,9 @@ import math
 from typing import Final
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from roomba.compilation import allocating_entry, entry, inner_part, part
 from roomba.grid import FREE, OCCUPIED, UNKNOWN
 
 Values = NDArray[np.int8]
@@ -19,7 +19,7 @@ _LARGE: Final = 2
 """Whether the patch of a cell is known to be large, small, or neither yet."""
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@allocating_entry
 def ways_from(fits: NDArray[np.bool_], row: int, column: int, ways: NDArray[np.float64]) -> None:
     """Fill ``ways`` with the lengths, in cells, of the shortest ways over cells that ``fits``.
 
@@ -56,7 +56,7 @@ def ways_from(fits: NDArray[np.bool_], row: int, column: int, ways: NDArray[np.f
                     count += 1
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@allocating_entry
 def frontier_cells(values: Values, least: int, frontier: NDArray[np.bool_]) -> None:
     """Mark free cells with a side to the unknown, if ``least`` unknown cells or more hang together.
 
@@ -77,7 +77,7 @@ def frontier_cells(values: Values, least: int, frontier: NDArray[np.bool_]) -> N
                 )
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_part
 def _mark_sides(values: Values, marked: NDArray[np.bool_]) -> None:
     """Mark free cells with a side to the unknown, none at the border of the map."""
     marked[:] = False
@@ -90,7 +90,7 @@ def _mark_sides(values: Values, marked: NDArray[np.bool_]) -> None:
             into[index] = beside & (middle[index] == FREE)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@part
 def _is_large(
     values: Values, row: int, column: int, sizes: NDArray[np.int8], patch: NDArray[np.int64]
 ) -> bool:
@@ -123,7 +123,7 @@ def _is_large(
     return is_large
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@allocating_entry
 def clusters(frontier: NDArray[np.bool_], labels: NDArray[np.int32]) -> int:
     """Fill ``labels`` with the numbers, from 1, of frontiers: cells that touch; return how many."""
     rows, columns = frontier.shape
@@ -152,7 +152,7 @@ def clusters(frontier: NDArray[np.bool_], labels: NDArray[np.int32]) -> int:
     return number
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@entry
 def seen_from(
     cells: NDArray[np.int64],
     middles: NDArray[np.float64],
@@ -183,7 +183,7 @@ def seen_from(
     return -1, -1, -1
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@entry
 def viewpoint(
     values: Values,
     ways: NDArray[np.float64],
@@ -211,7 +211,7 @@ def viewpoint(
     return best_row, best_column, best
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_part
 def _sees(values: Values, row: int, column: int, to_row: int, to_column: int) -> bool:
     """Whether nothing occupied lies between two cells."""
     steps = max(abs(to_row - row), abs(to_column - column))

@@ -8,9 +8,11 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numba import njit, types
+from numba import types
 from numba.extending import intrinsic
 from numpy.typing import NDArray
+
+from roomba.compilation import entry
 
 Bits = NDArray[np.uint64]
 
@@ -47,13 +49,13 @@ _trailing_zeros: Any = intrinsic(_count_trailing)
 _leading_zeros: Any = intrinsic(_count_leading)
 
 
-@njit(cache=True, nogil=True)
+@entry
 def is_set(bits: Bits, row: int, column: int) -> bool:
     """Whether a cell, counted with the border, may be entered."""
     return bool((bits[row, column >> 6] >> np.uint64(column & 63)) & _ONE)
 
 
-@njit(cache=True, nogil=True)
+@entry
 def jump(bits: Bits, row: int, column: int, step: int, target: int) -> int:
     """Return the next cell of a row where a path may have to turn, or NOWHERE at a dead end.
 

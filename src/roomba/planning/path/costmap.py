@@ -11,9 +11,9 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from roomba.compilation import entry, part
 from roomba.grid import GridFrame, OccupancyMap
 from roomba.raster.regions import dilated, numbered_regions
 
@@ -163,7 +163,7 @@ def clear_of(
     return clear
 
 
-@njit(cache=True, nogil=True)
+@entry
 def _point_to_segment(
     x: float, y: float, start_x: float, start_y: float, end_x: float, end_y: float
 ) -> float:
@@ -177,7 +177,7 @@ def _point_to_segment(
     return math.hypot(x - start_x - share * along_x, y - start_y - share * along_y)
 
 
-@njit(cache=True, nogil=True)
+@part
 def _crosses_square(
     start_x: float, start_y: float, end_x: float, end_y: float, column: int, row: int
 ) -> bool:
@@ -197,7 +197,7 @@ def _crosses_square(
     return first <= last
 
 
-@njit(cache=True, nogil=True)
+@entry
 def _room_among_cells(
     solid: Mask, start_x: float, start_y: float, end_x: float, end_y: float, limit: float
 ) -> float:

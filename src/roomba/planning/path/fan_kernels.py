@@ -9,9 +9,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from roomba.compilation import entry, inner_part, part
 from roomba.planning.path.floor_kernels import BEND, CROSSING, SIDE_X, SIDE_Y
 from roomba.planning.path.heap_kernels import heap_push
 
@@ -57,7 +57,7 @@ ROOT_X, ROOT_Y, ROOT_COST, ROW, DIRECTION, LEFT, RIGHT = range(7)
 DIRECTION (+-1)."""
 
 
-@njit(cache=True, nogil=True)
+@part
 def offer_goal(work: Work, root: int, cost: float) -> None:
     """Take a way to the goal over ``root`` if it is the shortest yet."""
     if cost < work.ends[4]:
@@ -67,7 +67,7 @@ def offer_goal(work: Work, root: int, cost: float) -> None:
         work.state[HEAP_SIZE] += 1
 
 
-@njit(cache=True, nogil=True)
+@entry
 def offer_root(work: Work, x: int, y: int, root: int, cost: float) -> None:
     """Take a way to the centre (x, y) over ``root`` if it is the shortest yet."""
     index = y * work.fits.shape[1] + x
@@ -84,7 +84,7 @@ def offer_root(work: Work, x: int, y: int, root: int, cost: float) -> None:
     work.state[HEAP_SIZE] += 1
 
 
-@njit(cache=True, nogil=True)
+@inner_part
 def see(
     work: Work, x: int, y: int, root: int, root_x: float, root_y: float, root_cost: float
 ) -> None:
@@ -103,7 +103,7 @@ def see(
         offer_root(work, x, y, root, root_cost + math.hypot(x - root_x, y - root_y))
 
 
-@njit(cache=True, nogil=True)
+@entry
 def add_fan(
     work: Work,
     root: int,
@@ -137,7 +137,7 @@ def add_fan(
     work.state[HEAP_SIZE] += 1
 
 
-@njit(cache=True, nogil=True)
+@entry
 def drive_fan(work: Work, index: int) -> None:
     """Drive a fan through the open squares before it to the next row."""
     fan = work.fans[index]

@@ -10,8 +10,9 @@ corners of the floor, at centres that fit, so walls and thin passages keep their
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from roomba.compilation import entry
 
 Bytes = NDArray[np.uint8]
 
@@ -25,7 +26,7 @@ SIDE_X = (1, -1, -1, 1)
 SIDE_Y = (1, 1, -1, -1)
 
 
-@njit(cache=True, nogil=True)
+@entry
 def survey(fits: Bytes, open_squares: Bytes, flags: Bytes) -> None:
     """Fill ``open_squares`` and ``flags`` from ``fits``; all uint8 [rows, columns], border 0."""
     rows, columns = fits.shape

@@ -12,9 +12,9 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from roomba.compilation import allocating_entry, entry, inner_part, part
 from roomba.planning.path.bit_rows import NOWHERE, Bits, bit_rows, is_set, jump
 from roomba.planning.path.heap_kernels import heap_pop, heap_push
 
@@ -119,12 +119,12 @@ def _new_work(size: int) -> _Work:
     )
 
 
-@njit(cache=True, nogil=True)
+@entry
 def _sign(value: int) -> int:
     return (value > 0) - (value < 0)
 
 
-@njit(cache=True, nogil=True)
+@inner_part
 def _may_lead_on(rows: Bits, y: int, x: int, entered: int, up: int, right: int) -> bool:
     """Whether a shortest path that entered a cell like that may leave it like this."""
     if entered == _ANY:
@@ -137,7 +137,7 @@ def _may_lead_on(rows: Bits, y: int, x: int, entered: int, up: int, right: int) 
     return up != -ahead and (right == 0 or not is_set(rows, y - ahead, x + right))
 
 
-@njit(cache=True, nogil=True)
+@part
 def _reach(work: _Work, epoch: int, index: int, cost: float, before: int, entered: int) -> bool:
     """Note a way to a cell if it is the shortest yet."""
     stamp = work.stamps[index]
@@ -150,14 +150,14 @@ def _reach(work: _Work, epoch: int, index: int, cost: float, before: int, entere
     return True
 
 
-@njit(cache=True, nogil=True)
+@part
 def _estimate(index: int, width: int, goal: int) -> float:
     """Return the length of the way to the goal over an empty grid (the heuristic)."""
     across, along = abs(index // width - goal // width), abs(index % width - goal % width)
     return max(across, along) + (_DIAGONAL - 1.0) * min(across, along)
 
 
-@njit(cache=True, nogil=True)
+@allocating_entry
 def _search(
     rows: Bits, columns: Bits, width: int, start: int, goal: int, work: _Work, epoch: int
 ) -> bool:

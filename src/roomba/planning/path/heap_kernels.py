@@ -6,14 +6,15 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from roomba.compilation import entry
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
 
 
-@njit(cache=True, nogil=True)
+@entry
 def heap_push(keys: Floats, items: Ints, size: int, key: float, item: int) -> None:
     """Put an item into a 4-ary min-heap of ``size`` items."""
     at = size
@@ -28,7 +29,7 @@ def heap_push(keys: Floats, items: Ints, size: int, key: float, item: int) -> No
     items[at] = item
 
 
-@njit(cache=True, nogil=True)
+@entry
 def heap_pop(keys: Floats, items: Ints, size: int) -> None:
     """Remove the first item of a 4-ary min-heap of ``size`` items."""
     last = size - 1

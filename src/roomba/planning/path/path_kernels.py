@@ -11,8 +11,7 @@ from __future__ import annotations
 
 import math
 
-from numba import njit
-
+from roomba.compilation import entry, inner_part, part
 from roomba.planning.path.fan_kernels import (
     EPOCH,
     EPSILON,
@@ -38,7 +37,7 @@ FULL, NO_PATH, FOUND = 0, 1, 2
 EVERYWHERE = 1e18
 
 
-@njit(cache=True, nogil=True)
+@part
 def _look(work: Work, x: int, y: int, direction: int, low: float, high: float) -> None:
     """Open the fan of the root at centre (x, y) to the next row, from x = low to high there."""
     strip = y if direction > 0 else y - 1
@@ -61,7 +60,7 @@ def _look(work: Work, x: int, y: int, direction: int, low: float, high: float) -
         add_fan(work, root, x, y, cost, y + direction, direction, seen_left, seen_right)
 
 
-@njit(cache=True, nogil=True)
+@inner_part
 def _look_along(work: Work, x: int, y: int, step: int) -> None:
     """See the centres in the root's own row, to the right (step 1) or to the left (-1)."""
     root = y * work.fits.shape[1] + x
@@ -73,7 +72,7 @@ def _look_along(work: Work, x: int, y: int, step: int) -> None:
             break
 
 
-@njit(cache=True, nogil=True)
+@inner_part
 def _expand_root(work: Work, root: int, everywhere: bool) -> None:
     """Look from a root: around the closed square at which the path bends, or everywhere."""
     columns = work.fits.shape[1]
@@ -108,7 +107,7 @@ def _expand_root(work: Work, root: int, everywhere: bool) -> None:
             _look_along(work, x, y, side_x)
 
 
-@njit(cache=True, nogil=True)
+@inner_part
 def _expand_start(work: Work) -> None:
     """Look everywhere from a start inside an open square."""
     x, y = work.ends[0], work.ends[1]
@@ -125,7 +124,7 @@ def _expand_start(work: Work) -> None:
     add_fan(work, START, x, y, 0.0, strip + 1, 1, left, right)
 
 
-@njit(cache=True, nogil=True)
+@entry
 def search(
     work: Work, entries: Ints, entry_legs: Floats, exits: Ints, exit_legs: Floats, inside: bool
 ) -> int:

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
+from roomba.compilation import inner_part
 from roomba.world.engine.brush_kernels import duty_now
 from roomba.world.engine.state.arrays import CARPET, Row
-from roomba.world.engine.state.compilation import part
 
 _HOUR = 3600.0
 
 
-@part
+@inner_part
 def drawn_power(body: Row, numbers: Row, ground: int) -> float:
     """Return what the robot draws, W."""
     half_turn = 0.5 * numbers.track * body.angular
@@ -25,14 +25,14 @@ def drawn_power(body: Row, numbers: Row, ground: int) -> float:
     )
 
 
-@part
+@inner_part
 def offered_power(charge: float, numbers: Row) -> float:
     """Return what the station's charger brings at a charge (Wh), W: ever less when nearly full."""
     over = (charge / numbers.capacity - numbers.taper_from) / (1.0 - numbers.taper_from)
     return float(numbers.charge_power * (1.0 - (1.0 - numbers.taper_to) * min(max(over, 0.0), 1.0)))
 
 
-@part
+@inner_part
 def use_battery(body: Row, numbers: Row, ground: int, dt: float) -> None:
     """Take and bring energy for one step: charge = first charge - used + charged, to rounding.
 

@@ -8,8 +8,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.compilation import entry, inner_part, part
 from roomba.world.engine.state.arrays import CARPET, Row
-from roomba.world.engine.state.compilation import entry, part
 from roomba.world.engine.state.random_kernels import next_normal
 
 Floats = NDArray[np.float64]
@@ -18,7 +18,7 @@ _LEAST: Final = 20
 """Micrograms; a smaller amount is picked up completely."""
 
 
-@part
+@inner_part
 def sweep(
     dirt: NDArray[np.int32],
     first: int,
@@ -108,7 +108,7 @@ def duty_now(body: Row) -> tuple[float, float]:
     return body.brush_duty, body.fan_duty
 
 
-@part
+@inner_part
 def clean(
     dirt: NDArray[np.int32],
     home: Row,
@@ -147,7 +147,7 @@ def clean(
     sense_cleaning(body, numbers, quantiles, ground, taken, dt)
 
 
-@part
+@inner_part
 def sense_cleaning(
     body: Row,
     numbers: Row,

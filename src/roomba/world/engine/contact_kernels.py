@@ -10,9 +10,9 @@ import math
 from typing import Final
 
 from roomba.angles import wrapped
+from roomba.compilation import inner_part, part
 from roomba.world.engine.lidar.face_kernels import way_to_face
 from roomba.world.engine.state.arrays import Row, Rows, Solid
-from roomba.world.engine.state.compilation import part
 
 PROBE_STEP: Final = 1e-3
 """m; step of the search for contact when something solid is nearer than the way to go."""
@@ -53,7 +53,7 @@ def halves(dx: float, dy: float, theta: float) -> int:
     return pressed | RIGHT if angle < BOTH_BUMPERS_ANGLE else pressed
 
 
-@part
+@inner_part
 def near_cells(
     cells: Rows, home: Row, x: float, y: float, reach: float, touch: float, theta: float
 ) -> tuple[float, int]:
@@ -86,7 +86,7 @@ def near_cells(
     return float(math.sqrt(nearest) * resolution), pressed
 
 
-@part
+@inner_part
 def near_faces(
     solid: Solid, home: Row, x: float, y: float, reach: float, touch: float, theta: float
 ) -> tuple[float, int]:
@@ -104,7 +104,7 @@ def near_faces(
     return nearest, pressed
 
 
-@part
+@inner_part
 def near_things(
     solid: Solid, world: Row, x: float, y: float, reach: float, touch: float, theta: float
 ) -> tuple[float, int]:
@@ -126,7 +126,7 @@ def near_things(
     return nearest, pressed
 
 
-@part
+@inner_part
 def way_to_box(box: Row, x: float, y: float) -> tuple[float, float, float]:
     """Return the distance from a point of a thing's frame to a box of it, and the way there."""
     cosine, sine = math.cos(box.theta), math.sin(box.theta)
@@ -141,7 +141,7 @@ def way_to_box(box: Row, x: float, y: float) -> tuple[float, float, float]:
     )
 
 
-@part
+@inner_part
 def near_discs(
     solid: Solid,
     world: Row,
@@ -172,7 +172,7 @@ def near_discs(
     return nearest, pressed
 
 
-@part
+@inner_part
 def room_at(cells: Rows, home: Row, x: float, y: float) -> float:
     """Return a distance, m, within which nothing of the home is solid; cheap and too small."""
     u = (x - home.left) / home.resolution
@@ -204,7 +204,7 @@ def gap_at(
     return float(distance - radius)
 
 
-@part
+@inner_part
 def contact_share(
     solid: Solid,
     home: Row,
@@ -241,7 +241,7 @@ def contact_share(
     return low
 
 
-@part
+@inner_part
 def free_share(
     solid: Solid,
     home: Row,
@@ -276,7 +276,7 @@ def free_share(
     return 1.0
 
 
-@part
+@inner_part
 def feel_bumper(solid: Solid, home: Row, world: Row, robot: int, radius: float) -> None:
     """Press and release the bumper's halves by what touches the front half of the disc.
 

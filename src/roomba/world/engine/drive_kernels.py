@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.angles import wrapped
+from roomba.compilation import inner_part, part
 from roomba.world.engine.contact_kernels import arc, free_share
 from roomba.world.engine.state.arrays import CARPET, Row, Solid
-from roomba.world.engine.state.compilation import part
 from roomba.world.engine.state.random_kernels import next_normal
 
 Quantiles = NDArray[np.float32]
@@ -24,7 +24,7 @@ def ramp(value: float, target: float, speeding_up: float, braking: float, dt: fl
     return value + min(max(target_now - value, -limit), limit)
 
 
-@part
+@inner_part
 def ramped(body: Row, numbers: Row, dt: float) -> tuple[float, float]:
     """Return the velocities that the drive has after ``dt`` s; without charge it comes to rest."""
     linear = min(max(body.wanted_linear, -body.max_speed), body.max_speed)
@@ -38,7 +38,7 @@ def ramped(body: Row, numbers: Row, dt: float) -> tuple[float, float]:
     )
 
 
-@part
+@inner_part
 def slips(
     body: Row, numbers: Row, quantiles: Quantiles, ground: int, way: float
 ) -> tuple[float, float]:
@@ -63,7 +63,7 @@ def slips(
     return left, right
 
 
-@part
+@inner_part
 def drive(
     solid: Solid,
     home: Row,
@@ -125,7 +125,7 @@ def drive(
     return math.copysign(abs(length) * share, length), turn
 
 
-@part
+@inner_part
 def pull_aside(
     solid: Solid, home: Row, world: Row, robot: int, numbers: Row, rolled: float
 ) -> None:
@@ -140,7 +140,7 @@ def pull_aside(
     body.theta = heading
 
 
-@part
+@inner_part
 def count_wheels(
     body: Row, numbers: Row, left: float, right: float, share: float, dt: float
 ) -> None:
@@ -168,7 +168,7 @@ def count_wheels(
     body.odometry_linear, body.odometry_angular = length / dt, turn / dt
 
 
-@part
+@inner_part
 def feel_motion(
     body: Row,
     numbers: Row,

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from typing import Final
 
+from roomba.compilation import inner_part
 from roomba.world.engine.state.arrays import Dirt, Row
-from roomba.world.engine.state.compilation import part
 from roomba.world.engine.state.random_kernels import next_exponential, next_uniform
 from roomba.world.home.dirt import FULL_CELL
 
@@ -14,7 +14,7 @@ _TRIES: Final = 64
 """Attempts to find a place on the floor before a crumb counts as fallen on the furniture."""
 
 
-@part
+@inner_part
 def let_dirt_fall(dirt: Dirt, home: Row, world: Row, crumb: int) -> None:
     """Let fall what is due in a world by now, crumbs of ``crumb`` micrograms."""
     for number in range(world.falls_at, world.falls_end):
@@ -25,7 +25,7 @@ def let_dirt_fall(dirt: Dirt, home: Row, world: Row, crumb: int) -> None:
             fall.time += source.mean_wait * next_exponential(world)
 
 
-@part
+@inner_part
 def drop_crumb(dirt: Dirt, home: Row, world: Row, source: Row, crumb: int) -> None:
     """Let a crumb fall as the Gaussian of its source says, on floor; else it lands nowhere."""
     size, reach = home.dirt_resolution, 3.0 * source.radius

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 
+from roomba.compilation import inner_part, part
 from roomba.world.engine.state.arrays import DROP, FLOOR, Row, Rows
-from roomba.world.engine.state.compilation import part
 
 
-@part
+@inner_part
 def ground_at(cells: Rows, home: Row, x: float, y: float) -> int:
     """Return what the ground is at a point: FLOOR, CARPET or DROP; FLOOR outside of the home."""
     row = math.floor((y - home.bottom) / home.resolution)
@@ -28,7 +28,7 @@ def is_drop(
     return 1.0 if ground_at(cells, home, x, y) == DROP else 0.0
 
 
-@part
+@inner_part
 def feel_ground(cells: Rows, home: Row, body: Row, numbers: Row) -> None:
     """Let cliff sensors and wheel drops feel what is below them."""
     if home.has_drops == 0.0:

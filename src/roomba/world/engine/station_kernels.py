@@ -10,16 +10,16 @@ import math
 from typing import Final
 
 from roomba.angles import wrapped
+from roomba.compilation import inner_part
 from roomba.world.engine.lidar.face_kernels import ray_to_faces
 from roomba.world.engine.state.arrays import Infrared, Row, Solid
-from roomba.world.engine.state.compilation import part
 from roomba.world.home.surface import Finish
 
 _GLASS: Final = int(Finish.GLASS)
 _HALO, _RED, _GREEN = int(Infrared.HALO), int(Infrared.RED), int(Infrared.GREEN)
 
 
-@part
+@inner_part
 def sense_station(solid: Solid, home: Row, body: Row, numbers: Row) -> None:
     """Receive the station's beams, and feel its contacts."""
     body.beams = 0
@@ -37,7 +37,7 @@ def sense_station(solid: Solid, home: Row, body: Row, numbers: Row) -> None:
         body.beams = seen_beams(solid, home, body, numbers)
 
 
-@part
+@inner_part
 def seen_beams(solid: Solid, home: Row, body: Row, numbers: Row) -> int:
     """Return the beams, see Infrared, that reach the receiver on top of the body."""
     cosine, sine = math.cos(home.station_theta), math.sin(home.station_theta)
@@ -59,7 +59,7 @@ def seen_beams(solid: Solid, home: Row, body: Row, numbers: Row) -> int:
     return seen
 
 
-@part
+@inner_part
 def is_in_sight(solid: Solid, home: Row, from_x: float, from_y: float, x: float, y: float) -> bool:
     """Tell whether nothing of the home stands between the station's front and a point.
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.compilation import entry, inner_part
 from roomba.world.engine.battery_kernels import use_battery
 from roomba.world.engine.brush_kernels import clean
 from roomba.world.engine.contact_kernels import feel_bumper
@@ -16,7 +17,6 @@ from roomba.world.engine.lidar.projection import ScanBuffers
 from roomba.world.engine.lidar.scan_kernels import is_scan_due, scan
 from roomba.world.engine.lidar.sweep_kernels import sweep
 from roomba.world.engine.state.arrays import Row, Rows, State
-from roomba.world.engine.state.compilation import entry, part
 from roomba.world.engine.station_kernels import sense_station
 from roomba.world.engine.thing_kernels import move_thing
 
@@ -66,7 +66,7 @@ def advance(
                     )
 
 
-@part
+@inner_part
 def step_robot(
     state: State,
     home: Row,

@@ -9,15 +9,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.angles import wrapped
+from roomba.compilation import inner_part
 from roomba.world.engine.contact_kernels import way_to_box
 from roomba.world.engine.state.arrays import Row, Solid
-from roomba.world.engine.state.compilation import part
 
 _MARGIN: Final = 2e-3
 """m; nothing moves nearer to a robot than this."""
 
 
-@part
+@inner_part
 def move_thing(
     solid: Solid,
     tracks: NDArray[np.float64],
@@ -47,7 +47,7 @@ def move_thing(
     thing.time, thing.row = time, row
 
 
-@part
+@inner_part
 def robot_is_there(
     solid: Solid, world: Row, thing: Row, radius: float, x: float, y: float, theta: float
 ) -> bool:
@@ -62,7 +62,7 @@ def robot_is_there(
     return False
 
 
-@part
+@inner_part
 def way_to_thing(
     solid: Solid, thing: Row, x: float, y: float, theta: float, to_x: float, to_y: float
 ) -> float:

@@ -6,10 +6,10 @@ import math
 from typing import Final
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from roomba.angles import wrapped
+from roomba.compilation import allocating_entry, allocating_part, entry, inner_part
 from roomba.perception.calibration.kernels import drop_window
 from roomba.perception.calibration.place_kernels import note_pose
 from roomba.perception.localization.belief.belief import AGREE, EVIDENCE, SHORT, THROUGH, Row, Rows
@@ -44,7 +44,7 @@ _STILL: Final = (0.0005**2, 0.0005**2, 0.0003**2)
 """m2, rad2; the least variance, of the map's errors, which more scans do not reduce."""
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@entry
 def correct(
     beliefs: Rows,
     numbers: Rows,
@@ -72,7 +72,7 @@ def correct(
     return count
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_part
 def correct_late(
     beliefs: Rows,
     numbers: Rows,
@@ -101,7 +101,7 @@ def correct_late(
     return count
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@entry
 def calibrate(beliefs: Rows) -> None:
     """Measure the robot's errors by a scan that was matched, and judged, just now."""
     belief = beliefs[0]
@@ -112,7 +112,7 @@ def calibrate(beliefs: Rows) -> None:
     note_pose(belief.calibration, pose, belief.covariance, belief.map_spread)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@entry
 def is_calm(beliefs: Rows, numbers: Rows, now: float) -> bool:
     """Whether a known pose is still known, so that kernels alone can go on."""
     belief, known = beliefs[0], numbers[0]
@@ -124,7 +124,7 @@ def is_calm(beliefs: Rows, numbers: Rows, now: float) -> bool:
     return is_sure
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@entry
 def deviation(covariance: Floats) -> float:
     """Return the standard deviation along the worst direction of the floor, m; nan is infinite."""
     xx, xy, yy = covariance[0, 0], covariance[0, 1], covariance[1, 1]
@@ -132,7 +132,7 @@ def deviation(covariance: Floats) -> float:
     return math.sqrt(max(0.0, variance)) if variance == variance else math.inf
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@allocating_entry
 def match_ends(
     beliefs: Rows,
     numbers: Rows,
@@ -162,7 +162,7 @@ def match_ends(
     covariance[:] = after
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@allocating_part
 def _note_map_errors(belief: Row, field: Field, place: Place, ends: Floats, count: int) -> None:
     """Take what a scan that was just matched tells of the map's errors."""
     spread, told = np.empty((3, 3)), np.empty(4)
@@ -187,7 +187,7 @@ def _note_map_errors(belief: Row, field: Field, place: Place, ends: Floats, coun
     belief.unlike = 0.0
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_part
 def _beam_variance(numbers: Row, place: Place, count: int) -> float:
     """Return the variance of a beam, m2.
 
@@ -199,7 +199,7 @@ def _beam_variance(numbers: Row, place: Place, count: int) -> float:
     return variance
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@entry
 def judge_ends(
     beliefs: Rows,
     numbers: Rows,
@@ -233,7 +233,7 @@ def judge_ends(
         learn_trust(belief)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@entry
 def trust(beliefs: Rows) -> None:
     """Use the newest fit as the usual one."""
     belief = beliefs[0]

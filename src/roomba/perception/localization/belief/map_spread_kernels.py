@@ -12,9 +12,9 @@ import math
 from typing import Final
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from roomba.compilation import allocating_part, inner_part
 from roomba.perception.matching.field_kernels import Field, Place, look
 from roomba.perception.matching.match_kernels import invert
 
@@ -42,7 +42,7 @@ APART_WALLS: Final = 3
 """Places in ``told`` of :func:`map_spread`."""
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@allocating_part
 def map_spread(
     field: Field,
     place: Place,
@@ -120,7 +120,7 @@ def map_spread(
     return True
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_part
 def _faces_alike(of_wall: Floats, of_group: Floats) -> bool:
     """Whether the beams of a group meet what faces as the wall before it does."""
     product = of_wall[0] * of_group[0] + of_wall[1] * of_group[1]
@@ -129,7 +129,7 @@ def _faces_alike(of_wall: Floats, of_group: Floats) -> bool:
     return is_alike
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_part
 def _end_wall(of_wall: Floats, walls: Floats, told: Floats) -> None:
     """Add what a wall alone would do to the pose, and begin the next one."""
     if of_wall[4] > 1.0:

@@ -5,9 +5,8 @@ from __future__ import annotations
 import math
 from typing import Final
 
-from numba import njit
-
 from roomba.angles import wrapped
+from roomba.compilation import entry, inner_part, part
 from roomba.configuration.body import FASTEST_SPEED
 from roomba.perception.calibration.kernels import corrected, note_gyro, note_step
 from roomba.perception.calibration.state import GYRO
@@ -29,7 +28,7 @@ _UNSEEN: Final = 0.3
 """Deviation of the mean turning speed between two samples, as a share of its change."""
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@entry
 def reckon(
     beliefs: Rows,
     numbers: Rows,
@@ -66,7 +65,7 @@ def reckon(
     return WENT_ON if since > 0.0 else WAS_SET_BACK
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@entry
 def reckon_on(
     beliefs: Rows,
     numbers: Rows,
@@ -86,7 +85,7 @@ def reckon_on(
     remember(path, stamp, beliefs[0].reckoned)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_part
 def _go(
     belief: Row,
     numbers: Row,
@@ -116,7 +115,7 @@ def _go(
     _leave_surroundings(belief, numbers, way, turn)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_part
 def _leave_surroundings(belief: Row, numbers: Row, way: float, turn: float) -> None:
     """Be as much less sure as other walls, with other errors of the map, come in sight.
 
@@ -131,7 +130,7 @@ def _leave_surroundings(belief: Row, numbers: Row, way: float, turn: float) -> N
             belief.covariance[row, column] += share * belief.map_spread[row, column]
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_part
 def _learn_bias(belief: Row, numbers: Row, way: float, turn: float, turning: float) -> None:
     """While the wheels stand, the mean of what the gyro shows is its bias."""
     if way > _STANDS or abs(turn) > _STANDS or math.isnan(turning):
@@ -146,7 +145,7 @@ def _learn_bias(belief: Row, numbers: Row, way: float, turn: float, turning: flo
     belief.bias += (turning - belief.bias) / (belief.samples + 20.0)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_part
 def _turn(
     belief: Row, numbers: Row, way: float, wheels: float, turning: float, elapsed: float
 ) -> tuple[float, float]:
@@ -172,7 +171,7 @@ def _turn(
     return wheels + share * (gyro - wheels), share * by_gyro
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@part
 def compose(pose: Row, ahead: float, aside: float, turn: float) -> None:
     """Move a pose, float64 [3], by a step in its own frame, m and rad."""
     cosine, sine = math.cos(pose[2]), math.sin(pose[2])
@@ -181,7 +180,7 @@ def compose(pose: Row, ahead: float, aside: float, turn: float) -> None:
     pose[2] = wrapped(pose[2] + turn)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@entry
 def carry(
     pose: Row,
     covariance: Row,

@@ -10,10 +10,10 @@ import math
 from typing import Final
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from roomba.angles import wrapped
+from roomba.compilation import inner_part
 from roomba.perception.localization.belief.belief import Row
 
 _LEARNING: Final = 0.02
@@ -26,7 +26,7 @@ _LEAST_SPREAD: Final = (0.001**2, 0.001**2, 0.0005**2)
 """m2, rad2; variances of less motion, which the match itself is no surer than."""
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_part
 def note_correction(belief: Row, before: NDArray[np.float64]) -> None:
     """Keep by what a scan moved the pose from ``before`` [3], and what it was unsure by since."""
     pose, off = belief.pose, belief.off
@@ -38,7 +38,7 @@ def note_correction(belief: Row, before: NDArray[np.float64]) -> None:
         belief.reckoned_spread[axis], belief.spread[axis] = belief.spread[axis], 0.0
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_part
 def learn_trust(belief: Row) -> None:
     """Learn from the correction that was noted how many times its variances dead reckoning is off.
 

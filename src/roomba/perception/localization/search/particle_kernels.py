@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from roomba.compilation import allocating_entry, entry
 from roomba.perception.matching.field_kernels import Field, Place
 
 Floats = NDArray[np.float64]
@@ -15,7 +15,7 @@ Particles = NDArray[np.float64]
 """[n, 4]: x, y (m), theta (rad), and the logarithm of the weight."""
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@entry
 def spread_over(spots: Floats, headings: int, particles: Particles) -> None:
     """Fill ``particles`` with each spot, [m, 2], m, in so many headings, all of weight 1."""
     turn = 2.0 * math.pi / headings
@@ -26,7 +26,7 @@ def spread_over(spots: Floats, headings: int, particles: Particles) -> None:
         particles[index, 3] = 0.0
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@entry
 def move_all(particles: Particles, x: float, y: float, turn: float, noise: Floats) -> None:
     """Move all by a step in their own frames, m and rad, each by its ``noise`` [n, 3] more."""
     for index in range(particles.shape[0]):
@@ -37,7 +37,7 @@ def move_all(particles: Particles, x: float, y: float, turn: float, noise: Float
         particles[index, 2] += turn + noise[index, 2]
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@entry
 def fill_likelihoods(
     field: Field, depth: float, spread: float, chance: float, likelihoods: Field
 ) -> None:
@@ -57,7 +57,7 @@ def fill_likelihoods(
             likelihoods[row, column] = math.log(likely)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@entry
 def weigh_all(
     likelihoods: Field,
     place: Place,
@@ -90,7 +90,7 @@ def weigh_all(
         particles[index, 3] += share * total
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@entry
 def leave_walls(field: Field, place: Place, room: float, particles: Particles) -> None:
     """Take the weight of all particles that have less than ``room`` m around them."""
     rows, columns = field.shape
@@ -102,7 +102,7 @@ def leave_walls(field: Field, place: Place, room: float, particles: Particles) -
             particles[index, 3] = -math.inf
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@allocating_entry
 def resample(particles: Particles, weights: Floats, start: float, chosen: Particles) -> None:
     """Fill ``chosen`` [m, 4] from ``particles`` by their ``weights`` [n], which sum up to 1.
 
@@ -118,7 +118,7 @@ def resample(particles: Particles, weights: Floats, start: float, chosen: Partic
         chosen[index, 3] = 0.0
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@entry
 def normalise(particles: Particles, weights: Floats) -> float:
     """Fill ``weights`` [n], summing up to 1; return how many particles that is worth.
 
@@ -140,7 +140,7 @@ def normalise(particles: Particles, weights: Floats) -> float:
     return 1.0 / squares
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@entry
 def weight_around(
     particles: Particles, weights: Floats, at: Floats, near: float, turned: float, middle: Floats
 ) -> float:

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from roomba.compilation import any_order_entry, entry
 from roomba.perception.matching.field_kernels import Field, Place
 
 Floats = NDArray[np.float64]
@@ -16,7 +16,7 @@ _EARLY = 12
 _EARLY_SHARE = 0.3
 
 
-@njit(cache=True, nogil=True, error_model="numpy", fastmath={"nsz", "arcp", "contract", "reassoc"})
+@any_order_entry
 def score_heading(
     field: Field,
     place: Place,
@@ -58,7 +58,7 @@ def score_heading(
             headings[spot] = theta
 
 
-@njit(cache=True, nogil=True)
+@entry
 def cells_with_room(field: Field, room: float, stride: int, cells: NDArray[np.int64]) -> int:
     """Fill ``cells`` [n, 2], row and column, with a cell of each block; return how many there are.
 

@@ -11,9 +11,9 @@ import math
 from typing import Final, NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from roomba.compilation import allocating_entry, inlined_entry, inner_part, part
 from roomba.grid import FREE, OCCUPIED, UNKNOWN
 from roomba.perception.slam.scan_matching.surface_kernels import NORMAL_X, NORMAL_Y, X, Y
 
@@ -54,7 +54,7 @@ class CountArrays(NamedTuple):
     offsets: NDArray[np.float32] = _NOWHERE
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@allocating_entry
 def draw(
     cells: CountArrays,
     points: NDArray[np.float32],
@@ -99,7 +99,7 @@ def draw(
     _bound(cells, math.floor(from_v), math.floor(from_u))
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_part
 def _pass(
     counts: Counts,
     shape: tuple[int, int],
@@ -139,7 +139,7 @@ def _pass(
             next_v += per_v
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_part
 def _walk(
     counts: Counts,
     at: int,
@@ -166,7 +166,7 @@ def _walk(
         next_v += 0.0 if is_aside else per_v
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_part
 def _hit(
     offsets: NDArray[np.float32],
     counts: Counts,
@@ -190,13 +190,13 @@ def _hit(
     _count(counts, at, times)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@part
 def _is_in(shape: tuple[int, int], row: int, column: int, margin: int) -> bool:
     rows, columns = shape
     return margin <= row < rows - margin and margin <= column < columns - margin
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@part
 def _count(counts: Counts, at: int, times: int) -> None:
     before = int(counts[at])
     after = before + times
@@ -205,7 +205,7 @@ def _count(counts: Counts, at: int, times: int) -> None:
     counts[at] = after
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_part
 def _bound(cells: CountArrays, row: int, column: int) -> None:
     rows, columns = cells.hits.shape
     cells.bounds[0] = max(min(cells.bounds[0], row), 0)
@@ -214,7 +214,7 @@ def _bound(cells: CountArrays, row: int, column: int) -> None:
     cells.bounds[3] = min(max(cells.bounds[3], column), columns - 1)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@allocating_entry
 def occupancy(cells: CountArrays, share: float, least: int, values: NDArray[np.int8]) -> None:
     """Fill ``values`` from the counts, with a margin of unknown cells around all in the bounds.
 
@@ -243,12 +243,12 @@ def occupancy(cells: CountArrays, share: float, least: int, values: NDArray[np.i
                 line[column] = OCCUPIED
 
 
-@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+@inlined_entry
 def _is_met(ended: int, through: int, share: float, least: int) -> bool:
     return ended >= least and ended >= share * (ended + through)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_part
 def _is_edge(cells: CountArrays, row: int, column: int, least: int) -> bool:
     """Whether beams met a cell but at its border to one that is more surely occupied."""
     rows, columns = cells.offsets.shape[:2]

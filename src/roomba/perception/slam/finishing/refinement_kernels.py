@@ -6,9 +6,9 @@ import math
 from typing import Final, NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from roomba.compilation import allocating_entry, allocating_part
 from roomba.perception.matching.match_kernels import invert
 from roomba.perception.matching.pose_kernels import seen_from
 from roomba.perception.slam.scan_matching.surfel_kernels import (
@@ -72,7 +72,7 @@ class Asked(NamedTuple):
     frames: Numbers
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@allocating_entry
 def nearby_visits(poses: Floats, middles: Numbers, visits: Numbers) -> None:
     """Fill ``visits`` [keyframes, n] with the groups of other visits nearest to each keyframe.
 
@@ -105,7 +105,7 @@ def nearby_visits(poses: Floats, middles: Numbers, visits: Numbers) -> None:
                 break
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@allocating_entry
 def match_to_groups(
     surfels: Surfels,
     scans: Scans,
@@ -141,7 +141,7 @@ def match_to_groups(
                 found[place] = math.nan
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@allocating_part
 def _match(
     surfels: Surfels,
     points: Floats,

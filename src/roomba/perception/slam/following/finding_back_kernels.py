@@ -6,8 +6,8 @@ import math
 from typing import Final
 
 import numpy as np
-from numba import njit
 
+from roomba.compilation import entry, inner_part
 from roomba.perception.localization.belief.belief import Row, Rows
 from roomba.perception.matching.pose_kernels import is_apart
 
@@ -38,7 +38,7 @@ _STANDS: Final = 0.03
 """m and rad; less than this is no motion of the wheels."""
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_part
 def saw(findings: Rows, followers: Rows, stamp: float) -> None:
     """Take how well the newest scan fits, and its stamp, s."""
     finding, follower = findings[0], followers[0]
@@ -50,7 +50,7 @@ def saw(findings: Rows, followers: Rows, stamp: float) -> None:
     finding.stamp, finding.way = stamp, follower.way
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@entry
 def is_due(findings: Rows) -> bool:
     """Whether the newest scan is to be searched for."""
     finding = findings[0]
@@ -58,7 +58,7 @@ def is_due(findings: Rows) -> bool:
     return 0 < count <= _AT_ONCE or (count > 0 and count % _EVERY == 0)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_part
 def _count(finding: Row, follower: Row, stamp: float) -> None:
     """Count the scans in a row that confirm nothing, or less than is usual."""
     if not follower.is_sure:

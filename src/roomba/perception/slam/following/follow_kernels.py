@@ -6,10 +6,10 @@ import math
 from typing import Final
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from roomba.angles import wrapped
+from roomba.compilation import entry, inner_part
 from roomba.perception.localization.belief.belief import Row, Rows
 from roomba.perception.localization.belief.reckon_kernels import compose
 from roomba.perception.matching.pose_kernels import beyond, seen_from
@@ -78,7 +78,7 @@ _LEAST_SPREAD: Final = (0.001**2, 0.001**2, 0.0005**2)
 """m2, rad2; the least variance of a prior, also at standstill."""
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@entry
 def follow(
     followers: Rows, beliefs: Rows, reckoned: Floats, surfels: Surfels, points: Floats, count: int
 ) -> None:
@@ -127,7 +127,7 @@ def follow(
     follower.unsure_way = follower.unsure_turn = 0.0
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_part
 def _learn_scale(follower: Row, prior: Floats, pose: Floats) -> None:
     """Learn from a match how far off dead reckoning was, by its own variances: 1 or more."""
     cosine, sine = math.cos(prior[2]), math.sin(prior[2])
@@ -145,7 +145,7 @@ def _learn_scale(follower: Row, prior: Floats, pose: Floats) -> None:
         scale[axis] = max(1.0, scale[axis] + _LEARNING * (seen - scale[axis]))
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_part
 def _move_on(follower: Row, belief: Row, reckoned: Floats) -> None:
     """Go by dead reckoning, and be as unsure as that became since the last scan."""
     ahead, aside, turn = seen_from(follower.reckoned, reckoned)
@@ -167,7 +167,7 @@ def _move_on(follower: Row, belief: Row, reckoned: Floats) -> None:
     belief.spread[:] = 0.0
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@entry
 def moved_since(
     followers: Rows, beliefs: Rows, x: float, y: float, theta: float
 ) -> tuple[float, float, float]:

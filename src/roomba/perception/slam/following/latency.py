@@ -10,9 +10,9 @@ import math
 from typing import Final
 
 import numpy as np
-from numba import njit
 
 from roomba.angles import wrapped
+from roomba.compilation import entry, inner_part
 from roomba.perception.localization.belief.belief import Row, Rows
 from roomba.perception.matching.reckoned_path import ReckonedPath, pose_at
 
@@ -48,7 +48,7 @@ def no_latency() -> Rows:
     return latency
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@entry
 def learn_latency(latencies: Rows, turn: float, stamp: float, path: ReckonedPath) -> None:
     """Take by how much a scan was turned against the one before it, rad, nan if not known.
 
@@ -68,7 +68,7 @@ def learn_latency(latencies: Rows, turn: float, stamp: float, path: ReckonedPath
         latency.before[index] = latency.now[index]
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_part
 def _add_errors(latency: Row, turn: float) -> None:
     """Compare a turn to what was reckoned for each latency, and say which one to go by."""
     best = 0

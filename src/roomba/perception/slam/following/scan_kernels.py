@@ -6,10 +6,10 @@ import math
 from typing import Final, NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from roomba.angles import wrapped
+from roomba.compilation import entry, inner_part
 from roomba.perception.calibration.kernels import drop_window
 from roomba.perception.calibration.place_kernels import note_pose
 from roomba.perception.localization.belief.belief import Rows
@@ -57,7 +57,7 @@ class Following(NamedTuple):
     work: Floats
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_part
 def take_scan(following: Following, stamp: float, ranges: Ranges) -> int:
     """Follow the robot by a scan, float32 [beams], m, that was taken at ``stamp``, s.
 
@@ -76,21 +76,21 @@ def take_scan(following: Following, stamp: float, ranges: Ranges) -> int:
     return IS_DONE
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@entry
 def is_apart_from_keyframe(followers: Rows) -> bool:
     """Whether the newest scan was taken so far from the newest keyframe as to be kept."""
     row = followers[0]
     return is_apart(row.here, row.keyframe, row.keyframe_way, row.keyframe_turn)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_part
 def find_reckoned(following: Following, stamp: float) -> bool:
     """Look up where dead reckoning had the robot at a scan, if it is known: into ``scanned_at``."""
     lateness = following.latency[0].seconds
     return pose_at(following.path, stamp - lateness, following.follower[0].scanned_at)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@entry
 def see_points(following: Following, stamp: float, ranges: Ranges) -> None:
     """Find the points that a scan shows, and learn how noisy its ranges are."""
     noise, beams = following.noise, following.beams
@@ -104,7 +104,7 @@ def see_points(following: Following, stamp: float, ranges: Ranges) -> None:
     _find_points(following, following.still)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_part
 def _find_points(following: Following, ranges: Ranges) -> None:
     """Find the points that a scan shows that was measured at once."""
     follower = following.follower[0]
@@ -113,7 +113,7 @@ def _find_points(following: Following, ranges: Ranges) -> None:
     )
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@entry
 def follow_points(following: Following, stamp: float) -> None:
     """Follow the robot by the points of a scan, and note how well they fit."""
     follower = following.follower[0]
@@ -126,7 +126,7 @@ def follow_points(following: Following, stamp: float) -> None:
     _calibrate(following)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_part
 def _calibrate(following: Following) -> None:
     """Measure the robot's errors by the scan that was followed just now."""
     follower, row = following.follower[0], following.belief[0].calibration
@@ -138,7 +138,7 @@ def _calibrate(following: Following) -> None:
     note_pose(row, now, follower.work[COVARIANCE : COVARIANCE + 3], follower.spread)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@entry
 def compare_turns(following: Following, stamp: float) -> None:
     """Learn how late scans are from the turn since the scan before, if both confirmed the pose."""
     follower = following.follower[0]

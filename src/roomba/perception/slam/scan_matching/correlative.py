@@ -14,8 +14,9 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from roomba.compilation import allocating_entry, allocating_part, entry, inner_part, part
 
 Floats = NDArray[np.float64]
 Likelihoods = NDArray[np.uint8]
@@ -116,7 +117,7 @@ class CorrelativeMatcher:
         return CorrelativeMatch(found[:3].copy(), float(found[3]))
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@entry
 def _spread_out(
     points: Floats, corner: Floats, cell: float, blur: float, grid: Likelihoods
 ) -> None:
@@ -136,7 +137,7 @@ def _spread_out(
                 grid[row, column] = max(grid[row, column], likelihood)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@entry
 def _heighten(levels: Likelihoods) -> None:
     """Fill each grid with the greatest of blocks of 2^level cells that begin at the cell."""
     rows, columns = levels.shape[1], levels.shape[2]
@@ -153,7 +154,7 @@ def _heighten(levels: Likelihoods) -> None:
                 )
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_part
 def _score(grid: Likelihoods, columns: Cells, rows: Cells, right: int, up: int) -> float:
     """Return the mean likelihood of points in cells that are shifted right and up, 0..1."""
     total = 0
@@ -164,7 +165,7 @@ def _score(grid: Likelihoods, columns: Cells, rows: Cells, right: int, up: int) 
     return total / (columns.size * float(_FULL))
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@allocating_part
 def _cells_of(
     points: Floats,
     around: Floats,
@@ -192,7 +193,7 @@ def _cells_of(
     return columns, rows
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@allocating_part
 def _largest_blocks(
     grid: Likelihoods, columns: Cells, rows: Cells, block: int, reach: int
 ) -> tuple[Floats, Cells]:
@@ -214,7 +215,7 @@ def _largest_blocks(
     return scores, places
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@part
 def _is_near(right: int, up: int, size: int, x: float, y: float, square: float) -> bool:
     """Whether no shift of a block, ``size`` cells a side, counts: all are near the shift x, y.
 
@@ -226,7 +227,7 @@ def _is_near(right: int, up: int, size: int, x: float, y: float, square: float) 
     return far_x * far_x + far_y * far_y < square
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_part
 def _insert(
     bounds: Floats,
     pending: Cells,
@@ -249,7 +250,7 @@ def _insert(
     pending[place, 2], pending[place, 3] = block[2], block[3]
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@allocating_entry
 def _search(
     levels: Likelihoods,
     corner: Floats,

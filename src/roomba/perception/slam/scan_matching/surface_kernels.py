@@ -11,9 +11,9 @@ import math
 from typing import Final
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from roomba.compilation import allocating_entry, entry, inner_part
 from roomba.perception.matching.beams import LidarBeams, is_all_around
 
 Floats = NDArray[np.float64]
@@ -41,13 +41,13 @@ _GRAZING: Final = 0.12
 """Cosine between a beam and a normal; below it the two points lie on different things."""
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@allocating_entry
 def room_for_sums(beams: int) -> Floats:
     """Return the room that :func:`surface_points` works in."""
     return np.empty((beams + 2 * _MOST_BESIDE + 1, _SUMS))
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@entry
 def surface_points(
     ranges: NDArray[np.float32], lidar: LidarBeams, deviation: float, points: Floats, sums: Floats
 ) -> int:
@@ -92,7 +92,7 @@ def surface_points(
     return count
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_part
 def _angle_between(directions: Floats, beams: int) -> float:
     """Return the angle between two neighbouring beams, rad; 1.0 for a single one."""
     if beams < 2:
@@ -101,7 +101,7 @@ def _angle_between(directions: Floats, beams: int) -> float:
     return abs(math.asin(min(max(cross, -1.0), 1.0)))
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_part
 def _add_up(ranges: NDArray[np.float32], lidar: LidarBeams, step: float, sums: Floats) -> None:
     """Fill ``sums`` [beams + 2 * _MOST_BESIDE + 1, _SUMS], all around and on to both sides.
 
@@ -132,7 +132,7 @@ def _add_up(ranges: NDArray[np.float32], lidar: LidarBeams, step: float, sums: F
         after[5] += y * y
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_part
 def _normal(sums: Floats, first: int, last: int, straight: float) -> tuple[bool, float, float]:
     """Return whether beams ``first`` to ``last`` met one plane, and its normal, lidar's frame.
 

@@ -13,9 +13,9 @@ import math
 from typing import Final, NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from roomba.compilation import allocating_entry, entry, inner_part, part
 from roomba.perception.matching.match_kernels import invert
 from roomba.perception.slam.scan_matching.surface_kernels import NORMAL_X, NORMAL_Y, X, Y
 from roomba.perception.slam.scan_matching.tolerances import Tolerances
@@ -50,7 +50,7 @@ class Surfels(NamedTuple):
     used: NDArray[np.int64]
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@entry
 def clear(surfels: Surfels) -> None:
     """Take all surfels out of the grid."""
     columns = surfels.sums.shape[1]
@@ -60,7 +60,7 @@ def clear(surfels: Surfels) -> None:
     surfels.used[0] = 0
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@entry
 def add_points(surfels: Surfels, points: Floats, count: int, pose: Floats) -> None:
     """Add a scan's points, seen from ``pose`` [3], grid's frame; those off the grid are lost."""
     rows, columns = surfels.sums.shape[0], surfels.sums.shape[1]
@@ -92,7 +92,7 @@ def add_points(surfels: Surfels, points: Floats, count: int, pose: Floats) -> No
         sums[4] += facing_y
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@allocating_entry
 def align(
     surfels: Surfels,
     points: Floats,
@@ -141,7 +141,7 @@ def align(
     return True
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_part
 def _add_matches(
     surfels: Surfels,
     points: Floats,
@@ -195,7 +195,7 @@ def _add_matches(
     information[2, 1] = information[1, 2]
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_part
 def _plane_near(
     surfels: Surfels, x: float, y: float, facing_x: float, facing_y: float, reach: int
 ) -> tuple[float, float, float, float]:
@@ -232,7 +232,7 @@ def _plane_near(
     return best, off, plane_x, plane_y
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@part
 def _facing(x: float, y: float) -> int:
     """Return which of the four ways a normal faces: 0 along x, then counter-clockwise."""
     if abs(x) >= abs(y):
@@ -240,7 +240,7 @@ def _facing(x: float, y: float) -> int:
     return 1 if y > 0.0 else 3
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@part
 def _other_facing(x: float, y: float) -> int:
     """Return the second best of the four ways."""
     if abs(x) >= abs(y):

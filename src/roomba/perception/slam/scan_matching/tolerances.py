@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import Final, NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from roomba.compilation import entry
 
 _LAST_SCALE: Final = 0.03
 _SCALE_IN_DEVIATIONS: Final = 3.0
@@ -29,13 +30,13 @@ class Tolerances(NamedTuple):
     close: float
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@entry
 def last_scale(deviation: float) -> float:
     """Return the scale of a match's last rounds, m, for ranges of a standard deviation, m."""
     return max(_LAST_SCALE, _SCALE_IN_DEVIATIONS * deviation)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@entry
 def in_plane(deviation: float) -> float:
     """Return how far off a plane, m, a point still lies in it, by the deviation of a range, m."""
     return max(_IN_PLANE, _IN_PLANE_IN_DEVIATIONS * deviation + _MAP_ERROR)

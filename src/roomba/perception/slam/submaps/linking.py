@@ -6,10 +6,10 @@ import math
 from typing import Final
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from roomba.angles import wrapped
+from roomba.compilation import entry
 from roomba.configuration.mapping import MappingConfig
 from roomba.perception.matching.match_kernels import invert
 from roomba.perception.slam.scan_matching.correlative import CorrelativeMatcher, is_in_reach
@@ -204,7 +204,7 @@ def _ways(
     return ways, turns
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@entry
 def _shorten(
     joined: NDArray[np.int64], lengths: Floats, unsure: Floats, ways: Floats, turns: Floats
 ) -> None:

@@ -8,10 +8,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
-from roomba.planning.compilation import part
+from roomba.compilation import allocating_entry, entry
 from roomba.raster.regions import Mask
 
 _TILE = 32
@@ -42,7 +41,7 @@ def grown(mask: Mask, widths: NDArray[np.int32]) -> Mask:
     return result
 
 
-@njit(cache=True, nogil=True)
+@entry
 def _mark_changes(mask: Mask, widths: NDArray[np.int32], changes: NDArray[np.int16]) -> None:
     """Note where discs around the outermost true cells begin and end in each row."""
     rows, columns = mask.shape
@@ -68,7 +67,7 @@ def _mark_changes(mask: Mask, widths: NDArray[np.int32], changes: NDArray[np.int
                     changes[row - away, last] -= 1
 
 
-@njit(cache=True, nogil=True)
+@entry
 def _sum_changes(changes: NDArray[np.int16], result: Mask) -> None:
     rows, columns = result.shape
     for row in range(rows):
@@ -78,7 +77,7 @@ def _sum_changes(changes: NDArray[np.int16], result: Mask) -> None:
             result[row, column] = depth > 0
 
 
-@njit(cache=True, nogil=True)
+@allocating_entry
 def transposed(mask: Mask) -> Mask:
     """Return the mask with rows for columns, bool [columns, rows]."""
     rows, columns = mask.shape
@@ -91,7 +90,7 @@ def transposed(mask: Mask) -> Mask:
     return result
 
 
-@njit(cache=True, nogil=True)
+@allocating_entry
 def filled_from(mask: Mask, row: int, column: int) -> Mask:
     """Return the true cells connected over sides to one of them; bool, same shape."""
     rows, columns = mask.shape
@@ -129,7 +128,7 @@ def filled_from(mask: Mask, row: int, column: int) -> Mask:
     return filled
 
 
-@part
+@entry
 def way_fits(fits: Mask, x: float, y: float, to_x: float, to_y: float) -> bool:
     """Whether the middle may go straight from one point to another.
 

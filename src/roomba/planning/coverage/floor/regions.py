@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from roomba.compilation import allocating_entry, entry
 from roomba.raster.distance import distance_to_nearest
 from roomba.raster.regions import Labels, Mask, join, numbered_regions, root_of
 
@@ -47,7 +47,7 @@ def regions(floor: Mask, narrow: float, least: int) -> Regions:
     return found
 
 
-@njit(cache=True, nogil=True)
+@entry
 def _to_blocks(floor: Mask, middles: Mask, blocks: Mask) -> None:
     """Write which blocks have floor in their middle, and which have any."""
     rows, columns = floor.shape
@@ -64,7 +64,7 @@ def _to_blocks(floor: Mask, middles: Mask, blocks: Mask) -> None:
             middles[at_row, at_column] = floor[at_row * _BLOCK + half, at_column * _BLOCK + half]
 
 
-@njit(cache=True, nogil=True)
+@allocating_entry
 def _spread(floor: Mask, labels: Labels) -> None:
     """Give each unnumbered cell of the floor the number that is the fewest steps away."""
     rows, columns = floor.shape
@@ -96,7 +96,7 @@ def _spread(floor: Mask, labels: Labels) -> None:
                 size += 1
 
 
-@njit(cache=True, nogil=True)
+@allocating_entry
 def _runs(floor: Mask, kinds: Labels) -> NDArray[np.int32]:
     """Return the runs of floor of one kind: row, first and last column, and kind; row by row."""
     rows, columns = floor.shape
@@ -122,7 +122,7 @@ def _runs(floor: Mask, kinds: Labels) -> NDArray[np.int32]:
     return runs[:size]
 
 
-@njit(cache=True, nogil=True)
+@allocating_entry
 def _joined(runs: NDArray[np.int32]) -> Regions:
     """Number the runs that are connected over sides and of one kind."""
     count = len(runs)
@@ -158,7 +158,7 @@ def _joined(runs: NDArray[np.int32]) -> Regions:
     return Regions(runs, bounds, sizes)
 
 
-@njit(cache=True, nogil=True)
+@allocating_entry
 def mask_of(found: Regions, region: int) -> Mask:
     """Return a region's cells within its bounds, bool [rows, columns]."""
     top, bottom, left, right = found.bounds[region]

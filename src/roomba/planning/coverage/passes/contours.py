@@ -6,10 +6,9 @@ Places in cells: (x, y) is (column, row), whole numbers are the cells' centres.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
-from roomba.planning.compilation import part
+from roomba.compilation import allocating_entry, inner_part
 from roomba.planning.coverage.floor.masks import way_fits
 from roomba.raster.regions import Mask
 
@@ -33,7 +32,7 @@ def outlines(mask: Mask) -> list[Chain]:
     return [part - 1 for part in np.split(cells, ends[:-1])] if len(ends) else []
 
 
-@njit(cache=True, nogil=True)
+@allocating_entry
 def _trace(mask: Mask) -> tuple[Chain, NDArray[np.int64]]:
     """Follow the cracks between true and false cells; every border has one that leads east."""
     rows, columns = mask.shape
@@ -79,7 +78,7 @@ def _trace(mask: Mask) -> tuple[Chain, NDArray[np.int64]]:
     return cells[:size], ends[:chains]
 
 
-@njit(cache=True, nogil=True)
+@allocating_entry
 def straightened(fits: Mask, chain: NDArray[np.float64], tolerance: float) -> NDArray[np.int64]:
     """Return which points of an open chain to keep, ascending int64 [k], both ends among them.
 
@@ -107,7 +106,7 @@ def straightened(fits: Mask, chain: NDArray[np.float64], tolerance: float) -> ND
     return np.flatnonzero(kept)
 
 
-@part
+@inner_part
 def _is_near(chain: NDArray[np.float64], first: int, last: int, tolerance: float) -> bool:
     """Whether all points between two of a chain are within ``tolerance`` of the straight way."""
     x, y = chain[first]

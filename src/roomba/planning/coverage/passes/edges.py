@@ -8,9 +8,9 @@ from __future__ import annotations
 from itertools import pairwise
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from roomba.compilation import allocating_entry
 from roomba.configuration.coverage import CoverageConfig
 from roomba.planning.coverage.passes.contours import outlines, straightened
 from roomba.planning.coverage.passes.sweep import (
@@ -67,7 +67,7 @@ def cut(line: Line, spacing: float) -> Line:
     return np.concatenate((points, line[-1:]))
 
 
-@njit(cache=True, nogil=True)
+@allocating_entry
 def _claim(
     need: Mask, counts: Counts, stretches: Line, radius: float, least: float
 ) -> NDArray[np.bool_]:

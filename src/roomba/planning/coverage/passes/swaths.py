@@ -6,9 +6,9 @@ Places in cells of the window: (x, y) is (column, row), whole numbers are the ce
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from roomba.compilation import allocating_entry, inner_part
 from roomba.configuration.coverage import CoverageConfig
 from roomba.planning.coverage.floor.masks import transposed
 from roomba.planning.coverage.floor.regions import mask_of, regions
@@ -57,7 +57,7 @@ def _along_rows(
     return chosen[:, [[1, 0], [2, 0]]].astype(np.float64), float(costs[rows].sum())
 
 
-@njit(cache=True, nogil=True)
+@allocating_entry
 def _runs_by_row(
     region: Mask, floor: Mask, top: int, left: int, radius: int, gap: int
 ) -> NDArray[np.int64]:
@@ -92,14 +92,14 @@ def _runs_by_row(
     return runs[:size]
 
 
-@njit(cache=True, nogil=True)
+@inner_part
 def _look(seen: NDArray[np.int32], cells: NDArray[np.bool_], row: int) -> None:
     for column in range(seen.size):
         if cells[column]:
             seen[column] = row
 
 
-@njit(cache=True, nogil=True)
+@allocating_entry
 def _cheapest_rows(
     needed: NDArray[np.bool_], costs: NDArray[np.float64], width: int
 ) -> NDArray[np.int64]:

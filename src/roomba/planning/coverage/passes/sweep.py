@@ -9,10 +9,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
-from roomba.planning.compilation import part
+from roomba.compilation import allocating_entry, entry, inner_part, part
 from roomba.raster.regions import Mask
 
 Counts = NDArray[np.int16]
@@ -34,7 +33,7 @@ class Legs(NamedTuple):
     spans: NDArray[np.int64]
 
 
-@njit(cache=True, nogil=True)
+@allocating_entry
 def room_for_legs() -> Legs:
     """Return room for 8 legs."""
     return Legs(
@@ -111,7 +110,7 @@ def sweep_leg(
             counts[row, column] += change
 
 
-@part
+@entry
 def sweep(counts: Counts, points: NDArray[np.float64], radius: float) -> None:
     """Count the cells within ``radius`` of each leg of a path, float64 [n, 2] (x, y)."""
     for leg in range(len(points) - 1):
@@ -129,7 +128,7 @@ def unswept(need: Mask, lines: list[NDArray[np.float64]], radius: float) -> Mask
     return left
 
 
-@part
+@inner_part
 def left_without(
     need: Mask, counts: Counts, legs: Legs, old: int, count: int, radius: float, most: float
 ) -> int:
@@ -161,7 +160,7 @@ def left_without(
     return left
 
 
-@part
+@inner_part
 def _left_in_row(
     need: NDArray[np.bool_],
     counts: NDArray[np.int16],

@@ -8,9 +8,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from roomba.compilation import allocating_entry
 from roomba.planning.coverage.floor.masks import way_fits
 from roomba.planning.coverage.tour.net import Net
 from roomba.planning.coverage.tour.ways import taut, way_between
@@ -73,7 +73,7 @@ def tidy(fits: Mask, line: Line) -> Line:
     return tidied
 
 
-@njit(cache=True, nogil=True)
+@allocating_entry
 def _without_short(fits: Mask, line: Line) -> Line:
     """Return the line without legs below ``_SHORT``, wherever the middle fits without them too."""
     points = line.copy()
@@ -94,7 +94,7 @@ def _without_short(fits: Mask, line: Line) -> Line:
     return points[:size].copy()
 
 
-@njit(cache=True, nogil=True)
+@allocating_entry
 def _without_needless(line: Line) -> Line:
     """Return the line without points that do not bend it."""
     points = np.empty_like(line)

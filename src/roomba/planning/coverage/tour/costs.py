@@ -9,11 +9,10 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from roomba.angles import wrapped
-from roomba.planning.compilation import part
+from roomba.compilation import allocating_entry, entry, inner_part, part
 from roomba.raster.regions import Mask
 
 Tour = NDArray[np.int32]
@@ -71,7 +70,7 @@ def costs_of(
     return costs
 
 
-@part
+@entry
 def note_pair(costs: Costs, one: int, other: int, cost: float) -> float:
     """Note what a connection costs, while there is room, and return it in whole parts of a cell."""
     low, high = min(one, other), max(one, other)
@@ -84,7 +83,7 @@ def note_pair(costs: Costs, one: int, other: int, cost: float) -> float:
     return float(parts / _PARTS)
 
 
-@part
+@inner_part
 def turns_between(costs: Costs, one: int, other: int) -> float:
     """Return the turns, rad, on the straight way from one end to another."""
     x, y = costs.at[other, 0] - costs.at[one, 0], costs.at[other, 1] - costs.at[one, 1]
@@ -104,7 +103,7 @@ def _between(one: float, other: float) -> float:
     return abs(wrapped(one - other))
 
 
-@part
+@inner_part
 def cost_of(costs: Costs, one: int, other: int) -> float:
     """Return what the connection of two ends costs; a guess if it is neither known nor in sight."""
     low, high = min(one, other), max(one, other)
@@ -126,7 +125,7 @@ def least_cost(costs: Costs, one: int, other: int) -> float:
     return math.sqrt(x * x + y * y) - 1.0 / _PARTS
 
 
-@part
+@inner_part
 def _cost_found(costs: Costs, one: int, other: int) -> float:
     """Find out what a connection costs, and note it."""
     ends = len(costs.nearest)
@@ -141,7 +140,7 @@ def _cost_found(costs: Costs, one: int, other: int) -> float:
     return note_pair(costs, one, other, cost)
 
 
-@part
+@inner_part
 def _is_in_sight(fits: Mask, x: float, y: float, to_x: float, to_y: float) -> bool:
     """Whether nothing is seen between two places, looking every few cells.
 
@@ -156,7 +155,7 @@ def _is_in_sight(fits: Mask, x: float, y: float, to_x: float, to_y: float) -> bo
     return True
 
 
-@njit(cache=True, nogil=True)
+@allocating_entry
 def _add_turns(costs: Costs) -> None:
     """Add the turns to what ``costs`` holds, lengths so far; sort by the sum, and note all pairs.
 
@@ -178,7 +177,7 @@ def _add_turns(costs: Costs) -> None:
         costs.costs[one] = costs.costs[one][order]
 
 
-@part
+@entry
 def tour_cost(costs: Costs, tour: Tour) -> float:
     """Return what all connections of a tour cost."""
     total = 0.0

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.planning.compilation import part
+from roomba.compilation import allocating_part, entry, inner_part, part
 from roomba.planning.coverage.tour.costs import Costs, Tour, cost_of, least_cost
 
 _GAIN = 1e-6
@@ -21,16 +21,47 @@ _MOST_MOVES = 20
 class Trip(NamedTuple):
     """A tour that is being changed, ``position`` int32 [ends] of each end in it, and room for work.
 
-    ``touched``, int32 [6], are the ends that the last move concerned. What moves did: ``gain``
-    float64 [1], ``span`` int64 [2], first and last position changed.
+    ``joined``, float64 [ends], is what the connection of each end costs. ``touched``, int32 [6],
+    are the ends that the last move concerned. What moves did: ``gain`` float64 [1], ``span`` int64
+    [2], first and last position changed.
     """
 
     tour: Tour
     position: Tour
+    joined: NDArray[np.float64]
     room: Tour
     touched: Tour
     gain: NDArray[np.float64]
     span: NDArray[np.int64]
+
+
+@allocating_part
+def trip_along(costs: Costs, tour: Tour) -> Trip:
+    """Return a trip along a tour, which it changes; nothing has moved yet."""
+    ends = tour.size
+    trip = Trip(
+        tour,
+        np.empty(ends, np.int32),
+        np.zeros(ends),
+        np.empty(ends, np.int32),
+        np.empty(6, np.int32),
+        np.zeros(1),
+        np.array([ends, -1]),
+    )
+    for at in range(ends):
+        trip.position[tour[at]] = at
+    for at in range(1, ends - 1, 2):
+        join(costs, trip, at)
+    return trip
+
+
+@part
+def join(costs: Costs, trip: Trip, at: int) -> None:
+    """Note what the connection of the ends at a position and at the next one costs."""
+    one, other = trip.tour[at], trip.tour[at + 1]
+    cost = cost_of(costs, one, other)
+    trip.joined[one] = cost
+    trip.joined[other] = cost
 
 
 @part
@@ -40,9 +71,10 @@ def _note(trip: Trip, gain: float, first: int, last: int) -> None:
     trip.span[1] = max(trip.span[1], last)
 
 
-@part
-def _reverse(trip: Trip, first: int, last: int) -> None:
-    tour, position = trip.tour, trip.position
+@inner_part
+def _reverse(costs: Costs, trip: Trip, first: int, last: int) -> None:
+    """Drive the pieces from one position to another the other way round."""
+    tour, position, before, after = trip.tour, trip.position, first - 1, last
     while first < last:
         one, other = tour[first], tour[last]
         tour[first], tour[last] = other, one
@@ -51,9 +83,11 @@ def _reverse(trip: Trip, first: int, last: int) -> None:
         last -= 1
     if first == last:
         position[tour[first]] = first
+    join(costs, trip, before)
+    join(costs, trip, after)
 
 
-@part
+@inner_part
 def _try_end(costs: Costs, trip: Trip, end: int) -> int:
     """Make the first move that a better connection of one end allows.
 
@@ -67,7 +101,7 @@ def _try_end(costs: Costs, trip: Trip, end: int) -> int:
     if partner_at < 0 or partner_at >= size:
         return 0
     partner = tour[partner_at]
-    now = cost_of(costs, end, partner)
+    now = trip.joined[end]
     for k in range(costs.nearest.shape[1]):
         other = costs.nearest[end, k]
         if other < 0:
@@ -81,7 +115,7 @@ def _try_end(costs: Costs, trip: Trip, end: int) -> int:
         if other == partner or other_partner_at < 0 or other_partner_at >= size:
             continue
         other_partner = tour[other_partner_at]
-        gain += cost_of(costs, other, other_partner)
+        gain += trip.joined[other]
         if leaves == other_leaves:
             won = gain - least_cost(costs, partner, other_partner)
             if won > _GAIN:
@@ -89,7 +123,7 @@ def _try_end(costs: Costs, trip: Trip, end: int) -> int:
             if won > _GAIN:
                 first = min(max(at, partner_at), max(other_at, other_partner_at))
                 last = max(min(at, partner_at), min(other_at, other_partner_at))
-                _reverse(trip, first, last)
+                _reverse(costs, trip, first, last)
                 _note(trip, won, first, last)
                 touched[0], touched[1] = end, other
                 touched[2], touched[3] = partner, other_partner
@@ -104,7 +138,7 @@ def _try_end(costs: Costs, trip: Trip, end: int) -> int:
     return 0
 
 
-@part
+@inner_part
 def _swap_runs(costs: Costs, trip: Trip, at: int, other_at: int, gain: float) -> int:
     """Let two neighbouring runs of pieces change places, without turning either.
 
@@ -126,12 +160,12 @@ def _swap_runs(costs: Costs, trip: Trip, at: int, other_at: int, gain: float) ->
             if e_at % 2 == 0 or e_at < entry_at or e_at + 1 >= size:
                 continue
             f = tour[e_at + 1]
-            won = gain - costs.costs[b, k] + cost_of(costs, e, f)
+            won = gain - costs.costs[b, k] + trip.joined[e]
             if won - least_cost(costs, c, f) <= _GAIN:
                 continue
             won -= cost_of(costs, c, f)
             if won > _GAIN:
-                exchange(trip, leaver_at + 1, entry_at, e_at + 1)
+                exchange(costs, trip, leaver_at + 1, entry_at, e_at + 1)
                 _note(trip, won, leaver_at + 1, e_at)
                 touched[0], touched[1], touched[2] = a, b, c
                 touched[3], touched[4], touched[5] = d, e, f
@@ -150,12 +184,12 @@ def _swap_runs(costs: Costs, trip: Trip, at: int, other_at: int, gain: float) ->
             if d_at % 2 == 1 or d_at <= entry_at or d_at > leaver_at:
                 continue
             c = tour[d_at - 1]
-            won = gain - costs.costs[a, k] + cost_of(costs, c, d)
+            won = gain - costs.costs[a, k] + trip.joined[c]
             if won - least_cost(costs, c, f) <= _GAIN:
                 continue
             won -= cost_of(costs, c, f)
             if won > _GAIN:
-                exchange(trip, entry_at, d_at, leaver_at + 1)
+                exchange(costs, trip, entry_at, d_at, leaver_at + 1)
                 _note(trip, won, entry_at, leaver_at)
                 touched[0], touched[1], touched[2] = a, b, c
                 touched[3], touched[4], touched[5] = d, e, f
@@ -163,9 +197,9 @@ def _swap_runs(costs: Costs, trip: Trip, at: int, other_at: int, gain: float) ->
     return 0
 
 
-@part
-def exchange(trip: Trip, first: int, middle: int, stop: int) -> None:
-    """Swap the runs at [first, middle) and [middle, stop)."""
+@inner_part
+def exchange(costs: Costs, trip: Trip, first: int, middle: int, stop: int) -> None:
+    """Swap the runs at [first, middle) and [middle, stop), between other pieces."""
     tour, room = trip.tour, trip.room
     size = middle - first
     for n in range(size):
@@ -176,9 +210,12 @@ def exchange(trip: Trip, first: int, middle: int, stop: int) -> None:
         tour[stop - size + n] = room[n]
     for at in range(first, stop):
         trip.position[tour[at]] = at
+    join(costs, trip, first - 1)
+    join(costs, trip, stop - size - 1)
+    join(costs, trip, stop - 1)
 
 
-@part
+@inner_part
 def _move_run(costs: Costs, trip: Trip, end: int, other: int) -> int:
     """Move a run of one to three pieces that begins with ``end`` to the side of ``other``."""
     tour, position, touched = trip.tour, trip.position, trip.touched
@@ -186,6 +223,11 @@ def _move_run(costs: Costs, trip: Trip, end: int, other: int) -> int:
     at = position[end]
     leaves = at % 2 == 1
     other_at = position[other]
+    partner_at = other_at + 1 if other_at % 2 == 1 else other_at - 1
+    if partner_at < 0 or partner_at >= size:
+        return 0
+    partner = tour[partner_at]
+    of_place = trip.joined[other] - cost_of(costs, end, other)
     for pieces in range(1, 4):
         # The run reaches away from the connection of ``end`` that is to be broken.
         first, last = (at - 2 * pieces + 1, at) if leaves else (at, at + 2 * pieces - 1)
@@ -193,37 +235,36 @@ def _move_run(costs: Costs, trip: Trip, end: int, other: int) -> int:
             return 0
         if first <= other_at <= last:
             return 0
+        if first <= partner_at <= last:
+            continue
         before, after = tour[first - 1], tour[last + 1]
         far = tour[first] if leaves else tour[last]
-        won = cost_of(costs, before, tour[first]) + cost_of(costs, tour[last], after)
-        partner_at = other_at + 1 if other_at % 2 == 1 else other_at - 1
-        if partner_at < 0 or partner_at >= size or first <= partner_at <= last:
+        won = trip.joined[before] + trip.joined[after] + of_place
+        if won <= 0.0:
             continue
-        partner = tour[partner_at]
-        won += cost_of(costs, other, partner) - cost_of(costs, end, other)
-        least = least_cost(costs, before, after) + least_cost(costs, far, partner)
-        if won - least <= _GAIN:
+        least = least_cost(costs, far, partner)
+        if won - least <= 0.0 or won - least - least_cost(costs, before, after) <= _GAIN:
             continue
         won -= cost_of(costs, before, after) + cost_of(costs, far, partner)
         if won > _GAIN:
             gap = max(other_at, partner_at)
             _note(trip, won, min(first, gap), max(last, gap - 1))
             if gap > last:
-                exchange(trip, first, last + 1, gap)
+                exchange(costs, trip, first, last + 1, gap)
                 first, last = gap - 2 * pieces, gap - 1
             else:
-                exchange(trip, gap, first, last + 1)
+                exchange(costs, trip, gap, first, last + 1)
                 first, last = gap, gap + 2 * pieces - 1
             entered = tour[first - 1]
             if (entered == other) != (tour[first] == end):
-                _reverse(trip, first, last)
+                _reverse(costs, trip, first, last)
             touched[0], touched[1], touched[2] = end, other, far
             touched[3], touched[4], touched[5] = partner, before, after
             return 6
     return 0
 
 
-@part
+@entry
 def improve(costs: Costs, trip: Trip, queue: Tour, count: int, waiting: NDArray[np.bool_]) -> None:
     """Make moves until none helps, looking again at the ends that a move concerned.
 

@@ -9,9 +9,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from roomba.compilation import allocating_entry, allocating_part, inner_part
 from roomba.planning.coverage.floor.masks import way_fits
 from roomba.planning.coverage.tour.net import STEP_X, STEP_Y, UNIT, Net, blocks_near, leg_to
 
@@ -45,7 +45,7 @@ class NearestSearch(NamedTuple):
     touched: Ints
 
 
-@njit(cache=True, nogil=True)
+@allocating_entry
 def search_over(net: Net) -> NearestSearch:
     """Return work arrays for searches over a net."""
     size = net.links.size // 8
@@ -56,7 +56,7 @@ def search_over(net: Net) -> NearestSearch:
     )
 
 
-@njit(cache=True, nogil=True)
+@allocating_entry
 def places_over(net: Net, places: Line) -> Places:
     """Return places, float64 [n, 2], with which of them are near each block."""
     near = np.empty((len(places), 9), np.int32)
@@ -77,7 +77,7 @@ def places_over(net: Net, places: Line) -> Places:
     return Places(places, first_of, place_at)
 
 
-@njit(cache=True, nogil=True)
+@allocating_entry
 def nearest_wanted(
     net: Net,
     search: NearestSearch,
@@ -164,7 +164,7 @@ def nearest_wanted(
     return count
 
 
-@njit(cache=True, nogil=True)
+@allocating_entry
 def neighbours(
     net: Net, search: NearestSearch, places: Places, most: int, limit: float
 ) -> tuple[Ints, NDArray[np.float64]]:
@@ -221,7 +221,7 @@ def neighbours(
     return nearest, lengths
 
 
-@njit(cache=True, nogil=True)
+@allocating_part
 def _squares(at: Line) -> tuple[int, Ints, Ints]:
     """Return how many squares there are in a row, and which places lie in each, as of blocks."""
     columns, rows = 1, 1
@@ -243,7 +243,7 @@ def _squares(at: Line) -> tuple[int, Ints, Ints]:
     return columns, first, inside
 
 
-@njit(cache=True, nogil=True)
+@inner_part
 def _as_the_crow_flies(
     at: Line,
     columns: int,
@@ -290,7 +290,7 @@ def _as_the_crow_flies(
                 return count, within
 
 
-@njit(cache=True, nogil=True)
+@inner_part
 def _make_symmetric(nearest: Ints, lengths: NDArray[np.float64]) -> None:
     """Give ways there and back the same length; searches both ways can differ by their steps."""
     for place in range(len(nearest)):

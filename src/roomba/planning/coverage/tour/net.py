@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.planning.compilation import part
+from roomba.compilation import entry, part
 from roomba.planning.coverage.floor.masks import way_fits
 from roomba.raster.regions import Mask
 
@@ -42,7 +42,7 @@ def net_over(fits: Mask) -> Net:
     return net
 
 
-@part
+@entry
 def _knot(net: Net) -> None:
     rows, columns = net.links.shape[:2]
     height, width = net.fits.shape

@@ -10,11 +10,10 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from roomba.compilation import allocating_entry, inner_part, part
 from roomba.configuration.coverage import CoverageConfig
-from roomba.planning.compilation import part
 from roomba.planning.coverage.floor.masks import way_fits
 from roomba.planning.coverage.passes.edges import cut
 from roomba.planning.coverage.passes.sweep import (
@@ -107,7 +106,7 @@ def _turn(points: Line, one: int, two: int, three: int, moved: int, x: float, y:
     return abs(math.atan2(in_x * out_y - in_y * out_x, in_x * out_x + in_y * out_y))
 
 
-@part
+@inner_part
 def _try_shortcut(
     bent: Bent, at: int, span: int, radius: float, turning: float, floor: float
 ) -> bool:
@@ -156,7 +155,7 @@ def _set_between(bent: Bent, at: int, one: int, other: int) -> None:
     set_leg(bent.legs, at, points[one, 0], points[one, 1], points[other, 0], points[other, 1])
 
 
-@part
+@inner_part
 def _is_worth_it(
     bent: Bent, old: int, count: int, gain: float, radius: float, floor: float
 ) -> bool:
@@ -175,7 +174,7 @@ def _is_worth_it(
     return True
 
 
-@part
+@inner_part
 def _try_move(
     bent: Bent, at: int, x: float, y: float, radius: float, turning: float, floor: float
 ) -> bool:
@@ -211,7 +210,7 @@ def _try_move(
     return True
 
 
-@part
+@inner_part
 def _improve_at(bent: Bent, at: int, radius: float, turning: float, floor: float) -> bool:
     """Try all changes around a point; whether one was made."""
     points = bent.points
@@ -251,7 +250,7 @@ def _improve_at(bent: Bent, at: int, radius: float, turning: float, floor: float
     return False
 
 
-@njit(cache=True, nogil=True)
+@allocating_entry
 def _polish(bent: Bent, radius: float, turning: float, floor: float) -> None:
     """Change the way point by point, until no change costs less or the rounds are used up."""
     points = bent.points

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
-from roomba.planning.compilation import part
-from roomba.planning.coverage.tour.costs import Costs, Tour, cost_of, tour_cost
-from roomba.planning.coverage.tour.moves import Trip, exchange, improve
+from roomba.compilation import allocating_entry, part
+from roomba.planning.coverage.tour.costs import Costs, Tour, tour_cost
+from roomba.planning.coverage.tour.moves import Trip, exchange, improve, trip_along
 
 _MOST_ROUNDS = 100000
 _NEAR_SHARE = 30
@@ -17,7 +16,7 @@ _LONGEST = 25
 """pieces; the longest run that the others exchange."""
 
 
-@njit(cache=True, nogil=True)
+@allocating_entry
 def greedy_links(costs: Costs) -> NDArray[np.int32]:
     """Return the end that each is connected to, or -1: cheapest connections first, no circles.
 
@@ -67,7 +66,7 @@ def _connection_near(costs: Costs, trip: Trip, end: int, state: NDArray[np.uint6
     return at if at % 2 == 1 else at - 1
 
 
-@njit(cache=True, nogil=True)
+@allocating_entry
 def shaken(costs: Costs, first_tour: Tour, period: int, pays: float) -> Tour:
     """Return a tour improved, then again and again from where runs were exchanged, while that pays.
 
@@ -76,23 +75,14 @@ def shaken(costs: Costs, first_tour: Tour, period: int, pays: float) -> Tour:
     """
     ends = first_tour.size
     tour = first_tour.copy()
-    trip = Trip(
-        tour,
-        np.empty(ends, np.int32),
-        np.empty(ends, np.int32),
-        np.empty(6, np.int32),
-        np.zeros(1),
-        np.array([ends, -1]),
-    )
-    position = trip.position
-    for at in range(ends):
-        position[tour[at]] = at
+    trip = trip_along(costs, tour)
+    position, joined = trip.position, trip.joined
     queue = tour.copy()
     waiting = np.ones(ends, np.bool_)
     improve(costs, trip, queue, ends, waiting)
     if ends < 12:
         return tour
-    best = tour.copy()
+    best, best_joined = tour.copy(), joined.copy()
     state = np.array([88172645463325252], np.uint64)
     cost = tour_cost(costs, tour)
     gained = 0.0
@@ -117,20 +107,23 @@ def shaken(costs: Costs, first_tour: Tour, period: int, pays: float) -> Tour:
             continue
         a, b, c = tour[first], tour[first + 1], tour[middle]
         d, e, f = tour[middle + 1], tour[last], tour[last + 1]
-        trip.gain[0] = cost_of(costs, a, b) + cost_of(costs, c, d) + cost_of(costs, e, f)
-        trip.gain[0] -= cost_of(costs, a, d) + cost_of(costs, e, b) + cost_of(costs, c, f)
+        trip.gain[0] = joined[a] + joined[c] + joined[e]
+        exchange(costs, trip, first + 1, middle + 1, last + 1)
+        trip.gain[0] -= joined[a] + joined[e] + joined[c]
         trip.span[0], trip.span[1] = first + 1, last
-        exchange(trip, first + 1, middle + 1, last + 1)
         for n, concerned in enumerate((a, b, c, d, e, f)):
             queue[n] = concerned
             waiting[concerned] = True
         improve(costs, trip, queue, 6, waiting)
         low, high = trip.span
         if trip.gain[0] >= 0.0:
-            best[low : high + 1] = tour[low : high + 1]
+            for at in range(low - 1, high + 2):
+                best[at] = tour[at]
+                best_joined[tour[at]] = joined[tour[at]]
             gained += trip.gain[0]
         else:
-            for at in range(low, high + 1):
+            for at in range(low - 1, high + 2):
                 tour[at] = best[at]
                 position[tour[at]] = at
+                joined[tour[at]] = best_joined[tour[at]]
     return tour

@@ -9,10 +9,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
-from roomba.planning.compilation import part
+from roomba.compilation import allocating_entry, allocating_part, inner_part
 from roomba.planning.coverage.floor.masks import way_fits
 from roomba.planning.coverage.tour.net import STEP_X, STEP_Y, Net, blocks_near, leg_to
 from roomba.planning.path.heap_kernels import heap_pop, heap_push
@@ -21,7 +20,7 @@ from roomba.raster.regions import Mask
 Line = NDArray[np.float64]
 
 
-@njit(cache=True, nogil=True)
+@allocating_entry
 def way_between(
     net: Net, costs: NDArray[np.float64], x: float, y: float, to_x: float, to_y: float
 ) -> Line:
@@ -94,7 +93,7 @@ def way_between(
     return taut(net.fits, way)
 
 
-@njit(cache=True, nogil=True)
+@allocating_entry
 def taut(fits: Mask, way: Line) -> Line:
     """Return a way pulled straight: bends are cut short and moved until none can be."""
     line = _shortcut(fits, way)
@@ -115,7 +114,7 @@ def taut(fits: Mask, way: Line) -> Line:
     return line
 
 
-@part
+@inner_part
 def _length(line: Line) -> float:
     length = 0.0
     for at in range(1, len(line)):
@@ -123,7 +122,7 @@ def _length(line: Line) -> float:
     return length
 
 
-@part
+@inner_part
 def _pull(fits: Mask, line: Line, at: int) -> None:
     """Move a bend towards the straight way between its neighbours as far as the legs fit."""
     x, y = line[at - 1]
@@ -144,7 +143,7 @@ def _pull(fits: Mask, line: Line, at: int) -> None:
         part /= 2
 
 
-@njit(cache=True, nogil=True)
+@allocating_part
 def _shortcut(fits: Mask, way: Line) -> Line:
     """Return the way without the bends that can be left out, farthest view first."""
     line = np.empty_like(way)

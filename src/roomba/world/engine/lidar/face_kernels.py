@@ -9,14 +9,14 @@ from __future__ import annotations
 import math
 from typing import Final
 
+from roomba.compilation import inner_part, part
 from roomba.world.engine.state.arrays import Row, Rows
-from roomba.world.engine.state.compilation import part
 
 _SLACK: Final = 1e-9
 """Share of a face by which it is longer at both ends, so that no ray slips between two."""
 
 
-@part
+@inner_part
 def way_to_face(face: Row, x: float, y: float) -> tuple[float, float]:
     """Return the shortest way from a point to a face, as a vector."""
     along_x, along_y = face.left_x - face.right_x, face.left_y - face.right_y
@@ -53,7 +53,7 @@ def ray_to_faces(
     return nearest, facing, met
 
 
-@part
+@inner_part
 def mirrored(face: Row, cosine: float, sine: float) -> tuple[float, float]:
     """Return the direction of a ray after a mirror has sent it on."""
     along_x, along_y = face.left_x - face.right_x, face.left_y - face.right_y

@@ -12,10 +12,10 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.compilation import inner_part, part
 from roomba.world.engine.lidar.face_kernels import mirrored, ray_to_faces
 from roomba.world.engine.lidar.ray_kernels import ray_to_cells, ray_to_movable
 from roomba.world.engine.state.arrays import Row, Solid
-from roomba.world.engine.state.compilation import part
 from roomba.world.engine.state.random_kernels import hashed
 from roomba.world.home.surface import Finish
 
@@ -63,7 +63,7 @@ class Met(NamedTuple):
     light: float
 
 
-@part
+@inner_part
 def reflectivity(x: float, y: float, numbers: Row) -> float:
     """Return the share of light that the home gives back at a place, 0..1, as :func:`is_seen`.
 
@@ -80,7 +80,7 @@ def reflectivity(x: float, y: float, numbers: Row) -> float:
     return float(numbers.dimmest + (numbers.white - numbers.dimmest) * share)
 
 
-@part
+@inner_part
 def is_seen(found: float, facing: float, reflected: float, numbers: Row, fading: float) -> bool:
     """Tell whether enough light comes back: as reflectivity times cosine over squared range.
 
@@ -111,7 +111,7 @@ def ray(around: Surroundings, x: float, y: float, angle: float, chance: float) -
     return Met(found, facing, what, x + into * cosine, y + into * sine, 1.0)
 
 
-@part
+@inner_part
 def meet(
     around: Surroundings,
     x: float,
@@ -140,7 +140,7 @@ def meet(
     return found, facing, CELL
 
 
-@part
+@inner_part
 def ray_among_faces(
     around: Surroundings, x: float, y: float, cosine: float, sine: float, chance: float
 ) -> Met:
@@ -170,7 +170,7 @@ def ray_among_faces(
     return Met(math.inf, 1.0, CELL, x, y, 0.0)
 
 
-@part
+@inner_part
 def given_back(around: Surroundings, met: Met) -> float:
     """Return the share of light that what a beam met gives back, as :func:`is_seen` takes it."""
     solid, home, numbers = around.solid, around.home, around.numbers
@@ -191,7 +191,7 @@ def given_back(around: Surroundings, met: Met) -> float:
     return reflectivity(x, y, numbers)
 
 
-@part
+@inner_part
 def is_echo(around: Surroundings, met: Met, fading: float) -> bool:
     """Tell whether enough light comes back of what a ray met (see :func:`ray`)."""
     if met.what >= 0 and around.solid.faces[met.what].finish == _GLASS:
@@ -213,7 +213,7 @@ def lidar_at(body: Row, numbers: Row, x: float, y: float, theta: float) -> Eye:
     )
 
 
-@part
+@inner_part
 def look_through(around: Surroundings, ranges: Floats, key: np.uint32) -> None:
     """Measure those beams of a scan anew that met glass or a mirror before anything else.
 

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.angles import wrapped
+from roomba.compilation import any_order_part
 from roomba.world.engine.lidar.edges import FACINGS, GROUPS
 from roomba.world.engine.lidar.span_kernels import (
     COSINE,
@@ -26,7 +27,6 @@ from roomba.world.engine.lidar.span_kernels import (
     shows_through,
 )
 from roomba.world.engine.state.arrays import Edges, Row, Rows
-from roomba.world.engine.state.compilation import scan_part
 
 Floats = NDArray[np.float32]
 
@@ -95,7 +95,7 @@ def buffers_for(edges: Edges, beams: int) -> ScanBuffers:
     )
 
 
-@scan_part
+@any_order_part
 def begin_scan(rays: Floats, fan: Floats, theta: float, max_range: float) -> np.float32:
     """Turn the beams to the heading and empty the depth buffer; return the heading in [-pi, pi]."""
     beams = rays.shape[1]
@@ -114,7 +114,7 @@ def begin_scan(rays: Floats, fan: Floats, theta: float, max_range: float) -> np.
     return np.float32(wrapped(theta))
 
 
-@scan_part
+@any_order_part
 def point_beams(
     ends: Floats, x: int, y: int, beam: int, count: int, theta: np.float32, beams: int
 ) -> None:
@@ -143,7 +143,7 @@ def point_beams(
         ends[beam, index] = place
 
 
-@scan_part
+@any_order_part
 def gather(
     buffers: ScanBuffers,
     edges: Rows,
@@ -183,7 +183,7 @@ def gather(
     return count
 
 
-@scan_part
+@any_order_part
 def span_of(ends: Floats, index: int, beams: np.float32) -> tuple[int, int]:
     """Return the first and last beam that meet a collected edge; no beam if last < first."""
     begin = ends[BEAM_RIGHT, index] - _SLACK
@@ -192,7 +192,7 @@ def span_of(ends: Floats, index: int, beams: np.float32) -> tuple[int, int]:
     return max(0, math.ceil(begin)), math.floor(end)
 
 
-@scan_part
+@any_order_part
 def fold(fan: Floats, beams: int) -> None:
     """Bring together what is known of beams that come twice."""
     for beam in range(beams // 2 + LANES):
@@ -201,7 +201,7 @@ def fold(fan: Floats, beams: int) -> None:
         fan[NEAREST, beams + beam] = both
 
 
-@scan_part
+@any_order_part
 def scan_tile(
     buffers: ScanBuffers,
     edges: Edges,
@@ -236,7 +236,7 @@ def scan_tile(
     return walls, portals, count
 
 
-@scan_part
+@any_order_part
 def follow_portals(
     buffers: ScanBuffers,
     edges: Rows,
@@ -264,7 +264,7 @@ def follow_portals(
     return queued
 
 
-@scan_part
+@any_order_part
 def off_lines(place: np.float32, resolution: float, cells: int) -> np.float32:
     """Return a place along an axis of ``cells`` cells, moved off the lines between them."""
     cell = min(max(math.floor(place / resolution), 0), cells - 1)
@@ -272,7 +272,7 @@ def off_lines(place: np.float32, resolution: float, cells: int) -> np.float32:
     return np.float32(min(max(place, cell * resolution + off), (cell + 1) * resolution - off))
 
 
-@scan_part
+@any_order_part
 def scan_walls(
     buffers: ScanBuffers, edges: Edges, home: Row, x: np.float32, y: np.float32, theta: np.float32
 ) -> None:
@@ -293,7 +293,7 @@ def scan_walls(
             queued = follow_portals(buffers, edges.items, collected, base, queued)
 
 
-@scan_part
+@any_order_part
 def span_between(
     beams: int, x0: float, y0: float, x1: float, y1: float, theta: np.float32
 ) -> tuple[int, int]:
@@ -308,7 +308,7 @@ def span_between(
     return math.ceil(begin), math.floor(end)
 
 
-@scan_part
+@any_order_part
 def scan_segment(
     fan: Floats, beams: int, x0: float, y0: float, x1: float, y1: float, theta: np.float32
 ) -> None:
@@ -326,7 +326,7 @@ def scan_segment(
         fan[NEAREST, beam] = max(fan[NEAREST, beam], wall)
 
 
-@scan_part
+@any_order_part
 def scan_disc(
     fan: Floats, beams: int, x: float, y: float, radius: float, theta: np.float32
 ) -> None:
@@ -351,7 +351,7 @@ def scan_disc(
         fan[NEAREST, beam] = max(fan[NEAREST, beam], inverse)
 
 
-@scan_part
+@any_order_part
 def end_scan(fan: Floats, ranges: Floats, row: int, min_range: float, max_range: float) -> None:
     """Write the ranges, m: inf if nothing is within reach, -inf nearer than the least (REP 117)."""
     fold(fan, ranges.shape[1])

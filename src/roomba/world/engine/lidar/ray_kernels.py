@@ -9,8 +9,8 @@ from __future__ import annotations
 import math
 from typing import Final
 
+from roomba.compilation import inner_part, part
 from roomba.world.engine.state.arrays import Row, Rows, Solid
-from roomba.world.engine.state.compilation import part
 
 _HALF_DIAGONAL: Final = 0.7072
 """Cells; from the middle of a cell to its corner, rounded up."""
@@ -20,7 +20,7 @@ _PAST: Final = 1e-9
 """m; so far past a line between cells a ray is in the next one."""
 
 
-@part
+@inner_part
 def ray_to_cells(
     cells: Rows, home: Row, x: float, y: float, cosine: float, sine: float, reach: float
 ) -> tuple[float, float]:
@@ -69,7 +69,7 @@ def ray_to_disc(
     return ahead - math.sqrt(depth), math.sqrt(depth) / radius
 
 
-@part
+@inner_part
 def ray_to_box(
     box: Row, x: float, y: float, turn: float, cosine: float, sine: float
 ) -> tuple[float, float]:
@@ -98,7 +98,7 @@ def ray_to_box(
     return enter, facing
 
 
-@part
+@inner_part
 def ray_to_movable(
     solid: Solid,
     world: Row,

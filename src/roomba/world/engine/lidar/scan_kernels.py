@@ -8,6 +8,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.compilation import any_order_part, inner_part
 from roomba.world.engine.lidar.light_kernels import Eye, Surroundings, lidar_at, look_through
 from roomba.world.engine.lidar.projection import (
     ScanBuffers,
@@ -18,7 +19,6 @@ from roomba.world.engine.lidar.projection import (
     scan_walls,
 )
 from roomba.world.engine.state.arrays import Edges, Row, Rows, Solid
-from roomba.world.engine.state.compilation import part, scan_part
 from roomba.world.engine.state.random_kernels import add_noise, next_bits
 
 Floats = NDArray[np.float32]
@@ -27,7 +27,7 @@ _SLACK: Final = 1e-9
 """s; a scan is due when the time is as near to it as this."""
 
 
-@part
+@inner_part
 def is_scan_due(world: Row, body: Row, period: float) -> bool:
     """Tell whether it is time for a scan, and set the next time; what was missed stays so."""
     late = world.time - body.next_scan + _SLACK
@@ -37,7 +37,7 @@ def is_scan_due(world: Row, body: Row, period: float) -> bool:
     return True
 
 
-@part
+@inner_part
 def scan(
     solid: Solid,
     edges: Edges,
@@ -76,7 +76,7 @@ def scan(
         add_noise(ranges, robot, key, quantiles, sigma, misses)
 
 
-@scan_part
+@any_order_part
 def scan_faces(
     faces: Rows, home: Row, x: float, y: float, fan: Floats, beams: int, theta: np.float32
 ) -> None:
@@ -97,7 +97,7 @@ def scan_faces(
         )
 
 
-@scan_part
+@any_order_part
 def scan_things(
     solid: Solid,
     world: Row,
@@ -121,7 +121,7 @@ def scan_things(
                 scan_box(fan, beams, box, x, y, thing.theta + box.theta, theta)
 
 
-@scan_part
+@any_order_part
 def scan_box(
     fan: Floats, beams: int, box: Row, x: float, y: float, turn: float, theta: np.float32
 ) -> None:
@@ -137,7 +137,7 @@ def scan_box(
         along_x, along_y, across_x, across_y = -across_x, -across_y, along_x, along_y
 
 
-@scan_part
+@any_order_part
 def scan_round_things(
     solid: Solid,
     world: Row,

@@ -15,7 +15,7 @@ from numba import types
 from numba.extending import intrinsic
 from numpy.typing import NDArray
 
-from roomba.world.engine.state.compilation import scan_part
+from roomba.compilation import any_order_part
 
 LANES: Final = 16
 """Beams that are worked on at once; buffers have so many spare places at their end."""
@@ -64,7 +64,7 @@ def _block(typing_context: Any, fan: Any, target: Any, source: Any, count: Any, 
 _raise_block: Any = intrinsic(_block)
 
 
-@scan_part
+@any_order_part
 def raise_span(
     fan: NDArray[np.float32], table: int, first: int, last: int, factor: np.float32
 ) -> None:
@@ -78,7 +78,7 @@ def raise_span(
         first += LANES
 
 
-@scan_part
+@any_order_part
 def shows_through(
     fan: NDArray[np.float32], table: int, first: int, last: int, factor: np.float32
 ) -> bool:

@@ -14,9 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.angles import wrapped
+from roomba.compilation import inner_part
 from roomba.world.engine.lidar.light_kernels import Met, Surroundings, is_echo, lidar_at, ray
 from roomba.world.engine.state.arrays import Row
-from roomba.world.engine.state.compilation import part
 from roomba.world.engine.state.random_kernels import hashed, next_bits
 
 Floats = NDArray[np.float32]
@@ -29,7 +29,7 @@ _UNIT_16: Final = 1.0 / (1 << 16)
 _UNIT_20: Final = 1.0 / (1 << 20)
 
 
-@part
+@inner_part
 def sweep(around: Surroundings, scans: tuple[Floats, Floats, Floats], dt: float) -> None:
     """Measure what is due in the step of ``dt`` s that ends now; deliver what has waited.
 
@@ -62,7 +62,7 @@ def sweep(around: Surroundings, scans: tuple[Floats, Floats, Floats], dt: float)
         deliver(body, robot, underway, arrived)
 
 
-@part
+@inner_part
 def begin_sweep(world: Row, body: Row, numbers: Row, dt: float) -> bool:
     """Begin a sweep if it is time for one; sweeps before this step stay missed."""
     period = numbers.scan_period
@@ -78,7 +78,7 @@ def begin_sweep(world: Row, body: Row, numbers: Row, dt: float) -> bool:
     return True
 
 
-@part
+@inner_part
 def deliver(body: Row, robot: int, underway: Floats, arrived: Floats) -> None:
     """Let the sweep on the line be the newest scan."""
     for beam in range(arrived.shape[1]):
@@ -88,7 +88,7 @@ def deliver(body: Row, robot: int, underway: Floats, arrived: Floats) -> None:
     body.is_underway = 0.0
 
 
-@part
+@inner_part
 def measure_beams(around: Surroundings, ranges: Floats, due: int, dt: float) -> None:
     """Measure the beams from the next one to before ``due``, each where the robot was at its time.
 
@@ -113,7 +113,7 @@ def measure_beams(around: Surroundings, ranges: Floats, due: int, dt: float) -> 
     body.next_beam = due
 
 
-@part
+@inner_part
 def with_noise(found: float, facing: float, numbers: Row, chance: float) -> float:
     """Return a range, m, as it is told: ``chance`` is a normal random number."""
     sigma = numbers.range_noise + numbers.noise_growth * found * found
@@ -124,7 +124,7 @@ def with_noise(found: float, facing: float, numbers: Row, chance: float) -> floa
     return found
 
 
-@part
+@inner_part
 def measure(around: Surroundings, beam: int, x: float, y: float, theta: float) -> float:
     """Return what one beam measures from a pose, m: inf without an echo, -inf too near."""
     numbers, quantiles = around.numbers, around.quantiles

@@ -14,8 +14,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.compilation import any_order_part, inner_part, part
 from roomba.world.engine.state.arrays import Row
-from roomba.world.engine.state.compilation import part, scan_part
 
 _GAMMA: Final = np.uint64(0x9E3779B97F4A7C15)
 _MIX_1: Final = np.uint64(0xBF58476D1CE4E5B9)
@@ -59,7 +59,7 @@ def next_normal(owner: Row, quantiles: NDArray[np.float32]) -> float:
     return float(quantiles[next_bits(owner) >> _S52])
 
 
-@part
+@inner_part
 def next_exponential(owner: Row) -> float:
     """Return a number of the exponential distribution with mean 1."""
     return -math.log(1.0 - next_uniform(owner))
@@ -73,7 +73,7 @@ def hashed(bits: np.uint32) -> np.uint32:
     return np.uint32(bits ^ (bits >> np.uint32(16)))
 
 
-@scan_part
+@any_order_part
 def add_noise(
     ranges: NDArray[np.float32],
     row: int,

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from roomba.planning.coverage.tour.costs import Costs, cost_of, costs_of, tour_cost
-from roomba.planning.coverage.tour.moves import Trip, exchange, improve
+from roomba.planning.coverage.tour.moves import Trip, exchange, improve, trip_along
 
 Ends = list[int]
 
@@ -34,23 +34,12 @@ def costs_between(pieces: int, seed: int, known: int) -> Costs:
     return costs_of(nearest, lengths, at, headings, np.ones((202, 202), np.bool_), 6.0, False)
 
 
-def trip_of(tour: Ends) -> Trip:
-    ends = len(tour)
-    trip = Trip(
-        np.array(tour, np.int32),
-        np.empty(ends, np.int32),
-        np.empty(ends, np.int32),
-        np.zeros(6, np.int32),
-        np.zeros(1),
-        np.array([ends, -1]),
-    )
-    for at, end in enumerate(tour):
-        trip.position[end] = at
-    return trip
+def trip_of(costs: Costs, tour: Ends) -> Trip:
+    return trip_along(costs, np.array(tour, np.int32))
 
 
 def improved(costs: Costs, tour: Ends) -> tuple[Trip, NDArray[np.bool_]]:
-    trip = trip_of(tour)
+    trip = trip_of(costs, tour)
     waiting = np.ones(len(tour), np.bool_)
     improve(costs, trip, trip.tour.copy(), len(tour), waiting)
     return trip, waiting
@@ -88,6 +77,7 @@ def test_moves_keep_every_piece_and_gain_what_they_say(drawn: tuple[Costs, Ends]
     # Costs are whole parts of a cell, so the sums are exact.
     assert connections(costs, tour) == connections(costs, first) - trip.gain[0]
     assert trip.gain[0] >= 0.0
+    assert_joined(costs, trip)
     changed = [at for at, end in enumerate(tour) if end != first[at]]
     assert all(trip.span[0] <= at <= trip.span[1] for at in changed)
 
@@ -134,13 +124,21 @@ def test_few_pieces_come_near_to_the_best_of_all_orders(seed: int) -> None:
     assert best <= found <= 1.15 * best
 
 
-@given(st.lists(st.integers(0, 24), min_size=3, max_size=3, unique=True))
+@given(st.lists(st.integers(1, 11), min_size=3, max_size=3, unique=True))
 @settings(max_examples=60)
 def test_two_runs_change_places(cuts: list[int]) -> None:
-    first, middle, stop = sorted(cuts)
-    tour = np.random.default_rng(3).permutation(24).tolist()
-    trip = trip_of(tour)
-    exchange(trip, first, middle, stop)
+    first, middle, stop = (2 * cut for cut in sorted(cuts))
+    costs, tour = costs_between(12, 3, 8), list(range(24))
+    trip = trip_of(costs, tour)
+    exchange(costs, trip, first, middle, stop)
     expected = [*tour[:first], *tour[middle:stop], *tour[first:middle], *tour[stop:]]
     assert trip.tour.tolist() == expected
     assert [expected.index(end) for end in range(24)] == trip.position.tolist()
+    assert_joined(costs, trip)
+
+
+def assert_joined(costs: Costs, trip: Trip) -> None:
+    """Both ends of each connection know what it costs."""
+    for at in range(1, len(trip.tour) - 1, 2):
+        one, other = trip.tour[at : at + 2].tolist()
+        assert trip.joined[one] == trip.joined[other] == cost_of(costs, one, other)

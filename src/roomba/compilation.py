@@ -1,0 +1,79 @@
+"""How hot loops are compiled: entries, which Python calls, and their parts, in one piece of code.
+
+A part is compiled with each entry that uses it and not by itself: called from Python it is plain
+Python, which is slow. Whether a function may allocate is part of how it is compiled. One that may
+not has no runtime for references: numba refuses code that allocates, and counts no references to
+the arrays that it is given, which takes most of the time of small functions. It must not be given
+a new array by a function that it calls either: nothing would free that.
+
+Division by zero is not looked for: it gives what the processor makes of it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, Final, TypeVar
+
+from numba import njit
+from numba.extending import register_jitable
+
+_Function = TypeVar("_Function", bound=Callable[..., Any])
+
+_ALLOCATES: Final[dict[str, Any]] = {"error_model": "numpy", "_nrt": True}
+_ALLOCATES_NOT: Final[dict[str, Any]] = {"error_model": "numpy", "_nrt": False}
+_ANY_ORDER: Final = {"nsz", "arcp", "contract", "reassoc"}
+"""Fast math, but for what is not finite: a beam that meets nothing is infinite."""
+
+
+def entry(function: _Function) -> _Function:
+    """Compile a function that allocates nothing; other threads run meanwhile."""
+    return _called_from_python(function, _ALLOCATES_NOT)
+
+
+def allocating_entry(function: _Function) -> _Function:
+    """Compile a function that may allocate; other threads run meanwhile."""
+    return _called_from_python(function, _ALLOCATES)
+
+
+def any_order_entry(function: _Function) -> _Function:
+    """Compile a function, which may allocate, whose sums may be taken in any order."""
+    return _called_from_python(function, {**_ALLOCATES, "fastmath": _ANY_ORDER})
+
+
+def part(function: _Function) -> _Function:
+    """Make a part that allocates nothing."""
+    return _part(function, _ALLOCATES_NOT)
+
+
+def inner_part(function: _Function) -> _Function:
+    """Make a part, which allocates nothing, whose code stands in that of its callers.
+
+    An array is handed over as seven arguments and more, so that a call with many of them costs more
+    than a little work. It is for parts that are called in one or two places.
+    """
+    return _part(function, {**_ALLOCATES_NOT, "forceinline": True})
+
+
+def allocating_part(function: _Function) -> _Function:
+    """Make a part that may allocate."""
+    return _part(function, _ALLOCATES)
+
+
+def inlined_entry(function: _Function) -> _Function:
+    """Compile a function that allocates nothing, whose body stands in its compiled callers."""
+    return _called_from_python(function, {**_ALLOCATES_NOT, "inline": "always"})
+
+
+def any_order_part(function: _Function) -> _Function:
+    """Make a part of loops over beams and edges, whose sums may be taken in any order."""
+    return _part(function, {**_ALLOCATES_NOT, "fastmath": _ANY_ORDER | {"afn"}})
+
+
+def _called_from_python(function: _Function, options: dict[str, Any]) -> _Function:
+    compiled: _Function = njit(cache=True, nogil=True, **options)(function)
+    return compiled
+
+
+def _part(function: _Function, options: dict[str, Any]) -> _Function:
+    registered: _Function = register_jitable(**options)(function)
+    return registered

@@ -1,0 +1,130 @@
+"""What Python calls and its parts are compiled with, and without, a runtime for references."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numba.core.errors import NumbaError
+from numpy.typing import NDArray
+
+from roomba.compilation import (
+    allocating_entry,
+    allocating_part,
+    any_order_entry,
+    any_order_part,
+    entry,
+    inlined_entry,
+    inner_part,
+    part,
+)
+
+SOURCES = Path(__file__).parents[2] / "src"
+ALLOCATES_NOT = {"entry", "part", "inner_part", "inlined_entry", "any_order_part"}
+ALLOCATES = {"allocating_entry", "allocating_part", "any_order_entry"}
+SCALARS = {"bool", "float", "int", "None"}
+
+Floats = NDArray[np.float64]
+
+
+def doubled(values: Floats, out: Floats) -> float:
+    total = 0.0
+    for index in range(values.size):
+        out[index] = 2.0 * values[index]
+        total += out[index]
+    return total
+
+
+def copying() -> Callable[[Floats], float]:
+    """A new function each time: what one is made for is remembered with it."""
+
+    def copied(values: Floats) -> float:
+        return float(values.copy()[0])
+
+    return copied
+
+
+@pytest.mark.parametrize("how", [entry, allocating_entry, any_order_entry, inlined_entry])
+def test_an_entry_does_what_its_function_does(how: Callable[[object], object]) -> None:
+    values, out = np.array([1.0, 2.5]), np.empty(2)
+    compiled = how(doubled)
+    assert hasattr(compiled, "py_func")  # Compiled, and not the function itself.
+    assert compiled(values, out) == doubled(values, np.empty(2)) == 7.0  # type: ignore[operator]
+    assert out.tolist() == [2.0, 5.0]
+
+
+@pytest.mark.parametrize("how", [part, allocating_part, inner_part, any_order_part])
+def test_a_part_is_compiled_in_an_entry_and_plain_python_elsewhere(
+    how: Callable[[object], Callable[[Floats, Floats], float]],
+) -> None:
+    inner = how(doubled)
+
+    def twice(values: Floats, out: Floats) -> float:
+        return 2.0 * inner(values, out)
+
+    assert inner is doubled
+    assert entry(twice)(np.array([1.0, 2.5]), np.empty(2)) == 14.0
+
+
+@pytest.mark.parametrize("how", [entry, inlined_entry])
+def test_an_entry_that_must_not_allocate_is_refused_if_it_does(
+    how: Callable[[object], Callable[[Floats], float]],
+) -> None:
+    with pytest.raises(NumbaError):
+        how(copying())(np.ones(3))
+
+
+@pytest.mark.parametrize("how", [part, inner_part, any_order_part])
+def test_a_part_that_must_not_allocate_is_refused_in_any_entry(
+    how: Callable[[object], Callable[[Floats], float]],
+) -> None:
+    inner = how(copying())
+
+    def called(values: Floats) -> float:
+        return inner(values)
+
+    with pytest.raises(NumbaError):
+        allocating_entry(called)(np.ones(3))
+
+
+def test_a_part_may_allocate_in_an_entry_that_does_not() -> None:
+    inner = allocating_part(copying())
+
+    def called(values: Floats) -> float:
+        return inner(values)
+
+    assert entry(called)(np.array([2.5])) == 2.5
+
+
+def test_no_function_without_references_is_given_a_new_array() -> None:
+    """Nothing would free it."""
+    functions = [
+        (path, function, how)
+        for path in SOURCES.rglob("*.py")
+        for function in ast.parse(path.read_text(encoding="utf-8")).body
+        if isinstance(function, ast.FunctionDef)
+        for how in function.decorator_list
+        if isinstance(how, ast.Name) and how.id in ALLOCATES | ALLOCATES_NOT
+    ]
+    givers = {
+        function.name for _, function, how in functions if how.id in ALLOCATES and gives(function)
+    }
+    assert len(givers) > 10
+    leaks = [
+        f"{path.relative_to(SOURCES)}: {function.name} calls {call.func.id}"
+        for path, function, how in functions
+        if how.id in ALLOCATES_NOT
+        for call in ast.walk(function)
+        if isinstance(call, ast.Call) and isinstance(call.func, ast.Name) and call.func.id in givers
+    ]
+    assert leaks == []
+
+
+def gives(function: ast.FunctionDef) -> bool:
+    """Whether a function returns more than numbers."""
+    assert function.returns is not None
+    names = [node for node in ast.walk(function.returns) if isinstance(node, ast.Name)]
+    return not all(node.id in SCALARS | {"tuple"} for node in names)
