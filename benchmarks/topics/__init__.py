@@ -22,6 +22,7 @@ TOPICS: MappingProxyType[str, str] = MappingProxyType(
         "coverage": "whole homes cleaned: how much of the floor, by how long a way, how fast",
         "mapping": "homes explored without a map: how true the map becomes, and what that takes",
         "slam": "recorded drives of real robots, of --logs FOLDER: errors, speed, pictures",
+        "runs": "whole commands, from Enter on: time, and time of all cores",
         "ros": "round trips, and the speed of the whole graph",
         "page": "what the page costs with one viewer and with a hundred, and how old they see it",
     }

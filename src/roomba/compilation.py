@@ -12,10 +12,13 @@ Division by zero is not looked for: it gives what the processor makes of it.
 from __future__ import annotations
 
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any, Final, TypeVar
 
 from numba import njit
 from numba.extending import register_jitable
+
+from roomba.compiled_sources import kept_by_sources
 
 _Function = TypeVar("_Function", bound=Callable[..., Any])
 
@@ -70,8 +73,18 @@ def any_order_part(function: _Function) -> _Function:
 
 
 def _called_from_python(function: _Function, options: dict[str, Any]) -> _Function:
-    compiled: _Function = njit(cache=True, nogil=True, **options)(function)
-    return compiled
+    made: _Function = compiled(cache=True, nogil=True, **options)(function)
+    return made
+
+
+def compiled(**options: Any) -> Callable[[Callable[..., Any]], Any]:
+    """Return a decorator that compiles with options of ``numba.njit``."""
+
+    def compile_it(function: Callable[..., Any]) -> Any:
+        with kept_by_sources(Path(function.__code__.co_filename)):
+            return njit(**options)(function)
+
+    return compile_it
 
 
 def _part(function: _Function, options: dict[str, Any]) -> _Function:

@@ -66,11 +66,9 @@ def _without_bag(arguments: list[str] | None) -> list[str] | None:
 def _explore(options: MapOptions) -> int:
     # Imported here: it takes a second, and a mistyped option should be reported at once.
     from roomba.commands.map.runs import MapScene
-    from roomba.commands.map.warm import warm_up
 
     scene = MapScene(options.trial)
     with progress("Exploring", options.output.quiet) as show:
-        warm_up()
         run = scene.run([_shown_by(show, scene)])
     _tell_run(options.output, run)
     return COMPLETED if run.is_completed else ENDED_OTHERWISE

@@ -66,7 +66,6 @@ def _run_one(options: SimOptions, open_bag: BagOpener | None, words: list[str]) 
     # Imported here: it takes a second, and a mistyped option should be reported at once.
     from roomba.commands.sim.kept_run import StateSamples, keep_run
     from roomba.commands.trials.runs import TrialSetup
-    from roomba.commands.trials.warm import warm_up
     from roomba.headless.burst import LONGEST_BURST
 
     burst = LONGEST_BURST if options.bag is None else BAG_BURST
@@ -74,7 +73,6 @@ def _run_one(options: SimOptions, open_bag: BagOpener | None, words: list[str]) 
     with contextlib.ExitStack() as stack:
         observers: list[RunObserver] = []
         show = stack.enter_context(progress("Cleaning", options.quiet))
-        warm_up()
         observers.append(_shown_by(show))
         if options.keep:
             observers.append(samples)

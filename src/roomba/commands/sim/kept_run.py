@@ -48,7 +48,7 @@ class StateSamples:
         """Begin before the run."""
         self.rows: list[tuple[float, ...]] = []
         self.words: list[Word] = []
-        self.home: dict[str, object] = {}
+        self._robot: HeadlessMission | None = None
         self._due, self._phase = -math.inf, ""
 
     def __call__(self, robot: HeadlessMission) -> None:
@@ -73,10 +73,16 @@ class StateSamples:
         word = Word(now, snapshot.state, phase, snapshot.message, snapshot.room)
         if not self.words or not word.is_as(self.words[-1]):
             self.words.append(word)
-        if not self.home:
-            context = robot.mission.context
-            view = home_view(1, robot.simulator.home, robot, context.rooms, context.zones)
-            self.home = home_of(view)
+        self._robot = robot
+
+    @property
+    def home(self) -> dict[str, object]:
+        """What the robot knows of its home, as a page is told it; nothing before the first look."""
+        if self._robot is None:
+            return {}
+        context = self._robot.mission.context
+        view = home_view(1, self._robot.simulator.home, self._robot, context.rooms, context.zones)
+        return home_of(view)
 
 
 def keep_run(run: Run, samples: StateSamples, repeat: str) -> int:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
+from roomba.compilation import compiled
 from roomba.world.camera.kernels.face import add_face, add_span, row_of
 from roomba.world.camera.kernels.light import upright_shade
 from roomba.world.camera.kernels.ray import NEAR
@@ -23,7 +23,7 @@ from roomba.world.camera.scene.arrays import (
 UNDERSIDE_SHADE = 0.46
 
 
-@njit(**INLINE)
+@compiled(**INLINE)
 def add_box(
     spans: Spans,
     count: int,

@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from roomba.compilation import compiled
 from roomba.world.camera.lanes.compilation import INLINE
 
 
-@njit(**INLINE)
+@compiled(**INLINE)
 def scaled(colour: int, shade: int) -> int:
     """Return a packed colour times ``shade`` / 256, shade 0..256."""
     red_blue = ((colour & 0xFF00FF) * shade >> 8) & 0xFF00FF
@@ -19,13 +19,13 @@ def scaled(colour: int, shade: int) -> int:
     return red_blue | green
 
 
-@njit(**INLINE)
+@compiled(**INLINE)
 def blended(colour: int, other: int, share: int) -> int:
     """Return a packed colour mixed with ``share`` / 256 of another, share 0..256."""
     return int(scaled(colour, 256 - share) + scaled(other, share))
 
 
-@njit(**INLINE)
+@compiled(**INLINE)
 def level_of(size: float, bits: int) -> int:
     """Return which halving of a texture has texels about as big as a sample of ``size`` texels."""
     size *= 1.0 / 1.5
@@ -37,7 +37,7 @@ def level_of(size: float, bits: int) -> int:
     return int(level)
 
 
-@njit(**INLINE)
+@compiled(**INLINE)
 def smooth_texel(texels: NDArray[np.uint8], start: int, bits: int, u: float, v: float) -> int:
     """Return a texture's grey between four texels; ``u``, ``v`` in texels of this level."""
     mask = (1 << bits) - 1

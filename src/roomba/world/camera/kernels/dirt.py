@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from roomba.compilation import compiled
 from roomba.world.camera.kernels.light import between_bytes
 from roomba.world.camera.lanes.compilation import INLINE, INNER
 from roomba.world.camera.scene.arrays import Lighting, ViewTables
@@ -23,7 +23,7 @@ CRUMB_BLOCK = 3
 """Texels by the power of two that an entry of ``fewest`` stands for, each way."""
 
 
-@njit(**INLINE)
+@compiled(**INLINE)
 def dirt_level(dirt: NDArray[np.int32], row: float, column: float, per_unit: float) -> float:
     """Return the level of dirt, 0..254, at a place in cells (centres at .5).
 
@@ -46,7 +46,7 @@ def dirt_level(dirt: NDArray[np.int32], row: float, column: float, per_unit: flo
     return min(math.sqrt(amount * per_unit), 254.0)
 
 
-@njit(**INLINE)
+@compiled(**INLINE)
 def veil(cover: NDArray[np.float32], level: float, crispness: float) -> float:
     """Return how much dust, and crumbs too far to be told apart, hide of the floor, 0..256."""
     grams = (level / DIRT_LEVEL) ** 2
@@ -55,7 +55,7 @@ def veil(cover: NDArray[np.float32], level: float, crispness: float) -> float:
     return float(256.0 * (film + hidden - film * hidden))
 
 
-@njit(**INNER)
+@compiled(**INNER)
 def feel_knots(
     lighting: Lighting,
     view: ViewTables,
@@ -101,7 +101,7 @@ def feel_knots(
         knots[k, 2] = veil(cover, level, crispness[row]) if level > 0.0 else 0.0
 
 
-@njit(**INLINE)
+@compiled(**INLINE)
 def floor_surface(surfaces: NDArray[np.uint8], row: float, column: float) -> int:
     """Return the surface of the floor at a place in cells; the nearest one outside the map."""
     line = min(max(int(row), 0), surfaces.shape[0] - 1)

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import math
 
-from numba import njit
-
+from roomba.compilation import compiled
 from roomba.world.camera.lanes.compilation import INLINE
 from roomba.world.camera.scene.arrays import Spans, ViewTables
 
@@ -15,14 +14,14 @@ CONTACT_SHADE = 0.70
 """How bright such a face is at the floor, against its upper part."""
 
 
-@njit(**INLINE)
+@compiled(**INLINE)
 def row_of(slope: float, half: float, focal: float, rows: int) -> int:
     """Return the first row that looks at or below a slope, 0..rows."""
     row = math.ceil(half - 0.5 - focal * slope)
     return int(min(max(row, 0.0), float(rows)))
 
 
-@njit(**INLINE)
+@compiled(**INLINE)
 def add_span(
     spans: Spans,
     count: int,
@@ -43,7 +42,7 @@ def add_span(
     return count + 1
 
 
-@njit(**INLINE)
+@compiled(**INLINE)
 def add_face(
     spans: Spans,
     count: int,

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from roomba.compilation import compiled
 from roomba.world.camera.lanes.compilation import INNER, KERNEL
 
 BLOCK = 16
@@ -13,7 +13,7 @@ BLOCK = 16
 RED_BLUE, GREEN, TWO = np.uint32(0xFF00FF), np.uint32(0x00FF00), np.uint32(2)
 
 
-@njit(**KERNEL)
+@compiled(**KERNEL)
 def develop(
     colours: NDArray[np.uint32], tone: NDArray[np.uint8], picture: NDArray[np.uint8]
 ) -> None:
@@ -28,7 +28,7 @@ def develop(
                 picture[row, column, 2] = tone[(colour >> 16) & 255]
 
 
-@njit(**INNER)
+@compiled(**INNER)
 def shrink(colours: NDArray[np.uint32], halved: NDArray[np.uint32]) -> None:
     """Average two painted columns [2, 2 n] by twos into one, [n]."""
     for row in range(halved.shape[0]):

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from roomba.compilation import compiled
 from roomba.world.camera.lanes.compilation import INLINE
 from roomba.world.camera.scene.arrays import SceneArrays
 
 
-@njit(**INLINE)
+@compiled(**INLINE)
 def between_bytes(grid: NDArray[np.uint8], row: float, column: float) -> float:
     """Return a grid's value at a place in cells (centres at .5), smooth, 0..255."""
     row = min(max(row - 0.5, 0.0), grid.shape[0] - 1.0)
@@ -26,7 +26,7 @@ def between_bytes(grid: NDArray[np.uint8], row: float, column: float) -> float:
     return float(one + (two - one) * share)
 
 
-@njit(**INLINE)
+@compiled(**INLINE)
 def upright_shade(
     scene: SceneArrays, x: float, y: float, normal_x: float, normal_y: float, t: float
 ) -> float:

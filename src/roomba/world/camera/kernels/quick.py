@@ -7,9 +7,9 @@ in the nearest caches: upright things column by column, the floor row by row.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from roomba.compilation import compiled
 from roomba.world.camera.kernels.dirt import feel_knots
 from roomba.world.camera.kernels.face import row_of
 from roomba.world.camera.kernels.quick_floor import paint_floor
@@ -21,7 +21,7 @@ from roomba.world.camera.lanes.lanes import LANES, all_real
 from roomba.world.camera.scene.arrays import SceneArrays, ViewTables, Workspace
 
 
-@njit(**INNER)
+@compiled(**INNER)
 def finish_upright(
     work: Workspace,
     view: ViewTables,
@@ -46,7 +46,7 @@ def finish_upright(
         store_pixels(picture, 3 * (row * view.columns + begin), colours)
 
 
-@njit(**INLINE)
+@compiled(**INLINE)
 def first_floor_row(hits: NDArray[np.float64], view: ViewTables, begin: int, end: int) -> int:
     """Return the first row of floor that can be in sight in columns begin..end-1."""
     farthest = 0.0
@@ -55,7 +55,7 @@ def first_floor_row(hits: NDArray[np.float64], view: ViewTables, begin: int, end
     return int(row_of(-view.eye / farthest, 0.5 * view.rows, view.focal, view.rows))
 
 
-@njit(**KERNEL)
+@compiled(**KERNEL)
 def render_quick(
     scene: SceneArrays,
     view: ViewTables,

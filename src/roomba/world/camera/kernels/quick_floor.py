@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from roomba.compilation import compiled
 from roomba.world.camera.kernels.dirt import CRUMB_BLOCK, CRUMB_MASK, CRUMB_TEXELS
 from roomba.world.camera.kernels.quick_upright import GREY_BITS, GREY_SHIFT
 from roomba.world.camera.lanes.compilation import INLINE, INNER
@@ -42,7 +42,7 @@ LEAST_LEVEL = 4.0
 """No crumb is seen at less dirt than this; see :func:`roomba.world.home.crumbs.crumbs`."""
 
 
-@njit(**INLINE)
+@compiled(**INLINE)
 def surfaces_at(floor: FloorSurfaces, x: Any, y: Any) -> Any:
     """Return the surfaces of the floor at places, m; the nearest ones outside the map."""
     rows, columns = floor.surfaces.shape
@@ -51,7 +51,7 @@ def surfaces_at(floor: FloorSurfaces, x: Any, y: Any) -> Any:
     return look_up(floor.surfaces, row * columns + column)
 
 
-@njit(**INLINE)
+@compiled(**INLINE)
 def end_surfaces(
     floor: FloorSurfaces,
     x: float,
@@ -67,7 +67,7 @@ def end_surfaces(
     )
 
 
-@njit(**INLINE)
+@compiled(**INLINE)
 def surface_at(floor: FloorSurfaces, x: float, y: float) -> int:
     """Return the surface of the floor at a place, m; the nearest one outside the map."""
     row = min(max(int((y - floor.origin_y) / floor.cell), 0), floor.surfaces.shape[0] - 1)
@@ -75,7 +75,7 @@ def surface_at(floor: FloorSurfaces, x: float, y: float) -> int:
     return int(floor.surfaces[np.uint64(row), np.uint64(column)])
 
 
-@njit(**INLINE)
+@compiled(**INLINE)
 def look_of(surfaces: Surfaces, surface: Any, octave: float) -> tuple[Any, Any, Any, Any, Any]:
     """Return how surfaces look in pixels of a size whose base 2 logarithm is given.
 
@@ -91,7 +91,7 @@ def look_of(surfaces: Surfaces, surface: Any, octave: float) -> tuple[Any, Any, 
     return scale, start, bits, (1 << bits) - 1, surface * (SHADES * GREYS)
 
 
-@njit(**INLINE)
+@compiled(**INLINE)
 def mixed(colour: Any, other: Any, share: Any) -> Any:
     """Return packed colours mixed with ``share`` / 256 of others."""
     left = 256 - share
@@ -100,7 +100,7 @@ def mixed(colour: Any, other: Any, share: Any) -> Any:
     return red_blue | green
 
 
-@njit(**INLINE)
+@compiled(**INLINE)
 def with_crumbs(
     floor: FloorSurfaces, colour: Any, shade: Any, x: Any, y: Any, level: Any, share: int
 ) -> Any:
@@ -118,7 +118,7 @@ def with_crumbs(
     return colour
 
 
-@njit(**INNER)
+@compiled(**INNER)
 def paint_floor(
     scene: SceneArrays,
     view: ViewTables,

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from roomba.compilation import compiled
 from roomba.world.camera.kernels.colour import level_of
 from roomba.world.camera.kernels.span import column_spans
 from roomba.world.camera.lanes.compilation import INLINE, INNER
@@ -32,7 +32,7 @@ POINT = 16
 """Bits behind the point of numbers in fixed point."""
 
 
-@njit(**INLINE)
+@compiled(**INLINE)
 def paint_face(
     colours: NDArray[np.uint32],
     depths: NDArray[np.float32],
@@ -74,7 +74,7 @@ def paint_face(
         light = light + LANES * gain
 
 
-@njit(**INLINE)
+@compiled(**INLINE)
 def paint_plane(
     colours: NDArray[np.uint32],
     depths: NDArray[np.float32],
@@ -113,7 +113,7 @@ def paint_plane(
             store(depths, row, where(seen, near, before))
 
 
-@njit(**INNER)
+@compiled(**INNER)
 def paint_columns(
     scene: SceneArrays,
     view: ViewTables,

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from roomba.compilation import compiled
 from roomba.world.camera.lanes.compilation import INLINE, INNER
 from roomba.world.camera.scene.arrays import ViewTables, WallGrid
 
@@ -15,7 +15,7 @@ NEAR = 0.004
 """m; what is nearer than this to the lens is not seen."""
 
 
-@njit(**INLINE)
+@compiled(**INLINE)
 def cast_wall(
     walls: WallGrid, x: float, y: float, dx: float, dy: float
 ) -> tuple[float, int, int, int]:
@@ -70,7 +70,7 @@ def cast_wall(
                 break
 
 
-@njit(**INNER)
+@compiled(**INNER)
 def cast_walls(
     walls: WallGrid,
     view: ViewTables,
@@ -95,7 +95,7 @@ def cast_walls(
     return farthest
 
 
-@njit(**INNER)
+@compiled(**INNER)
 def find_boxes(
     shapes: NDArray[np.float32],
     view: ViewTables,

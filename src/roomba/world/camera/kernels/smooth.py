@@ -8,9 +8,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from roomba.compilation import compiled
 from roomba.world.camera.kernels.colour import level_of, scaled, smooth_texel
 from roomba.world.camera.kernels.dirt import (
     feel_knots,
@@ -34,7 +34,7 @@ GROUP = 4
 """Columns that share one feeling of the floor's light and dirt."""
 
 
-@njit(**INLINE)
+@compiled(**INLINE)
 def paint_face(
     colours: NDArray[np.uint32],
     depths: NDArray[np.float32],
@@ -94,7 +94,7 @@ def paint_face(
         along += advance
 
 
-@njit(**INLINE)
+@compiled(**INLINE)
 def paint_plane(
     colours: NDArray[np.uint32],
     depths: NDArray[np.float32],
@@ -136,7 +136,7 @@ def paint_plane(
         row = until
 
 
-@njit(**KERNEL)
+@compiled(**KERNEL)
 def render_smooth(
     scene: SceneArrays,
     view: ViewTables,

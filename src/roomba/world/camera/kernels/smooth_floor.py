@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from roomba.compilation import compiled
 from roomba.world.camera.kernels.colour import blended, scaled, smooth_texel
 from roomba.world.camera.kernels.dirt import (
     CRUMB_BLOCK,
@@ -23,7 +23,7 @@ PAIR = 2
 """Finely sampled pictures need each edge twice, but not each texel: rows are coloured in pairs."""
 
 
-@njit(**INLINE)
+@compiled(**INLINE)
 def far_grey(
     texels: NDArray[np.uint8],
     start: int,
@@ -56,7 +56,7 @@ def far_grey(
     return int(total * share)
 
 
-@njit(**INLINE)
+@compiled(**INLINE)
 def with_crumb(
     fewest: NDArray[np.uint8],
     crumbs: NDArray[np.uint16],
@@ -79,7 +79,7 @@ def with_crumb(
     return int(blended(colour, crumb_colours[crumb >> 8], share))
 
 
-@njit(**INLINE)
+@compiled(**INLINE)
 def paint_floor(
     colours: NDArray[np.uint32],
     depths: NDArray[np.float32],

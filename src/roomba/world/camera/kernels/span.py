@@ -12,9 +12,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from roomba.compilation import compiled
 from roomba.world.camera.kernels.box import add_box
 from roomba.world.camera.kernels.face import add_face, add_span, row_of
 from roomba.world.camera.kernels.light import upright_shade
@@ -33,7 +33,7 @@ SPANS_OF_WALL = 9
 """Most spans of a box, and of a wall and the ceiling above it."""
 
 
-@njit(**INLINE)
+@compiled(**INLINE)
 def add_wall(
     spans: Spans,
     count: int,
@@ -84,7 +84,7 @@ def add_wall(
     return int(add_span(spans, count, NONE, ceiling_row, walls.ceiling, PLANE, values))
 
 
-@njit(**INLINE)
+@compiled(**INLINE)
 def column_spans(
     spans: Spans,
     scene: SceneArrays,

@@ -14,7 +14,7 @@ KERNEL: Final[dict[str, Any]] = {
     # Not all of it: infinities are depths of what is not there.
     "fastmath": {"arcp", "contract", "nsz"},
 }
-"""Options of ``numba.njit``: ``@njit(**KERNEL)``."""
+"""Options of ``numba.njit``: ``@compiled(**KERNEL)``."""
 
 INNER: Final[dict[str, Any]] = {**KERNEL, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 """For a kernel that only other kernels call.
