@@ -71,7 +71,9 @@ class FollowingConfig(Frozen):
     """Following the robot from scan to scan, and finding it back: m, rad, s."""
 
     least_points: AtLeastOne = 30
-    """Of a scan that counts."""
+    fewest_points: AtLeastOne = 10
+    """Of a scan that counts: a quarter of the beams, but no fewer than these, no more than those.
+    """
     many_misses: AtLeastOne = 5
     """Scans without a match, after which the next is matched from farther away."""
     doubtful: Ratio = 0.85
@@ -99,6 +101,8 @@ class FollowingConfig(Frozen):
     unsure_deviation: Positive = 0.1
     unsure_heading: Positive = 0.05
     """What is told of the pose, against what was seen just now, with a match and without one."""
+
+    in_order: ClassVar = ("fewest_points <= least_points",)
 
 
 class WindowsConfig(Frozen):

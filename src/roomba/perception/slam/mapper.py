@@ -120,7 +120,7 @@ class Mapper:
             self._finding_back.search(follower, self._map.clouds())
         follower.compare_turns(stamp)
         points = follower.points
-        if self._is_keyframe(len(points)):
+        if self._is_keyframe():
             self._keep(points)
         self.at_scan = self._place()
         if self._lidar is not None:
@@ -265,9 +265,9 @@ class Mapper:
         follower.jump()
         self._finding_back.begin_again()
 
-    def _is_keyframe(self, points: int) -> bool:
+    def _is_keyframe(self) -> bool:
         if not self._map.graph.newest.keyframes:
-            return points >= self._config.following.least_points
+            return self._follower.shows_enough
         return self._follower.is_sure and self._follower.is_apart
 
     def _keep(self, points: Floats) -> None:

@@ -25,6 +25,7 @@ class Drive:
     lidar: Lidar
     way_error: float = 0.0
     leap: float = 0.0
+    shaken: float = 0.0
     most_off: float = 0.02
 
 
@@ -42,6 +43,8 @@ def degrees(fan: float, step: float = 1.0, **more: float) -> Lidar:
 
 DRIVES = {
     "60 degrees, half a degree apart": Drive(degrees(60.0, 0.5, rate=10.0)),
+    "60 degrees, a degree apart": Drive(degrees(60.0, 1.0, rate=10.0), most_off=0.03),
+    "90 degrees, two degrees apart": Drive(degrees(90.0, 2.0, rate=10.0), most_off=0.03),
     "120 degrees": Drive(degrees(120.0, rate=10.0)),
     "180 degrees": Drive(degrees(180.0, rate=10.0)),
     "270 degrees, a quarter of a degree apart": Drive(
@@ -61,6 +64,10 @@ DRIVES = {
     "no echo: below the nearest range": Drive(Lidar(no_echo=0.05, missed=0.1)),
     "off the middle": Drive(Lidar(mount=Pose(0.25, -0.1, 0.0))),
     "backwards": Drive(Lidar(mount=Pose(-0.1, 0.0, math.pi))),
+    "15 cm from where it is told to be": Drive(
+        Lidar(mount=Pose(0.15, -0.1, 0.0), told_mount=Pose(), turns=False)
+    ),
+    "odometry that is shaken": Drive(Lidar(turns=False), shaken=0.2, most_off=0.03),
     "odometry off by a tenth": Drive(Lidar(), way_error=0.1, most_off=0.04),
     "odometry off by a tenth, that leaps": Drive(
         degrees(180.0, rate=10.0), way_error=-0.1, leap=0.5, most_off=0.08
@@ -71,8 +78,9 @@ DRIVES = {
 @pytest.mark.parametrize("drive", DRIVES.values(), ids=DRIVES.keys())
 def test_it_makes_a_map_and_knows_where_it_is(drive: Drive) -> None:
     mapper, errors = mapped(
-        drive.lidar, around, WALLS, 40.0, way_error=drive.way_error, leap=drive.leap
-    )
+        drive.lidar, around, WALLS, 40.0, way_error=drive.way_error, leap=drive.leap,
+        shaken=drive.shaken,
+    )  # fmt: skip
     assert mapper.estimate.knowledge is Knowledge.KNOWN
     assert errors.worst < drive.most_off
     assert max(wrong_cells(mapper.finish(), FURNISHED)) <= STRAY

@@ -52,7 +52,7 @@ class FindingBack:
         """Whether it has gone on for so long unconfirmed that the map must come to where it is."""
         config = self._config
         is_searched = self._row["misses"] >= config.given_up_after
-        if not is_searched or len(follower.points) < config.least_points:
+        if not is_searched or not follower.shows_enough:
             return False
         return follower.unsure_way > config.piece_way or follower.unsure_turn > config.piece_turn
 
@@ -62,7 +62,7 @@ class FindingBack:
         They are in the frame of the newest submap, as the surfels are that confirm what is found.
         """
         points, config = follower.points, self._config
-        if not clouds or len(points) < config.least_points:
+        if not clouds or not follower.shows_enough:
             return
         # As seen from where it is thought to be: what is far from there is left out.
         here = follower.here

@@ -42,7 +42,7 @@ _STANDS: Final = 0.03
 def saw(findings: Rows, followers: Rows, stamp: float) -> None:
     """Take how well the newest scan fits, and its stamp, s."""
     finding, follower = findings[0], followers[0]
-    _count(finding, follower, stamp)
+    _count(findings, follower, stamp)
     elapsed = stamp - finding.stamp
     if elapsed > 0.0 and follower.is_sure:
         pace = (follower.way - finding.way) / elapsed
@@ -58,16 +58,25 @@ def is_due(findings: Rows) -> bool:
     return 0 < count <= _AT_ONCE or (count > 0 and count % _EVERY == 0)
 
 
+@entry
+def least_usual(findings: Rows) -> float:
+    """Return the share of points that a scan agrees in at least, if it agrees as usual."""
+    finding = findings[0]
+    share: float = finding.doubtful * finding.usual
+    return share
+
+
 @inner_part
-def _count(finding: Row, follower: Row, stamp: float) -> None:
+def _count(findings: Rows, follower: Row, stamp: float) -> None:
     """Count the scans in a row that confirm nothing, or less than is usual."""
+    finding = findings[0]
     if not follower.is_sure:
         finding.misses += follower.points >= follower.least_points
         return
     finding.misses = 0
     agreement = follower.met * follower.close
     stands = not is_apart(follower.reckoned, finding.well_at, _STANDS, _STANDS)
-    if agreement < finding.doubtful * finding.usual and stands:
+    if agreement < least_usual(findings) and stands:
         finding.doubts += 1
         return
     finding.doubts = 0

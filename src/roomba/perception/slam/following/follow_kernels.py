@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.angles import wrapped
-from roomba.compilation import entry, inner_part
+from roomba.compilation import entry, inner_part, part
 from roomba.perception.localization.belief.belief import Row, Rows
 from roomba.perception.localization.belief.reckon_kernels import compose
 from roomba.perception.matching.pose_kernels import beyond, seen_from
@@ -43,6 +43,7 @@ FOLLOWER: Final = np.dtype(
         ("points", "i8"),  # that it shows
         ("heading_before", "f8"),  # rad; at the scan before, nan if that did not confirm it
         ("keyframe", "f8", (3,)),  # where the newest one was kept, in its submap
+        ("pace", "f8", (3,)),  # m/s, rad/s; ahead, aside and turning, between the newest two scans
         # what does not change
         ("variance", "f8"),  # m2; of a point
         ("least_points", "i8"),  # see FollowingConfig
@@ -51,7 +52,7 @@ FOLLOWER: Final = np.dtype(
         ("least_close", "f8"),
         ("keyframe_way", "f8"),  # m; a scan is kept that is so far from the newest keyframe,
         ("keyframe_turn", "f8"),  # rad; or turned by so much
-        ("work", "f8", (10 + ALIGN_WORK, 3)),  # what the kernel works in; means nothing between
+        ("work", "f8", (15 + ALIGN_WORK, 3)),  # what the kernel works in; means nothing between
     ],
     align=True,
 )
@@ -69,9 +70,20 @@ _DOUBTED_MORE: Final = 1.2
 """Times that it is thought to be off by more after a scan that confirms nothing."""
 _MOST_OFF: Final = 200.0
 """Times its variance that one scan makes it off at most: a jump says nothing of the usual."""
+_FARTHER_SCALES: Final = (0.3, 0.1)
+_FARTHER_SPREAD: Final = (0.1**2, 0.1**2, 0.15**2)
+"""m; m2, rad2: of a match from farther away, of a scan that agrees less than is usual."""
+_CLEARLY: Final = 1.15
+"""Times that a scan must agree better there."""
+_LONGEST: Final = 1.0
+"""s; over a longer time nothing is known of how fast it moves."""
+_PER_TURN: Final = 0.01
+"""m/sqrt(rad); robots hardly turn around the very point that odometry takes for their middle."""
 _ROUNDS: Final = 5
 _STRIDE: Final = 2
-"""Each such point follows the robot; keyframes have all of them."""
+"""Each such point follows the robot, if there are many; keyframes have all of them."""
+_MANY: Final = 200
+"""Points; of fewer all follow it."""
 _FAR_REACH: Final = 3
 """Cells of surfels; so far a scan is matched after many misses."""
 _LEAST_SPREAD: Final = (0.001**2, 0.001**2, 0.0005**2)
@@ -80,41 +92,46 @@ _LEAST_SPREAD: Final = (0.001**2, 0.001**2, 0.0005**2)
 
 @entry
 def follow(
-    followers: Rows, beliefs: Rows, reckoned: Floats, surfels: Surfels, points: Floats, count: int
+    followers: Rows,
+    beliefs: Rows,
+    reckoned: Floats,
+    surfels: Surfels,
+    points: Floats,
+    count: int,
+    elapsed: float,
+    expected: float,
 ) -> None:
-    """Move on to ``reckoned`` [3], and correct that by a scan, points [n, 4] seen from there."""
+    """Move on to ``reckoned`` [3], and correct that by a scan, points [n, 4] seen from there.
+
+    It is taken ``elapsed``, s, after the one before it. One that agrees in a smaller share of its
+    points than ``expected`` is matched again, from farther away.
+    """
     follower = followers[0]
+    prior, pose, by_pace = follower.work[0], follower.work[1], follower.work[2]
+    knows_pace = _go_at_pace(follower, elapsed, by_pace)
+    before_x, before_y, before_theta = follower.here[0], follower.here[1], follower.here[2]
     _move_on(follower, beliefs[0], reckoned)
-    work = follower.work
-    prior, pose, scales, counts = work[0], work[1], work[2], work[3]
-    covariance, information = work[COVARIANCE : COVARIANCE + 3], work[7:10]
+    for axis in range(3):
+        prior[axis] = follower.here[axis]
+    covariance = follower.work[COVARIANCE : COVARIANCE + 3]
     for row in range(3):
-        prior[row] = pose[row] = follower.here[row]
         for column in range(3):
             covariance[row, column] = follower.spread[row, column]
         covariance[row, row] += _LEAST_SPREAD[row]
     reach = _FAR_REACH if follower.misses >= follower.many_misses else 1
-    noise = follower.range_deviation
-    scales[0], scales[1], scales[2] = _FIRST_SCALES[0], _FIRST_SCALES[1], last_scale(noise)
-    tolerances = Tolerances(scales, follower.variance, in_plane(noise))
-    is_solved = align(
-        surfels, points, count, _STRIDE, reach, prior, covariance, tolerances, _ROUNDS, pose,
-        information, counts, work[10:],
-    )  # fmt: skip
-    is_solved = is_solved and math.isfinite(pose[0] + pose[1] + pose[2])
-    follower.met = follower.close = 0.0
-    if is_solved and counts[ASKED] >= follower.least_points:
-        follower.met = counts[MATCHED] / counts[ASKED]
-        follower.close = counts[CLOSE] / max(counts[MATCHED], 1.0)
+    shows_enough = _match(follower, surfels, points, count, prior, reach, _FIRST_SCALES)
+    if shows_enough and follower.met * follower.close < expected:
+        _look_farther(follower, surfels, points, count, prior, expected)
+        if knows_pace and follower.met * follower.close < expected:
+            _look_farther(follower, surfels, points, count, by_pace, expected)
     follower.is_sure = (
-        is_solved
-        and counts[ASKED] >= follower.least_points
+        shows_enough
         and follower.met >= follower.least_met
         and follower.close >= follower.least_close
     )
     if not follower.is_sure:
         follower.misses += 1
-        for axis in range(3):
+        for axis in range(3 if shows_enough else 0):
             # It may be dead reckoning that is off by more than is thought.
             follower.odometry_scale[axis] = min(
                 _DOUBTED_MORE * follower.odometry_scale[axis], _MOST_OFF
@@ -122,9 +139,96 @@ def follow(
         return
     _learn_scale(follower, prior, pose)
     follower.here[0], follower.here[1], follower.here[2] = pose[0], pose[1], wrapped(pose[2])
+    _learn_pace(follower, before_x, before_y, before_theta, elapsed)
     follower.spread[:] = 0.0
     follower.misses = 0
     follower.unsure_way = follower.unsure_turn = 0.0
+
+
+@inner_part
+def _go_at_pace(follower: Row, elapsed: float, pose: Floats) -> bool:
+    """Fill ``pose`` [3] with where it is if it moves on as it did before; tell if that is known."""
+    if not follower.is_sure or not 0.0 < elapsed < _LONGEST:
+        return False
+    pace = follower.pace
+    x, y, theta = follower.here[0], follower.here[1], follower.here[2]
+    pose[0], pose[1], pose[2] = beyond(
+        x, y, theta, pace[0] * elapsed, pace[1] * elapsed, pace[2] * elapsed
+    )
+    return True
+
+
+@inner_part
+def _learn_pace(follower: Row, x: float, y: float, theta: float, elapsed: float) -> None:
+    """Keep how fast it moved from a pose, which may be none of a scan that was sure, to here."""
+    if not 0.0 < elapsed < _LONGEST:
+        follower.pace[:] = 0.0
+        return
+    off_x, off_y = follower.here[0] - x, follower.here[1] - y
+    cosine, sine = math.cos(theta), math.sin(theta)
+    follower.pace[0] = (cosine * off_x + sine * off_y) / elapsed
+    follower.pace[1] = (cosine * off_y - sine * off_x) / elapsed
+    follower.pace[2] = wrapped(follower.here[2] - theta) / elapsed
+
+
+@inner_part
+def _look_farther(
+    follower: Row, surfels: Surfels, points: Floats, count: int, guess: Floats, expected: float
+) -> None:
+    """Be where a scan fits about ``guess`` [3], if it agrees there as ``expected``, and better."""
+    pose, covariance = follower.work[1], follower.work[COVARIANCE : COVARIANCE + 3]
+    before, sure = follower.work[10:13], follower.work[13]
+    met, close = follower.met, follower.close
+    for row in range(3):
+        sure[row] = pose[row]
+        for column in range(3):
+            before[row, column] = covariance[row, column]
+            covariance[row, column] = 0.0
+        covariance[row, row] = _FARTHER_SPREAD[row]
+    _match(follower, surfels, points, count, guess, _FAR_REACH, _FARTHER_SCALES)
+    if follower.met * follower.close >= max(expected, _CLEARLY * met * close):
+        return
+    follower.met, follower.close = met, close
+    for row in range(3):
+        pose[row] = sure[row]
+        for column in range(3):
+            covariance[row, column] = before[row, column]
+
+
+@part
+def _match(
+    follower: Row,
+    surfels: Surfels,
+    points: Floats,
+    count: int,
+    prior: Floats,
+    reach: int,
+    first_scales: tuple[float, float],
+) -> bool:
+    """Match a scan about ``prior`` [3]: ``met``, ``close``, and pose and covariance in ``work``.
+
+    Returns whether the scan shows enough to say anything.
+    """
+    work = follower.work
+    pose, scales, counts = work[1], work[3], work[14]
+    covariance, information = work[COVARIANCE : COVARIANCE + 3], work[7:10]
+    for axis in range(3):
+        pose[axis] = prior[axis]
+    noise = follower.range_deviation
+    scales[0], scales[1], scales[2] = first_scales[0], first_scales[1], last_scale(noise)
+    tolerances = Tolerances(scales, follower.variance, in_plane(noise))
+    stride = _STRIDE if count >= _MANY else 1
+    is_solved = align(
+        surfels, points, count, stride, reach, prior, covariance, tolerances, _ROUNDS, pose,
+        information, counts, work[15:],
+    )  # fmt: skip
+    is_solved = is_solved and math.isfinite(pose[0] + pose[1] + pose[2])
+    follower.met = follower.close = 0.0
+    shows_enough: bool = is_solved and counts[ASKED] >= follower.least_points
+    if shows_enough:
+        follower.met = counts[MATCHED] / counts[ASKED]
+        follower.close = counts[CLOSE] / max(counts[MATCHED], 1.0)
+    return shows_enough
 
 
 @inner_part
@@ -158,7 +262,8 @@ def _move_on(follower: Row, belief: Row, reckoned: Floats) -> None:
         follower.reckoned[axis] = reckoned[axis]
     cosine, sine = math.cos(follower.here[2]), math.sin(follower.here[2])
     scale, spread = follower.odometry_scale, follower.spread
-    along, across = scale[0] * belief.spread[0], scale[1] * belief.spread[1]
+    of_turn = _PER_TURN * _PER_TURN * abs(turn)
+    along, across = scale[0] * (belief.spread[0] + of_turn), scale[1] * (belief.spread[1] + of_turn)
     spread[0, 0] += cosine * cosine * along + sine * sine * across
     spread[1, 1] += sine * sine * along + cosine * cosine * across
     spread[0, 1] += cosine * sine * (along - across)

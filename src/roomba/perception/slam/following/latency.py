@@ -24,7 +24,8 @@ _KEPT: Final = 0.99
 _LEAST_TURNED: Final = 0.1
 """rad2; sum of squared turns from which anything is said."""
 _BETTER: Final = 0.7
-"""A latency is believed whose squared errors are so much smaller than without any."""
+"""Another latency is believed if its squared errors are so much smaller than those of the present
+one: with each change the robot seems to move a little."""
 
 
 LATENCY: Final = np.dtype(
@@ -79,5 +80,6 @@ def _add_errors(latency: Row, turn: float) -> None:
             best = index
     latency.turned = _KEPT * latency.turned + turn * turn
     if latency.turned > _LEAST_TURNED:
-        is_better = latency.errors[best] < _BETTER * latency.errors[0]
-        latency.seconds = best * _STEP if is_better else 0.0
+        present = round(latency.seconds / _STEP)
+        if latency.errors[best] < _BETTER * latency.errors[present]:
+            latency.seconds = best * _STEP

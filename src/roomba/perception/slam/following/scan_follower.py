@@ -7,7 +7,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.configuration.mapping import MappingConfig
+from roomba.configuration.mapping import FollowingConfig, MappingConfig
 from roomba.geometry import Pose
 from roomba.perception.localization.belief.belief import Rows, unknown_belief
 from roomba.perception.localization.dead_reckoning import DeadReckoning
@@ -52,6 +52,7 @@ class ScanFollower:
         self._noise, self._latency = unknown_noise(), no_latency()
         self._row = row = self.state[0]
         row["variance"] = config.point_deviation**2
+        self._config = config.following
         row["least_points"] = config.following.least_points
         row["many_misses"] = config.following.many_misses
         row["least_met"], row["least_close"] = config.least_met, config.least_close
@@ -63,6 +64,7 @@ class ScanFollower:
     def use(self, beams: LidarBeams, surfels: SurfelGrid) -> None:
         """Follow the scans of a lidar, by what ``surfels`` shows."""
         count = len(beams.directions)
+        self._row["least_points"] = least_points(count, self._config)
         self.following = Following(
             self.state,
             self._reckoning.belief,
@@ -142,6 +144,11 @@ class ScanFollower:
         return float(self._row["unsure_turn"])
 
     @property
+    def shows_enough(self) -> bool:
+        """Whether the newest scan has so many points that it counts."""
+        return bool(self._row["points"] >= self._row["least_points"])
+
+    @property
     def is_sure(self) -> bool:
         """Whether the newest scan confirmed the pose."""
         return bool(self._row["is_sure"])
@@ -193,7 +200,7 @@ class ScanFollower:
         least = better * self.met * self.close if self.is_sure else 0.0
         self._row["here"], self._row["spread"] = pose, _FOUND_SPREAD
         reckoned, points = self._row["reckoned"].copy(), self._row["points"]
-        follow(self.state, parts.belief, reckoned, parts.surfels, parts.points, points)
+        follow(self.state, parts.belief, reckoned, parts.surfels, parts.points, points, 0.0, 0.0)
         if not self.is_sure or self.met * self.close < least:
             self.state[:] = before
 
@@ -207,6 +214,11 @@ class ScanFollower:
         self._row["unsure_way"] = self._row["unsure_turn"] = 0.0
         reckoned = self._reckoning.pose
         self._row["reckoned"] = reckoned.x, reckoned.y, reckoned.theta
+
+
+def least_points(beams: int, config: FollowingConfig) -> int:
+    """Return how many points a scan of so many beams must have to count."""
+    return min(config.least_points, max(config.fewest_points, beams // 4))
 
 
 def not_following(beams: LidarBeams) -> Following:

@@ -18,7 +18,7 @@ from roomba.perception.matching.pose_kernels import is_apart
 from roomba.perception.matching.range_noise import measure_noise
 from roomba.perception.matching.reckoned_path import ReckonedPath, pose_at
 from roomba.perception.matching.sweep import at_once
-from roomba.perception.slam.following.finding_back_kernels import is_due, saw
+from roomba.perception.slam.following.finding_back_kernels import is_due, least_usual, saw
 from roomba.perception.slam.following.follow_kernels import COVARIANCE, follow, moved_since
 from roomba.perception.slam.following.latency import learn_latency
 from roomba.perception.slam.scan_matching.surface_kernels import surface_points
@@ -118,9 +118,10 @@ def follow_points(following: Following, stamp: float) -> None:
     """Follow the robot by the points of a scan, and note how well they fit."""
     follower = following.follower[0]
     follower.heading_before = follower.here[2] if follower.is_sure else math.nan
+    finding = following.finding[0]
     follow(
         following.follower, following.belief, follower.scanned_at, following.surfels,
-        following.points, follower.points,
+        following.points, follower.points, stamp - finding.stamp, least_usual(following.finding),
     )  # fmt: skip
     saw(following.finding, following.follower, stamp)
     _calibrate(following)

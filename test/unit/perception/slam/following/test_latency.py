@@ -75,3 +75,14 @@ def test_without_odometry_of_that_time_nothing_is_learned() -> None:
     for index in range(300):
         learn_latency(latency, 0.1, 0.1 * index, path)
     assert (latency[0]["seconds"], latency[0]["turned"]) == (0.0, 0.0)
+
+
+def test_what_is_believed_does_not_change_to_and_fro() -> None:
+    """Scans that are 30 ms late lie between two latencies that are compared."""
+    scans, seen = Scans(), []
+    random = np.random.default_rng(3)
+    for _ in range(900):
+        then = scans.now + 0.1 - 0.03
+        scans.come(heading(then) - heading(then - 0.1) + random.normal(0.0, 0.01))
+        seen.append(scans.seconds)
+    assert np.count_nonzero(np.diff(seen[100:])) <= 1
