@@ -1,0 +1,201 @@
+"""Floods on every topic, senseless connections to every port, a thousand viewers of the page."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import random
+import re
+import resource
+import socket
+import time
+from typing import Final
+from urllib.parse import urlparse
+
+import rosgraph
+import rospy
+from fixtures.graph import START_DEADLINE, RosGraph
+from fixtures.tiny_home import tiny_home
+from roomba_robot.srv import EmergencyStop
+from roslib.message import get_message_class
+from soak.arena import Arena
+from soak.cleaner import ENDED, Cleaner
+from soak.rows import Row, in_child, until
+from std_msgs.msg import Float32
+from websockets.asyncio.client import ClientConnection, connect
+
+FLOOD: Final = 10_000
+"""Messages a second that a flood is to have, as far as one sender gets, and in all."""
+ANSWERED: Final = 1.0
+"""s of wall time in which the emergency stop answers meanwhile."""
+CONNECTIONS: Final = 10_000
+VIEWERS: Final = 1_000
+SHOWN: Final = 5.0
+"""s of wall time until each of so many viewers has the robot's state anew."""
+_AT_ONCE: Final = 50
+"""Connections that are opened before the first is closed again."""
+_LEFT_ALONE: Final = ("/clock", "/rosout", "/rosout_agg", "/tf", "/tf_static", "/diagnostics")
+"""Topics of all programs: a flood there is one of the machine, not of the robot."""
+
+
+def floods(arena: Arena) -> list[Row]:
+    """Send ten thousand empty messages on each topic that a node of the robot hears."""
+    with RosGraph(arena.folder) as graph:
+        graph.launch(f"home:={tiny_home(arena.folder)}", "speed:=3")
+
+        def work() -> list[Row]:
+            cleaner = Cleaner(graph)
+            cleaner.keep_cleaning()
+            rows = [_flood(graph, cleaner, topic) for topic in _heard_topics(graph)]
+            cleaner.finish()
+            return [cleaner.row, *rows]
+
+        return in_child(arena.folder, work, 3000.0)
+
+
+def _heard_topics(graph: RosGraph) -> list[str]:
+    """Return the topics that nodes hear; those of the body's own senses are its simulator's."""
+    _, heard, _ = graph.system_state()
+    return sorted(
+        topic
+        for topic, nodes in heard.items()
+        if topic not in _LEFT_ALONE and any(not node.startswith("/soak") for node in nodes)
+    )
+
+
+def _flood(graph: RosGraph, cleaner: Cleaner, topic: str) -> Row:
+    cleaner.keep_cleaning()
+    row = Row(f"flood {topic}", 1)
+    kind = get_message_class(graph.topic_types().get(topic, ""))
+    if kind is None:
+        return row
+    before = cleaner.probe.counts.get("/speed", 0)
+    cleaner.probe.hear("/speed", Float32)
+    publisher = rospy.Publisher(topic, kind, queue_size=10)
+    if until(lambda: publisher.get_num_connections() > 0, 5.0) is None:
+        publisher.unregister()
+        return row
+    began, message = time.monotonic(), kind()
+    for sent in range(FLOOD):
+        publisher.publish(message)
+        if sent % 1000 == 999:
+            row.expect_within("stop answers", ANSWERED, _emergency_stop_answers)
+            time.sleep(max(0.0, began + (sent + 1) / FLOOD - time.monotonic()))
+    took = time.monotonic() - began
+    publisher.unregister()
+    row.measured("thousand messages a second", FLOOD / took / 1000.0)
+    if cleaner.probe.counts["/speed"] - before < 0.5 * 10.0 * took:
+        row.broken.append("the robot's speed was told less than half as often as it is to be")
+    # Messages of nothing may have been orders: to pause, to stop, to go elsewhere.
+    if cleaner.state.phase == "cleaning":
+        cleaner.goes_on(row)
+    return row
+
+
+def _emergency_stop_answers() -> bool:
+    return bool(rospy.ServiceProxy("/emergency_stop", EmergencyStop)(False, "").success)
+
+
+def connections(arena: Arena) -> list[Row]:
+    """Open thousands of senseless connections to each port of each node."""
+    with RosGraph(arena.folder) as graph:
+        graph.launch(f"home:={tiny_home(arena.folder)}", "speed:=3")
+
+        def work() -> list[Row]:
+            cleaner = Cleaner(graph)
+            cleaner.keep_cleaning()
+            row = Row("senseless connections")
+            places = _places(graph)
+            began = time.monotonic()
+            while row.times < CONNECTIONS:
+                row.times += _connect_senselessly(places, arena.random)
+                row.expect_within("stop answers", ANSWERED, _emergency_stop_answers)
+            row.measured("all", time.monotonic() - began)
+            cleaner.goes_on(row)
+            cleaner.finish()
+            return [cleaner.row, row]
+
+        return in_child(arena.folder, work, 1800.0)
+
+
+def _places(graph: RosGraph) -> list[tuple[str, int]]:
+    """Return where nodes take connections: for topics and services, and for requests."""
+    master = rosgraph.Master("/soak_places", graph.uri)
+    publishers, subscribers, services = graph.system_state()
+    nodes = {
+        node for part in (publishers, subscribers) for names in part.values() for node in names
+    }
+    addresses = [master.lookupNode(node) for node in nodes if not node.startswith("/soak")]
+    addresses += [master.lookupService(service) for service in services]
+    places = {(urlparse(address).hostname, urlparse(address).port) for address in addresses}
+    return [(host, port) for host, port in places if host and port]
+
+
+def _connect_senselessly(places: list[tuple[str, int]], random: random.Random) -> int:
+    """Open some connections, say nonsense or nothing, close them; return how many."""
+    opened = []
+    for _ in range(_AT_ONCE):
+        with contextlib.suppress(OSError):
+            connection = socket.create_connection(random.choice(places), 2.0)
+            connection.sendall(random.randbytes(random.choice((0, 1, 4, 200, 5000))))
+            opened.append(connection)
+    for connection in opened:
+        connection.close()
+    return _AT_ONCE
+
+
+def viewers(arena: Arena) -> list[Row]:
+    """Look at the page from a thousand places, while the robot cleans."""
+    arguments = (f"home:={tiny_home(arena.folder)}", "speed:=3", "page:=true", "page_port:=0")
+    with RosGraph(arena.folder) as graph:
+        run = graph.launch(*arguments)
+        run.says("The page: ", START_DEADLINE)
+        found = re.search(r"The page: http://127\.0\.0\.1:(\d+)/", run.output)
+        assert found
+        live = f"ws://127.0.0.1:{found[1]}/live"
+
+        def work() -> list[Row]:
+            cleaner = Cleaner(graph)
+            cleaner.keep_cleaning()
+            row = Row("viewers", VIEWERS)
+            asyncio.run(_look(live, row))
+            row.expect_within("stop answers", ANSWERED, _emergency_stop_answers)
+            cleaner.goes_on(row)
+            cleaner.finish()
+            return [cleaner.row, row]
+
+        return in_child(arena.folder, work, ENDED + 600.0)
+
+
+async def _look(live: str, row: Row) -> None:
+    """Open all viewers, and let each get several messages anew."""
+    opened: list[ClientConnection] = []
+    try:
+        for begin in range(0, VIEWERS, _AT_ONCE):
+            told = await asyncio.gather(
+                *(
+                    connect(live, open_timeout=30.0, max_size=None)
+                    for _ in range(begin, begin + _AT_ONCE)
+                ),
+                return_exceptions=True,
+            )
+            opened += [each for each in told if not isinstance(each, BaseException)]
+        if len(opened) < VIEWERS:
+            row.broken.append(f"{len(opened)} of {VIEWERS} viewers were let in")
+        for name in ("first look", "second look"):
+            began = time.monotonic()
+            await asyncio.gather(*(_two_messages(each) for each in opened))
+            row.expect(name, time.monotonic() - began, SHOWN)
+    finally:
+        await asyncio.gather(*(each.close() for each in opened), return_exceptions=True)
+
+
+async def _two_messages(viewer: ClientConnection) -> None:
+    for _ in range(2):
+        await asyncio.wait_for(viewer.recv(), 60.0)
+
+
+def enough_descriptors() -> None:
+    """Let this process, and those that it starts, have as many connections as they need."""
+    _, most = resource.getrlimit(resource.RLIMIT_NOFILE)
+    resource.setrlimit(resource.RLIMIT_NOFILE, (min(most, 16_384), most))

@@ -1,0 +1,124 @@
+"""The clock is set or stands, the disk is full, while the robot cleans."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import threading
+import time
+from pathlib import Path
+from typing import Final
+
+import rospy
+from fixtures.graph import START_DEADLINE, RosGraph
+from fixtures.tiny_home import tiny_home
+from fixtures.waiting import wait_until
+from rosgraph_msgs.msg import Clock
+from soak.arena import Arena
+from soak.cleaner import Cleaner
+from soak.rows import Row, in_child, until
+
+HOUR: Final = 3600.0
+TOLD: Final = 5.0
+"""s of wall time until a full disk is told, and until all is well when there is room again."""
+RETRIED: Final = 10.0
+_SPEED: Final = 3.0
+"""Robot seconds per second."""
+_PERIOD: Final = 0.05
+"""s between two messages of the clock."""
+_STANDS: Final = 8.0
+"""s of wall time for which the clock is gone."""
+_ROOM: Final = "64m"
+"""The size of the disk."""
+
+
+class SetClock:
+    """Publishes a clock, which can be set, and can stand."""
+
+    def __init__(self) -> None:
+        """Begin to publish."""
+        self._publisher = rospy.Publisher("/clock", Clock, queue_size=1, tcp_nodelay=True)
+        self.now, self.runs = 10_000.0, True
+        threading.Thread(target=self._run, daemon=True).start()
+
+    def _run(self) -> None:
+        while not rospy.is_shutdown():
+            time.sleep(_PERIOD / _SPEED)
+            if self.runs:
+                self.now += _PERIOD
+                self._publisher.publish(rospy.Time.from_sec(self.now))
+
+
+def clock(arena: Arena) -> list[Row]:
+    """Set the clock back and forth, and take it away."""
+    with RosGraph(arena.folder) as graph:
+        graph.start_master()
+
+        def work() -> list[Row]:
+            graph.set_param("/use_sim_time", True)
+            os.environ.update(graph.environment)
+            rospy.init_node("soak", disable_signals=True)
+            given = SetClock()
+            graph.start_run(f"home:={tiny_home(arena.folder)}", "clock:=false")
+            wait_until(graph.all_up, START_DEADLINE, lambda: graph.programs[-1].output)
+            cleaner = Cleaner(graph)
+            rows = []
+            for jump in (-10.0, HOUR, -HOUR):
+                cleaner.keep_cleaning()
+                given.now += jump
+                rows.append(Row(f"clock set by {jump:+g} s", 1))
+                cleaner.goes_on(rows[-1])
+            cleaner.keep_cleaning()
+            rows.append(Row(f"clock gone for {_STANDS:g} s", 1))
+            given.runs = False
+            time.sleep(_STANDS)
+            given.runs = True
+            cleaner.goes_on(rows[-1])
+            cleaner.finish()
+            return [cleaner.row, *rows]
+
+        return in_child(arena.folder, work, 1800.0)
+
+
+def disk(arena: Arena) -> list[Row]:
+    """Fill a small disk that the robot keeps its files on, and make room again."""
+    home = arena.folder / "ros_home"
+    home.mkdir()
+    mount = ["mount", "-t", "tmpfs", "-o", f"size={_ROOM}", "tmpfs", str(home)]
+    if subprocess.run(mount, check=False, capture_output=True, timeout=20.0).returncode != 0:
+        return [Row("full disk: left out, mounting one needs root")]
+    try:
+        with RosGraph(arena.folder) as graph:
+            graph.launch(f"home:={tiny_home(arena.folder)}", "speed:=3")
+            return in_child(arena.folder, lambda: _fill(graph, home), 1800.0)
+    finally:
+        subprocess.run(["umount", "--lazy", str(home)], check=True, timeout=20.0)
+
+
+def _fill(graph: RosGraph, home: Path) -> list[Row]:
+    cleaner = Cleaner(graph)
+    cleaner.keep_cleaning()
+    row = Row("full disk", 1)
+    filler = home / "filler"
+    with filler.open("wb") as file:
+        try:
+            while True:
+                file.write(bytes(4096))
+                file.flush()
+        except OSError:
+            pass
+    is_told = row.expect_within("told", TOLD, lambda: "No space left" in cleaner.state.message)
+    cleaner.goes_on(row)
+    filler.unlink()
+    if is_told:
+        row.expect_within(
+            "well again", RETRIED, lambda: "No space left" not in cleaner.state.message
+        )
+    cleaner.goes_on(row)
+    cleaner.finish()
+    if until(lambda: not list(home.rglob("*.unfinished-*")), TOLD) is None:
+        row.broken.append(f"left behind: {list(home.rglob('*.unfinished-*'))}")
+    lines = graph.programs[0].output.count("Traceback")
+    if lines:
+        row.broken.append(f"{lines} tracebacks")
+    return [cleaner.row, row]

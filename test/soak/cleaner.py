@@ -1,0 +1,80 @@
+"""A client of a robot that lets it clean again and again, and sees whether that goes on."""
+
+from __future__ import annotations
+
+import rospy
+from actionlib import SimpleGoalState
+from actionlib_msgs.msg import GoalStatus
+from fixtures.graph import RosGraph
+from fixtures.probe import Probe
+from roomba_robot.msg import CleanAction, CleanGoal, VacuumState
+from soak.rows import Row, until
+from std_msgs.msg import String
+
+from roomba_ros.runtime.action_client import ActionClient
+
+GOES_ON = 30.0
+"""s of wall time until the clean got farther."""
+ENDED = 600.0
+"""s of wall time that a clean takes at most."""
+READY = 60.0
+"""s of wall time until a robot can be told to clean, and until it does."""
+
+
+class Cleaner:
+    """Lets a robot clean; each clean ends once, and as it should."""
+
+    def __init__(self, graph: RosGraph) -> None:
+        """Become a client of the robot."""
+        self.probe = Probe(graph, "soak")
+        self.state, self.trouble = VacuumState(), [""]
+        self.row = Row("clean")
+        rospy.Subscriber("/vacuum/state", VacuumState, self._on_state)
+        rospy.Subscriber("/trouble", String, lambda told: self.trouble.append(told.data))
+        self._client = ActionClient("clean", CleanAction)
+        until(lambda: self._client.wait_for_server(rospy.Duration(0.01)), READY)
+
+    def _on_state(self, state: VacuumState) -> None:
+        self.state = state
+
+    def keep_cleaning(self) -> None:
+        """Begin another clean when the last one has ended."""
+        if self.row.times > 0 and not self.has_ended():
+            return
+        self._judge()
+        if until(lambda: self.state.phase in ("docked", "idle"), ENDED) is not None:
+            self._client.send_goal(CleanGoal())
+            self.row.times += 1
+            until(lambda: self.state.phase == "cleaning", READY)
+
+    def finish(self) -> None:
+        """Let the last clean end."""
+        if until(self.has_ended, ENDED) is None:
+            self.row.broken.append(f"the last one has not ended: {self.state.phase}")
+        else:
+            self._judge()
+
+    def has_ended(self) -> bool:
+        """Whether the newest clean has."""
+        return bool(self._client.simple_state == SimpleGoalState.DONE)
+
+    def _judge(self) -> None:
+        """Note a clean that did not end as it should."""
+        if self.row.times > 0 and self._client.get_state() != GoalStatus.SUCCEEDED:
+            said = self._client.get_goal_status_text()
+            status = self._client.get_state()
+            self.row.broken.append(f"clean {self.row.times}: status {status}, {said}")
+
+    def goes_on(self, row: Row) -> None:
+        """Note in a row if the clean does not get farther; one that ends meanwhile did."""
+        if self.state.phase != "cleaning":
+            return
+        before = self.state.covered
+
+        def went_on() -> bool:
+            return bool(self.state.covered > before + 0.01) or self.state.phase != "cleaning"
+
+        if until(went_on, GOES_ON) is None:
+            row.broken.append(f"the clean does not go on: {self.state.message}")
+        elif self.state.phase == "error":
+            row.broken.append(f"error: {self.state.message}")

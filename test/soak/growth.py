@@ -1,0 +1,98 @@
+"""Memory, threads and descriptors of every process, at rest after each of many cleans."""
+
+from __future__ import annotations
+
+import math
+import os
+import time
+from pathlib import Path
+from typing import Final, NamedTuple
+
+import numpy as np
+from fixtures.graph import RUN, RosGraph
+from fixtures.tiny_home import tiny_home
+from soak.arena import Arena
+from soak.cleaner import ENDED, Cleaner
+from soak.rows import Row, in_child
+
+MOST_GROWTH: Final = 1.0
+"""MB an hour of wall time."""
+MOST_DESCRIPTORS: Final = 2
+MOST_THREADS: Final = 0
+_SETTLED: Final = 0.3
+"""Of all samples the first ones, in which caches fill, do not count."""
+_SPEED: Final = 5
+"""Robot seconds per second: many cleans in a short time."""
+
+
+class Sample(NamedTuple):
+    """What a process has: when, s of wall time; MB of its own memory; threads; descriptors."""
+
+    at: float
+    memory: float
+    threads: int
+    descriptors: int
+
+
+def growth(arena: Arena) -> list[Row]:
+    """Clean for the time that is given, and compare what each process has after each clean."""
+    with RosGraph(arena.folder) as graph:
+        graph.launch(f"home:={tiny_home(arena.folder)}", f"speed:={_SPEED}")
+
+        def work() -> list[Row]:
+            cleaner = Cleaner(graph)
+            samples: dict[str, list[Sample]] = {name: [] for name in ("master", *RUN)}
+            end = time.monotonic() + arena.seconds
+            while time.monotonic() < end:
+                cleaner.keep_cleaning()
+                cleaner.finish()
+                for name, taken in samples.items():
+                    taken.append(sample(graph.process(name)))
+            return [cleaner.row, *(judged(name, taken) for name, taken in samples.items())]
+
+        return in_child(arena.folder, work, arena.seconds + 2.0 * ENDED)
+
+
+def sample(process: int) -> Sample:
+    """Look at a process."""
+    folder = Path(f"/proc/{process}")
+    status = dict(
+        line.split(":", 1) for line in (folder / "status").read_text("utf-8").splitlines()
+    )
+    rollup = (folder / "smaps_rollup").read_text("ascii").splitlines()[1:]
+    own = sum(
+        int(line.split()[1])
+        for line in rollup
+        if line.startswith(("Private_Clean", "Private_Dirty"))
+    )
+    return Sample(
+        time.monotonic(), own / 1024.0, int(status["Threads"]), len(os.listdir(folder / "fd"))
+    )
+
+
+def judged(name: str, taken: list[Sample]) -> Row:
+    """Return the row of a process: how it grew once it had settled, and whether surely too much."""
+    row = Row(f"growth of {name}", len(taken))
+    settled = taken[int(_SETTLED * len(taken)) :]
+    if len(settled) < 4:
+        row.broken.append(
+            f"expected some cleans to compare, got {len(taken)}: give it more minutes"
+        )
+        return row
+    hours = np.array([each.at - settled[0].at for each in settled]) / 3600.0
+    memory = np.array([each.memory for each in settled])
+    (slope, _), residuals, *_ = np.polyfit(hours, memory, 1, full=True)
+    spread = math.sqrt(float(residuals.sum()) / (len(settled) - 2))
+    error = spread / float(np.sqrt(np.sum((hours - hours.mean()) ** 2)))
+    row.measured("MB", float(memory[-1]))
+    row.measured("MB/h", float(slope))
+    row.measured("+-", 2.0 * error)
+    if slope - 2.0 * error > MOST_GROWTH:
+        row.broken.append(f"it grows by {slope:.1f} MB/h, promised {MOST_GROWTH:g}")
+    row.expect(
+        "descriptors more",
+        settled[-1].descriptors - settled[0].descriptors,
+        MOST_DESCRIPTORS,
+    )
+    row.expect("threads more", settled[-1].threads - settled[0].threads, MOST_THREADS)
+    return row
