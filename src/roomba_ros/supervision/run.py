@@ -47,7 +47,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     file = launch_file()
     try:
         if {"-h", "--help"} & set(given):
-            print(f"usage: ./roomba run [name:=value ...]\n\n{described(file)}")
+            print(f"usage: ./roomba run [--isolated] [name:=value ...]\n\n{described(file)}")
             return 0
         launch = read_launch(file, given)
         _refuse_second(launch)
