@@ -100,11 +100,10 @@ def _fill(graph: RosGraph, home: Path) -> list[Row]:
     cleaner.keep_cleaning()
     row = Row("full disk", 1)
     filler = home / "filler"
-    with filler.open("wb") as file:
+    with filler.open("wb", buffering=0) as file:
         try:
             while True:
                 file.write(bytes(4096))
-                file.flush()
         except OSError:
             pass
     is_told = row.expect_within("told", TOLD, lambda: "No space left" in cleaner.state.message)

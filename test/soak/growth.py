@@ -26,7 +26,7 @@ _SPEED: Final = 5
 
 
 class Sample(NamedTuple):
-    """What a process has: when, s of wall time; MB of its own memory; threads; descriptors."""
+    """A process, s of wall time: MB of its memory that is no file, threads, descriptors."""
 
     at: float
     memory: float
@@ -59,14 +59,13 @@ def sample(process: int) -> Sample:
     status = dict(
         line.split(":", 1) for line in (folder / "status").read_text("utf-8").splitlines()
     )
-    rollup = (folder / "smaps_rollup").read_text("ascii").splitlines()[1:]
-    own = sum(
-        int(line.split()[1])
-        for line in rollup
-        if line.startswith(("Private_Clean", "Private_Dirty"))
-    )
+    # Not what is its own alone: that grows as pages of the process that started it are written to.
+    anonymous = int(status["RssAnon"].split()[0])
     return Sample(
-        time.monotonic(), own / 1024.0, int(status["Threads"]), len(os.listdir(folder / "fd"))
+        time.monotonic(),
+        anonymous / 1024.0,
+        int(status["Threads"]),
+        len(os.listdir(folder / "fd")),
     )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import math
 import time
 from collections.abc import Callable
@@ -51,6 +52,7 @@ class MissionTopics:
         self._points: NDArray[np.float64] | None = None
         self._cleaned = False
         self._trouble = ""
+        self._newest: tuple[VacuumState, str] | None = None
 
     def start(self) -> None:
         """Connect."""
@@ -79,17 +81,24 @@ class MissionTopics:
         """Publish what is due; return the state if it is told now."""
         self._show_plan(now, mission)
         self._show_maps(now, mission)
-        # A process that does not work first: it may be the reason of all else.
-        told = (self._trouble, mission.message or self._background.trouble)
-        if not self._is_due(now, (mission.state, *told)):
+        own = mission.message or self._background.trouble
+        if not self._is_due(now, (mission.state, self._trouble, own)):
             return None
-        state = state_of(now, mission, senses)
-        state.message = "; ".join(filter(None, told))
+        self._newest = (state_of(now, mission, senses), own)
+        return self._tell_newest(*self._newest)
+
+    def _tell_newest(self, state: VacuumState, own: str) -> VacuumState:
+        # A process that does not work first: it may be the reason of all else.
+        state.message = "; ".join(filter(None, (self._trouble, own)))
         self._state.publish(state)
         return state
 
     def _on_trouble(self, trouble: str) -> None:
+        """Tell at once: a simulated clock stands while a node is stopped, and no tick comes."""
         self._trouble = trouble
+        newest = self._newest
+        if newest is not None:
+            self._tell_newest(copy.copy(newest[0]), newest[1])
 
     def _is_due(self, now: float, said: tuple[object, ...]) -> bool:
         if said == self._said and 0.0 <= now - self._told < self._periods.mission_state:
