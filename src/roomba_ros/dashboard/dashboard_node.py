@@ -45,11 +45,10 @@ class DashboardNode:
 
     def start(self) -> None:
         """Connect and serve; raises ServerError when no port is free."""
-        bridge = RosBridge()
         self._robot = GraphRobot(read_robot_config())
         self._robot.start()
         guard = Guard(kept_token())
-        app = create_app(self._robot, guard, _keeper(), bridge)
+        app = create_app(self._robot, guard, _keeper(), RosBridge())
         self._server = PageServer(app, _bound())
         self._server.start()
         # Not to the log, which every program on the graph can read.

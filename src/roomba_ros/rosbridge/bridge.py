@@ -8,7 +8,6 @@ from fastapi import WebSocket
 
 from roomba.ui.web.guard import Guard
 from roomba.ui.web.viewers import until_one_ends
-from roomba_ros.rosbridge.latched import remember_latched
 from roomba_ros.rosbridge.limits import BRIDGE_LIMITS, MOST_PROGRAMS
 from roomba_ros.rosbridge.program import Program
 from roomba_ros.rosbridge.shared import Shared
@@ -18,7 +17,7 @@ _TRY_LATER = 1013
 
 
 class RosBridge:
-    """Lets programs hear, publish and call what is on the graph; make it before subscribing.
+    """Lets programs hear, publish and call what is on the graph.
 
     Subscribes and publishes, under the name of this node, what programs ask for, and calls services
     for them.
@@ -28,7 +27,6 @@ class RosBridge:
 
     def __init__(self) -> None:
         """Begin without programs."""
-        remember_latched()
         self._shared: Shared | None = None
         self._programs = 0
 

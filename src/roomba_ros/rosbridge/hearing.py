@@ -13,7 +13,6 @@ import rospy
 
 from roomba_ros.convert.errors import MessageError
 from roomba_ros.plain.messages import plain_of
-from roomba_ros.rosbridge.latched import latched
 
 _MOST_UNREAD: Final = 50
 """Messages that wait for the thread of the server."""
@@ -37,7 +36,11 @@ class Heard:
 
 
 class Topic:
-    """One topic that programs hear. All but :meth:`_hear` runs in the thread of the server."""
+    """One topic that programs hear. All but :meth:`_hear` runs in the thread of the server.
+
+    rospy gives a latched message to each of its subscribers once. Here is one for all programs, so
+    it is kept for those that come later.
+    """
 
     def __init__(self, name: str, kind: type, loop: asyncio.AbstractEventLoop) -> None:
         """Subscribe to a topic by its resolved name."""
@@ -46,12 +49,15 @@ class Topic:
         self._lock = threading.Lock()
         self._unread: deque[Any] = deque(maxlen=_MOST_UNREAD)
         self._is_waking = False
+        self._latched: dict[str, Any] = {}
         self._subscriber = rospy.Subscriber(name, kind, self._hear, queue_size=_MOST_UNREAD)
 
     def add(self, listener: Callable[[Heard], None]) -> None:
         """Give a listener what comes, and at once what is latched."""
         self.listeners.add(listener)
-        for message in latched(self.name):
+        with self._lock:
+            kept = list(self._latched.values())
+        for message in kept:
             listener(Heard(message))
 
     def close(self) -> None:
@@ -59,7 +65,10 @@ class Topic:
         self._subscriber.unregister()
 
     def _hear(self, message: Any) -> None:
+        header = message._connection_header
         with self._lock:
+            if header.get("latching") == "1":
+                self._latched[header["callerid"]] = message
             self._unread.append(message)
             if self._is_waking:
                 return
