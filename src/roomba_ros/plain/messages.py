@@ -9,8 +9,11 @@ from __future__ import annotations
 import base64
 import binascii
 import math
+import re
+import sys
 from collections.abc import Callable
 from functools import cache
+from pathlib import Path
 from typing import Any, Final
 
 import genpy
@@ -20,6 +23,7 @@ from roomba_ros.convert.errors import MessageError
 
 MOST_ELEMENTS: Final = 2_000_000
 """Of an array that becomes JSON; a map of 70 x 70 m has them."""
+_TYPE: Final = re.compile(r"[A-Za-z]\w*/[A-Za-z]\w*", re.ASCII)
 _FLOAT32_MAX: Final = 3.4028235e38
 _INTEGERS: Final = {
     **{f"int{bits}": (-(2 ** (bits - 1)), 2 ** (bits - 1) - 1) for bits in (8, 16, 32, 64)},
@@ -37,13 +41,22 @@ Encoder = Callable[[Any], Any]
 
 def class_of(kind: str) -> type:
     """Return the class of a type such as ``std_msgs/String``; raises MessageError."""
-    try:
-        found: type | None = roslib.message.get_message_class(kind)
-    except (ValueError, ImportError) as error:
-        raise MessageError(f"expected a message's type, got {kind!r}: {error}") from error
-    if found is None:
-        raise MessageError(f"expected a message's type that is installed, got {kind!r}")
+    require_generated(kind, "msg")
+    found: type = roslib.message.get_message_class(kind)
     return found
+
+
+def require_generated(kind: str, folder: str) -> None:
+    """Raise MessageError unless a type has code that was generated, in ``msg`` or ``srv``.
+
+    What is looked for by its name is imported, and any package runs code then.
+    """
+    package, _, name = kind.partition("/")
+    is_name = _TYPE.fullmatch(kind) is not None
+    if not is_name or not any(
+        (Path(entry) / package / folder / f"_{name}.py").is_file() for entry in sys.path
+    ):
+        raise MessageError(f"expected a type of {folder} that is installed, got {kind[:80]!r}")
 
 
 # ---------------------------------------------------------------- to plain values

@@ -9,20 +9,15 @@ import rospy
 
 from roomba.client.protocol import RequestRefusedError
 from roomba_ros.convert.errors import MessageError
-from roomba_ros.plain.messages import fill, plain_of
+from roomba_ros.plain.messages import fill, plain_of, require_generated
 from roomba_ros.rosbridge.graph import type_of_service
 from roomba_ros.runtime.calls import call_service
 
 
 def service_class(kind: str) -> Any:
     """Return the class of a service's type; raises MessageError."""
-    try:
-        found = roslib.message.get_service_class(kind)
-    except (ValueError, ImportError) as error:
-        raise MessageError(f"expected a service's type, got {kind!r}: {error}") from error
-    if found is None:
-        raise MessageError(f"expected a service's type that is installed, got {kind!r}")
-    return found
+    require_generated(kind, "srv")
+    return roslib.message.get_service_class(kind)
 
 
 def call(name: str, arguments: Any) -> dict[str, Any]:

@@ -5,6 +5,8 @@ from __future__ import annotations
 import io
 import json
 import math
+import sys
+from pathlib import Path
 from typing import Any
 
 import genpy
@@ -123,7 +125,20 @@ def test_huge_arrays_do_not_become_json() -> None:
         plain_of(OccupancyGrid(data=[0] * (MOST_ELEMENTS + 1)))
 
 
-@pytest.mark.parametrize("kind", ["", "String", "std_msgs/Nothing", "../x/y", "a/b/c", "os/path"])
+@pytest.mark.parametrize(
+    "kind", ["", "String", "std_msgs/Nothing", "../x/y", "a/b/c", "os/path", "std_msgs/../x", "é/é"]
+)
 def test_types_that_there_are_not(kind: str) -> None:
-    with pytest.raises(MessageError, match="expected a message's type"):
+    with pytest.raises(MessageError, match="expected a type of msg"):
         class_of(kind)
+
+
+def test_no_package_is_imported_because_a_program_names_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "named_by_a_program" / "msg").mkdir(parents=True)
+    (tmp_path / "named_by_a_program" / "__init__.py").write_text("raise SystemExit")
+    monkeypatch.syspath_prepend(str(tmp_path))
+    with pytest.raises(MessageError):
+        class_of("named_by_a_program/Thing")
+    assert "named_by_a_program" not in sys.modules
