@@ -48,6 +48,22 @@ def test_usage_is_told(arguments: list[str]) -> None:
     assert done.stdout.startswith("usage: ./roomba COMMAND")
 
 
+def test_what_is_installed_on_asking_is_not_installed_otherwise() -> None:
+    script = 'source install_dependencies.sh; for each in "$@"; do system_packages "$each"; done'
+
+    def packages(*extents: str) -> set[str]:
+        done = run(["bash", "-c", script, "packages", *extents], REPOSITORY)
+        assert done.returncode == 0, done.stderr
+        return set(done.stdout.split())
+
+    asked = {each: packages(each) for each in ("rviz", "screen", "robot_state_publisher")}
+    assert "rviz" in asked["rviz"]
+    assert asked["screen"] == asked["rviz"] | {"xvfb"}
+    usual = packages("runtime", "dev")
+    assert "catkin" in usual
+    assert all(names and not names & usual for names in asked.values())
+
+
 def test_exec_without_a_command_is_refused() -> None:
     done = run(["./roomba", "exec"], REPOSITORY)
     assert done.returncode == 2

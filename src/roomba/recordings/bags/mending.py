@@ -5,6 +5,7 @@ from __future__ import annotations
 import fcntl
 import io
 import os
+import struct
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -92,7 +93,10 @@ def _scanned(path: Path, file: BinaryIO) -> tuple[list[ChunkInfo], dict[int, byt
                     f"{path}: its chunks are packed; mend it by "
                     f"`./roomba exec rosbag reindex {path}`"
                 )
-            info, found = _looked_into(each)
+            try:
+                info, found = _looked_into(each)
+            except (KeyError, ValueError, struct.error):
+                break  # what is broken within is cut off with all after it
             connections = found | connections
             wanted = len(info.counts)
             infos.append(info)

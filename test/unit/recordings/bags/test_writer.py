@@ -122,6 +122,21 @@ def test_a_torn_end_is_cut_off(tmp_path: Path, lost: int) -> None:
     assert not needs_mending(copy)
 
 
+def test_a_chunk_that_is_broken_within_is_cut_off(tmp_path: Path) -> None:
+    path = tmp_path / "a.bag"
+    bag = BagWriter(path)
+    wrote = fill(bag, 30)
+    whole = bytearray(path.read_bytes())
+    bag.close()
+    # Of the third chunk: the first name in its data.
+    third = [each for each in range(len(whole)) if whole.startswith(b"op=\x05", each)][2]
+    at = whole.index(b"conn=", third)
+    whole[at : at + 5] = b"cann="
+    (tmp_path / "b.bag").write_bytes(whole)
+    assert mend_bag(tmp_path / "b.bag").chunks == 2
+    assert read(tmp_path / "b.bag") == [each for each in wrote if each[1] < BEGAN + 2_000_000_000]
+
+
 def test_what_is_still_written_is_not_mended(tmp_path: Path) -> None:
     with BagWriter(tmp_path / "a.bag") as bag:
         wrote = fill(bag, 20)
@@ -146,7 +161,8 @@ import sys, time
 from pathlib import Path
 from roomba.recordings.bags.records import MessageSource
 from roomba.recordings.bags.writer import BagWriter
-source = MessageSource("/text", "std_msgs/String", "0" * 32, "string data\\n")
+md5 = "992ce8a1687cec8c8bd883ec73ca41d1"
+source = MessageSource("/text", "std_msgs/String", md5, "string data\\n")
 bag = BagWriter(Path(sys.argv[1]))
 for each in range(1_000_000):
     said = str(each).encode()

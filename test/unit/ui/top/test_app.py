@@ -190,7 +190,7 @@ def test_it_ends_by_a_key_and_leaves_the_robot_to_itself(page: Page, key: str) -
 
 
 def test_a_robot_that_lives_in_a_home_is_sent_and_stopped() -> None:
-    robot = live_client("studio", 0, 5.0, knows_map=True)
+    robot = live_client("studio", 0, 10.0, knows_map=True)
     robot.start()
     page = Page(robot)
 
