@@ -75,17 +75,20 @@ def positions(path: Path) -> list[tuple[float, float]]:
         return [(m.pos_x, m.pos_y) for _, m, _ in recorded.read_messages("/position")]
 
 
+def on_the_way(track: list[tuple[float, float]]) -> list[tuple[float, float]]:
+    """Leave out where it stood at first, which recorders heard for different times."""
+    return track[next(n for n, place in enumerate(track) if math.dist(place, track[0]) > 0.05) :]
+
+
 def test_our_own_recorder_loses_less_than_a_second_when_it_is_killed(bag: Path) -> None:
     own = bag.with_name("own.bag")
     mended = mend_bag(own) if needs_mending(own) else None
     assert mended is None or mended.messages > 1000
+    told, kept = on_the_way(positions(bag)), on_the_way(positions(own))
+    assert told[: len(kept)] == kept
+    # Three of the robot's seconds are one, in which it tells thirty positions.
+    assert len(told) - len(kept) <= 30
     with rosbag.Bag(str(bag)) as theirs, rosbag.Bag(str(own)) as ours:
-        told = [(m.pos_x, m.pos_y) for _, m, _ in theirs.read_messages("/position")]
-        kept = [(m.pos_x, m.pos_y) for _, m, _ in ours.read_messages("/position")]
-        # Three of the robot's seconds are one, in which it tells thirty positions.
-        begin = told.index(kept[0])
-        assert told[begin : begin + len(kept)] == kept
-        assert len(told) - begin - len(kept) <= 30
         topics = ours.get_type_and_topic_info().topics
         everything = theirs.get_type_and_topic_info().topics
     missing = {name for name in everything if "/camera/" not in name} - topics.keys()
@@ -101,7 +104,7 @@ def test_it_is_exported_with_the_types_of_this_robot(bag: Path) -> None:
         newest = {
             channel.topic: message for _, channel, _, message in reader.iter_decoded_messages()
         }
-    assert newest["/vacuum/state"].state in ("idle", "docked")
+    assert newest["/vacuum/state"].battery > 0.9
     assert newest["/walk_to_point/result"].status.status == 3
     assert newest["/map"].info.width > 100
     with rosbag.Bag(str(bag.with_name("own.bag"))) as ours:
