@@ -5,10 +5,10 @@ import math
 import numpy as np
 import pytest
 from fixtures.malformed import filled, grid, rooms, zones
-from geometry_msgs.msg import Point, Quaternion
+from geometry_msgs.msg import Point, PoseStamped, Quaternion
 from hypothesis import given
 from hypothesis import strategies as st
-from nav_msgs.msg import OccupancyGrid
+from nav_msgs.msg import OccupancyGrid, Path
 from roomba_robot.msg import CleanGoal, Rectangle, RoomArray, ZoneArray
 from rospy import Time
 from sensor_msgs.msg import BatteryState
@@ -18,7 +18,7 @@ from roomba.mission.cleaning.request import CleanRefusedError
 from roomba_ros.convert.common import map_of, told_map_of
 from roomba_ros.convert.errors import MessageError
 from roomba_ros.convert.mission import outlines_of, request_of, zones_of
-from roomba_ros.convert.page import battery_seconds_of
+from roomba_ros.convert.page import battery_seconds_of, shown_path_of
 
 BAD = (math.nan, math.inf, -math.inf)
 
@@ -154,3 +154,14 @@ def test_goals_with_numbers_that_are_not_finite_are_refused(mode: int, number: f
 def test_how_long_a_battery_lasts(values: dict[str, float], seconds: float) -> None:
     found = battery_seconds_of(BatteryState(**values))
     assert found == pytest.approx(seconds, nan_ok=True)
+
+
+@pytest.mark.parametrize("far", [1e308, -2e6])
+def test_a_path_that_no_page_can_draw_is_refused(far: float) -> None:
+    path = Path(poses=[PoseStamped(), PoseStamped()])
+    for each in path.poses:
+        each.pose.orientation.w = 1.0
+    assert shown_path_of(path).shape == (2, 2)
+    path.poses[1].pose.position.x = far
+    with pytest.raises(MessageError, match="expected a path within 1e"):
+        shown_path_of(path)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from enum import Enum
 
@@ -54,8 +55,12 @@ class CleanRequest:
         for name in self.rooms:
             if fault := fault_of_name(name):
                 raise CleanRefusedError(f"a room to clean: {fault}")
+        if self.spot is not None and not all(map(math.isfinite, self.spot)):
+            raise CleanRefusedError(f"expected a spot of finite numbers, m, got {self.spot}")
         for zone in self.zones:
-            if not (zone[0] < zone[2] and zone[1] < zone[3]):
+            # What is not finite is kept by no checkpoint.
+            is_finite = all(map(math.isfinite, zone))
+            if not (is_finite and zone[0] < zone[2] and zone[1] < zone[3]):
                 raise CleanRefusedError(
                     "expected zones as lowest x, lowest y, highest x, highest y, m, "
                     f"got {', '.join(f'{value:g}' for value in zone)}"

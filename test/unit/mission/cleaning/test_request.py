@@ -71,12 +71,20 @@ def test_rooms_and_zones_must_be_told() -> None:
         (0.0, 0.5, 1.0, 0.5),
         (math.nan, 0.0, 1.0, 1.0),
         (0.0, 0.0, 1.0, math.nan),
+        (-1.0, 0.0, 0.0, math.inf),
+        (-math.inf, 0.0, 0.0, 1.0),
     ],
 )
 def test_zones_that_are_none_are_refused(zone: Rectangle) -> None:
     with pytest.raises(CleanRefusedError, match="lowest x") as refused:
         CleanRequest(CleanMode.ZONES, zones=((0.0, 0.0, 1.0, 1.0), zone))
     assert isinstance(refused.value, RoombaError)
+
+
+@pytest.mark.parametrize("spot", [(math.nan, 0.0), (0.0, math.inf), (-math.inf, 1.0)])
+def test_a_spot_that_is_nowhere_is_refused(spot: tuple[float, float]) -> None:
+    with pytest.raises(CleanRefusedError, match="a spot of finite numbers"):
+        CleanRequest(CleanMode.SPOT, spot=spot)
 
 
 def test_a_result_tells_its_share() -> None:
