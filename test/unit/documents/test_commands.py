@@ -40,16 +40,8 @@ PROGRAMS = {"rostopic", "rosservice", "roscore", "rosparam", "rosbag", "bash"}
 MENTIONED = {"import valetudo", "map --bag", "emulate"}
 """What the text names without the rest of the line."""
 SUITES = {
-    "lint",
-    "unit",
-    "conformance",
-    "safety",
-    "web",
-    "contract",
-    "ros",
-    "system",
-    "missions",
-    "install",
+    *("lint", "unit", "conformance", "safety", "web", "contract", "ros", "system", "missions"),
+    *("install", "mutants"),
 }
 
 
