@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import Final
 
 import numpy as np
 from actionlib_msgs.msg import GoalStatus
@@ -38,9 +37,6 @@ from roomba_ros.convert.common import map_of, path_of
 from roomba_ros.convert.errors import MessageError, require_finite
 from roomba_ros.convert.mission import KINDS, OUTCOMES, zones_of
 
-FARTHEST: Final = 1e6
-"""m; farther off the cells of a map are no longer told apart, and a page has no such numbers."""
-
 
 def known_cells_of(message: OccupancyGrid) -> OccupancyMap:
     """Return a map whose values are 0 unknown, 1 free, 2 occupied."""
@@ -70,12 +66,12 @@ def battery_seconds_of(message: BatteryState) -> float:
 
 def shown_path_of(message: Path) -> NDArray[np.float32]:
     """Return the first points of a path, float32 [n, 2], m."""
-    shown = path_of(message)[:MOST_PATH]
-    if shown.size and np.abs(shown).max() > FARTHEST:
-        raise MessageError(
-            f"expected a path within {FARTHEST:g} m, got a point {np.abs(shown).max():g} m off"
-        )
-    return shown.astype(np.float32)
+    path = path_of(message)[:MOST_PATH]
+    with np.errstate(over="ignore"):
+        shown = path.astype(np.float32)
+    if not np.isfinite(shown).all():
+        raise MessageError(f"expected a path in a home, got a point {np.abs(path).max():g} m off")
+    return shown
 
 
 def room_views_of(message: RoomArray) -> tuple[RoomView, ...]:

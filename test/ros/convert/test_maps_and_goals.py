@@ -156,12 +156,12 @@ def test_how_long_a_battery_lasts(values: dict[str, float], seconds: float) -> N
     assert found == pytest.approx(seconds, nan_ok=True)
 
 
-@pytest.mark.parametrize("far", [1e308, -2e6])
+@pytest.mark.parametrize("far", [1e308, -1e39])
 def test_a_path_that_no_page_can_draw_is_refused(far: float) -> None:
     path = Path(poses=[PoseStamped(), PoseStamped()])
     for each in path.poses:
         each.pose.orientation.w = 1.0
     assert shown_path_of(path).shape == (2, 2)
     path.poses[1].pose.position.x = far
-    with pytest.raises(MessageError, match="expected a path within 1e"):
+    with pytest.raises(MessageError, match="expected a path in a home"):
         shown_path_of(path)
