@@ -16,12 +16,14 @@ from typing import Any, Final
 
 from roomba.client.protocol import MissedFloor
 from roomba.errors import RoombaError
+from roomba.files.journal import append_line, read_lines, write_lines
 from roomba.history.run import RunFigures, RunRecording, RunSource
 from roomba.history.run_file import packed, unpacked
 
 LAST: Final = "last"
 """In place of a run's number: the newest one."""
 _NAME: Final = "runs.sqlite"
+_JOURNAL: Final = "runs.journal"
 _BUSY: Final = 10.0
 """s of wall time that a writer waits for another one."""
 _MOST_RECORDINGS: Final = 200
@@ -76,12 +78,14 @@ class History:
     """The runs in a folder; nothing is kept open between two calls, which may be of any thread.
 
     A database that is damaged is set aside under another name, and ``set_aside`` names it; a new
-    one takes its place. All methods raise HistoryError.
+    one takes its place, with the figures of all runs out of the journal beside it, and without
+    recordings. All methods raise HistoryError.
     """
 
     def __init__(self, folder: Path) -> None:
         """Touch nothing yet."""
         self.path = folder / _NAME
+        self._journal = folder / _JOURNAL
         self.set_aside: Path | None = None
 
     def add(self, figures: RunFigures, recording: RunRecording | None = None) -> int:
@@ -89,6 +93,7 @@ class History:
         content = None if recording is None else packed(figures, recording)
         with self._opened() as database, _transaction(database):
             number = _insert(database, figures)
+            append_line(self._journal, {"number": number, **_row(figures)})
             if content is not None:
                 database.execute("INSERT INTO recordings VALUES (?, ?)", (number, content))
                 database.execute(
@@ -148,7 +153,7 @@ class History:
             self._prepare()
             with contextlib.closing(self._connect()) as database:
                 yield database
-        except (sqlite3.Error, OSError) as error:
+        except (sqlite3.Error, OSError, ValueError) as error:
             raise HistoryError(f"{self.path}: cannot be used: {error}") from error
 
     def _connect(self) -> sqlite3.Connection:
@@ -173,6 +178,9 @@ class History:
                 self._set_aside()
                 os.close(os.open(self.path, flags, 0o600))
                 self._bring_up_to_date()
+                self._restore()
+            if not self._journal.exists():
+                self._begin_journal()
 
     def _bring_up_to_date(self) -> None:
         with contextlib.closing(self._connect()) as database:
@@ -188,6 +196,21 @@ class History:
             for step in range(version, len(MIGRATIONS)):
                 script = f"BEGIN;{MIGRATIONS[step]};PRAGMA user_version = {step + 1};COMMIT;"
                 database.executescript(script)
+
+    def _begin_journal(self) -> None:
+        """Write the figures of a database that an older program made."""
+        with contextlib.closing(self._connect()) as database:
+            runs = _select(database, "TRUE ORDER BY id", ())
+        write_lines(self._journal, ({"number": run.number, **_row(run.figures)} for run in runs))
+
+    def _restore(self) -> None:
+        """Fill a new database with the figures of the journal."""
+        # Of a number that was given twice the first writer was killed before it was kept.
+        rows = {row.pop("number", None): row for row in read_lines(self._journal)}
+        with contextlib.closing(self._connect()) as database, _transaction(database):
+            for number, row in rows.items():
+                if isinstance(number, int) and set(row) == {*_COLUMNS, "missed"}:
+                    _insert_row(database, row, number)
 
     def _set_aside(self) -> None:
         stamp = time.strftime("%Y%m%d-%H%M%S")
@@ -211,8 +234,13 @@ def _transaction(database: sqlite3.Connection) -> Iterator[None]:
 
 
 def _insert(database: sqlite3.Connection, figures: RunFigures) -> int:
+    return _insert_row(database, _row(figures))
+
+
+def _row(figures: RunFigures) -> dict[str, Any]:
+    """Return the columns of a run, with its missed floor as rows of their own."""
     source = figures.source
-    values = {
+    return {
         "program": source.program,
         "home": source.home,
         "seed": source.seed,
@@ -223,17 +251,24 @@ def _insert(database: sqlite3.Connection, figures: RunFigures) -> int:
         "outcome": figures.outcome,
         "message": figures.message,
         **{name: _known(getattr(figures, name)) for name in _NUMBERS},
+        "missed": [[miss.area, miss.x, miss.y, miss.room, miss.reason] for miss in figures.missed],
     }
+
+
+def _insert_row(
+    database: sqlite3.Connection, row: dict[str, Any], number: int | None = None
+) -> int:
+    """Keep the columns of a run, by its number or the next one; return the number."""
     names = ", ".join(_COLUMNS)
     places = ", ".join(f":{name}" for name in _COLUMNS)
-    added = database.execute(f"INSERT INTO runs ({names}) VALUES ({places})", values)
-    number = added.lastrowid
-    assert number is not None
+    values = {name: row[name] for name in _COLUMNS} | {"id": number}
+    added = database.execute(f"INSERT INTO runs (id, {names}) VALUES (:id, {places})", values)
+    given = added.lastrowid
+    assert given is not None
     database.executemany(
-        "INSERT INTO missed VALUES (?, ?, ?, ?, ?, ?)",
-        [(number, miss.area, miss.x, miss.y, miss.room, miss.reason) for miss in figures.missed],
+        "INSERT INTO missed VALUES (?, ?, ?, ?, ?, ?)", [(given, *miss) for miss in row["missed"]]
     )
-    return number
+    return given
 
 
 def _known(value: float) -> float | None:

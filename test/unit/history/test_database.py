@@ -74,7 +74,7 @@ def test_only_the_owner_reads_it(tmp_path: Path, figures: RunFigures) -> None:
     with sqlite3.connect(history.path) as reader:
         reader.execute("SELECT * FROM runs").fetchall()
         modes = {file.name: file.stat().st_mode & 0o777 for file in history.path.parent.iterdir()}
-    assert len(modes) == 4
+    assert len(modes) == 5
     assert set(modes.values()) == {0o600}
     assert history.path.parent.stat().st_mode & 0o777 == 0o700
 
@@ -95,8 +95,11 @@ def test_a_damaged_file_is_set_aside_and_told(
         content = content[: len(content) // 2]
     history.path.write_bytes(content)
     again = History(tmp_path)
-    again.add(figures)
-    assert len(again.runs()) == 1
+    assert again.add(figures) == 201
+    # The figures of all come back; NaN is none of itself.
+    assert [run.number for run in again.runs()] == list(range(201, 0, -1))
+    assert {repr(run.figures) for run in again.runs()} == {repr(figures)}
+    assert not any(run.is_recorded for run in again.runs())
     assert again.set_aside is not None
     assert again.set_aside.read_bytes() == bytes(content)
 
@@ -118,6 +121,32 @@ def test_an_older_version_is_brought_up_to_date(
     assert not kept.is_recorded
     assert history.set_aside is None
     assert history.recording(history.add(figures, recording)).duration == 60.0
+
+
+def test_runs_of_an_older_program_come_back_from_a_damaged_database(
+    tmp_path: Path, figures: RunFigures
+) -> None:
+    history = History(tmp_path)
+    history.add(figures)
+    (journal,) = tmp_path.glob("*.journal")
+    journal.unlink()
+    assert len(history.runs()) == 1
+    history.path.write_bytes(b"no database")
+    assert len(history.runs()) == 1
+    assert history.set_aside is not None
+
+
+def test_a_damaged_journal_costs_nothing_while_the_database_is_whole(
+    tmp_path: Path, figures: RunFigures
+) -> None:
+    history = History(tmp_path)
+    history.add(figures)
+    (journal,) = tmp_path.glob("*.journal")
+    journal.write_bytes(b"\xff\x00 senseless")
+    assert history.add(figures) == 2
+    assert len(history.runs()) == 2
+    history.path.write_bytes(b"no database")
+    assert [run.number for run in history.runs()] == [2]
 
 
 def test_a_newer_version_is_left_alone(tmp_path: Path, figures: RunFigures) -> None:

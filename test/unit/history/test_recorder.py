@@ -110,7 +110,7 @@ def test_runs_are_kept_and_trouble_is_told(tmp_path: Path) -> None:
     keeper.look(view(19.0, "docked", replace(REPORT)), HOME, layer)
     assert len(told) == 1
     assert str(history.set_aside) in told[0]
-    assert len(history.runs()) == 1
+    assert len(history.runs()) == 2
     blocked = HistoryKeeper(History(tmp_path / "runs.sqlite"), SOURCE, told.append)
     blocked.look(view(0.0, "cleaning"), HOME, layer)
     blocked.look(view(9.0, "docked", REPORT), HOME, layer)
