@@ -1,7 +1,7 @@
 """``./roomba soak [MINUTES]``: faults of all kinds in the middle of cleans, and what came of them.
 
 It is no test of pytest: it takes as long as it is given. A table is printed at the end; the exit
-status is 1 when a promise was broken.
+status is 1 when a promise was broken. With ``--headless HOURS`` a robot without ROS lives instead.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Final
 
+from soak import headless
 from soak.arena import Arena
 from soak.attacks import connections, enough_descriptors, floods, viewers
 from soak.circumstances import clock, disk
@@ -45,7 +46,10 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--seed", type=int, default=0, help="of what goes wrong when")
     parser.add_argument("--only", nargs="+", choices=PARTS, help="parts; without it all")
     parser.add_argument("--starts", type=int, default=20, help="how often it is started")
+    parser.add_argument("--headless", type=float, metavar="HOURS", help=headless.__doc__)
     given = parser.parse_args(arguments)
+    if given.headless is not None:
+        return headless.main(given.headless)
     enough_descriptors()
     rows: list[Row] = []
     for name in given.only or PARTS:
