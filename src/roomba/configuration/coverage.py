@@ -22,7 +22,7 @@ class CoverageConfig(Frozen):
     """Blocks; a part with a smaller wide place is joined to its neighbour."""
     speck: Count = 20
     """Cells; smaller patches that the edges leave get no swath."""
-    piece: Positive = 6.0
+    piece: Positive = 3.0
     """Widths of the tool; edges can be left for swaths about this often."""
     edge_worth: NotNegative = 1.0
     """Cells of new floor for a cell of way: the least that an edge is driven for."""
@@ -32,7 +32,7 @@ class CoverageConfig(Frozen):
     """Cells of way that getting to another swath costs, when the rows are chosen."""
     swath_gap: Count = 30
     """Cells; over swept floor that is narrower a swath goes on."""
-    turning: NotNegative = 4.0
+    turning: NotNegative = 1.0
     """Cells of way that a radian costs in the order of edges and swaths."""
     polish_turning: NotNegative = 3.0
     """Cells of way that a radian costs when the way is polished."""

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from roomba.configuration.coverage import CoverageConfig
 from roomba.planning.coverage.tour.costs import Costs, costs_of, note_pair
+from roomba.planning.coverage.tour.guesses import guesses_measured
 from roomba.planning.coverage.tour.near import (
     NearestSearch,
     Places,
@@ -25,6 +26,8 @@ _NEAREST = 20
 _NEAR = 300.0
 """cells; connections longer than this are only made where there is no other."""
 _EVERYWHERE = 1e8
+_MOST_SEARCHES = 6
+"""Searches for an order, each with the true lengths of the ways that the last one had guessed."""
 
 
 def ordered(
@@ -44,12 +47,11 @@ def ordered(
     nearest, lengths = neighbours(net, search, spots, _NEAREST, _NEAR)
     headings = _headings(lines)
     costs = costs_of(nearest, lengths, places, headings, net.fits, config.turning, end is None)
-    tour = shaken(
-        costs,
-        _first_tour(net, search, spots, costs),
-        config.search_rounds,
-        config.search_pays,
-    )
+    tour = _first_tour(net, search, spots, costs)
+    for _ in range(_MOST_SEARCHES):
+        tour = shaken(costs, tour, config.search_rounds, config.search_pays)
+        if guesses_measured(net, costs, tour) == 0:
+            break
     return [
         lines[entry // 2] if entry % 2 == 0 else lines[entry // 2][::-1]
         for entry in tour[2:-2:2].tolist()
