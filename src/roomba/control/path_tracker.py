@@ -29,7 +29,9 @@ class PathTracker:
     ) -> None:
         """Begin at the first point; ``period`` is the time between two ticks, s."""
         self.course = course_of(points, config)
-        self.state = np.zeros(1, TRACK).view(np.recarray)
+        rows = np.zeros(1, TRACK)
+        # The same row twice: numbers are read from the plain one in a tenth of the time.
+        self.state, self._row = rows.view(np.recarray), rows[0]
         state = self.state[0]
         state.turning = 1.0
         state.braking, state.reach, state.gain = config.braking, config.reach, config.heading_gain
@@ -48,12 +50,12 @@ class PathTracker:
     @property
     def is_done(self) -> bool:
         """Whether it is at the end of the path."""
-        return bool(self.state[0].done > 0.0)
+        return bool(self._row["done"] > 0.0)
 
     @property
     def leg(self) -> int:
         """The leg that it is on, from 0."""
-        return int(self.state[0].leg)
+        return int(self._row["leg"])
 
     @property
     def length(self) -> float:
@@ -65,7 +67,7 @@ class PathTracker:
         """How far along the path it is, m."""
         if self.is_done or len(self.course.headings) == 0:
             return self.length
-        leg, on_leg = int(self.state[0].leg), float(self.state[0].along)
+        leg, on_leg = self.leg, float(self._row["along"])
         first, last = self.course.stations[leg], self.course.stations[leg + 1]
         return float(min(max(first + on_leg, first), last))
 
@@ -84,13 +86,13 @@ class PathTracker:
     @property
     def aside(self) -> float:
         """How far left of its leg it is, m."""
-        return float(self.state[0].aside)
+        return float(self._row["aside"])
 
     def off_path(self, pose: Pose) -> float:
         """Return how far a pose is from the leg that it should be on, m."""
         if len(self.course.headings) == 0:
             return pose.distance_to(*self.course.points[0].tolist())
-        leg = int(self.state[0].leg)
+        leg = self.leg
         first, last = self.course.points[leg], self.course.points[leg + 1]
         way = last - first
         share = float(np.dot((pose.x - first[0], pose.y - first[1]), way) / np.dot(way, way))
