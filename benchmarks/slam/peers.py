@@ -68,6 +68,35 @@ _AIMS: Final = {
 }
 
 
+@dataclass(frozen=True, slots=True)
+class Located:
+    """Median error of the place, m, and the share of poses more than 0.5 m off, 0..1."""
+
+    name: str
+    median: float
+    far: float
+
+
+_AMCL: Final = {
+    "intel": (
+        Located("AMCL, its defaults, on gmapping's map", 16.2, 0.92),
+        Located("AMCL, tuned on this drive, on gmapping's map", 0.096, 0.0),
+    ),
+}
+_AT_WALLS: Final = {"wean": (("AMCL, worst", 77.0), ("AMCL, best", 86.0))}
+"""AMCL was run once on the same files; % of the beams, over some runs."""
+
+
+def amcl_of(log: str) -> tuple[Located, ...]:
+    """Return what AMCL reached on a drive, by a word of the log's name."""
+    return next((each for word, each in _AMCL.items() if word in log.lower()), ())
+
+
+def amcl_at_walls(log: str) -> tuple[tuple[str, float], ...]:
+    """Return the names of runs of AMCL and the share of beams at walls, %, by the log's name."""
+    return next((each for word, each in _AT_WALLS.items() if word in log.lower()), ())
+
+
 def peers_of(log: str) -> tuple[Reached, ...]:
     """Return what others reach on a drive, by a word of the log's name."""
     return next((peers for word, peers in _PEERS.items() if word in log.lower()), ())

@@ -79,7 +79,9 @@ def errors(trajectory: Floats, relations: Floats) -> Errors:
     is_known = _is_known(trajectory, first) & _is_known(trajectory, second)
     if not is_known.any():
         raise ValueError("expected a trajectory at the times of the relations, got another one")
-    estimated = _between(_at(trajectory, first[is_known]), _at(trajectory, second[is_known]))
+    estimated = _between(
+        poses_at(trajectory, first[is_known]), poses_at(trajectory, second[is_known])
+    )
     off = _between(relations[is_known, 2:], estimated)
     translation, rotation = np.hypot(off[:, 0], off[:, 1]), np.abs(off[:, 2])
     count = int(np.count_nonzero(is_known))
@@ -98,7 +100,7 @@ def _is_known(trajectory: Floats, times: Floats) -> NDArray[np.bool_]:
     return np.asarray(within & (away <= _FARTHEST))
 
 
-def _at(trajectory: Floats, times: Floats) -> Floats:
+def poses_at(trajectory: Floats, times: Floats) -> Floats:
     """Return poses at times, float64 [n, 3], between those that are known."""
     stamps, x, y, theta = trajectory.T
     headings = np.interp(times, stamps, np.unwrap(theta))

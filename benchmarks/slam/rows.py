@@ -7,7 +7,8 @@ from collections.abc import Callable, Iterator
 from typing import Final
 
 from benchmarks.record import Better, PeerFigure, Record
-from benchmarks.slam.peers import Reached, aims_of, peers_of
+from benchmarks.slam.localized import HELD, Fitting, Followed
+from benchmarks.slam.peers import Reached, aims_of, amcl_at_walls, amcl_of, peers_of
 from benchmarks.slam.relations import Errors
 from benchmarks.slam.run import Judged
 
@@ -15,6 +16,10 @@ TOPIC = "slam"
 ODOMETRY: Final = "odometry alone"
 SPEED_AIM: Final = 100.0
 """Times real time, on one core."""
+PLACE_AIM: Final = 0.05
+"""m; median error of the place on a map of the same drive."""
+FOUND_AIM: Final = 40.0
+"""m; way by odometry after which the place is known on a map of another day."""
 
 
 def rows_of(judged: Judged) -> Iterator[Record]:
@@ -33,6 +38,10 @@ def rows_of(judged: Judged) -> Iterator[Record]:
         Better.HIGHER,
         SPEED_AIM,
     )
+    for followed in judged.followed:
+        yield from _followed_rows(judged.name, followed)
+    if judged.fitting is not None:
+        yield from _fitting_rows(judged.name, judged.fitting)
 
 
 def broken_row(name: str, error: Exception) -> Record:
@@ -60,6 +69,36 @@ def _error_rows(name: str, ours: Errors, blind: Errors) -> Iterator[Record]:
         aim = aims.rotation if is_mean else None
         figure = f"rotation error, {word}, {counted}"
         yield _row(name, figure, math.degrees(turn), "degrees", aim, beside)
+
+
+def _followed_rows(name: str, followed: Followed) -> Iterator[Record]:
+    case = f"{name}, {followed.case}"
+    if followed.found_after is None:
+        yield Record(TOPIC, case, "error of the place, median", None, "m", Better.LOWER, PLACE_AIM,
+                     error="its place was never known")  # fmt: skip
+        return
+    amcl = amcl_of(name)
+    medians = tuple(PeerFigure(each.name, value=each.median) for each in amcl)
+    shares = tuple(PeerFigure(each.name, value=100.0 * each.far) for each in amcl)
+    yield _row(case, "error of the place, median", followed.median, "m", PLACE_AIM, medians)
+    yield _row(case, "poses more than 0.5 m off", 100.0 * followed.far, "%", 0.0, shares)
+    held = 100.0 * followed.held
+    figure = "errors in the region that should hold 95 %"
+    yield Record(TOPIC, case, figure, held, "%", Better.HIGHER, 100.0 * HELD)
+    yield _row(case, "way until its place was known", followed.found_after, "m")
+
+
+def _fitting_rows(name: str, fitting: Fitting) -> Iterator[Record]:
+    case, figure = f"{name}, {fitting.case}", "way until its place was known"
+    if fitting.found_after is None:
+        yield Record(TOPIC, case, figure, None, "m", Better.LOWER, FOUND_AIM,
+                     error="its place was never known")  # fmt: skip
+        return
+    yield _row(case, figure, fitting.found_after, "m", FOUND_AIM)
+    peers = tuple(PeerFigure(each, value=value) for each, value in amcl_at_walls(name))
+    at_walls = 100.0 * fitting.at_walls
+    figure = "beams of the last scans within 0.2 m of walls"
+    yield Record(TOPIC, case, figure, at_walls, "%", Better.HIGHER, None, peers)
 
 
 def _beside(

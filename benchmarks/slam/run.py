@@ -7,6 +7,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
+from benchmarks.slam.localized import (
+    Fitting,
+    Followed,
+    fitting_on,
+    followed_on_own_map,
+    map_beside,
+)
 from benchmarks.slam.relations import Errors, errors, load_relations, relations_beside
 from roomba.commands.map.drive.mapped import MappedDrive, mapped_drive
 from roomba.recordings.choice import Wanted
@@ -19,7 +26,8 @@ _LOGS: Final = (".bag", ".db3", ".mcap", ".log", ".clf")
 class Judged:
     """A drive that was mapped; without relations beside it there are no errors.
 
-    ``seconds`` is what the mapper took of one core, the least of some rounds.
+    ``seconds`` is what the mapper took of one core, the least of some rounds. ``followed`` is the
+    same drive on its own map, and ``fitting`` on one of another day, if there is one beside it.
     """
 
     name: str
@@ -27,6 +35,8 @@ class Judged:
     ours: Errors | None
     by_odometry: Errors | None
     seconds: float
+    followed: tuple[Followed, ...] = ()
+    fitting: Fitting | None = None
 
     @property
     def times_real_time(self) -> float:
@@ -54,9 +64,21 @@ def judged(log: Path, rounds: int) -> Judged:
     """
     relations = relations_beside(log)
     true = None if relations is None else load_relations(relations)
-    drives = [mapped_drive([log], Wanted(), lambda share, words: None) for _ in range(rounds)]
+    drives = [
+        mapped_drive([log], Wanted(needs_odometry=False), lambda share, words: None)
+        for _ in range(rounds)
+    ]
     drive, seconds = drives[-1], min(each.replay.seconds for each in drives)
-    if true is None:
-        return Judged(name_of(log), drive, None, None, seconds)
-    by_odometry = errors(drive.replay.by_odometry, true)
-    return Judged(name_of(log), drive, errors(drive.trajectory, true), by_odometry, seconds)
+    ours = by_odometry = None
+    if true is not None:
+        ours, by_odometry = errors(drive.trajectory, true), errors(drive.replay.by_odometry, true)
+    other_day = map_beside(log, name_of(log))
+    return Judged(
+        name_of(log),
+        drive,
+        ours,
+        by_odometry,
+        seconds,
+        tuple(followed_on_own_map(log, drive)),
+        None if other_day is None else fitting_on(log, other_day),
+    )

@@ -4,9 +4,13 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
+from numpy.typing import NDArray
+
 from benchmarks.bench import Bench
 from benchmarks.contestants import REPOSITORY
 from benchmarks.record import Record
+from benchmarks.slam.covariance_picture import simulated_squares, write_covariances
 from benchmarks.slam.picture import write_picture
 from benchmarks.slam.rows import broken_row, rows_of
 from benchmarks.slam.run import judged, logs_in, name_of
@@ -15,6 +19,8 @@ from roomba.errors import RoombaError
 
 _QUICK, _THOROUGH = 1, 2
 """Rounds of what is timed."""
+_QUICK_SECONDS, _SECONDS = 10.0, 300.0
+"""s; of each simulated drive that is drawn beside the recorded ones."""
 _PICTURES = REPOSITORY / "benchmarks" / "results"
 
 
@@ -31,19 +37,20 @@ def measured(bench: Bench, logs: Path, pictures: Path) -> list[Record]:
     warm_up()
     pictures.mkdir(parents=True, exist_ok=True)
     rows: list[Record] = []
+    squares: dict[str, NDArray[np.float64]] = {}
     for log in logs_in(logs):
         bench.say(f"slam: {name_of(log)}")
-        rows += _rows(
-            log, _QUICK if bench.is_quick else _THOROUGH, pictures / f"slam-{name_of(log)}.png"
-        )
+        try:
+            result = judged(log, _QUICK if bench.is_quick else _THOROUGH)
+        except (RoombaError, ValueError, OSError) as error:
+            rows.append(broken_row(name_of(log), error))
+            continue
+        write_picture(pictures / f"slam-{name_of(log)}.png", result)
+        rows += rows_of(result)
+        squares |= {
+            f"{result.name}, {each.cells}": each.squares for each in result.followed if each.is_told
+        }
+    bench.say("slam: covariances in simulation")
+    simulated = simulated_squares(_QUICK_SECONDS if bench.is_quick else _SECONDS)
+    write_covariances(pictures / "slam-covariances.png", squares | simulated)
     return rows
-
-
-def _rows(log: Path, rounds: int, picture: Path) -> list[Record]:
-    """Return the rows of a log; one that cannot be read has one with the reason."""
-    try:
-        result = judged(log, rounds)
-    except (RoombaError, ValueError, OSError) as error:
-        return [broken_row(name_of(log), error)]
-    write_picture(picture, result)
-    return list(rows_of(result))

@@ -149,12 +149,14 @@ class LocalizationConfig(Frozen):
     """Knowing where the robot is: how much motion and scans are trusted, and when not at all.
 
     Noises of way, side and wheels grow with the square root of the way (per sqrt(m)), that of turns
-    with that of the turn, the gyro's with that of the time; deviations are standard ones, m;
-    time-outs in s; evidence is the natural logarithm of how much likelier.
+    and of what a turn moves the robot's middle by, ``turn_way_noise``, with that of the turn (per
+    sqrt(rad)), the gyro's with that of the time; deviations are standard ones, m; time-outs in s;
+    evidence is the natural logarithm of how much likelier.
     """
 
     way_noise: Positive = 0.02
     side_noise: Positive = 0.005
+    turn_way_noise: Positive = 0.01
     wheel_turn_noise: Positive = 0.012
     turn_noise: Positive = 0.01
     gyro_drift: Positive = 0.001

@@ -32,7 +32,8 @@ _OPTIONS: Final = {Kind.SCAN: "--scan", Kind.ODOMETRY: "--odom", Kind.GYRO: "--i
 class Wanted:
     """What is to be read: names of channels, and where the lidar is on the robot; None: see.
 
-    ``beside`` are the kinds that are read, too, where they are there.
+    ``beside`` are the kinds that are read, too, where they are there. A drive without odometry is
+    refused if it ``needs_odometry``.
     """
 
     scan: str | None = None
@@ -40,6 +41,7 @@ class Wanted:
     gyro: str | None = None
     laser: Pose | None = None
     beside: frozenset[Kind] = frozenset({Kind.TRUTH})
+    needs_odometry: bool = True
 
     def name(self, kind: Kind) -> str | None:
         """Return the name that was given for a kind."""
@@ -49,15 +51,15 @@ class Wanted:
 
 @dataclass(frozen=True, slots=True)
 class Chosen:
-    """The channels that are read, scans first and then odometry; ``notes`` tells of doubts."""
+    """The channels that are read, scans first; ``notes`` tells of doubts."""
 
     channels: tuple[Channel, ...]
     notes: tuple[str, ...]
 
     @property
-    def odometry(self) -> Channel:
-        """The channel of odometry."""
-        return self.channels[1]
+    def has_odometry(self) -> bool:
+        """Whether one of them is of odometry."""
+        return any(channel.kind is Kind.ODOMETRY for channel in self.channels)
 
     def name(self, kind: Kind) -> str | None:
         """Return the name of the channel of a kind; None if there is none."""
@@ -68,6 +70,10 @@ def chosen(paths: Sequence[Path], channels: Sequence[Channel], wanted: Wanted) -
     """Return what to read of the ``channels`` of all logs; raises LogError."""
     notes: list[str] = []
     scan = _required(paths, channels, Kind.SCAN, wanted, "", notes)
+    is_missing = not any(channel.kind is Kind.ODOMETRY for channel in channels)
+    if is_missing and not wanted.needs_odometry and wanted.odometry is None:
+        notes.append("no odometry was recorded: it goes by scans alone")
+        return Chosen((scan,), tuple(notes))
     odometry = _required(paths, channels, Kind.ODOMETRY, wanted, scan.name, notes)
     taken = [scan, odometry]
     gyro = _gyro(paths, channels, wanted, odometry.name, notes)

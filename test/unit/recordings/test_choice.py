@@ -69,6 +69,17 @@ def test_of_a_log_odometry_is_what_comes_with_the_scans() -> None:
     assert names(channels, Wanted(odometry="ODOM")) == ["FLASER", "ODOM"]
 
 
+def test_without_odometry_scans_may_do_unless_one_is_named() -> None:
+    wanted = Wanted(needs_odometry=False)
+    done = chosen(PATHS, [SCAN, IMU], wanted)
+    assert names([SCAN, IMU], wanted) == ["/scan"]
+    assert not done.has_odometry
+    assert "it goes by scans alone" in done.notes[0]
+    assert names([SCAN, ODOM], wanted) == ["/scan", "/odom"]
+    with pytest.raises(LogError, match="expected nav_msgs/Odometry on /odom"):
+        names([SCAN, IMU], Wanted(odometry="/odom", needs_odometry=False))
+
+
 def test_a_gyro_of_an_unusual_name_is_only_told() -> None:
     channels = [SCAN, ODOM, CAMERA_IMU]
     assert names(channels) == ["/scan", "/odom"]

@@ -24,6 +24,8 @@ KEPT: Final = 60
 _ALIKE: Final = 0.2
 _ALIKE_TURN: Final = 0.2
 """m and rad; places nearer to each other than both are the same."""
+_FINE_CELL: Final = 0.05
+"""m; size of cells up to which the map itself is as exact as evidence takes it to be."""
 _FROM_AFAR: Final = np.array([0.40, 0.30, 0.20, 0.10, 0.05, 0.05, 0.05])
 _FROM_NEAR: Final = np.array([0.15, 0.10, 0.05, 0.05])
 """m; beams that end farther off than this lose weight, round by round."""
@@ -206,7 +208,9 @@ class Relocation:
             only = self.hypotheses[0]
             return only.is_expected or only.is_convincing(self._config.fit)
         lead = self.hypotheses[0].evidence - self.hypotheses[1].evidence
-        return lead > self._config.needed_evidence
+        # Walls of a coarse map are farther off, and all evidence errs with them.
+        coarse = max(1.0, self._field.frame.resolution / _FINE_CELL)
+        return lead > self._config.needed_evidence * coarse
 
 
 def _array(pose: Pose) -> NDArray[np.float64]:

@@ -197,6 +197,14 @@ class Mapper:
         return self._map.graph.covariance()
 
     @property
+    def pace(self) -> Floats:
+        """How fast the robot moved between the newest two scans that tell, float64 [3].
+
+        Ahead and aside, m/s, and turning, rad/s.
+        """
+        return self._follower.pace
+
+    @property
     def range_noise(self) -> float:
         """Standard deviation of the lidar's ranges, m, as measured so far."""
         return self._follower.range_noise

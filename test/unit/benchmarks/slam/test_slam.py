@@ -6,16 +6,29 @@ import lzma
 import math
 from pathlib import Path
 
+import numpy as np
 import pytest
-from fixtures.made_logs import BEGAN, drive, poor, pose_at, write_bag, write_bag_2, write_carmen
+from fixtures.made_logs import (
+    BEGAN,
+    drive,
+    poor,
+    pose_at,
+    room_map,
+    write_bag,
+    write_bag_2,
+    write_carmen,
+)
 from PIL import Image
 
 from benchmarks import __main__ as command
 from benchmarks.bench import Bench
 from benchmarks.record import Record
 from benchmarks.rounds import QUICK
+from benchmarks.slam.localized import Followed, coarsened, square_of
 from benchmarks.slam.peers import aims_of, peers_of
 from benchmarks.topics.slam import measure, measured
+from roomba.files.occupancy_map import save_map
+from roomba.grid import OCCUPIED
 
 SECONDS = 12.0
 
@@ -38,6 +51,7 @@ def logs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     (folder / "broken.bag").write_bytes(b"#ROSBAG V2.0\n" + bytes(200))
     (folder / "README.md").write_text("not a log\n", "utf-8")
     (folder / "map.yaml").write_text("image: none\n", "utf-8")
+    save_map(room_map(), folder / "intel_map.yaml")
     return folder
 
 
@@ -56,7 +70,7 @@ def test_each_log_has_its_rows_and_nothing_else_is_one(
     done: tuple[list[Record], Path],
 ) -> None:
     records, _ = done
-    assert list(dict.fromkeys(record.case for record in records)) == [
+    assert list(dict.fromkeys(record.case.partition(",")[0] for record in records)) == [
         "broken",
         "intel_made",
         "second",
@@ -109,11 +123,66 @@ def test_a_log_that_cannot_be_read_is_a_row_with_the_reason(
     assert "expected a whole bag, it cannot be opened" in row.error
 
 
+@pytest.mark.parametrize("cells", ["5 cm cells", "10 cm cells"])
+@pytest.mark.parametrize("start", ["a given start", "no start"])
+def test_each_drive_is_followed_on_its_own_map_beside_others(
+    done: tuple[list[Record], Path], cells: str, start: str
+) -> None:
+    rows = of(done[0], f"intel_made, on its own map, {cells}, from {start}")
+    median, far = rows["error of the place, median"], rows["poses more than 0.5 m off"]
+    assert median.value is not None
+    assert median.value < (0.02 if cells == "5 cm cells" else 0.05)
+    assert (far.value, far.aim) == (0.0, 0.0)
+    assert [peer.value for peer in far.peers] == [92.0, 0.0]
+    held = rows["errors in the region that should hold 95 %"]
+    assert held.value is not None
+    assert held.value > 85.0
+    found = rows["way until its place was known"].value
+    assert found is not None
+    assert found < 2.0
+
+
+def test_a_map_of_another_day_beside_a_log_is_known_by_its_name(
+    done: tuple[list[Record], Path],
+) -> None:
+    rows = of(done[0], "intel_made, on intel_map, from no start")
+    found = rows["way until its place was known"]
+    assert found.value is not None
+    assert found.value < 2.0
+    assert found.aim == 40.0
+    at_walls = rows["beams of the last scans within 0.2 m of walls"].value
+    assert at_walls is not None
+    assert at_walls > 95.0
+
+
+def test_regions_hold_the_share_of_errors_that_they_are_drawn_for() -> None:
+    off = np.random.default_rng(1).standard_normal((20_000, 2))
+    squares = (off**2).sum(axis=1)
+    for share in (0.1, 0.5, 0.95):
+        assert np.mean(squares < square_of(share)) == pytest.approx(share, abs=0.01)
+        each = Followed("5 cm cells", True, np.sqrt(squares), squares, 0.0)
+    assert each.held == pytest.approx(0.95, abs=0.01)
+
+
+def test_a_coarse_map_has_every_wall_of_the_fine_one() -> None:
+    fine = room_map()
+    coarse = coarsened(fine, 3)
+    assert coarse.frame.resolution == pytest.approx(0.15)
+    rows, columns = np.nonzero(fine.values == OCCUPIED)
+    assert (coarse.values[rows // 3, columns // 3] == OCCUPIED).all()
+    assert (coarse.values == OCCUPIED).sum() < len(rows) / 3
+
+
 def test_each_map_has_a_small_picture(done: tuple[list[Record], Path]) -> None:
     _, pictures = done
     names = sorted(path.name for path in pictures.glob("slam-*.png"))
-    assert names == ["slam-intel_made.png", "slam-second.png", "slam-text.png"]
-    for name in names:
+    assert names == [
+        "slam-covariances.png",
+        "slam-intel_made.png",
+        "slam-second.png",
+        "slam-text.png",
+    ]
+    for name in names[1:]:
         assert (pictures / name).stat().st_size < 100_000
         assert max(Image.open(pictures / name).size) in range(900, 930)
 

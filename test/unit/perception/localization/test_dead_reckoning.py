@@ -277,6 +277,15 @@ def test_variances_grow_with_the_way_and_are_taken_once() -> None:
     assert spread(3.0, 30) == pytest.approx(3.0 * one, rel=1e-2)
 
 
+def test_a_turn_on_the_spot_leaves_the_place_unsure() -> None:
+    """No robot turns around the very point that it calls its middle."""
+    reckoned = reckoning()
+    for step in range(41):
+        reckoned.move(DT * step, Pose(0.0, 0.0, 0.1 * step), None)
+    expected = 4.0 * CONFIG.localization.turn_way_noise**2
+    assert np.diag(reckoned.take_spread())[:2] == pytest.approx(expected)
+
+
 def test_with_a_gyro_headings_are_surer_and_never_surer_than_either() -> None:
     def variance(turning: float | None) -> float:
         reckoned = reckoning()

@@ -93,7 +93,7 @@ def _replayed(drive: LoggedDrive, start: Pose, show: Show) -> tuple[MapReplay, F
     """Return the replay of a drive from a start, map frame, and its true poses, [n, 3]."""
     config = load_robot_config(CONFIGURATION / "robot.yaml")
     mapping = load_config(MappingConfig, CONFIGURATION / "mapping.yaml")
-    replay = MapReplay(config, mapping, start)
+    replay = MapReplay(config, mapping, start, has_odometry=drive.chosen.has_odometry)
     true = []
     for number, (stamp, value, _) in enumerate(drive.readings()):
         if isinstance(value, TruePose):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final
 
@@ -39,7 +39,7 @@ def options_of(arguments: list[str] | None) -> DriveOptions:
     given = _parser().parse_args(arguments)
     written = [("--trajectory", given.trajectory), ("--online", given.online)]
     output = output_of(given, [("--bag", path) for path in given.bag], written)
-    wanted = wanted_of(given)
+    wanted = replace(wanted_of(given), needs_odometry=False)
     return DriveOptions(tuple(given.bag), wanted, given.trajectory, given.online, output)
 
 

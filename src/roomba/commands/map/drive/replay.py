@@ -23,16 +23,52 @@ from roomba.recordings.readings import LidarScan, Odometry, Turning, Value
 from roomba.recordings.turning import NewestTurning
 from roomba.recordings.waiting import StampedScan, WaitingScan
 
+_GUESSED: Final = {
+    "way_noise": 0.2,
+    "side_noise": 0.1,
+    "wheel_turn_noise": 0.1,
+    "turn_noise": 0.1,
+    "turn_way_noise": 0.1,
+}
+"""m, rad per square root of m, rad: of motion that is only guessed from what was before."""
+_LONGEST: Final = 1.0
+"""s; over a longer time a robot does not go on as it did."""
 _LATEST: Final = 1.0
 """s; a scan that odometry is so far behind is of a time that it knows nothing of."""
+
+
+class PacedOdometry:
+    """In place of odometry that was not recorded: the robot goes on as scans showed that it did."""
+
+    def __init__(self) -> None:
+        """Begin at the origin."""
+        self._pose, self._stamp = Pose(), math.nan
+
+    def at(self, stamp: float, pace: NDArray[np.float64]) -> Pose:
+        """Return where it is at a scan, s, by its pace so far, [3], m/s and rad/s."""
+        elapsed, self._stamp = stamp - self._stamp, stamp
+        if 0.0 < elapsed < _LONGEST:
+            self._pose = self._pose.compose(Pose(*(elapsed * pace).tolist()))
+        return self._pose
 
 
 class MapReplay:
     """Feeds a mapper, and a map by odometry alone; ``notes`` says what was left out, and why."""
 
-    def __init__(self, config: RobotConfig, mapping: MappingConfig, start: Pose) -> None:
-        """Begin at ``start``, map frame."""
-        self.mapper = Mapper(mapping, config.localization, config.gyro, start)
+    def __init__(
+        self,
+        config: RobotConfig,
+        mapping: MappingConfig,
+        start: Pose,
+        *,
+        has_odometry: bool = True,
+    ) -> None:
+        """Begin at ``start``, map frame; a drive that has no odometry goes by scans alone."""
+        self._by_scans = None if has_odometry else PacedOdometry()
+        localization = config.localization
+        if not has_odometry:
+            localization = localization.model_copy(update=_GUESSED)
+        self.mapper = Mapper(mapping, localization, config.gyro, start)
         self.blind = BlindMap(mapping, config.localization, config.gyro, start)
         self.trajectory = Trajectory()
         self.scans = 0
@@ -98,6 +134,9 @@ class MapReplay:
 
     def _hear_scan(self, stamp: float, scan: LidarScan) -> None:
         """Keep a scan until odometry has reached its last beam, or the next scan comes."""
+        if self._by_scans is not None:
+            pose = self._by_scans.at(stamp, self.mapper.pace)
+            self._hear_odometry(stamp, pose)
         if not math.isfinite(self._stamp):
             self.left_out["scans before the first odometry"] += 1
             return

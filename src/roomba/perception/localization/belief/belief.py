@@ -64,6 +64,7 @@ NUMBERS: Final = np.dtype(
     [
         ("way_variance", "f8"),  # m2 per m of way
         ("side_variance", "f8"),
+        ("turn_way_variance", "f8"),
         ("wheel_variance", "f8"),  # rad2 per m of way, of turns by the wheels
         ("turn_variance", "f8"),  # rad2 per rad, of every turn
         ("drift_variance", "f8"),  # rad2 per s, of turns by the gyro
@@ -110,6 +111,7 @@ def numbers_of(config: LocalizationConfig, gyro: GyroConfig, every: int = 1) -> 
     fields: dict[str, float] = {
         "way_variance": config.way_noise**2,
         "side_variance": config.side_noise**2,
+        "turn_way_variance": config.turn_way_noise**2,
         "wheel_variance": config.wheel_turn_noise**2,
         "turn_variance": config.turn_noise**2,
         "drift_variance": config.gyro_drift**2,

@@ -105,7 +105,9 @@ def _go(
     cosine, sine = math.cos(half), math.sin(half)
     ahead, aside = cosine * ahead - sine * aside, sine * ahead + cosine * aside
     compose(belief.reckoned, ahead, aside, turn)
-    of_way, of_side = numbers.way_variance * way, numbers.side_variance * way
+    of_turn = numbers.turn_way_variance * abs(turn)
+    of_way = numbers.way_variance * way + of_turn
+    of_side = numbers.side_variance * way + of_turn
     belief.spread[0] += of_way
     belief.spread[1] += of_side
     belief.spread[2] += variance

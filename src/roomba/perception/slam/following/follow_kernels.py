@@ -77,8 +77,6 @@ _CLEARLY: Final = 1.15
 """Times that a scan must agree better there."""
 _LONGEST: Final = 1.0
 """s; over a longer time nothing is known of how fast it moves."""
-_PER_TURN: Final = 0.01
-"""m/sqrt(rad); robots hardly turn around the very point that odometry takes for their middle."""
 _ROUNDS: Final = 5
 _STRIDE: Final = 2
 """Each such point follows the robot, if there are many; keyframes have all of them."""
@@ -262,8 +260,7 @@ def _move_on(follower: Row, belief: Row, reckoned: Floats) -> None:
         follower.reckoned[axis] = reckoned[axis]
     cosine, sine = math.cos(follower.here[2]), math.sin(follower.here[2])
     scale, spread = follower.odometry_scale, follower.spread
-    of_turn = _PER_TURN * _PER_TURN * abs(turn)
-    along, across = scale[0] * (belief.spread[0] + of_turn), scale[1] * (belief.spread[1] + of_turn)
+    along, across = scale[0] * belief.spread[0], scale[1] * belief.spread[1]
     spread[0, 0] += cosine * cosine * along + sine * sine * across
     spread[1, 1] += sine * sine * along + cosine * cosine * across
     spread[0, 1] += cosine * sine * (along - across)

@@ -124,6 +124,12 @@ class ScanFollower:
         return float(self._row["way"])
 
     @property
+    def pace(self) -> Floats:
+        """How fast it moved between the newest two scans: ahead, aside, m/s, turning, rad/s."""
+        pace: Floats = self._row["pace"].copy()
+        return pace
+
+    @property
     def met(self) -> float:
         """Share of the newest scan's points that met a known surface."""
         return float(self._row["met"])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,8 +11,10 @@ import cv2
 import numpy as np
 import pytest
 from fixtures.made_logs import (
+    BEAMS,
     BEGAN,
     LASER,
+    NO_ECHO,
     changed,
     drive,
     poor,
@@ -23,6 +26,7 @@ from fixtures.made_logs import (
 
 from roomba.commands.map.drive.command import main
 from roomba.files.occupancy_map import load_map
+from roomba.geometry import Pose
 
 SECONDS = 20.0
 
@@ -145,3 +149,51 @@ def test_what_cannot_be_used_is_refused_in_a_line(
     assert told.out == ""
     assert said in told.err
     assert told.err.count("\n") == 1
+
+
+def test_a_drive_without_odometry_goes_by_its_scans_alone(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    scans = [item for item in drive(SECONDS) if item.topic == "/scan"]
+    end = tmp_path / "end.txt"
+    bag = write_bag(tmp_path / "made.bag", scans)
+    assert main(["--bag", str(bag), "--trajectory", str(end)]) == 0
+    rows = np.loadtxt(end)
+    assert len(rows) == len(scans)
+    assert off(rows) < 0.05
+    assert "no odometry was recorded: it goes by scans alone" in capsys.readouterr().out
+
+
+def test_odometry_that_is_no_number_is_left_out_and_told(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    bad = Pose(math.nan, 0.0, 0.0)
+    items = changed(
+        drive(SECONDS),
+        "/odom",
+        lambda n, item: replace(item, value=bad) if n % 7 == 3 else item,
+    )
+    end = tmp_path / "end.txt"
+    bag = write_bag(tmp_path / "made.bag", items)
+    assert main(["--bag", str(bag), "--trajectory", str(end)]) == 0
+    assert off(np.loadtxt(end)) < 0.03
+    assert "29 messages of odometry" in " ".join(capsys.readouterr().out.split())
+
+
+def test_a_single_scan_is_a_map_already(tmp_path: Path) -> None:
+    items = drive(0.2)
+    assert sum(item.topic == "/scan" for item in items) == 1
+    bag, home = write_bag(tmp_path / "made.bag", items), tmp_path / "home"
+    assert main(["--bag", str(bag), "--out", str(home), "--quiet"]) == 0
+    assert load_map(home / "map.yaml").free_area > 5.0
+
+
+def test_scans_without_an_echo_are_refused_in_a_line(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    blind = np.full(BEAMS, NO_ECHO)
+    items = changed(drive(2.0), "/scan", lambda n, item: replace(item, value=blind))
+    assert main(["--bag", str(write_bag(tmp_path / "made.bag", items))]) == 1
+    told = capsys.readouterr()
+    assert "expected scans that show walls, got 10 with hardly anything in sight" in told.err
+    assert (told.out, told.err.count("\n")) == ("", 1)

@@ -81,6 +81,7 @@ class Plain:
         turn, variance = self.turn(way, step.theta, turning, elapsed)
         bent = Pose(0.0, 0.0, 0.5 * (turn - step.theta)).compose(Pose(step.x, step.y))
         spread = np.array([LOCALIZATION.way_noise**2, LOCALIZATION.side_noise**2, 0.0]) * way
+        spread[:2] += LOCALIZATION.turn_way_noise**2 * abs(turn)
         spread[2] = variance
         self.spread += spread
         self.reckoned = self.reckoned.compose(Pose(bent.x, bent.y, turn))
