@@ -40,7 +40,7 @@ def simulated_squares(seconds: float) -> dict[str, Floats]:
 
 
 def write_covariances(path: Path, squares: Mapping[str, Floats]) -> None:
-    """Write the picture of squared errors by the covariances, [n] for each drive; raises OSError."""
+    """Write the picture of squared errors by covariances, [n] for each drive; raises OSError."""
     Image.fromarray(picture_of_covariances(squares)).quantize(64).save(path, optimize=True)
 
 
