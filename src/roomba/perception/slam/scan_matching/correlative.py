@@ -243,7 +243,8 @@ def _insert(
     place = waiting
     while place > first and bounds[place - 1] > bound:
         bounds[place] = bounds[place - 1]
-        pending[place] = pending[place - 1]
+        for column in range(4):
+            pending[place, column] = pending[place - 1, column]
         place -= 1
     bounds[place] = bound
     pending[place, 0], pending[place, 1] = block[0], block[1]
