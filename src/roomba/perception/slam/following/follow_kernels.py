@@ -101,8 +101,8 @@ def follow(
 ) -> None:
     """Move on to ``reckoned`` [3], and correct that by a scan, points [n, 4] seen from there.
 
-    It is taken ``elapsed``, s, after the one before it. One that agrees in a smaller share of its
-    points than ``expected`` is matched again, from farther away.
+    It is taken ``elapsed``, s, after the one before it. One that comes soon, and agrees in a smaller
+    share of its points than ``expected``, is matched again from farther away.
     """
     follower = followers[0]
     prior, pose, by_pace = follower.work[0], follower.work[1], follower.work[2]
@@ -118,7 +118,8 @@ def follow(
         covariance[row, row] += _LEAST_SPREAD[row]
     reach = _FAR_REACH if follower.misses >= follower.many_misses else 1
     shows_enough = _match(follower, surfels, points, count, prior, reach, _FIRST_SCALES)
-    if shows_enough and follower.met * follower.close < expected:
+    is_soon = 0.0 < elapsed < _LONGEST
+    if shows_enough and is_soon and follower.met * follower.close < expected:
         _look_farther(follower, surfels, points, count, prior, expected)
         if knows_pace and follower.met * follower.close < expected:
             _look_farther(follower, surfels, points, count, by_pace, expected)
