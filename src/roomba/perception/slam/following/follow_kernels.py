@@ -101,8 +101,8 @@ def follow(
 ) -> None:
     """Move on to ``reckoned`` [3], and correct that by a scan, points [n, 4] seen from there.
 
-    It is taken ``elapsed``, s, after the one before it. One that comes soon, and agrees in a smaller
-    share of its points than ``expected``, is matched again from farther away.
+    It is taken ``elapsed``, s, after the one before it. One that comes soon, and agrees in a
+    smaller share of its points than ``expected``, is matched again from farther away.
     """
     follower = followers[0]
     prior, pose, by_pace = follower.work[0], follower.work[1], follower.work[2]
