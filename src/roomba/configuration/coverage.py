@@ -38,7 +38,7 @@ class CoverageConfig(Frozen):
     """Cells of way that a radian costs when the way is polished."""
     unswept: Positive = 1.0
     """Cells of way that a cell of floor is worth when the way is polished."""
-    spare: Ratio = 0.002
+    spare: Ratio = 0.0015
     """Share of the floor that polishing may leave at most."""
     search_rounds: AtLeastOne = 5000
     """Exchanges in the search for an order, after which it goes on only if they paid."""

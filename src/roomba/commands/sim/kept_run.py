@@ -139,7 +139,8 @@ def _trace(run: Run, samples: StateSamples) -> Floats:
     trace = np.zeros((len(poses), len(TRACE)))
     trace[:, :4] = poses - [run.trajectory[0, 0], 0.0, 0.0, 0.0]
     states = np.array(samples.rows).reshape(-1, 1 + len(_COLUMNS))
-    latest = np.maximum(np.searchsorted(states[:, 0], poses[:, 0], side="right") - 1, 0)
+    # Before, not at: a look at the very end finds no clean under way any more.
+    latest = np.maximum(np.searchsorted(states[:, 0], poses[:, 0], side="left") - 1, 0)
     trace[:, 4:] = states[latest, 1:]
     result: Floats = trace.astype(np.float32)
     return result

@@ -25,7 +25,7 @@ from roomba.raster.regions import Mask
 Line = NDArray[np.float64]
 """A polyline, float64 [n >= 2, 2] (x, y)."""
 
-_SIDEWAYS = 0.45
+_SIDEWAYS = 0.75
 """cells; how far an edge may be off the outline that it straightens."""
 _STRETCH = 10.0
 """cells; edges are kept or left out by stretches of this length."""
