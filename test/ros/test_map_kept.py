@@ -25,6 +25,7 @@ from fixtures.waiting import wait_until
 from roomba_robot.msg import Localization
 from roomba_robot.srv import NameMapResponse
 
+from roomba.files.kept import before_of
 from roomba.grid import OccupancyMap
 from roomba.storage.map_bound import map_digest
 from roomba.storage.mapper import KeptMap, load_mapper, save_mapper
@@ -159,6 +160,7 @@ def test_a_map_that_is_being_made_outlives_the_node(graph: RosGraph) -> None:
 
 def spoil(kept: KeptMap, path: Path) -> None:
     path.write_bytes(b"PK")
+    before_of(path).unlink(missing_ok=True)
 
 
 def blame(kept: KeptMap, path: Path) -> None:
@@ -175,7 +177,7 @@ def test_what_cannot_be_taken_up_is_said_and_a_new_map_begins(graph: RosGraph) -
     robot.maps_with("explore")
     for begun, (change, words) in enumerate(
         (
-            (spoil, "not taken up, a new one is: .* expected a map that is being made"),
+            (spoil, "not taken up, a new one is: expected a map that is being made: .*set aside"),
             (blame, "not taken up, a new one is: .* ended 5 times in a row"),
             (leave_behind, ""),
         ),
