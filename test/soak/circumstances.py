@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import subprocess
 import threading
 import time
@@ -11,6 +10,7 @@ from typing import Final
 
 import rospy
 from fixtures.graph import START_DEADLINE, RosGraph
+from fixtures.probe import Probe
 from fixtures.tiny_home import tiny_home
 from fixtures.waiting import wait_until
 from rosgraph_msgs.msg import Clock
@@ -56,12 +56,10 @@ def clock(arena: Arena) -> list[Row]:
 
         def work() -> list[Row]:
             graph.set_param("/use_sim_time", True)
-            os.environ.update(graph.environment)
-            rospy.init_node("soak", disable_signals=True)
-            given = SetClock()
+            probe, given = Probe(graph, "soak"), SetClock()
             graph.start_run(f"home:={tiny_home(arena.folder)}", "clock:=false")
             wait_until(graph.all_up, START_DEADLINE, lambda: graph.programs[-1].output)
-            cleaner = Cleaner(graph)
+            cleaner = Cleaner(graph, probe)
             rows = []
             for jump in (-10.0, HOUR, -HOUR):
                 cleaner.keep_cleaning()

@@ -24,9 +24,9 @@ READY = 60.0
 class Cleaner:
     """Lets a robot clean; each clean ends once, and as it should."""
 
-    def __init__(self, graph: RosGraph) -> None:
-        """Become a client of the robot."""
-        self.probe = Probe(graph, "soak")
+    def __init__(self, graph: RosGraph, probe: Probe | None = None) -> None:
+        """Become a client of the robot, by a node that is there already or a new one."""
+        self.probe = probe or Probe(graph, "soak")
         self.state, self.trouble = VacuumState(), [""]
         self.row = Row("clean")
         rospy.Subscriber("/vacuum/state", VacuumState, self._on_state)
