@@ -16,6 +16,7 @@ from roomba.history.folder import history_folder
 
 WORKS_WITHIN = 60_000
 """ms of wall time for what the robot does by its own clock."""
+HEADING = "async () => (await import('/store.js')).get('state').pose[2]"
 
 
 def address(graph: RosGraph) -> str:
@@ -76,16 +77,9 @@ def test_a_person_cleans_pauses_edits_and_stops(robot_with_page: RosGraph) -> No
         page.get_by_role("button", name="Pause").click()
         wait_for_phase(page, "paused")
         page.get_by_text("Drive by hand", exact=True).click()
-        before = page.evaluate("async () => (await import('/store.js')).get('state').pose[2]")
+        before = page.evaluate(HEADING)
         page.keyboard.down("ArrowLeft")
-        page.wait_for_function(
-            """async (before) => {
-                const { get } = await import("/store.js");
-                return Math.abs(get("state").pose[2] - before) > 0.3;
-            }""",
-            arg=before,
-            timeout=WORKS_WITHIN,
-        )
+        wait_until(lambda: abs(page.evaluate(HEADING) - before) > 0.3, 60.0, "a turn")
         page.keyboard.up("ArrowLeft")
         page.keyboard.press("Escape")
         wait_for_phase(page, "emergency stop")

@@ -12,6 +12,8 @@ from roomba.client.view import ZoneView
 from roomba.ui.web.app import create_app
 from roomba.ui.web.server import PageServer, listen
 
+DRAWING = "async () => Boolean((await import('/store.js')).get('drawing'))"
+
 
 @pytest.fixture
 def home() -> str:
@@ -36,9 +38,7 @@ class Finger:
     def press_and_drag(self, start: tuple[float, float], end: tuple[float, float]) -> None:
         """Hold a place until something begins there, and drag from it, m."""
         self._send("touchStart", start)
-        self._opened.page.wait_for_function(
-            "async () => Boolean((await import('/store.js')).get('drawing'))"
-        )
+        wait_until(lambda: self._opened.page.evaluate(DRAWING), DEADLINE, "a draft")
         for share in (0.3, 0.6, 1.0):
             x, y = (one + share * (other - one) for one, other in zip(start, end, strict=True))
             self._send("touchMove", (x, y))

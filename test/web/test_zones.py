@@ -81,9 +81,8 @@ def test_the_wheel_zooms_around_the_mouse_and_the_map_stays_under_it(opened: Ope
     before = page.evaluate(VIEW)
     for step in (-240, -240, 120):
         page.mouse.wheel(0, step)
-    page.wait_for_function(
-        "async (scale) => (await import('/map/view.js')).view.scale > 1.5 * scale",
-        arg=before["scale"],
+    wait_until(
+        lambda: page.evaluate(VIEW)["scale"] > 1.4 * before["scale"], DEADLINE, "a nearer look"
     )
     after = page.evaluate(VIEW)
     assert after["at"] == pytest.approx(before["at"], abs=1e-6)

@@ -42,14 +42,16 @@ _GAP: Final = 24
 """px between two windows."""
 _FILM_SIZE: Final = {"width": 960, "height": 640}
 """px."""
-_FILM_SPEED: Final = 12.0
+_FILM_SPEED: Final = 30.0
 """The robot's seconds per second of a film."""
-_FILM_ROOMS: Final = ("living room", "kitchen")
+_FILM_ROOMS: Final = ("kitchen", "bathroom")
+_SETTLED: Final = 300
+"""ms of wall time until what appears has done so."""
 _FRAMES: Final = 70
 """Of a film, while the robot cleans."""
 _HAS_ROOMS: Final = """async () => {
     const { get } = await import("/store.js"), { grid } = await import("/map/grids.js");
-    return get("home")?.rooms.length > 0 && get("limits") && grid("map");
+    return Boolean(get("home")?.rooms.length > 0 && get("limits") && grid("map"));
 }"""
 _TAP: Final = """async (name) => {
     const { get } = await import("/store.js"), { tapped } = await import("/panels/offer.js");
@@ -57,6 +59,8 @@ _TAP: Final = """async (name) => {
     const [x, y] = rooms.find((room) => room.name === name).anchor;
     tapped(x, y, ...toScreen(x, y));
 }"""
+_IS_CLEANED: Final = """async (least) =>
+    ((await import("/store.js")).get("state")?.vacuum.covered ?? 0) >= least"""
 _BROWSERS: Final = ("chromium", "chromium-browser", "google-chrome")
 
 
@@ -67,7 +71,7 @@ def picture_of_phone(home: Home) -> Picture:
         page = browser.new_context(viewport=_PHONE, color_scheme="dark").new_page()
         page.goto(address)
         page.wait_for_selector("body[data-phase='docked']")
-        page.wait_for_function(_HAS_ROOMS)
+        _wait_until(page, _HAS_ROOMS)
         for name in _FILM_ROOMS:
             page.evaluate(_TAP, name)
         page.click("#clean")
@@ -98,8 +102,8 @@ def picture_of_replay(home: Home) -> Picture:
             page = browser.new_context(viewport={"width": 1280, "height": 800}).new_page()
             page.goto(server.address)
             page.wait_for_selector("#timeline:not([hidden])")
-            page.wait_for_function(_IS_COVERED, timeout=1000.0 * _DEADLINE)
-            page.wait_for_timeout(500)
+            _wait_until(page, _IS_COVERED)
+            page.wait_for_timeout(_SETTLED)
             picture = _decoded(page.screenshot())
             browser.close()
     finally:
@@ -142,10 +146,12 @@ def frames_of_page(home: Home) -> list[Picture]:
         page = browser.new_context(viewport=_FILM_SIZE, color_scheme="light").new_page()
         page.goto(address)
         page.wait_for_selector("body[data-phase='docked']")
-        page.wait_for_function(_HAS_ROOMS)
+        _wait_until(page, _HAS_ROOMS)
+        page.wait_for_timeout(_SETTLED)
         frames = [_decoded(page.screenshot())] * 4
         for name in _FILM_ROOMS:
             page.evaluate(_TAP, name)
+            page.wait_for_timeout(_SETTLED)
             frames += [_decoded(page.screenshot())] * 4
         page.click("#clean")
         frames += [_decoded(page.screenshot()) for _ in range(_FRAMES)]
@@ -160,12 +166,12 @@ def picture_of_way(home: Home) -> Picture:
         page = browser.new_context(viewport=_PHONE, color_scheme="light", has_touch=True).new_page()
         page.goto(address)
         page.wait_for_selector("body[data-phase='docked']")
-        page.wait_for_function(_HAS_ROOMS)
-        page.wait_for_timeout(500)
+        _wait_until(page, _HAS_ROOMS)
+        page.wait_for_timeout(_SETTLED)
         seen = [_decoded(page.screenshot())]
         for name in _FILM_ROOMS:
             page.evaluate(_TAP, name)
-        page.wait_for_timeout(300)
+        page.wait_for_timeout(_SETTLED)
         seen.append(_decoded(page.screenshot()))
         page.click("#clean")
         _wait_for_covered(page)
@@ -173,7 +179,7 @@ def picture_of_way(home: Home) -> Picture:
         page.click("#stop")
         page.click("[data-tab=more]")
         page.wait_for_selector("#last:not([hidden])")
-        page.wait_for_timeout(300)
+        page.wait_for_timeout(_SETTLED)
         seen.append(_decoded(page.screenshot()))
         browser.close()
     gap = np.full((seen[0].shape[0], _GAP, 3), 255, np.uint8)
@@ -187,17 +193,16 @@ def _decoded(screenshot: bytes) -> Picture:
 
 
 def _wait_for_covered(page: Any) -> None:
+    _wait_until(page, _IS_CLEANED, _CLEANED)
+
+
+def _wait_until(page: Any, expression: str, wanted: float | None = None) -> None:
+    """Wait until the page answers a question by yes; RoombaError when it does not in time."""
     ends = time.monotonic() + _DEADLINE
-    while _covered(page) < _CLEANED:
+    while not page.evaluate(expression, wanted):
         if time.monotonic() > ends:
-            raise RoombaError(f"expected {_CLEANED} m2 clean within {_DEADLINE:g} s")
-        page.wait_for_timeout(200)
-
-
-def _covered(page: Any) -> float:
-    """Return what is clean, m2, as the page knows it."""
-    state = "async () => (await import('/store.js')).get('state')?.vacuum.covered ?? 0"
-    return float(page.evaluate(state))
+            raise RoombaError(f"expected within {_DEADLINE:g} s: {expression}")
+        page.wait_for_timeout(100)
 
 
 def _playwright() -> Any:
