@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from roomba.commands.pictures.__main__ import IN_BROWSER, PICTURES
+from roomba.commands.pictures.__main__ import FILMS, IN_BROWSER, IN_RVIZ, PICTURES
 from roomba.configuration.simulation import load_simulated_config
 from roomba.files.shipped import CONFIGURATION
 from roomba.world.engine.state.arrays import Fault
@@ -74,13 +74,14 @@ def test_every_picture_of_the_documents_exists_and_is_made_by_the_command() -> N
         for link in re.findall(r"!\[[^\]]*\]\(([^)]+)\)", page.read_text(encoding="utf-8"))
     }
     assert {path for path in linked if not path.is_file()} == set()
-    names = (*PICTURES, *IN_BROWSER)
-    made = {(ROOT / "docs" / "pictures" / f"{name}.png").resolve() for name in names}
+    files = [f"{name}.png" for name in (*PICTURES, *IN_BROWSER, IN_RVIZ)]
+    files += [f"{name}.webp" for name in FILMS]
+    made = {(ROOT / "docs" / "pictures" / file).resolve() for file in files}
     # Made of drives and maps of real robots, which the repository does not hold.
     drives = (f"drive_{name}" for name in ("intel", "fr079", "breezy", "wean"))
     recorded = {
         (ROOT / "docs" / "pictures" / f"{name}.png").resolve()
-        for name in (*drives, "rooms_beside_truth")
+        for name in (*drives, "covariances", "rooms_beside_truth")
     }
     assert linked - made == recorded
     # Two rooms are made, but not shown.
