@@ -116,12 +116,6 @@ class PathDriver:
         return self.tracker.left
 
     @property
-    def points_left(self) -> NDArray[np.float64]:
-        """The corners of the path before the robot, and its end, float64 [n, 2], m."""
-        course = self.tracker.course
-        return course.points[course.stations > self.tracker.along]
-
-    @property
     def is_undisturbed(self) -> bool:
         """Whether the next ticks are those of its tracker alone, while nothing comes up."""
         return (

@@ -50,13 +50,9 @@ class EnergyLedger:
         """A level with less than which the battery gives nothing any more, 0..1."""
         return self._config.empty
 
-    def is_check_due(self, senses: Senses) -> bool:
-        """Whether it is time to look again how far it is home, or the clock was set back."""
-        return not 0.0 <= senses.now - self._checked < self._config.check_period
-
     def must_go_home(self, senses: Senses, way_home: Callable[[Senses], float]) -> bool:
         """Whether what is left just suffices for the way home; ``way_home`` tells that way, m."""
-        if not self.is_check_due(senses):
+        if 0.0 <= senses.now - self._checked < self._config.check_period:
             return False
         self._checked = senses.now
         battery = senses.battery

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -75,7 +75,7 @@ class DirtMap:
 
     def density(self, mask: Mask, frame: GridFrame) -> float:
         """Return the mean of what was learned over a mask on another grid, grains/m2; 0 if none."""
-        values = self.over(np.nan_to_num(self.learned), frame)[mask]
+        values = self._over(np.nan_to_num(self.learned), frame)[mask]
         return float(values.mean()) if values.size else 0.0
 
     def dirty_now(self, frame: GridFrame, times: float, least: float) -> Mask:
@@ -83,38 +83,28 @@ class DirtMap:
 
         Where it counted fewer than ``least`` grains/m2 no floor is dirty.
         """
-        dirty: Mask = self.over(self.dirty_cells(times, least), frame)
-        return dirty
-
-    def dirty_cells(self, times: float, least: float) -> Mask:
-        """Return the same over ``frame``, the map's own cells."""
         density, seen = self._density_now(), self.way > 0.5 * CELL
-        dirty: Mask = density >= dirty_from(density[seen], times, least)
+        dirty: Mask = self._over(density, frame) >= dirty_from(density[seen], times, least)
         return dirty
-
-    @property
-    def seen_area(self) -> float:
-        """Floor of which the present run counted what lies on it, m2."""
-        return float(np.count_nonzero(self.way > 0.5 * CELL)) * CELL**2
 
     def known(self) -> Floats:
         """Return grains/m2 by cells: of this run where it was, else as learned, NaN elsewhere."""
         known: Floats = np.where(self.way > 0.5 * CELL, self._density_now(), self.learned)
         return known
 
-    def over(self, values: NDArray[Any], frame: GridFrame) -> NDArray[Any]:
-        """Return values of the map's own cells at the middles of another grid's cells."""
-        rows = ((np.arange(frame.rows) + 0.5) * frame.resolution / CELL).astype(np.int64)
-        columns = ((np.arange(frame.columns) + 0.5) * frame.resolution / CELL).astype(np.int64)
-        over: NDArray[Any] = values[
-            np.ix_(np.minimum(rows, values.shape[0] - 1), np.minimum(columns, values.shape[1] - 1))
-        ]
-        return over
-
     def _density_now(self) -> Floats:
         area = np.maximum(self.way, 0.05) * CELL
         density: Floats = self.grains / area
         return density
+
+    def _over(self, values: Floats, frame: GridFrame) -> Floats:
+        """Return values at the middles of another grid's cells."""
+        rows = ((np.arange(frame.rows) + 0.5) * frame.resolution / CELL).astype(np.int64)
+        columns = ((np.arange(frame.columns) + 0.5) * frame.resolution / CELL).astype(np.int64)
+        over: Floats = values[
+            np.ix_(np.minimum(rows, values.shape[0] - 1), np.minimum(columns, values.shape[1] - 1))
+        ]
+        return over
 
 
 def dirty_from(density: Floats, times: float, least: float) -> float:
