@@ -78,7 +78,7 @@ class Rig:
         monkeypatch.setattr(Publisher, "state", self.world.state)
         monkeypatch.setattr(rospy, "Publisher", Publisher)
         monkeypatch.setattr(rospy, "Subscriber", MagicMock())
-        topics = MissionTopics(MISSION_CONFIG, PeriodsConfig(), MagicMock())
+        topics = MissionTopics(MISSION_CONFIG, PeriodsConfig(), MagicMock(trouble=""))
         topics.start()
         drive = MagicMock(is_taken=False)
         self.round = MissionRound(self.orders, topics, drive, Mission.tick)
