@@ -87,6 +87,9 @@ def test_dragging_shows_another_time(replayed: Replayed) -> None:
     assert page.inner_text("#headline").startswith("Recorded: ")
     replayed.wait_for_swept(0, 40)
     replayed.drag_to(duration)
+    tab = page.locator("[data-tab=more]")
+    if tab.is_visible():
+        tab.click()
     page.wait_for_selector("#last:not([hidden])")
     assert "Completed" in page.inner_text("#last-text")
     wait_until(lambda: replayed.swept() > 5000, DEADLINE, "swept floor")

@@ -31,14 +31,14 @@ export function pauseOrResume() {
   return wish(phase === "paused" || phase === "error" ? "resume" : "pause");
 }
 
-/** What of a clean is the same for all ways to begin one. */
+/** What of a clean is the same for all ways to begin one; before the limits came, what is usual. */
 export function how() {
-  return { passes: Number($("passes").value), fan: $("fan").value };
+  return { passes: Number($("passes").value) || 1, fan: $("fan").value || "standard" };
 }
 
 async function clean() {
   const chosen = get("chosen"), hows = get("hows"), usual = how();
-  const order = chosen.length ? { mode: "rooms", rooms: chosen, in_order: true } : { mode: $("mode").value };
+  const order = chosen.length ? { mode: "rooms", rooms: chosen, in_order: true } : { mode: $("mode").value || "whole" };
   if (chosen.some((name) => hows[name]))
     order.each = chosen.map((name) => ({ ...usual, ...hows[name] }));
   if (await wish("clean", { ...order, ...usual })) set("chosen", []);
