@@ -60,8 +60,14 @@ def test_nothing_comes_from_outside(opened: Opened) -> None:
         asked.append(route.request.url)
         route.continue_()
 
+    # What the page's policy keeps a browser from asking for is told on its console alone.
+    kept_back: list[str] = []
+    opened.page.on(
+        "console", lambda said: kept_back.append(said.text) if "Policy" in said.text else None
+    )
     opened.page.route("**/*", note)
     opened.page.reload()
     opened.wait_for_phase("docked")
+    assert kept_back == []
     assert len(asked) > 20
     assert [url for url in asked if not url.startswith(opened.server.address)] == []

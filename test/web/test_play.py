@@ -7,11 +7,16 @@ import math
 import pytest
 from fixtures.waiting import wait_until
 from web.conftest import SIZES, Opened
-from web.test_page import DEADLINE, colours
+from web.test_page import DEADLINE
 
 from roomba.client.view import LayerName, TruthView
 
 CARD = "#offer"
+COLOUR_AT = """async (place) => {
+    const { toScreen } = await import("/map/view.js"), [x, y] = toScreen(...place);
+    const context = document.getElementById("floor").getContext("2d");
+    return [...context.getImageData(x * devicePixelRatio, y * devicePixelRatio, 1, 1).data];
+}"""
 
 
 @pytest.fixture
@@ -83,10 +88,20 @@ def test_the_robot_is_dragged_elsewhere(playing: Opened) -> None:
 
 @pytest.mark.parametrize("size", [SIZES["desktop"]])
 def test_the_truth_is_laid_over_the_belief(playing: Opened) -> None:
-    plain = colours(playing)
-    playing.page.get_by_role("checkbox", name="Show the truth").check()
-    assert playing.page.locator("#layers input").last.is_checked()
-    wait_until(lambda: colours(playing) > plain + 5, DEADLINE, "more colours")
+    page, door = playing.page, "kitchen door"
+    playing.robot.set_door(door, is_shut=True)
+    left, low, right, high = next(d.opening for d in truth_of(playing).doors if d.name == door)
+    middle = [(left + right) / 2, (low + high) / 2]
+
+    def is_violet() -> bool:
+        red, green, blue, _ = page.evaluate(COLOUR_AT, middle)
+        return bool(blue > red + 20 > green + 40)
+
+    page.get_by_text("Kitchen door: shut").wait_for(state="attached")
+    assert not is_violet()
+    page.get_by_role("checkbox", name="Show the truth").check()
+    assert page.locator("#layers input").last.is_checked()
+    wait_until(is_violet, DEADLINE, "the shut door to be drawn")
 
 
 @pytest.mark.parametrize("size", [SIZES["desktop"]])
