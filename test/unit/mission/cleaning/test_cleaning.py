@@ -153,7 +153,6 @@ def test_zones_are_cut_to_the_floor_that_there_is() -> None:
     [
         CleanRequest(CleanMode.ZONES, zones=((9.0, 9.0, 10.0, 10.0),)),
         CleanRequest(CleanMode.SPOT, spot=(20.0, 20.0)),
-        CleanRequest(CleanMode.SPOT, spot=(float("nan"), 0.0)),
     ],
 )
 def test_nothing_to_clean_is_refused(request_: CleanRequest) -> None:
