@@ -61,6 +61,8 @@ class DockingConfig(Frozen):
     undock_speed: Positive = 0.15
     undocked_distance: Positive = 0.25
     """From the station; a robot that is farther away is undocked already."""
+    undocked_turn: Acute = 0.5
+    """rad; one whose nose is turned away from the station by more is so, too: nothing holds it."""
     undock_time_limit: Positive = 10.0
 
     place_tolerance: Positive = 0.08

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from enum import Enum
 
 from roomba.configuration.docking import DockingConfig
-from roomba.geometry import Pose, Twist
+from roomba.geometry import Pose, Twist, wrap_angle
 from roomba.mission.docking.expected_time import RobotTime
 from roomba.mission.docking.step import DockSenses
 
@@ -50,11 +50,7 @@ class Undocking:
         self._moved = (0.0, 0.0)
         self._wanted = Twist()
         self._touches = senses.bumper
-        away = _believed(senses)
-        is_near = away is not None and away.distance_to(station.x, station.y) < (
-            config.undocked_distance
-        )
-        is_docked = senses.is_charging or is_near
+        is_docked = senses.is_charging or _stands_in(station, _believed(senses), config)
         self._state = UndockState.BACKING_OUT if is_docked else UndockState.OUT
         self._reason = ""
 
@@ -97,6 +93,13 @@ class Undocking:
         if self._time.elapsed > config.undock_time_limit:
             return failed, "it took too long: see what is behind the robot or holds its wheels"
         return UndockState.BACKING_OUT, ""
+
+
+def _stands_in(station: Pose, pose: Pose | None, config: DockingConfig) -> bool:
+    """Whether a robot that gets no current stands in the station all the same."""
+    if pose is None or pose.distance_to(station.x, station.y) >= config.undocked_distance:
+        return False
+    return abs(wrap_angle(pose.theta - station.theta)) <= config.undocked_turn
 
 
 def _believed(senses: DockSenses) -> Pose | None:

@@ -196,6 +196,18 @@ def test_a_clock_that_is_set_changes_little(jump: float) -> None:
     assert rig.seconds == pytest.approx(CONFIG.stuck_timeout, abs=2.2)
 
 
+@pytest.mark.parametrize(
+    ("turn", "state"),
+    [(0.3, UndockState.BACKING_OUT), (-0.8, UndockState.OUT), (2.5, UndockState.OUT)],
+)
+def test_a_robot_near_its_station_that_looks_away_is_out(turn: float, state: UndockState) -> None:
+    away = STATION.compose(Pose(-0.16, 0.08, turn))
+    undocking = Undocking(CONFIG, STATION, DockSenses(0.0, away))
+    step = undocking.tick(DockSenses(0.05, away))
+    assert step.state is state
+    assert (step.twist == Twist()) is (state is UndockState.OUT)
+
+
 def test_it_takes_no_longer_than_its_time_limit() -> None:
     """It comes nearer and nearer to being out, but so slowly that it is of no use."""
     docked = DockSenses(0.0, DOCKED, is_charging=True)
