@@ -175,7 +175,11 @@ def test_a_program_without_signs_of_life_is_watched_for_its_end_alone(run: Run) 
 def test_what_is_not_kept_may_end(run: Run) -> None:
     sleep = "lambda: os.execv('/bin/sleep', ['sleep', '1000'])"
     robot = run("supervisor.add('one', live)", f"supervisor.add('window', {sleep}, is_kept=False)")
-    os.kill(robot.starts("window", 1), signal.SIGTERM)
+    window = robot.starts("window", 1)
+    # Before it is another program it has the supervisor's way with signals.
+    comm = Path(f"/proc/{window}/comm")
+    wait_until(lambda: comm.read_text(encoding="ascii") == "sleep\n", 20.0, "it is a program")
+    os.kill(window, signal.SIGTERM)
     wait_until(lambda: "window was ended by SIGTERM" in robot.program.output, 20.0)
     one = robot.starts("one", 1)
     os.kill(one, signal.SIGKILL)
