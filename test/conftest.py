@@ -98,6 +98,7 @@ TIMED = (
     "ros/test_position_pub_node.py",
     "ros/test_speed_pub_node.py",
     "system/faults",
+    "system/test_foreign_robot.py",
     "system/test_isolation.py",
     "system/test_walk.py",
 )
