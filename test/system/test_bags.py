@@ -1,6 +1,7 @@
 """Recording a run and playing it again."""
 
 import json
+import itertools
 import math
 import signal
 import sys
@@ -85,11 +86,14 @@ def test_our_own_recorder_loses_less_than_a_second_when_it_is_killed(bag: Path) 
     mended = mend_bag(own) if needs_mending(own) else None
     assert mended is None or mended.messages > 1000
     told, kept = on_the_way(positions(bag)), on_the_way(positions(own))
-    assert told[: len(kept)] == kept
+    # A busy rosbag leaves out some of its own: what it has, ours has, in that order, to the end.
+    ours = iter(kept)
+    lost = list(itertools.dropwhile(lambda place: place in ours, told))
     # Three of the robot's seconds are one, in which it tells thirty positions.
-    assert len(told) - len(kept) <= 30
-    with rosbag.Bag(str(bag)) as theirs, rosbag.Bag(str(own)) as ours:
-        topics = ours.get_type_and_topic_info().topics
+    assert len(lost) <= 30
+    assert len(kept) >= len(told) - len(lost)
+    with rosbag.Bag(str(bag)) as theirs, rosbag.Bag(str(own)) as mine:
+        topics = mine.get_type_and_topic_info().topics
         everything = theirs.get_type_and_topic_info().topics
     missing = {name for name in everything if "/camera/" not in name} - topics.keys()
     assert missing <= {"/rosout", "/rosout_agg"}
