@@ -1,7 +1,7 @@
 """Recording a run and playing it again."""
 
-import json
 import itertools
+import json
 import math
 import signal
 import sys
