@@ -29,9 +29,7 @@ def description(configuration: Path = CONFIGURATION / "robot.yaml") -> str:
 
 def main(arguments: list[str] | None = None) -> int:
     """Print the model; returns 0, or 1 when there is none."""
-    parser = argparse.ArgumentParser(
-        prog="python3 -m roomba_ros.model.description", description=__doc__
-    )
+    parser = argparse.ArgumentParser(prog="python3 -m roomba_ros.model", description=__doc__)
     parser.add_argument(
         "--configuration",
         type=Path,
@@ -45,7 +43,3 @@ def main(arguments: list[str] | None = None) -> int:
         print(error, file=sys.stderr)
         return 1
     return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -4,8 +4,11 @@ import os
 import signal
 import sys
 
-for number in (signal.SIGINT, signal.SIGTERM):
+ENDING = (signal.SIGINT, signal.SIGTERM)
+for number in ENDING:
     signal.signal(number, signal.SIG_DFL)
+# Blocked since the process began anew, below: an interpreter that is interrupted says so at length.
+signal.pthread_sigmask(signal.SIG_UNBLOCK, ENDING)
 
 from roomba.errors import RoombaError  # noqa: E402
 from roomba_ros.supervision.isolation import FLAG, enter_isolation  # noqa: E402
@@ -23,6 +26,7 @@ sys.argv[1:] = arguments
 if not environment.items() <= os.environ.items():
     # The C library reads it when a process starts.
     os.environ.update(environment)
+    signal.pthread_sigmask(signal.SIG_BLOCK, ENDING)
     os.execv(sys.executable, [sys.executable, "-m", "roomba_ros.supervision", *arguments])
 
 from roomba_ros.supervision.run import run_and_leave  # noqa: E402
