@@ -161,7 +161,7 @@ system_packages() { # runtime|dev|bench, or on asking: rviz|screen|robot_state_p
     python3-visualization-msgs ros-visualization-msgs
   )
   if [[ $1 == dev ]]; then
-    packages+=(catkin-lint git nodejs systemd)
+    packages+=(catkin-lint git nodejs shellcheck systemd)
     command -v npm >/dev/null || packages+=(npm) # some packages of nodejs have it in them
     # Ubuntu's package only fetches a snap.
     ! grep -qx 'ID=debian' /etc/os-release || packages+=(chromium)

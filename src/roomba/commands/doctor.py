@@ -24,7 +24,7 @@ from urllib.parse import urlsplit
 SYSTEM_PYTHON = "/usr/bin/python3"
 DEFAULT_MASTER = "http://localhost:11311"
 MODULE_OF_STEP = {
-    "Python packages": ("numba", "numpy", "pydantic", "rich", "shapely", "typer"),
+    "Python packages": ("numba", "numpy", "pydantic", "rich", "shapely"),
     "system packages": ("cv2", "cv_bridge", "rospy", "actionlib"),
 }
 LEAST_FREE_SPACE = 3.0  # GB; a set-up from nothing takes 2 GB, its downloads for a time 0.6 GB

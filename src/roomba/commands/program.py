@@ -75,7 +75,7 @@ checkout: there it is ./roomba COMMAND.
 """
 _MODULES: Final = (
     "cv2", "fastapi", "matplotlib", "numba", "numpy", "PIL", "pydantic", "rich", "rosbags", "scipy",
-    "serial", "shapely", "textual", "typer", "uvicorn", "websockets", "yaml",
+    "serial", "shapely", "textual", "uvicorn", "websockets", "yaml",
 )  # fmt: skip
 _EXTRAS: Final = {"gymnasium": "gym"}
 

@@ -186,7 +186,8 @@ def take_program(program: str, *words: str) -> None:
 
 
 def file_of_module(name: str) -> Path:
-    return ROOT.joinpath("src", *name.split(".")).with_suffix(".py")
+    module = ROOT.joinpath("src", *name.split("."))
+    return module / "__main__.py" if module.is_dir() else module.with_suffix(".py")
 
 
 def take_suites(words: list[str]) -> None:
