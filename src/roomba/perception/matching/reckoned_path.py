@@ -13,11 +13,13 @@ from roomba.compilation import entry, inner_part
 Floats = NDArray[np.float64]
 
 _REMEMBERED: Final = 2.0
-"""s; how late a scan may come."""
+"""s; how late a scan may come: all of that time is known, however seldom odometry is told."""
 _MOST: Final = 1024
 """Poses that are remembered at most: with more than 500 a second it is less than that time."""
 _AHEAD: Final = 0.5
 """s; so far beyond the newest pose the robot is taken to go on as it did."""
+_PAIR: Final = 2
+"""Poses between which others are known."""
 _NEWEST: Final = 0
 _COUNT: Final = 1
 """Places in ``ends``."""
@@ -47,7 +49,7 @@ def forget_path(path: ReckonedPath) -> None:
 
 @entry
 def remember(path: ReckonedPath, stamp: float, pose: Floats) -> None:
-    """Add a pose [3] that is newer than all others, and forget those of long ago."""
+    """Add a pose [3] that is newer than all others, and forget those that no scan needs."""
     rows, ends = path.rows, path.ends
     size = rows.shape[0]
     newest = (ends[_NEWEST] + 1) % size
@@ -56,9 +58,19 @@ def remember(path: ReckonedPath, stamp: float, pose: Floats) -> None:
         rows[newest, 1 + axis] = pose[axis]
     ends[_NEWEST] = newest
     count = min(ends[_COUNT] + 1, size)
-    while rows[(newest + 1 - count) % size, 0] < stamp - _REMEMBERED:
+    # The newest one from before that time stays: between it and the next one the robot was, too.
+    while count > _PAIR and rows[(newest + 2 - count) % size, 0] < stamp - _REMEMBERED:
         count -= 1
     ends[_COUNT] = count
+
+
+@inner_part
+def is_told_within(path: ReckonedPath, seconds: float) -> bool:
+    """Whether the newest two poses are no more than some seconds apart."""
+    rows, ends = path.rows, path.ends
+    newest = ends[_NEWEST]
+    before = (newest - 1) % rows.shape[0]
+    return bool(ends[_COUNT] >= _PAIR and rows[newest, 0] - rows[before, 0] <= seconds)
 
 
 @entry

@@ -41,6 +41,8 @@ class Robot:
     turn_error: float = 0.0
     way_error: float = 0.0
     """Shares that odometry is off by."""
+    told: float = 20.0
+    """Hz; of its odometry."""
     leap: float = 0.0
     """m; by which odometry jumps once, after half of the drive."""
 
@@ -75,7 +77,8 @@ def mapped(robot: Robot, seconds: float = 45.0) -> tuple[Mapper, float]:
                 step.theta * (1.0 + robot.turn_error),
             )
         )
-        mapper.move(now, odometry)
+        if tick % round(20.0 / robot.told) == 0:
+            mapper.move(now, odometry)
         if tick % every == 0 and now >= robot.late:
             mapper.see(now, scan(robot, true_pose(now - robot.late), angles, generator), lidar)
             if now > 5.0:
@@ -107,6 +110,7 @@ ROBOTS = {
     "240 degrees up to 4 m": Robot(fan=4.18, noise=0.005, no_echo=math.inf, farthest=4.0),
     "late by 0.15 s": Robot(late=0.15),
     "odometry off by a tenth": Robot(turn_error=0.1, way_error=-0.1),
+    "a scan each 2.5 s, and odometry with it alone": Robot(rate=0.4, told=0.4, turn_error=0.05),
     "odometry that leaps by half a metre": Robot(leap=0.5, turn_error=0.03),
 }
 
@@ -118,7 +122,8 @@ def test_it_makes_a_map(robot: Robot) -> None:
     # Until it has learned how late they are, late scans lie where the robot is by then.
     assert worst < 0.15 + robot.leap + 0.5 * robot.late
     made = mapper.finish()
-    end = true_pose(0.05 * (45 * 20 - 1))
+    told = round(20.0 / robot.told)
+    end = true_pose(0.05 * ((45 * 20 - 1) // told * told))
     assert mapper.pose.distance_to(end.x, end.y) < 0.06 + SPEED * robot.late
     ghosts, holes = wrong_cells(made, FURNISHED)
     assert (ghosts, holes) == (0, 0) or ghosts + holes <= 4

@@ -14,11 +14,13 @@ import numpy as np
 from roomba.angles import wrapped
 from roomba.compilation import entry, inner_part
 from roomba.perception.localization.belief.belief import Row, Rows
-from roomba.perception.matching.reckoned_path import ReckonedPath, pose_at
+from roomba.perception.matching.reckoned_path import ReckonedPath, is_told_within, pose_at
 
 _STEP: Final = 0.05
 _COUNT: Final = 9
 """s; latencies from 0 on that are compared, so far apart and so many."""
+_SELDOM: Final = 0.25
+"""s; odometry that is told less often than that says nothing of so short times."""
 _KEPT: Final = 0.99
 """Share of what was learned that counts after another scan: about the last hundred do."""
 _LEAST_TURNED: Final = 0.1
@@ -56,7 +58,7 @@ def learn_latency(latencies: Rows, turn: float, stamp: float, path: ReckonedPath
     ``stamp``, s, is the scan's; ``path`` tells where dead reckoning had the robot.
     """
     latency = latencies[0]
-    is_known = not math.isnan(turn)
+    is_known = not math.isnan(turn) and is_told_within(path, _SELDOM)
     for index in range(_COUNT):
         heading = math.nan
         if pose_at(path, stamp - index * _STEP, latency.pose):

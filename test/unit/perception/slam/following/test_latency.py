@@ -18,16 +18,20 @@ def heading(time: float) -> float:
 
 
 class Scans:
-    """Scans that come each 0.1 s, and odometry each 0.02 s."""
+    """Scans that come each 0.1 s, and odometry each 0.02 s, or with each n-th scan alone."""
 
-    def __init__(self) -> None:
+    def __init__(self, seldom: int = 0) -> None:
+        self.seldom, self.count = seldom, 0
         self.path, self.latency, self.now = ReckonedPath.empty(), no_latency(), 10.0
 
     def come(self, turn: float, heading: Callable[[float], float] = heading) -> None:
         """Let 0.1 s pass; the scan then is turned by so much against the one before, rad."""
-        for _ in range(5):
+        self.count += 1
+        for step in range(5):
             self.now += 0.02
-            remember(self.path, self.now, np.array([0.0, 0.0, heading(self.now)]))
+            is_told = self.count % self.seldom == step == 0 if self.seldom else True
+            if is_told:
+                remember(self.path, self.now, np.array([0.0, 0.0, heading(self.now)]))
         learn_latency(self.latency, turn, self.now, self.path)
 
     @property
@@ -68,6 +72,15 @@ def test_what_is_not_known_is_left_out() -> None:
         then = scans.now + 0.1 - 0.2
         scans.come(math.nan if index % 2 else heading(then) - heading(then - 0.1))
     assert scans.seconds == pytest.approx(0.2, abs=1e-9)
+
+
+def test_odometry_that_is_told_seldom_says_nothing() -> None:
+    """Between two of its poses nothing tells when the robot turned."""
+    scans = Scans(seldom=10)
+    for _ in range(600):
+        then = scans.now + 0.1
+        scans.come(heading(then) - heading(then - 0.1))
+    assert (scans.seconds, float(scans.latency[0]["turned"])) == (0.0, 0.0)
 
 
 def test_without_odometry_of_that_time_nothing_is_learned() -> None:
