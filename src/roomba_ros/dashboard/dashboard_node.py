@@ -8,15 +8,16 @@ import socket
 
 import rospy
 
-from roomba.client.ports import DEFAULT_PORT, PAGE_SOCKET
+from roomba.client.ports import DEFAULT_PORT, OUTSIDE_ADDRESS, PAGE_SOCKET
 from roomba.errors import ConfigError
 from roomba.history.database import History
 from roomba.history.folder import history_folder
 from roomba.history.recorder import HistoryKeeper
 from roomba.history.run import RunSource
 from roomba.ui.web.app import create_app
-from roomba.ui.web.guard import Guard
+from roomba.ui.web.guard import LOOPBACK
 from roomba.ui.web.kept_token import kept_token
+from roomba.ui.web.reach import ALL, addresses_of, guard_for, is_host
 from roomba.ui.web.server import PageServer, listen
 from roomba_ros.dashboard.graph_robot import GraphRobot
 from roomba_ros.rosbridge.bridge import RosBridge
@@ -30,15 +31,16 @@ _ANY = -1
 
 
 class DashboardNode:
-    """Serves the page on loopback, and prints its address with the token that commands need.
+    """Serves the page, and prints its address with the token that commands need.
 
     With a socket that :data:`PAGE_SOCKET` names it serves there: that of an isolated robot is
     reached from outside.
 
     Programs reach the graph over the same server, by rosbridge. Publishes, subscribes and calls
     what :class:`GraphRobot` does, and what programs ask :class:`RosBridge` for.
-    Parameters: ``~port`` (by default -1: 8400, or the next that is free; 0: any), ``~home`` (what
-    runs are kept under in the history).
+    Parameters: ``~port`` (by default -1: 8400, or the next that is free; 0: any), ``~host`` (by
+    default 127.0.0.1, this machine alone; 0.0.0.0: the network as well), ``~home`` (what runs are
+    kept under in the history).
     """
 
     period = _PERIOD
@@ -47,12 +49,15 @@ class DashboardNode:
         """Connect and serve; raises ServerError when no port is free."""
         self._robot = GraphRobot(read_robot_config())
         self._robot.start()
-        guard = Guard(kept_token())
-        app = create_app(self._robot, guard, _keeper(), RosBridge())
-        self._server = PageServer(app, _bound())
+        bound = _bound()
+        guard = guard_for(kept_token(), bound.getsockname()[0])
+        self._server = PageServer(create_app(self._robot, guard, _keeper(), RosBridge()), bound)
         self._server.start()
         # Not to the log, which every program on the graph can read.
-        print(f"The page: {self._server.address}#token={guard.token}", flush=True)
+        address, *others = addresses_of(bound, guard.token, os.environ.get(OUTSIDE_ADDRESS, ""))
+        print(f"The page: {address}", flush=True)
+        for other in others:
+            print(f"The page, from other machines of the network: {other}", flush=True)
 
     def tick(self, _: float) -> None:
         """Drive as the hand on the page wants."""
@@ -75,7 +80,16 @@ def _bound() -> socket.socket:
     if given is not None:
         return socket.socket(fileno=int(given))
     port = _port()
-    return listen("127.0.0.1", DEFAULT_PORT if port == _ANY else port, is_fixed=port != _ANY)
+    return listen(_host(), DEFAULT_PORT if port == _ANY else port, is_fixed=port != _ANY)
+
+
+def _host() -> str:
+    host = rospy.get_param("~host", LOOPBACK[0])
+    if not isinstance(host, str) or not is_host(host):
+        raise ConfigError(
+            f"parameter ~host: expected an address of this machine, such as {ALL}, got {host!r}"
+        )
+    return host
 
 
 def _port() -> int:

@@ -17,7 +17,8 @@ from typing import Final
 
 import rospkg
 
-from roomba.client.ports import DEFAULT_PORT, PAGE_SOCKET, PORTS
+from roomba.client.address import HERE, outside_address
+from roomba.client.ports import DEFAULT_PORT, OUTSIDE_ADDRESS, PAGE_SOCKET, PORTS
 from roomba_ros.supervision.namespace import IsolationError, has_own_network, isolate
 
 FLAG: Final = "--isolated"
@@ -37,13 +38,13 @@ def page_socket(arguments: Sequence[str], environment: Mapping[str, str]) -> soc
         return None
     if environment.get("LISTEN_PID") == str(os.getpid()):
         return socket.socket(fileno=_FROM_SYSTEMD)
-    wanted = given.get("page_port", "-1")
+    wanted, host = given.get("page_port", "-1"), given.get("page_host", HERE)
     ports = PORTS if wanted == "-1" else (wanted,)
     for port in ports:
         bound = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
         bound.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:
-            bound.bind(("127.0.0.1", int(port)))
+            bound.bind((host, int(port)))
             bound.listen()
         except (OSError, ValueError, OverflowError) as error:
             bound.close()
@@ -52,7 +53,7 @@ def page_socket(arguments: Sequence[str], environment: Mapping[str, str]) -> soc
             return bound
     raise IsolationError(
         f"expected port {wanted if wanted != '-1' else f'{DEFAULT_PORT} and up'} for the page, "
-        f"got: {reason}; choose another by page_port:=N"
+        f"got: {reason}; choose another by page_port:=N, page_host:=ADDRESS"
     )
 
 
@@ -64,6 +65,7 @@ def enter_isolation(arguments: list[str]) -> None:
     lock = _take_record()
     page = page_socket(arguments, os.environ)
     if page is not None:
+        os.environ[OUTSIDE_ADDRESS] = outside_address()
         os.set_inheritable(page.fileno(), True)
         os.environ[PAGE_SOCKET] = str(page.detach())
     if not has_own_network():

@@ -186,8 +186,9 @@ def take_program(program: str, *words: str) -> None:
 
 
 def file_of_module(name: str) -> Path:
-    module = ROOT.joinpath("src", *name.split("."))
-    return module / "__main__.py" if module.is_dir() else module.with_suffix(".py")
+    """Return the file that runs when a module, or a package, is named."""
+    path = ROOT.joinpath("src", *name.split("."))
+    return path / "__main__.py" if path.is_dir() else path.with_suffix(".py")
 
 
 def take_suites(words: list[str]) -> None:

@@ -8,7 +8,7 @@ import sys
 from typing import Final
 
 from roomba.commands.play.living import add_robot_options, wanted_robot
-from roomba.commands.play.serving import add_page_options, listen_on, serve_page
+from roomba.commands.play.serving import add_page_options, listen_at, serve_page
 from roomba.commands.spelling import spelled
 from roomba.errors import RoombaError
 from roomba.history.database import History
@@ -24,7 +24,7 @@ def main(arguments: list[str] | None = None) -> int:
     wanted = _parser().parse_args(arguments)
     try:
         client = wanted_robot(wanted)
-        bound = listen_on(wanted.port)
+        bound = listen_at(wanted)
     except RoombaError as error:
         print(f"{PROGRAM}: {error}", file=sys.stderr)
         return 2

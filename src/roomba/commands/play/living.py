@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import math
 
-from roomba.commands.options import number
+from roomba.commands.options import MOST_SEED, number, whole
 from roomba.commands.trials.homes import playable_home_of, rooms_of
 from roomba.commands.trials.runs import mission_config, robot_config_of
 from roomba.commands.trials.trial import Trial, Wheels
@@ -59,12 +59,18 @@ def live_client(
     return LiveClient(home, mission, rooms, speed)
 
 
-def add_robot_options(parser: argparse.ArgumentParser) -> None:
+def add_robot_options(parser: argparse._ActionsContainer) -> None:
     """Add the robot's home, and how it lives there."""
     parser.add_argument(
         "--home", default="flat", metavar="NAME|FOLDER", help="the home (default: flat)"
     )
-    parser.add_argument("--seed", type=int, default=0, metavar="N")
+    parser.add_argument(
+        "--seed",
+        type=whole(0, MOST_SEED),
+        default=0,
+        metavar="N",
+        help="of its dirt and of its sensors' errors: the same one makes the same (default: 0)",
+    )
     parser.add_argument(
         "--speed",
         type=_speed,

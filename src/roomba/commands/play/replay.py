@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 from typing import Final
 
-from roomba.commands.play.serving import add_page_options, listen_on, serve_page
+from roomba.commands.play.serving import add_page_options, listen_at, serve_page
 from roomba.commands.spelling import spelled
 from roomba.errors import RoombaError
 from roomba.history.database import LAST, History
@@ -25,7 +25,7 @@ def main(arguments: list[str] | None = None) -> int:
     try:
         figures, recording = _run_of(wanted.run, History(wanted.history or history_folder()))
         robot = RecordedRobot(figures, recording)
-        bound = listen_on(wanted.port)
+        bound = listen_at(wanted)
     except RoombaError as error:
         print(f"{PROGRAM}: {error}", file=sys.stderr)
         return 2

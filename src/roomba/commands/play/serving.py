@@ -9,27 +9,42 @@ import sys
 import webbrowser
 
 from roomba.client.observed import ObservedRobot
-from roomba.client.ports import DEFAULT_PORT
+from roomba.client.ports import DEFAULT_PORT, LAST_PORT
+from roomba.commands.options import whole
 from roomba.history.recorder import HistoryKeeper
 from roomba.ui.web.app import create_app
-from roomba.ui.web.guard import Guard
+from roomba.ui.web.guard import LOOPBACK
 from roomba.ui.web.kept_token import kept_token
+from roomba.ui.web.reach import ALL, addresses_of, guard_for, is_host
 from roomba.ui.web.server import PageServer, listen
 
 
 def add_page_options(parser: argparse.ArgumentParser) -> None:
-    """Add what is the same for every page: its port, and whether a browser is opened."""
+    """Add what is the same for every page: where it is, and whether a browser is opened."""
     parser.add_argument(
-        "--port", type=int, metavar="N", help=f"default: {DEFAULT_PORT}, or the next that is free"
+        "--port",
+        type=whole(0, LAST_PORT),
+        metavar="N",
+        help="of the page; 0: any that is free "
+        f"(default: {DEFAULT_PORT}, or the next that is free)",
+    )
+    parser.add_argument(
+        "--host",
+        type=_host,
+        default=LOOPBACK[0],
+        metavar="ADDRESS",
+        help=f"where it is reached; {ALL}: from all machines of the home network, which then see "
+        "all that it shows (default: from this machine alone)",
     )
     parser.add_argument(
         "--no-open", dest="open", action="store_false", help="open no browser on the page"
     )
 
 
-def listen_on(port: int | None) -> socket.socket:
-    """Return a socket of a port, or of one that is free; raises ServerError."""
-    return listen("127.0.0.1", port or DEFAULT_PORT, is_fixed=port is not None)
+def listen_at(wanted: argparse.Namespace) -> socket.socket:
+    """Return a socket where the options want the page; raises ServerError."""
+    port = DEFAULT_PORT if wanted.port is None else wanted.port
+    return listen(wanted.host, port, is_fixed=wanted.port is not None)
 
 
 def serve_page(
@@ -41,12 +56,24 @@ def serve_page(
     keeper: HistoryKeeper | None = None,
 ) -> None:
     """Print the address, and serve the page of a robot until Ctrl-C."""
-    guard = Guard(kept_token())
+    guard = guard_for(kept_token(), bound.getsockname()[0])
     server = PageServer(create_app(robot, guard, keeper), bound)
-    address = f"{server.address}#token={guard.token}"
-    print(f"{told}\n\n    {address}\n\nCtrl-C ends it.")
+    address, *others = addresses_of(bound, guard.token)
+    print(f"{told}\n\n    {address}")
+    if others:
+        print("\nFrom other machines of the network:\n")
+        print("\n".join(f"    {other}" for other in others))
+    print("\nCtrl-C ends it.")
     sys.stdout.flush()
     if is_opened:
         webbrowser.open(address)
     with contextlib.suppress(KeyboardInterrupt):
         server.serve()
+
+
+def _host(text: str) -> str:
+    if not is_host(text):
+        raise argparse.ArgumentTypeError(
+            f"expected an address of this machine in numbers, such as {ALL}, got {text!r}"
+        )
+    return text

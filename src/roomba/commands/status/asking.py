@@ -9,6 +9,7 @@ import urllib.request
 from collections.abc import Iterable
 from typing import Any, Final
 
+from roomba.client.address import HERE
 from roomba.errors import RoombaError
 
 _PATIENCE: Final = 6.0
@@ -21,34 +22,35 @@ class NoRobotError(RoombaError):
     """No robot answers; the message says where it was looked for, and what helps."""
 
 
-def find_robot(ports: Iterable[int]) -> int:
+def find_robot(ports: Iterable[int], host: str = HERE) -> int:
     """Return the first port at which the page of a robot is served; raises NoRobotError."""
     tried = list(ports)
     for port in tried:
         try:
-            if _asked(port, "openapi.json").get("info", {}).get("title") == "roomba_robot":
+            if _asked(host, port, "openapi.json").get("info", {}).get("title") == "roomba_robot":
                 return port
         except (OSError, ValueError, AttributeError, http.client.HTTPException):
             continue
     where = f"port {tried[0]}" if len(tried) == 1 else f"the ports {tried[0]} to {tried[-1]}"
+    machine = "this machine" if host == HERE else host
     raise NoRobotError(
-        f"expected a robot at {where} of this machine, but none answers; start one by "
-        "./roomba run, or by ./roomba play, or say by --port where its page is"
+        f"expected a robot at {where} of {machine}, but none answers; start one by ./roomba run, "
+        "or by ./roomba play, or name the port of the address that they printed"
     )
 
 
-def state_at(port: int) -> dict[str, Any]:
+def state_at(port: int, host: str = HERE) -> dict[str, Any]:
     """Return the robot's state as its API tells it; raises NoRobotError with the reason."""
     try:
-        return _asked(port, "api/v1/state")
+        return _asked(host, port, "api/v1/state")
     except urllib.error.HTTPError as refusal:
         raise NoRobotError(_reason_of(refusal)) from refusal
     except (OSError, ValueError, http.client.HTTPException) as error:
         raise NoRobotError(f"the robot at port {port} does not answer any more: {error}") from error
 
 
-def _asked(port: int, path: str) -> dict[str, Any]:
-    with _OPENER.open(f"http://127.0.0.1:{port}/{path}", timeout=_PATIENCE) as answer:
+def _asked(host: str, port: int, path: str) -> dict[str, Any]:
+    with _OPENER.open(f"http://{host}:{port}/{path}", timeout=_PATIENCE) as answer:
         told = json.load(answer)
     if not isinstance(told, dict):
         raise ValueError(f"expected an object, got {type(told).__name__}")

@@ -14,7 +14,8 @@ from rich.console import Console
 from rich.live import Live
 from rich.table import Table
 
-from roomba.client.ports import DEFAULT_PORT, PORTS
+from roomba.client.ports import DEFAULT_PORT, LAST_PORT, PORTS
+from roomba.commands.options import whole
 from roomba.commands.spelling import spelled
 from roomba.commands.status.asking import NoRobotError, find_robot, state_at
 from roomba.ui.state_words import lines_of
@@ -71,6 +72,7 @@ def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog=PROGRAM,
         description="What the robot does now: one of ./roomba run, or of ./roomba play.",
+        epilog="Exit status: 0 when it was told, 1 when no robot answers, 2 for wrong usage.",
     )
     parser.add_argument("--json", action="store_true", help="for a program to read")
     parser.add_argument(
@@ -78,7 +80,7 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument(
         "--port",
-        type=int,
+        type=whole(1, LAST_PORT),
         metavar="N",
         help=f"that of its page (default: {DEFAULT_PORT}, or the next at which one answers)",
     )

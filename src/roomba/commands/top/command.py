@@ -7,8 +7,8 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Final
-from urllib.parse import parse_qs, urlsplit
 
+from roomba.client.address import HERE, page_address, token_for
 from roomba.client.ports import DEFAULT_PORT, PORTS
 from roomba.commands.play.living import add_robot_options, wanted_robot
 from roomba.commands.spelling import spelled
@@ -31,9 +31,10 @@ def main(arguments: list[str] | None = None) -> int:
     try:
         if wanted.demo:
             with _demo_robot(wanted) as (port, token):
-                return _show(port, token, None)
-        named, token = _where(wanted.address)
-        return _show(find_robot(PORTS if named is None else (named,)), token, TopicRates())
+                return _show(HERE, port, token, None)
+        address = page_address(wanted.address)
+        port = find_robot(PORTS if address.port is None else (address.port,), address.host)
+        return _show(address.host, port, token_for(address, port), TopicRates())
     except NoRobotError as error:
         print(f"{PROGRAM}: {error}", file=sys.stderr)
         return 1
@@ -42,13 +43,13 @@ def main(arguments: list[str] | None = None) -> int:
         return 2
 
 
-def _show(port: int, token: str, rates: TopicRates | None) -> int:
-    """Show the robot at a port: on a terminal until its user leaves, else once in plain lines."""
+def _show(host: str, port: int, token: str, rates: TopicRates | None) -> int:
+    """Show the robot of a page: on a terminal until its user leaves, else once in plain lines."""
     if not (sys.stdin.isatty() and sys.stdout.isatty()):
-        for name, value in lines_of(state_at(port)):
+        for name, value in lines_of(state_at(port, host)):
             print(f"{name:<8} {value}")
         return 0
-    return TopApp(PageLink(port, token), rates).run() or 0
+    return TopApp(PageLink(port, token, host), rates).run() or 0
 
 
 @contextmanager
@@ -66,37 +67,26 @@ def _demo_robot(wanted: argparse.Namespace) -> Iterator[tuple[int, str]]:
         client.end()
 
 
-def _where(address: str) -> tuple[int | None, str]:
-    """Return port and token of the address of a page, or of a port alone; raises RoombaError."""
-    if not address or address.isdigit():
-        return (int(address) if address else None), ""
-    try:
-        parts = urlsplit(address)
-        port = parts.port
-    except ValueError:
-        port = None
-    if port is None:
-        raise RoombaError(
-            f"expected a port, or the address that ./roomba run or play printed, got {address!r}"
-        )
-    return port, parse_qs(parts.fragment).get("token", [""])[0]
-
-
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog=PROGRAM,
-        description="The robot of ./roomba run, or of ./roomba play, on a whole terminal.",
+        description="The robot of ./roomba run, or of ./roomba play, on a whole terminal, with "
+        "keys that command it. In a pipe: its state once, in plain lines.",
+        epilog="Its keys command a robot that this user started on this machine; for another one "
+        "give the whole printed address, with its token. Exit status: 0 when it was left, 1 when "
+        "no robot answers, 2 for wrong usage.",
     )
     parser.add_argument(
         "address",
         nargs="?",
         default="",
         metavar="ADDRESS|PORT",
-        help="the address that run or play printed, without whose token one can only look; or "
-        f"its port (default: {DEFAULT_PORT}, or the next at which a page answers)",
+        help="the address that run or play printed, or its port (default: "
+        f"{DEFAULT_PORT}, or the next at which a page answers)",
     )
-    parser.add_argument(
-        "--demo", action="store_true", help="a robot that lives in a home meanwhile, without ROS"
+    demo = parser.add_argument_group("a robot of its own, without ROS")
+    demo.add_argument(
+        "--demo", action="store_true", help="a robot lives in a home while it is looked at"
     )
-    add_robot_options(parser)
+    add_robot_options(demo)
     return parser

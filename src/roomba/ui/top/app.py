@@ -128,7 +128,7 @@ class TopApp(App[int]):
             if link.link == "gone" and reason:
                 lines.append(("because", reason))
         elif not link.may_change:
-            lines.append(("keys", "only look: no token was given"))
+            lines.append(("keys", "only look: no token that fits"))
         return lines
 
     def _log_changes(self) -> None:

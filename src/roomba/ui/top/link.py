@@ -35,9 +35,9 @@ class PageLink:
     ``link`` is connecting, live, gone (the robot does not answer) or lost (its server does not).
     """
 
-    def __init__(self, port: int, token: str) -> None:
+    def __init__(self, port: int, token: str, host: str = "127.0.0.1") -> None:
         """Connect nothing yet; without a token, an empty one, the robot can only be looked at."""
-        self._address, self._token = f"127.0.0.1:{port}", token
+        self._address, self._token = f"{host}:{port}", token
         self.state: dict[str, Any] = {}
         self.home: dict[str, Any] = {}
         self.grids: dict[str, Grid] = {}
@@ -120,8 +120,8 @@ class PageLink:
 
 
 NO_TOKEN: Final = (
-    "its server obeys only who has the token of the address that ./roomba run or play printed: "
-    "give that address to ./roomba top"
+    "its server obeys only who has its token, and none that fits was found: give ./roomba top the "
+    "whole address that ./roomba run or play printed"
 )
 """Why nothing can be changed."""
 

@@ -1,13 +1,14 @@
 """Who may do what: only pages of this server, and only with its token may anything be changed.
 
-The server listens on loopback. A page of another site that is open in the same browser reaches
-loopback as well, so Host and Origin are checked (DNS rebinding, cross-site requests), and each
-request that changes something must carry the token of the printed address.
+The server listens on loopback, or where its user opened it. A page of another site that is open in
+the same browser reaches it as well, so Host and Origin are checked (DNS rebinding, cross-site
+requests), and each request that changes something must carry the token of the printed address.
 """
 
 from __future__ import annotations
 
 import hmac
+import ipaddress
 import secrets
 from collections import deque
 from dataclasses import dataclass, field
@@ -20,7 +21,7 @@ _TOKEN_BYTES: Final = 24
 """192 bits."""
 _GUESSING_PERIOD: Final = 60.0
 """s in which so many wrong tokens are answered."""
-_LOOPBACK: Final = ("127.0.0.1", "localhost", "::1")
+LOOPBACK: Final = ("127.0.0.1", "localhost", "::1")
 
 
 def new_token() -> str:
@@ -30,10 +31,15 @@ def new_token() -> str:
 
 @dataclass
 class Guard:
-    """Checks requests; ``hosts`` are names by which the server may be called."""
+    """Checks requests; ``hosts`` are names by which the server may be called.
+
+    With ``takes_numbers`` it may be called by any address in numbers as well: a name can be made to
+    lead here by its owner (DNS rebinding), a number cannot.
+    """
 
     token: str
-    hosts: tuple[str, ...] = _LOOPBACK
+    hosts: tuple[str, ...] = LOOPBACK
+    takes_numbers: bool = False
     _guesses: deque[float] = field(default_factory=deque)
 
     def is_host(self, host: str | None) -> bool:
@@ -41,9 +47,10 @@ class Guard:
         if not host:
             return False
         try:
-            return urlsplit(f"//{host}").hostname in self.hosts
+            name = urlsplit(f"//{host}").hostname or ""
         except ValueError:
             return False
+        return name in self.hosts or (self.takes_numbers and _is_number(name))
 
     def is_origin(self, origin: str | None, host: str | None) -> bool:
         """Whether a request's Origin header, if there is one, is a page of this server."""
@@ -65,3 +72,12 @@ class Guard:
             return True
         self._guesses.append(now)
         return False
+
+
+def _is_number(name: str) -> bool:
+    """Whether a host is an address in numbers."""
+    try:
+        ipaddress.ip_address(name)
+    except ValueError:
+        return False
+    return True

@@ -14,6 +14,7 @@ from roomba.client.ports import PORTS
 from roomba.errors import RoombaError
 from roomba.ui.web.bounded.connections import GuardedConnection, GuardedSocket
 from roomba.ui.web.bounded.limits import BACKLOG, MOST_BODY, PING, SENT_AHEAD
+from roomba.ui.web.reach import addresses_of
 
 _START: Final = 10.0
 """s of wall time within which the server must be up."""
@@ -42,7 +43,10 @@ def listen(host: str, port: int, *, is_fixed: bool) -> socket.socket:
         else:
             return bound
     wanted = f"port {port}" if port == last else f"one of the ports {port} to {last}"
-    raise ServerError(f"expected {wanted} of {host} to be free: {reason}; choose another by --port")
+    raise ServerError(
+        f"expected {wanted} of {host} to be free: {reason}; choose another: "
+        "--port N, or page_port:=N of run"
+    )
 
 
 class PageServer:
@@ -51,8 +55,7 @@ class PageServer:
     def __init__(self, app: FastAPI, bound: socket.socket) -> None:
         """Serve nothing yet."""
         self._socket = bound
-        host, port = bound.getsockname()[:2]
-        self.address = f"http://{host}:{port}/"
+        self.address = addresses_of(bound)[0]
         """Where it is reached."""
         self._server = uvicorn.Server(
             uvicorn.Config(

@@ -32,6 +32,21 @@ def test_hosts(host: str | None, is_ours: bool) -> None:
 
 
 @pytest.mark.parametrize(
+    ("host", "is_ours"),
+    [
+        ("192.0.2.7:8400", True),
+        ("[fd00::2]:8400", True),
+        ("127.0.0.1:8400", True),
+        ("192.0.2.7.evil.example:8400", False),
+        ("evil.example", False),
+        ("", False),
+    ],
+)
+def test_one_that_is_opened_is_called_by_numbers_too(host: str, is_ours: bool) -> None:
+    assert Guard("t", takes_numbers=True).is_host(host) is is_ours
+
+
+@pytest.mark.parametrize(
     ("origin", "is_ours"),
     [
         (None, True),

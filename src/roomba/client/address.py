@@ -1,0 +1,91 @@
+"""The addresses that pages are printed with, and which of this user's tokens a page may be told."""
+
+from __future__ import annotations
+
+import os
+import socket
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+from urllib.parse import parse_qs, urlsplit
+
+from roomba.client.ports import LAST_PORT
+from roomba.client.token import read_token
+from roomba.errors import RoombaError
+
+HERE: Final = "127.0.0.1"
+"""The host that is this machine, to itself alone."""
+_LOOPBACK: Final = (HERE, "localhost")
+_FAR: Final = ("192.0.2.1", 9)
+"""Of a network for documents (RFC 5737): the system says from which address it would be reached,
+and nothing is sent."""
+_SOCKETS: Final = Path("/proc/net/tcp")
+"""Those of IPv4, a line each, as proc(5) has it."""
+_LISTENS: Final = "0A"
+"""The state of a socket that waits for connections."""
+
+
+@dataclass(frozen=True, slots=True)
+class PageAddress:
+    """Where a page may be: ``port`` None is the first that answers; ``token`` is empty without."""
+
+    host: str = HERE
+    port: int | None = None
+    token: str = ""
+
+
+def page_address(text: str) -> PageAddress:
+    """Return the address that is written as a page's server prints it, or as a port alone.
+
+    Raises RoombaError.
+    """
+    if not text:
+        return PageAddress()
+    try:
+        parts = urlsplit(f"//{HERE}:{text}" if text.isdecimal() else text)
+        host, port = parts.hostname, parts.port
+    except ValueError:
+        host = port = None
+    if not host or not port:
+        raise RoombaError(
+            f"expected a port up to {LAST_PORT}, or the address that ./roomba run or play "
+            f"printed, got {text!r}"
+        )
+    return PageAddress(host, port, parse_qs(parts.fragment).get("token", [""])[0])
+
+
+def token_for(address: PageAddress, port: int) -> str:
+    """Return the token for the page at a port of an address; empty where there is none.
+
+    It is that of the address, or this user's kept one. The kept one is for a server of this user,
+    or of root, on this machine alone: any program may listen at a port and ask for it.
+    """
+    if address.token:
+        return address.token
+    if address.host not in _LOOPBACK or listener_of(port) not in (os.geteuid(), 0):
+        return ""
+    return read_token() or ""
+
+
+def listener_of(port: int, sockets: Path = _SOCKETS) -> int | None:
+    """Return the user whose program listens at a port of this machine; None if that is not told."""
+    try:
+        lines = sockets.read_text("ascii").splitlines()[1:]
+        for line in lines:
+            _, local, _, state, _, _, _, user, *_ = line.split()
+            if state == _LISTENS and int(local.rpartition(":")[2], 16) == port:
+                return int(user)
+    except (OSError, ValueError):
+        pass
+    return None
+
+
+def outside_address() -> str:
+    """Return the address of this machine in the network that leads out; empty without one."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as asking:
+        try:
+            asking.connect(_FAR)
+        except OSError:
+            return ""
+        address: str = asking.getsockname()[0]
+        return address
