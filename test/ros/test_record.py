@@ -6,6 +6,7 @@ import signal
 import sys
 from pathlib import Path
 
+import pytest
 import rosbag
 import rospy
 from fixtures.graph import RosGraph
@@ -16,6 +17,7 @@ from roomba_robot.msg import VacuumState
 from std_msgs.msg import Float32, String
 
 from roomba.recordings.bags.mending import mend_bag, needs_mending
+from roomba_ros.bags.record import main
 
 
 def record(graph: RosGraph, *arguments: str) -> Program:
@@ -140,3 +142,20 @@ def test_without_a_master_it_says_so(tmp_path: Path) -> None:
         assert recorder.ends(30.0) == 1
         assert "no ROS master answers" in recorder.output
     assert not (tmp_path / "a.bag").exists()
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("a.bag", "--seconds", "5"), "expected --when-wrong as well"),
+        (("--topics", "/pose", "a.bag"), "a file stands before the option"),
+        (("--when-wrong", "--seconds", "0"), "expected 1 to 3600 s"),
+    ],
+)
+def test_what_makes_no_sense_is_refused_before_a_robot_is_looked_for(
+    words: tuple[str, ...], said: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit) as ended:
+        main(words)
+    assert ended.value.code == 2
+    assert said in capsys.readouterr().err

@@ -117,7 +117,11 @@ class History:
         with self._opened() as database:
             found = _select(database, "id = ?", (number,))
         if not found:
-            raise HistoryError(f"{self.path}: expected the number of a run, got {number}")
+            newest = self.named(LAST).number
+            raise HistoryError(
+                f"{self.path}: expected the number of a run that was kept, the newest is {newest}, "
+                f"got {number}; ./roomba report lists them"
+            )
         return found[0]
 
     def named(self, word: str) -> KeptRun:
@@ -125,10 +129,15 @@ class History:
         if word == LAST:
             runs = self.runs(limit=1)
             if not runs:
-                raise HistoryError(f"there are no runs yet in {self.path.parent}")
+                raise HistoryError(
+                    f"there are no runs yet in {self.path.parent}; ./roomba sim makes one, and "
+                    "each clean of ./roomba play and run"
+                )
             return runs[0]
         if not word.isdecimal():
-            raise HistoryError(f"expected the number of a run, or {LAST}, got {word!r}")
+            raise HistoryError(
+                f"expected the number of a run, or {LAST}, got {word!r}; ./roomba report lists them"
+            )
         return self.run(int(word))
 
     def recording(self, number: int) -> RunRecording:

@@ -95,7 +95,10 @@ def unpacked(content: bytes) -> tuple[RunFigures, RunRecording]:
             words = tuple(Word(**word) for word in about["words"])
             return _figures(about["figures"]), RunRecording(trace, words, about["home"], layers)
     except UNREADABLE as error:
-        raise RunFileError(f"expected a recorded run, found something else: {error!r}") from error
+        raise RunFileError(
+            "expected a recorded run, as ./roomba report --recording writes it, got a file that "
+            f"is damaged, or something else ({type(error).__name__})"
+        ) from error
 
 
 def _layer(place: list[float], array: Any) -> CellLayer:

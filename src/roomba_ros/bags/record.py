@@ -14,6 +14,7 @@ from typing import Final
 
 import rospkg
 
+from roomba.commands.options import number
 from roomba.errors import RoombaError
 from roomba.recordings.bags.ring import Message, Ring, keep_newest, save
 from roomba.recordings.bags.writer import BagWriter
@@ -21,6 +22,10 @@ from roomba_ros.bags.recorder import GraphEar
 from roomba_ros.bags.wrongs import Wrongs
 from roomba_ros.runtime.node import leave, register, require_master, told_to_end
 
+PROGRAM: Final = "./roomba record"
+_SECONDS: Final = 60.0
+_MOST_SECONDS: Final = 3600.0
+"""s of wall time that are kept before a mishap, by default and at most."""
 _FLUSH: Final = 0.4
 """s of wall time; no message is longer in memory alone."""
 _LOOK: Final = 1.0
@@ -127,7 +132,7 @@ class BlackBox:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Record until Ctrl-C; returns the exit status."""
-    wanted = _parser().parse_args(arguments)
+    wanted = _wanted(arguments)
     require_master()
     register(f"record_{os.getpid()}")
     try:
@@ -136,7 +141,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         _record(ear, kept)
         print(f"\n{kept.close()}", flush=True)
     except (RoombaError, OSError) as error:
-        print(f"./roomba record: {error}", file=sys.stderr, flush=True)
+        print(f"{PROGRAM}: {error}", file=sys.stderr, flush=True)
         return 1
     return 0
 
@@ -144,12 +149,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def _begun(wanted: argparse.Namespace) -> Recording | BlackBox:
     if wanted.when_wrong:
         folder = wanted.file or Path(rospkg.get_ros_home()) / "roomba_robot" / "mishaps"
+        seconds = _SECONDS if wanted.seconds is None else wanted.seconds
         print(
-            f"The last {wanted.seconds:g} s are saved in {folder} when something goes wrong; "
+            f"The last {seconds:g} s are saved in {folder} when something goes wrong; "
             "Ctrl-C ends it.",
             flush=True,
         )
-        return BlackBox(folder, wanted.seconds)
+        return BlackBox(folder, seconds)
     path = wanted.file or Path(time.strftime("%Y-%m-%d-%H-%M-%S.bag"))
     begun = Recording(path)
     print(f"Recording into {path}; Ctrl-C ends it.", flush=True)
@@ -168,8 +174,31 @@ def _record(ear: GraphEar, kept: Recording | BlackBox) -> None:
         time.sleep(_PAUSE)
 
 
+def _wanted(arguments: Sequence[str] | None) -> argparse.Namespace:
+    """Return what the command line asks for; leaves with status 2 where it makes no sense."""
+    parser = _parser()
+    wanted = parser.parse_args(arguments)
+    if wanted.seconds is not None and not wanted.when_wrong:
+        parser.error("--seconds: how many are kept in memory, so expected --when-wrong as well")
+    for name in wanted.topics:
+        if not name.startswith("/"):
+            parser.error(
+                f"--topics: expected names that begin with /, got {name!r}; a file stands before "
+                "the option"
+            )
+    return wanted
+
+
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(prog="./roomba record", description=__doc__)
+    parser = argparse.ArgumentParser(
+        prog=PROGRAM,
+        description="What the robot of ./roomba run tells, as a bag of ROS 1 that a kill leaves "
+        "whole; or, with --when-wrong, the last minute before a mishap, each time there is one. "
+        "Ctrl-C ends it.",
+        epilog="Exit status: 0 after Ctrl-C, 1 when no robot runs or the disk refuses, 2 for wrong "
+        "usage. A file that is there already is left alone. ./roomba export makes other forms of a "
+        "bag.",
+    )
     parser.add_argument(
         "file",
         nargs="?",
@@ -179,19 +208,24 @@ def _parser() -> argparse.ArgumentParser:
         "roomba_robot/mishaps in the ROS home folder)",
     )
     parser.add_argument(
-        "--topics", nargs="+", default=[], metavar="NAME", help="only these, with their slashes"
+        "--topics", nargs="+", default=[], metavar="/NAME", help="only these (default: all)"
     )
     parser.add_argument(
-        "--camera", action="store_true", help="the camera's pictures as well: it draws for that"
+        "--camera",
+        action="store_true",
+        help="the camera's pictures as well, which are drawn only while they are heard",
     )
     parser.add_argument(
         "--when-wrong",
         action="store_true",
-        help="keep the last seconds in memory, and save them when something goes wrong: trouble, "
-        "an error of the robot, an emergency stop",
+        help="keep the last seconds in memory, and save them when something goes wrong: a process "
+        "ends or hangs, the robot reports an error, an emergency stop",
     )
     parser.add_argument(
-        "--seconds", type=float, default=60.0, metavar="S", help="how many of them (default: 60)"
+        "--seconds",
+        type=number(lambda value: 1.0 <= value <= _MOST_SECONDS, f"1 to {_MOST_SECONDS:g} s"),
+        metavar="S",
+        help=f"how many of them (default: {_SECONDS:g})",
     )
     return parser
 

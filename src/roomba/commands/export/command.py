@@ -37,9 +37,14 @@ def main(arguments: list[str] | None = None) -> int:
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog=PROGRAM,
-        description="A recording for other programs. (export valetudo HOME: a home as a map.)",
+        description="A recording for other programs, with the types of its messages. One whose "
+        "recorder was killed gets its index first. (export valetudo HOME: a home as a map.)",
+        epilog="Exit status: 0 when it was written, 2 when it was not, with the reason; nothing "
+        "is overwritten.",
     )
-    parser.add_argument("file", type=Path, metavar="FILE.bag", help="of ./roomba record, or any")
+    parser.add_argument(
+        "file", type=Path, metavar="FILE.bag", help="of ./roomba record, or of rosbag"
+    )
     parser.add_argument(
         "--to",
         required=True,

@@ -44,14 +44,18 @@ def _run_of(word: str, history: History) -> tuple[RunFigures, RunRecording]:
 
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
-        prog=PROGRAM, description="Show a recorded run on a page, with a time line to drag."
+        prog=PROGRAM,
+        description="Show a recorded run on a page, with a time line to drag. Nothing is driven.",
+        epilog="Exit status: 0 after Ctrl-C, 2 for wrong usage, and for a run that there is not or "
+        "that cannot be read. Bags (./roomba record) are played by rosbag play, or exported.",
     )
     parser.add_argument(
         "run",
         nargs="?",
         default=LAST,
         metavar="RUN|FILE.run",
-        help=f"a run's number, {LAST} (default), or a file of `report --recording`",
+        help=f"a run's number in the list of report, {LAST} (default) for the newest, or a file of "
+        "report --recording",
     )
     parser.add_argument(
         "--history", type=Path, metavar="FOLDER", help="where the runs are (default: the own)"

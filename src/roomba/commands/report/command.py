@@ -68,7 +68,10 @@ def _report(wanted: argparse.Namespace, history: History, run: KeptRun) -> None:
 def _list(history: History) -> None:
     runs = history.runs(limit=1_000_000)
     if not runs:
-        print(f"There are no runs yet in {history.path.parent}: ./roomba sim makes one.")
+        print(
+            f"There are no runs yet in {history.path.parent}: ./roomba sim makes one, and each "
+            "clean of ./roomba play and run."
+        )
         return
     tell_tables([runs_table(runs[:_LISTED]), weeks_table(runs)], None, quiet=False)
     if len(runs) > _LISTED:
@@ -94,17 +97,24 @@ def _write(path: Path, text: str) -> None:
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog=PROGRAM,
-        description="Tell of the runs that sim, play and run kept. Without a run: the newest ones, "
-        "and totals by week.",
+        description="Tell of the runs that sim, play and run kept. Without a run: a list of the "
+        "newest ones, and totals by week. With one: its report, an HTML file that stands alone.",
+        epilog="Exit status: 0 when it was told, 1 when a file cannot be written, 2 for wrong "
+        "usage, and for a run that there is not.",
     )
-    parser.add_argument("run", nargs="?", metavar="RUN", help=f"its number, or {LAST}")
+    parser.add_argument(
+        "run", nargs="?", metavar="RUN", help=f"its number in the list, or {LAST} for the newest"
+    )
     parser.add_argument(
         "--out", type=Path, metavar="FILE.html", help="the report (default: run-RUN.html)"
     )
     parser.add_argument("--compare", nargs=2, metavar=("A", "B"), help="two runs in one report")
     parser.add_argument("--csv", type=Path, metavar="FILE|-", help="all runs, for programs")
     parser.add_argument(
-        "--recording", type=Path, metavar="FILE.run", help="the run as a file, for replay"
+        "--recording",
+        type=Path,
+        metavar="FILE.run",
+        help="also the run as a file, to replay elsewhere",
     )
     parser.add_argument(
         "--history", type=Path, metavar="FOLDER", help="where the runs are (default: the own)"

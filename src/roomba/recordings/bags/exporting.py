@@ -10,13 +10,17 @@ from enum import Enum
 from pathlib import Path
 from typing import Final
 
-from rosbags.convert import ConverterError, convert
+from rosbags.convert import convert
 
 from roomba.recordings.bags.mending import Mended, mend_bag, needs_mending
+from roomba.recordings.bags.records import MAGIC
 from roomba.recordings.readings import LogError
 
 _VERSION: Final = 9
 """Of the form of ROS 2's bags: the first that has the types of messages in it."""
+_LONGEST_REASON: Final = 200
+"""Characters of what a reader says of a damaged bag."""
+_OTHER: Final = "something else"
 
 
 class Form(Enum):
@@ -33,8 +37,7 @@ def export_bag(source: Path, target: Path, form: Form) -> Mended | None:
 
     A bag whose recorder was killed is mended before, and what came of that is returned.
     """
-    if not source.exists():
-        raise LogError(f"{source}: expected a recording, there is no such file")
+    _require_recording(source)
     if target.exists():
         raise LogError(f"{target}: there is something already; name another place by --out")
     mended = mend_bag(source) if source.is_file() and needs_mending(source) else None
@@ -67,5 +70,27 @@ def _convert(source: Path, made: Path, form: Form) -> None:
                 exclude_msgtypes=[],
                 include_msgtypes=[],
             )
-    except ConverterError as error:
-        raise LogError(f"{source}: cannot be exported: {error}") from error
+    except OSError:
+        raise
+    # What a damaged bag makes a reader stumble over has no end of kinds.
+    except Exception as error:
+        reason = str(error).strip().partition("\n")[0][:_LONGEST_REASON] or type(error).__name__
+        raise LogError(f"{source}: it is damaged, and cannot be exported: {reason}") from error
+
+
+def _require_recording(source: Path) -> None:
+    """Raise LogError unless a file or folder begins as a recording does."""
+    if not source.exists():
+        raise LogError(f"{source}: expected a recording, there is no such file")
+    if source.is_dir():
+        if not (source / "metadata.yaml").is_file():
+            raise LogError(
+                f"{source}: expected a .bag, or the folder of a bag of ROS 2, got {_OTHER}"
+            )
+        return
+    with source.open("rb") as file:
+        begin = file.read(len(MAGIC))
+    if not begin:
+        raise LogError(f"{source}: expected a recording, got an empty file")
+    if begin != MAGIC:
+        raise LogError(f"{source}: expected a .bag of ./roomba record or rosbag, got {_OTHER}")

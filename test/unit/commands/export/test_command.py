@@ -12,7 +12,7 @@ from rosbags.highlevel import AnyReader
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 from roomba.commands.export.command import main
-from roomba.recordings.bags.records import MessageSource
+from roomba.recordings.bags.records import MAGIC, MessageSource
 from roomba.recordings.bags.writer import BagWriter
 
 
@@ -124,17 +124,44 @@ def test_a_bag_whose_recorder_was_killed_is_mended(
 
 
 @pytest.mark.parametrize(
-    ("name", "said"),
-    [("none.bag", "there is no such file"), ("text.bag", "cannot be exported")],
+    ("name", "content", "said"),
+    [
+        ("none.bag", None, "there is no such file"),
+        ("empty.bag", b"", "got an empty file"),
+        ("text.bag", b"something else", "expected a .bag of ./roomba record or rosbag"),
+        ("torn.bag", MAGIC, "it is damaged, and cannot be exported"),
+    ],
 )
 def test_what_cannot_be_exported_is_refused(
-    tmp_path: Path, name: str, said: str, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, name: str, content: bytes | None, said: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    (tmp_path / "text.bag").write_text("something else")
+    if content is not None:
+        (tmp_path / name).write_bytes(content)
     before = sorted(tmp_path.iterdir())
     assert main([str(tmp_path / name), "--to", "mcap"]) == 2
     assert said in capsys.readouterr().err
+    assert main([str(tmp_path), "--to", "mcap", "--out", str(tmp_path / "a.mcap")]) == 2
+    assert "the folder of a bag of ROS 2" in capsys.readouterr().err
     assert sorted(tmp_path.iterdir()) == before
+
+
+def test_a_damaged_bag_is_exported_or_refused_in_one_line(
+    bag: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    whole, random = bag.read_bytes(), np.random.default_rng(1)
+    statuses = set()
+    for each in range(30):
+        damaged = bytearray(whole)
+        for place in random.integers(len(MAGIC), len(whole), 3):
+            damaged[place] = random.integers(256)
+        path = bag.with_name(f"damaged_{each}.bag")
+        path.write_bytes(damaged)
+        status = main([str(path), "--to", "mcap"])
+        said = capsys.readouterr().err
+        assert status == 0 or (said.count("\n") == 1 and "damaged" in said), said
+        statuses.add(status)
+    assert statuses == {0, 2}
+    assert not list(bag.parent.glob(".export_*"))
 
 
 def test_what_is_there_is_left_alone(bag: Path, capsys: pytest.CaptureFixture[str]) -> None:
