@@ -22,15 +22,16 @@ from roomba.history.totals import totals_by_week
 _RATE_WINDOW: Final = 20.0
 """s over which the rate of dirt is the mean."""
 _DIFFERENCES: Final = (
-    ("Clean, m²", "covered", 2),
-    ("Wanted, m²", "wanted", 2),
-    ("Share, %", "fraction", 2),
-    ("Time, s", "duration", 0),
-    ("Way, m", "distance", 1),
-    ("Turning, rad", "turning", 1),
-    ("Dirt, g", "dirt", 2),
-    ("Energy, Wh", "energy", 2),
+    ("Clean, m²", "covered", 2, 1.0),
+    ("Wanted, m²", "wanted", 2, 1.0),
+    ("Share, %", "fraction", 2, 100.0),
+    ("Time, min", "duration", 1, 1.0 / 60.0),
+    ("Way, m", "distance", 1, 1.0),
+    ("Turning, rad", "turning", 1, 1.0),
+    ("Dirt, g", "dirt", 2, 1.0),
+    ("Energy, Wh", "energy", 2, 1.0),
 )
+"""Name with its unit, attribute of the figures, digits, and what makes that unit of it."""
 
 
 def report_of(run: KeptRun, recording: RunRecording | None, others: Iterable[KeptRun] = ()) -> str:
@@ -56,6 +57,7 @@ def comparison_of(
     first, second = one[0], other[0]
     sides = "".join(
         f'<div class="side"><h2>Run {run.number}</h2>'
+        + f'<p class="quiet">{escape(_named(run.figures))}</p>'
         + _headline(run.figures)
         + _floor(run.figures, recording)
         + _missed(run.figures.missed)
@@ -87,6 +89,12 @@ def _headline(run: RunFigures) -> str:
     return f'<p class="headline">{escape(text)}</p>'
 
 
+def _named(run: RunFigures) -> str:
+    """Return what tells a run from others: its home, its time, its program, its seed."""
+    seed = "" if run.source.seed is None else f", seed {run.source.seed}"
+    return f"{run.source.home}, {words.moment(run.began)}, by {run.source.program}{seed}"
+
+
 def _pairs(rows: Sequence[tuple[str, str]]) -> str:
     cells = "".join(
         f'<tr><th scope="row">{escape(name)}</th><td>{escape(value)}</td></tr>'
@@ -95,13 +103,13 @@ def _pairs(rows: Sequence[tuple[str, str]]) -> str:
     return f'<table class="pairs">{cells}</table>'
 
 
-def _table(names: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+def _table(names: Sequence[str], rows: Iterable[Sequence[str]], kind: str = "figures") -> str:
     head = "".join(f'<th scope="col">{escape(name)}</th>' for name in names)
     body = "".join(
         "<tr>" + "".join(f"<td>{escape(value)}</td>" for value in row) + "</tr>" for row in rows
     )
     return (
-        f'<div class="wide" tabindex="0" role="group" aria-label="{escape(names[0])}">'
+        f'<div class="wide {kind}" tabindex="0" role="group" aria-label="{escape(names[0])}">'
         f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table></div>"
     )
 
@@ -123,10 +131,10 @@ def _missed(missed: Sequence[MissedFloor]) -> str:
     if not missed:
         return _section("Missed", "<p>Nothing.</p>")
     rows = (
-        (str(number), miss.room or "–", f"{miss.area:.2f} m²", miss.reason)
+        (str(number), miss.room or "–", words.area(miss.area), miss.reason)
         for number, miss in enumerate(missed, 1)
     )
-    return _section("Missed", _table(("Number", "Room", "Area", "Why"), rows))
+    return _section("Missed", _table(("Number", "Room", "Area", "Why"), rows, "reasons"))
 
 
 def _charts(recording: RunRecording | None) -> str:
@@ -147,7 +155,7 @@ def _charts(recording: RunRecording | None) -> str:
         + "</figure>"
         for title, values, highest in charts
     )
-    return _section("Over the run", body)
+    return _section("Over the run", f'<div class="charts">{body}</div>')
 
 
 def _rate(times: NDArray[np.float64], dirt: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -171,7 +179,7 @@ def _over_time(runs: Sequence[RunFigures]) -> str:
         ends = (words.moment(cleans[0].began), words.moment(cleans[-1].began))
         times = np.array([run.began for run in cleans])
         svg = chart_svg(title, times, np.array([run.dirt for run in cleans]), ends)
-        chart = f"<figure><figcaption>{title}</figcaption>{svg}</figure>"
+        chart = f'<div class="charts"><figure><figcaption>{title}</figcaption>{svg}</figure></div>'
     rows = (
         (
             week.week,
@@ -195,20 +203,23 @@ def _again(run: RunFigures) -> str:
 
 def _differences(one: KeptRun, other: KeptRun) -> str:
     rows = []
-    for name, attribute, digits in _DIFFERENCES:
-        values = [float(getattr(run.figures, attribute)) for run in (one, other)]
-        if attribute == "fraction":
-            values = [100.0 * value for value in values]
+    for name, attribute, digits, scale in _DIFFERENCES:
+        values = [scale * float(getattr(run.figures, attribute)) for run in (one, other)]
         texts = [f"{value:.{digits}f}" if math.isfinite(value) else "–" for value in values]
         change = values[1] - values[0]
-        told = f"{change:+.{digits}f}" if math.isfinite(change) else "–"
+        told = _signed(f"{change:+.{digits}f}") if math.isfinite(change) else "–"
         rows.append((name, *texts, told))
     rows.append(
         (
             "Places missed",
             str(len(one.figures.missed)),
             str(len(other.figures.missed)),
-            f"{len(other.figures.missed) - len(one.figures.missed):+d}",
+            _signed(f"{len(other.figures.missed) - len(one.figures.missed):+d}"),
         )
     )
     return _table(("Figure", f"Run {one.number}", f"Run {other.number}", "Change"), rows)
+
+
+def _signed(number: str) -> str:
+    """Return a number with a minus sign that is as wide as its plus."""
+    return number.replace("-", "−")

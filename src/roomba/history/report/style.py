@@ -23,7 +23,10 @@ column-gap:32px}.pairs tr{display:flex;border-bottom:1px solid var(--line)}
 .pairs th{flex:0 0 88px}.pairs th,.pairs td{border:0}
 .wide{overflow-x:auto}
 svg{display:block;width:100%;max-height:640px;background:#f1ede5;border-radius:8px;color:#2b2e33}
-svg.chart{background:none;max-height:200px}
+.charts{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(100%,440px),1fr));\
+gap:16px}
+svg.chart{background:none;overflow:visible}
+.quiet{color:var(--quiet)}
 .way{fill:none;stroke:#2b2e33;stroke-opacity:.45;stroke-width:1.6;stroke-linejoin:round}
 .ring{fill:none;stroke:#b7ae9f;stroke-width:1.5}
 .station{stroke:#2b2e33;stroke-width:5;fill:none}
@@ -31,7 +34,7 @@ svg.chart{background:none;max-height:200px}
 svg text{font:22px system-ui,sans-serif;text-anchor:middle;dominant-baseline:middle;fill:#2b2e33;\
 stroke:#fffffe;stroke-opacity:.85;stroke-width:5;paint-order:stroke}
 svg .number{font-weight:700}
-svg.chart text{font-size:12px;text-anchor:start;\
+svg.chart text{font-size:15px;text-anchor:start;\
 dominant-baseline:auto;fill:var(--quiet);stroke:none}
 svg.chart .end{text-anchor:end}
 .axis{fill:none;stroke:var(--line)}.line{fill:none;stroke:var(--accent);stroke-width:1.5}
@@ -43,6 +46,9 @@ border:1px solid var(--line)}
 pre{white-space:pre-wrap;overflow-wrap:anywhere;font-size:.875rem}
 .sides{display:grid;grid-template-columns:1fr 1fr;gap:16px}
 .side{display:flex;flex-direction:column;gap:16px;min-width:0}
-@media (max-width:599px){svg.chart text{font-size:20px}}
+@media (max-width:599px){svg.chart text{font-size:20px}th,td{padding-right:10px}\
+.reasons thead{position:absolute;clip-path:inset(50%)}\
+.reasons tr{display:flex;flex-wrap:wrap;border-bottom:1px solid var(--line)}\
+.reasons td{border:0;padding:2px 10px 2px 0}.reasons td:last-child{flex-basis:100%}}
 @media (max-width:899px){.sides{grid-template-columns:1fr}}
 """

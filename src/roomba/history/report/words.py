@@ -4,8 +4,12 @@ from __future__ import annotations
 
 import math
 import time
+from typing import Final
 
 from roomba.history.run import RunFigures
+
+_SMALLEST: Final = 0.01
+"""m2 that are told in numbers."""
 
 
 def outcome_of(run: RunFigures) -> str:
@@ -16,6 +20,11 @@ def outcome_of(run: RunFigures) -> str:
 def number(value: float, digits: int, unit: str) -> str:
     """Return a number with its unit; a dash where it is not known."""
     return f"{value:.{digits}f} {unit}" if math.isfinite(value) else "–"
+
+
+def area(value: float) -> str:
+    """Return an area, m2, that is more than nothing."""
+    return number(value, 2, "m²") if not value < _SMALLEST else f"< {_SMALLEST} m²"
 
 
 def share(value: float) -> str:

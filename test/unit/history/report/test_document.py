@@ -124,6 +124,14 @@ def test_two_runs_are_compared(kept: KeptRun, recording: RunRecording) -> None:
     read = Read(comparison_of((kept, recording), (other, recording)))
     assert read.open == []
     assert ["Clean, m²", "11.00", "11.50", "+0.50"] in read.rows
-    assert ["Way, m", "24.0", "20.0", "-4.0"] in read.rows
+    assert ["Way, m", "24.0", "20.0", "−4.0"] in read.rows
+    assert ["Time, min", "1.0", "1.0", "+0.0"] in read.rows
     assert ["Energy, Wh", "–", "–", "–"] in read.rows
-    assert ["Places missed", "1", "0", "-1"] in read.rows
+    assert ["Places missed", "1", "0", "−1"] in read.rows
+
+
+def test_a_place_that_is_less_than_is_told_in_numbers_is_no_nothing(kept: KeptRun) -> None:
+    (miss,) = kept.figures.missed
+    figures = replace(kept.figures, missed=(replace(miss, area=0.004),))
+    read = Read(report_of(replace(kept, figures=figures), None))
+    assert ["1", "hall", "< 0.01 m²", "a thing <stood> in the way"] in read.rows
