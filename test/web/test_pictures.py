@@ -12,7 +12,13 @@ from PIL import Image
 
 def test_the_page_is_drawn_in_both_sizes_and_a_report(tmp_path: Path) -> None:
     command = (sys.executable, "-m", "roomba.commands.pictures", str(tmp_path))
-    wanted = {"page_phone": 390, "page_way": 4 * 390 + 3 * 24, "replay": 1280, "report": 1100}
+    wanted = {
+        "page_phone": 390,
+        "page_way": 3 * 390 + 2 * 24,
+        "replay": 1280,
+        "report": 1100,
+        "top": 1200,
+    }
     subprocess.run((*command, "--only", *wanted), check=True, timeout=300.0)
     for name, width in wanted.items():
         picture = cv2.imread(str(tmp_path / f"{name}.png"))

@@ -26,6 +26,8 @@ from roomba_ros.runtime.parameters import read_robot_config
 
 _PERIOD = 0.05
 """s of the ROS clock between two commands while the robot is driven by hand."""
+_REPEATED = ("sensors", "wheels")
+"""Parameters that a run is repeated with, where they are not as usual."""
 _ANY = -1
 """The port that stands for the first one that is free."""
 
@@ -39,8 +41,8 @@ class DashboardNode:
     Programs reach the graph over the same server, by rosbridge. Publishes, subscribes and calls
     what :class:`GraphRobot` does, and what programs ask :class:`RosBridge` for.
     Parameters: ``~port`` (by default -1: 8400, or the next that is free; 0: any), ``~host`` (by
-    default 127.0.0.1, this machine alone; 0.0.0.0: the network as well), ``~home`` (what runs are
-    kept under in the history).
+    default 127.0.0.1, this machine alone; 0.0.0.0: the network as well), ``~home``, ``~seed``,
+    ``~sensors``, ``~wheels`` (what runs are kept under in the history, and repeated by).
     """
 
     period = _PERIOD
@@ -69,8 +71,13 @@ class DashboardNode:
 
 
 def _keeper() -> HistoryKeeper:
-    home = str(rospy.get_param("~home", "home"))
-    source = RunSource("ros", home, None, shlex.join(["./roomba", "run", f"home:={home}"]))
+    home, seed = str(rospy.get_param("~home", "home")), rospy.get_param("~seed", None)
+    known = seed if isinstance(seed, int) else None
+    words = [f"home:={home}"] + ([] if known is None else [f"seed:={known}"])
+    words += [
+        f"{name}:={value}" for name in _REPEATED if (value := rospy.get_param(f"~{name}", ""))
+    ]
+    source = RunSource("ros", home, known, shlex.join(["./roomba", "run", *words]))
     return HistoryKeeper(History(history_folder()), source, rospy.logwarn)
 
 

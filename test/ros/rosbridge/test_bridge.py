@@ -234,6 +234,7 @@ def test_what_is_advertised_ends_with_the_program(bridge_graph: RosGraph, served
         {"op": "publish", "topic": "/x" * 300, "type": "std_msgs/String", "msg": {}},
         {"op": "advertise_service", "service": "/x", "type": "std_srvs/Trigger"},
         {"op": "set_level", "level": "loud"},
+        {"op": "fragment", "data": "{}", "num": 0, "total": 1},
         {"op": "x" * 1000},
     ],
 )
@@ -289,3 +290,19 @@ def test_garbage_is_refused_and_then_the_program_is(served: Served, reader: str)
     assert closed >= GARBAGE / 150
     with talking(served.address) as program:
         assert program.call("/rosapi/get_time")["result"] is True
+
+
+def test_a_compression_is_answered_with_json_and_a_warning_where_warnings_are_wanted(
+    bridge_graph: RosGraph, reader: str
+) -> None:
+    Probe(bridge_graph)
+    latched("/packed", String).publish("whole")
+    with talking(reader) as program:
+        program.say(op="set_level", level="warning")
+        program.say(
+            op="subscribe", topic="/packed", type="std_msgs/String", compression="cbor", id="this"
+        )
+        told = program.hear()
+        assert (told["op"], told["level"], told["id"]) == ("status", "warning", "this")
+        assert "expected compression none, got 'cbor'" in told["msg"]
+        assert program.hear()["msg"] == {"data": "whole"}

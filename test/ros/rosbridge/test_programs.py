@@ -33,6 +33,7 @@ def test_roslib_of_npm_works_as_it_is(bridge_graph: RosGraph, served: Served) ->
     there.require_used()
     assert told["actions"] == ["/clean", "/dock", "/explore", "/undock", "/walk", "/walk_to_point"]
     assert "/dashboard_node" in told["nodes"]
+    assert told["compressed"] == [told["battery"]["voltage"]] * 3
     assert told["details"]["cell_voltage"] == ["float32"]
     assert told["details"]["header"]["stamp"] == "time"
 

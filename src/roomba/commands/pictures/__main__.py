@@ -38,6 +38,7 @@ from roomba.commands.pictures.sensors.motion import picture_of_motion
 from roomba.commands.pictures.sensors.moving import picture_of_moving
 from roomba.commands.pictures.sensors.odometry import picture_of_odometry
 from roomba.commands.pictures.sensors.station import picture_of_station
+from roomba.commands.pictures.terminal import picture_of_top
 from roomba.commands.pictures.tour import VIEWS, picture_of_home, picture_of_view, picture_of_walk
 from roomba.commands.spelling import spelled
 from roomba.errors import RoombaError
@@ -81,6 +82,7 @@ IN_BROWSER: dict[str, tuple[str, Callable[[Home], Picture]]] = {
     "page_way": ("flat", picture_of_way),
     "replay": ("flat", picture_of_replay),
     "report": ("flat", picture_of_report),
+    "top": ("flat", picture_of_top),
 }
 """Pictures that need a browser: made when they are named."""
 FILMS: dict[str, tuple[str, Callable[[Home], list[Picture]]]] = {

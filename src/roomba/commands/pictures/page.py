@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import contextlib
 import shutil
+import tempfile
 import time
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any, Final
 
 import cv2
@@ -16,7 +18,8 @@ from roomba.commands.sim.kept_run import StateSamples, figures_of, recording_of
 from roomba.commands.trials.runs import run_trial
 from roomba.commands.trials.trial import Trial
 from roomba.errors import RoombaError
-from roomba.history.database import KeptRun
+from roomba.history.database import History, KeptRun
+from roomba.history.recorder import HistoryKeeper
 from roomba.history.replay import RecordedRobot
 from roomba.history.report.document import report_of
 from roomba.history.run import RunFigures, RunRecording, RunSource
@@ -66,19 +69,12 @@ _BROWSERS: Final = ("chromium", "chromium-browser", "google-chrome")
 
 def picture_of_phone(home: Home) -> Picture:
     """Return a phone's window in the dark: two rooms are cleaned in order."""
-    with _served(home, _SPEED) as address, _playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=_browser(), args=["--no-sandbox"])
-        page = browser.new_context(viewport=_PHONE, color_scheme="dark").new_page()
-        page.goto(address)
-        page.wait_for_selector("body[data-phase='docked']")
-        _wait_until(page, _HAS_ROOMS)
+    with _opened(home, _SPEED, _PHONE, color_scheme="dark") as page:
         for name in _FILM_ROOMS:
             page.evaluate(_TAP, name)
         page.click("#clean")
         _wait_for_covered(page)
-        picture = _decoded(page.screenshot())
-        browser.close()
-    return picture
+        return decoded(page.screenshot())
 
 
 def _recorded_clean(home: Home) -> tuple[RunFigures, RunRecording]:
@@ -97,96 +93,127 @@ def picture_of_replay(home: Home) -> Picture:
     server = PageServer(create_app(robot, guard), listen("127.0.0.1", 0, is_fixed=True))
     server.start()
     try:
-        with _playwright() as playwright:
-            browser = playwright.chromium.launch(executable_path=_browser(), args=["--no-sandbox"])
-            page = browser.new_context(viewport={"width": 1280, "height": 800}).new_page()
+        with browser_page({"width": 1280, "height": 800}) as page:
             page.goto(server.address)
             page.wait_for_selector("#timeline:not([hidden])")
             _wait_until(page, _IS_COVERED)
             page.wait_for_timeout(_SETTLED)
-            picture = _decoded(page.screenshot())
-            browser.close()
+            return decoded(page.screenshot())
     finally:
         server.stop()
-    return picture
 
 
 def picture_of_report(home: Home) -> Picture:
     """Return the report of that clean."""
     figures, recording = _recorded_clean(home)
-    document = report_of(KeptRun(1, figures, True), recording)
-    with _playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=_browser(), args=["--no-sandbox"])
-        page = browser.new_context(viewport={"width": 1100, "height": 1250}).new_page()
-        page.set_content(document)
-        picture = _decoded(page.screenshot())
-        browser.close()
-    return picture
+    with browser_page({"width": 1100, "height": 1250}) as page:
+        page.set_content(report_of(KeptRun(1, figures, True), recording))
+        return decoded(page.screenshot())
 
 
 @contextlib.contextmanager
-def _served(home: Home, speed: float) -> Iterator[str]:
-    """Serve the page of a robot in a home; yields its address."""
+def served(
+    home: Home, speed: float, keeper: HistoryKeeper | None = None
+) -> Iterator[tuple[PageServer, Guard]]:
+    """Serve the page of a robot that lives in a home."""
     robot = live_client(home.name, seed=1, speed=speed, knows_map=True)
     guard = Guard(new_token())
-    server = PageServer(create_app(robot, guard), listen("127.0.0.1", 0, is_fixed=True))
+    bound = listen("127.0.0.1", 0, is_fixed=True)
+    server = PageServer(create_app(robot, guard, keeper), bound)
     robot.start()
     server.start()
     try:
-        yield f"{server.address}#token={guard.token}"
+        yield server, guard
     finally:
         server.stop()
         robot.end()
 
 
-def frames_of_page(home: Home) -> list[Picture]:
-    """Return a short film of the page: two rooms are tapped, and the robot cleans them."""
-    with _served(home, _FILM_SPEED) as address, _playwright() as playwright:
+@contextlib.contextmanager
+def browser_page(size: dict[str, int], **wishes: object) -> Iterator[Any]:
+    """Open a window of a browser, px; raises RoombaError where there is none."""
+    with _playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=_browser(), args=["--no-sandbox"])
-        page = browser.new_context(viewport=_FILM_SIZE, color_scheme="light").new_page()
-        page.goto(address)
+        try:
+            yield browser.new_context(viewport=size, **wishes).new_page()
+        finally:
+            browser.close()
+
+
+@contextlib.contextmanager
+def _opened(
+    home: Home,
+    speed: float,
+    size: dict[str, int],
+    keeper: HistoryKeeper | None = None,
+    **wishes: object,
+) -> Iterator[Any]:
+    """Open the page of a robot that stands ready in a home."""
+    with served(home, speed, keeper) as (server, guard), browser_page(size, **wishes) as page:
+        page.goto(f"{server.address}#token={guard.token}")
         page.wait_for_selector("body[data-phase='docked']")
         _wait_until(page, _HAS_ROOMS)
         page.wait_for_timeout(_SETTLED)
-        frames = [_decoded(page.screenshot())] * 4
+        yield page
+
+
+def frames_of_page(home: Home) -> list[Picture]:
+    """Return a short film of the page: two rooms are tapped, and the robot cleans them."""
+    with _opened(home, _FILM_SPEED, _FILM_SIZE, color_scheme="light") as page:
+        frames = [decoded(page.screenshot())] * 4
         for name in _FILM_ROOMS:
             page.evaluate(_TAP, name)
             page.wait_for_timeout(_SETTLED)
-            frames += [_decoded(page.screenshot())] * 4
+            frames += [decoded(page.screenshot())] * 4
         page.click("#clean")
-        frames += [_decoded(page.screenshot()) for _ in range(_FRAMES)]
-        browser.close()
-    return frames
+        return frames + [decoded(page.screenshot()) for _ in range(_FRAMES)]
 
 
 def picture_of_way(home: Home) -> Picture:
-    """Return four windows of a phone: it is ready, rooms are tapped, it cleans, and it tells."""
-    with _served(home, _SPEED) as address, _playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=_browser(), args=["--no-sandbox"])
-        page = browser.new_context(viewport=_PHONE, color_scheme="light", has_touch=True).new_page()
-        page.goto(address)
-        page.wait_for_selector("body[data-phase='docked']")
-        _wait_until(page, _HAS_ROOMS)
-        page.wait_for_timeout(_SETTLED)
-        seen = [_decoded(page.screenshot())]
-        for name in _FILM_ROOMS:
-            page.evaluate(_TAP, name)
-        page.wait_for_timeout(_SETTLED)
-        seen.append(_decoded(page.screenshot()))
-        page.click("#clean")
-        _wait_for_covered(page)
-        seen.append(_decoded(page.screenshot()))
-        page.click("#stop")
-        page.click("[data-tab=more]")
-        page.wait_for_selector("#last:not([hidden])")
-        page.wait_for_timeout(_SETTLED)
-        seen.append(_decoded(page.screenshot()))
-        browser.close()
-    gap = np.full((seen[0].shape[0], _GAP, 3), 255, np.uint8)
-    return np.hstack([part for picture in seen for part in (picture, gap)][:-1])
+    """Return six windows of a phone: a new user's way, from the first look to the report."""
+    with tempfile.TemporaryDirectory() as folder:
+        source = RunSource("play", home.name, 1, f"./roomba play --home {home.name} --seed 1")
+        keeper = HistoryKeeper(History(Path(folder)), source, print)
+        with _opened(home, _SPEED, _PHONE, keeper, color_scheme="light", has_touch=True) as page:
+            seen = _seen_on_the_way(page)
+    rows = [_side_by_side(seen[:3]), _side_by_side(seen[3:])]
+    gap = np.full((_GAP, rows[0].shape[1], 3), 255, np.uint8)
+    return np.vstack([rows[0], gap, rows[1]])
 
 
-def _decoded(screenshot: bytes) -> Picture:
+def _seen_on_the_way(page: Any) -> list[Picture]:
+    seen = [decoded(page.screenshot())]
+    for name in _FILM_ROOMS:
+        page.evaluate(_TAP, name)
+    page.wait_for_timeout(_SETTLED)
+    seen.append(decoded(page.screenshot()))
+    page.click("#clean")
+    _wait_for_covered(page)
+    seen.append(decoded(page.screenshot()))
+    page.get_by_role("button", name="Pause").click()
+    page.wait_for_selector("body[data-phase='paused']")
+    page.wait_for_timeout(_SETTLED)
+    seen.append(decoded(page.screenshot()))
+    page.click("#stop")
+    page.click("[data-tab=more]")
+    page.wait_for_selector("#last:not([hidden])")
+    page.click("#history-open")
+    report = page.get_by_role("link", name="Report").first
+    report.wait_for()
+    page.wait_for_timeout(_SETTLED)
+    seen.append(decoded(page.screenshot()))
+    page.goto(report.evaluate("link => link.href"))
+    seen.append(decoded(page.screenshot()))
+    return seen
+
+
+def _side_by_side(pictures: list[Picture]) -> Picture:
+    gap = np.full((pictures[0].shape[0], _GAP, 3), 255, np.uint8)
+    return np.hstack([part for picture in pictures for part in (picture, gap)][:-1])
+
+
+def decoded(screenshot: bytes) -> Picture:
+    """Return a screenshot as a picture."""
     decoded: Any = cv2.imdecode(np.frombuffer(screenshot, np.uint8), cv2.IMREAD_COLOR)
     picture: Picture = decoded[:, :, ::-1].copy()
     return picture

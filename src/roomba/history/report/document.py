@@ -85,7 +85,8 @@ def _section(title: str, body: str) -> str:
 
 
 def _headline(run: RunFigures) -> str:
-    text = words.outcome_of(run) + (f". {run.message}" if run.message else "")
+    message = run.message[:1].upper() + run.message[1:]
+    text = words.outcome_of(run) + (f". {message}" if message else "")
     return f'<p class="headline">{escape(text)}</p>'
 
 

@@ -41,7 +41,7 @@ class TopApp(App[int]):
 
     TITLE = "roomba top"
     CSS = """
-    #left { width: 50; }
+    #left { width: 56; }
     #state { height: auto; min-height: 9; border: round $primary; padding: 0 1; }
     #topics { height: 1fr; border: round $primary; }
     #map { width: 1fr; height: 100%; border: round $primary; content-align: center middle; }
@@ -66,7 +66,7 @@ class TopApp(App[int]):
     def __init__(self, link: PageLink, rates: TopicRates | None = None) -> None:
         """Show nothing yet; ``rates`` asks for the topics of a ROS graph, if there may be one."""
         super().__init__()
-        self._link, self._rates = link, rates
+        self.link, self._rates = link, rates
         self._limits: dict[str, Any] = {}
         self._said: dict[str, str] = {}
         self._tasks: list[asyncio.Task[None]] = []
@@ -94,7 +94,7 @@ class TopApp(App[int]):
         self._topics.add_columns("topic", "1/s", "by")
         self._topics.can_focus = self._lines_told.can_focus = False
         self._topics.display = False
-        self._tasks = [asyncio.create_task(self._link.run())]
+        self._tasks = [asyncio.create_task(self.link.run())]
         if self._rates is not None:
             self._tasks.append(asyncio.create_task(self._follow_rates(self._rates)))
         self.set_interval(_LOOK, self.look)
@@ -107,7 +107,7 @@ class TopApp(App[int]):
 
     def look(self) -> None:
         """Show what the link has now."""
-        link = self._link
+        link = self.link
         for each in (self._state, self._map):
             each.set_class(link.link != "live", "is-old")
         told = "\n".join(f"{name:<8} {value}" for name, value in self._lines())
@@ -120,7 +120,7 @@ class TopApp(App[int]):
 
     def _lines(self) -> list[tuple[str, str]]:
         """Return what is told of the robot, and of the connection where that is not well."""
-        link = self._link
+        link = self.link
         lines = lines_of(link.state) if "vacuum" in link.state else []
         if link.link != "live":
             reason = str(link.state.get("reason", ""))
@@ -133,13 +133,13 @@ class TopApp(App[int]):
 
     def _log_changes(self) -> None:
         """Write down what changed of state, troubles and errands."""
-        told = self._link.state
+        told = self.link.state
         if "vacuum" not in told:
             return
         vacuum, last = told["vacuum"], told.get("last")
         does = [vacuum["state"], vacuum["phase"]]
         says = {
-            "link": _LINKS.get(self._link.link, "connected"),
+            "link": _LINKS.get(self.link.link, "connected"),
             "state": ", ".join(dict.fromkeys(each for each in does if each)),
             "room": f"in {vacuum['room']}" if vacuum["room"] else "",
             "trouble": vacuum["message"],
@@ -177,7 +177,7 @@ class TopApp(App[int]):
 
     async def action_pause(self) -> None:
         """Let the robot stand, or go on if it waits for that."""
-        is_held = self._link.state.get("vacuum", {}).get("state") in _HELD
+        is_held = self.link.state.get("vacuum", {}).get("state") in _HELD
         await self._obeyed("resume" if is_held else "pause")
 
     async def action_dock(self) -> None:
@@ -194,7 +194,7 @@ class TopApp(App[int]):
 
     async def action_hold(self) -> None:
         """Hold the drive until it is released, or release it."""
-        if self._link.state.get("held"):
+        if self.link.state.get("held"):
             await self._obeyed("release")
         else:
             await self._obeyed("emergency_stop", wish={"reason": "a key of ./roomba top"})
@@ -204,10 +204,10 @@ class TopApp(App[int]):
 
         async def drive() -> None:
             if not self._limits:
-                self._limits = await self._link.limits()
+                self._limits = await self.link.limits()
             speed, turning = self._limits["max_speed"], self._limits["max_angular_speed"]
             turn = min(turning, math.tau) * _TURN * left
-            await self._link.drive(_FORWARD * speed * forward, turn)
+            await self.link.drive(_FORWARD * speed * forward, turn)
 
         await self._tried(drive)
 
@@ -216,7 +216,7 @@ class TopApp(App[int]):
         self.exit(0)
 
     async def _obeyed(self, name: str, told: str = "", wish: dict[str, Any] | None = None) -> None:
-        if await self._tried(lambda: self._link.command(name, wish)):
+        if await self._tried(lambda: self.link.command(name, wish)):
             self._say(told or f"{name.replace('_', ' ')}: asked for")
 
     async def _tried(self, command: Callable[[], Awaitable[None]]) -> bool:

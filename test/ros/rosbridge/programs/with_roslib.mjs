@@ -23,6 +23,13 @@ told.details = ros.decodeTypeDefs(details);
 const battery = new ROSLIB.Topic({ ros, name: "/battery", messageType: "sensor_msgs/BatteryState" });
 told.battery = await asked((answer) => battery.subscribe(answer));
 battery.unsubscribe();
+// The bridge answers these with JSON, which roslib takes as well.
+told.compressed = [];
+for (const compression of ["cbor", "cbor-raw", "png"]) {
+  const wished = new ROSLIB.Topic({ ros, name: "/battery", messageType: "sensor_msgs/BatteryState", compression });
+  told.compressed.push((await asked((answer) => wished.subscribe(answer))).voltage);
+  wished.unsubscribe();
+}
 
 const answer = new ROSLIB.Topic({ ros, name: "/answer", messageType: "std_msgs/String" });
 answer.publish({ data: "hello" });

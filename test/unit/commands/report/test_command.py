@@ -5,8 +5,11 @@ from __future__ import annotations
 import csv
 import io
 import json
+import shlex
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from roomba.commands.report.command import main
@@ -48,6 +51,21 @@ def test_a_real_run_is_reported(
         assert miss["reason"] in document
     assert read_run(tmp_path / "one.run")[0].source.seed == 4
     assert len(document) < 300_000
+
+
+def test_a_run_is_repeated_by_what_was_kept_of_it(history: History) -> None:
+    words = ["--home", "studio", "--seed", "5", "--battery", "0.8", "--things", "1", "--quiet"]
+    assert sim(words) == 0
+    first = history.named("last")
+    program, command, *again = shlex.split(first.figures.source.repeat)
+    assert (program, command) == ("./roomba", "sim")
+    assert sim(again) == 0
+    second = history.named("last")
+    assert second.number > first.number
+    assert replace(second.figures, began=first.figures.began) == first.figures
+    one, other = (history.recording(run.number) for run in (first, second))
+    assert np.array_equal(one.trace, other.trace)
+    assert np.array_equal(one.layers["coverage"].cells, other.layers["coverage"].cells)
 
 
 def test_the_list_tells_runs_and_weeks(
