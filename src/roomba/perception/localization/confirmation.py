@@ -3,14 +3,25 @@
 from __future__ import annotations
 
 import math
+from typing import Final, NamedTuple
 
 from roomba.configuration.localization import LocalizationConfig
 from roomba.geometry import Pose
 from roomba.perception.localization.doubt import Doubt
-from roomba.perception.localization.expecting import where_told
+from roomba.perception.localization.expecting import where_found_near, where_told
 from roomba.perception.localization.relocation import Expectation
 from roomba.perception.matching.scan_view import Fit, ScanView
 from roomba.perception.matching.surface_field import SurfaceField
+
+_TOLD: Final = "what the lidar sees does not fit well where it was told to be"
+_NEAR: Final = "it may have been carried: another place fits what the lidar sees as well"
+
+
+class Refuted(NamedTuple):
+    """A pose that is not to be kept: where the robot was expected, and why not there."""
+
+    expectation: Expectation
+    why: str
 
 
 class Confirmation:
@@ -25,6 +36,7 @@ class Confirmation:
         self.told_at = -math.inf
         self.awaited: Expectation | None = None
         self.compared: Expectation | None = None
+        self._is_near = False
         self._least, self._most = config.fit.good_agree, config.fit.good_through
 
     @property
@@ -46,13 +58,27 @@ class Confirmation:
         """Take what is awaited by a fair fit: it has more evidence than a report."""
         self._least, self._most = self._config.fit.fair_agree, self._config.fit.fair_through
 
+    def compare_near(
+        self, now: float, pose: Pose, fit: Fit, view: ScanView, reckoned: Pose, field: SurfaceField
+    ) -> Refuted | None:
+        """Begin to compare a pose that a scan fits best of all near by, unless it fits well.
+
+        As of :meth:`refuted`, which goes on with it.
+        """
+        self._doubt.drop()
+        good = self._config.fit
+        if fit.agree >= good.good_agree and fit.through <= good.good_through:
+            return None
+        self.compared, self._is_near = where_found_near(pose, self._config), True
+        return self._go_on_comparing(self.compared, now, view, reckoned, field)
+
     def drop(self) -> None:
         """Confirm nothing any more: the pose is not believed."""
         self.awaited = self.compared = None
 
     def refuted(
         self, now: float, fit: Fit, view: ScanView, reckoned: Pose, field: SurfaceField
-    ) -> Expectation | None:
+    ) -> Refuted | None:
         """Take a scan and its fit; return what it refutes, None: the pose is to be kept.
 
         ``now`` is in s, ``reckoned`` the pose of dead reckoning at which the scan was taken.
@@ -61,13 +87,20 @@ class Confirmation:
             return self._checked(self.awaited, fit)
         if self.compared is None:
             return None
-        told = self.compared
-        is_elsewhere = self._doubt.is_elsewhere(now, view, reckoned, told, field)
-        if is_elsewhere is not None:
-            self.compared = None
-        return told if is_elsewhere else None
+        return self._go_on_comparing(self.compared, now, view, reckoned, field)
 
-    def _checked(self, told: Expectation, fit: Fit) -> Expectation | None:
+    def _go_on_comparing(
+        self, here: Expectation, now: float, view: ScanView, reckoned: Pose, field: SurfaceField
+    ) -> Refuted | None:
+        compared = self._doubt.compare(now, view, reckoned, here, field)
+        if compared is None:
+            return None
+        self.compared = None
+        if self._is_near:
+            return Refuted(here, _NEAR) if compared.is_unsure else None
+        return Refuted(here, _TOLD) if compared.is_elsewhere else None
+
+    def _checked(self, told: Expectation, fit: Fit) -> Refuted | None:
         """Take what was told if the scan fits well there; else compare it with the map.
 
         Where it fits in part, as on a map of another day, it goes by what was told meanwhile.
@@ -76,6 +109,6 @@ class Confirmation:
         if fit.agree >= self._least and fit.through <= self._most:
             return None
         if fit.agree < self._config.fit.told_agree:
-            return told
-        self.compared = told
+            return Refuted(told, _TOLD)
+        self.compared, self._is_near = told, False
         return None

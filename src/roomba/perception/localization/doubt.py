@@ -7,6 +7,7 @@ carried. The place may have been wrong before, so it is compared with all others
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 from roomba.configuration.localization import LocalizationConfig
 from roomba.geometry import Pose
@@ -15,6 +16,24 @@ from roomba.perception.localization.recent_sight import RecentSight
 from roomba.perception.localization.relocation import Expectation, Relocation, Verdict
 from roomba.perception.matching.scan_view import ScanView
 from roomba.perception.matching.surface_field import SurfaceField
+
+
+class Compared(NamedTuple):
+    """What came of comparing a place with all others."""
+
+    verdict: Verdict
+    is_expected: bool
+    """Whether the likeliest place is the one that was compared."""
+
+    @property
+    def is_elsewhere(self) -> bool:
+        """Whether the robot must be at another place."""
+        return self.verdict is Verdict.FOUND and not self.is_expected
+
+    @property
+    def is_unsure(self) -> bool:
+        """Whether it may as well be."""
+        return self.is_elsewhere or self.verdict is Verdict.AMBIGUOUS
 
 
 class Doubt:
@@ -56,14 +75,15 @@ class Doubt:
         if is_still:
             since, again = now - self._compared, self._config.searching.compare_after
             is_soon = self._comparison is None and 0.0 <= since < again
-            if is_soon or not self.is_elsewhere(now, view, reckoned, here, field):
+            compared = None if is_soon else self.compare(now, view, reckoned, here, field)
+            if compared is None or not compared.is_elsewhere:
                 return None
         return here
 
-    def is_elsewhere(
+    def compare(
         self, now: float, view: ScanView, reckoned: Pose, here: Expectation, field: SurfaceField
-    ) -> bool | None:
-        """Compare the place with all others, a piece at each scan; tell if it must be another.
+    ) -> Compared | None:
+        """Compare the place with all others, a piece at each scan; return what came of it.
 
         None: it goes on at the next scan. ``now`` is in s.
         """
@@ -76,4 +96,5 @@ class Doubt:
         if comparison.verdict is Verdict.SEARCHING:
             return None
         self._comparison, self._compared = None, now
-        return comparison.verdict is Verdict.FOUND and not comparison.hypotheses[0].is_expected
+        is_expected = bool(comparison.hypotheses) and comparison.hypotheses[0].is_expected
+        return Compared(comparison.verdict, is_expected)

@@ -24,6 +24,15 @@ def where_known(pose: Pose, config: LocalizationConfig, *, is_still: bool) -> Ex
     return Expectation(pose, here.here_radius, here.here_turn, evidence)
 
 
+def where_found_near(pose: Pose, config: LocalizationConfig) -> Expectation:
+    """Return where to expect a robot of which a scan fits there best of all places near by.
+
+    It may have been carried farther: another place that is likelier makes that unsure.
+    """
+    here = config.expecting
+    return Expectation(pose, here.here_radius, here.here_turn, config.needed_evidence)
+
+
 def searched_for(
     expectation: Expectation, here: Pose, seconds: float, config: LocalizationConfig
 ) -> Expectation:

@@ -77,5 +77,5 @@ def _why_unsure(now: Circumstances) -> str:
     if now.is_awaited:
         return "the pose was told, and no scan has confirmed it yet"
     if now.is_compared:
-        return "the pose was told, fits in part, and is being compared with all others"
+        return "what is in sight fits the place in part, and it is being compared with all others"
     return "what is in sight does not tell the place: a bare corridor, or next to nothing"

@@ -329,10 +329,9 @@ class Localizer:
         if fit is None:
             return
         if self._confirmation.is_open:
-            told = self._confirmation.refuted(self._now, fit, view, reckoned, self.field)
-            if told is not None:
-                why = "what the lidar sees does not fit well where it was told to be"
-                self._search_for(why, told)
+            refuted = self._confirmation.refuted(self._now, fit, view, reckoned, self.field)
+            if refuted is not None:
+                self._search_for(refuted.why, refuted.expectation)
         elif tracker.is_doubtful:
             self._reconsider(stamp, view, reckoned)
 
@@ -364,6 +363,9 @@ class Localizer:
             return False
         pose, fit = found
         self._go_on_at(FoundPlace(pose.compose(since), fit))
+        refuted = self._confirmation.compare_near(self._now, pose, fit, view, reckoned, self.field)
+        if refuted is not None:
+            self._search_for(refuted.why, refuted.expectation)
         return True
 
     def _search_for(self, why: str, expectation: Expectation | None) -> None:

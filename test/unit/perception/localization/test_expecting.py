@@ -6,7 +6,12 @@ import pytest
 from fixtures.located import CONFIG
 
 from roomba.geometry import Pose
-from roomba.perception.localization.expecting import searched_for, where_known, where_told
+from roomba.perception.localization.expecting import (
+    searched_for,
+    where_found_near,
+    where_known,
+    where_told,
+)
 
 HERE = Pose(1.0, 2.0, 0.5)
 LOCALIZATION = CONFIG.localization
@@ -26,6 +31,16 @@ def test_where_it_was_it_is_expected_closely_and_all_the_more_if_it_was_not_carr
     assert still.is_met(Pose(1.03, 2.0, 0.5))
     assert not still.is_met(Pose(1.1, 2.0, 0.5))
     assert still.evidence > moved.evidence > LOCALIZATION.needed_evidence
+
+
+def test_a_place_found_near_by_has_less_evidence_than_one_that_was_known() -> None:
+    found, known = (
+        where_found_near(HERE, LOCALIZATION),
+        where_known(HERE, LOCALIZATION, is_still=False),
+    )
+    assert found.is_met(HERE)
+    assert not found.is_met(Pose(1.1, 2.0, 0.5))
+    assert 0.0 < found.evidence < known.evidence
 
 
 def test_the_longer_it_looks_around_the_wider() -> None:

@@ -23,6 +23,7 @@ from fixtures.located import (
     started,
     steps,
 )
+from fixtures.missions import HOME
 from fixtures.worlds import DT
 
 from roomba.geometry import Pose, Twist
@@ -83,6 +84,30 @@ def test_moved_without_a_wheel_drop_it_is_noticed_within_half_a_second(to: Pose,
     for _ in steps(6.0):
         assert not robot.is_wrong
         robot.look()
+    assert robot.estimate.knowledge is Knowledge.KNOWN
+    assert robot.error < WORST_ERROR
+
+
+@pytest.mark.parametrize(
+    ("to", "before"),
+    [
+        (Pose(2.22, 1.89, 1.69), Pose(0.70, 0.90, -1.20)),
+        (Pose(2.68, 1.33, -2.19), Pose(0.72, 0.78, 0.90)),
+        (Pose(2.06, 0.55, -2.97), Pose(0.60, 1.80, 0.40)),
+    ],
+)
+def test_carried_to_the_mirror_of_a_place_near_by_it_does_not_believe_itself_there(
+    to: Pose, before: Pose
+) -> None:
+    """But for its station the room looks the same from the other side."""
+    robot = Located(HOME, before)
+    robot.stay(2.0)
+    robot.world.put(to)
+    for _ in steps(0.5):
+        robot.look()
+    for _ in steps(8.0):
+        robot.look()
+        assert not robot.is_wrong
     assert robot.estimate.knowledge is Knowledge.KNOWN
     assert robot.error < WORST_ERROR
 
