@@ -23,12 +23,16 @@ from roomba.history.run import (
     RunRecording,
     RunSource,
     Word,
+    turning_of,
 )
+from roomba.history.unfinished import RunSoFar, UnfinishedFile, interrupted_runs
 
 BEGINS: Final = ("undocking", "cleaning", "exploring")
 """Phases in which a run has begun."""
 _SWEEPS: Final = ("undocking", "cleaning", "returning", "docking")
 """Phases of a clean in which what is driven over counts."""
+_UNDER_WAY: Final = (*BEGINS, "returning", "docking", "charging", "paused", "bin full")
+"""Phases in which a run may go on."""
 _AT_REST: Final = ("docked", "idle")
 _GIVEN_UP: Final = 10.0
 """s of the robot's clock at rest without a report after which it was no run."""
@@ -42,9 +46,20 @@ class RunRecorder:
 
     def __init__(self, source: RunSource) -> None:
         """Begin between two runs."""
-        self._source = source
+        self.source = source
         self._run: _RunUnderWay | None = None
         self._last: CleanReport | None = None
+
+    @property
+    def so_far(self) -> RunSoFar | None:
+        """The run that is under way, if there is one."""
+        return None if self._run is None else self._run.so_far(self.source)
+
+    def resume(self, run: RunSoFar, view: RobotView) -> None:
+        """Go on with a run that was kept until a moment ago, at a look that sees it go on."""
+        self._run = _RunUnderWay(view)
+        self._run.resume(run)
+        self._last = view.last
 
     def look(
         self, view: RobotView, home: HomeView, layer: Layers
@@ -60,14 +75,18 @@ class RunRecorder:
             run, self._run = self._run, None
             if view.last.outcome in _NOT_RUN:
                 return None
-            return run.figures(self._source, view.last), run.recording(home, layer)
+            return run.figures(self.source, view.last), run.recording(home, layer)
         if self._run.rests_since is not None and view.time - self._run.rests_since > _GIVEN_UP:
             self._run = None
         return None
 
 
 class HistoryKeeper:
-    """Keeps the runs of a robot that is looked at; trouble with the history is told, once each."""
+    """Keeps the runs of a robot that is looked at; trouble with the history is told, once each.
+
+    A run under way is on the disk up to the last second. Was a program killed in the middle of one,
+    the next one goes on with it if its robot does, and else keeps it as interrupted.
+    """
 
     def __init__(self, history: History, source: RunSource, tell: Callable[[str], None]) -> None:
         """Begin between two runs."""
@@ -75,11 +94,17 @@ class HistoryKeeper:
         self._recorder = RunRecorder(source)
         self._tell = tell
         self._told = ""
+        self._unfinished = UnfinishedFile(history.path.parent)
+        self._has_looked = False
 
     def look(self, view: RobotView, home: HomeView, layer: Layers) -> None:
         """Take a look, and keep a run that it was the end of."""
+        if not self._has_looked:
+            self._has_looked = True
+            self._take_up(view)
         ended = self._recorder.look(view, home, layer)
         if ended is None:
+            self._keep_so_far(home, layer)
             return
         before, trouble = self.history.set_aside, ""
         try:
@@ -88,6 +113,40 @@ class HistoryKeeper:
             trouble = f"the run was not kept: {error}"
         if self.history.set_aside is not before:
             trouble = f"the history was damaged; it is set aside as {self.history.set_aside}"
+        self._unfinished.remove()
+        self._tell_once(trouble)
+
+    def _take_up(self, view: RobotView) -> None:
+        """Take the runs that were interrupted: one that goes on is resumed, others are kept."""
+        try:
+            with interrupted_runs(self.history.path.parent) as runs:
+                for run in runs:
+                    is_under_way = self._recorder.so_far is None and view.vacuum.phase in _UNDER_WAY
+                    if is_under_way and run.may_go_on(self._recorder.source, view.time):
+                        self._recorder.resume(run, view)
+                    elif not self._has_kept(run):
+                        self.history.add(*run.interrupted())
+        except (RoombaError, OSError) as error:
+            self._tell_once(f"a run that was interrupted was not kept: {error}")
+
+    def _has_kept(self, run: RunSoFar) -> bool:
+        """Whether the program was killed only after it had kept the run."""
+        return any(
+            each.figures.began == run.wall and each.figures.source.program == run.source.program
+            for each in self.history.runs(limit=10)
+        )
+
+    def _keep_so_far(self, home: HomeView, layer: Layers) -> None:
+        run = self._recorder.so_far
+        if run is None:
+            self._unfinished.remove()
+            return
+        try:
+            self._unfinished.keep(run, home_of(home), lambda: _cells(layer))
+        except (OSError, ValueError) as error:
+            self._tell_once(f"the run under way is not kept until it ends: {error}")
+
+    def _tell_once(self, trouble: str) -> None:
         if trouble and trouble != self._told:
             self._tell(trouble)
         self._told = trouble
@@ -124,6 +183,16 @@ class _RunUnderWay:
         sweeps = float(vacuum.wanted > 0.0 and vacuum.phase in _SWEEPS)
         self._rows.append((now, *view.pose, view.speed, battery, view.dirt, *progress, sweeps))
 
+    def so_far(self, source: RunSource) -> RunSoFar:
+        """Return what was seen."""
+        return RunSoFar(source, self._began, self._wall, self._rows, self._words)
+
+    def resume(self, run: RunSoFar) -> None:
+        """Go on with what was seen before."""
+        self._began, self._wall = run.clock, run.wall
+        self._rows, self._words = list(run.rows), list(run.words)
+        self._turning = turning_of(run.trace)
+
     def figures(self, source: RunSource, report: CleanReport) -> RunFigures:
         """Return what was achieved."""
         explores = any(word.phase == "exploring" for word in self._words)
@@ -146,11 +215,16 @@ class _RunUnderWay:
     def recording(self, home: HomeView, layer: Layers) -> RunRecording:
         """Return what was seen."""
         trace = np.array(self._rows, np.float32).reshape(-1, len(TRACE))
-        layers = {}
-        for name in (LayerName.MAP, LayerName.COVERAGE):
-            grid = layer(name)
-            if grid is not None:
-                layers[name.value] = CellLayer(
-                    grid.resolution, grid.origin_x, grid.origin_y, grid.cells.copy()
-                )
-        return RunRecording(trace, tuple(self._words), home_of(home), layers)
+        return RunRecording(trace, tuple(self._words), home_of(home), _cells(layer))
+
+
+def _cells(layer: Layers) -> dict[str, CellLayer]:
+    """Return the layers that are kept of a run."""
+    found = {}
+    for name in (LayerName.MAP, LayerName.COVERAGE):
+        grid = layer(name)
+        if grid is not None:
+            found[name.value] = CellLayer(
+                grid.resolution, grid.origin_x, grid.origin_y, grid.cells.copy()
+            )
+    return found

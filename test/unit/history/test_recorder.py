@@ -2,47 +2,17 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
-import numpy as np
 import pytest
+from unit.history.seen import HOME, REPORT, SOURCE, layer, view
 
-from roomba.client.protocol import CleanReport, ErrandOutcome, MissedFloor, VacuumSnapshot
-from roomba.client.view import GridLayer, HomeView, LayerName, RobotView
+from roomba.client.protocol import CleanReport, ErrandOutcome
 from roomba.history.database import History
 from roomba.history.recorder import HistoryKeeper, RunRecorder
-from roomba.history.run import RunFigures, RunRecording, RunSource
-
-HOME = HomeView(1, "box", (0.0, 0.0, 0.0), (), (), (), 0.16, 0.18)
-SOURCE = RunSource("play", "box", 3)
-REPORT = CleanReport(
-    ErrandOutcome.COMPLETED,
-    "",
-    9.0,
-    10.0,
-    2.0,
-    30.0,
-    40.0,
-    5.0,
-    (MissedFloor(1.0, 2.0, 3.0, "", "x"),),
-)
-NO_POINTS = np.empty((0, 2), np.float32)
-
-
-def layer(name: LayerName) -> GridLayer | None:
-    return (
-        None if name is LayerName.DIRT else GridLayer(1, 0.05, 0.0, 0.0, np.ones((4, 5), np.uint8))
-    )
-
-
-def view(time: float, phase: str, last: CleanReport | None = None) -> RobotView:
-    state = "cleaning" if phase == "cleaning" else "docked"
-    vacuum = VacuumSnapshot(state, phase, "", "", 0.0, 0.0, 0.0, 0.0, math.nan)
-    pose = (time / 10.0, 0.0, 0.1 * time)
-    return RobotView(time, pose, "", 0.2, 0.0, "", vacuum, NO_POINTS, NO_POINTS, last)
+from roomba.history.run import RunFigures, RunRecording
 
 
 def run_of(recorder: RunRecorder, report: CleanReport) -> Iterator[tuple[RunFigures, RunRecording]]:

@@ -1,0 +1,216 @@
+"""Runs under way, kept line by line: a program that is killed loses half a second of its run.
+
+Each program has a file of its own beside the history, which it holds locked for as long as it
+lives. One that no program holds is of a run that was interrupted.
+"""
+
+from __future__ import annotations
+
+import base64
+import contextlib
+import fcntl
+import math
+import os
+import secrets
+import time
+import zlib
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+
+from roomba.files.journal import append_line, read_lines
+from roomba.history.run import (
+    CELL_LAYERS,
+    TRACE,
+    CellLayer,
+    Floats,
+    RunFigures,
+    RunRecording,
+    RunSource,
+    Word,
+    turning_of,
+)
+
+INTERRUPTED: Final = "interrupted"
+"""The outcome of a run whose program ended in the middle of it."""
+WHY: Final = "the program that kept this run ended in the middle of it"
+_EVERY: Final = 0.5
+"""s of wall time between two writes of what was seen."""
+_LAYERS_EVERY: Final = 10.0
+"""The same of the cells of the floor, which are larger."""
+_GAP: Final = 60.0
+"""s of the robot's clock for which a run may have gone on unseen."""
+_MOST_CELLS: Final = 100_000_000
+
+Row = tuple[float, ...]
+Layers = Callable[[], Mapping[str, CellLayer]]
+
+
+@dataclass(slots=True)
+class RunSoFar:
+    """What was seen of a run: it began at ``clock``, s of the robot's, and ``wall``, s since 1970.
+
+    ``rows`` are those of a trace.
+    """
+
+    source: RunSource
+    clock: float
+    wall: float
+    rows: list[Row] = field(default_factory=list)
+    words: list[Word] = field(default_factory=list)
+    home: Mapping[str, Any] = field(default_factory=dict)
+    layers: dict[str, CellLayer] = field(default_factory=dict)
+
+    def may_go_on(self, source: RunSource, now: float) -> bool:
+        """Whether a robot that is under way at a time of its clock, s, may be on this run."""
+        is_same = (source.program, source.home) == (self.source.program, self.source.home)
+        return is_same and 0.0 <= now - self.clock - self.rows[-1][0] <= _GAP
+
+    @property
+    def trace(self) -> Floats:
+        """As of a recording."""
+        return np.array(self.rows, np.float32).reshape(-1, len(TRACE))
+
+    def interrupted(self) -> tuple[RunFigures, RunRecording]:
+        """Return it as a run that came to no end."""
+        last = dict(zip(TRACE, self.rows[-1], strict=True))
+        trace = self.trace
+        steps = np.diff(trace[:, 1:3].astype(np.float64), axis=0)
+        figures = RunFigures(
+            self.source,
+            "explore" if any(word.phase == "exploring" for word in self.words) else "clean",
+            self.wall,
+            INTERRUPTED,
+            WHY,
+            last["time"],
+            last["covered"],
+            last["wanted"],
+            float(np.hypot(steps[:, 0], steps[:, 1]).sum()),
+            turning_of(trace),
+            last["dirt"],
+            math.nan,
+        )
+        return figures, RunRecording(trace, tuple(self.words), self.home, self.layers)
+
+
+@dataclass(slots=True)
+class _Written:
+    """How many rows and words are written, what was told of the home, and when, monotonic s."""
+
+    rows: int = 0
+    words: int = 0
+    home: Mapping[str, Any] | None = None
+    at: float = -math.inf
+    layers_at: float = -math.inf
+
+
+class UnfinishedFile:
+    """The file of the run under way; it is there from its first row until :meth:`remove`."""
+
+    def __init__(self, folder: Path) -> None:
+        """Touch nothing yet."""
+        self._folder = folder
+        self._path: Path | None = None
+        self._held: int | None = None
+        self._written = _Written()
+
+    def keep(self, run: RunSoFar, home: Mapping[str, Any], layers: Layers) -> None:
+        """Write what is new, a moment after the last time; it is on the disk then.
+
+        Raises OSError, and ValueError for what is not finite.
+        """
+        now, written = time.monotonic(), self._written
+        if now - written.at < _EVERY or len(run.rows) == written.rows:
+            return
+        written.at = now
+        path = self._path or self._begin(run)
+        seen: dict[str, Any] = {"rows": run.rows[written.rows :]}
+        seen["words"] = [asdict(word) for word in run.words[written.words :]]
+        if home != written.home:
+            seen["home"] = home
+        if now - written.layers_at >= _LAYERS_EVERY:
+            written.layers_at = now
+            seen["layers"] = {name: _packed(layer) for name, layer in layers().items()}
+        append_line(path, seen)
+        written.rows, written.words, written.home = len(run.rows), len(run.words), home
+
+    def remove(self) -> None:
+        """Remove the file: the run is kept, or was none."""
+        if self._path is not None:
+            self._path.unlink(missing_ok=True)
+        if self._held is not None:
+            os.close(self._held)
+        self._path = self._held = None
+        self._written = _Written()
+
+    def _begin(self, run: RunSoFar) -> Path:
+        self._folder.mkdir(parents=True, exist_ok=True, mode=0o700)
+        path = self._folder / f"unfinished-{secrets.token_hex(8)}.journal"
+        flags = os.O_RDWR | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC | os.O_NOFOLLOW
+        self._held = os.open(path, flags, 0o600)
+        fcntl.flock(self._held, fcntl.LOCK_EX)
+        self._path = path
+        source = asdict(run.source)
+        append_line(path, {"source": source, "clock": run.clock, "wall": run.wall})
+        return path
+
+
+@contextlib.contextmanager
+def interrupted_runs(folder: Path) -> Iterator[list[RunSoFar]]:
+    """Return the runs of programs that are no more, the newest first; they are removed on success.
+
+    Files that tell of no run are removed as well. Raises OSError.
+    """
+    held: list[tuple[int, Path]] = []
+    try:
+        for path in sorted(folder.glob("unfinished-*.journal")):
+            descriptor = os.open(path, os.O_RDWR | os.O_CLOEXEC | os.O_NOFOLLOW)
+            try:
+                fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except BlockingIOError:
+                os.close(descriptor)
+            else:
+                held.append((descriptor, path))
+        found = [_run_of(read_lines(path)) for _, path in held]
+        yield sorted((run for run in found if run), key=lambda run: -run.wall)
+        for _, path in held:
+            path.unlink(missing_ok=True)
+    finally:
+        for descriptor, _ in held:
+            os.close(descriptor)
+
+
+def _run_of(lines: Sequence[dict[str, Any]]) -> RunSoFar | None:
+    """Return the run of a file, None if it tells of none; what makes no sense is left out."""
+    try:
+        first, *seen = lines
+        run = RunSoFar(RunSource(**first["source"]), float(first["clock"]), float(first["wall"]))
+        for line in seen:
+            run.rows += [tuple(map(float, row)) for row in line["rows"]]
+            run.words += [Word(**word) for word in line["words"]]
+            run.home = line.get("home", run.home)
+            run.layers |= {
+                name: _unpacked(*packed)
+                for name, packed in line.get("layers", {}).items()
+                if name in CELL_LAYERS
+            }
+    except (ValueError, TypeError, KeyError, zlib.error):
+        return None
+    whole = all(len(row) == len(TRACE) for row in run.rows)
+    return run if run.rows and whole and np.isfinite(run.trace).all() else None
+
+
+def _packed(layer: CellLayer) -> list[Any]:
+    cells = base64.b64encode(zlib.compress(layer.cells.tobytes(), 1)).decode("ascii")
+    return [layer.resolution, layer.origin_x, layer.origin_y, *layer.cells.shape, cells]
+
+
+def _unpacked(
+    resolution: float, x: float, y: float, rows: int, columns: int, text: str
+) -> CellLayer:
+    cells = zlib.decompressobj().decompress(base64.b64decode(text), _MOST_CELLS)
+    array = np.frombuffer(cells, np.uint8).reshape(rows, columns).copy()
+    return CellLayer(float(resolution), float(x), float(y), array)

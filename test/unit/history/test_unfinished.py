@@ -1,0 +1,165 @@
+"""A run whose program is killed is on the disk up to the last second: it goes on, or is told so."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+import pytest
+from fixtures.waiting import wait_until
+from unit.history.seen import HOME, REPORT, SOURCE, layer, view
+
+from roomba.history.database import History
+from roomba.history.recorder import HistoryKeeper
+from roomba.history.run import RunFigures, RunRecording
+from roomba.history.unfinished import INTERRUPTED, interrupted_runs
+
+ROOT: Final = Path(__file__).parents[3]
+WRITER: Final = """
+import sys, time
+from pathlib import Path
+from unit.history.seen import HOME, SOURCE, layer, view
+from roomba.history.database import History
+from roomba.history.recorder import HistoryKeeper
+
+keeper = HistoryKeeper(History(Path(sys.argv[1])), SOURCE, print)
+began = time.monotonic()
+while True:
+    now = 100.0 + time.monotonic() - began
+    keeper.look(view(now, "cleaning"), HOME, layer)
+    print(now, flush=True)
+    time.sleep(0.05)
+"""
+
+
+@pytest.fixture
+def killed_at(tmp_path: Path) -> float:
+    """Kill a program in the middle of a run; the time by the robot's clock of its last look, s."""
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)}
+    told = tmp_path / "told"
+    with told.open("w") as output:
+        program = subprocess.Popen(
+            [sys.executable, "-c", WRITER, str(tmp_path)], stdout=output, env=environment, cwd=ROOT
+        )
+    try:
+        wait_until(lambda: looks(told)[-1:] > [101.5], 30.0, "a run of 1.5 s")
+    finally:
+        program.send_signal(signal.SIGKILL)
+        program.wait(10.0)
+    return looks(told)[-1]
+
+
+def looks(told: Path) -> list[float]:
+    """Return when a program looked, s; a line that is not whole yet does not count."""
+    return [float(line) for line in told.read_text().splitlines(keepends=True) if line[-1] == "\n"]
+
+
+def kept(folder: Path) -> tuple[RunFigures, RunRecording]:
+    history = History(folder)
+    (run,) = history.runs()
+    return run.figures, history.recording(run.number)
+
+
+def test_a_run_that_was_killed_is_kept_as_interrupted(tmp_path: Path, killed_at: float) -> None:
+    keeper = HistoryKeeper(History(tmp_path), SOURCE, pytest.fail)
+    keeper.look(view(2.0, "docked"), HOME, layer)
+    figures, recording = kept(tmp_path)
+    assert figures.outcome == INTERRUPTED
+    assert figures.message
+    assert figures.kind == "clean"
+    # Half a second between two writes, and one between two rows.
+    assert killed_at - 100.0 - recording.duration < 1.0 + 0.2
+    assert figures.distance == pytest.approx(recording.duration / 10.0, abs=0.01)
+    assert figures.turning == pytest.approx(recording.duration / 10.0, abs=0.01)
+    assert recording.home["name"] == "box"
+    assert np.all(recording.layers["coverage"].cells == 1)
+    assert [word.phase for word in recording.words] == ["cleaning"]
+    assert not list(tmp_path.glob("unfinished-*"))
+
+
+def test_a_robot_that_goes_on_goes_on_with_its_run(tmp_path: Path, killed_at: float) -> None:
+    keeper = HistoryKeeper(History(tmp_path), SOURCE, pytest.fail)
+    # Of a clean before.
+    old = replace(REPORT)
+    keeper.look(view(killed_at + 3.0, "cleaning", old), HOME, layer)
+    assert keeper.history.runs() == []
+    keeper.look(view(killed_at + 4.0, "cleaning", old), HOME, layer)
+    keeper.look(view(killed_at + 5.0, "docked", REPORT), HOME, layer)
+    figures, recording = kept(tmp_path)
+    assert figures.outcome == "completed"
+    assert recording.duration == pytest.approx(killed_at + 5.0 - 100.0, abs=0.1)
+    assert recording.column("time")[0] == 0.0
+    assert not list(tmp_path.glob("unfinished-*"))
+
+
+@pytest.mark.parametrize(
+    ("home", "later", "phase"),
+    [("other", 1.0, "cleaning"), ("box", -90.0, "cleaning"), ("box", 100.0, "cleaning")],
+    ids=["another home", "a clock that began anew", "long after"],
+)
+def test_another_run_is_not_taken_for_it(
+    tmp_path: Path, killed_at: float, home: str, later: float, phase: str
+) -> None:
+    keeper = HistoryKeeper(History(tmp_path), replace(SOURCE, home=home), pytest.fail)
+    keeper.look(view(killed_at + later, phase), HOME, layer)
+    assert kept(tmp_path)[0].outcome == INTERRUPTED
+
+
+def test_the_run_of_a_program_that_lives_is_left_to_it(tmp_path: Path) -> None:
+    living = HistoryKeeper(History(tmp_path), SOURCE, pytest.fail)
+    living.look(view(0.0, "cleaning"), HOME, layer)
+    other = HistoryKeeper(History(tmp_path), SOURCE, pytest.fail)
+    other.look(view(0.0, "docked"), HOME, layer)
+    assert other.history.runs() == []
+    living.look(view(9.0, "docked", REPORT), HOME, layer)
+    assert [run.figures.outcome for run in other.history.runs()] == ["completed"]
+    assert not list(tmp_path.glob("unfinished-*"))
+
+
+def test_what_turned_out_to_be_no_run_leaves_no_file(tmp_path: Path) -> None:
+    keeper = HistoryKeeper(History(tmp_path), SOURCE, pytest.fail)
+    keeper.look(view(0.0, "undocking"), HOME, layer)
+    assert list(tmp_path.glob("unfinished-*"))
+    for second in range(1, 20):
+        keeper.look(view(float(second), "idle"), HOME, layer)
+    assert not list(tmp_path.glob("unfinished-*"))
+
+
+def test_killed_after_it_was_kept_it_is_not_kept_twice(tmp_path: Path, killed_at: float) -> None:
+    assert killed_at > 101.0
+    left = {path: path.read_bytes() for path in tmp_path.glob("unfinished-*")}
+    for _ in range(2):
+        for path, content in left.items():
+            path.write_bytes(content)
+        HistoryKeeper(History(tmp_path), SOURCE, pytest.fail).look(view(2.0, "docked"), HOME, layer)
+        assert len(History(tmp_path).runs()) == 1
+
+
+@pytest.mark.parametrize("share", [0.0, 0.3, 0.6, 0.9])
+def test_a_damaged_file_costs_its_own_lines_alone(
+    tmp_path: Path, killed_at: float, share: float
+) -> None:
+    assert killed_at > 101.0
+    (path,) = tmp_path.glob("unfinished-*")
+    content = bytearray(path.read_bytes())
+    content[int(share * len(content))] ^= 0xFF
+    path.write_bytes(content)
+    with interrupted_runs(tmp_path) as runs:
+        assert len(runs) == (0 if share == 0.0 else 1)
+    assert not path.exists()
+
+
+def test_a_disk_that_refuses_is_told_once(tmp_path: Path) -> None:
+    told: list[str] = []
+    (tmp_path / "file").write_text("")
+    keeper = HistoryKeeper(History(tmp_path / "file"), SOURCE, told.append)
+    for second in range(3):
+        keeper.look(view(float(second), "cleaning"), HOME, layer)
+    assert len(told) == 1
+    assert "not kept" in told[0]
