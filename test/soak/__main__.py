@@ -20,12 +20,14 @@ from soak.arena import Arena
 from soak.attacks import connections, enough_descriptors, floods, viewers
 from soak.circumstances import clock, disk
 from soak.growth import growth
+from soak.mixed import mixed
 from soak.processes import processes
 from soak.rows import Row, table
 from soak.standstill import standstill
 from soak.starts import starts
 
 PARTS: Final[dict[str, Callable[[Arena], list[Row]]]] = {
+    "mixed": mixed,
     "processes": processes,
     "standstill": standstill,
     "clock": clock,
@@ -36,7 +38,7 @@ PARTS: Final[dict[str, Callable[[Arena], list[Row]]]] = {
     "starts": starts,
     "growth": growth,
 }
-"""What may go wrong, by name; ``processes`` and ``growth`` take the minutes that are given."""
+"""What may go wrong, by name; mixed, processes and growth take the minutes that are given."""
 
 
 def main(arguments: list[str] | None = None) -> int:

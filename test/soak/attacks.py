@@ -20,7 +20,7 @@ from roomba_robot.srv import EmergencyStop
 from roslib.message import get_message_class
 from soak.arena import Arena
 from soak.cleaner import ENDED, Cleaner
-from soak.rows import Row, in_child, until
+from soak.rows import Row, in_child, tell, until
 from std_msgs.msg import Float32
 from websockets.asyncio.client import ClientConnection, connect
 
@@ -34,6 +34,10 @@ SHOWN: Final = 5.0
 """s of wall time until each of so many viewers has the robot's state anew."""
 _AT_ONCE: Final = 50
 """Connections that are opened before the first is closed again."""
+_ORDERS: Final = tuple(
+    f"/{name}/" for name in ("clean", "dock", "undock", "explore", "walk_to_point", "move_base")
+)
+"""Topics of actions: a message of nothing may be an order, to clean all or to end all."""
 _LEFT_ALONE: Final = ("/clock", "/rosout", "/rosout_agg", "/tf", "/tf_static", "/diagnostics")
 """Topics of all programs: a flood there is one of the machine, not of the robot."""
 
@@ -46,26 +50,31 @@ def floods(arena: Arena) -> list[Row]:
         def work() -> list[Row]:
             cleaner = Cleaner(graph)
             cleaner.keep_cleaning()
-            rows = [_flood(graph, cleaner, topic) for topic in _heard_topics(graph)]
+            rows = [flood(graph, cleaner, topic) for topic in heard_topics(graph)]
             cleaner.finish()
             return [cleaner.row, *rows]
 
         return in_child(arena.folder, work, 3000.0)
 
 
-def _heard_topics(graph: RosGraph) -> list[str]:
+def heard_topics(graph: RosGraph) -> list[str]:
     """Return the topics that nodes hear; those of the body's own senses are its simulator's."""
-    _, heard, _ = graph.system_state()
+    told, heard, _ = graph.system_state()
     return sorted(
         topic
         for topic, nodes in heard.items()
-        if topic not in _LEFT_ALONE and any(not node.startswith("/soak") for node in nodes)
+        if topic not in _LEFT_ALONE
+        and "/home_sim_node" not in told.get(topic, ())
+        and any(not node.startswith("/soak") for node in nodes)
     )
 
 
-def _flood(graph: RosGraph, cleaner: Cleaner, topic: str) -> Row:
+def flood(graph: RosGraph, cleaner: Cleaner, topic: str) -> Row:
+    """Send empty messages on a topic as fast as one sender can, while the robot cleans."""
     cleaner.keep_cleaning()
     row = Row(f"flood {topic}", 1)
+    tell(row.what)
+    cleaner.may_be_told_otherwise = topic.startswith(_ORDERS)
     kind = get_message_class(graph.topic_types().get(topic, ""))
     if kind is None:
         return row
@@ -103,19 +112,28 @@ def connections(arena: Arena) -> list[Row]:
 
         def work() -> list[Row]:
             cleaner = Cleaner(graph)
-            cleaner.keep_cleaning()
-            row = Row("senseless connections")
-            places = _places(graph)
-            began = time.monotonic()
-            while row.times < CONNECTIONS:
-                row.times += _connect_senselessly(places, arena.random)
-                row.expect_within("stop answers", ANSWERED, _emergency_stop_answers)
-            row.measured("all", time.monotonic() - began)
-            cleaner.goes_on(row)
+            row = connect_senselessly(graph, cleaner, arena.random, CONNECTIONS)
             cleaner.finish()
             return [cleaner.row, row]
 
         return in_child(arena.folder, work, 1800.0)
+
+
+def connect_senselessly(
+    graph: RosGraph, cleaner: Cleaner, random: random.Random, number: int
+) -> Row:
+    """Open so many connections to all ports while the robot cleans."""
+    cleaner.keep_cleaning()
+    row = Row("senseless connections")
+    tell(row.what)
+    places = _places(graph)
+    began = time.monotonic()
+    while row.times < number:
+        row.times += _connect_senselessly(places, random)
+        row.expect_within("stop answers", ANSWERED, _emergency_stop_answers)
+    row.measured("all", time.monotonic() - began)
+    cleaner.goes_on(row)
+    return row
 
 
 def _places(graph: RosGraph) -> list[tuple[str, int]]:
@@ -148,30 +166,37 @@ def viewers(arena: Arena) -> list[Row]:
     """Look at the page from a thousand places, while the robot cleans."""
     arguments = (f"home:={tiny_home(arena.folder)}", "speed:=3", "page:=true", "page_port:=0")
     with RosGraph(arena.folder) as graph:
-        run = graph.launch(*arguments)
-        run.says("The page: ", START_DEADLINE)
-        found = re.search(r"The page: http://127\.0\.0\.1:(\d+)/", run.output)
-        assert found
-        live = f"ws://127.0.0.1:{found[1]}/live"
+        graph.launch(*arguments)
 
         def work() -> list[Row]:
             cleaner = Cleaner(graph)
-            cleaner.keep_cleaning()
-            row = Row("viewers", VIEWERS)
-            asyncio.run(_look(live, row))
-            row.expect_within("stop answers", ANSWERED, _emergency_stop_answers)
-            cleaner.goes_on(row)
+            row = look(graph, cleaner, VIEWERS)
             cleaner.finish()
             return [cleaner.row, row]
 
         return in_child(arena.folder, work, ENDED + 600.0)
 
 
-async def _look(live: str, row: Row) -> None:
+def look(graph: RosGraph, cleaner: Cleaner, number: int) -> Row:
+    """Look at the page from so many places while the robot cleans."""
+    cleaner.keep_cleaning()
+    row = Row("viewers", number)
+    tell(row.what)
+    run = graph.programs[0]
+    run.says("The page: ", START_DEADLINE)
+    found = re.findall(r"The page: http://127\.0\.0\.1:(\d+)/", run.output)
+    # The newest: one that was killed is back, maybe at another port.
+    asyncio.run(_look(f"ws://127.0.0.1:{found[-1]}/live", number, row))
+    row.expect_within("stop answers", ANSWERED, _emergency_stop_answers)
+    cleaner.goes_on(row)
+    return row
+
+
+async def _look(live: str, number: int, row: Row) -> None:
     """Open all viewers, and let each get several messages anew."""
     opened: list[ClientConnection] = []
     try:
-        for begin in range(0, VIEWERS, _AT_ONCE):
+        for begin in range(0, number, _AT_ONCE):
             told = await asyncio.gather(
                 *(
                     connect(live, open_timeout=30.0, max_size=None)
@@ -180,8 +205,8 @@ async def _look(live: str, row: Row) -> None:
                 return_exceptions=True,
             )
             opened += [each for each in told if not isinstance(each, BaseException)]
-        if len(opened) < VIEWERS:
-            row.broken.append(f"{len(opened)} of {VIEWERS} viewers were let in")
+        if len(opened) < number:
+            row.broken.append(f"{len(opened)} of {number} viewers were let in")
         for name in ("first look", "second look"):
             began = time.monotonic()
             await asyncio.gather(*(_two_messages(each) for each in opened))

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import subprocess
 import threading
 import time
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Final
 
@@ -16,7 +18,7 @@ from fixtures.waiting import wait_until
 from rosgraph_msgs.msg import Clock
 from soak.arena import Arena
 from soak.cleaner import Cleaner
-from soak.rows import Row, in_child, until
+from soak.rows import Row, in_child, tell, until
 
 HOUR: Final = 3600.0
 TOLD: Final = 5.0
@@ -46,7 +48,9 @@ class SetClock:
             time.sleep(_PERIOD / _SPEED)
             if self.runs:
                 self.now += _PERIOD
-                self._publisher.publish(rospy.Time.from_sec(self.now))
+                # It may be the end of this node.
+                with contextlib.suppress(rospy.ROSException):
+                    self._publisher.publish(rospy.Time.from_sec(self.now))
 
 
 def clock(arena: Arena) -> list[Row]:
@@ -60,43 +64,73 @@ def clock(arena: Arena) -> list[Row]:
             graph.start_run(f"home:={tiny_home(arena.folder)}", "clock:=false")
             wait_until(graph.all_up, START_DEADLINE, lambda: graph.programs[-1].output)
             cleaner = Cleaner(graph, probe)
-            rows = []
-            for jump in (-10.0, HOUR, -HOUR):
-                cleaner.keep_cleaning()
-                given.now += jump
-                rows.append(Row(f"clock set by {jump:+g} s", 1))
-                cleaner.goes_on(rows[-1])
-            cleaner.keep_cleaning()
-            rows.append(Row(f"clock gone for {_STANDS:g} s", 1))
-            given.runs = False
-            time.sleep(_STANDS)
-            given.runs = True
-            cleaner.goes_on(rows[-1])
+            rows = [set_clock(given, cleaner, jump) for jump in (-10.0, HOUR, -HOUR)]
+            rows.append(take_clock(given, cleaner))
             cleaner.finish()
             return [cleaner.row, *rows]
 
         return in_child(arena.folder, work, 1800.0)
 
 
+def set_clock(given: SetClock, cleaner: Cleaner, jump: float) -> Row:
+    """Set the clock by so many s while the robot cleans."""
+    cleaner.keep_cleaning()
+    row = Row(f"clock set by {jump:+g} s", 1)
+    tell(row.what)
+    given.now += jump
+    cleaner.goes_on(row)
+    return row
+
+
+def take_clock(given: SetClock, cleaner: Cleaner) -> Row:
+    """Let the clock be gone for a while."""
+    cleaner.keep_cleaning()
+    row = Row(f"clock gone for {_STANDS:g} s", 1)
+    tell(row.what)
+    given.runs = False
+    time.sleep(_STANDS)
+    given.runs = True
+    cleaner.goes_on(row)
+    return row
+
+
 def disk(arena: Arena) -> list[Row]:
     """Fill a small disk that the robot keeps its files on, and make room again."""
-    home = arena.folder / "ros_home"
-    home.mkdir()
-    mount = ["mount", "-t", "tmpfs", "-o", f"size={_ROOM}", "tmpfs", str(home)]
-    if subprocess.run(mount, check=False, capture_output=True, timeout=20.0).returncode != 0:
-        return [Row("full disk: left out, mounting one needs root")]
-    try:
+    with small_disk(arena.folder / "ros_home") as home:
+        if home is None:
+            return [Row("full disk: left out, mounting one needs root")]
         with RosGraph(arena.folder) as graph:
             graph.launch(f"home:={tiny_home(arena.folder)}", "speed:=3")
-            return in_child(arena.folder, lambda: _fill(graph, home), 1800.0)
+
+            def work() -> list[Row]:
+                cleaner = Cleaner(graph)
+                row = fill(cleaner, home)
+                cleaner.finish()
+                expect_nothing_left(row, graph, home)
+                return [cleaner.row, row]
+
+            return in_child(arena.folder, work, 1800.0)
+
+
+@contextlib.contextmanager
+def small_disk(folder: Path) -> Iterator[Path | None]:
+    """Have a small disk at a folder; None where mounting one is refused."""
+    folder.mkdir()
+    mount = ["mount", "-t", "tmpfs", "-o", f"size={_ROOM}", "tmpfs", str(folder)]
+    if subprocess.run(mount, check=False, capture_output=True, timeout=20.0).returncode != 0:
+        yield None
+        return
+    try:
+        yield folder
     finally:
-        subprocess.run(["umount", "--lazy", str(home)], check=True, timeout=20.0)
+        subprocess.run(["umount", "--lazy", str(folder)], check=True, timeout=20.0)
 
 
-def _fill(graph: RosGraph, home: Path) -> list[Row]:
-    cleaner = Cleaner(graph)
-    cleaner.keep_cleaning()
+def fill(cleaner: Cleaner, home: Path) -> Row:
+    """Fill the disk that has the robot's files, and make room again."""
+    cleaner.clean()
     row = Row("full disk", 1)
+    tell(row.what)
     filler = home / "filler"
     with filler.open("wb", buffering=0) as file:
         try:
@@ -112,10 +146,13 @@ def _fill(graph: RosGraph, home: Path) -> list[Row]:
             "well again", RETRIED, lambda: "No space left" not in cleaner.state.message
         )
     cleaner.goes_on(row)
-    cleaner.finish()
+    return row
+
+
+def expect_nothing_left(row: Row, graph: RosGraph, home: Path) -> None:
+    """Note files that were left unfinished, and tracebacks."""
     if until(lambda: not list(home.rglob("*.unfinished-*")), TOLD) is None:
         row.broken.append(f"left behind: {list(home.rglob('*.unfinished-*'))}")
     lines = graph.programs[0].output.count("Traceback")
     if lines:
         row.broken.append(f"{lines} tracebacks")
-    return [cleaner.row, row]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+
 import rospy
 from actionlib import SimpleGoalState
 from actionlib_msgs.msg import GoalStatus
@@ -10,6 +12,7 @@ from fixtures.probe import Probe
 from roomba_robot.msg import CleanAction, CleanGoal, VacuumState
 from soak.rows import Row, until
 from std_msgs.msg import String
+from std_srvs.srv import Trigger
 
 from roomba_ros.runtime.action_client import ActionClient
 
@@ -29,6 +32,8 @@ class Cleaner:
         self.probe = probe or Probe(graph, "soak")
         self.state, self.trouble = VacuumState(), [""]
         self.row = Row("clean")
+        self.may_be_told_otherwise = False
+        """Whether others gave orders: the clean under way need not end as it should."""
         rospy.Subscriber("/vacuum/state", VacuumState, self._on_state)
         rospy.Subscriber("/trouble", String, lambda told: self.trouble.append(told.data))
         self._client = ActionClient("clean", CleanAction)
@@ -42,10 +47,17 @@ class Cleaner:
         if self.row.times > 0 and not self.has_ended():
             return
         self._judge()
-        if until(lambda: self.state.phase in ("docked", "idle"), ENDED) is not None:
+        if until(self._is_ready, ENDED) is not None:
+            self.may_be_told_otherwise = False
             self._client.send_goal(CleanGoal())
             self.row.times += 1
             until(lambda: self.state.phase == "cleaning", READY)
+
+    def clean(self) -> None:
+        """Let it be on its way over the floor: on its way home it has little to write."""
+        if self.state.phase != "cleaning":
+            self.finish()
+        self.keep_cleaning()
 
     def finish(self) -> None:
         """Let the last clean end."""
@@ -58,8 +70,17 @@ class Cleaner:
         """Whether the newest clean has."""
         return bool(self._client.simple_state == SimpleGoalState.DONE)
 
+    def _is_ready(self) -> bool:
+        """Whether it can be told to clean; one that waits for a person is told to stop."""
+        if self.state.phase in ("error", "paused", "bin full"):
+            with contextlib.suppress(rospy.ServiceException):
+                rospy.ServiceProxy("/stop", Trigger)()
+        return self.state.phase in ("docked", "idle")
+
     def _judge(self) -> None:
         """Note a clean that did not end as it should."""
+        if self.may_be_told_otherwise:
+            return
         if self.row.times > 0 and self._client.get_state() != GoalStatus.SUCCEEDED:
             said = self._client.get_goal_status_text()
             status = self._client.get_state()

@@ -13,7 +13,7 @@ from fixtures.graph import RUN, RosGraph
 from fixtures.tiny_home import tiny_home
 from soak.arena import Arena
 from soak.cleaner import ENDED, Cleaner
-from soak.rows import Row, in_child
+from soak.rows import Row, in_child, tell
 
 MOST_GROWTH: Final = 1.0
 """MB an hour of wall time."""
@@ -46,6 +46,7 @@ def growth(arena: Arena) -> list[Row]:
             while time.monotonic() < end:
                 cleaner.keep_cleaning()
                 cleaner.finish()
+                tell(f"clean {cleaner.row.times} ended, {end - time.monotonic():.0f} s left")
                 for name, taken in samples.items():
                     taken.append(sample(graph.process(name)))
             return [cleaner.row, *(judged(name, taken) for name, taken in samples.items())]

@@ -12,7 +12,7 @@ from fixtures.graph import RUN, RosGraph
 from fixtures.tiny_home import tiny_home
 from soak.arena import Arena
 from soak.cleaner import ENDED, Cleaner
-from soak.rows import Row, in_child
+from soak.rows import Row, in_child, tell
 
 NOTICED: Final = 1.0
 """s of wall time until a fault is told of, as docs/reliability.md promises."""
@@ -22,49 +22,60 @@ STOPPED: Final = 2.0
 """s of wall time for which a stopped process is waited for before that."""
 CALM: Final = (2.0, 8.0)
 """s of wall time between two faults."""
-KILLABLE: Final = tuple(name for name in RUN if name != "home_sim_node")
+KILLABLE: Final = (*(name for name in RUN if name != "home_sim_node"), "dashboard_node")
 """The body is required: all end with it."""
 
 
 def processes(arena: Arena) -> list[Row]:
     """Kill and stop nodes and the master, for the time that is given."""
     with RosGraph(arena.folder) as graph:
-        graph.launch(f"home:={tiny_home(arena.folder)}")
-        return in_child(
-            arena.folder,
-            lambda: _Disturber(graph, arena.random).run(arena.seconds),
-            2.0 * arena.seconds + 2.0 * ENDED,
-        )
+        graph.launch(f"home:={tiny_home(arena.folder)}", "page:=true", "page_port:=0")
+
+        def work() -> list[Row]:
+            cleaner = Cleaner(graph)
+            disturber = Disturber(graph, cleaner, arena.random)
+            end = time.monotonic() + arena.seconds
+            while time.monotonic() < end:
+                cleaner.keep_cleaning()
+                time.sleep(arena.random.uniform(*CALM))
+                disturber.disturb()
+            cleaner.finish()
+            return [cleaner.row, *disturber.rows]
+
+        return in_child(arena.folder, work, 2.0 * arena.seconds + 2.0 * ENDED)
 
 
-class _Disturber:
-    def __init__(self, graph: RosGraph, random: random.Random) -> None:
-        self._graph, self._random = graph, random
-        self._cleaner = Cleaner(graph)
+class Disturber:
+    """Kills and stops processes of a robot; each kind of fault has a row.
+
+    Every kind comes once, in any order, before one comes again: none is left out by chance.
+    """
+
+    def __init__(self, graph: RosGraph, cleaner: Cleaner, random: random.Random) -> None:
+        """Do nothing yet to the robot that ``cleaner`` lets clean."""
+        self._graph, self._cleaner, self._random = graph, cleaner, random
         self._rows: dict[str, Row] = {}
+        self._left: list[tuple[str, signal.Signals]] = []
 
-    def run(self, seconds: float) -> list[Row]:
-        end = time.monotonic() + seconds
-        while time.monotonic() < end:
-            self._cleaner.keep_cleaning()
-            time.sleep(self._random.uniform(*CALM))
-            self._random.choice((self._kill, self._stop, self._kill_master))()
-        self._cleaner.finish()
-        return [self._cleaner.row, *(self._rows[name] for name in sorted(self._rows))]
+    @property
+    def rows(self) -> list[Row]:
+        """What came of it."""
+        return [self._rows[name] for name in sorted(self._rows)]
 
-    def _kill(self) -> None:
-        name = self._random.choice(KILLABLE)
-        self._disturb(f"kill {name}", name, signal.SIGKILL, BACK)
-
-    def _stop(self) -> None:
-        name = self._random.choice(KILLABLE)
-        self._disturb(f"stop {name}", name, signal.SIGSTOP, STOPPED + BACK)
-
-    def _kill_master(self) -> None:
-        self._disturb("kill master", "master", signal.SIGKILL, BACK)
+    def disturb(self) -> None:
+        """Let one fault happen; note when that was told, and when all was well again."""
+        if not self._left:
+            self._left = [(name, signal.SIGKILL) for name in (*KILLABLE, "master")]
+            self._left += [(name, signal.SIGSTOP) for name in KILLABLE]
+            self._random.shuffle(self._left)
+        name, number = self._left.pop()
+        if number == signal.SIGKILL:
+            self._disturb(f"kill {name}", name, number, BACK)
+        else:
+            self._disturb(f"stop {name}", name, number, STOPPED + BACK)
 
     def _disturb(self, what: str, name: str, number: signal.Signals, back: float) -> None:
-        """Do something to a process; note when that was told, and when all was well again."""
+        tell(what)
         row = self._rows.setdefault(what, Row(what))
         row.times += 1
         trouble = self._cleaner.trouble

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import sys
 import time
 from collections.abc import Callable, Iterable
 from dataclasses import asdict, dataclass, field
@@ -20,6 +21,13 @@ class Row:
     worst: dict[str, float] = field(default_factory=dict)
     broken: list[str] = field(default_factory=list)
 
+    def add(self, other: Row) -> None:
+        """Take what came of another fault of this kind."""
+        self.times += other.times
+        for name, value in other.worst.items():
+            self.measured(name, value)
+        self.broken += other.broken
+
     def measured(self, name: str, value: float) -> None:
         """Note a figure, which is the worse the larger it is."""
         self.worst[name] = max(value, self.worst.get(name, value))
@@ -35,6 +43,11 @@ class Row:
         took = until(holds, 10.0 * seconds)
         self.expect(name, 10.0 * seconds if took is None else took, seconds)
         return took is not None
+
+
+def tell(what: str) -> None:
+    """Say what is done now: some parts take long."""
+    print(f"{time.strftime('%H:%M:%S')} {what} …", file=sys.stderr, flush=True)
 
 
 def until(holds: Callable[[], object], seconds: float) -> float | None:

@@ -11,7 +11,7 @@ from fixtures.ended_drives import CASES, seconds_to_rest
 from fixtures.graph import RosGraph
 from fixtures.standstill import PROMISE
 from soak.arena import Arena
-from soak.rows import Row, in_child
+from soak.rows import Row, in_child, tell
 
 _SPEED: Final = 5
 """Robot seconds per second."""
@@ -35,6 +35,7 @@ def standstill(arena: Arena) -> list[Row]:
 
 def _tried(graph: RosGraph, case: str) -> list[Row]:
     row = Row(case)
+    tell(case)
     kind, cause = CASES[case]
     drive = kind(graph)
     for row.times in range(1, _TIMES + 1):

@@ -8,9 +8,10 @@ from pathlib import Path
 from typing import Final
 
 from fixtures.graph import RosGraph
+from fixtures.processes import Program
 from fixtures.tiny_home import tiny_home
 from soak.arena import Arena
-from soak.rows import Row, until
+from soak.rows import Row, tell, until
 
 GONE: Final = 3.0
 """s of wall time until nothing is left after Ctrl-C."""
@@ -38,15 +39,22 @@ def _start_and_end(graph: RosGraph, row: Row, moment: float | None) -> None:
     """Start a robot, and end it after so many s of wall time, or when it is up."""
     run = graph.start_run(f"home:={tiny_home(graph.folder)}")
     row.times += 1
+    tell(f"{row.what}: {row.times}")
     if moment is None:
         took = until(lambda: graph.all_up() or run.status is not None, _PATIENCE)
         row.measured("up", _PATIENCE if took is None else took)
     else:
         until(lambda: run.status is not None, moment)
+    end(
+        run, row, f"start {row.times}" + ("" if moment is None else f", ended after {moment:.2f} s")
+    )
+
+
+def end(run: Program, row: Row, which: str) -> None:
+    """End a robot by Ctrl-C; note if that took long, left or killed something, or wrote badly."""
     started = _members(run.process.pid)
     run.send_to_leader(signal.SIGINT)
     row.expect_within("gone", GONE, lambda: run.status is not None)
-    which = f"start {row.times}" + ("" if moment is None else f", ended after {moment:.2f} s")
     left = [process for process in started if os.path.exists(f"/proc/{process}/exe")]
     if left:
         row.broken.append(f"{which}: processes {left} are left")
