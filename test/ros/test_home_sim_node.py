@@ -11,9 +11,10 @@ from fixtures.refusal import refusal
 from fixtures.simulated import Body, simulated, twist
 from fixtures.standstill import PROMISE
 from fixtures.waiting import unchanged, wait_until
+from geometry_msgs.msg import PoseStamped
 from nav_msgs.msg import OccupancyGrid, Odometry
-from roomba_robot.msg import Bumper
-from roomba_robot.srv import SpillDirt, TurnCamera
+from roomba_robot.msg import Bumper, SimHome
+from roomba_robot.srv import InjectFault, SetDoor, SpillDirt, TurnCamera
 from rosgraph_msgs.msg import Clock
 from std_msgs.msg import Float32, Time
 from std_srvs.srv import Trigger
@@ -194,6 +195,47 @@ def test_a_bin_can_be_emptied_and_its_level_tells(shared_robot: RosGraph) -> Non
     assert answer.message.endswith("g were in the bin")
     # It still rolls over some crumbs.
     wait_until(lambda: empty().success and level() == 0.0, 15.0)
+
+
+def test_doors_are_moved_and_the_truth_is_told(shared_robot: RosGraph) -> None:
+    """Of the home, of what was put down, of the dirt, and of the place of the robot."""
+    probe = Body(shared_robot, STATION).probe
+    pose = probe.next("/sim/pose", PoseStamped).pose.position
+    assert math.dist((pose.x, pose.y), (STATION.x, STATION.y)) < 0.05
+    before = probe.next("/sim/dirt", OccupancyGrid)
+    assert 0 <= min(before.data) < max(before.data) <= 100
+    first = probe.next("/sim/home", SimHome)
+    set_door = rospy.ServiceProxy("/sim/set_door", SetDoor)
+    door = first.doors[0]
+    assert not door.shut
+
+    probe.hear("/sim/home", SimHome)
+    assert set_door(door.name, True).success
+    wait_until(lambda: home_now(probe).doors[0].shut, 15.0, "a shut door")
+    assert set_door(door.name, False).success
+    wait_until(lambda: not home_now(probe).doors[0].shut, 15.0, "an open door")
+    refused = set_door("gate", True)
+    assert not refused.success
+    assert door.name in refused.message
+    interfere = rospy.ServiceProxy("/sim/inject_fault", InjectFault)
+    assert interfere("obstacle", 0.1, 2.0, 2.0, 0.0).success
+    wait_until(lambda: len(home_now(probe).things) == len(first.things) + 1, 15.0, "a thing")
+    assert interfere("no_obstacles", 1.0, 0.0, 0.0, 0.0).success
+    assert interfere("lifted", 1.0, 0.0, 0.0, 0.0).success
+    wait_until(lambda: home_now(probe).lifted, 15.0, "a lifted robot")
+    assert interfere("lifted", 0.0, 0.0, 0.0, 0.0).success
+    wait_until(lambda: not home_now(probe).lifted, 15.0, "a robot on the floor")
+    spill = rospy.ServiceProxy("/sim/spill", SpillDirt)
+    assert spill(2.0, 2.0, 0.25, 6.0).success
+    wait_until(
+        lambda: sum(probe.next("/sim/dirt", OccupancyGrid).data) > sum(before.data) + 1000,
+        15.0,
+        "dirt on the floor",
+    )
+
+
+def home_now(probe: Probe) -> SimHome:
+    return probe.newest["/sim/home"]
 
 
 def test_pictures_are_taken_at_any_angle_that_the_camera_can_turn_to(

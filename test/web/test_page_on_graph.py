@@ -17,6 +17,15 @@ from roomba.history.folder import history_folder
 WORKS_WITHIN = 60_000
 """ms of wall time for what the robot does by its own clock."""
 HEADING = "async () => (await import('/store.js')).get('state').pose[2]"
+THINGS = "async () => (await import('/store.js')).get('state').truth.things.length"
+TRUE_DIRT = """async () => {
+    const { grid } = await import("/map/grids.js");
+    return grid("true dirt")?.cells.reduce((sum, value) => sum + value, 0) ?? 0;
+}"""
+TAP = """async ([x, y]) => {
+    const { tapped } = await import("/panels/offer.js"), { toScreen } = await import("/map/view.js");
+    tapped(x, y, ...toScreen(x, y));
+}"""
 
 
 def address(graph: RosGraph) -> str:
@@ -101,3 +110,38 @@ def test_a_person_cleans_pauses_edits_and_stops(robot_with_page: RosGraph) -> No
         lambda: "/dashboard_node" not in robot_with_page.system_state()[0].get("/cmd_vel", []),
         10.0,
     )
+
+
+def test_a_simulated_home_is_played_with_and_its_truth_shown(robot_with_page: RosGraph) -> None:
+    place = [1.5, 1.5]
+    with open_page(robot_with_page) as page:
+        page.set_default_timeout(WORKS_WITHIN)
+
+        def act(words: str) -> None:
+            page.evaluate(TAP, place)
+            page.locator("#offer").get_by_role("button", name=words).click()
+
+        page.locator("#play summary").click()
+        page.get_by_role("checkbox", name="Show the truth").check()
+        page.get_by_text("Kitchen door: open").wait_for()
+        page.get_by_role("button", name="Shut the kitchen door").click()
+        page.get_by_text("Kitchen door: shut").wait_for()
+        page.get_by_role("button", name="Open the kitchen door").click()
+        page.get_by_text("Kitchen door: open").wait_for()
+        things = page.evaluate(THINGS)
+        act("Put a chair")
+        wait_until(lambda: page.evaluate(THINGS) == things + 4, 20.0, "a chair's legs")
+        page.get_by_role("button", name="Clear away").click()
+        wait_until(lambda: page.evaluate(THINGS) == things, 20.0, "no chair")
+        wait_until(lambda: page.evaluate(TRUE_DIRT) > 0, 20.0, "the dirt of the home")
+        dirt = page.evaluate(TRUE_DIRT)
+        act("Spill dirt")
+        wait_until(lambda: page.evaluate(TRUE_DIRT) > dirt + 1000, 20.0, "more dirt")
+        act("Put the robot here")
+        page.wait_for_function(
+            """async ([x, y]) => {
+                const { pose } = (await import("/store.js")).get("state").truth;
+                return Math.hypot(pose[0] - x, pose[1] - y) < 0.1;
+            }""",
+            arg=place,
+        )

@@ -171,7 +171,7 @@ class RobotView:
     something; ``path`` float32 [n, 2], what is left of its way. ``last`` is how the last errand
     ended. ``battery_seconds`` is when the battery is empty at the present current, or full while it
     charges, s, and ``top_speed`` how fast it may drive, m/s; NaN if not known. ``truth`` is there
-    for a simulated robot that runs in the program of the page.
+    for a simulated robot.
     """
 
     time: float

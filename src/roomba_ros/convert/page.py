@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from actionlib_msgs.msg import GoalStatus
@@ -12,10 +13,12 @@ from nav_msgs.msg import OccupancyGrid, Path
 from numpy.typing import NDArray
 from roomba_robot.msg import (
     CleanActionResult,
+    Door,
     ExploreActionResult,
     MapUpdate,
     Room,
     RoomArray,
+    SimHome,
     ZoneArray,
 )
 from roomba_robot.msg import Zone as ZoneMessage
@@ -25,6 +28,7 @@ from roomba.client.protocol import CleanReport, ErrandOutcome, MissedFloor
 from roomba.client.view import (
     MOST_PATH,
     ChangeView,
+    DoorView,
     Point,
     RoomView,
     ZoneView,
@@ -32,7 +36,7 @@ from roomba.client.view import (
     exploration_as_clean,
     known_cells,
 )
-from roomba.grid import OccupancyMap
+from roomba.grid import GridFrame, OccupancyMap
 from roomba_ros.convert.common import map_of, path_of
 from roomba_ros.convert.errors import MessageError, require_finite
 from roomba_ros.convert.mission import KINDS, OUTCOMES, zones_of
@@ -170,3 +174,42 @@ def zone_message_of(zone: ZoneView) -> ZoneMessage:
     message = ZoneMessage(name=zone.name, kind=code)
     message.points = [PointMessage(x, y, 0.0) for x, y in zone.points]
     return message
+
+
+class ToldHome(NamedTuple):
+    """Outlines of what stands about besides the map, the doors, and whether the robot is lifted."""
+
+    things: tuple[tuple[Point, ...], ...]
+    doors: tuple[DoorView, ...]
+    is_lifted: bool
+
+
+def sim_home_of(message: SimHome) -> ToldHome:
+    """Return how a home really is; raises MessageError."""
+    return ToldHome(
+        tuple(_outline(thing) for thing in message.things),
+        tuple(_door(door) for door in message.doors),
+        bool(message.lifted),
+    )
+
+
+def _outline(polygon: Polygon) -> tuple[Point, ...]:
+    points = tuple((float(point.x), float(point.y)) for point in polygon.points)
+    if len(points) < 3:
+        raise MessageError(f"expected an outline of 3 corners or more, got {len(points)}")
+    require_finite("an outline's corners", *(value for point in points for value in point))
+    return points
+
+
+def _door(message: Door) -> DoorView:
+    place = message.opening
+    opening = (place.min_x, place.min_y, place.max_x, place.max_y)
+    require_finite("a door's opening", *opening)
+    return DoorView(message.name, opening, bool(message.shut))
+
+
+def sim_dirt_of(message: OccupancyGrid) -> tuple[GridFrame, NDArray[np.uint8]]:
+    """Return where dirt lies, and uint8 [rows, columns]: 0 clean to 255 the dirtiest."""
+    dirt = map_of(message)
+    share = np.clip(dirt.values, 0, 100).astype(np.float64) / 100.0
+    return dirt.frame, np.rint(255.0 * share).astype(np.uint8)

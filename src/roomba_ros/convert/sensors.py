@@ -1,4 +1,4 @@
-"""The simulated sensors' measurements as ROS messages."""
+"""The simulated sensors' measurements, and the truth of a simulated home, as ROS messages."""
 
 from __future__ import annotations
 
@@ -7,6 +7,8 @@ from collections.abc import Iterable
 
 import numpy as np
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+from geometry_msgs.msg import Point32, Polygon
+from nav_msgs.msg import OccupancyGrid
 from numpy.typing import NDArray
 from PIL import Image as Picture
 from roomba_robot.msg import (
@@ -15,7 +17,15 @@ from roomba_robot.msg import (
 from roomba_robot.msg import (
     Cliff as CliffMessage,
 )
-from roomba_robot.msg import DockStatus, HazardDetection, HazardDetectionVector, WheelDrop
+from roomba_robot.msg import (
+    DockStatus,
+    HazardDetection,
+    HazardDetectionVector,
+    Rectangle,
+    SimHome,
+    WheelDrop,
+)
+from roomba_robot.msg import Door as DoorMessage
 from sensor_msgs.msg import (
     BatteryState as BatteryMessage,
 )
@@ -24,10 +34,12 @@ from sensor_msgs.msg import CameraInfo, CompressedImage, Image, Imu, JointState,
 from roomba.configuration.body import BatteryConfig
 from roomba.configuration.sensors import CameraConfig, LidarConfig
 from roomba.configuration.simulation import SimulatedGyro
+from roomba.grid import GridFrame, OccupancyMap
 from roomba.world.health import PartHealth
 from roomba.world.power import BatteryState
 from roomba.world.simulator import Bumper, Cliff, Observation, Wheels
-from roomba_ros.convert.common import header
+from roomba.world.truth import Door, HomeNow
+from roomba_ros.convert.common import header, map_message
 
 WHEEL_JOINTS = ("wheel_left_joint", "wheel_right_joint")
 _JPEG_QUALITY = 85
@@ -202,3 +214,22 @@ def depth_message(now: float, depth: NDArray[np.float32], frame_id: str) -> Imag
         step=4 * width,
         data=np.ascontiguousarray(depth).tobytes(),
     )
+
+
+def sim_home_message(now: float, home: HomeNow, frame_id: str) -> SimHome:
+    """Return how a home really is."""
+    things = [Polygon([Point32(x, y, 0.0) for x, y in outline]) for outline in home.things]
+    doors = [_door_message(door) for door in home.doors]
+    return SimHome(header(now, frame_id), things, doors, home.is_lifted)
+
+
+def _door_message(door: Door) -> DoorMessage:
+    return DoorMessage(door.name, Rectangle(*door.opening), door.is_shut)
+
+
+def sim_dirt_message(
+    now: float, frame: GridFrame, share: NDArray[np.float64], frame_id: str
+) -> OccupancyGrid:
+    """Return dirt, float64 [rows, columns] of 0 clean to 1 the dirtiest, as 0 to 100."""
+    cells = np.rint(100.0 * share).astype(np.int8)
+    return map_message(now, OccupancyMap(frame, cells), frame_id)

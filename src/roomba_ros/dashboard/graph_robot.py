@@ -18,6 +18,7 @@ from roomba_robot.srv import (
     JoinRooms,
     RemoveZone,
     RenameRoom,
+    SetDoor,
     SetZone,
     SpillDirt,
     SplitRoom,
@@ -53,8 +54,8 @@ class GraphRobot(GraphMaps):
 
     Publishes: ``cmd_vel`` (Twist, while it is driven by hand), and what :class:`RosRobot` does.
     Calls: ``emergency_stop``, ``set_zone``, ``remove_zone``, ``rooms/rename``, ``rooms/join``,
-    ``rooms/split``, ``sim/spill``, ``sim/inject_fault``, ``turn_camera``, and what
-    :class:`RosRobot` and :class:`GraphMaps` do.
+    ``rooms/split``, ``sim/spill``, ``sim/inject_fault``, ``sim/set_door``, ``turn_camera``, and
+    what :class:`RosRobot` and :class:`GraphMaps` do.
     """
 
     def __init__(self, config: RobotConfig) -> None:
@@ -83,6 +84,7 @@ class GraphRobot(GraphMaps):
             "rooms/split": SplitRoom,
             "sim/spill": SpillDirt,
             "sim/inject_fault": InjectFault,
+            "sim/set_door": SetDoor,
         }
         self._services = {name: rospy.ServiceProxy(name, kind) for name, kind in kinds.items()}
 
@@ -144,6 +146,7 @@ class GraphRobot(GraphMaps):
             last=self._topics.last,
             battery_seconds=self._topics.battery_seconds,
             top_speed=self._top_speed,
+            truth=self._topics.truth(),
         )
 
     @property
@@ -290,8 +293,8 @@ class GraphRobot(GraphMaps):
         self._interfere("no_obstacles")
 
     def set_door(self, name: str, *, is_shut: bool) -> None:
-        """Refuse: the simulation of the graph has no such service."""
-        raise RequestRefusedError("doors cannot be moved here; `./roomba play` has doors that can")
+        """Shut or open a door; it shuts as soon as the robot is out of its way."""
+        self._call("sim/set_door", name, is_shut)
 
     def lift(self) -> None:
         """Lift the robot: its wheels hang."""
@@ -310,7 +313,7 @@ class GraphRobot(GraphMaps):
         """Return what can be done to a simulated home; nothing to a real one."""
         if not is_offered("sim/inject_fault"):
             return ()
-        return tuple(act.value for act in view.PlayAct if act is not view.PlayAct.DOOR)
+        return tuple(act.value for act in view.PlayAct)
 
     # ---------------------------------------------------------------- inside
 

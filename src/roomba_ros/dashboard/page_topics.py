@@ -20,6 +20,7 @@ from roomba_robot.msg import (
     Localization,
     MapUpdate,
     RoomArray,
+    SimHome,
     ZoneArray,
 )
 from sensor_msgs.msg import BatteryState, LaserScan
@@ -27,15 +28,24 @@ from std_msgs.msg import Float32, String
 from tf2_msgs.msg import TFMessage
 
 from roomba.client.protocol import CleanReport, RobotUnavailableError
-from roomba.client.view import ChangeView, GridLayer, HomeView, LayerName, RoomView, ZoneView
+from roomba.client.view import (
+    ChangeView,
+    GridLayer,
+    HomeView,
+    LayerName,
+    RoomView,
+    TruthView,
+    ZoneView,
+)
 from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose
-from roomba.grid import OccupancyMap
+from roomba.grid import GridFrame, OccupancyMap
 from roomba.robot.readings import ScanReading
 from roomba_ros.convert.client import doubt_of
 from roomba_ros.convert.common import pose_in_map
 from roomba_ros.convert.mounts import Mounts, transforms_of
 from roomba_ros.convert.page import (
+    ToldHome,
     battery_seconds_of,
     changes_of,
     clean_report_of,
@@ -45,6 +55,8 @@ from roomba_ros.convert.page import (
     known_cells_of,
     room_views_of,
     shown_path_of,
+    sim_dirt_of,
+    sim_home_of,
     zone_views_of,
 )
 from roomba_ros.convert.scan import ScanDecoder
@@ -64,7 +76,8 @@ class PageTopics:
     Subscribes: ``pose``, ``localization``, ``speed``, ``bin_level``, ``battery_state``,
     ``emergency_stop``, ``scan``, ``plan``, ``map``, ``coverage_map``, ``dirt_map``, ``rooms``,
     ``zones``, ``station_pose``, ``trouble``, ``map/update``, ``clean/result``,
-    ``explore/result``, ``/tf_static``.
+    ``explore/result``, ``/tf_static``; of a simulation also ``sim/pose``, ``sim/home`` and
+    ``sim/dirt``.
     """
 
     def __init__(self, config: RobotConfig) -> None:
@@ -73,6 +86,9 @@ class PageTopics:
         self._lock = threading.Lock()
         self._pose: Pose | None = None
         self._pose_heard = -math.inf
+        self._true_pose: Pose | None = None
+        self._true_pose_heard = -math.inf
+        self._true_home: ToldHome | None = None
         self._scan: ScanReading | None = None
         self._path = _NO_POINTS
         self._home = HomeView(
@@ -112,6 +128,9 @@ class PageTopics:
         )
         for topic, name, convert in layers:
             subscribe(topic, OccupancyGrid, convert, partial(self._on_layer, name))
+        subscribe("sim/pose", PoseStamped, pose_in_map, self._on_true_pose)
+        subscribe("sim/home", SimHome, sim_home_of, partial(self._set, "_true_home"))
+        subscribe("sim/dirt", OccupancyGrid, sim_dirt_of, self._on_true_dirt)
 
     def pose(self) -> Pose:
         """Return where the robot is; raises RobotUnavailableError when it does not tell."""
@@ -123,6 +142,14 @@ class PageTopics:
                 f"nothing came on /pose for {silent:.0f} s; is the robot running (`./roomba run`)?"
             )
         return self._pose
+
+    def truth(self) -> TruthView | None:
+        """Return what is really so; None where no simulation tells it."""
+        is_old = time.monotonic() - self._true_pose_heard > _OLDEST_POSE
+        pose, home = self._true_pose, self._true_home
+        if pose is None or home is None or is_old:
+            return None
+        return TruthView((pose.x, pose.y, pose.theta), *home)
 
     def home(self) -> HomeView:
         """Return rooms, zones and station."""
@@ -152,6 +179,9 @@ class PageTopics:
 
     def _on_pose(self, pose: Pose) -> None:
         self._pose, self._pose_heard = pose, time.monotonic()
+
+    def _on_true_pose(self, pose: Pose) -> None:
+        self._true_pose, self._true_pose_heard = pose, time.monotonic()
 
     def _on_bin_level(self, level: float) -> None:
         self.in_bin = level * self._config.brush.bin_capacity
@@ -183,17 +213,21 @@ class PageTopics:
             self._home = replace(before, version=before.version + 1, **changes)
 
     def _on_layer(self, name: LayerName, grid: OccupancyMap) -> None:
-        cells = grid.values.astype(np.uint8)
+        self._take_layer(name, grid.frame, grid.values.astype(np.uint8))
+
+    def _on_true_dirt(self, dirt: tuple[GridFrame, NDArray[np.uint8]]) -> None:
+        self._take_layer(LayerName.TRUE_DIRT, *dirt)
+
+    def _take_layer(self, name: LayerName, frame: GridFrame, cells: NDArray[np.uint8]) -> None:
         with self._lock:
             before = self._layers.get(name)
             shape = 1 if before is None else before.shape
-            if before is not None and not _lies_as(before, grid):
+            if before is not None and not _lies_as(before, frame):
                 shape += 1
-            self._layers[name] = GridLayer.over(grid.frame, cells, shape)
+            self._layers[name] = GridLayer.over(frame, cells, shape)
 
 
-def _lies_as(before: GridLayer, grid: OccupancyMap) -> bool:
-    frame = grid.frame
+def _lies_as(before: GridLayer, frame: GridFrame) -> bool:
     return before.cells.shape == frame.shape and (
         before.resolution,
         before.origin_x,

@@ -20,6 +20,7 @@ from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.errors import ConfigError, RoombaError
 from roomba.files.shipped import HOMES
 from roomba.geometry import Pose
+from roomba.world.home.doors import with_leaves
 from roomba.world.home.home import Home
 from roomba.world.layers.layer import load_home
 from roomba.world.simulator import Observation, Simulator
@@ -55,6 +56,7 @@ from roomba_ros.simulation.drive_link import DriveLink
 from roomba_ros.simulation.frames import BodyFrames
 from roomba_ros.simulation.sensor_topics import SensorTopics
 from roomba_ros.simulation.sim_services import SimServices
+from roomba_ros.simulation.truth_topics import TruthTopics
 
 _FASTEST = 100.0
 _LONGEST_STEP = 5.0
@@ -69,7 +71,8 @@ class HomeSimNode:
     Publishes: ``/clock`` (20 Hz), ``map`` (latched), ``station_pose`` (PoseStamped, latched: where
     the docked robot stands on that map, its nose to the station), ``odom`` (20 Hz, by the wheel
     encoders), ``/tf`` (odom -> base_link, and of that the wheels), ``/tf_static`` (where the
-    sensors are on the body), and what :class:`SensorTopics` and :class:`CameraTopics` tell.
+    sensors are on the body), and what :class:`SensorTopics`, :class:`CameraTopics` and
+    :class:`TruthTopics` tell.
     Subscribes: what :class:`DriveLink` hears (``cmd_vel_out``, ``emergency_stop``); ``pose``
     (PoseStamped) and the ``progress`` (Time) of :data:`progress.NODES`: a robot that is late, on a
     busy machine, is waited for; ``main_brush_motor``, ``vacuum_motor`` (Float32, duty 0..1, of
@@ -167,6 +170,7 @@ class HomeSimNode:
             transforms += self._frames.wheels(now, wheels.left, wheels.right)
         self._transforms.publish(transforms)
         self._sensors.tell(now, self._ticks, observation)
+        self._truth.tell(now, self._ticks, observation)
 
     def _now(self) -> float:
         """Return the time for stamps, s of the ROS clock."""
@@ -179,7 +183,8 @@ class HomeSimNode:
 
     def _make_simulator(self) -> Simulator:
         directory = Path(rospy.get_param("~homes_directory", str(HOMES)))
-        home = load_home(str(rospy.get_param("~home", "flat")), directory, self._config.body)
+        name = str(rospy.get_param("~home", "flat"))
+        home = with_leaves(load_home(name, directory, self._config.body))
         seed = rospy.get_param("~seed", 0)
         if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
             raise ConfigError(
@@ -214,6 +219,7 @@ class HomeSimNode:
         self._camera = CameraTopics(
             self._simulator, self._config.camera, self._nodes.periods.pictures, self._lock
         )
+        self._truth = TruthTopics(self._simulator)
         self._services = SimServices(self._simulator, self._lock)
         self._drive.start()
         self._parts = {

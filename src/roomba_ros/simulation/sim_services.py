@@ -10,6 +10,9 @@ from roomba_robot.srv import (
     InjectFault,
     InjectFaultRequest,
     InjectFaultResponse,
+    SetDoor,
+    SetDoorRequest,
+    SetDoorResponse,
     SpillDirt,
     SpillDirtRequest,
     SpillDirtResponse,
@@ -32,7 +35,8 @@ robot elsewhere."""
 
 class SimServices:
     """Services: ``sim/spill`` (SpillDirt), ``sim/inject_fault`` (InjectFault: what goes wrong by
-    name; ``charge`` sets what is in the battery, ``value`` of 0..1), ``sim/empty_bin`` (Trigger).
+    name; ``charge`` sets what is in the battery, ``value`` of 0..1), ``sim/empty_bin`` (Trigger),
+    ``sim/set_door`` (SetDoor).
     """
 
     def __init__(self, simulator: Simulator, lock: threading.Lock) -> None:
@@ -41,6 +45,7 @@ class SimServices:
         rospy.Service("sim/spill", SpillDirt, self._on_spill)
         rospy.Service("sim/inject_fault", InjectFault, self._on_fault)
         rospy.Service("sim/empty_bin", Trigger, self._on_empty_bin)
+        rospy.Service("sim/set_door", SetDoor, self._on_set_door)
 
     def _on_spill(self, request: SpillDirtRequest) -> SpillDirtResponse:
         try:
@@ -56,6 +61,15 @@ class SimServices:
         with self._lock:
             taken = self._simulator.empty_bin()
         return TriggerResponse(True, f"{taken:.1f} g were in the bin")
+
+    def _on_set_door(self, request: SetDoorRequest) -> SetDoorResponse:
+        try:
+            with self._lock:
+                self._simulator.set_door(request.name, is_shut=request.shut)
+        except ValueError as error:
+            return SetDoorResponse(False, str(error))
+        done = "shuts as soon as nothing stands in it" if request.shut else "is open"
+        return SetDoorResponse(True, f"{request.name} {done}")
 
     def _on_fault(self, request: InjectFaultRequest) -> InjectFaultResponse:
         others: dict[str, Callable[[InjectFaultRequest], str]] = {

@@ -2,24 +2,16 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterator
-from typing import Final
-
 import numpy as np
 
 from roomba.client.observed import STATION_BOX
-from roomba.client.view import DoorView, GridLayer, PlayAct, Point, TruthView
+from roomba.client.view import DoorView, GridLayer, PlayAct, TruthView
 from roomba.geometry import Pose
 from roomba.headless.cleaner import HeadlessMission
 from roomba.world.engine.state.arrays import Fault
-from roomba.world.home.home import Box, Home, MovingKind
+from roomba.world.home.home import Home
 from roomba.world.simulator import Simulator
-
-_ROUND: Final = 12
-"""Corners of what is round, as drawn."""
-_DIRTIEST: Final = 6.0
-"""g/m2 that are drawn as the dirtiest floor there is."""
+from roomba.world.truth import HomeTruth
 
 
 class Playing:
@@ -28,19 +20,12 @@ class Playing:
     def __init__(self, home: Home) -> None:
         """Play in a home."""
         self._home = home
-        own = home.exact
-        self._doors = {door.name: door.opening for door in own.doors} if own is home else {}
-        self._unmapped = tuple(
-            tuple(_corners(box, Pose()))
-            for piece in home.furniture
-            if not piece.on_map
-            for box in piece.boxes
-        )
+        self._truth = HomeTruth(home)
 
     @property
     def acts(self) -> tuple[str, ...]:
         """What is offered: values of :class:`roomba.client.view.PlayAct`."""
-        leaves = any(thing.kind is MovingKind.DOOR for thing in self._home.moving)
+        leaves = self._truth.has_doors
         return tuple(act.value for act in PlayAct if act is not PlayAct.DOOR or leaves)
 
     # ---------------------------------------------------------------- acts, in the robot's thread
@@ -64,54 +49,14 @@ class Playing:
 
     def truth(self, robot: HeadlessMission) -> TruthView:
         """Return what is really so."""
-        simulator = robot.simulator
-        pose = robot.seen.pose
-        return TruthView(
-            (pose.x, pose.y, pose.theta),
-            (*self._unmapped, *self._things(simulator), *map(_ring, simulator.discs.tolist())),
-            tuple(self._doors_now(simulator)),
-            simulator.numbers["lifted"] > 0.0,
-        )
+        now, pose = self._truth.now(robot.simulator), robot.seen.pose
+        doors = tuple(DoorView(door.name, door.opening, door.is_shut) for door in now.doors)
+        return TruthView((pose.x, pose.y, pose.theta), now.things, doors, now.is_lifted)
 
     def dirt(self, robot: HeadlessMission) -> GridLayer | None:
         """Return the dirt that lies on the floor; None for a home that was turned."""
-        if self._home.turned is not None:
+        told = self._truth.dirt(robot.simulator)
+        if told is None:
             return None
-        dirt = robot.simulator.dirt
-        cells = np.minimum(255.0 * dirt.density / _DIRTIEST, 255.0).astype(np.uint8)
-        return GridLayer.over(dirt.frame, cells, 1)
-
-    def _things(self, simulator: Simulator) -> Iterator[tuple[Point, ...]]:
-        """Yield the outlines of what moves, doors apart."""
-        for thing, (x, y, theta, is_present) in zip(
-            self._home.moving, simulator.things.tolist(), strict=True
-        ):
-            if is_present and thing.kind is not MovingKind.DOOR:
-                for box in thing.boxes:
-                    yield tuple(_corners(box, Pose(x, y, theta)))
-
-    def _doors_now(self, simulator: Simulator) -> Iterator[DoorView]:
-        for thing, (_, _, _, is_present) in zip(
-            self._home.moving, simulator.things.tolist(), strict=True
-        ):
-            opening = self._doors.get(thing.name)
-            if thing.kind is MovingKind.DOOR and opening is not None:
-                corners = opening.x_min, opening.y_min, opening.x_max, opening.y_max
-                yield DoorView(thing.name, corners, bool(is_present))
-
-
-def _corners(box: Box, pose: Pose) -> Iterator[Point]:
-    placed = box.placed_at(pose)
-    ahead = 0.5 * box.length * math.cos(placed.theta), 0.5 * box.length * math.sin(placed.theta)
-    aside = -0.5 * box.width * math.sin(placed.theta), 0.5 * box.width * math.cos(placed.theta)
-    for along, across in ((1, 1), (-1, 1), (-1, -1), (1, -1)):
-        yield (
-            placed.x + along * ahead[0] + across * aside[0],
-            placed.y + along * ahead[1] + across * aside[1],
-        )
-
-
-def _ring(disc: list[float]) -> tuple[Point, ...]:
-    x, y, radius = disc
-    turns = (math.tau * part / _ROUND for part in range(_ROUND))
-    return tuple((x + radius * math.cos(turn), y + radius * math.sin(turn)) for turn in turns)
+        frame, share = told
+        return GridLayer.over(frame, (255.0 * share).astype(np.uint8), 1)

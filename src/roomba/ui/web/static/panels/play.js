@@ -12,7 +12,7 @@ let doors = "";
 /** Show what the robot offers. */
 export function begin() {
   on("limits", show);
-  on("state", showDoors);
+  on("state limits", showDoors);
   $("play-truth").onchange = () => set("layers", { ...get("layers"), truth: $("play-truth").checked });
   on("layers", () => { $("play-truth").checked = get("layers").truth; });
 }
@@ -32,19 +32,19 @@ function show() {
   const acts = get("limits")?.play ?? [];
   $("play").hidden = acts.length === 0;
   const places = Object.keys(AT_A_PLACE).filter((act) => acts.includes(act)).map((act) => AT_A_PLACE[act]);
-  $("play-hint").textContent = `While this is open, tap the floor to ${places.join(", ")}; ${acts.includes("lift") ? "or drag the robot. " : ""}${acts.includes("door") ? "Tap a door to move it." : ""}`;
+  $("play-hint").textContent = `While this is open, tap the floor to ${places.join(", ")}; ${acts.includes("lift") ? "or drag the robot." : ""}`;
   $("play-acts").replaceChildren(...Object.entries(EVERYWHERE).filter(([act]) => acts.includes(act)).map(([, [words, path]]) => button(words, async () => {
     if (await wish(path)) note(words === "Clear away" ? "What was put down is taken away." : "A box stands before the station.");
   })));
 }
 
 function showDoors() {
-  const truth = get("state")?.truth, key = JSON.stringify(truth?.doors ?? []);
+  const truth = get("state")?.truth, shown = (offers("door") && truth?.doors) || [], key = JSON.stringify(shown);
   $("play-truth-label").hidden = !truth;
   if (key === doors) return;
   doors = key;
   const focused = document.activeElement?.dataset?.door;
-  $("play-doors").replaceChildren(...(offers("door") ? truth?.doors ?? [] : []).map((door) => {
+  $("play-doors").replaceChildren(...shown.map((door) => {
     const item = document.createElement("li"), name = document.createElement("span");
     name.className = "name";
     name.textContent = `${title(door.name)}: ${door.is_shut ? "shut" : "open"}`;

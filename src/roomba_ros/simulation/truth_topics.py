@@ -1,0 +1,55 @@
+"""The topics of what is really so, which only people look at: the robot hears none of them."""
+
+from __future__ import annotations
+
+import rospy
+from geometry_msgs.msg import PoseStamped
+from nav_msgs.msg import OccupancyGrid
+from roomba_robot.msg import SimHome
+
+from roomba.world.simulator import Observation, Simulator
+from roomba.world.truth import HomeTruth
+from roomba_ros.convert.common import pose_message
+from roomba_ros.convert.sensors import sim_dirt_message, sim_home_message
+
+_HOME_EVERY = 4
+"""Ticks between two looks at what stands about."""
+_DIRT_EVERY = 20
+"""Ticks between two looks at the dirt."""
+
+
+class TruthTopics:
+    """Tells how a home really is, and where the robot is in it.
+
+    Publishes: ``sim/pose`` (PoseStamped, 20 Hz while heard), ``sim/home`` (SimHome, latched, at a
+    change), ``sim/dirt`` (OccupancyGrid, 1 Hz while heard; a home that was turned tells none).
+    """
+
+    def __init__(self, simulator: Simulator) -> None:
+        """Connect all of them."""
+        self._simulator, self._truth = simulator, HomeTruth(simulator.home)
+        self._told: object = None
+        self._pose = rospy.Publisher("sim/pose", PoseStamped, queue_size=1, tcp_nodelay=True)
+        self._home = rospy.Publisher("sim/home", SimHome, queue_size=1, latch=True)
+        self._dirt = rospy.Publisher("sim/dirt", OccupancyGrid, queue_size=1)
+
+    def tell(self, now: float, tick: int, seen: Observation) -> None:
+        """Publish what is due at a tick; ``now`` is the time for stamps, s."""
+        if self._pose.get_num_connections() > 0:
+            self._pose.publish(pose_message(now, seen.pose, "map"))
+        if self._told is None or tick % _HOME_EVERY == 0:
+            self._follow_home(now)
+        if tick % _DIRT_EVERY == 0 and self._dirt.get_num_connections() > 0:
+            self._tell_dirt(now)
+
+    def _follow_home(self, now: float) -> None:
+        it = self._simulator
+        state = it.things.tobytes(), it.discs.tobytes(), it.numbers["lifted"]
+        if state != self._told:
+            self._told = state
+            self._home.publish(sim_home_message(now, self._truth.now(it), "map"))
+
+    def _tell_dirt(self, now: float) -> None:
+        dirt = self._truth.dirt(self._simulator)
+        if dirt is not None:
+            self._dirt.publish(sim_dirt_message(now, *dirt, "map"))
