@@ -177,6 +177,14 @@ def test_what_changed_is_offered_refused_and_accepted(graph: RosGraph) -> None:
     assert stored.zones.all == (ZONE,)
     assert stored.rooms is not None
     assert KITCHEN in stored.rooms.names
+    with stays_known(robot):
+        assert robot.trigger("/map/update/undo").success
+        wait_until(lambda: chest_cells(robot) == before, 30.0, "the map as it was")
+    kept = kept_maps(graph.folder / "ros_home").load(HOME).occupancy
+    assert np.array_equal(kept.values, robot.map.values)
+    refused = robot.trigger("/map/update/undo")
+    assert not refused.success
+    assert "to take back" in refused.message
 
 
 def test_a_robot_that_was_given_its_map_makes_none(graph: RosGraph) -> None:

@@ -44,6 +44,14 @@ def test_rooms_are_told_edited_and_kept(robot: RosGraph) -> None:
     ends = Point(anchor.x - 8.0, anchor.y, 0.0), Point(anchor.x + 8.0, anchor.y, 0.0)
     assert rospy.ServiceProxy("/rooms/split", SplitRoom)("living room", *ends).success
     wait_until(lambda: "living room 2" in names(probe), 30.0, "the cut is told")
+    undo = rospy.ServiceProxy("/rooms/undo", Trigger)
+    assert undo().success
+    wait_until(lambda: len(names(probe)) == 5, 30.0, "the room as it was")
+    refused = undo()
+    assert not refused.success
+    assert "there was none" in refused.message
+    assert rospy.ServiceProxy("/rooms/split", SplitRoom)("living room", *ends).success
+    wait_until(lambda: "living room 2" in names(probe), 30.0, "the cut again")
     # Kept on disk: a node that comes back after it was killed tells the edited rooms.
     probe.newest.pop("/rooms")
     robot.run("rosnode", "kill", f"/{NODE}")

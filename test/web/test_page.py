@@ -142,6 +142,39 @@ def test_a_room_gets_another_name(opened: Opened) -> None:
     assert "Cook's den" in [room.name for room in opened.robot.home().rooms]
 
 
+def test_rooms_that_were_joined_or_split_become_as_they_were(opened: Opened) -> None:
+    page, before = opened.page, opened.robot.home().rooms
+
+    def undo(count: int) -> None:
+        wait_until(lambda: len(opened.robot.home().rooms) == count, DEADLINE, f"{count} rooms")
+        page.get_by_role("button", name="Undo").click()
+        wait_until(lambda: opened.robot.home().rooms == before, DEADLINE, "the rooms as before")
+
+    opened.show("rooms")
+    page.get_by_role("button", name="kitchen").click()
+    page.get_by_role("button", name="living room").click()
+    page.get_by_role("button", name="Join").click()
+    undo(len(before) - 1)
+    page.get_by_role("button", name="living room").click()
+    page.get_by_role("button", name="Split").click()
+    # The sheet of a phone gives way to the map on which the line is drawn.
+    assert page.locator("[data-tab][aria-expanded=true]").count() == 0
+    rings = next(room.rings for room in before if room.name == "living room")
+    middle = sum(y for _, y in rings[0]) / len(rings[0])
+    left, right = min(x for x, _ in rings[0]), max(x for x, _ in rings[0])
+    opened.drag((left - 0.1, middle), (0.5 * (left + right), middle), (right + 0.1, middle))
+    undo(len(before) + 1)
+
+
+def test_drawing_is_given_up(opened: Opened) -> None:
+    page = opened.page
+    opened.show("zones")
+    page.get_by_role("button", name="No-go zone").click()
+    page.get_by_text("Drag over the floor").wait_for()
+    page.locator("#hint").get_by_role("button", name="Cancel").click()
+    assert not page.locator("#hint").is_visible()
+
+
 def test_the_emergency_stop_is_a_button_and_a_key(opened: Opened) -> None:
     page = opened.page
     page.get_by_role("button", name="Clean all").click()
@@ -213,6 +246,7 @@ def test_the_page_comes_back_after_its_server_was_gone(opened: Opened) -> None:
     opened.server.stop()
     page.wait_for_selector("body[data-link='reconnecting']")
     assert "Connecting again" in page.inner_text("#headline")
+    assert page.get_by_role("button", name="Clean all").is_disabled()
     again = PageServer(
         create_app(opened.robot, opened.guard), listen("127.0.0.1", port, is_fixed=True)
     )
@@ -229,6 +263,7 @@ def test_without_the_token_nothing_is_changed(opened: Opened) -> None:
     other = opened.page.context.new_page()
     other.goto(opened.server.address)
     other.wait_for_selector("body[data-link='live']")
+    other.get_by_text("This page may only look").wait_for()
     other.get_by_role("button", name="Clean all").click()
     other.wait_for_selector("#refusal:not([hidden])")
     assert "token" in other.inner_text("#refusal")

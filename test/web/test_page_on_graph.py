@@ -23,7 +23,8 @@ TRUE_DIRT = """async () => {
     return grid("true dirt")?.cells.reduce((sum, value) => sum + value, 0) ?? 0;
 }"""
 TAP = """async ([x, y]) => {
-    const { tapped } = await import("/panels/offer.js"), { toScreen } = await import("/map/view.js");
+    const { tapped } = await import("/panels/offer.js");
+    const { toScreen } = await import("/map/view.js");
     tapped(x, y, ...toScreen(x, y));
 }"""
 

@@ -88,6 +88,9 @@ class ObservedRobot(Protocol):
     def split_room(self, name: str, start: view.Point, end: view.Point) -> None:
         """Cut a room along a line between two points."""
 
+    def undo_rooms(self) -> None:
+        """Take back the newest edit of the rooms."""
+
 
 @dataclass(frozen=True, slots=True)
 class TimelineView:
@@ -152,6 +155,9 @@ class MapKeeper(Protocol):
 
     def change_map(self, *, is_accepted: bool) -> None:
         """Change the map as it is offered, or leave it and do not ask again."""
+
+    def undo_change(self) -> None:
+        """Take back the change of the map that was accepted last."""
 
 
 @runtime_checkable

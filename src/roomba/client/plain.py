@@ -36,6 +36,7 @@ def state_of(view: RobotView) -> Json:
             "seconds_to_go": round(vacuum.seconds_to_go, 1),
             "battery": known(vacuum.battery),
             "battery_seconds": known(view.battery_seconds),
+            "charges": view.charges,
         },
         "top_speed": known(view.top_speed),
         "scan": (view.scan * 100.0).round().astype(int).ravel().tolist(),

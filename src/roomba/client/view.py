@@ -170,8 +170,8 @@ class RobotView:
     holds the drive, empty if it does not. ``scan`` is float32 [n, 2], where the lidar's beams met
     something; ``path`` float32 [n, 2], what is left of its way. ``last`` is how the last errand
     ended. ``battery_seconds`` is when the battery is empty at the present current, or full while it
-    charges, s, and ``top_speed`` how fast it may drive, m/s; NaN if not known. ``truth`` is there
-    for a simulated robot.
+    charges, s, and ``top_speed`` how fast it may drive, m/s; NaN if not known. ``charges`` says
+    that its battery fills. ``truth`` is there for a simulated robot.
     """
 
     time: float
@@ -187,6 +187,7 @@ class RobotView:
     battery_seconds: float = math.nan
     top_speed: float = math.nan
     truth: TruthView | None = None
+    charges: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -191,7 +191,7 @@ class RecordedRobot:
 
     clean = explore = go_to = dock = pause = resume = stop = locate = empty_bin = _refuse
     emergency_stop = release = drive = put_zone = remove_zone = rename_room = _refuse
-    join_rooms = split_room = set_top_speed = _refuse
+    join_rooms = split_room = undo_rooms = set_top_speed = _refuse
 
 
 class _Coverage:

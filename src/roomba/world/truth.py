@@ -25,7 +25,7 @@ _DIRTIEST: Final = 6.0
 
 
 @dataclass(frozen=True, slots=True)
-class Door:
+class DoorNow:
     """A door that can be shut: lowest x and y, highest x and y of its opening, m."""
 
     name: str
@@ -38,7 +38,7 @@ class HomeNow:
     """Outlines of what stands about besides the map, the doors, and whether the robot is lifted."""
 
     things: tuple[tuple[Point, ...], ...]
-    doors: tuple[Door, ...]
+    doors: tuple[DoorNow, ...]
     is_lifted: bool
 
 
@@ -89,14 +89,14 @@ class HomeTruth:
                 for box in thing.boxes:
                     yield tuple(_corners(box, Pose(x, y, theta)))
 
-    def _doors(self, simulator: Simulator) -> Iterator[Door]:
+    def _doors(self, simulator: Simulator) -> Iterator[DoorNow]:
         for thing, (_, _, _, is_present) in zip(
             self._home.moving, simulator.things.tolist(), strict=True
         ):
             opening = self._openings.get(thing.name)
             if thing.kind is MovingKind.DOOR and opening is not None:
                 corners = opening.x_min, opening.y_min, opening.x_max, opening.y_max
-                yield Door(thing.name, corners, bool(is_present))
+                yield DoorNow(thing.name, corners, bool(is_present))
 
 
 def _corners(box: Box, pose: Pose) -> Iterator[Point]:

@@ -68,6 +68,11 @@ def battery_seconds_of(message: BatteryState) -> float:
     return battery_seconds(level, current / (3600.0 * capacity))
 
 
+def charges_of(message: BatteryState) -> bool:
+    """Return whether the battery fills; False if that is not known."""
+    return bool(message.current > 0.0)
+
+
 def shown_path_of(message: Path) -> NDArray[np.float32]:
     """Return the first points of a path, float32 [n, 2], m."""
     path = path_of(message)[:MOST_PATH]

@@ -38,7 +38,7 @@ from roomba.grid import GridFrame, OccupancyMap
 from roomba.world.health import PartHealth
 from roomba.world.power import BatteryState
 from roomba.world.simulator import Bumper, Cliff, Observation, Wheels
-from roomba.world.truth import Door, HomeNow
+from roomba.world.truth import DoorNow, HomeNow
 from roomba_ros.convert.common import header, map_message
 
 WHEEL_JOINTS = ("wheel_left_joint", "wheel_right_joint")
@@ -223,7 +223,7 @@ def sim_home_message(now: float, home: HomeNow, frame_id: str) -> SimHome:
     return SimHome(header(now, frame_id), things, doors, home.is_lifted)
 
 
-def _door_message(door: Door) -> DoorMessage:
+def _door_message(door: DoorNow) -> DoorMessage:
     return DoorMessage(door.name, Rectangle(*door.opening), door.is_shut)
 
 

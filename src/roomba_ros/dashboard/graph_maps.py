@@ -17,7 +17,7 @@ class GraphMaps:
     """That half of a :class:`roomba.client.observed.MapKeeper`.
 
     Calls: ``map/list``, ``map/save``, ``map/load``, ``map/remove``, ``map/update/accept``,
-    ``map/update/refuse``.
+    ``map/update/refuse``, ``map/update/undo``.
     """
 
     def start(self) -> None:
@@ -29,6 +29,7 @@ class GraphMaps:
             "map/remove": NameMap,
             "map/update/accept": Trigger,
             "map/update/refuse": Trigger,
+            "map/update/undo": Trigger,
         }
         self._maps = {name: rospy.ServiceProxy(name, kind) for name, kind in kinds.items()}
 
@@ -52,6 +53,10 @@ class GraphMaps:
     def change_map(self, *, is_accepted: bool) -> None:
         """Change the map as it is offered, or leave it."""
         self._do("map/update/accept" if is_accepted else "map/update/refuse")
+
+    def undo_change(self) -> None:
+        """Take back the change of the map that was accepted last."""
+        self._do("map/update/undo")
 
     def _do(self, name: str, *arguments: Any) -> None:
         answer = call_service(self._maps[name], *arguments)

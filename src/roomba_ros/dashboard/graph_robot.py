@@ -23,6 +23,7 @@ from roomba_robot.srv import (
     SpillDirt,
     SplitRoom,
 )
+from std_srvs.srv import Trigger
 
 from roomba.client import view
 from roomba.client.observed import HAND_SILENCE, SPILL, STATION_BOX
@@ -54,8 +55,8 @@ class GraphRobot(GraphMaps):
 
     Publishes: ``cmd_vel`` (Twist, while it is driven by hand), and what :class:`RosRobot` does.
     Calls: ``emergency_stop``, ``set_zone``, ``remove_zone``, ``rooms/rename``, ``rooms/join``,
-    ``rooms/split``, ``sim/spill``, ``sim/inject_fault``, ``sim/set_door``, ``turn_camera``, and
-    what :class:`RosRobot` and :class:`GraphMaps` do.
+    ``rooms/split``, ``rooms/undo``, ``sim/spill``, ``sim/inject_fault``, ``sim/set_door``,
+    ``turn_camera``, and what :class:`RosRobot` and :class:`GraphMaps` do.
     """
 
     def __init__(self, config: RobotConfig) -> None:
@@ -82,6 +83,7 @@ class GraphRobot(GraphMaps):
             "rooms/rename": RenameRoom,
             "rooms/join": JoinRooms,
             "rooms/split": SplitRoom,
+            "rooms/undo": Trigger,
             "sim/spill": SpillDirt,
             "sim/inject_fault": InjectFault,
             "sim/set_door": SetDoor,
@@ -147,6 +149,7 @@ class GraphRobot(GraphMaps):
             battery_seconds=self._topics.battery_seconds,
             top_speed=self._top_speed,
             truth=self._topics.truth(),
+            charges=self._topics.charges,
         )
 
     @property
@@ -271,6 +274,10 @@ class GraphRobot(GraphMaps):
     def split_room(self, name: str, start: view.Point, end: view.Point) -> None:
         """Cut a room along a line."""
         self._call("rooms/split", name, PointMessage(*start, 0.0), PointMessage(*end, 0.0))
+
+    def undo_rooms(self) -> None:
+        """Take back the newest edit of the rooms."""
+        self._call("rooms/undo")
 
     # ---------------------------------------------------------------- to play with
 

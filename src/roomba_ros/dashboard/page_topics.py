@@ -48,6 +48,7 @@ from roomba_ros.convert.page import (
     ToldHome,
     battery_seconds_of,
     changes_of,
+    charges_of,
     clean_report_of,
     covered_cells_of,
     dirt_cells_of,
@@ -98,6 +99,7 @@ class PageTopics:
         self.doubt, self.held, self.trouble = "", "", ""
         self.last: CleanReport | None = None
         self.speed, self.in_bin, self.battery_seconds = 0.0, 0.0, math.nan
+        self.charges = False
         self._mounts = Mounts()
         self._decoder = ScanDecoder.on_robot(self._mounts, frame_id("base_link"))
 
@@ -110,6 +112,7 @@ class PageTopics:
         subscribe("bin_level", Float32, number_of, self._on_bin_level)
         battery = partial(self._set, "battery_seconds")
         subscribe("battery_state", BatteryState, battery_seconds_of, battery)
+        subscribe("battery_state", BatteryState, charges_of, partial(self._set, "charges"))
         drive, supervisor = OnlyFrom(SPEED_NODE), OnlyFrom(SUPERVISOR)
         subscribe("trouble", String, data_of, partial(self._set, "trouble"), senders=supervisor)
         subscribe("emergency_stop", String, data_of, partial(self._set, "held"), senders=drive)

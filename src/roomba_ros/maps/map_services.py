@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Final
+from typing import Final, NamedTuple
 
 import rospy
 from roomba_robot.srv import (
@@ -18,6 +18,7 @@ from roomba_robot.srv import (
 from std_srvs.srv import Trigger, TriggerResponse
 
 from roomba.errors import RoombaError
+from roomba.grid import OccupancyMap
 from roomba.perception.rooms.refit import refitted
 from roomba.storage.map_store import MapStoreError, StoredMap
 from roomba_ros.localization.topics import LocalizationTopics
@@ -36,12 +37,20 @@ _IS_GIVEN: Final = (
 )
 
 
+class _Changed(NamedTuple):
+    """A change that was accepted: the map's name, all of it ``before``, and the map ``after``."""
+
+    name: str
+    before: StoredMap
+    after: OccupancyMap
+
+
 class MapServices:
     """Answers; what is refused says why, and changes nothing.
 
     Services: ``map/finish`` (Trigger: the map is whole as it is), ``map/save``, ``map/load``,
     ``map/remove`` (NameMap), ``map/list`` (ListMaps), ``map/update/accept``,
-    ``map/update/refuse`` (Trigger).
+    ``map/update/refuse``, ``map/update/undo`` (Trigger).
     """
 
     def __init__(
@@ -55,6 +64,7 @@ class MapServices:
         """Connect nothing yet."""
         self._own, self._maker, self._place = own, maker, place
         self._shelf, self._changes = shelf, changes
+        self._changed: _Changed | None = None
 
     def start(self, *, is_own: bool) -> None:
         """Connect."""
@@ -63,6 +73,7 @@ class MapServices:
             ("map/finish", self._finish),
             ("map/update/accept", self._accept),
             ("map/update/refuse", self._refuse),
+            ("map/update/undo", self._undo),
         ):
             rospy.Service(name, Trigger, lambda _, work=work: self._answer(TriggerResponse, work))
         for name, deed in (
@@ -170,7 +181,22 @@ class MapServices:
             self._shelf.save(name, stored)
         with own.lock:
             own.use_changed(name, stored)
+        self._changed = _Changed(name, before, proposed)
         return "the map is changed"
+
+    def _undo(self) -> str:
+        """Go back to the map before the change that was accepted last."""
+        own, changed = self._own, self._changed
+        with own.lock:
+            is_there = changed is not None and own.occupancy is changed.after
+        if changed is None or not is_there:
+            raise MapStoreError("expected an accepted change of this map to take back, got none")
+        if changed.name:
+            self._shelf.save(changed.name, changed.before)
+        with own.lock:
+            own.use_changed(changed.name, changed.before)
+        self._changed = None
+        return "the map is as it was"
 
     def _refuse(self) -> str:
         """Leave the map as it is, and do not ask again."""

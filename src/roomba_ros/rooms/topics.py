@@ -41,7 +41,8 @@ class RoomTopics:
     Publishes: ``rooms`` (RoomArray, latched), ``rooms/markers`` (MarkerArray, latched, for RViz).
     Subscribes: ``map``.
     Services: ``rooms/rename`` (RenameRoom), ``rooms/join`` (JoinRooms), ``rooms/split``
-    (SplitRoom), ``rooms/segment`` (Trigger: forget all edits). Edits are saved at once.
+    (SplitRoom), ``rooms/segment`` (Trigger: forget all edits), ``rooms/undo`` (Trigger: take back
+    the newest edit). Edits are saved at once.
     Parameters: ``~rooms_folder`` (default: roomba_robot/rooms in the ROS home folder),
     ``rooms_config`` (path of a configuration file; by default the shipped one).
     """
@@ -51,6 +52,7 @@ class RoomTopics:
         self._lock = threading.Lock()
         self._map: OccupancyMap | None = None
         self._rooms: Rooms | None = None
+        self._before: Rooms | None = None
         self.is_growing: Callable[[], bool] = lambda: False
         """Tells whether the map is being made; the maker of maps puts its answer here."""
 
@@ -64,6 +66,7 @@ class RoomTopics:
         rospy.Service("rooms/join", JoinRooms, self._on_join)
         rospy.Service("rooms/split", SplitRoom, self._on_split)
         rospy.Service("rooms/segment", Trigger, self._on_segment)
+        rospy.Service("rooms/undo", Trigger, self._on_undo)
         subscribe("map", OccupancyGrid, self._whole_map_of, self._on_map)
 
     def _whole_map_of(self, message: OccupancyGrid) -> OccupancyMap | None:
@@ -79,7 +82,7 @@ class RoomTopics:
             return
         # Cut here and not by a tick: nothing waits for rooms, and the robot's place does not.
         with self._lock:
-            self._map, self._rooms = occupancy, self._kept(occupancy)
+            self._map, self._rooms, self._before = occupancy, self._kept(occupancy), None
             if self._rooms is None:
                 self._rooms = self._segmented(occupancy)
             self._tell(self._rooms)
@@ -96,7 +99,7 @@ class RoomTopics:
             if self._map is None or rooms.frame != self._map.frame:
                 return
             save_rooms(rooms, self._map, self.path_of(self._map))
-            self._rooms = rooms
+            self._rooms, self._before = rooms, None
             self._tell(rooms)
 
     def _kept(self, occupancy: OccupancyMap) -> Rooms | None:
@@ -128,7 +131,7 @@ class RoomTopics:
                 return False, str(error)
             except OSError as error:
                 return False, f"the rooms cannot be saved: {error}; nothing was changed"
-            self._rooms = rooms
+            self._rooms, self._before = rooms, self._rooms
             self._tell(rooms)
             return True, f"the rooms are: {', '.join(rooms.names)}"
 
@@ -150,6 +153,18 @@ class RoomTopics:
 
     def _on_segment(self, _: TriggerRequest) -> TriggerResponse:
         return TriggerResponse(*self._edit(lambda _, occupancy: self._segmented(occupancy)))
+
+    def _on_undo(self, _: TriggerRequest) -> TriggerResponse:
+        answer = TriggerResponse(*self._edit(self._before_edit))
+        if answer.success:
+            with self._lock:
+                self._before = None
+        return answer
+
+    def _before_edit(self, _: Rooms, __: OccupancyMap) -> Rooms:
+        if self._before is None:
+            raise RoomsError("expected an edit of the rooms to take back, there was none")
+        return self._before
 
     def _segmented(self, occupancy: OccupancyMap) -> Rooms:
         began = time.monotonic()

@@ -12,13 +12,13 @@ from roomba_robot.msg import Rectangle, SimHome
 
 from roomba.client.view import DoorView
 from roomba.grid import GridFrame
-from roomba.world.truth import Door, HomeNow
+from roomba.world.truth import DoorNow, HomeNow
 from roomba_ros.convert.errors import MessageError
 from roomba_ros.convert.page import sim_dirt_of, sim_home_of
 from roomba_ros.convert.sensors import sim_dirt_message, sim_home_message
 
 RING = ((0.0, 0.0), (1.5, 0.0), (1.5, 0.5))
-DOOR = Door("kitchen door", (2.0, 3.0, 2.5, 3.25), is_shut=True)
+DOOR = DoorNow("kitchen door", (2.0, 3.0, 2.5, 3.25), is_shut=True)
 
 
 def test_a_home_comes_back_as_it_was_told() -> None:

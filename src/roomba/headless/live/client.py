@@ -241,6 +241,10 @@ class LiveClient:
         """Cut a room along a line."""
         self._edit(lambda plan: plan.with_cut(name, start, end))
 
+    def undo_rooms(self) -> None:
+        """Take back the newest edit of the rooms."""
+        self._edit(lambda plan: plan.as_before())
+
     def _edit(self, change: Callable[[FloorPlan], FloorPlan]) -> None:
         """Let the mission go on with other rooms and zones."""
         seen = self._snapshots

@@ -17,10 +17,14 @@ _Value = TypeVar("_Value")
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FloorPlan:
-    """Rooms, None while there are none yet, and zones; edits raise RequestRefusedError."""
+    """Rooms, None while there are none yet, and zones; edits raise RequestRefusedError.
+
+    ``before`` are the rooms before their newest edit, None if there was none.
+    """
 
     rooms: Rooms | None
     zones: Zones = field(default_factory=Zones)
+    before: Rooms | None = None
 
     def with_zone(self, zone: ZoneView) -> FloorPlan:
         """Return the plan with a zone more, or in place of the one of the same name."""
@@ -48,7 +52,13 @@ class FloorPlan:
         rooms = self.rooms
         if rooms is None:
             raise RequestRefusedError("there are no rooms yet: explore the home first")
-        return replace(self, rooms=made(lambda: edit(rooms)))
+        return replace(self, rooms=made(lambda: edit(rooms)), before=rooms)
+
+    def as_before(self) -> FloorPlan:
+        """Return the plan without the newest edit of its rooms."""
+        if self.before is None:
+            raise RequestRefusedError("expected an edit of the rooms to take back, there was none")
+        return replace(self, rooms=self.before, before=None)
 
 
 def made(make: Callable[[], _Value]) -> _Value:

@@ -70,6 +70,7 @@ def robot_view(
         battery_seconds=battery_seconds(battery.level, battery.current * share),
         top_speed=robot.brain.max_speed,
         truth=truth,
+        charges=battery.current > 0.0,
     )
 
 

@@ -240,6 +240,9 @@ def _add_edits(api: APIRouter, robot: ObservedRobot) -> None:
     def split_room(wish: RoomCut) -> Answer:
         return obeyed(lambda: robot.split_room(wish.name, wish.start, wish.end))
 
+    undo = "Take back the newest edit of the rooms"
+    api.add_api_route("/rooms/undo", obeying(robot.undo_rooms), methods=["POST"], summary=undo)
+
 
 def _add_maps(api: APIRouter, robot: ObservedRobot) -> None:
     """Add the maps of a robot that keeps maps of its own."""
@@ -266,6 +269,9 @@ def _add_maps(api: APIRouter, robot: ObservedRobot) -> None:
     @api.post("/maps/change", summary="Change the map as it is offered, or leave it")
     def change(wish: ChangeWish) -> Answer:
         return obeyed(lambda: robot.change_map(is_accepted=wish.accept))
+
+    undo = "Take back the change that was accepted last"
+    api.add_api_route("/maps/undo", obeying(robot.undo_change), methods=["POST"], summary=undo)
 
 
 def _add_camera(api: APIRouter, robot: ObservedRobot) -> None:

@@ -141,6 +141,20 @@ def test_rooms_and_zones_are_edited(client: LiveClient) -> None:
     assert client.home().zones == ()
 
 
+def test_the_newest_edit_of_the_rooms_is_taken_back(client: LiveClient) -> None:
+    """Once; what was done to zones since then stays."""
+    before = client.home().rooms
+    x, y = before[0].anchor
+    client.split_room(before[0].name, (x - 20.0, y), (x + 20.0, y))
+    assert len(client.home().rooms) > len(before)
+    client.put_zone(ZoneView("rug", "no-go", ((0.5, 0.5), (1.0, 0.5), (1.0, 1.0), (0.5, 1.0))))
+    client.undo_rooms()
+    assert client.home().rooms == before
+    client.remove_zone("rug")
+    with pytest.raises(RequestRefusedError, match="an edit of the rooms to take back"):
+        client.undo_rooms()
+
+
 @pytest.mark.parametrize(
     "ask",
     [

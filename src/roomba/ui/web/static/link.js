@@ -1,6 +1,7 @@
 /** The connection to the server: a stream of snapshots that comes back by itself, and wishes. */
 import { get, set } from "./store.js";
 import { takeTiles } from "./map/grids.js";
+import { sentence } from "./words.js";
 
 const STALE = 1500; // ms without news after which what is shown is told to be old
 const RETRY = [300, 1000, 2000, 4000]; // ms before another attempt
@@ -77,7 +78,7 @@ function take(message) {
 }
 
 /** Show the robot's sentence for a while. */
-export function refuse(reason) { show("refusal", reason, 6000); }
+export function refuse(reason) { show("refusal", sentence(reason), 6000); }
 
 /** Tell what was done for a while, and offer to undo it where that is possible. */
 export function note(text, undo) {
@@ -94,6 +95,8 @@ function show(id, text, period) {
   timers[id] = setTimeout(() => { place.hidden = true; }, period);
 }
 
+const ONLY_LOOKS = "This page may only look. Open it by the address that the robot's program printed: that holds the token.";
+
 /** Ask the robot for something; what it refuses is shown. Returns whether it obeys. */
 export async function wish(path, body, method = "POST") {
   try {
@@ -103,6 +106,7 @@ export async function wish(path, body, method = "POST") {
       body: JSON.stringify(body ?? {}),
     });
     if (answer.ok) return true;
+    if (answer.status === 401) { refuse(ONLY_LOOKS); return false; }
     const told = await answer.json();
     refuse(typeof told.detail === "string" ? told.detail : told.detail.map((one) => one.msg).join("; "));
   } catch {

@@ -3,6 +3,7 @@
 const SOON = 90; // s
 const LATER = 7200; // s from which minutes do not matter
 const MOVES = 0.02; // m/s
+const FULL = 0.995; // of a battery
 
 /** Return the headline for a state. */
 export function headline(link, state) {
@@ -10,11 +11,11 @@ export function headline(link, state) {
   if (link === "gone") return "The robot does not answer";
   if (!state || link === "reconnecting") return "Connecting again …";
   if (state.replay) return `Recorded: ${headline(link, { ...state, replay: null })}`;
-  const { vacuum } = state, room = vacuum.room ? ` · ${vacuum.room}` : "";
+  const { vacuum } = state, room = vacuum.room ? ` · ${title(vacuum.room)}` : "";
   const togo = vacuum.seconds_to_go > 0 && vacuum.state === "cleaning" ? ` · ${duration(vacuum.seconds_to_go)} to go` : "";
   if (state.truth?.lifted) return "Lifted off the floor";
   switch (vacuum.phase) {
-    case "docked": return "On its station, ready";
+    case "docked": return vacuum.charges && vacuum.battery < FULL ? "On its station, charging" : "On its station, ready";
     case "charging": return "Charging, then it goes on";
     case "idle": return state.speed > MOVES ? `On its way${room}` : `Standing${room}`;
     case "undocking": return "Leaving its station";
@@ -33,17 +34,18 @@ export function headline(link, state) {
 /** Return why it does not do what was asked, and what helps; empty when all is well. */
 export function explanation(link, state, reason, age, heardAt) {
   const seen = heardAt ? ` Last seen at ${new Date(heardAt).toLocaleTimeString()}.` : "";
-  if (link === "gone") return `${sentence(reason)}${seen}`;
+  if (link === "gone") return `${sentence(reason.replaceAll("`", ""))}${seen}`;
   if (link === "stale") return `No news for ${Math.round(age / 1000)} s; what is shown is old.`;
   if (link === "reconnecting") return `The page comes back by itself as soon as the robot's program answers.${seen}`;
   if (!state) return "";
   if (state.held) return `The drive is held: ${state.held}. “Release” lets it go.`;
   if (state.truth?.lifted) return "Put it down: drag it, or tap the floor and “Put the robot here”.";
+  if (/^bin full/.test(state.vacuum.message)) return "Empty the dust bin, then press “Bin emptied”.";
   return sentence(state.vacuum.message || state.doubt);
 }
 
 /** Return a text as a sentence. */
-function sentence(text) {
+export function sentence(text) {
   return text ? title(text) + (/[.!?]$/.test(text) ? "" : ".") : "";
 }
 

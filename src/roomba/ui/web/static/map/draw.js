@@ -1,8 +1,8 @@
 /** Puts the map together: layers that are drawn anew only when their data changed, and what moves. */
 import { get } from "../store.js";
-import { grid, version } from "./grids.js";
+import { grid, repaint, version } from "./grids.js";
 import { drawDraft, drawState, drawTrail } from "./moving.js";
-import { onColours, palette } from "./palette.js";
+import { palette } from "./palette.js";
 import { drawGrid, drawGround, drawThings } from "./plan.js";
 import { bound, fit, view } from "./view.js";
 
@@ -15,7 +15,7 @@ let from = null; // the pose before the newest one, to glide from
 let last = null;
 let drawn = "";
 let bounded = -1;
-let colours = 0; // grows when the colours change
+let colours = null; // those by which all is drawn
 
 /** Layers from below: when each has to be drawn anew, and how. */
 const LAYERS = [
@@ -26,7 +26,6 @@ const LAYERS = [
 
 /** Draw whenever something moved. */
 export function begin() {
-  onColours(() => { colours++; });
   new ResizeObserver(resize).observe(canvas);
   resize();
   requestAnimationFrame(frame);
@@ -91,8 +90,12 @@ function resize() {
 function frame(now) {
   requestAnimationFrame(frame);
   follow();
+  if (colours !== palette()) { // an event for this may be lost
+    colours = palette();
+    repaint();
+  }
   const state = get("state"), pose = state ? glided(state, now) : null;
-  const seen = [view.x, view.y, view.scale, JSON.stringify(get("layers")), colours].join("|");
+  const seen = [view.x, view.y, view.scale, JSON.stringify(get("layers")), colours.paper].join("|");
   let isNew = false;
   for (const layer of LAYERS) {
     const key = `${seen}|${layer.when().join("|")}`;

@@ -1,6 +1,6 @@
 /** Grids that are drawn over the floor: a canvas each, of which only changed tiles are redrawn. */
 
-import { onColours, palette } from "./palette.js";
+import { palette } from "./palette.js";
 
 const grids = new Map();
 const versions = new Map(); // how often each grid has changed
@@ -33,7 +33,7 @@ export function takeTiles(buffer) {
 }
 
 /** Draw all cells anew, as for other colours. */
-function repaint() {
+export function repaint() {
   for (const [name, grid] of grids) {
     paint(name, grid, 0, 0, grid.rows, grid.columns);
     versions.set(name, version(name) + 1);
@@ -42,8 +42,6 @@ function repaint() {
 
 /** Return a grid by its name, or nothing. */
 export function grid(name) { return grids.get(name); }
-
-onColours(repaint);
 
 /** Return what colours the cells of a grid, as red, green, blue and opacity. */
 function colours(name) {

@@ -5,6 +5,7 @@ import { dashed, trace } from "./trace.js";
 import { toScreen, view } from "./view.js";
 
 const CARRIED = 1; // m between two places; who drives is nearer
+const SOON = 4; // m of the way to go that are drawn strongly
 const PIECES = 12; // of the way, each fainter than the newer one
 
 /** Draw the way so far: thin, and fainter the older it is. */
@@ -34,8 +35,7 @@ function traceWay(context, points, begins, ends) {
 export function drawState(context, state, pose, home) {
   const layers = get("layers");
   if (layers.path && state.path.length >= 4) {
-    trace(context, pairs(state.path), false);
-    dashed(context, palette().path, 1.75, [2, 5]);
+    drawPath(context, pairs(state.path));
   }
   if (layers.scan) drawScan(context, state.scan);
   if (layers.truth && state.truth) drawTruth(context, state.truth, home);
@@ -46,6 +46,18 @@ export function drawState(context, state, pose, home) {
     drawRobot(context, [carried[0], carried[1], pose[2]], 1.15 * home.radius);
     context.globalAlpha = 1;
   }
+}
+
+/** Draw the way to go: dotted what comes soon, and a hint of the rest. */
+function drawPath(context, points) {
+  let end = 1;
+  for (let length = 0; end < points.length && length < SOON; end++) length += Math.hypot(points[end][0] - points[end - 1][0], points[end][1] - points[end - 1][1]);
+  context.globalAlpha = 0.3;
+  trace(context, points.slice(end - 1), false);
+  dashed(context, palette().path, 1.25, []);
+  context.globalAlpha = 1;
+  trace(context, points.slice(0, end), false);
+  dashed(context, palette().path, 2, [2, 5]);
 }
 
 function pairs(flat) {

@@ -19,7 +19,7 @@ export function begin() {
   $("emergency").onclick = () => (get("state")?.held ? wish("release") : emergency());
   $("top-speed").onchange = () => wish("speed", { speed: Number($("top-speed").value) });
   on("limits", showLimits);
-  on("state chosen home mayChange", show);
+  on("state chosen home mayChange link limits", show);
 }
 
 /** Hold the drive at once. */
@@ -47,6 +47,7 @@ async function clean() {
 function showLimits() {
   const limits = get("limits");
   if (!limits) return;
+  document.querySelector(".how").hidden = false;
   offer($("passes"), numbers(limits.most_passes), $("passes").value || 1);
   offer($("fan"), limits.fans.map((fan) => [fan, fan]), $("fan").value || "standard");
   offer($("mode"), limits.modes.filter((mode) => mode in MODES).map((mode) => [mode, MODES[mode]]));
@@ -61,21 +62,22 @@ export function numbers(most) { return Array.from({ length: most }, (_, index) =
 function show() {
   const state = get("state"), chosen = get("chosen"), phase = state?.vacuum.phase ?? "";
   const stands = STANDS.includes(phase), isHeld = Boolean(state?.held), home = get("home");
+  const isHeard = ["live", "stale"].includes(get("link")), hasNoMap = Boolean(home) && !home.furniture.length && !home.rooms.length;
+  const isFull = phase === "bin full" || /bin/.test(state?.vacuum.message ?? "");
   const isPaused = phase === "paused" || phase === "error";
   put($("clean"), chosen.length ? `Clean ${chosen.length} room${chosen.length > 1 ? "s" : ""}` : "Clean all");
   put($("pause"), isPaused ? "Go on" : "Pause");
-  const isUnderWay = !stands && !isHeld && phase !== "" && chosen.length === 0;
+  const isUnderWay = !stands && !isHeld && phase !== "" && chosen.length === 0 && !isFull;
   $("pause").classList.toggle("first", isUnderWay);
-  $("clean").classList.toggle("first", !isUnderWay);
-  $("pause").disabled = stands || isHeld;
-  $("stop").disabled = (stands && !state?.speed) || isHeld;
-  $("clean").disabled = isHeld;
-  $("dock").disabled = phase === "docked" || isHeld;
+  $("clean").classList.toggle("first", !isUnderWay && !isFull && !(hasNoMap && stands));
+  $("pause").disabled = stands || isHeld || !isHeard;
+  $("stop").disabled = (stands && !state?.speed) || isHeld || !isHeard;
+  $("clean").disabled = isHeld || !isHeard;
+  $("dock").disabled = phase === "docked" || isHeld || !isHeard;
   $("mode").disabled = chosen.length > 0;
   if (state?.top_speed && document.activeElement !== $("top-speed")) $("top-speed").value = state.top_speed.toFixed(1);
-  $("no-map").hidden = !home || home.furniture.length > 0 || home.rooms.length > 0 || !stands || isHeld || Boolean(state?.replay);
-  $("bin").hidden = !/bin/.test(state?.vacuum.message ?? "") && phase !== "bin full";
+  $("no-map").hidden = !hasNoMap || !stands || isHeld || !isHeard || Boolean(state?.replay);
+  $("bin").hidden = !isFull;
   put($("emergency"), isHeld ? "Release" : "Stop now");
-  for (const button of document.querySelectorAll(".panel button, .emergency"))
-    button.title = get("mayChange") ? "" : "Open the page by the address that the robot's program printed: it holds the token.";
+  $("only-looks").hidden = get("mayChange") !== false || Boolean(state?.replay);
 }

@@ -3,7 +3,7 @@ import { chart } from "../chart.js";
 import { $ } from "../dom.js";
 import { BASE, ask } from "../link.js";
 import { get, on } from "../store.js";
-import { duration } from "../words.js";
+import { duration, title } from "../words.js";
 
 let runs = [], compared = [];
 
@@ -41,7 +41,7 @@ function close() {
 
 function show() {
   const home = $("history-home").value, cleans = runs.filter((run) => run.home === home && run.kind === "clean" && run.dirt !== null);
-  $("history-empty").hidden = runs.length > 0;
+  $("history").toggleAttribute("data-empty", runs.length === 0);
   $("history-runs").replaceChildren(...runs.map(row));
   $("history-few").hidden = cleans.length > 1;
   $("history-dirt").toggleAttribute("hidden", cleans.length < 2);
@@ -69,24 +69,30 @@ function row(run) {
   if (run.is_recorded) links.append(link("Again", `${BASE}replay/${run.number}/`, `Run ${run.number} again`, false));
   const share = run.fraction === null ? "–" : `${(100 * run.fraction).toFixed(1)} %`;
   const cells = [box, run.number, new Date(1000 * run.began).toLocaleString([], { dateStyle: "short", timeStyle: "short" }),
-    run.home, run.outcome, share, `${run.missed}`, known(run.duration, duration), known(run.dirt, (dirt) => `${dirt.toFixed(1)} g`), links];
-  line.append(...cells.map(cell));
-  return line;
+    run.home, title(run.outcome), share, `${run.missed}`, known(run.duration, duration), known(run.dirt, (dirt) => `${dirt.toFixed(1)} g`), links];
+  return filled(line, cells);
 }
 
 function week(totals) {
   const line = document.createElement("tr");
-  line.append(...[totals.week, totals.runs, `${totals.covered.toFixed(1)} m²`, duration(totals.duration),
-    `${totals.distance.toFixed(0)} m`, `${totals.dirt.toFixed(1)} g`, `${totals.energy.toFixed(1)} Wh`].map(cell));
-  return line;
+  return filled(line, [totals.week, totals.runs, `${totals.covered.toFixed(1)} m²`, duration(totals.duration),
+    `${totals.distance.toFixed(0)} m`, `${totals.dirt.toFixed(1)} g`, `${totals.energy.toFixed(1)} Wh`], "#history-week-heads");
 }
 
 function known(value, say) { return value === null ? "–" : say(value); }
 
-function cell(content) {
-  const place = document.createElement("td");
-  place.append(content);
-  return place;
+/** Fill a line of a table; on a phone each cell tells its heading itself. */
+function filled(line, cells, heads = "#history-run-heads") {
+  const names = [...document.querySelectorAll(`${heads} th`)].map((head) => head.textContent);
+  line.setAttribute("role", "row");
+  line.append(...cells.map((content, index) => {
+    const place = document.createElement("td");
+    place.setAttribute("role", "cell");
+    place.dataset.head = names[index];
+    place.append(content);
+    return place;
+  }));
+  return line;
 }
 
 function link(text, address, label, isOutside) {

@@ -1,6 +1,6 @@
 /** The robot's saved maps, and what it offers to change of the one that it goes by. */
 import { $, put } from "../dom.js";
-import { ask, wish } from "../link.js";
+import { ask, note, wish } from "../link.js";
 import { get, on } from "../store.js";
 import { askName, askYes } from "./ask.js";
 import { open } from "./sheet.js";
@@ -10,8 +10,8 @@ export function begin() {
   on("hasMaps", () => { $("maps").hidden = !get("hasMaps"); });
   $("maps").ontoggle = showMaps;
   $("map-save").onclick = save;
-  $("map-accept").onclick = () => wish("maps/change", { accept: true });
-  $("map-refuse").onclick = () => wish("maps/change", { accept: false });
+  $("map-accept").onclick = async () => { if (await wish("maps/change", { accept: true })) note("The map is changed.", () => wish("maps/undo")); };
+  $("map-refuse").onclick = async () => { if (await wish("maps/change", { accept: false })) note("The map stays as it is."); };
   on("home", () => { showOffer(); showMaps(); });
 }
 

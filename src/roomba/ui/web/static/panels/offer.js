@@ -52,6 +52,7 @@ let dismiss = null; // what is to be done when the card is closed without a choi
 
 /** Let the card close when something else is touched. */
 export function begin() {
+  addEventListener("resize", close);
   document.addEventListener("pointerdown", (event) => { if (!event.target.closest("#offer")) close(); }, true);
 }
 

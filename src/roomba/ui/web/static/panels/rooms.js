@@ -2,6 +2,7 @@
 import { $, offer, span } from "../dom.js";
 import { note, wish } from "../link.js";
 import { get, on, set } from "../store.js";
+import { title } from "../words.js";
 import { how, numbers } from "./actions.js";
 import { askName } from "./ask.js";
 
@@ -34,14 +35,20 @@ async function rename() {
 }
 
 async function join() {
-  if (await wish("rooms/join", { names: get("chosen") })) set("chosen", []);
+  const names = get("chosen");
+  if (!await wish("rooms/join", { names })) return;
+  set("chosen", []);
+  note(`${title(names[0])} and ${names.length > 2 ? "the others" : names[1]} are one room now.`, undo);
 }
+
+/** Take back the newest edit of the rooms. */
+export function undo() { return wish("rooms/undo"); }
 
 function show() {
   const rooms = get("home")?.rooms ?? [], names = rooms.map((room) => room.name);
   const chosen = get("chosen").filter((name) => names.includes(name));
   if (chosen.length !== get("chosen").length) { set("chosen", chosen); return; }
-  $("rooms-hint").textContent = rooms.length
+  $("rooms-hint").textContent = !get("home") ? "" : rooms.length
     ? "Tap them, here or on the map, in the order in which they shall be cleaned."
     : "There are no rooms yet: the robot finds them when its map is whole.";
   $("room-actions").hidden = chosen.length === 0;

@@ -33,9 +33,9 @@ function show() {
   if (state.last) showLast(state.last);
 }
 
-function batteryTime({ battery, battery_seconds: seconds, phase }) {
+function batteryTime({ battery_seconds: seconds, charges }) {
   if (seconds === null || seconds === undefined) return "";
-  return battery < 1 && ["docked", "charging"].includes(phase) ? `full in ${duration(seconds)}` : duration(seconds);
+  return charges ? `full in ${duration(seconds)}` : duration(seconds);
 }
 
 function figure(id, text, beside = "") {

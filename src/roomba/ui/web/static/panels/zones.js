@@ -4,8 +4,11 @@ import { note, wish } from "../link.js";
 import { toFloor, view } from "../map/view.js";
 import { shifted, withCorner } from "../map/zones.js";
 import { get, on, set } from "../store.js";
+import { title } from "../words.js";
 import { how } from "./actions.js";
 import * as offer from "./offer.js";
+import { undo } from "./rooms.js";
+import * as sheet from "./sheet.js";
 
 const DRAWS = { "draw-clean": "clean", "draw-no-go": "no-go", "draw-wall": "wall" };
 const HINTS = { clean: "Drag over the floor to be cleaned.", "no-go": "Drag over the floor that it shall not enter.", wall: "Drag a line that it shall not cross.", split: "Drag a line through the room." };
@@ -20,6 +23,7 @@ export function begin() {
       set("drawing", get("drawing")?.kind === kind ? null : { kind });
       if (event.detail === 0) $("floor").focus(); // with keys it is drawn on the map
     };
+  $("hint-cancel").onclick = () => set("drawing", null);
   on("home zone", showZones);
   on("drawing", showDrawing);
 }
@@ -39,7 +43,10 @@ function offerKinds(draft) {
 }
 
 async function make({ kind, room, from, to }) {
-  if (kind === "split") return wish("rooms/split", { name: room, start: from, end: to });
+  if (kind === "split") {
+    if (await wish("rooms/split", { name: room, start: from, end: to })) note(`${title(room)} is split.`, undo);
+    return;
+  }
   const [left, right] = [Math.min(from[0], to[0]), Math.max(from[0], to[0])];
   const [low, high] = [Math.min(from[1], to[1]), Math.max(from[1], to[1])];
   if (kind === "clean") return wish("clean", { mode: "zones", zones: [[left, low, right, high]], ...how() });
@@ -117,8 +124,9 @@ function showDrawing() {
   for (const [id, own] of Object.entries(DRAWS)) $(id).setAttribute("aria-pressed", String(kind === own));
   $("floor").classList.toggle("drawing", Boolean(kind));
   const byKeys = drawing?.from ? "Arrows move it, Shift and arrows its size; Enter accepts." : "With keys: Enter begins.";
+  if (kind in HINTS && $("hint").hidden) sheet.open(null); // it would lie over the map
   $("hint").hidden = !(kind in HINTS);
-  $("hint").textContent = kind in HINTS ? `${HINTS[kind]} ${document.activeElement === $("floor") ? byKeys : ""}` : "";
+  $("hint-text").textContent = kind in HINTS ? `${HINTS[kind]} ${document.activeElement === $("floor") ? byKeys : ""}` : "";
 }
 
 function showZones() {
