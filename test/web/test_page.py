@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 
 import pytest
@@ -11,8 +10,6 @@ from PIL import Image
 from web.conftest import Opened
 
 from roomba.headless.cleaner import HeadlessMission
-from roomba.ui.web.app import create_app
-from roomba.ui.web.server import PageServer, listen
 from roomba.vocabulary import FanLevel, RoomWay
 
 DEADLINE = 20.0
@@ -175,19 +172,6 @@ def test_drawing_is_given_up(opened: Opened) -> None:
     assert not page.locator("#hint").is_visible()
 
 
-def test_the_emergency_stop_is_a_button_and_a_key(opened: Opened) -> None:
-    page = opened.page
-    page.get_by_role("button", name="Clean all").click()
-    opened.wait_for_phase("cleaning")
-    page.keyboard.press("Escape")
-    opened.wait_for_phase("emergency stop")
-    assert "held" in page.inner_text("#explanation")
-    page.get_by_role("button", name="Release").click()
-    opened.wait_for_phase("idle")
-    page.get_by_role("button", name="Stop now").click()
-    opened.wait_for_phase("emergency stop")
-
-
 def test_what_the_robot_refuses_is_said(opened: Opened) -> None:
     page = opened.page
     x, y = opened.robot.home().rooms[0].anchor
@@ -198,91 +182,6 @@ def test_what_the_robot_refuses_is_said(opened: Opened) -> None:
     opened.drag((x, y), (x + 0.2, y))
     page.wait_for_selector("#refusal:not([hidden])")
     assert page.inner_text("#refusal")
-
-
-def test_driving_by_hand_lasts_as_long_as_a_key_is_held(opened: Opened) -> None:
-    page = opened.page
-    page.get_by_role("button", name="Clean all").click()
-    opened.wait_for_phase("cleaning")
-    page.get_by_role("button", name="Pause").click()
-    opened.wait_for_phase("paused")
-    opened.show("more")
-    page.get_by_text("Drive by hand", exact=True).click()
-    before = opened.robot.robot().pose
-    page.keyboard.down("ArrowLeft")
-    wait_until(
-        lambda: abs(opened.robot.robot().pose[2] - before[2]) > 0.3, DEADLINE, "a turn to the left"
-    )
-    page.keyboard.up("ArrowLeft")
-
-    def stands() -> bool:
-        one = opened.robot.robot()
-        wait_until(lambda: opened.robot.robot().time > one.time + 5.0, DEADLINE, "time to pass")
-        return math.isclose(opened.robot.robot().pose[2], one.pose[2], abs_tol=0.02)
-
-    wait_until(stands, DEADLINE, "the robot to stand")
-
-
-def test_a_page_that_is_closed_while_a_key_is_held_lets_the_robot_stand(opened: Opened) -> None:
-    page = opened.page
-    opened.show("more")
-    page.get_by_text("Drive by hand", exact=True).click()
-    before = opened.robot.robot().pose
-    page.keyboard.down("ArrowDown")
-    wait_until(lambda: math.dist(opened.robot.robot().pose[:2], before[:2]) > 0.2, DEADLINE, "it")
-    page.close()
-
-    def stands() -> bool:
-        one = opened.robot.robot()
-        wait_until(lambda: opened.robot.robot().time > one.time + 2.0, DEADLINE, "time to pass")
-        return math.dist(opened.robot.robot().pose[:2], one.pose[:2]) < 0.01
-
-    wait_until(stands, DEADLINE, "the robot to stand")
-
-
-def test_the_page_comes_back_after_its_server_was_gone(opened: Opened) -> None:
-    page = opened.page
-    port = int(opened.server.address.rsplit(":", 1)[1].strip("/"))
-    opened.server.stop()
-    page.wait_for_selector("body[data-link='reconnecting']")
-    assert "Connecting again" in page.inner_text("#headline")
-    assert page.get_by_role("button", name="Clean all").is_disabled()
-    again = PageServer(
-        create_app(opened.robot, opened.guard), listen("127.0.0.1", port, is_fixed=True)
-    )
-    again.start()
-    try:
-        page.wait_for_selector("body[data-link='live']")
-        page.get_by_role("button", name="Clean all").click()
-        opened.wait_for_phase("cleaning")
-    finally:
-        again.stop()
-
-
-def test_without_the_token_nothing_is_changed(opened: Opened) -> None:
-    other = opened.page.context.new_page()
-    other.goto(opened.server.address)
-    other.wait_for_selector("body[data-link='live']")
-    other.get_by_text("This page may only look").wait_for()
-    other.get_by_role("button", name="Clean all").click()
-    other.wait_for_selector("#refusal:not([hidden])")
-    assert "token" in other.inner_text("#refusal")
-    assert opened.phase() == "docked"
-
-
-def test_keys_alone_do(opened: Opened) -> None:
-    page = opened.page
-    page.keyboard.press("1")
-    page.keyboard.press("3")
-    assert page.locator("#rooms [aria-pressed=true]").count() == 2
-    page.keyboard.press("?")
-    assert page.locator("dialog#keys").is_visible()
-    page.get_by_role("button", name="Close").press("Enter")
-    page.locator("#clean").press("Enter")
-    opened.wait_for_phase("cleaning")
-    page.locator("#floor").focus()
-    page.keyboard.press(" ")
-    opened.wait_for_phase("paused")
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
@@ -303,24 +202,6 @@ def test_every_control_has_a_name_and_is_large_enough_to_touch(opened: Opened) -
         for identity, name, width, height in controls:
             assert name, identity
             assert min(width, height) >= 24, (identity, name)
-
-
-def test_the_camera_shows_what_it_sees_at_an_angle(opened: Opened) -> None:
-    page = opened.page
-    opened.show("more")
-    page.locator("#camera summary").click()
-    looks = """(side) => {
-        const image = document.getElementById("camera-picture");
-        return image.naturalWidth > 100 && image.alt.includes(side);
-    }"""
-    page.wait_for_function(looks, arg="ahead", timeout=60_000)
-    page.select_option("#camera-angle", "30")
-    page.wait_for_function(looks, arg="30° to the left", timeout=60_000)
-    page.locator("#camera-latest a").nth(1).wait_for()
-    refused = opened.page.context.request.post(
-        f"{opened.server.address}api/v1/camera", data={"angle": 0.0}
-    )
-    assert refused.status == 401
 
 
 def test_each_room_has_its_own_passes_and_fan_and_the_speed_is_set(opened: Opened) -> None:
