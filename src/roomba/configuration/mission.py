@@ -122,13 +122,23 @@ class DrivingConfig(Frozen):
 class CleaningConfig(Frozen):
     """Covering the floor: shares 0..1, m2."""
 
-    enough: Ratio = 0.9965
+    enough: Ratio = 0.9955
     least_patch: Positive = 0.004
     least_while_growing: Positive = 0.5
     most_rounds: Count = 4
     dirty_times: Positive = 6.0
     least_dirt: Positive = 500.0
     """Grains/m2; floor with fewer of them is not dirty."""
+    dirty_near: Positive = 1.5
+    """m; dirty floor as near as this is cleaned once more before the robot goes on."""
+    dirty_way: Positive = 3.0
+    """m; more way than twice the shortest that could sweep it that such floor may cost."""
+    least_dirty: Positive = 0.08
+    """m2; smaller dirty patches are not cleaned once more."""
+    least_dirty_round: Positive = 0.2
+    """m2; dirty patches as large as this are worth a way of their own at the end."""
+    usual_floor: Positive = 4.0
+    """m2; with less of it swept it is not known how dirty floor usually is."""
     little_gain: Ratio = 0.05
     """Share of what was missed; a round that gains less of it ends the retries."""
     least_area_to_retry: Positive = 0.5

@@ -10,6 +10,8 @@ from __future__ import annotations
 import math
 from typing import Any
 
+import numpy as np
+
 from roomba.angles import wrapped
 from roomba.compilation import entry, inner_part
 from roomba.control.tracking_kernels import track
@@ -139,8 +141,10 @@ def account(burst: Any, robot: Any, floor: Floor, now: float, x: float, y: float
         cells = sweep(floor.cells, floor.place, at_x, at_y, x, y, floor.radius)
         burst.swept += cells
         burst.swept_at[0], burst.swept_at[1] = x, y
-        note_dust(floor.dust, robot.grains, way, cells)
-        grains = robot.grains * (now - burst.last[0])
+        # The sensor tells whole numbers.
+        grains = np.rint(robot.grains)
+        note_dust(floor.dust, grains, way, cells)
+        grains *= now - burst.last[0]
         note_dirt(floor.grains, floor.way, floor.dirt_place, x, y, grains, way)
     burst.last[0], burst.last[1], burst.last[2] = now, x, y
 

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.clock import LONGEST_TICK
 from roomba.configuration.docking import DockingConfig
 from roomba.configuration.mission import MissionConfig
 from roomba.configuration.robot import RobotConfig
@@ -229,6 +230,9 @@ class Mission:
 
     def steady(self, senses: Senses) -> Steady | None:
         """Return what it does until something comes up; None: a tick decides."""
+        if not 0.0 <= senses.now - self._last.now <= LONGEST_TICK:
+            # A clock that was set changes when all this began.
+            return None
         limit = self.speed_limit(senses)
         return self._steady.after(senses, self.state.phase, limit, sweeps=self.sweeps)
 

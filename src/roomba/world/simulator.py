@@ -85,8 +85,9 @@ class Observation:
     ``odometry`` and ``odometry_twist`` are by the wheel encoders, in the frame that the robot
     started in; ``angular_velocity`` (rad/s) and ``acceleration`` (m/s2, ahead) are the gyro's and
     accelerometer's. ``dirt_under`` is g under the body's disc, ``in_bin`` g in the bin, ``grains``
-    what the dirt sensor counts, 1/s, ``brush_current`` A. ``scans`` counts the lidar's scans that
-    arrived; ``scan_stamp`` is when the first beam of the newest one was measured, s.
+    what the dirt sensor counts, 1/s, a whole number, ``brush_current`` A. ``scans`` counts the
+    lidar's scans that arrived; ``scan_stamp`` is when the first beam of the newest one was
+    measured, s.
     """
 
     time: float
@@ -263,7 +264,7 @@ class Simulator:
             ),
             dirt_under=under / MICROGRAMS_PER_GRAM,
             in_bin=now["in_bin"] / MICROGRAMS_PER_GRAM,
-            grains=now["grains"],
+            grains=float(round(now["grains"])),
             brush_current=now["brush_current"],
             scans=int(now["scans"]),
             scan_stamp=now["scan_stamp"],

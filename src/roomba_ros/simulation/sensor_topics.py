@@ -58,8 +58,8 @@ class _Topic:
 class SensorTopics:
     """Tells what the sensors sense.
 
-    Publishes: ``scan``, ``dirt_raw`` (Float32, g under the body), ``dirt_detect`` (UInt16, grains
-    per second), ``brush_current`` (Float32, A), all 10 Hz; ``imu`` and ``joint_states``, 20 Hz;
+    Publishes: ``scan``, ``dirt_raw`` (Float32, g under the body), ``brush_current`` (Float32, A),
+    all 10 Hz; ``imu``, ``joint_states`` and ``dirt_detect`` (UInt16, grains per second), 20 Hz;
     ``bin_level`` (Float32, 0..1), 1 Hz and when it is emptied; and at each change, but also 5 times
     a second, ``bumper``, ``cliff``, ``wheel_drop`` and ``ir_omni`` (UInt16, the station's beams as
     Create 2 codes them), or once a second ``hazard_detection``, ``battery_state`` and
@@ -135,7 +135,7 @@ class SensorTopics:
                 lambda seen: seen.infrared,
             ),
             _topic("dirt_raw", Float32, 2, lambda _, seen: Float32(seen.dirt_under)),
-            _topic("dirt_detect", UInt16, 2, lambda _, seen: UInt16(round(seen.grains))),
+            _topic("dirt_detect", UInt16, 1, lambda _, seen: UInt16(int(seen.grains))),
             _topic("brush_current", Float32, 2, lambda _, seen: Float32(seen.brush_current)),
             _topic(
                 "bin_level",

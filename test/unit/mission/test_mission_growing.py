@@ -231,12 +231,36 @@ def test_dirt_that_is_met_on_a_newer_map_is_cleaned_once_more() -> None:
     assert rig.mission.cleaning is not None
     swept(rig)
     dirt = rig.mission.dirt
-    for x in np.arange(0.5, 1.9, 0.1).tolist():
-        dirt.note(x, 1.2, 100.0 if x < 0.7 else 1.0, 0.1)
+    for x in np.arange(0.5, 1.9, 0.2).tolist():
+        for y in (0.7, 0.9, 1.1, 1.3):
+            dirt.note(x, y, 200.0 if x < 0.8 and y > 0.8 else 2.0, 0.2)
     rig.tick(3)
     assert rig.phase is Phase.CLEANING
     assert rig.mission.driver is not None
     assert rig.mission.cleaning.coverage.fraction < 1.0
+
+
+def test_dirt_beside_the_path_is_cleaned_once_more_before_it_goes_on() -> None:
+    rig = cleaning(known=WHOLE)
+    rig.grow(WHOLE, is_growing=False)
+    rig.tick(3)
+    driver, clean = rig.mission.driver, rig.mission.cleaning
+    assert driver is not None
+    assert clean is not None
+    end = driver.tracker.course.points[-1]
+    swept(rig)
+    rig.mission.driver = driver
+    dirt, (x, y) = rig.mission.dirt, (rig.senses.pose.x, rig.senses.pose.y)
+    for row in np.arange(0.1, 2.4, 0.2).tolist():
+        for column in np.arange(0.1, 2.9, 0.2).tolist():
+            is_dirty = abs(column - x) < 0.3 and abs(row - y) < 0.3
+            dirt.note(column, row, 4000.0 if is_dirty else 20.0, 0.2)
+    rig.tick(round(5.1 / TICK))
+    assert rig.mission.driver is not None
+    assert rig.mission.driver is not driver
+    points = rig.mission.driver.tracker.course.points
+    assert points[-1] == pytest.approx(end)
+    assert clean.coverage.fraction < 1.0
 
 
 def test_killed_while_the_map_became_whole_it_looks_for_no_more() -> None:

@@ -16,6 +16,7 @@ from roomba.configuration.mission import CleaningConfig
 from roomba.geometry import Pose
 from roomba.grid import GridFrame
 from roomba.mission.cleaning.checkpoint import Values
+from roomba.mission.cleaning.dirty import DirtyFloor
 from roomba.mission.cleaning.ledger import CoverageLedger
 from roomba.mission.cleaning.missed import is_hidden, missed_floor
 from roomba.mission.cleaning.request import CleanRefusedError, CleanRequest, Missed
@@ -45,7 +46,8 @@ class Cleaning:
         here: Pose,
     ) -> None:
         """Find out what is wanted; raises CleanRefusedError when that is nothing."""
-        self._context, self._config, self._dirt = context, config, dirt
+        self._context, self._config = context, config
+        self._dirty = DirtyFloor(dirt, config)
         self._ledger = CoverageLedger(request, context, dirt, here)
         if not (self.coverage.wanted_cells or self.explores):
             raise CleanRefusedError(
@@ -123,6 +125,30 @@ class Cleaning:
             self._next_stage()
         return None
 
+    def dirty_at_hand(self, here: Pose, obstacles: list[RoundObstacle]) -> Floats | None:
+        """Return the way over dirty floor close by and back here, float64 [n, 2], m, or None.
+
+        That is floor which was swept just now, and gets its other pass before the robot goes on.
+        """
+        stage, at = self.stage, (here.x, here.y)
+        if stage is None or self._context.is_growing:
+            return None
+        again = self._dirty.at_hand(self.coverage, stage.floor, at)
+        if again is None:
+            return None
+        obstacles = obstacles + closed_gaps(obstacles, self._context.reach, self._context.gap_spare)
+        edges_only = self.request.mode is CleanMode.EDGES
+        try:
+            plan = self._context.coverage.plan(at, at, again, obstacles, edges_only=edges_only)
+        except NoPathError:
+            return None
+        area = float(np.count_nonzero(again)) * self.coverage.cell_area
+        if plan.length > self._config.dirty_way + 2.0 * area / self._context.tool_width:
+            return None
+        self._dirty.note_again()
+        self._ledger.sweep_anew(again)
+        return plan.points
+
     def wants_another_look(self, lasting: list[RoundObstacle]) -> bool:
         """Whether floor was out of reach: once, before the end, it is to be looked for again.
 
@@ -185,7 +211,8 @@ class Cleaning:
             self._begin_stage()
             # With the whole map the first way through is done.
             self._rounds = 0 if context.is_growing else 1
-        self._context, self._dirt = context, dirt
+        self._context = context
+        self._dirty.begin(dirt)
         self._ledger.use_context(context, dirt)
 
     def values(self) -> Values:
@@ -313,9 +340,7 @@ class Cleaning:
     def _dirty_again(self, stage: Stage) -> Mask:
         """Return what was so dirty that it gets another pass, once a stage."""
         self._scrubbed = True
-        config = self._config
-        dirty = self._dirt.dirty_now(self.coverage.frame, config.dirty_times, config.least_dirt)
-        again = dirty & stage.floor & self.coverage.swept
+        again = self._dirty.left(self.coverage, stage.floor)
         if again.any():
             self._ledger.sweep_anew(again)
             self._last_missed = np.inf
@@ -323,6 +348,7 @@ class Cleaning:
 
     def _next_stage(self) -> None:
         self._ledger.next_stage()
+        self._dirty.begin_pass()
         self._begin_stage()
 
     def _begin_stage(self) -> None:

@@ -10,6 +10,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,6 +27,9 @@ from roomba.mission.driving.rejoin import Rejoin
 from roomba.mission.driving.trail import Trail
 from roomba.mission.driving.way_ahead import LEAVING, WayAhead
 from roomba.mission.inputs.senses import Senses
+
+_HERE: Final = 0.001
+"""m; the robot stands at what is as near as this."""
 
 
 class DriveState(Enum):
@@ -114,6 +118,15 @@ class PathDriver:
     def left(self) -> float:
         """How much of the path is before the robot, m."""
         return self.tracker.left
+
+    @property
+    def points_left(self) -> NDArray[np.float64]:
+        """The corners of the path before the robot, and its end, float64 [n, 2], m.
+
+        A corner where it stands is behind it.
+        """
+        course = self.tracker.course
+        return course.points[course.stations > self.tracker.along + _HERE]
 
     @property
     def is_undisturbed(self) -> bool:

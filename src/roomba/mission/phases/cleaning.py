@@ -6,6 +6,8 @@ import math
 from dataclasses import replace
 from typing import Final
 
+import numpy as np
+
 from roomba.configuration.mission import ExploringConfig
 from roomba.mission.cleaning.cleaning import Cleaning
 from roomba.mission.cleaning.request import CleanOutcome
@@ -42,6 +44,7 @@ class CleanPhase:
         """Return what is wanted now; ``limit`` is the speed wanted, m/s."""
         cleaning, drives = self._job.cleaning, self._drives
         assert cleaning is not None
+        looks = self._job.ledger.is_check_due(senses)
         if self._job.ledger.must_go_home(senses, drives.distance_home):
             return PhaseStep(event=Event.LOW)
         if self._job.bin.is_full:
@@ -50,6 +53,8 @@ class CleanPhase:
         if waiting is not None:
             return waiting
         if drives.driver is not None:
+            if looks:
+                self._clean_dirty_at_hand(cleaning, senses)
             return self._drive_on(cleaning, senses, limit)
         ended = None
         if not drives.leaves_zone(senses):
@@ -121,6 +126,17 @@ class CleanPhase:
             return PhaseStep(wants_whole_map=True)
         self._seen_all_of = None
         return PhaseStep(failure=Failure(CleanOutcome.FAULT, _NO_WHOLE_MAP))
+
+    def _clean_dirty_at_hand(self, cleaning: Cleaning, senses: Senses) -> None:
+        """Let the path lead over dirty floor close by once more before it goes on."""
+        drives = self._drives
+        assert drives.driver is not None
+        if not (drives.is_round and drives.driver.is_undisturbed):
+            return
+        points = cleaning.dirty_at_hand(senses.pose, drives.obstacles.standing(senses.now))
+        if points is not None:
+            rest = drives.driver.points_left
+            drives.begin(np.concatenate((points, rest)), senses, cleaning.plans_anew)
 
     def _drive_on(self, cleaning: Cleaning, senses: Senses, limit: float) -> PhaseStep:
         drives, exploration = self._drives, self._job.exploration

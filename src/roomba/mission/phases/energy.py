@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from roomba.clock import is_recent
 from roomba.configuration.mission import EnergyConfig
 from roomba.mission.inputs.senses import Battery, Senses
 from roomba.perception.swept.coverage_kernels import LONGEST_STEP
@@ -50,9 +51,13 @@ class EnergyLedger:
         """A level with less than which the battery gives nothing any more, 0..1."""
         return self._config.empty
 
+    def is_check_due(self, senses: Senses) -> bool:
+        """Whether it is time to look again how far it is home, or the clock was set back."""
+        return not is_recent(senses.now, self._checked, self._config.check_period)
+
     def must_go_home(self, senses: Senses, way_home: Callable[[Senses], float]) -> bool:
         """Whether what is left just suffices for the way home; ``way_home`` tells that way, m."""
-        if 0.0 <= senses.now - self._checked < self._config.check_period:
+        if not self.is_check_due(senses):
             return False
         self._checked = senses.now
         battery = senses.battery

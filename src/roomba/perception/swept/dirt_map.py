@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +20,11 @@ CELL: Final = 0.20
 """m; about the width of the tool, which limits the sensor's resolution."""
 _LEARNING: Final = 0.4
 """Share of the newest run in what a cell is taken for."""
+_OFF_SIDES: Final = 1.3e-5
+"""m by which the sides of cells lie off the frame's: ways lead along those, and last bits are not
+to decide which cell counts a grain."""
+_JUST_SO: Final = 1.0 - 1e-4
+"""Factor on the density that counts as dirty; as many grains as that make floor dirty for sure."""
 
 
 class DirtMap:
@@ -75,7 +80,7 @@ class DirtMap:
 
     def density(self, mask: Mask, frame: GridFrame) -> float:
         """Return the mean of what was learned over a mask on another grid, grains/m2; 0 if none."""
-        values = self._over(np.nan_to_num(self.learned), frame)[mask]
+        values = self.over(np.nan_to_num(self.learned), frame)[mask]
         return float(values.mean()) if values.size else 0.0
 
     def dirty_now(self, frame: GridFrame, times: float, least: float) -> Mask:
@@ -83,28 +88,38 @@ class DirtMap:
 
         Where it counted fewer than ``least`` grains/m2 no floor is dirty.
         """
-        density, seen = self._density_now(), self.way > 0.5 * CELL
-        dirty: Mask = self._over(density, frame) >= dirty_from(density[seen], times, least)
+        dirty: Mask = self.over(self.dirty_cells(times, least), frame)
         return dirty
+
+    def dirty_cells(self, times: float, least: float) -> Mask:
+        """Return the same over ``frame``, the map's own cells."""
+        density, seen = self._density_now(), self.way > 0.5 * CELL
+        dirty: Mask = density >= _JUST_SO * dirty_from(density[seen], times, least)
+        return dirty
+
+    @property
+    def seen_area(self) -> float:
+        """Floor of which the present run counted what lies on it, m2."""
+        return float(np.count_nonzero(self.way > 0.5 * CELL)) * CELL**2
 
     def known(self) -> Floats:
         """Return grains/m2 by cells: of this run where it was, else as learned, NaN elsewhere."""
         known: Floats = np.where(self.way > 0.5 * CELL, self._density_now(), self.learned)
         return known
 
+    def over(self, values: NDArray[Any], frame: GridFrame) -> NDArray[Any]:
+        """Return values of the map's own cells at the middles of another grid's cells."""
+        rows = ((np.arange(frame.rows) + 0.5) * frame.resolution / CELL).astype(np.int64)
+        columns = ((np.arange(frame.columns) + 0.5) * frame.resolution / CELL).astype(np.int64)
+        over: NDArray[Any] = values[
+            np.ix_(np.minimum(rows, values.shape[0] - 1), np.minimum(columns, values.shape[1] - 1))
+        ]
+        return over
+
     def _density_now(self) -> Floats:
         area = np.maximum(self.way, 0.05) * CELL
         density: Floats = self.grains / area
         return density
-
-    def _over(self, values: Floats, frame: GridFrame) -> Floats:
-        """Return values at the middles of another grid's cells."""
-        rows = ((np.arange(frame.rows) + 0.5) * frame.resolution / CELL).astype(np.int64)
-        columns = ((np.arange(frame.columns) + 0.5) * frame.resolution / CELL).astype(np.int64)
-        over: Floats = values[
-            np.ix_(np.minimum(rows, values.shape[0] - 1), np.minimum(columns, values.shape[1] - 1))
-        ]
-        return over
 
 
 def dirty_from(density: Floats, times: float, least: float) -> float:
@@ -128,7 +143,8 @@ def note_dirt(
     way: float,
 ) -> None:
     """Add what was counted at a place, m, to its cell; ``place`` is the grid's corner and cell."""
-    row, column = math.floor((y - place[1]) / place[2]), math.floor((x - place[0]) / place[2])
+    row = math.floor((y - place[1] + _OFF_SIDES) / place[2])
+    column = math.floor((x - place[0] + _OFF_SIDES) / place[2])
     if 0 <= row < grains_of.shape[0] and 0 <= column < grains_of.shape[1]:
         grains_of[row, column] += np.float32(grains)
         way_of[row, column] += np.float32(way)

@@ -10,6 +10,7 @@ from fixtures.driven_cleans import HERE, cleaning, context, drive, finish
 from fixtures.missions import DEN, HALL, HOME, TWO_ROOMS
 
 from roomba.configuration.mission import MissionConfig
+from roomba.geometry import Pose
 from roomba.mission.cleaning.request import CleanRefusedError, CleanRequest, MissReason
 from roomba.perception.rooms.zones import Zone, ZoneKind, Zones
 from roomba.perception.swept.dirt_map import DirtMap
@@ -112,6 +113,13 @@ def test_the_dirtiest_room_comes_first_and_all_are_cleaned() -> None:
         assert (floor == place.coverable()).all()
 
 
+def note_dirty_patch(dirt: DirtMap) -> None:
+    """Six cells around (1.0, 0.5) are much dirtier than all others."""
+    for x in (0.9, 1.1, 1.3):
+        for y in (0.5, 0.7):
+            dirt.note(x, y, 4000.0, 0.2)
+
+
 def test_where_it_was_very_dirty_it_cleans_once_more() -> None:
     place = context()
     dirt = DirtMap(place.occupancy)
@@ -119,7 +127,7 @@ def test_where_it_was_very_dirty_it_cleans_once_more() -> None:
     for y in np.arange(0.1, 2.4, 0.2):
         for x in np.arange(0.1, 2.9, 0.2):
             dirt.note(float(x), float(y), 20.0, 0.2)
-    dirt.note(1.0, 0.5, 4000.0, 0.2)
+    note_dirty_patch(dirt)
     points = clean.next_path(HERE, [])
     assert points is not None
     here = drive(clean, points)
@@ -130,6 +138,31 @@ def test_where_it_was_very_dirty_it_cleans_once_more() -> None:
     assert float(np.hypot(*np.diff(again, axis=0).T).sum()) < 6.0
     drive(clean, again)
     # Once is enough.
+    assert clean.next_path(HERE, []) is None
+
+
+def test_dirty_floor_at_hand_is_cleaned_once_more_before_it_goes_on() -> None:
+    place = context()
+    dirt = DirtMap(place.occupancy)
+    clean = cleaning(place=place, dirt=dirt)
+    for y in np.arange(0.1, 2.4, 0.2):
+        for x in np.arange(0.1, 2.9, 0.2):
+            dirt.note(float(x), float(y), 20.0, 0.2)
+    note_dirty_patch(dirt)
+    points = clean.next_path(HERE, [])
+    assert points is not None
+    drive(clean, points)
+    swept, here = clean.coverage.fraction, Pose(1.0, 0.9, 0.0)
+    again = clean.dirty_at_hand(here, [])
+    assert again is not None
+    assert clean.coverage.fraction < swept
+    assert again[0] == pytest.approx((here.x, here.y))
+    assert again[-1] == pytest.approx((here.x, here.y))
+    assert float(np.hypot(*np.diff(again, axis=0).T).sum()) < 6.0
+    drive(clean, again)
+    assert clean.coverage.fraction == pytest.approx(swept, abs=0.001)
+    # Neither again in passing nor at the end.
+    assert clean.dirty_at_hand(here, []) is None
     assert clean.next_path(HERE, []) is None
 
 

@@ -54,6 +54,14 @@ def test_what_is_counted_goes_to_the_cell_where_it_is() -> None:
     assert dirt.grains.sum() == 41.0
 
 
+def test_the_last_bits_do_not_decide_which_cell_counts_on_a_way_along_its_side() -> None:
+    dirt = DirtMap(MAP)
+    side = MAP.frame.origin_x + 2 * CELL
+    for x in (side - 1e-12, side, side + 1e-12):
+        dirt.note(x, HERE[1], 1.0, 0.1)
+    assert dirt.grains.max() == dirt.grains.sum() == 3.0
+
+
 def test_density_is_by_the_floor_that_the_tool_passed() -> None:
     dirt = DirtMap(MAP)
     run_over(dirt, 80.0)

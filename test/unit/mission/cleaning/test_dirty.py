@@ -1,0 +1,97 @@
+"""Dirty floor: which of it is swept again in passing, and which at the end."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from roomba.configuration.mission import CleaningConfig
+from roomba.grid import FREE, GridFrame, OccupancyMap
+from roomba.mission.cleaning.dirty import DirtyFloor
+from roomba.perception.swept.coverage_bits import SWEPT
+from roomba.perception.swept.coverage_map import CoverageMap
+from roomba.perception.swept.dirt_map import CELL, DirtMap
+
+COARSE = GridFrame(0.05, 0.0, 0.0, 80, 80)
+FINE = GridFrame(0.01, 0.0, 0.0, 400, 400)
+FLOOR = np.ones(FINE.shape, np.bool_)
+BY_IT, FAR = (2.0, 1.6), (0.3, 3.7)
+USUAL, DIRTY = 40.0, 4000.0
+"""Grains of a cell."""
+
+
+def swept_floor(dirty: dict[tuple[int, int], float]) -> tuple[DirtMap, CoverageMap]:
+    """A room of 4 x 4 m, all swept; ``dirty`` are cells of its dirt map with their grains."""
+    dirt = DirtMap(OccupancyMap(COARSE, np.full(COARSE.shape, FREE, np.int8)))
+    for row in range(20):
+        for column in range(20):
+            grains = dirty.get((row, column), USUAL)
+            dirt.note((column + 0.5) * CELL, (row + 0.5) * CELL, grains, CELL)
+    coverage = CoverageMap(FINE, FLOOR, 0.2)
+    coverage.cells |= np.uint8(SWEPT)
+    coverage.count_again()
+    return dirt, coverage
+
+
+def patch(rows: range, columns: range) -> dict[tuple[int, int], float]:
+    """Dirty cells."""
+    return {(row, column): DIRTY for row in rows for column in columns}
+
+
+TWO, SIX = patch(range(5, 6), range(9, 11)), patch(range(5, 7), range(9, 12))
+
+
+def test_a_dirty_patch_is_told_once_when_the_robot_is_by_it() -> None:
+    dirt, coverage = swept_floor(TWO)
+    dirty = DirtyFloor(dirt, CleaningConfig())
+    assert dirty.at_hand(coverage, FLOOR, FAR) is None
+    again = dirty.at_hand(coverage, FLOOR, BY_IT)
+    assert again is not None
+    rows, columns = np.nonzero(again)
+    assert (rows.min(), rows.max(), columns.min(), columns.max()) == (100, 119, 180, 219)
+    assert np.count_nonzero(again) == 800
+    assert dirty.at_hand(coverage, FLOOR, BY_IT) is None
+
+
+def test_it_waits_until_the_patch_and_the_floor_around_it_are_swept() -> None:
+    dirt, coverage = swept_floor(TWO)
+    # The next swath, beside the dirty cells.
+    coverage.cells[120:140, 160:240] &= np.uint8(255 ^ SWEPT)
+    dirty = DirtyFloor(dirt, CleaningConfig())
+    assert dirty.at_hand(coverage, FLOOR, BY_IT) is None
+    coverage.cells |= np.uint8(SWEPT)
+    assert dirty.at_hand(coverage, FLOOR, BY_IT) is not None
+
+
+def test_what_is_swept_again_in_passing_is_not_at_the_end() -> None:
+    dirt, coverage = swept_floor(SIX)
+    dirty = DirtyFloor(dirt, CleaningConfig())
+    again = dirty.at_hand(coverage, FLOOR, BY_IT)
+    assert again is not None
+    dirty.note_again()
+    assert not dirty.left(coverage, FLOOR).any()
+    dirty.begin_pass()
+    assert (dirty.left(coverage, FLOOR) == again).all()
+
+
+def test_what_was_not_swept_again_in_passing_is_left_for_the_end() -> None:
+    dirt, coverage = swept_floor(SIX)
+    dirty = DirtyFloor(dirt, CleaningConfig())
+    assert dirty.at_hand(coverage, FLOOR, BY_IT) is not None
+    assert np.count_nonzero(dirty.left(coverage, FLOOR)) == 6 * 400
+    assert not dirty.left(coverage, FLOOR).any()
+
+
+@pytest.mark.parametrize(("cells", "at_hand", "at_end"), [(1, False, False), (2, True, False)])
+def test_small_patches_are_not_worth_a_way(cells: int, at_hand: bool, at_end: bool) -> None:
+    dirt, coverage = swept_floor(patch(range(5, 6), range(9, 9 + cells)))
+    dirty = DirtyFloor(dirt, CleaningConfig())
+    assert (dirty.at_hand(coverage, FLOOR, BY_IT) is not None) is at_hand
+    assert dirty.left(coverage, FLOOR).any() is np.bool_(at_end)
+
+
+def test_at_the_beginning_it_is_not_known_what_is_usual() -> None:
+    dirt, coverage = swept_floor(TWO)
+    assert dirt.seen_area == pytest.approx(16.0)
+    config = CleaningConfig(usual_floor=17.0)
+    assert DirtyFloor(dirt, config).at_hand(coverage, FLOOR, BY_IT) is None
