@@ -13,8 +13,7 @@ from collections import deque
 from collections.abc import AsyncIterator
 from typing import Any, Final
 
-from roomba.client.plain import known, report_of
-from roomba.client.protocol import CleanReport
+from roomba.client.events import EventFinder, RobotEvent
 from roomba.client.view import RobotView
 from roomba.ui.web.streams.told import Told
 
@@ -22,15 +21,12 @@ MOST_KEPT: Final = 200
 """Events that can be had again."""
 SILENCE: Final = 15.0
 """s of wall time after which a listener gets an empty line: so both sides notice a dead one."""
-_AT_REST: Final = ("docked", "idle")
-"""States without a run under way; one that met an error may go on."""
 
 
 class Events:
-    """The newest events of one robot.
+    """The newest events of one robot: those of :class:`roomba.client.events.EventFinder`.
 
-    ``state``: what it does changed; ``begun`` and ``ended``: a run; ``trouble``: what is wrong,
-    empty when all is well again; ``missed``: of some older ones a listener knows nothing any more.
+    ``missed``: of some older ones a listener knows nothing any more.
     """
 
     def __init__(self) -> None:
@@ -38,37 +34,20 @@ class Events:
         self._kept: deque[tuple[int, str]] = deque(maxlen=MOST_KEPT)
         self._numbers = itertools.count(1)
         self._came = asyncio.Event()
-        self._phase = self._trouble = ""
-        self._is_running: bool | None = None
-        self._last: CleanReport | None = None
+        self._finder = EventFinder()
 
     @property
     def newest(self) -> int:
         """The number of the newest event; 0 before the first one."""
         return self._kept[-1][0] if self._kept else 0
 
-    def note(self, view: RobotView) -> None:
-        """Find out what changed since the last look."""
-        vacuum = view.vacuum
-        if vacuum.phase != self._phase:
-            self._phase = vacuum.phase
-            self._add("state", {**_where(view), "battery": known(vacuum.battery)})
-        is_running = self._is_running if vacuum.state == "error" else vacuum.state not in _AT_REST
-        if self._is_running is not None:
-            self._note_run(view, is_running=bool(is_running))
-        self._is_running, self._last = is_running, view.last
-        self._note_trouble(view.time, vacuum.message or view.held or view.doubt)
+    def note(self, view: RobotView) -> list[RobotEvent]:
+        """Find out what changed since the last look, keep it, and return it."""
+        return self._keep(self._finder.look(view))
 
-    def _note_run(self, view: RobotView, *, is_running: bool) -> None:
-        """Note that a run began, or ended, since the last look."""
-        if is_running and not self._is_running:
-            self._add("begun", _where(view))
-        if view.last is not None and view.last != self._last:
-            self._add("ended", {"time": round(view.time, 2), **report_of(view.last)})
-
-    def note_gone(self, reason: str) -> None:
+    def note_gone(self, reason: str) -> list[RobotEvent]:
         """Note that the robot does not answer."""
-        self._note_trouble(None, reason)
+        return self._keep(self._finder.gone(reason))
 
     async def after(self, number: int) -> AsyncIterator[str]:
         """Give all events after a number as lines of an event stream, for ever."""
@@ -86,26 +65,14 @@ class Events:
                 except asyncio.TimeoutError:
                     yield ":\n\n"
 
-    def _note_trouble(self, at: float | None, trouble: str) -> None:
-        if trouble != self._trouble:
-            self._trouble = trouble
-            self._add("trouble", {"time": at, "message": trouble})
-
-    def _add(self, kind: str, values: dict[str, Any]) -> None:
-        number = next(self._numbers)
-        self._kept.append((number, _lines(number, kind, values)))
-        came, self._came = self._came, asyncio.Event()
-        came.set()
-
-
-def _where(view: RobotView) -> dict[str, Any]:
-    vacuum = view.vacuum
-    return {
-        "time": round(view.time, 2),
-        "state": vacuum.state,
-        "phase": vacuum.phase,
-        "room": vacuum.room,
-    }
+    def _keep(self, found: list[RobotEvent]) -> list[RobotEvent]:
+        for event in found:
+            number = next(self._numbers)
+            self._kept.append((number, _lines(number, event.kind, event.values)))
+        if found:
+            came, self._came = self._came, asyncio.Event()
+            came.set()
+        return found
 
 
 def _lines(number: int, kind: str, values: dict[str, Any]) -> str:

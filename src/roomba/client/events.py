@@ -1,0 +1,72 @@
+"""Events of a robot: what changed between two looks at it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any, Final
+
+from roomba.client.plain import known, report_of
+from roomba.client.protocol import CleanReport
+from roomba.client.view import RobotView
+
+EVENT_KINDS: Final = ("state", "begun", "ended", "trouble")
+"""``state``: what it does changed; ``begun`` and ``ended``: a run; ``trouble``: what is wrong, in
+words, which are empty when all is well again."""
+_AT_REST: Final = ("docked", "idle")
+"""States without a run under way; one that met an error may go on."""
+
+
+@dataclass(frozen=True, slots=True)
+class RobotEvent:
+    """One change, with plain values for JSON; ``time`` among them is of the robot's clock, s."""
+
+    kind: str
+    values: dict[str, Any]
+
+
+class EventFinder:
+    """Compares each look at a robot with the one before."""
+
+    def __init__(self) -> None:
+        """Begin before the first look."""
+        self._phase = self._trouble = ""
+        self._is_running: bool | None = None
+        self._last: CleanReport | None = None
+
+    def look(self, view: RobotView) -> list[RobotEvent]:
+        """Return what changed since the last look, in order."""
+        return list(self._changes(view))
+
+    def gone(self, reason: str) -> list[RobotEvent]:
+        """Return what changed: the robot does not answer, for this reason."""
+        return list(self._troubles(None, reason))
+
+    def _changes(self, view: RobotView) -> Iterator[RobotEvent]:
+        vacuum = view.vacuum
+        if vacuum.phase != self._phase:
+            self._phase = vacuum.phase
+            yield RobotEvent("state", {**_where(view), "battery": known(vacuum.battery)})
+        is_running = self._is_running if vacuum.state == "error" else vacuum.state not in _AT_REST
+        if self._is_running is not None:
+            if is_running and not self._is_running:
+                yield RobotEvent("begun", _where(view))
+            if view.last is not None and view.last != self._last:
+                yield RobotEvent("ended", {"time": round(view.time, 2), **report_of(view.last)})
+        self._is_running, self._last = is_running, view.last
+        yield from self._troubles(view.time, vacuum.message or view.held or view.doubt)
+
+    def _troubles(self, at: float | None, trouble: str) -> Iterator[RobotEvent]:
+        if trouble != self._trouble:
+            self._trouble = trouble
+            yield RobotEvent("trouble", {"time": at, "message": trouble})
+
+
+def _where(view: RobotView) -> dict[str, Any]:
+    vacuum = view.vacuum
+    return {
+        "time": round(view.time, 2),
+        "state": vacuum.state,
+        "phase": vacuum.phase,
+        "room": vacuum.room,
+    }
