@@ -161,7 +161,7 @@ system_packages() { # runtime|dev|bench, or on asking: rviz|screen|robot_state_p
     python3-visualization-msgs ros-visualization-msgs
   )
   if [[ $1 == dev ]]; then
-    packages+=(catkin-lint git nodejs shellcheck systemd)
+    packages+=(catkin-lint git mosquitto nodejs openssl shellcheck systemd)
     command -v npm >/dev/null || packages+=(npm) # some packages of nodejs have it in them
     # Ubuntu's package only fetches a snap.
     ! grep -qx 'ID=debian' /etc/os-release || packages+=(chromium)
@@ -252,7 +252,7 @@ environment_identity() {
 requirement_files() { # library|runtime|dev
   printf '%s\n' requirements.txt
   [[ $1 != library ]] || printf '%s\n' requirements-library.txt
-  [[ $1 != dev ]] || printf '%s\n' requirements-dev.txt
+  [[ $1 != dev ]] || printf '%s\n' requirements-smart-home.txt requirements-dev.txt
 }
 
 python_hash() { # library|runtime|dev
@@ -322,6 +322,20 @@ make_python_environment() { # runtime|dev
   rm "$VENV/.unfinished"
   python_hash runtime >"$VENV/.stamp-runtime"
   [[ $1 != dev ]] || python_hash dev >"$VENV/.stamp-dev"
+}
+
+# What `--smart-home` and `smart_home:=` ask for, and no other command needs.
+smart_home_is_current() {
+  PYTHONNOUSERSITE=1 "$VENV/bin/python3" -c 'import paho.mqtt.client, prometheus_client' 2>/dev/null
+}
+
+install_smart_home() {
+  smart_home_is_current || run_step "Installing what speaks MQTT into .venv" add_smart_home
+}
+
+add_smart_home() {
+  PYTHONNOUSERSITE=1 PIP_USER=no PIP_DISABLE_PIP_VERSION_CHECK=1 "$VENV/bin/python3" -m pip install --no-input \
+    --progress-bar off --retries 5 --prefer-binary --requirement "$REPOSITORY/requirements-smart-home.txt"
 }
 
 # ---------------------------------------------------------------- step: npm packages of the tests

@@ -30,7 +30,11 @@ WARM = "compiles ahead of time what others test"
 TESTED_BY: dict[str, tuple[str, str]] = {
     "roomba_ros/plain/details": ("ros/rosbridge/test_programs.py", NODE),
     "roomba_ros/rosbridge/": ("ros/rosbridge/test_bridge.py", NODE),
+    "roomba/client/events": ("unit/ui/web/streams/test_events.py", "kept and streamed there"),
+    "roomba/client/floor_map": ("unit/ui/smart_home/test_map_picture.py", "drawn there"),
     "roomba/client/token": ("unit/ui/web/test_kept_token.py", "read as it is written"),
+    "roomba/ui/smart_home/switch": ("unit/ui/smart_home/test_smart_home.py", "switches it on"),
+    "roomba/ui/smart_home/topics": ("unit/ui/smart_home/test_announcement.py", VALUES),
     "roomba/ui/web/examples": ("unit/ui/web/test_guarded_routes.py", VALUES),
     "roomba/ui/web/guarding": ("unit/ui/web/test_guarded_routes.py", "guards every route"),
     "roomba/ui/web/bounded/limits": ("unit/ui/web/bounded/test_connections.py", VALUES),

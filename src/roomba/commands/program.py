@@ -48,7 +48,7 @@ usage: roomba COMMAND ...
                    recorded drive (see --help)
   localize ARGS    localize a recorded drive on a map: --map FILE.yaml --bag FILE ... (see --help)
   play [ARGS]      a robot that lives in a home, on a web page: --home NAME, --speed N,
-                   --map none (see --help)
+                   --map none, --smart-home FILE.yaml (see --help)
   control --demo [ARGS]
                    the menu in the terminal over a robot that lives in a home: --home NAME,
                    --speed N, --map none (see --demo --help)
@@ -77,7 +77,11 @@ _MODULES: Final = (
     "cv2", "fastapi", "matplotlib", "numba", "numpy", "PIL", "pydantic", "rich", "rosbags", "scipy",
     "serial", "shapely", "textual", "uvicorn", "websockets", "yaml",
 )  # fmt: skip
-_EXTRAS: Final = {"gymnasium": "gym"}
+_EXTRAS: Final = {
+    "gymnasium": "gym",
+    "paho": "smart-home",
+    "prometheus_client": "smart-home",
+}
 
 
 def program() -> int:

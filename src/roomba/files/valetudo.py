@@ -49,6 +49,9 @@ class ValetudoHome:
     those of virtual walls. ``station`` is the docked robot; ``has_own_frame`` whether the file said
     where its corner lies. Without that only the station's place is to be relied on, at (0, 0), not
     its heading: that means something else with each vendor.
+
+    ``robot`` is where the robot is, if not on its station, and ``way`` how it came there; both are
+    only written.
     """
 
     occupancy: OccupancyMap
@@ -57,6 +60,8 @@ class ValetudoHome:
     no_go: tuple[Points, ...] = ()
     walls: tuple[Points, ...] = ()
     has_own_frame: bool = True
+    robot: Pose | None = None
+    way: Points = ()
 
 
 # ---------------------------------------------------------------- reading
@@ -330,12 +335,14 @@ def _dimension(cells: NDArray[np.int64]) -> dict[str, int]:
 
 def _entities(home: ValetudoHome) -> list[dict[str, Any]]:
     entities = []
-    if home.station is not None:
-        degrees = round(90.0 - math.degrees(home.station.theta)) % 360
-        place = _points(home, ((home.station.x, home.station.y),))
-        for kind in ("robot_position", "charger_location"):
-            entities.append(_entity("PointMapEntity", kind, place, {"angle": degrees}))
+    robot = home.station if home.robot is None else home.robot
+    for pose, name in ((robot, "robot_position"), (home.station, "charger_location")):
+        if pose is not None:
+            degrees = round(90.0 - math.degrees(pose.theta)) % 360
+            place = _points(home, ((pose.x, pose.y),))
+            entities.append(_entity("PointMapEntity", name, place, {"angle": degrees}))
     for kind, name, shapes in (
+        ("PathMapEntity", "path", (home.way,) if len(home.way) > 1 else ()),
         ("PolygonMapEntity", "no_go_area", home.no_go),
         ("LineMapEntity", "virtual_wall", home.walls),
     ):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import shlex
 import socket
+from pathlib import Path
 
 import rospy
 
@@ -14,6 +15,7 @@ from roomba.history.database import History
 from roomba.history.folder import history_folder
 from roomba.history.recorder import HistoryKeeper
 from roomba.history.run import RunSource
+from roomba.ui.smart_home.switch import Switched, switched_on
 from roomba.ui.web.app import create_app
 from roomba.ui.web.guard import LOOPBACK
 from roomba.ui.web.kept_token import kept_token
@@ -42,19 +44,25 @@ class DashboardNode:
     what :class:`GraphRobot` does, and what programs ask :class:`RosBridge` for.
     Parameters: ``~port`` (by default -1: 8400, or the next that is free; 0: any), ``~host`` (by
     default 127.0.0.1, this machine alone; 0.0.0.0: the network as well), ``~home``, ``~seed``,
-    ``~sensors``, ``~wheels`` (what runs are kept under in the history, and repeated by).
+    ``~sensors``, ``~wheels`` (what runs are kept under in the history, and repeated by),
+    ``~smart_home`` (the file of the smart home that the robot is in, empty for none).
     """
 
     period = _PERIOD
 
     def start(self) -> None:
-        """Connect and serve; raises ServerError when no port is free."""
+        """Connect and serve; raises RoombaError when no port is free, or the smart home's file says
+        what cannot be.
+        """
         self._robot = GraphRobot(read_robot_config())
         self._robot.start()
         bound = _bound()
         guard = guard_for(kept_token(), bound.getsockname()[0])
         self._server = PageServer(create_app(self._robot, guard, _keeper(), RosBridge()), bound)
         self._server.start()
+        self._smart_home = _smart_home(self._robot)
+        if self._smart_home is not None:
+            self._smart_home.start()
         # Not to the log, which every program on the graph can read.
         address, *others = addresses_of(bound, guard.token, os.environ.get(OUTSIDE_ADDRESS, ""))
         print(f"The page: {address}", flush=True)
@@ -66,8 +74,10 @@ class DashboardNode:
         self._robot.tick()
 
     def stop(self) -> None:
-        """Stop what it drives."""
+        """Stop what it drives, and leave the smart home."""
         self._robot.stop_hand()
+        if self._smart_home is not None:
+            self._smart_home.stop()
 
 
 def _keeper() -> HistoryKeeper:
@@ -79,6 +89,11 @@ def _keeper() -> HistoryKeeper:
     ]
     source = RunSource("ros", home, known, shlex.join(["./roomba", "run", *words]))
     return HistoryKeeper(History(history_folder()), source, rospy.logwarn)
+
+
+def _smart_home(robot: GraphRobot) -> Switched | None:
+    file = str(rospy.get_param("~smart_home", ""))
+    return switched_on(robot, Path(file).expanduser(), rospy.logwarn) if file else None
 
 
 def _bound() -> socket.socket:

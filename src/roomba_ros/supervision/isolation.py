@@ -62,6 +62,8 @@ def enter_isolation(arguments: list[str]) -> None:
 
     The socket and the lock of the record outlast ``os.execv``.
     """
+    if any(argument.startswith("smart_home:=") and argument[12:] for argument in arguments):
+        raise IsolationError(f"{FLAG}: expected no smart_home:=FILE, as no broker is reached there")
     lock = _take_record()
     page = page_socket(arguments, os.environ)
     if page is not None:

@@ -38,6 +38,7 @@ from roomba.commands.pictures.sensors.motion import picture_of_motion
 from roomba.commands.pictures.sensors.moving import picture_of_moving
 from roomba.commands.pictures.sensors.odometry import picture_of_odometry
 from roomba.commands.pictures.sensors.station import picture_of_station
+from roomba.commands.pictures.smart_home import picture_of_smart_home
 from roomba.commands.pictures.terminal import picture_of_top
 from roomba.commands.pictures.tour import VIEWS, picture_of_home, picture_of_view, picture_of_walk
 from roomba.commands.spelling import spelled
@@ -82,9 +83,10 @@ IN_BROWSER: dict[str, tuple[str, Callable[[Home], Picture]]] = {
     "page_way": ("flat", picture_of_way),
     "replay": ("flat", picture_of_replay),
     "report": ("flat", picture_of_report),
+    "smart_home_map": ("flat", picture_of_smart_home),
     "top": ("flat", picture_of_top),
 }
-"""Pictures that need a browser: made when they are named."""
+"""Pictures that need a browser, or a robot that lives meanwhile: made when they are named."""
 FILMS: dict[str, tuple[str, Callable[[Home], list[Picture]]]] = {
     "page_animation": ("flat", frames_of_page),
 }

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import shlex
 import sys
+from pathlib import Path
 from typing import Final
 
 from roomba.commands.play.living import add_robot_options, wanted_robot
@@ -15,6 +16,7 @@ from roomba.history.database import History
 from roomba.history.folder import history_folder
 from roomba.history.recorder import HistoryKeeper
 from roomba.history.run import RunSource
+from roomba.ui.smart_home.switch import switched_on
 
 PROGRAM: Final = spelled("play")
 
@@ -24,6 +26,8 @@ def main(arguments: list[str] | None = None) -> int:
     wanted = _parser().parse_args(arguments)
     try:
         client = wanted_robot(wanted)
+        file = wanted.smart_home
+        smart_home = None if file is None else switched_on(client, file, _warn)
         bound = listen_at(wanted)
     except RoombaError as error:
         print(f"{PROGRAM}: {error}", file=sys.stderr)
@@ -33,7 +37,7 @@ def main(arguments: list[str] | None = None) -> int:
     client.start()
     try:
         told = f"The robot lives in {wanted.home!r}. Its page:"
-        serve_page(client, bound, told, is_opened=wanted.open, keeper=keeper)
+        serve_page(client, bound, told, is_opened=wanted.open, keeper=keeper, smart_home=smart_home)
     finally:
         client.end()
     return 0
@@ -56,4 +60,10 @@ def _parser() -> argparse.ArgumentParser:
     )
     add_robot_options(parser)
     add_page_options(parser)
+    parser.add_argument(
+        "--smart-home",
+        type=Path,
+        metavar="FILE.yaml",
+        help="MQTT with Home Assistant, and a webhook, as the file says (docs/smart_home.md)",
+    )
     return parser

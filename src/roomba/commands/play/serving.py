@@ -12,6 +12,7 @@ from roomba.client.observed import ObservedRobot
 from roomba.client.ports import DEFAULT_PORT, LAST_PORT
 from roomba.commands.options import whole
 from roomba.history.recorder import HistoryKeeper
+from roomba.ui.smart_home.switch import Switched
 from roomba.ui.web.app import create_app
 from roomba.ui.web.guard import LOOPBACK
 from roomba.ui.web.kept_token import kept_token
@@ -54,8 +55,9 @@ def serve_page(
     *,
     is_opened: bool,
     keeper: HistoryKeeper | None = None,
+    smart_home: Switched | None = None,
 ) -> None:
-    """Print the address, and serve the page of a robot until Ctrl-C."""
+    """Print the address, and serve the page of a robot until Ctrl-C, and its smart home beside."""
     guard = guard_for(kept_token(), bound.getsockname()[0])
     server = PageServer(create_app(robot, guard, keeper), bound)
     address, *others = addresses_of(bound, guard.token)
@@ -67,8 +69,12 @@ def serve_page(
     sys.stdout.flush()
     if is_opened:
         webbrowser.open(address)
+    if smart_home is not None:
+        smart_home.start()
     with contextlib.suppress(KeyboardInterrupt):
         server.serve()
+    if smart_home is not None:
+        smart_home.stop()
 
 
 def _host(text: str) -> str:

@@ -16,9 +16,14 @@ from PIL import Image
 from roomba.client.protocol import MissedFloor
 from roomba.history.run import CellLayer, RunRecording
 
-_MAP: Final = ((0, 0, 0, 0), (252, 250, 245, 255), (112, 104, 94, 255))
+MAP_COLOURS: Final = ((0, 0, 0, 0), (252, 250, 245, 255), (112, 104, 94, 255))
 """RGBA of floor that is unknown, free and occupied."""
-_COVERAGE: Final = ((0, 0, 0, 0), (199, 231, 217, 255), (146, 207, 181, 255), (92, 178, 143, 255))
+COVERAGE_COLOURS: Final = (
+    (0, 0, 0, 0),
+    (199, 231, 217, 255),
+    (146, 207, 181, 255),
+    (92, 178, 143, 255),
+)
 """Not swept, once, twice, more often."""
 _MARGIN: Final = 0.2
 """m around what is known."""
@@ -34,7 +39,7 @@ def floor_svg(recording: RunRecording, missed: Sequence[MissedFloor], title: str
         f'{-100 * top:.0f} {100 * (right - left):.0f} {100 * (top - bottom):.0f}">',
         f"<title>{escape(title)}</title>",
     ]
-    for name, colours in (("map", _MAP), ("coverage", _COVERAGE)):
+    for name, colours in (("map", MAP_COLOURS), ("coverage", COVERAGE_COLOURS)):
         if name in recording.layers:
             parts.append(_image(recording.layers[name], colours))
     parts += [_ring(ring) for room in recording.home.get("rooms", ()) for ring in room["rings"]]

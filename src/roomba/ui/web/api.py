@@ -56,6 +56,20 @@ class CleanWish(Wish):
     each: list[RoomWish] = Field(default=[], max_length=100)
 
 
+def order_of(wish: CleanWish) -> CleanOrder:
+    """Return what the robot is told to clean."""
+    return CleanOrder(
+        wish.mode,
+        tuple(wish.rooms),
+        wish.in_order,
+        tuple(wish.zones),
+        wish.spot,
+        wish.passes,
+        wish.fan,
+        tuple(RoomWay(way.passes, FanLevel(way.fan)) for way in wish.each),
+    )
+
+
 class DriveWish(Wish):
     """A twist, m/s and rad/s; without another one for 0.5 s the robot stands."""
 
@@ -174,17 +188,7 @@ def _add_views(api: APIRouter, robot: ObservedRobot, of_server: Mapping[str, Any
 def _add_errands(api: APIRouter, robot: ObservedRobot) -> None:
     @api.post("/clean", summary="Begin a clean")
     def clean(wish: CleanWish) -> Answer:
-        order = CleanOrder(
-            wish.mode,
-            tuple(wish.rooms),
-            wish.in_order,
-            tuple(wish.zones),
-            wish.spot,
-            wish.passes,
-            wish.fan,
-            tuple(RoomWay(way.passes, FanLevel(way.fan)) for way in wish.each),
-        )
-        return obeyed(lambda: robot.clean(order))
+        return obeyed(lambda: robot.clean(order_of(wish)))
 
     plain: tuple[tuple[str, str, Callable[[], None]], ...] = (
         ("explore", "Look at what the map does not show yet", robot.explore),

@@ -1,0 +1,70 @@
+"""The robot's floor at one moment, and as Valetudo's map."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image, ImageDraw
+
+from roomba.client.view import GridLayer, HomeView, Point, RoomView
+from roomba.files.valetudo import ValetudoHome, compose
+from roomba.geometry import Pose
+from roomba.grid import FREE, OCCUPIED, UNKNOWN, GridFrame, OccupancyMap
+
+_VALUES = np.array([UNKNOWN, FREE, OCCUPIED, OCCUPIED], np.int8)
+"""By the value of a cell of the layer of the map."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FloorMap:
+    """What is drawn: the layer of the map, that of the coverage if it lies alike, what seldom
+    changes, the robot's pose and the way that it came, m."""
+
+    cells: GridLayer
+    coverage: GridLayer | None
+    home: HomeView
+    pose: tuple[float, float, float]
+    way: Sequence[Point]
+
+
+def valetudo_of(floor: FloorMap) -> dict[str, Any]:
+    """Return Valetudo's map as plain values; raises ValetudoError for cells of half a cm."""
+    cells, home = floor.cells, floor.home
+    rows, columns = cells.cells.shape
+    frame = GridFrame(cells.resolution, cells.origin_x, cells.origin_y, rows, columns)
+    values = _VALUES[np.minimum(cells.cells, len(_VALUES) - 1)]
+    zones = [(zone.kind, zone.points) for zone in home.zones]
+    return compose(
+        ValetudoHome(
+            OccupancyMap(frame, values),
+            tuple((room.name, _mask(room, cells)) for room in home.rooms),
+            Pose(*home.station),
+            tuple(points for kind, points in zones if kind == "no-go"),
+            tuple(points for kind, points in zones if kind == "wall"),
+            robot=Pose(*floor.pose),
+            way=tuple(floor.way),
+        )
+    )
+
+
+def _mask(room: RoomView, layer: GridLayer) -> NDArray[np.bool_]:
+    """Return the cells of a room; its rings overlap where there are holes."""
+    rows, columns = layer.cells.shape
+    inside = np.zeros((rows, columns), np.bool_)
+    for ring in room.rings:
+        drawn = Image.new("1", (columns, rows))
+        corners = [
+            (
+                (x - layer.origin_x) / layer.resolution - 0.5,
+                (y - layer.origin_y) / layer.resolution - 0.5,
+            )
+            for x, y in ring
+        ]
+        if len(corners) > 2:
+            ImageDraw.Draw(drawn).polygon(corners, fill=1)
+            inside ^= np.asarray(drawn)
+    return inside

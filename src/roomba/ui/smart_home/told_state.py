@@ -1,0 +1,74 @@
+"""The state as a smart home is told it: plain values, rounded so that they seldom change."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, Final
+
+from roomba.client.view import HomeView, RobotView
+
+_AT_REST: Final = ("docked", "idle")
+_LONGEST: Final = 255
+"""Characters of a state in Home Assistant."""
+_STEP: Final = 5
+"""s; a time in steps of that changes less often than the robot is looked at."""
+_BIN_FULL: Final = "bin full"
+
+
+class StateTeller:
+    """Follows one robot, and tells its state; the time of a run is counted here."""
+
+    def __init__(self) -> None:
+        """Begin before the first look."""
+        self._began: float | None = None
+
+    def state_of(self, view: RobotView, fan: str) -> dict[str, Any]:
+        """Return the state; m2, s, g, battery in %. What is not known is None.
+
+        ``area`` and ``time`` are of the run under way, else of the last one. ``fan`` is the level
+        with which a clean begins.
+        """
+        vacuum, last = view.vacuum, view.last
+        is_running = vacuum.state not in _AT_REST
+        if not is_running:
+            self._began = None
+        elif self._began is None or self._began > view.time:
+            self._began = view.time
+        area = vacuum.covered if is_running or last is None else last.covered
+        since = view.time - self._began if self._began is not None else math.nan
+        time = since if is_running or last is None else last.duration
+        return {
+            "state": vacuum.state,
+            "phase": vacuum.phase,
+            "fan_speed": fan,
+            "battery": _rounded(100.0 * vacuum.battery, 0),
+            "area": _rounded(area, 1),
+            "time": _in_steps(time),
+            "to_go": _in_steps(vacuum.seconds_to_go),
+            "bin": _rounded(view.dirt, 1),
+            "bin_full": vacuum.phase == _BIN_FULL,
+            "room": vacuum.room[:_LONGEST] or "none",
+            "error": shortened(vacuum.message or view.held or view.doubt) or "none",
+        }
+
+
+def attributes_of(home: HomeView) -> dict[str, Any]:
+    """Return what seldom changes: names that commands take, and where the station is, m."""
+    return {
+        "rooms": [room.name for room in home.rooms],
+        "zones": [zone.name for zone in home.zones],
+        "station": [round(value, 2) for value in home.station[:2]],
+    }
+
+
+def shortened(text: str) -> str:
+    """Return a text as long as the state of a sensor may be."""
+    return text if len(text) <= _LONGEST else f"{text[: _LONGEST - 1]}…"
+
+
+def _rounded(value: float, digits: int) -> float | None:
+    return round(value, digits) + 0.0 if math.isfinite(value) else None
+
+
+def _in_steps(seconds: float) -> int | None:
+    return _STEP * round(seconds / _STEP) if math.isfinite(seconds) else None
