@@ -79,7 +79,7 @@ class Life:
 def live(hours: float) -> tuple[list[Cost], list[CleanResult]]:
     """Return what each hour cost, and what each clean told."""
     life, robot = Life(), HeadlessMission(HOME)
-    lives = LiveRobot(robot, 1e6, life.look)
+    lives = LiveRobot(robot, 1e6, lambda _: life.look(robot))
     lives.start()
     costs: list[Cost] = []
     seen, went_on = 0.0, time.monotonic()

@@ -9,7 +9,7 @@ from fixtures.waiting import wait_until
 from PIL import Image
 from web.conftest import Opened
 
-from roomba.headless.cleaner import HeadlessMission
+from roomba.headless.embodied import Embodied
 from roomba.vocabulary import FanLevel, RoomWay
 
 DEADLINE = 20.0
@@ -216,7 +216,7 @@ def test_each_room_has_its_own_passes_and_fan_and_the_speed_is_set(opened: Opene
     page.get_by_role("button", name="Clean 2 rooms").click()
     opened.wait_for_phase("cleaning")
 
-    def ways(robot: HeadlessMission) -> tuple[RoomWay, ...]:
+    def ways(robot: Embodied) -> tuple[RoomWay, ...]:
         cleaning = robot.mission.cleaning
         return () if cleaning is None else cleaning.request.each
 

@@ -20,10 +20,13 @@ from roomba.world.simulator import Observation, Simulator
 class SimulatedBody:
     """One robot's body in one home.
 
+    ``trouble`` there is none with it: a :class:`roomba.robot.body.Body` may be out of reach.
     ``seen`` is the observation after the last tick, with the truth and what the sensors measured;
     ``scans`` is the number of scans by then; ``has_late_scans`` says that scans are older than the
     tick at which they come.
     """
+
+    trouble = ""
 
     def __init__(
         self,
@@ -61,6 +64,9 @@ class SimulatedBody:
         self._set_power(command.brush, command.fan)
         timing = self._timing
         self.simulator.advance(command.twist, timing.world_step, timing.steps_per_tick)
+
+    def locate(self) -> None:
+        """Make no sound: it has no speaker."""
 
     def _set_power(self, brush: float | None, fan: float | None) -> None:
         """Set the duties of brush and fan, 0..1, where they change; None: the configured one."""

@@ -20,6 +20,7 @@ from roomba.geometry import Pose
 from roomba.grid import OccupancyMap
 from roomba.headless.body import SimulatedBody
 from roomba.headless.burst import LONGEST_BURST, Burst
+from roomba.headless.embodied import Embodied
 from roomba.headless.records import (
     CleanRecord,
     ExploreRecord,
@@ -27,10 +28,8 @@ from roomba.headless.records import (
     longest_errand,
     require_end,
 )
-from roomba.headless.rows import BELIEVED, PASSED, POSES, TIME
+from roomba.headless.rows import BELIEVED, POSES, TIME
 from roomba.mission.cleaning.request import CleanRequest
-from roomba.mission.inputs.senses import Senses
-from roomba.mission.mission import Mission
 from roomba.mission.phases.machine import Phase
 from roomba.perception.localization.localizer import Localizer
 from roomba.perception.matching.scan_view import LidarModel
@@ -38,22 +37,23 @@ from roomba.perception.rooms.rooms import Rooms
 from roomba.perception.rooms.zones import Zones
 from roomba.perception.slam.mapper import Mapper
 from roomba.perception.swept.coverage_map import CoverageMap
-from roomba.perception.swept.dirt_map import DirtMap
 from roomba.perception.things.layer import ThingLayer
 from roomba.planning.coverage.floor.floor import fine_frame
 from roomba.robot.brain import Brain
-from roomba.robot.readings import Readings
 from roomba.world.home.home import Home
 from roomba.world.simulator import Observation, Simulator
 
 
-class HeadlessMission:
+class HeadlessMission(Embodied):
     """One robot in one home.
 
     ``truth`` is the floor that its tool really passed over, with room in its bin; ``rows`` are the
     ticks that passed, as of :mod:`roomba.headless.rows`, in pieces; ``context`` is the home as it
     planned in it at first; ``emptied`` is what was taken out of the dust bin each time, g.
     """
+
+    body: SimulatedBody
+    robot: SimulatedRobotConfig
 
     def __init__(
         self,
@@ -79,13 +79,13 @@ class HeadlessMission:
         So long after the robot said that its dust bin is full, ``empties_bin_after``, s, it is
         emptied.
         """
-        self.robot, self.config = robot or SimulatedRobotConfig(), mission or MissionConfig()
+        robot, self.config = robot or SimulatedRobotConfig(), mission or MissionConfig()
         known = known or home.map
-        self.body = SimulatedBody(home, self.robot, seed, max_speed, start)
-        self.brain = Brain(
+        body = SimulatedBody(home, robot, seed, max_speed, start)
+        brain = Brain(
             known,
             home.station,
-            self.robot,
+            robot,
             self.config,
             docking or DockingConfig(),
             rooms=rooms,
@@ -93,13 +93,12 @@ class HeadlessMission:
             start=start,
             max_speed=max_speed,
         )
-        self.rows: list[NDArray[np.float64]] = []
+        super().__init__(body, brain, robot)
         self.whole_at: float | None = None
         self.emptied: list[float] = []
         self._empties_bin_after = empties_bin_after
         self._full_since: float | None = None
         self._longest = longest_errand(home)
-        self._stand_until_ready()
         self.context = self.mission.context
         frame = home.map.frame if isinstance(known, MappingConfig) else known.frame
         fine = fine_frame(frame, self.config.coverage.cell)
@@ -197,20 +196,14 @@ class HeadlessMission:
         growing = self.brain.growing
         was_whole = growing is None or growing.is_whole
         self._empty_bin_in_time()
-        self.body.act(self.brain.decide())
-        self.brain.sense(self.readings())
+        super().tick()
         pose = self.seen.pose
         if self.seen.in_bin < self.robot.brush.bin_capacity:
             self.truth.sweep(pose.x, pose.y)
         else:
             self.truth.lift()
-        self.rows.append(self.row())
         if growing is not None and growing.is_whole and not was_whole:
             self.whole_at = self.seen.time
-
-    def readings(self) -> Readings:
-        """Return what the body tells now."""
-        return self.body.read()
 
     def look(self) -> None:
         """Let the brain know how the world is now, after it was changed while no time passed."""
@@ -226,14 +219,6 @@ class HeadlessMission:
         if self.seen.time - self._full_since >= self._empties_bin_after:
             self.emptied.append(self.simulator.empty_bin())
             self.look()
-
-    def _stand_until_ready(self) -> None:
-        """Stand until the first scan came: without a map there is nothing to do."""
-        self.brain.sense(self.readings())
-        while not self.brain.is_ready:
-            self.body.act(self.brain.decide())
-            self.brain.sense(self.readings())
-            self.rows.append(self.row())
 
     # ---------------------------------------------------------------- what others may look at
 
@@ -251,15 +236,6 @@ class HeadlessMission:
     def lidar(self) -> LidarModel:
         """The body's lidar."""
         return self.body.lidar
-
-    @property
-    def mission(self) -> Mission:
-        """What it is at; another one may take over, as after its process was killed."""
-        return self.brain.mission
-
-    @mission.setter
-    def mission(self, mission: Mission) -> None:
-        self.brain.mission = mission
 
     @property
     def localizer(self) -> Localizer:
@@ -281,23 +257,25 @@ class HeadlessMission:
         return self.brain.things
 
     @property
-    def dirt(self) -> DirtMap:
-        """Where it found dirt."""
-        return self.mission.dirt
-
-    @property
-    def passed(self) -> NDArray[np.float64]:
-        """All ticks that passed, float64 [n, PASSED], as of :mod:`roomba.headless.rows`."""
-        return np.concatenate([np.empty((0, PASSED)), *self.rows])
-
-    @property
     def is_home(self) -> bool:
         """Whether it stands on its station."""
         return self.mission.state.phase is Phase.DOCKED
 
-    def senses(self) -> Senses:
-        """Return what the robot senses now."""
-        return self.brain.senses()
+    @property
+    def distance(self) -> float:
+        """What it really drove, m."""
+        return self.simulator.numbers["distance"]
+
+    @property
+    def battery_change(self) -> float:
+        """By how much of its capacity the charge of the battery changes, 1/s."""
+        battery = self.seen.battery
+        return battery.current * (battery.voltage / (3600.0 * battery.capacity))
+
+    @property
+    def dirt_under(self) -> float:
+        """The dirt on the floor under it, g."""
+        return self.seen.dirt_under
 
     def row(self) -> NDArray[np.float64]:
         """Return what is so now, as a tick that passed: float64 [1, PASSED]."""

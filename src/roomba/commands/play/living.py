@@ -15,6 +15,7 @@ from roomba.configuration.mapping import MappingConfig
 from roomba.files.shipped import CONFIGURATION
 from roomba.headless.cleaner import HeadlessMission
 from roomba.headless.live.client import LiveClient
+from roomba.headless.live.playing import Playing
 from roomba.headless.live.robot import SPEEDS
 
 
@@ -56,7 +57,7 @@ def live_client(
         longest_burst=int(speed) if speed >= 2.0 else 0,
         empties_bin_after=math.inf,
     )
-    return LiveClient(home, mission, rooms, speed)
+    return LiveClient(Playing(home, mission), mission, rooms, speed)
 
 
 def add_robot_options(parser: argparse._ActionsContainer) -> None:

@@ -16,6 +16,7 @@ from roomba.commands.trials.figures import Figures
 from roomba.commands.trials.runs import TRAJECTORY_STEP, Run
 from roomba.grid import GridFrame
 from roomba.headless.cleaner import HeadlessMission
+from roomba.headless.live.playing import Playing
 from roomba.headless.live.views import home_view, vacuum_snapshot
 from roomba.history.database import History
 from roomba.history.folder import history_folder
@@ -81,7 +82,8 @@ class StateSamples:
         if self._robot is None:
             return {}
         context = self._robot.mission.context
-        view = home_view(1, self._robot.simulator.home, self._robot, context.rooms, context.zones)
+        home = Playing(self._robot.simulator.home, self._robot)
+        view = home_view(1, home, self._robot, context.rooms, context.zones)
         return home_of(view)
 
 

@@ -14,9 +14,10 @@ from roomba.client.protocol import RequestRefusedError
 from roomba.configuration.sensors import CameraConfig
 from roomba.geometry import Pose
 from roomba.grid import GridFrame
-from roomba.headless.cleaner import HeadlessMission
+from roomba.headless.embodied import Embodied
 from roomba.world.camera.camera import Camera, Scene
 from roomba.world.home.home import Home
+from roomba.world.simulator import Simulator
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -33,14 +34,14 @@ class _Sight:
 class LiveCamera:
     """Takes pictures in the thread of the caller, so that they do not hold up the robot's time."""
 
-    def __init__(self, home: Home, config: CameraConfig) -> None:
+    def __init__(self, home: Home, config: CameraConfig, simulator: Simulator) -> None:
         """Make nothing yet: a camera needs some megabytes."""
-        self._home, self._config = home, config
+        self._home, self._config, self._simulator = home, config, simulator
         self._lock = threading.Lock()
         self._camera: Camera | None = None
 
     def picture(
-        self, ask: Callable[[Callable[[HeadlessMission], _Sight]], _Sight], degrees: float
+        self, ask: Callable[[Callable[[Embodied], _Sight]], _Sight], degrees: float
     ) -> NDArray[np.uint8]:
         """Return what is seen at an angle to the left, uint8 [height, width, 3] RGB.
 
@@ -52,7 +53,7 @@ class LiveCamera:
             raise RequestRefusedError(
                 f"expected an angle from {-most:g} to {most:g} degrees, got {degrees:g}"
             )
-        sight = ask(_sight_of)
+        sight = ask(lambda _: self._sight())
         with self._lock:
             self._camera = self._camera or Camera(Scene.of(self._home), self._config, 1)
             self._camera.place_all(sight.things, sight.discs)
@@ -61,14 +62,13 @@ class LiveCamera:
             )
             return picture.copy()
 
-
-def _sight_of(robot: HeadlessMission) -> _Sight:
-    simulator = robot.simulator
-    dirt = simulator.dirt
-    return _Sight(
-        simulator.pose,
-        simulator.things.copy(),
-        simulator.discs.copy(),
-        dirt.micrograms.copy(),
-        dirt.frame,
-    )
+    def _sight(self) -> _Sight:
+        simulator = self._simulator
+        dirt = simulator.dirt
+        return _Sight(
+            simulator.pose,
+            simulator.things.copy(),
+            simulator.discs.copy(),
+            dirt.micrograms.copy(),
+            dirt.frame,
+        )

@@ -1,4 +1,4 @@
-"""A page's view and commands of a live headless robot."""
+"""A page's view and commands of a live robot."""
 
 from __future__ import annotations
 
@@ -13,43 +13,42 @@ from roomba.client.observed import SPILL
 from roomba.client.protocol import RequestRefusedError, RobotUnavailableError
 from roomba.errors import RoombaError
 from roomba.geometry import STANDSTILL, Pose, Twist
-from roomba.headless.cleaner import HeadlessMission
-from roomba.headless.live.camera import LiveCamera
+from roomba.headless.embodied import Embodied
+from roomba.headless.live import playing
 from roomba.headless.live.errands import begin_exploring
 from roomba.headless.live.floor_plan import FloorPlan, made
-from roomba.headless.live.playing import Playing
+from roomba.headless.live.household import Household
 from roomba.headless.live.robot import LiveRobot
 from roomba.headless.live.snapshots import ErrandsEnded, Snapshots
 from roomba.mission.cleaning.request import CleanRequest
 from roomba.mission.phases.machine import Event, Phase
 from roomba.perception.rooms.rooms import Rooms
 from roomba.vocabulary import CleanMode, FanLevel
-from roomba.world.home.home import Home
 from roomba.world.simulator import Simulator
 
 _Answer = TypeVar("_Answer")
-Watcher = Callable[[HeadlessMission, ErrandsEnded], None]
+Watcher = Callable[[Embodied, ErrandsEnded], None]
 """Is shown the robot, and what ended since the last call."""
 
 
 class LiveClient:
-    """Observes and commands one headless robot; its methods may be called from any thread."""
+    """Observes and commands one live robot; its methods may be called from any thread."""
 
     def __init__(
-        self, home: Home, robot: HeadlessMission, rooms: Rooms | None, speed: float
+        self, household: Household, robot: Embodied, rooms: Rooms | None, speed: float
     ) -> None:
         """Start nothing yet."""
-        self._playing = Playing(home)
-        self._snapshots = Snapshots(home, robot, FloorPlan(rooms), self._playing)
+        self._household = household
+        self._snapshots = Snapshots(robot, FloorPlan(rooms), household)
         self._live = LiveRobot(robot, speed, self._observe)
         self._watchers: list[Watcher] = []
-        self._camera = LiveCamera(home, robot.robot.camera)
         body = robot.robot.body
+        has_camera = household.camera is not None
         self._limits = view.PageLimits(
             body.max_speed,
             body.max_angular_speed,
-            camera_angles=view.camera_angles(robot.robot.camera.max_pan),
-            play=self._playing.acts,
+            camera_angles=view.camera_angles(robot.robot.camera.max_pan) if has_camera else (),
+            play=household.acts,
         )
 
     def start(self) -> None:
@@ -66,7 +65,7 @@ class LiveClient:
         """Let ``watcher`` be called in the robot's thread, after each frame and each command."""
         self._watchers.append(watcher)
 
-    def ask(self, question: Callable[[HeadlessMission], _Answer], timeout: float = 5.0) -> _Answer:
+    def ask(self, question: Callable[[Embodied], _Answer], timeout: float = 5.0) -> _Answer:
         """Let the robot's thread answer a question, within ``timeout`` s of wall time.
 
         Raises RequestRefusedError with the reason, RobotUnavailableError.
@@ -78,10 +77,10 @@ class LiveClient:
         except (RoombaError, ValueError) as refusal:
             raise RequestRefusedError(str(refusal)) from refusal
 
-    def obey(self, command: Callable[[HeadlessMission], None]) -> None:
+    def obey(self, command: Callable[[Embodied], None]) -> None:
         """Let the robot obey; what it refuses is RequestRefusedError with its reason."""
 
-        def obey(robot: HeadlessMission) -> None:
+        def obey(robot: Embodied) -> None:
             command(robot)
             self._snapshots.look(robot)
             self._tell(robot)
@@ -121,12 +120,15 @@ class LiveClient:
         if name is view.LayerName.COVERAGE:
             return self._snapshots.coverage()
         if name is view.LayerName.TRUE_DIRT:
-            return self._live.carry_out(self._playing.dirt)
+            return self._live.carry_out(lambda _: self._household.dirt())
         return self._live.carry_out(self._snapshots.dirt)
 
     def picture(self, degrees: float) -> NDArray[np.uint8]:
         """Return what the camera sees at an angle to the left, uint8 [height, width, 3] RGB."""
-        return self._camera.picture(self._live.carry_out, degrees)
+        camera = self._household.camera
+        if camera is None:
+            raise RequestRefusedError("this robot has no camera")
+        return camera.picture(self._live.carry_out, degrees)
 
     # ---------------------------------------------------------------- commands
 
@@ -134,7 +136,7 @@ class LiveClient:
         """Begin a clean."""
         request = _request_of(order)
 
-        def begin(robot: HeadlessMission) -> None:
+        def begin(robot: Embodied) -> None:
             robot.mission.clean(request, robot.senses())
             self._snapshots.begin_coverage()
 
@@ -147,7 +149,7 @@ class LiveClient:
     def go_to(self, x: float, y: float) -> None:
         """Walk to a point; an errand under way is paused."""
 
-        def walk(robot: HeadlessMission) -> None:
+        def walk(robot: Embodied) -> None:
             robot.brain.walk(x, y)
 
         self.obey(walk)
@@ -167,21 +169,21 @@ class LiveClient:
     def stop(self) -> None:
         """End the errand, or the walk, and stay."""
 
-        def stop(robot: HeadlessMission) -> None:
+        def stop(robot: Embodied) -> None:
             robot.brain.walking.end()
             robot.mission.command(Event.STOP, robot.senses())
 
         self.obey(stop)
 
     def locate(self) -> None:
-        """Beep: a simulated robot has no speaker, the page shows it."""
+        """Beep; the page shows it as well."""
+        self.obey(lambda robot: robot.body.locate())
 
     def empty_bin(self) -> None:
         """Empty the bin, and tell the robot."""
 
-        def empty(robot: HeadlessMission) -> None:
-            robot.simulator.empty_bin()
-            robot.look()
+        def empty(robot: Embodied) -> None:
+            self._household.empty_bin()
             robot.mission.empty_bin(robot.senses())
 
         self.obey(empty)
@@ -262,7 +264,7 @@ class LiveClient:
 
     def block_station(self) -> None:
         """Put a box before the station."""
-        self._play(self._playing.block_station)
+        self._play(playing.block_station)
 
     def clear_away(self) -> None:
         """Take away all that was put down."""
@@ -274,29 +276,25 @@ class LiveClient:
 
     def lift(self) -> None:
         """Lift the robot: its wheels hang."""
-        self._play(self._playing.lift)
+        self._play(playing.lift)
 
     def put_down(self, x: float, y: float, theta: float) -> None:
         """Put the robot on the floor; refused where it does not fit."""
-        self._play(lambda simulator: self._playing.put_down(simulator, Pose(x, y, theta)))
+        self._play(lambda simulator: playing.put_down(simulator, Pose(x, y, theta)))
 
     def _play(self, act: Callable[[Simulator], None]) -> None:
-        def play(robot: HeadlessMission) -> None:
-            act(robot.simulator)
-            robot.body.seen = robot.simulator.observe()
-
-        self.obey(play)
+        self.obey(lambda _: self._household.play(act))
 
     # ---------------------------------------------------------------- in the robot's thread
 
     def _command(self, event: Event, reason: str = "") -> None:
         self.obey(lambda robot: robot.mission.command(event, robot.senses(), reason))
 
-    def _observe(self, robot: HeadlessMission) -> None:
+    def _observe(self, robot: Embodied) -> None:
         self._snapshots.observe(robot)
         self._tell(robot)
 
-    def _tell(self, robot: HeadlessMission) -> None:
+    def _tell(self, robot: Embodied) -> None:
         for watcher in self._watchers:
             watcher(robot, self._snapshots.ended)
 

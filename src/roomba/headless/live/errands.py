@@ -20,7 +20,7 @@ from roomba.client.protocol import (
 from roomba.configuration.nodes import WalkEndConfig
 from roomba.errors import RoombaError
 from roomba.grid import OccupancyMap
-from roomba.headless.cleaner import HeadlessMission
+from roomba.headless.embodied import Embodied
 from roomba.headless.live.snapshots import ErrandsEnded
 from roomba.headless.live.views import vacuum_snapshot
 from roomba.mission.cleaning.request import CleanRequest
@@ -34,7 +34,7 @@ _PERIOD: Final = 1.0
 
 _News = TypeVar("_News")
 _Report = TypeVar("_Report")
-Obey = Callable[[Callable[[HeadlessMission], None]], None]
+Obey = Callable[[Callable[[Embodied], None]], None]
 """Lets the robot carry out a command."""
 
 
@@ -84,9 +84,9 @@ class LiveErrand(ABC, Generic[_News, _Report]):
         """Whether its end is known."""
         return self._report is not None
 
-    def begin(self, robot: HeadlessMission) -> bool:
+    def begin(self, robot: Embodied) -> bool:
         """Let the robot begin, and return whether it does; else the report says why not."""
-        self._began = self._due = robot.seen.time
+        self._began = self._due = robot.now.time
         try:
             self._begin(robot)
         except (RoombaError, ValueError) as refusal:
@@ -94,7 +94,7 @@ class LiveErrand(ABC, Generic[_News, _Report]):
         return not self.has_ended
 
     @abstractmethod
-    def follow(self, robot: HeadlessMission, ended: ErrandsEnded) -> None:
+    def follow(self, robot: Embodied, ended: ErrandsEnded) -> None:
         """Tell how far it is, and its end if it has ended."""
 
     @abstractmethod
@@ -102,10 +102,10 @@ class LiveErrand(ABC, Generic[_News, _Report]):
         """End, because something newer took over."""
 
     @abstractmethod
-    def _begin(self, robot: HeadlessMission) -> None:
+    def _begin(self, robot: Embodied) -> None:
         """Let the robot begin; raises RoombaError with the reason why not."""
 
-    def _cancel(self, robot: HeadlessMission) -> None:
+    def _cancel(self, robot: Embodied) -> None:
         robot.mission.command(Event.STOP, robot.senses())
 
     @abstractmethod
@@ -116,11 +116,11 @@ class LiveErrand(ABC, Generic[_News, _Report]):
     def _lost(self, reason: str) -> _Report:
         """Return the report of what has no end, as the robot's time ended."""
 
-    def _is_due(self, robot: HeadlessMission) -> bool:
+    def _is_due(self, robot: Embodied) -> bool:
         """Whether it is time for news, which is so each period."""
-        if robot.seen.time < self._due:
+        if robot.now.time < self._due:
             return False
-        self._due = robot.seen.time + self._period
+        self._due = robot.now.time + self._period
         return True
 
     def _tell(self, news: _News) -> None:
@@ -146,18 +146,18 @@ class LiveWalk(LiveErrand[float, WalkReport]):
         self._way_before = self._way = self._duration = 0.0
         self._rest_by: float | None = None
 
-    def _begin(self, robot: HeadlessMission) -> None:
+    def _begin(self, robot: Embodied) -> None:
         walk = robot.brain.walk(*self._goal)
         duration = expected_duration(walk.path, robot.robot.body.max_speed)
         self._period = feedback_period(duration) * self._slowness
-        self._way_before = robot.simulator.numbers["distance"]
+        self._way_before = robot.distance
         if self._is_due(robot):
             self._tell(walk.path.length)
 
-    def follow(self, robot: HeadlessMission, ended: ErrandsEnded) -> None:
+    def follow(self, robot: Embodied, ended: ErrandsEnded) -> None:
         """Tell what is left of the path, or how it ended; one that was ended, when it stands."""
-        self._way = robot.simulator.numbers["distance"] - self._way_before
-        self._duration = robot.seen.time - self._began
+        self._way = robot.distance - self._way_before
+        self._duration = robot.now.time - self._began
         walking = robot.brain.walking
         if walking.is_under_way:
             if self._is_due(robot):
@@ -173,14 +173,14 @@ class LiveWalk(LiveErrand[float, WalkReport]):
         """End, because something newer took over."""
         self._end(self._reported(WalkOutcome.CANCELLED, NEWER))
 
-    def _cancel(self, robot: HeadlessMission) -> None:
+    def _cancel(self, robot: Embodied) -> None:
         robot.brain.walking.end()
 
-    def _come_to_rest(self, robot: HeadlessMission) -> None:
-        end, now = WalkEndConfig(), robot.seen.time
+    def _come_to_rest(self, robot: Embodied) -> None:
+        end, now = WalkEndConfig(), robot.now.time
         if self._rest_by is None:
             self._rest_by = now + end.longest_braking
-        stands = abs(robot.seen.odometry_twist.linear) <= end.standstill
+        stands = abs(robot.now.twist.linear) <= end.standstill
         if robot.mission.state.drives:
             self.give_way()
         elif stands or now >= self._rest_by:
@@ -206,10 +206,10 @@ class LiveClean(LiveErrand[CleanProgress, CleanReport]):
         super().__init__(obey, ending, pace)
         self._request = request
 
-    def _begin(self, robot: HeadlessMission) -> None:
+    def _begin(self, robot: Embodied) -> None:
         robot.mission.clean(self._request, robot.senses())
 
-    def follow(self, robot: HeadlessMission, ended: ErrandsEnded) -> None:
+    def follow(self, robot: Embodied, ended: ErrandsEnded) -> None:
         """Tell how much is clean."""
         if ended.clean is not None:
             self._end(ended.clean)
@@ -244,10 +244,10 @@ class LiveExploring(LiveErrand[float, ExploreReport]):
     _known = 0.0
     _looked_at: OccupancyMap | None = None
 
-    def _begin(self, robot: HeadlessMission) -> None:
+    def _begin(self, robot: Embodied) -> None:
         begin_exploring(robot)
 
-    def follow(self, robot: HeadlessMission, ended: ErrandsEnded) -> None:
+    def follow(self, robot: Embodied, ended: ErrandsEnded) -> None:
         """Tell how much floor is known."""
         if ended.exploration is not None:
             self._end(ended.exploration)
@@ -285,10 +285,10 @@ class LiveDocking(LiveErrand[str, DockReport]):
         self._errand = Errand.DOCK if is_in else Errand.UNDOCK
         self._there = Phase.DOCKED if is_in else Phase.IDLE
 
-    def _begin(self, robot: HeadlessMission) -> None:
+    def _begin(self, robot: Embodied) -> None:
         robot.mission.command(self._event, robot.senses())
 
-    def follow(self, robot: HeadlessMission, ended: ErrandsEnded) -> None:
+    def follow(self, robot: Embodied, ended: ErrandsEnded) -> None:
         """Tell what it does."""
         state = robot.mission.state
         if state.phase in (Phase.ERROR, Phase.EMERGENCY):
@@ -305,7 +305,7 @@ class LiveDocking(LiveErrand[str, DockReport]):
         """End, because something newer took over."""
         self._end(DockReport(ErrandOutcome.STOPPED, NEWER))
 
-    def _cancel(self, robot: HeadlessMission) -> None:
+    def _cancel(self, robot: Embodied) -> None:
         super()._cancel(robot)
         # Out of the station it would stand where it was to come to.
         self._end(DockReport(ErrandOutcome.STOPPED, "it was stopped"))
@@ -317,7 +317,7 @@ class LiveDocking(LiveErrand[str, DockReport]):
         return DockReport(ErrandOutcome.DISCONNECTED, reason)
 
 
-def begin_exploring(robot: HeadlessMission) -> None:
+def begin_exploring(robot: Embodied) -> None:
     """Begin to look at what the map does not show yet; raises CommandRefusedError."""
     if not robot.mission.context.is_growing:
         raise CommandRefusedError(

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from roomba.client.observed import STATION_BOX
 from roomba.client.view import DoorView, GridLayer, PlayAct, TruthView
 from roomba.geometry import Pose
 from roomba.headless.cleaner import HeadlessMission
+from roomba.headless.live.camera import LiveCamera
 from roomba.world.engine.state.arrays import Fault
 from roomba.world.home.home import Home
 from roomba.world.simulator import Simulator
@@ -15,12 +18,17 @@ from roomba.world.truth import HomeTruth
 
 
 class Playing:
-    """Does to a home what a hand would do, and tells what is really so."""
+    """The :class:`roomba.headless.live.household.Household` of a simulated robot.
 
-    def __init__(self, home: Home) -> None:
-        """Play in a home."""
-        self._home = home
+    It does to a home what a hand would do, and tells what is really so.
+    """
+
+    def __init__(self, home: Home, robot: HeadlessMission) -> None:
+        """Play in the home of a robot."""
+        self._home, self._robot = home, robot
         self._truth = HomeTruth(home)
+        self.name = home.name
+        self.camera = LiveCamera(home, robot.robot.camera, robot.simulator)
 
     @property
     def acts(self) -> tuple[str, ...]:
@@ -28,35 +36,54 @@ class Playing:
         leaves = self._truth.has_doors
         return tuple(act.value for act in PlayAct if act is not PlayAct.DOOR or leaves)
 
+    @property
+    def plan(self) -> Home | None:
+        """The home, if the robot goes by its map."""
+        return self._home if self._robot.brain.mapper is None else None
+
     # ---------------------------------------------------------------- acts, in the robot's thread
 
-    def block_station(self, simulator: Simulator) -> None:
-        """Put a box before the station; raises ValueError where the robot stands."""
-        before, radius = STATION_BOX
-        place = self._home.station.compose(Pose(-before, 0.0, 0.0))
-        simulator.place_obstacle(place.x, place.y, radius)
+    def play(self, act: Callable[[Simulator], None]) -> None:
+        """Let a hand reach into the world."""
+        robot = self._robot
+        act(robot.simulator)
+        robot.body.seen = robot.simulator.observe()
 
-    def lift(self, simulator: Simulator) -> None:
-        """Lift the robot: its wheels hang."""
-        simulator.inject(Fault.LIFTED, 1.0)
-
-    def put_down(self, simulator: Simulator, pose: Pose) -> None:
-        """Put the robot on the floor; raises HomeError where it does not fit."""
-        simulator.put(pose)
-        simulator.inject(Fault.LIFTED, 0.0)
+    def empty_bin(self) -> None:
+        """Empty the dust bin."""
+        self._robot.simulator.empty_bin()
+        self._robot.look()
 
     # ---------------------------------------------------------------- the truth
 
-    def truth(self, robot: HeadlessMission) -> TruthView:
+    def truth(self) -> TruthView:
         """Return what is really so."""
-        now, pose = self._truth.now(robot.simulator), robot.seen.pose
+        now, pose = self._truth.now(self._robot.simulator), self._robot.seen.pose
         doors = tuple(DoorView(door.name, door.opening, door.is_shut) for door in now.doors)
         return TruthView((pose.x, pose.y, pose.theta), now.things, doors, now.is_lifted)
 
-    def dirt(self, robot: HeadlessMission) -> GridLayer | None:
+    def dirt(self) -> GridLayer | None:
         """Return the dirt that lies on the floor; None for a home that was turned."""
-        told = self._truth.dirt(robot.simulator)
+        told = self._truth.dirt(self._robot.simulator)
         if told is None:
             return None
         frame, share = told
         return GridLayer.over(frame, (255.0 * share).astype(np.uint8), 1)
+
+
+def block_station(simulator: Simulator) -> None:
+    """Put a box before the station; raises ValueError where the robot stands."""
+    before, radius = STATION_BOX
+    place = simulator.home.station.compose(Pose(-before, 0.0, 0.0))
+    simulator.place_obstacle(place.x, place.y, radius)
+
+
+def lift(simulator: Simulator) -> None:
+    """Lift the robot: its wheels hang."""
+    simulator.inject(Fault.LIFTED, 1.0)
+
+
+def put_down(simulator: Simulator, pose: Pose) -> None:
+    """Put the robot on the floor; raises HomeError where it does not fit."""
+    simulator.put(pose)
+    simulator.inject(Fault.LIFTED, 0.0)

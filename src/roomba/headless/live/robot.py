@@ -1,4 +1,4 @@
-"""A headless robot whose time passes by itself: a thread ticks it as fast as was asked for.
+"""A robot whose time passes by itself: a thread ticks it as fast as was asked for.
 
 All that touches the robot happens in that thread. Others read immutable snapshots, and let
 commands be carried out there.
@@ -18,7 +18,7 @@ from typing import Any, Final, TypeVar
 from roomba.client.observed import HAND_SILENCE
 from roomba.client.protocol import RobotUnavailableError
 from roomba.geometry import STANDSTILL, Twist
-from roomba.headless.cleaner import HeadlessMission
+from roomba.headless.embodied import Embodied
 
 _FRAME: Final = 0.05
 """s of wall time between two frames: at real time, a tick of the robot."""
@@ -28,18 +28,18 @@ SPEEDS: Final = (0.1, 100.0)
 """The robot's seconds per second of the wall clock: the least and the most."""
 
 _Answer = TypeVar("_Answer")
-Observer = Callable[[HeadlessMission], None]
+Observer = Callable[[Embodied], None]
 """Is shown the robot after each frame in which its time passed, in the robot's thread."""
 
 
 class LiveRobot:
     """Lets a robot's time pass at ``speed`` times that of the wall clock, or as fast as it can."""
 
-    def __init__(self, robot: HeadlessMission, speed: float, observe: Observer) -> None:
+    def __init__(self, robot: Embodied, speed: float, observe: Observer) -> None:
         """Start nothing yet; ``observe`` is called after each frame."""
         self.speed = speed
         self._robot, self._observe = robot, observe
-        self._commands: SimpleQueue[tuple[Callable[[HeadlessMission], Any], Future[Any]]]
+        self._commands: SimpleQueue[tuple[Callable[[Embodied], Any], Future[Any]]]
         self._commands = SimpleQueue()
         self._thread = threading.Thread(target=self._live, name="live robot", daemon=True)
         self._ends = threading.Event()
@@ -58,7 +58,7 @@ class LiveRobot:
         self._thread.join(_ANSWER)
 
     def carry_out(
-        self, command: Callable[[HeadlessMission], _Answer], timeout: float = _ANSWER
+        self, command: Callable[[Embodied], _Answer], timeout: float = _ANSWER
     ) -> _Answer:
         """Let the robot's thread call ``command`` between two frames, and return its answer.
 
@@ -125,12 +125,12 @@ class LiveRobot:
         robot = self._robot
         # A robot that lives on for days keeps only the ticks of its last frame.
         robot.rows.clear()
-        until, began = robot.seen.time + _FRAME * self.speed, time.monotonic()
+        until, began = robot.now.time + _FRAME * self.speed, time.monotonic()
         if self._is_driven_by_hand:
             self._pass_by_hand(until)
             return
         half_tick = 0.5 * robot.robot.timing.tick
-        while robot.seen.time < until - half_tick and time.monotonic() - began < _FRAME:
+        while robot.now.time < until - half_tick and time.monotonic() - began < _FRAME:
             robot.advance()
 
     @property
@@ -140,7 +140,6 @@ class LiveRobot:
     def _pass_by_hand(self, until: float) -> None:
         """Drive as the hand wants; the mission stands meanwhile."""
         robot = self._robot
-        half_tick = 0.5 * robot.robot.timing.tick
-        while robot.seen.time < until - half_tick:
-            robot.body.act(robot.brain.steer(self._by_hand))
-            robot.brain.sense(robot.readings())
+        half_tick, began = 0.5 * robot.robot.timing.tick, time.monotonic()
+        while robot.now.time < until - half_tick and time.monotonic() - began < _FRAME:
+            robot.steer(self._by_hand)

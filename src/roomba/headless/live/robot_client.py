@@ -16,7 +16,7 @@ from roomba.client.protocol import (
     WalkHandle,
 )
 from roomba.configuration.seed import SeedParameters
-from roomba.headless.cleaner import HeadlessMission
+from roomba.headless.embodied import Embodied
 from roomba.headless.live.client import LiveClient
 from roomba.headless.live.errands import (
     LiveClean,
@@ -114,7 +114,7 @@ class LiveRobotClient:
         self._client.stop()
 
     def locate(self) -> None:
-        """Let the robot beep: a simulated one has no speaker."""
+        """Let the robot beep."""
         self._client.locate()
 
     def empty_bin(self) -> None:
@@ -135,14 +135,14 @@ class LiveRobotClient:
     # ---------------------------------------------------------------- in the robot's thread
 
     def _begin(self, errand: _Begun) -> _Begun:
-        def begin(robot: HeadlessMission) -> None:
+        def begin(robot: Embodied) -> None:
             if errand.begin(robot):
                 self._begun = errand
 
         self._client.obey(begin)
         return errand
 
-    def _follow(self, robot: HeadlessMission, ended: ErrandsEnded) -> None:
+    def _follow(self, robot: Embodied, ended: ErrandsEnded) -> None:
         """Follow what is under way; what began just now ends others of its kind."""
         for errand in self._still_under_way():
             errand.follow(robot, ended)
@@ -159,8 +159,8 @@ class LiveRobotClient:
         return self._under_way
 
 
-def _state(robot: HeadlessMission) -> RobotState:
+def _state(robot: Embodied) -> RobotState:
     estimate = robot.brain.keeper.place.estimate
     doubt = "" if estimate.knowledge is Knowledge.KNOWN else estimate.reason
-    speed, dirt = abs(robot.seen.odometry_twist.linear), robot.seen.dirt_under
+    speed, dirt = abs(robot.now.twist.linear), robot.dirt_under
     return RobotState(estimate.pose.x, estimate.pose.y, speed, dirt, doubt)

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 
 from roomba.client.protocol import CleanReport, ExploreReport, RobotUnavailableError
 from roomba.client.view import GridLayer, HomeView, RobotView, exploration_as_clean
-from roomba.headless.cleaner import HeadlessMission
+from roomba.headless.embodied import Embodied
 from roomba.headless.live.floor_plan import FloorPlan
-from roomba.headless.live.playing import Playing
+from roomba.headless.live.household import Household
 from roomba.headless.live.views import (
     clean_report,
     dirt_layer,
@@ -21,7 +21,6 @@ from roomba.headless.live.views import (
 )
 from roomba.perception.rooms.rooms import segment
 from roomba.perception.swept.visits import Visits
-from roomba.world.home.home import Home
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,11 +34,9 @@ class ErrandsEnded:
 class Snapshots:
     """The newest snapshots; they may be read from any thread, all else is for the robot's own."""
 
-    def __init__(
-        self, home: Home, robot: HeadlessMission, plan: FloorPlan, playing: Playing
-    ) -> None:
+    def __init__(self, robot: Embodied, plan: FloorPlan, household: Household) -> None:
         """Begin before the first frame."""
-        self._home, self.plan, self._playing = home, plan, playing
+        self.plan, self._household = plan, household
         self._lock = threading.Lock()
         self._versions = itertools.count(1)
         self._view: RobotView | None = None
@@ -75,41 +72,42 @@ class Snapshots:
         with self._lock:
             return GridLayer.over(self._visits.frame, self._visits.counts.copy(), self._shape)
 
-    def dirt(self, robot: HeadlessMission) -> GridLayer:
+    def dirt(self, robot: Embodied) -> GridLayer:
         """Return where dirt was found."""
         return dirt_layer(robot.dirt, self._shape)
 
     # ---------------------------------------------------------------- in the robot's thread
 
-    def observe(self, robot: HeadlessMission) -> None:
+    def observe(self, robot: Embodied) -> None:
         """Take snapshots after a frame."""
         self._follow_sweeps(robot)
         self.look(robot)
 
-    def look(self, robot: HeadlessMission) -> None:
+    def look(self, robot: Embodied) -> None:
         """Take snapshots after a command."""
         self._take_results(robot)
         if self._home_view is None:
             self._look_at_home(robot)
         self._follow_map(robot)
-        self._view = robot_view(robot, self._last, self._playing.truth(robot))
+        self._view = robot_view(robot, self._last, self._household.truth())
 
     def begin_coverage(self) -> None:
         """Count sweeps from nothing on."""
         with self._lock:
             self._visits.clear()
 
-    def use(self, robot: HeadlessMission, plan: FloorPlan) -> None:
+    def use(self, robot: Embodied, plan: FloorPlan) -> None:
         """Let the robot go on with other rooms and zones."""
         robot.brain.use_rooms(plan.rooms, plan.zones)
         self.plan = plan
         self._look_at_home(robot)
 
-    def _look_at_home(self, robot: HeadlessMission) -> None:
+    def _look_at_home(self, robot: Embodied) -> None:
         version = next(self._versions)
-        self._home_view = home_view(version, self._home, robot, self.plan.rooms, self.plan.zones)
+        parts = self._household, robot, self.plan.rooms, self.plan.zones
+        self._home_view = home_view(version, *parts)
 
-    def _follow_sweeps(self, robot: HeadlessMission) -> None:
+    def _follow_sweeps(self, robot: Embodied) -> None:
         """Count what was swept during the frame."""
         with self._lock:
             if not robot.mission.sweeps:
@@ -118,9 +116,9 @@ class Snapshots:
             for row in robot.passed[::2]:
                 self._visits.sweep(float(row[0]), float(row[4]), float(row[5]))
             pose = robot.brain.pose
-            self._visits.sweep(robot.seen.time, pose.x, pose.y)
+            self._visits.sweep(robot.now.time, pose.x, pose.y)
 
-    def _take_results(self, robot: HeadlessMission) -> None:
+    def _take_results(self, robot: Embodied) -> None:
         clean, exploration = robot.mission.take_result(), robot.mission.take_exploration()
         self.ended = ended = ErrandsEnded(
             None if clean is None else clean_report(clean),
@@ -133,7 +131,7 @@ class Snapshots:
             self._last = exploration_as_clean(end.outcome, end.message, end.distance, end.duration)
             robot.brain.finish_map()
 
-    def _follow_map(self, robot: HeadlessMission) -> None:
+    def _follow_map(self, robot: Embodied) -> None:
         """Take over a map that has changed."""
         occupancy = robot.mission.context.occupancy
         if self._map_of is occupancy:
@@ -143,12 +141,12 @@ class Snapshots:
             if self._map is None or self._map.cells.shape != occupancy.frame.shape:
                 self._shape += 1
                 self._visits = Visits(occupancy.frame, robot.robot.brush.width)
-            cells = map_cells(self._home, robot, occupancy)
+            cells = map_cells(self._household.plan, occupancy)
             self._map = GridLayer.over(occupancy.frame, cells, self._shape)
         self._find_rooms(robot)
         self._look_at_home(robot)
 
-    def _find_rooms(self, robot: HeadlessMission) -> None:
+    def _find_rooms(self, robot: Embodied) -> None:
         """As soon as a map that was made is whole, find its rooms."""
         growing = robot.brain.growing
         if growing is not None and growing.is_whole and self.plan.rooms is None:

@@ -29,9 +29,11 @@ from roomba.client.view import (
     known_cells,
 )
 from roomba.grid import OccupancyMap
-from roomba.headless.cleaner import HeadlessMission
+from roomba.headless.embodied import Embodied
+from roomba.headless.live.household import Household
 from roomba.mission.cleaning.request import CleanResult
 from roomba.mission.exploring.exploration import ExploreResult
+from roomba.mission.mission import Mission
 from roomba.mission.phases.machine import VACUUM_STATES, Phase
 from roomba.perception.localization.estimate import Knowledge
 from roomba.perception.rooms.rooms import Rooms
@@ -41,6 +43,7 @@ from roomba.world.home.home import Home
 from roomba.world.home.materials import MATERIALS
 from roomba.world.home.raster import footprint, outline
 
+_NO_SCAN: Final = np.empty((0, 2), np.float32)
 _CLEARANCE: Final = 0.12
 """m; below what begins higher the robot passes."""
 _DIRTIEST: Final = 8000.0
@@ -48,33 +51,31 @@ _DIRTIEST: Final = 8000.0
 
 
 def robot_view(
-    robot: HeadlessMission, last: CleanReport | None, truth: TruthView | None = None
+    robot: Embodied, last: CleanReport | None, truth: TruthView | None = None
 ) -> RobotView:
     """Return the robot as it is now, by what it believes; the truth is told beside."""
-    seen, estimate = robot.seen, robot.brain.keeper.place.estimate
+    now, estimate = robot.now, robot.brain.keeper.place.estimate
     pose, mission = estimate.pose, robot.mission
-    battery = seen.battery
-    share = battery.voltage / (3600.0 * battery.capacity)
-    held = mission.message if mission.state.phase is Phase.EMERGENCY else ""
+    scan = robot.body.newest_scan()
     return RobotView(
-        time=seen.time,
+        time=now.time,
         pose=(pose.x, pose.y, pose.theta),
         doubt="" if estimate.knowledge is Knowledge.KNOWN else estimate.reason,
-        speed=abs(seen.odometry_twist.linear),
-        dirt=seen.in_bin,
-        held=held or ("emergency stop" if mission.state.phase is Phase.EMERGENCY else ""),
+        speed=abs(now.twist.linear),
+        dirt=now.in_bin,
+        held=robot.body.trouble or _held(mission),
         vacuum=vacuum_snapshot(robot),
-        scan=robot.lidar.view(robot.simulator.ranges).ends_at(pose),
+        scan=_NO_SCAN if scan is None else scan.lidar.view(scan.ranges).ends_at(pose),
         path=_path(robot),
         last=last,
-        battery_seconds=battery_seconds(battery.level, battery.current * share),
+        battery_seconds=battery_seconds(now.battery.level, robot.battery_change),
         top_speed=robot.brain.max_speed,
         truth=truth,
-        charges=battery.current > 0.0,
+        charges=robot.battery_change > 0.0,
     )
 
 
-def vacuum_snapshot(robot: HeadlessMission) -> VacuumSnapshot:
+def vacuum_snapshot(robot: Embodied) -> VacuumSnapshot:
     """Return the state in the words of smart homes, and the progress of a clean."""
     mission, cleaning = robot.mission, robot.mission.cleaning
     covered = wanted = fraction = 0.0
@@ -93,11 +94,16 @@ def vacuum_snapshot(robot: HeadlessMission) -> VacuumSnapshot:
         wanted,
         fraction,
         mission.seconds_to_go(),
-        robot.seen.battery.level,
+        robot.now.battery.level,
     )
 
 
-def _path(robot: HeadlessMission) -> NDArray[np.float32]:
+def _held(mission: Mission) -> str:
+    """Return why an emergency stop holds the drive; empty without one."""
+    return mission.message or "emergency stop" if mission.state.phase is Phase.EMERGENCY else ""
+
+
+def _path(robot: Embodied) -> NDArray[np.float32]:
     """Return what is left of the path that it drives, float32 [n, 2], m."""
     driver = robot.mission.driver
     if driver is None:
@@ -122,11 +128,11 @@ def dirt_layer(dirt: DirtMap, shape: int) -> GridLayer:
     return GridLayer.over(dirt.frame, dirt_cells(dirt), shape)
 
 
-def map_cells(home: Home, robot: HeadlessMission, occupancy: OccupancyMap) -> NDArray[np.uint8]:
-    """Return the cells of the map; on the home's own one furniture is told from walls."""
+def map_cells(plan: Home | None, occupancy: OccupancyMap) -> NDArray[np.uint8]:
+    """Return the cells of the map; on that of a home's plan furniture is told from walls."""
     cells = known_cells(occupancy)
-    if _knows_home(robot) and home.turned is None and occupancy.frame == home.frame:
-        cells[(cells == 2) & ~home.walls] = 3
+    if plan is not None and plan.turned is None and occupancy.frame == plan.frame:
+        cells[(cells == 2) & ~plan.walls] = 3
     return cells
 
 
@@ -134,28 +140,26 @@ def map_cells(home: Home, robot: HeadlessMission, occupancy: OccupancyMap) -> ND
 
 
 def home_view(
-    version: int, home: Home, robot: HeadlessMission, rooms: Rooms | None, zones: Zones
+    version: int,
+    household: Household,
+    robot: Embodied,
+    rooms: Rooms | None,
+    zones: Zones,
 ) -> HomeView:
     """Return what seldom changes."""
-    station = robot.mission.context.station
-    knows_home = _knows_home(robot)
+    station, plan = robot.mission.context.station, household.plan
     return HomeView(
         version=version,
-        name=home.name,
+        name=household.name,
         station=(station.x, station.y, station.theta),
-        rooms=() if rooms is None else tuple(_room_views(rooms, home if knows_home else None)),
+        rooms=() if rooms is None else tuple(_room_views(rooms, plan)),
         zones=tuple(ZoneView(zone.name, zone.kind.value, zone.points) for zone in zones.all),
-        furniture=tuple(_outlines(home, is_overhead=False)) if knows_home else (),
+        furniture=() if plan is None else tuple(_outlines(plan, is_overhead=False)),
         radius=robot.robot.body.radius,
         tool=robot.robot.brush.width,
-        overhead=tuple(_outlines(home, is_overhead=True)) if knows_home else (),
-        carpets=tuple(_carpets(home)) if knows_home else (),
+        overhead=() if plan is None else tuple(_outlines(plan, is_overhead=True)),
+        carpets=() if plan is None else tuple(_carpets(plan)),
     )
-
-
-def _knows_home(robot: HeadlessMission) -> bool:
-    """Whether it goes by the map of the home, with which its plan is known."""
-    return robot.brain.mapper is None
 
 
 def _room_views(rooms: Rooms, home: Home | None) -> Iterator[RoomView]:

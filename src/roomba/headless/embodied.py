@@ -1,0 +1,132 @@
+"""The robot without ROS: a brain in a body, simulated or real, tick by tick."""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.configuration.robot import RobotConfig
+from roomba.geometry import Pose, Twist
+from roomba.headless.rows import PASSED
+from roomba.mission.inputs.senses import Senses
+from roomba.mission.mission import Mission
+from roomba.perception.swept.dirt_map import DirtMap
+from roomba.robot.body import Body
+from roomba.robot.brain import Brain
+from roomba.robot.command import Command
+from roomba.robot.readings import Readings
+
+_UNKNOWN: Final = (math.nan, math.nan, math.nan)
+"""The true pose of a robot that is not simulated."""
+
+
+class Embodied:
+    """One robot, whose time passes only while it is ticked; ``robot`` is its configuration.
+
+    ``rows`` are the ticks that passed, as of :mod:`roomba.headless.rows`, in pieces.
+    """
+
+    body: Body
+
+    def __init__(self, body: Body, brain: Brain, robot: RobotConfig) -> None:
+        """Put a brain in a body, and stand until the first scan came: there is no map before."""
+        self.body, self.brain, self.robot = body, brain, robot
+        self.rows: list[NDArray[np.float64]] = []
+        self._way, self._last = 0.0, Pose()
+        self._sense()
+        while not self.brain.is_ready:
+            self.body.act(self.brain.decide())
+            self._sense()
+            self.rows.append(self.row())
+
+    # ---------------------------------------------------------------- time
+
+    def advance(self) -> None:
+        """Let a tick pass; while its body cannot be reached, the brain waits."""
+        if self._reaches_body():
+            self.tick()
+
+    def tick(self) -> None:
+        """Let one tick pass, by what the brain wants."""
+        self._pass(self.brain.decide())
+
+    def steer(self, twist: Twist) -> None:
+        """Let one tick pass, driven by hand as far as that is safe; the mission stands."""
+        if self._reaches_body():
+            self._pass(self.brain.steer(twist))
+
+    def _reaches_body(self) -> bool:
+        """Whether its body can be reached; if not, let it try for a tick."""
+        if self.body.trouble:
+            self.body.act(Command())
+        return not self.body.trouble
+
+    def _pass(self, command: Command) -> None:
+        self.body.act(command)
+        self._sense()
+        self.rows.append(self.row())
+
+    def _sense(self) -> None:
+        readings = self.readings()
+        self.brain.sense(readings)
+        self._way += self._last.distance_to(readings.odometry.x, readings.odometry.y)
+        self._last = readings.odometry
+
+    def readings(self) -> Readings:
+        """Return what the body tells now."""
+        return self.body.read()
+
+    # ---------------------------------------------------------------- what others may look at
+
+    @property
+    def now(self) -> Readings:
+        """What the body told last."""
+        return self.brain.readings
+
+    @property
+    def mission(self) -> Mission:
+        """What it is at; another one may take over, as after its process was killed."""
+        return self.brain.mission
+
+    @mission.setter
+    def mission(self, mission: Mission) -> None:
+        self.brain.mission = mission
+
+    @property
+    def dirt(self) -> DirtMap:
+        """Where it found dirt."""
+        return self.mission.dirt
+
+    @property
+    def distance(self) -> float:
+        """What it drove, m."""
+        return self._way
+
+    @property
+    def battery_change(self) -> float:
+        """By how much of its capacity the charge of the battery changes, 1/s; NaN if not known."""
+        return math.nan
+
+    @property
+    def dirt_under(self) -> float:
+        """The dirt on the floor under it, g; NaN if not known."""
+        return math.nan
+
+    @property
+    def passed(self) -> NDArray[np.float64]:
+        """All ticks that passed, float64 [n, PASSED], as of :mod:`roomba.headless.rows`."""
+        return np.concatenate([np.empty((0, PASSED)), *self.rows])
+
+    def senses(self) -> Senses:
+        """Return what the robot senses now."""
+        return self.brain.senses()
+
+    def row(self) -> NDArray[np.float64]:
+        """Return what is so now, as a tick that passed: float64 [1, PASSED]."""
+        now, believed = self.now, self.brain.pose
+        poses = [(each.x, each.y, each.theta) for each in (believed, now.odometry)]
+        turning = now.twist.angular if now.turning is None else now.turning
+        return np.array([[now.time, *_UNKNOWN, *poses[0], *poses[1], turning]])
