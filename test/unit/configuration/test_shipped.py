@@ -10,6 +10,7 @@ from pydantic import BaseModel
 
 from roomba.configuration.docking import DockingConfig
 from roomba.configuration.frozen import Frozen, load_config
+from roomba.configuration.household import HouseholdConfig
 from roomba.configuration.mapping import MappingConfig
 from roomba.configuration.mission import MissionConfig
 from roomba.configuration.nodes import NodesConfig
@@ -22,6 +23,7 @@ from roomba.files.shipped import CONFIGURATION
 
 MODELS: dict[str, type[Frozen]] = {
     "docking": DockingConfig,
+    "household": HouseholdConfig,
     "mapping": MappingConfig,
     "mission": MissionConfig,
     "nodes": NodesConfig,

@@ -1,0 +1,40 @@
+"""Numbers of a robot in a household, what wears and when a plan waits: ``household.yaml``."""
+
+from __future__ import annotations
+
+from roomba.configuration.frozen import AtLeastOne, Frozen, Positive, Ratio
+
+
+class UpkeepConfig(Frozen):
+    """After how much work a part is due, h."""
+
+    brush: Positive = 300.0
+    side_brush: Positive = 200.0
+    filter: Positive = 150.0
+    sensors: Positive = 30.0
+    bin: Positive = 10.0
+    """At most; one that fills sooner is due sooner."""
+    soon: Ratio = 0.1
+    """Share of a part's time that is left when it is told that it is due soon."""
+
+
+class PlansConfig(Frozen):
+    """When a plan waits, and how often it tries again: share of the battery, s."""
+
+    least_battery: Ratio = 0.3
+    """With less no clean begins by a plan."""
+    retry_after: Positive = 1800.0
+    """Before a clean that ended too early is tried again."""
+    most_tries: AtLeastOne = 3
+    """Of the same time of a plan."""
+    longest_pause: Positive = 1800.0
+    """On the floor while a person is at home; then the robot goes home to its station."""
+    on_time: Positive = 120.0
+    """What begins later than this was missed."""
+
+
+class HouseholdConfig(Frozen):
+    """What an owner expects of a robot from day to day."""
+
+    upkeep: UpkeepConfig = UpkeepConfig()
+    plans: PlansConfig = PlansConfig()

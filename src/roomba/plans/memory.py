@@ -1,0 +1,84 @@
+"""What the scheduler remembers from step to step, and over a restart: values, validated."""
+
+from __future__ import annotations
+
+from typing import Annotated, Final
+
+from pydantic import AwareDatetime, Field
+
+from roomba.configuration.frozen import Count, Frozen
+
+MOST_NOTES: Final = 60
+"""Notes that are kept, the newest."""
+
+
+class Waiting(Frozen):
+    """A time of a plan that is due, and has not been cleaned yet.
+
+    ``reason`` says why, empty at first; it is not tried again before ``not_before``.
+    """
+
+    due: AwareDatetime
+    not_before: AwareDatetime
+    tries: Count = 0
+    reason: str = ""
+
+
+class Running(Frozen):
+    """A clean that a plan began. ``held`` is since when it is paused for a person at home."""
+
+    plan: str
+    due: AwareDatetime
+    began: AwareDatetime
+    tries: Count = 0
+    held: AwareDatetime | None = None
+    is_overruled: bool = False
+    """A person let it go on: it is not paused again."""
+    rests_since: AwareDatetime | None = None
+    """Since when the robot stands without telling how the clean ended."""
+
+
+class Note(Frozen):
+    """What became of a plan."""
+
+    at: AwareDatetime
+    plan: str
+    text: str
+
+
+class Memory(Frozen):
+    """Up to when plans were looked at, what waits by the plan's name, what runs, what became."""
+
+    seen: AwareDatetime | None = None
+    since: dict[str, AwareDatetime] = Field(default={})
+    """Of each plan: its times up to here were dealt with."""
+    next_at: dict[str, AwareDatetime] = Field(default={})
+    """Of each plan that has a further time: when that is."""
+    waiting: dict[str, Waiting] = Field(default={})
+    running: Running | None = None
+    notes: Annotated[tuple[Note, ...], Field(max_length=MOST_NOTES)] = ()
+
+    def noting(self, note: Note) -> Memory:
+        """Return the memory with a note more, and without the oldest ones."""
+        return self.model_copy(update={"notes": (*self.notes, note)[-MOST_NOTES:]})
+
+    def forgetting(self, plan: str) -> Memory:
+        """Return the memory without what is remembered of a plan but its notes."""
+        update = {
+            name: {other: value for other, value in getattr(self, name).items() if other != plan}
+            for name in ("since", "next_at", "waiting")
+        }
+        return self.model_copy(update=update)
+
+    def replanned(self) -> Memory:
+        """Return the memory for times that were changed: what comes next is looked for anew."""
+        return self.model_copy(update={"since": {}, "next_at": {}})
+
+    def without_waiting(self, plan: str) -> Memory:
+        """Return the memory in which nothing waits of a plan."""
+        waiting = {name: value for name, value in self.waiting.items() if name != plan}
+        return self.model_copy(update={"waiting": waiting})
+
+    def with_waiting(self, plan: str, waits: Waiting) -> Memory:
+        """Return the memory in which a time of a plan waits."""
+        return self.model_copy(update={"waiting": {**self.waiting, plan: waits}})

@@ -1,0 +1,151 @@
+"""What is planned, as a person enters it: plans, presets, quiet hours. Values, validated."""
+
+from __future__ import annotations
+
+import datetime as dt
+import zoneinfo
+from typing import Annotated, Final, Self
+
+from pydantic import Field, field_validator, model_validator
+
+from roomba.configuration.frozen import Frozen
+from roomba.plans.days import require_days
+from roomba.vocabulary import LONGEST_NAME, MOST_PASSES, CleanMode, FanLevel, fault_of_name
+
+MOST_PLANS: Final = 50
+"""Plans, and presets, of a household."""
+MOST_TIMES: Final = 12
+"""Of a plan on one day."""
+MOST_QUIET: Final = 14
+"""Quiet hours."""
+_MOST_ROOMS: Final = 100
+_LONGEST_RULE: Final = 200
+"""Characters."""
+PLANNED_MODES: Final = (CleanMode.WHOLE, CleanMode.ROOMS, CleanMode.EDGES, CleanMode.DIRTIEST)
+"""What can be planned: zones and spots are for now."""
+
+Name = Annotated[str, Field(min_length=1, max_length=LONGEST_NAME)]
+Weekday = Annotated[int, Field(ge=0, le=6)]
+"""0 is Monday."""
+
+
+class PlannedOrder(Frozen):
+    """What is cleaned, and how."""
+
+    mode: CleanMode = CleanMode.WHOLE
+    rooms: tuple[Name, ...] = Field(default=(), max_length=_MOST_ROOMS)
+    """In this order; for ROOMS alone."""
+    passes: int = Field(default=1, ge=1, le=MOST_PASSES)
+    fan: FanLevel = FanLevel.STANDARD
+
+    @model_validator(mode="after")
+    def _rooms_for_rooms(self) -> Self:
+        if self.mode not in PLANNED_MODES:
+            modes = ", ".join(mode.value for mode in PLANNED_MODES)
+            raise ValueError(f"expected one of {modes}, got {self.mode.value}")
+        if bool(self.rooms) != (self.mode is CleanMode.ROOMS):
+            raise ValueError("expected rooms for the mode rooms, and for no other")
+        return self
+
+
+class Named(Frozen):
+    """What has a name by which it is replaced and removed."""
+
+    name: Name
+
+    @field_validator("name")
+    @classmethod
+    def _is_readable(cls, name: str) -> str:
+        if fault := fault_of_name(name):
+            raise ValueError(fault)
+        return name
+
+
+class Preset(Named):
+    """An order with a name, begun by one tap."""
+
+    order: PlannedOrder = PlannedOrder()
+
+
+class Plan(Named):
+    """An order at times of days: ``rule`` are the days (iCalendar, RFC 5545), ``at`` the times.
+
+    Times are those of the clock on the wall, to the minute. ``begins`` is the first day that can
+    count; of rules such as "every other week" it says which week.
+    """
+
+    is_on: bool = True
+    begins: dt.date = dt.date(2026, 1, 1)
+    rule: str = Field(default="FREQ=DAILY", max_length=_LONGEST_RULE)
+    at: tuple[dt.time, ...] = Field(default=(dt.time(9, 0),), min_length=1, max_length=MOST_TIMES)
+    order: PlannedOrder = PlannedOrder()
+
+    @field_validator("at")
+    @classmethod
+    def _times_in_order(cls, at: tuple[dt.time, ...]) -> tuple[dt.time, ...]:
+        return tuple(sorted({_minute(time) for time in at}))
+
+    @model_validator(mode="after")
+    def _has_days(self) -> Self:
+        require_days(self.rule, self.begins)
+        return self
+
+
+class QuietHours(Frozen):
+    """When no clean begins by a plan: from ``begins`` to ``ends``, over midnight if that is less.
+
+    ``days`` are those on which it begins.
+    """
+
+    begins: dt.time = dt.time(22, 0)
+    ends: dt.time = dt.time(7, 0)
+    days: tuple[Weekday, ...] = (0, 1, 2, 3, 4, 5, 6)
+
+    @model_validator(mode="after")
+    def _has_length(self) -> Self:
+        if _minute(self.begins) == _minute(self.ends):
+            raise ValueError("expected quiet hours that end at another time than they begin")
+        return self
+
+
+class HouseholdPlans(Frozen):
+    """All that is planned; ``zone`` is the time zone by its name of the IANA."""
+
+    zone: str = "UTC"
+    plans: tuple[Plan, ...] = Field(default=(), max_length=MOST_PLANS)
+    presets: tuple[Preset, ...] = Field(default=(), max_length=MOST_PLANS)
+    quiet: tuple[QuietHours, ...] = Field(default=(), max_length=MOST_QUIET)
+    waits_for_empty_home: bool = True
+    """Whether plans wait, and what they began pauses, while a person is at home."""
+    is_person_home: bool = False
+    """What was told last."""
+
+    @field_validator("zone")
+    @classmethod
+    def _is_zone(cls, zone: str) -> str:
+        try:
+            zoneinfo.ZoneInfo(zone)
+        except (zoneinfo.ZoneInfoNotFoundError, ValueError, OSError) as error:
+            raise ValueError(
+                f"expected a time zone such as Europe/Berlin, got {zone[:40]!r}"
+            ) from error
+        return zone
+
+    @model_validator(mode="after")
+    def _names_once(self) -> Self:
+        for named in (self.plans, self.presets):
+            names = [each.name for each in named]
+            if len(set(names)) < len(names):
+                raise ValueError(f"expected each name once, got {', '.join(names)}")
+        return self
+
+    @property
+    def clock(self) -> zoneinfo.ZoneInfo:
+        """The time zone."""
+        return zoneinfo.ZoneInfo(self.zone)
+
+
+def _minute(time: dt.time) -> dt.time:
+    if time.tzinfo is not None:
+        raise ValueError(f"expected a time of the clock on the wall such as 09:30, got {time}")
+    return time.replace(second=0, microsecond=0)

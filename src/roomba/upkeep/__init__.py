@@ -1,0 +1,1 @@
+"""What of the robot wears, and when it is due."""
