@@ -28,6 +28,7 @@ signal.signal(signal.SIGINT, signal.default_int_handler)
 def own_history(tmp_path_factory: pytest.TempPathFactory) -> None:
     """Keep runs and token of the tests, and of programs that they start, away from the user's."""
     os.environ["ROOMBA_HISTORY"] = str(tmp_path_factory.mktemp("history"))
+    os.environ["ROOMBA_HOUSEHOLD"] = str(tmp_path_factory.mktemp("household"))
     os.environ["ROOMBA_TOKEN_FILE"] = str(tmp_path_factory.mktemp("token") / "token")
 
 

@@ -49,6 +49,8 @@ TESTED_BY: dict[str, tuple[str, str]] = {
     "roomba_ros/supervision/run": ("system/faults/test_supervision.py", NODE),
     "roomba/client/clock": ("unit/client/fake/test_robot.py", VALUES),
     "roomba/client/fake/": ("unit/client/fake/test_robot.py", "one robot in three files"),
+    "roomba/client/household": ("unit/household/test_household.py", "an interface"),
+    "roomba/plans/memory": ("unit/plans/test_scheduler.py", VALUES),
     "roomba/client/plain": ("unit/ui/web/test_app.py", VALUES),
     "roomba/client/ports": ("unit/commands/status/test_command.py", VALUES),
     "roomba/client/protocol": ("unit/client/fake/test_robot.py", "an interface"),
@@ -226,6 +228,7 @@ TESTED_BY: dict[str, tuple[str, str]] = {
 
 LARGE_FOLDERS = {
     "benchmarks/peers": "one script a peer",
+    "src/roomba/configuration": "one part of the configuration a file",
     "test/fixtures": "one file a fixture",
     "test/ros": "one file a node",
 }

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
+from roomba.client.household import TotalsView
 from roomba.client.protocol import MissedFloor
 from roomba.errors import RoombaError
 from roomba.files.journal import append_line, read_lines, write_lines
@@ -58,6 +59,7 @@ _COLUMNS: Final = (
     "program", "home", "seed", "repeat", "configuration", "kind", "began", "outcome", "message",
     "duration", "covered", "wanted", "distance", "turning", "dirt", "energy",
 )  # fmt: skip
+_SUMS: Final = ("covered", "duration", "distance", "dirt", "energy")
 _NUMBERS: Final = ("duration", "covered", "wanted", "distance", "turning", "dirt", "energy")
 
 
@@ -111,6 +113,15 @@ class History:
                 "(? IS NULL OR home = ?) ORDER BY began DESC, id DESC LIMIT ?",
                 (home, home, limit),
             )
+
+    def totals(self, program: str) -> TotalsView:
+        """Return the sums over all runs of a program; what is not known counts as nothing."""
+        sums = ", ".join(f"TOTAL({name})" for name in _SUMS)
+        with self._opened() as database:
+            row = database.execute(
+                f"SELECT COUNT(*), {sums} FROM runs WHERE program = ?", (program,)
+            ).fetchone()
+        return TotalsView(*row)
 
     def run(self, number: int) -> KeptRun:
         """Return a run by its number."""

@@ -9,6 +9,7 @@ from typing import Final
 
 import numpy as np
 
+from roomba.client.household import TotalsView
 from roomba.client.plain import home_of
 from roomba.client.protocol import CleanReport, ErrandOutcome
 from roomba.client.view import GridLayer, HomeView, LayerName, RobotView
@@ -91,11 +92,12 @@ class HistoryKeeper:
     def __init__(self, history: History, source: RunSource, tell: Callable[[str], None]) -> None:
         """Begin between two runs."""
         self.history = history
-        self._recorder = RunRecorder(source)
+        self._source, self._recorder = source, RunRecorder(source)
         self._tell = tell
         self._told = ""
         self._unfinished = UnfinishedFile(history.path.parent)
         self._has_looked = False
+        self._totals: TotalsView | None = None
 
     def look(self, view: RobotView, home: HomeView, layer: Layers) -> None:
         """Take a look, and keep a run that it was the end of."""
@@ -106,6 +108,7 @@ class HistoryKeeper:
         if ended is None:
             self._keep_so_far(home, layer)
             return
+        self._totals = None
         before, trouble = self.history.set_aside, ""
         try:
             self.history.add(*ended)
@@ -150,6 +153,12 @@ class HistoryKeeper:
         if trouble and trouble != self._told:
             self._tell(trouble)
         self._told = trouble
+
+    def totals(self) -> TotalsView:
+        """Return the sums over all runs that were kept of this program; raises HistoryError."""
+        if self._totals is None:
+            self._totals = self.history.totals(self._source.program)
+        return self._totals
 
 
 class _RunUnderWay:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from datetime import datetime
 from typing import Any
 
 from roomba.ui.errand_progress import area_text, percent, to_go_text
@@ -27,9 +28,31 @@ def lines_of(state: dict[str, Any]) -> list[tuple[str, str]]:
     lines.append(("speed", f"{state['speed']:.2f} m/s"))
     if state["last"] is not None:
         lines.append(("last", _ended(state["last"])))
+    lines.extend(("upkeep", advice) for advice in state.get("upkeep", {}).get("reminders", ()))
+    lines.extend(_planned(state.get("plans", {})))
     troubles = (vacuum["message"], state["held"] and f"held: {state['held']}", state["doubt"])
     lines.extend(("trouble", trouble) for trouble in troubles if trouble)
     return lines
+
+
+def _planned(plans: dict[str, Any]) -> list[tuple[str, str]]:
+    """Return what is planned: what comes next, and what waits and why."""
+    lines = []
+    if plans.get("running"):
+        held = ", paused while a person is at home" if plans["is_held"] else ""
+        lines.append(("plan", f"{plans['running']}: under way{held}"))
+    lines.extend(
+        ("plan", f"{waits['plan']}: was due {_when(waits['due'])}, waits: {waits['reason']}")
+        for waits in plans.get("waiting", ())
+    )
+    if plans.get("next_at"):
+        lines.append(("next", f"{plans['next']}, {_when(plans['next_at'])}"))
+    return lines
+
+
+def _when(moment: str) -> str:
+    """Return a moment of ISO 8601 as day and time in its own zone."""
+    return f"{datetime.fromisoformat(moment):%a %d %b %H:%M}"
 
 
 def _ended(last: dict[str, Any]) -> str:

@@ -10,11 +10,16 @@ from pathlib import Path
 import rospy
 
 from roomba.client.ports import DEFAULT_PORT, OUTSIDE_ADDRESS, PAGE_SOCKET
+from roomba.configuration.frozen import load_config
+from roomba.configuration.household import HouseholdConfig
 from roomba.errors import ConfigError
+from roomba.files.shipped import CONFIGURATION
 from roomba.history.database import History
 from roomba.history.folder import history_folder
 from roomba.history.recorder import HistoryKeeper
 from roomba.history.run import RunSource
+from roomba.household.folder import household_folder
+from roomba.household.household import LiveHousehold
 from roomba.ui.smart_home.switch import Switched, switched_on
 from roomba.ui.web.app import create_app
 from roomba.ui.web.guard import LOOPBACK
@@ -54,11 +59,22 @@ class DashboardNode:
         """Connect and serve; raises RoombaError when no port is free, or the smart home's file says
         what cannot be.
         """
-        self._robot = GraphRobot(read_robot_config())
+        config, keeper = read_robot_config(), _keeper()
+        self._robot = GraphRobot(config)
         self._robot.start()
+        self._household = LiveHousehold(
+            self._robot,
+            household_folder(),
+            load_config(HouseholdConfig, CONFIGURATION / "household.yaml"),
+            config.brush.bin_capacity,
+            rospy.logwarn,
+            keeper.totals,
+        )
+        self._household.start()
         bound = _bound()
         guard = guard_for(kept_token(), bound.getsockname()[0])
-        self._server = PageServer(create_app(self._robot, guard, _keeper(), RosBridge()), bound)
+        app = create_app(self._robot, guard, keeper, RosBridge(), self._household)
+        self._server = PageServer(app, bound)
         self._server.start()
         self._smart_home = _smart_home(self._robot)
         if self._smart_home is not None:
@@ -74,10 +90,11 @@ class DashboardNode:
         self._robot.tick()
 
     def stop(self) -> None:
-        """Stop what it drives, and leave the smart home."""
+        """Stop what it drives, leave the smart home, and keep what is not kept yet."""
         self._robot.stop_hand()
         if self._smart_home is not None:
             self._smart_home.stop()
+        self._household.stop()
 
 
 def _keeper() -> HistoryKeeper:

@@ -90,6 +90,7 @@ def _robot(screen: VirtualScreen, folder: Path) -> Iterator[Path]:
         "DISPLAY": screen.display,
         "LIBGL_ALWAYS_SOFTWARE": "1",
         "ROOMBA_HISTORY": str(folder),
+        "ROOMBA_HOUSEHOLD": str(folder),
         "ROS_HOME": str(folder),
         "ROS_LOG_DIR": str(folder / "log"),
         "ROS_MASTER_URI": f"http://127.0.0.1:{port}",

@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from roomba.client.household import TotalsView
 from roomba.history.database import MIGRATIONS, History, HistoryError
 from roomba.history.run import RunFigures, RunRecording
 
@@ -173,3 +174,16 @@ def test_a_folder_that_cannot_be_made_is_said(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     with pytest.raises(HistoryError, match="cannot be used"):
         History(tmp_path / "file" / "history").runs()
+
+
+def test_totals_are_of_one_program(tmp_path: Path, figures: RunFigures) -> None:
+    history = History(tmp_path)
+    assert history.totals("play") == TotalsView()
+    for program, energy in (("play", 2.0), ("play", math.nan), ("ros", 5.0)):
+        source = replace(figures.source, program=program)
+        history.add(replace(figures, source=source, energy=energy))
+    totals = history.totals("play")
+    assert totals.runs == 2
+    assert totals.energy == 2.0
+    assert totals.covered == pytest.approx(2 * figures.covered)
+    assert (totals.duration, totals.distance) == (2 * figures.duration, 2 * figures.distance)

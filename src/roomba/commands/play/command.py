@@ -11,11 +11,16 @@ from typing import Final
 from roomba.commands.play.living import add_robot_options, wanted_robot
 from roomba.commands.play.serving import add_page_options, listen_at, serve_page
 from roomba.commands.spelling import spelled
+from roomba.configuration.frozen import load_config
+from roomba.configuration.household import HouseholdConfig
 from roomba.errors import RoombaError
+from roomba.files.shipped import CONFIGURATION
 from roomba.history.database import History
 from roomba.history.folder import history_folder
 from roomba.history.recorder import HistoryKeeper
 from roomba.history.run import RunSource
+from roomba.household.folder import household_folder
+from roomba.household.household import LiveHousehold
 from roomba.ui.smart_home.switch import switched_on
 
 PROGRAM: Final = spelled("play")
@@ -34,11 +39,29 @@ def main(arguments: list[str] | None = None) -> int:
         return 2
     source = RunSource("play", wanted.home, wanted.seed, _repeat(arguments))
     keeper = HistoryKeeper(History(history_folder()), source, _warn)
+    household = LiveHousehold(
+        client,
+        household_folder(),
+        load_config(HouseholdConfig, CONFIGURATION / "household.yaml"),
+        client.bin_capacity,
+        _warn,
+        keeper.totals,
+    )
     client.start()
+    household.start()
     try:
         told = f"The robot lives in {wanted.home!r}. Its page:"
-        serve_page(client, bound, told, is_opened=wanted.open, keeper=keeper, smart_home=smart_home)
+        serve_page(
+            client,
+            bound,
+            told,
+            is_opened=wanted.open,
+            keeper=keeper,
+            household=household,
+            smart_home=smart_home,
+        )
     finally:
+        household.stop()
         client.end()
     return 0
 

@@ -8,6 +8,7 @@ import socket
 import sys
 import webbrowser
 
+from roomba.client.household import Household
 from roomba.client.observed import ObservedRobot
 from roomba.client.ports import DEFAULT_PORT, LAST_PORT
 from roomba.commands.options import whole
@@ -55,11 +56,12 @@ def serve_page(
     *,
     is_opened: bool,
     keeper: HistoryKeeper | None = None,
+    household: Household | None = None,
     smart_home: Switched | None = None,
 ) -> None:
     """Print the address, and serve the page of a robot until Ctrl-C, and its smart home beside."""
     guard = guard_for(kept_token(), bound.getsockname()[0])
-    server = PageServer(create_app(robot, guard, keeper), bound)
+    server = PageServer(create_app(robot, guard, keeper, household=household), bound)
     address, *others = addresses_of(bound, guard.token)
     print(f"{told}\n\n    {address}")
     if others:

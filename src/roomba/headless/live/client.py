@@ -44,6 +44,7 @@ class LiveClient:
         self._watchers: list[Watcher] = []
         body = robot.robot.body
         has_camera = household.camera is not None
+        self._bin_capacity = robot.robot.brush.bin_capacity
         self._limits = view.PageLimits(
             body.max_speed,
             body.max_angular_speed,
@@ -86,6 +87,11 @@ class LiveClient:
             self._tell(robot)
 
         self.ask(obey)
+
+    @property
+    def bin_capacity(self) -> float:
+        """What its dust bin takes, g."""
+        return self._bin_capacity
 
     @property
     def speed(self) -> float:

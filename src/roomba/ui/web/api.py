@@ -11,6 +11,7 @@ from fastapi import APIRouter, HTTPException, Response
 from PIL import Image
 from pydantic import BaseModel, ConfigDict, Field
 
+from roomba.client.household import Household, told_of
 from roomba.client.observed import MapKeeper, ObservedRobot, Timeline
 from roomba.client.plain import home_of, replay_of, state_of
 from roomba.client.protocol import CameraClient, RequestRefusedError, RobotUnavailableError
@@ -157,10 +158,15 @@ class Answer(BaseModel):
     ok: Literal[True] = True
 
 
-def api_of(robot: ObservedRobot, limits: Mapping[str, Any]) -> APIRouter:
-    """Return the routes for one robot; ``limits`` are those of its server."""
+def api_of(
+    robot: ObservedRobot, limits: Mapping[str, Any], household: Household | None = None
+) -> APIRouter:
+    """Return the routes for one robot; ``limits`` are those of its server.
+
+    Its state tells of its household, if there is one.
+    """
     api = APIRouter(prefix="/api/v1")
-    _add_views(api, robot, limits)
+    _add_views(api, robot, limits, household)
     _add_errands(api, robot)
     _add_edits(api, robot)
     _add_replay(api, robot)
@@ -169,10 +175,15 @@ def api_of(robot: ObservedRobot, limits: Mapping[str, Any]) -> APIRouter:
     return api
 
 
-def _add_views(api: APIRouter, robot: ObservedRobot, of_server: Mapping[str, Any]) -> None:
+def _add_views(
+    api: APIRouter,
+    robot: ObservedRobot,
+    of_server: Mapping[str, Any],
+    household: Household | None,
+) -> None:
     @api.get("/state", summary="The robot now")
     def state() -> dict[str, Any]:
-        return _asked(lambda: state_of(robot.robot()))
+        return _asked(lambda: {**state_of(robot.robot()), **told_of(household)})
 
     @api.get("/home", summary="Rooms, zones, station")
     def home() -> dict[str, Any]:

@@ -11,6 +11,7 @@ from typing import Final
 from fastapi import FastAPI, WebSocket
 from fastapi.staticfiles import StaticFiles
 
+from roomba.client.household import Household
 from roomba.client.observed import MapKeeper, ObservedRobot, Playground
 from roomba.client.protocol import CameraClient
 from roomba.history.recorder import HistoryKeeper
@@ -20,6 +21,7 @@ from roomba.ui.web.examples import DescribedApp
 from roomba.ui.web.feed import Feed
 from roomba.ui.web.guard import Guard
 from roomba.ui.web.guarding import GuardedRequests
+from roomba.ui.web.household import household_api
 from roomba.ui.web.past import Replays, history_api
 from roomba.ui.web.playing import playing_api
 from roomba.ui.web.speaking import Bridge, add_bridge
@@ -39,13 +41,14 @@ def create_app(
     guard: Guard,
     keeper: HistoryKeeper | None = None,
     bridge: Bridge | None = None,
+    household: Household | None = None,
 ) -> FastAPI:
     """Return the application for a robot; what changes anything needs the guard's token.
 
     The keeper keeps its runs in the history, which the page shows then. The bridge speaks rosbridge
-    with programs, if the robot is one of ROS.
+    with programs, if the robot is one of ROS. With a household the page shows upkeep and plans.
     """
-    feed = Feed(robot, keeper)
+    feed = Feed(robot, keeper, household)
     replays = (
         None if keeper is None else Replays(keeper.history, lambda run: create_app(run, guard))
     )
@@ -64,6 +67,7 @@ def create_app(
         "history": keeper is not None,
         "camera": isinstance(robot, CameraClient),
         "maps": isinstance(robot, MapKeeper),
+        "household": household is not None,
     }
     app = DescribedApp(
         title="roomba_robot",
@@ -74,8 +78,10 @@ def create_app(
         redoc_url=None,
     )
     limits = {"server": SERVER_LIMITS, "rosbridge": None if bridge is None else bridge.limits}
-    app.include_router(api_of(robot, limits))
+    app.include_router(api_of(robot, limits, household))
     app.include_router(events_api(feed.events))
+    if household is not None:
+        app.include_router(household_api(household))
     if isinstance(robot, Playground):
         app.include_router(playing_api(robot))
     viewers = Viewers(feed, robot, guard, abilities)

@@ -11,6 +11,7 @@ import math
 import time
 from typing import Final
 
+from roomba.client.household import Household, told_of
 from roomba.client.observed import ObservedRobot, Timeline
 from roomba.client.plain import home_of, replay_of, state_of
 from roomba.client.protocol import RobotUnavailableError
@@ -34,9 +35,14 @@ _MOST_TRAIL: Final = 20000
 class Feed:
     """What viewers are shown; ``number`` grows with each look."""
 
-    def __init__(self, robot: ObservedRobot, keeper: HistoryKeeper | None = None) -> None:
+    def __init__(
+        self,
+        robot: ObservedRobot,
+        keeper: HistoryKeeper | None = None,
+        household: Household | None = None,
+    ) -> None:
         """Begin with nothing; the keeper, if there is one, is shown each look."""
-        self._robot, self._keeper = robot, keeper
+        self._robot, self._keeper, self._household = robot, keeper, household
         self._recorded = robot if isinstance(robot, Timeline) else None
         self._looked = asyncio.Event()
         self._looks = 0
@@ -100,7 +106,8 @@ class Feed:
         if self._recorded is not None:
             self._follow_jumps(self._recorded)
         self._follow(view.pose[0], view.pose[1])
-        state = {**state_of(view), "looked": round(time.time(), 3)}
+        told = told_of(self._household)
+        state = {**state_of(view), **told, "looked": round(time.time(), 3)}
         if self._recorded is not None:
             state["replay"] = replay_of(self._recorded.timeline())
         self.state = Told(state)

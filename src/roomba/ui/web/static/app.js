@@ -15,10 +15,11 @@ import * as rooms from "./panels/rooms.js";
 import * as sheet from "./panels/sheet.js";
 import * as status from "./panels/status.js";
 import * as tools from "./panels/view.js";
+import * as upkeep from "./panels/upkeep.js";
 import * as zones from "./panels/zones.js";
 import { connect } from "./link.js";
 
 draw.begin();
 gestures.begin({ tapped: offer.tapped, drawn: zones.drawn, changed: zones.change, mayCarry: play.mayCarry, carried: play.carried });
-for (const panel of [status, offer, actions, rooms, zones, drive, play, tools, keys, replay, maps, camera, charts, history, sheet]) panel.begin();
+for (const panel of [status, offer, actions, rooms, zones, drive, play, tools, keys, replay, maps, upkeep, camera, charts, history, sheet]) panel.begin();
 connect();

@@ -1,0 +1,1 @@
+"""A robot in its household, live: its upkeep and its plans, kept on the disk."""

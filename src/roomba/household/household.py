@@ -1,0 +1,170 @@
+"""A robot in its household: it is looked at once a second, by a thread of its own."""
+
+from __future__ import annotations
+
+import datetime as dt
+import threading
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Final
+
+from roomba.client.household import PlansView, TotalsView, UpkeepView
+from roomba.client.observed import ObservedRobot
+from roomba.client.protocol import RequestRefusedError, RobotUnavailableError
+from roomba.configuration.household import HouseholdConfig
+from roomba.errors import RoombaError
+from roomba.household.folder import KeptValues, Tell
+from roomba.household.local_zone import local_zone
+from roomba.household.plan_keeper import Change, PlanKeeper, removed, replaced
+from roomba.household.upkeep_keeper import UpkeepKeeper
+from roomba.plans.plan import Plan, Preset, QuietHours
+from roomba.upkeep.parts import Part
+
+_PERIOD: Final = 1.0
+"""s of wall time between two looks."""
+_END: Final = 10.0
+"""s of wall time that the end waits for a look under way."""
+
+
+class LiveHousehold:
+    """The household of one robot; its methods may be called from any thread.
+
+    What goes wrong with the disk is told once for each reason, and the robot goes on.
+    """
+
+    def __init__(
+        self,
+        robot: ObservedRobot,
+        folder: Path,
+        config: HouseholdConfig,
+        bin_capacity: float,
+        tell: Tell,
+        totals: Callable[[], TotalsView] = TotalsView,
+        *,
+        now: Callable[[], dt.datetime] = lambda: dt.datetime.now(dt.timezone.utc),
+        period: float = _PERIOD,
+    ) -> None:
+        """Read what was kept in ``folder``; the bin takes ``bin_capacity`` g.
+
+        ``now`` is the wall clock, aware of its zone; ``period`` is s of wall time between looks.
+        """
+        self.robot, self._totals, self._tell = robot, totals, tell
+        self._told, self._period = "", period
+        kept = KeptValues(folder / "upkeep.json", tell)
+        self._upkeep = UpkeepKeeper(robot, kept, config.upkeep, bin_capacity)
+        self._plans = PlanKeeper(
+            robot,
+            KeptValues(folder / "plans.json", tell),
+            KeptValues(folder / "agenda.json", tell),
+            config.plans,
+            now,
+            local_zone(),
+        )
+        self._ends = threading.Event()
+        self._thread = threading.Thread(target=self._live, name="household", daemon=True)
+
+    def start(self) -> None:
+        """Look from now on."""
+        self._thread.start()
+
+    def stop(self) -> None:
+        """Look no more, and write what is not written yet."""
+        self._ends.set()
+        if self._thread.is_alive():
+            self._thread.join(_END)
+        self._trying(self._upkeep.end)
+
+    def look(self) -> None:
+        """Look at the robot once."""
+        self._trying(self._look)
+
+    # ---------------------------------------------------------------- what an owner sees
+
+    def upkeep(self) -> UpkeepView:
+        """Return how the parts are, and the totals; without a history they are zero."""
+        try:
+            totals = self._totals()
+        except RoombaError:  # the keeper of the history tells what is wrong with it
+            totals = TotalsView()
+        return UpkeepView(self._upkeep.states(), totals)
+
+    def reset_part(self, part: Part) -> None:
+        """Let a part count as new, clean or empty."""
+        _kept(lambda: self._upkeep.reset(part))
+
+    def plans(self) -> PlansView:
+        """Return the plans, and what comes of them."""
+        return self._plans.view()
+
+    def put_plan(self, plan: Plan) -> None:
+        """Add a plan, or replace the one of the same name."""
+        self._change(lambda all_: replaced(all_, "plans", plan.name, plan))
+
+    def remove_plan(self, name: str) -> None:
+        """Remove a plan."""
+        self._change(lambda all_: removed(all_, "plans", name))
+
+    def put_preset(self, preset: Preset) -> None:
+        """Add a preset, or replace the one of the same name."""
+        self._change(lambda all_: replaced(all_, "presets", preset.name, preset))
+
+    def remove_preset(self, name: str) -> None:
+        """Remove a preset."""
+        self._change(lambda all_: removed(all_, "presets", name))
+
+    def begin_preset(self, name: str) -> None:
+        """Begin the clean of a preset now."""
+        self._plans.begin(name)
+
+    def set_quiet(self, quiet: Sequence[QuietHours]) -> None:
+        """Replace all quiet hours."""
+        self._change(lambda all_: all_.model_copy(update={"quiet": tuple(quiet)}))
+
+    def set_zone(self, zone: str) -> None:
+        """Set the time zone."""
+        self._change(lambda all_: all_.model_copy(update={"zone": zone}))
+
+    def set_waits_for_empty_home(self, *, is_wanted: bool) -> None:
+        """Set whether plans wait while a person is at home."""
+        self._change(lambda all_: all_.model_copy(update={"waits_for_empty_home": is_wanted}))
+
+    def set_person_home(self, *, is_home: bool) -> None:
+        """Tell whether a person is at home."""
+        self._change(lambda all_: all_.model_copy(update={"is_person_home": is_home}))
+
+    # ---------------------------------------------------------------- inside
+
+    def _live(self) -> None:
+        while not self._ends.wait(self._period):
+            self.look()
+
+    def _look(self) -> None:
+        try:
+            view = self.robot.robot()
+        except RobotUnavailableError:
+            view = None
+        if view is not None:
+            self._upkeep.look(view)
+        self._plans.look(view)
+
+    def _change(self, change: Change) -> None:
+        _kept(lambda: self._plans.change(change))
+
+    def _trying(self, write: Callable[[], None]) -> None:
+        """Do what writes; trouble with the disk is told."""
+        trouble = ""
+        try:
+            write()
+        except OSError as error:
+            trouble = f"what belongs to the household was not kept: {error}"
+        if trouble and trouble != self._told:
+            self._tell(trouble)
+        self._told = trouble
+
+
+def _kept(change: Callable[[], None]) -> None:
+    """Make a change; raises RequestRefusedError when the disk refuses it."""
+    try:
+        change()
+    except OSError as error:
+        raise RequestRefusedError(f"it was not kept: {error}; is the disk full?") from error

@@ -1,0 +1,34 @@
+"""The time zone of this computer, by its name."""
+
+from __future__ import annotations
+
+import os
+import zoneinfo
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Final
+
+_LINK: Final = Path("/etc/localtime")
+_FOLDER: Final = "zoneinfo/"
+_OTHERWISE: Final = "UTC"
+
+
+def local_zone(environment: Mapping[str, str] | None = None, link: Path = _LINK) -> str:
+    """Return the zone of ``$TZ``, else the one that ``link`` leads to, else UTC."""
+    given = os.environ if environment is None else environment
+    try:
+        linked = os.readlink(link).partition(_FOLDER)[2]
+    except OSError:  # no link, or another kind of file: it does not tell its name
+        linked = ""
+    for name in (given.get("TZ", "").removeprefix(":"), linked):
+        if name and _is_zone(name):
+            return name
+    return _OTHERWISE
+
+
+def _is_zone(name: str) -> bool:
+    try:
+        zoneinfo.ZoneInfo(name)
+    except (zoneinfo.ZoneInfoNotFoundError, ValueError, OSError):
+        return False
+    return True

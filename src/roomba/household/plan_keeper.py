@@ -1,0 +1,224 @@
+"""The plans of one household, live: looks at the robot become steps of the scheduler."""
+
+from __future__ import annotations
+
+import datetime as dt
+import threading
+from collections.abc import Callable
+from typing import Final
+
+from pydantic import ValidationError
+
+from roomba.client.household import PlansView, PlanView
+from roomba.client.observed import ObservedRobot
+from roomba.client.protocol import (
+    CleanReport,
+    ErrandOutcome,
+    RequestRefusedError,
+    RobotUnavailableError,
+)
+from roomba.client.view import CleanOrder, RobotView
+from roomba.configuration.household import PlansConfig
+from roomba.household.folder import KeptValues
+from roomba.plans.memory import Memory, Note
+from roomba.plans.plan import HouseholdPlans, Plan, PlannedOrder, Preset
+from roomba.plans.scheduler import Act, Deed, PlanEnd, Scheduler, Situation, next_of
+from roomba.vocabulary import listed
+
+_AT_REST: Final = ("docked", "idle")
+_DONE: Final = (ErrandOutcome.COMPLETED, ErrandOutcome.NOT_DOCKED)
+
+Change = Callable[[HouseholdPlans], HouseholdPlans]
+
+
+class PlanKeeper:
+    """Begins, pauses and breaks off cleans as the scheduler says; may be used from any thread."""
+
+    def __init__(
+        self,
+        robot: ObservedRobot,
+        plans: KeptValues,
+        memory: KeptValues,
+        config: PlansConfig,
+        now: Callable[[], dt.datetime],
+        zone: str,
+    ) -> None:
+        """Read what was kept; ``now`` is the wall clock, ``zone`` that of a new household."""
+        self._robot, self._kept, self._kept_memory = robot, plans, memory
+        self._config, self._now = config, now
+        self._lock = threading.Lock()
+        self._household = plans.read(HouseholdPlans(zone=zone))
+        self._memory = self._written = memory.read(Memory())
+        self._version, self._view_of_version = 0, PlansView()
+        self._is_first = True
+        self._last: CleanReport | None = None
+        self._show()
+
+    def view(self) -> PlansView:
+        """Return the plans and what became of them, at once: a command is not waited for."""
+        return self._view_of_version
+
+    # ---------------------------------------------------------------- looks
+
+    def look(self, view: RobotView | None) -> None:
+        """Take a step; ``view`` is None while the robot does not answer. Raises OSError."""
+        with self._lock:
+            now = self._now()
+            scheduler = Scheduler(self._household, self._config)
+            self._memory, act = scheduler.step(self._memory, now, self._situation(view))
+            if act is not None:
+                self._memory = self._carried_out(scheduler, act, now)
+            self._keep_memory()
+
+    def _situation(self, view: RobotView | None) -> Situation:
+        if view is None:
+            return Situation(unfit="the robot does not answer")
+        ended, message = self._ending(view.last)
+        phase = view.vacuum.phase
+        return Situation(
+            self._unfit(view), phase not in _AT_REST, phase == "paused", ended, message
+        )
+
+    def _ending(self, last: CleanReport | None) -> tuple[PlanEnd | None, str]:
+        """Return how an errand ended since the last look, and what is said of it."""
+        before, self._last = self._last, last
+        # What ended before the first look was of another program.
+        is_first, self._is_first = self._is_first, False
+        if last is None or last is before or is_first:
+            return None, ""
+        if last.outcome in _DONE:
+            cleaned = f"{last.covered:.1f} of {last.wanted:.1f} m²"
+            return PlanEnd.DONE, f"{cleaned}; {last.message}" if last.message else cleaned
+        if last.outcome is ErrandOutcome.STOPPED:
+            return PlanEnd.STOPPED, ""
+        return PlanEnd.FAILED, last.message or last.outcome.value
+
+    def _unfit(self, view: RobotView) -> str:
+        """Return why no clean can begin; the same words while the reason is the same."""
+        vacuum, least = view.vacuum, self._config.least_battery
+        if view.held:
+            return "the emergency stop holds the drive"
+        if vacuum.state == "error":
+            return "the robot needs help"
+        if vacuum.phase not in _AT_REST:
+            return "the robot is busy"
+        if vacuum.battery < least:  # a battery that is not heard of is not judged
+            return f"the battery is below {100.0 * least:.0f} %"
+        return ""
+
+    def _carried_out(self, scheduler: Scheduler, act: Act, now: dt.datetime) -> Memory:
+        """Let the robot do an act; return what is remembered then."""
+        try:
+            if act.deed is Deed.BEGIN and act.order is not None:
+                self._robot.clean(clean_order_of(act.order))
+                return scheduler.begun(self._memory, act.plan, now)
+            deeds = {
+                Deed.PAUSE: self._robot.pause,
+                Deed.RESUME: self._robot.resume,
+                Deed.DOCK: self._robot.dock,
+            }
+            deeds[act.deed]()
+        except (RequestRefusedError, RobotUnavailableError) as refusal:
+            if act.deed is Deed.BEGIN:
+                return scheduler.refused(self._memory, act.plan, now, str(refusal))
+            text = f"the robot did not obey ({act.deed.value}): {refusal}"
+            return self._memory.noting(Note(at=now, plan=act.plan, text=text))
+        return self._memory
+
+    # ---------------------------------------------------------------- changes
+
+    def change(self, change: Change) -> None:
+        """Change the plans; raises RequestRefusedError for what makes no sense, OSError."""
+        with self._lock:
+            before = self._household
+            try:
+                changed = HouseholdPlans.model_validate(change(before).model_dump())
+            except ValidationError as error:
+                reason = error.errors()[0]["msg"].removeprefix("Value error, ")
+                raise RequestRefusedError(reason) from error
+            self._kept.write(changed)
+            self._household = changed
+            self._forget_changed(before, changed)
+            scheduler = Scheduler(changed, self._config)
+            self._memory = scheduler.keep_to_plans(self._memory, self._now())
+            self._keep_memory(is_changed=True)
+
+    def begin(self, preset: str) -> None:
+        """Begin a preset now; raises RequestRefusedError, RobotUnavailableError."""
+        for each in self._household.presets:
+            if each.name == preset:
+                self._robot.clean(clean_order_of(each.order))
+                return
+        names = listed([each.name for each in self._household.presets])
+        raise RequestRefusedError(f"expected a preset, one of {names}; got {preset[:80]!r}")
+
+    def _forget_changed(self, before: HouseholdPlans, changed: HouseholdPlans) -> None:
+        """What was due by a plan that is another one now is due no more."""
+        if before.zone != changed.zone:
+            self._memory = self._memory.replanned()
+        old = {plan.name: plan for plan in before.plans}
+        for plan in changed.plans:
+            if plan.name in old and plan != old[plan.name]:
+                self._memory = self._memory.forgetting(plan.name)
+
+    # ---------------------------------------------------------------- what is told and kept
+
+    def _keep_memory(self, *, is_changed: bool = False) -> None:
+        """Write and show the memory if it tells anything new; raises OSError."""
+        # When it was looked last is news each second, and is not needed after a restart.
+        told = self._memory.model_copy(update={"seen": self._written.seen})
+        if told != self._written or is_changed:
+            self._show()
+            self._kept_memory.write(self._memory)
+            self._written = self._memory
+
+    def _show(self) -> None:
+        self._version += 1
+        memory, household = self._memory, self._household
+        following = next_of(memory)
+        self._view_of_version = PlansView(
+            self._version,
+            household,
+            tuple(self._plan_view(plan.name) for plan in household.plans),
+            "" if memory.running is None else memory.running.plan,
+            memory.running is not None and memory.running.held is not None,
+            "" if following is None else following[0],
+            None if following is None else following[1],
+            memory.notes,
+        )
+
+    def _plan_view(self, name: str) -> PlanView:
+        waits = self._memory.waiting.get(name)
+        return PlanView(
+            name,
+            self._memory.next_at.get(name),
+            None if waits is None else waits.due,
+            "" if waits is None else waits.reason,
+        )
+
+
+def clean_order_of(order: PlannedOrder) -> CleanOrder:
+    """Return what is planned as an order to the robot."""
+    return CleanOrder(order.mode.value, order.rooms, passes=order.passes, fan=order.fan.value)
+
+
+def replaced(
+    household: HouseholdPlans, kind: str, name: str, value: Plan | Preset
+) -> HouseholdPlans:
+    """Return the household with a plan or preset (``kind`` is plans or presets) in its place."""
+    names = [each.name for each in getattr(household, kind)]
+    values = list(getattr(household, kind))
+    if name in names:
+        values[names.index(name)] = value
+    else:
+        values.append(value)
+    return household.model_copy(update={kind: tuple(values)})
+
+
+def removed(household: HouseholdPlans, kind: str, name: str) -> HouseholdPlans:
+    """Return the household without a plan or preset; raises RequestRefusedError without one."""
+    values = getattr(household, kind)
+    if name not in [each.name for each in values]:
+        names = listed([each.name for each in values])
+        raise RequestRefusedError(f"expected one of {names}, got {name[:80]!r}")
+    return household.model_copy(update={kind: tuple(each for each in values if each.name != name)})

@@ -1,0 +1,131 @@
+"""The household over HTTP, in the robot's state, and live."""
+
+from __future__ import annotations
+
+import datetime as dt
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from fastapi.testclient import TestClient
+from fixtures.waiting import wait_until
+from fixtures.written_robot import VIEW, WrittenRobot
+
+from roomba.client.household import TotalsView
+from roomba.configuration.household import HouseholdConfig
+from roomba.household.household import LiveHousehold
+from roomba.ui.state_words import lines_of
+from roomba.ui.web.app import create_app
+from roomba.ui.web.guard import Guard
+
+AUTHORISED = {"Authorization": "Bearer token"}
+NOW = [dt.datetime(2026, 3, 2, 6, 0, tzinfo=dt.timezone.utc)]
+"""The time of the household; a test may set it."""
+TOTALS = TotalsView(3, 30.5, 3600.0, 900.0, 12.0, 20.0)
+
+
+@pytest.fixture
+def robot() -> WrittenRobot:
+    return WrittenRobot()
+
+
+@pytest.fixture
+def household(robot: WrittenRobot, tmp_path: Path) -> LiveHousehold:
+    config = HouseholdConfig()
+    return LiveHousehold(
+        robot,
+        tmp_path,
+        config,
+        100.0,
+        lambda text: pytest.fail(text),
+        lambda: TOTALS,
+        now=lambda: NOW[0],
+        period=0.02,
+    )
+
+
+@pytest.fixture
+def page(robot: WrittenRobot, household: LiveHousehold) -> Iterator[TestClient]:
+    app = create_app(robot, Guard("token"), household=household)
+    with TestClient(app, base_url="http://127.0.0.1") as client:
+        yield client
+
+
+def work(robot: WrittenRobot, household: LiveHousehold, seconds: float) -> None:
+    """Let the robot clean for some time of its clock."""
+    for _ in range(round(seconds / 600.0)):
+        household.look()
+        robot.view = replace(robot.view, time=robot.view.time + 600.0)
+    household.look()
+
+
+def test_hours_left_and_totals_are_told(
+    page: TestClient, robot: WrittenRobot, household: LiveHousehold
+) -> None:
+    work(robot, household, 36_000.0)
+    told = page.get("/api/v1/upkeep").json()
+    assert told["parts"][2] == {
+        "name": "filter",
+        "life": 150.0,
+        "left": 140.0,
+        "share": 0.9333,
+        "is_due": False,
+        "advice": "",
+    }
+    assert told["totals"] == {name: getattr(TOTALS, name) for name in TOTALS.__slots__}
+    assert told["reminders"] == ["empty the bin, then reset it"]
+    state = page.get("/api/v1/state").json()
+    assert state["upkeep"] == told
+    assert ("upkeep", "empty the bin, then reset it") in lines_of(state)
+
+
+def test_a_reset_needs_the_token_and_a_part_that_there_is(
+    page: TestClient, robot: WrittenRobot, household: LiveHousehold
+) -> None:
+    work(robot, household, 6000.0)
+    path = "/api/v1/upkeep/reset"
+    assert page.post(path, json={"part": "filter"}).status_code == 401
+    assert page.post(path, json={"part": "lid"}, headers=AUTHORISED).status_code == 422
+    assert page.post(path, json={"part": "filter"}, headers=AUTHORISED).json() == {"ok": True}
+    left = {each["name"]: each["left"] for each in page.get("/api/v1/upkeep").json()["parts"]}
+    assert (left["filter"], left["brush"]) == (150.0, pytest.approx(298.33))
+
+
+def test_a_bin_that_the_robot_does_not_let_be_emptied_is_not_reset(
+    page: TestClient, robot: WrittenRobot
+) -> None:
+    robot.refusal = "the bin is missing"
+    answer = page.post("/api/v1/upkeep/reset", json={"part": "bin"}, headers=AUTHORISED)
+    assert (answer.status_code, answer.json()["detail"]) == (409, "the bin is missing")
+
+
+def test_a_full_disk_is_told_and_a_reset_is_refused(robot: WrittenRobot, tmp_path: Path) -> None:
+    told: list[str] = []
+    (tmp_path / "file").touch()
+    household = LiveHousehold(robot, tmp_path / "file", HouseholdConfig(), 100.0, told.append)
+    app = create_app(robot, Guard("token"), household=household)
+    answer = TestClient(app, base_url="http://127.0.0.1").post(
+        "/api/v1/upkeep/reset", json={"part": "filter"}, headers=AUTHORISED
+    )
+    assert answer.status_code == 409
+    assert "not kept" in answer.json()["detail"]
+    work(robot, household, 1200.0)
+    assert len([text for text in told if "was not kept" in text]) == 1
+
+
+def test_it_looks_by_itself_and_a_robot_that_is_gone_ends_nothing(
+    robot: WrittenRobot, household: LiveHousehold
+) -> None:
+    robot.is_gone = True
+    household.look()
+    robot.is_gone = False
+    household.start()
+    robot.view = VIEW
+    wait_until(lambda: _advanced(robot, household), 10.0, "hours that passed")
+    household.stop()
+
+
+def _advanced(robot: WrittenRobot, household: LiveHousehold) -> bool:
+    robot.view = replace(robot.view, time=robot.view.time + 1.0)
+    return household.upkeep().parts[0].share < 1.0

@@ -1,0 +1,186 @@
+"""Plans, live over a robot that writes down what it is told: kept, changed, carried out."""
+
+from __future__ import annotations
+
+import datetime as dt
+import math
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+from fixtures.written_robot import VIEW, WrittenRobot
+
+from roomba.client.protocol import CleanReport, ErrandOutcome, RequestRefusedError
+from roomba.client.view import CleanOrder, RobotView
+from roomba.configuration.household import PlansConfig
+from roomba.household.folder import KeptValues
+from roomba.household.plan_keeper import PlanKeeper, removed, replaced
+from roomba.plans.plan import HouseholdPlans, Plan, PlannedOrder, Preset
+from roomba.vocabulary import CleanMode, FanLevel
+
+DOCKED = replace(VIEW, vacuum=replace(VIEW.vacuum, state="docked", phase="docked"))
+KITCHEN = PlannedOrder(mode=CleanMode.ROOMS, rooms=("kitchen",), passes=2, fan=FanLevel.QUIET)
+AT_NINE = Plan(name="kitchen", order=KITCHEN, at=(dt.time(9, 0),))
+
+
+class Living:
+    """A keeper of plans with its robot and its clock; ``again`` is the program begun anew."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder, self.robot = folder, WrittenRobot()
+        self.now = dt.datetime(2026, 3, 2, 8, 0, tzinfo=dt.timezone.utc)
+        self.again()
+
+    def again(self) -> None:
+        def kept(name: str) -> KeptValues:
+            return KeptValues(self.folder / name, lambda text: pytest.fail(text))
+
+        self.keeper = PlanKeeper(
+            self.robot,
+            kept("plans.json"),
+            kept("agenda.json"),
+            PlansConfig(),
+            lambda: self.now,
+            "UTC",
+        )
+
+    def put(self, plan: Plan) -> None:
+        self.keeper.change(lambda all_: replaced(all_, "plans", plan.name, plan))
+
+    def look(self, view: RobotView | None, minutes: float = 0.0) -> None:
+        self.now += dt.timedelta(minutes=minutes)
+        self.keeper.look(view)
+
+    def reason(self) -> str:
+        (plan,) = self.keeper.view().plans
+        return plan.reason
+
+    def last_note(self) -> str:
+        return self.keeper.view().notes[-1].text
+
+
+@pytest.fixture
+def living(tmp_path: Path) -> Living:
+    living = Living(tmp_path)
+    living.put(AT_NINE)
+    living.look(DOCKED)
+    return living
+
+
+def ended(outcome: ErrandOutcome, message: str = "") -> RobotView:
+    return replace(DOCKED, last=CleanReport(outcome, message, 5.0, 6.0, 1.0, 30.0, 60.0, 1.0))
+
+
+def test_a_plan_tells_the_robot_what_to_clean(living: Living) -> None:
+    told = living.keeper.view()
+    assert (told.next, told.next_at) == ("kitchen", living.now.replace(hour=9))
+    living.look(DOCKED, 60)
+    order = CleanOrder("rooms", ("kitchen",), passes=2, fan="quiet")
+    assert living.robot.told == [("clean", (order,))]
+    assert living.keeper.view().running == "kitchen"
+    living.look(VIEW, 1)
+    living.look(ended(ErrandOutcome.COMPLETED), 20)
+    assert living.keeper.view().running == ""
+    assert living.last_note() == "done: 5.0 of 6.0 m²"
+
+
+@pytest.mark.parametrize(
+    ("view", "said"),
+    [
+        (None, "the robot does not answer"),
+        (replace(DOCKED, held="a cat"), "the emergency stop holds the drive"),
+        (VIEW, "the robot is busy"),
+        (
+            replace(DOCKED, vacuum=replace(VIEW.vacuum, state="error", phase="error")),
+            "the robot needs help",
+        ),
+        (replace(DOCKED, vacuum=replace(DOCKED.vacuum, battery=0.29)), "the battery is below 30 %"),
+    ],
+)
+def test_it_says_why_nothing_begins(living: Living, view: RobotView | None, said: str) -> None:
+    living.look(view, 60)
+    assert living.robot.told == []
+    assert living.reason() == said
+    living.look(DOCKED, 5)
+    assert [name for name, _ in living.robot.told] == ["clean"]
+    assert math.isnan(DOCKED.vacuum.battery), "a battery that is not heard of is not judged"
+
+
+def test_a_refusal_is_told(living: Living) -> None:
+    living.robot.refusal = "there is no room kitchen"
+    living.look(DOCKED, 60)
+    assert living.reason() == "there is no room kitchen"
+    assert living.keeper.view().running == ""
+
+
+def test_a_program_that_begins_anew_knows_what_was_under_way(living: Living) -> None:
+    living.look(DOCKED, 60)
+    living.again()
+    assert living.keeper.view().running == "kitchen"
+    # How an errand ended that the page still shows is no news.
+    living.look(replace(VIEW, last=ended(ErrandOutcome.STOPPED).last), 1)
+    assert living.keeper.view().running == "kitchen"
+    living.look(ended(ErrandOutcome.STUCK, "the robot is stuck"), 1)
+    assert living.reason() == "the robot is stuck"
+
+
+def test_what_was_missed_meanwhile_is_tried_when_it_runs_again(living: Living) -> None:
+    living.now += dt.timedelta(hours=10)
+    living.again()
+    living.look(DOCKED)
+    assert [name for name, _ in living.robot.told] == ["clean"]
+    assert living.keeper.view().notes[0].text.startswith("missed")
+
+
+def test_a_robot_that_does_not_obey_is_told_of(living: Living) -> None:
+    living.look(DOCKED, 60)
+    living.keeper.change(lambda all_: all_.model_copy(update={"is_person_home": True}))
+    living.robot.refusal = "it cannot pause now"
+    living.look(VIEW, 1)
+    assert living.last_note() == "the robot did not obey (pause): it cannot pause now"
+
+
+def test_a_plan_that_is_changed_makes_up_for_nothing(living: Living) -> None:
+    living.look(VIEW, 60)
+    assert living.reason() == "the robot is busy"
+    living.put(AT_NINE.model_copy(update={"at": (dt.time(8, 30),)}))
+    living.look(DOCKED, 1)
+    assert living.robot.told == []
+    assert living.keeper.view().next_at == dt.datetime(2026, 3, 3, 8, 30, tzinfo=dt.timezone.utc)
+
+
+def test_another_zone_moves_all_times(living: Living) -> None:
+    living.keeper.change(lambda all_: all_.model_copy(update={"zone": "America/New_York"}))
+    assert living.keeper.view().next_at == living.now.replace(hour=14)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "said"),
+    [
+        ({"zone": "nowhere"}, "got 'nowhere'"),
+        ({"plans": (AT_NINE, AT_NINE)}, "each name once"),
+    ],
+)
+def test_what_makes_no_sense_changes_nothing(
+    living: Living, wrong: dict[str, Any], said: str
+) -> None:
+    before = living.keeper.view()
+    with pytest.raises(RequestRefusedError, match=said):
+        living.keeper.change(lambda all_: all_.model_copy(update=wrong))
+    assert living.keeper.view() == before
+
+
+def test_presets_begin_by_their_name_and_what_there_is_not_is_said(living: Living) -> None:
+    preset = Preset(name="quick", order=KITCHEN)
+    living.keeper.change(lambda all_: replaced(all_, "presets", "quick", preset))
+    living.keeper.begin("quick")
+    assert [name for name, _ in living.robot.told] == ["clean"]
+    with pytest.raises(RequestRefusedError, match="one of quick; got 'slow'"):
+        living.keeper.begin("slow")
+    with pytest.raises(RequestRefusedError, match="expected one of kitchen, got 'hall'"):
+        living.keeper.change(lambda all_: removed(all_, "plans", "hall"))
+    living.keeper.change(lambda all_: removed(all_, "plans", "kitchen"))
+    assert living.keeper.view().plans == ()
+    again = HouseholdPlans.model_validate(living.keeper.view().household.model_dump())
+    assert [each.name for each in again.presets] == ["quick"]

@@ -1,0 +1,95 @@
+"""The household on the page: what is worn is told and reset there."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from fixtures.waiting import wait_until
+from playwright.sync_api import Browser
+from web.conftest import SIZES, Opened
+from web.test_page import CONTRASTS, CONTROLS, DEADLINE
+
+from roomba.client.household import TotalsView
+from roomba.commands.play.living import live_client
+from roomba.configuration.household import HouseholdConfig, UpkeepConfig
+from roomba.household.household import LiveHousehold
+from roomba.ui.web.app import create_app
+from roomba.ui.web.guard import Guard, new_token
+from roomba.ui.web.server import PageServer, listen
+
+WORN = UpkeepConfig(sensors=0.001)
+"""Sensors that are due after 3.6 s of work."""
+
+
+@pytest.fixture
+def household(tmp_path: Path) -> Iterator[LiveHousehold]:
+    """That of a robot that is not started yet."""
+    robot = live_client("studio", seed=1, speed=10.0, knows_map=True)
+    config = HouseholdConfig(upkeep=WORN)
+    household = LiveHousehold(
+        robot,
+        tmp_path,
+        config,
+        100.0,
+        lambda text: pytest.fail(text),
+        lambda: TotalsView(12, 340.0, 9000.0, 2500.0, 40.0, 60.0),
+    )
+    robot.start()
+    yield household
+    robot.end()
+
+
+@pytest.fixture(params=list(SIZES))
+def opened(
+    request: pytest.FixtureRequest, browser: Browser, household: LiveHousehold
+) -> Iterator[Opened]:
+    """The page of a live robot in its household."""
+    guard = Guard(new_token())
+    app = create_app(household.robot, guard, household=household)
+    server = PageServer(app, listen("127.0.0.1", 0, is_fixed=True))
+    household.start()
+    server.start()
+    width, height = SIZES[request.param]
+    context = browser.new_context(viewport={"width": width, "height": height})
+    page = context.new_page()
+    errors: list[str] = []
+    page.on("pageerror", lambda error: errors.append(str(error)))
+    page.goto(f"{server.address}#token={guard.token}")
+    opened = Opened(page, household.robot, server, guard)  # type: ignore[arg-type]
+    opened.wait_for_phase("docked")
+    yield opened
+    context.close()
+    server.stop()
+    household.stop()
+    assert errors == []
+
+
+def test_what_is_worn_is_told_and_reset(opened: Opened, household: LiveHousehold) -> None:
+    page = opened.page
+    page.get_by_role("button", name="Clean all").click()
+    opened.show("more")
+    page.wait_for_selector("#upkeep-due:not([hidden])", timeout=30_000)
+    assert "Wipe the sensors" in page.inner_text("#upkeep-reminders")
+    page.get_by_role("button", name="Stop", exact=True).click()
+    page.locator("#upkeep summary").click()
+    assert page.inner_text("#upkeep summary") == "Upkeep: 1 due"
+    assert page.locator("#upkeep-parts li").count() == 5
+    assert "12 runs, 340 m², 2 h 30 min, 2.50 km, 40 g" in page.inner_text("#upkeep-totals")
+    check_it_can_be_read(opened)
+    page.get_by_role("button", name="Reset the sensors").click()
+    page.locator("#ask").get_by_role("button", name="OK").click()
+    page.wait_for_selector("#upkeep-due", state="hidden")
+    wait_until(lambda: household.upkeep().parts[3].share > 0.0, DEADLINE, "sensors as new")
+    assert household.upkeep().parts[0].share < 1.0
+
+
+def check_it_can_be_read(opened: Opened) -> None:
+    """Contrasts and sizes are those that the rest of the page has."""
+    for scheme in ("light", "dark"):
+        opened.page.emulate_media(color_scheme="dark" if scheme == "dark" else "light")
+        assert [found for found in opened.page.evaluate(CONTRASTS) if found[1] < 4.5] == []
+    for identity, name, width, height in opened.page.evaluate(CONTROLS):
+        assert name, identity
+        assert min(width, height) >= 24, (identity, name)
