@@ -1,4 +1,4 @@
-"""The household on the page: what is worn is told and reset there."""
+"""The household on the page: what is worn is told and reset, plans are made and changed there."""
 
 from __future__ import annotations
 
@@ -83,6 +83,52 @@ def test_what_is_worn_is_told_and_reset(opened: Opened, household: LiveHousehold
     page.wait_for_selector("#upkeep-due", state="hidden")
     wait_until(lambda: household.upkeep().parts[3].share > 0.0, DEADLINE, "sensors as new")
     assert household.upkeep().parts[0].share < 1.0
+
+
+def test_a_plan_is_made_changed_and_removed(opened: Opened, household: LiveHousehold) -> None:
+    page, form = opened.page, opened.page.locator("#plan-form")
+    opened.show("more")
+    page.locator("#plans summary").click()
+    page.get_by_role("button", name="New plan …").click()
+    form.get_by_label("Name").fill("Mornings")
+    for day in ("Tue", "Wed", "Fri", "Sat", "Sun"):
+        form.get_by_label(day).uncheck()
+    form.get_by_label("Times").fill("9:30, 18:00")
+    form.get_by_label("What").select_option("rooms")
+    room = household.robot.home().rooms[0].name
+    form.get_by_label(room, exact=True).check()
+    form.get_by_label("Passes").select_option("2")
+    form.get_by_role("button", name="Save").click()
+    page.locator("#plan-list li").wait_for()
+    (plan,) = household.plans().household.plans
+    assert plan.rule == "FREQ=WEEKLY;BYDAY=MO,TH"
+    assert [time.isoformat("minutes") for time in plan.at] == ["09:30", "18:00"]
+    assert (plan.order.rooms, plan.order.passes) == ((room,), 2)
+    assert (
+        page.inner_text("#plan-list .about") == f"Mon, Thu at 09:30, 18:00 · {room}, 2 ×, standard"
+    )
+    page.wait_for_function(
+        "() => document.getElementById('plan-next').textContent.includes('Next: Mornings')"
+    )
+    page.get_by_role("button", name="Edit Mornings").click()
+    assert form.get_by_label("Thu").is_checked()
+    assert not form.get_by_label("Fri").is_checked()
+    form.get_by_label("Times").fill("nine")
+    form.get_by_role("button", name="Save").click()
+    page.locator("#refusal").wait_for()
+    assert len(household.plans().household.plans[0].at) == 2
+    page.get_by_role("button", name="Mornings: on").click()
+    wait_until(
+        lambda: not household.plans().household.plans[0].is_on, DEADLINE, "a plan that is off"
+    )
+    page.locator("#quiet-add").click()
+    page.get_by_label("A person is at home now").check()
+    wait_until(lambda: household.plans().household.is_person_home, DEADLINE, "a person")
+    assert len(household.plans().household.quiet) == 1
+    check_it_can_be_read(opened)
+    page.get_by_role("button", name="Remove Mornings").click()
+    page.locator("#ask").get_by_role("button", name="OK").click()
+    wait_until(lambda: not household.plans().household.plans, DEADLINE, "a plan that is gone")
 
 
 def check_it_can_be_read(opened: Opened) -> None:

@@ -13,12 +13,18 @@ from fixtures.waiting import wait_until
 from fixtures.written_robot import VIEW, WrittenRobot
 
 from roomba.client.household import TotalsView
+from roomba.client.protocol import RobotUnavailableError
+from roomba.commands.play.living import live_client
 from roomba.configuration.household import HouseholdConfig
 from roomba.household.household import LiveHousehold
+from roomba.plans.plan import Plan, PlannedOrder, QuietHours
 from roomba.ui.state_words import lines_of
 from roomba.ui.web.app import create_app
 from roomba.ui.web.guard import Guard
+from roomba.vocabulary import CleanMode
 
+DEADLINE = 30.0
+"""s of wall time."""
 AUTHORISED = {"Authorization": "Bearer token"}
 NOW = [dt.datetime(2026, 3, 2, 6, 0, tzinfo=dt.timezone.utc)]
 """The time of the household; a test may set it."""
@@ -129,3 +135,76 @@ def test_it_looks_by_itself_and_a_robot_that_is_gone_ends_nothing(
 def _advanced(robot: WrittenRobot, household: LiveHousehold) -> bool:
     robot.view = replace(robot.view, time=robot.view.time + 1.0)
     return household.upkeep().parts[0].share < 1.0
+
+
+class Life:
+    """A robot in the studio whose household goes by its clock, a hundred times as fast as ours."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder, self.begin = folder, dt.datetime(2026, 3, 2, 8, 59, tzinfo=dt.timezone.utc)
+        self.robot = live_client("studio", seed=1, speed=100.0, knows_map=True)
+        self.robot.start()
+        wait_until(lambda: self.phase() == "docked", DEADLINE, "the robot on its station")
+        self.live()
+
+    def live(self) -> None:
+        """Begin the program of the household, anew if it ran before."""
+        self.household = LiveHousehold(
+            self.robot,
+            self.folder,
+            HouseholdConfig(),
+            100.0,
+            lambda text: pytest.fail(text),
+            now=self.now,
+            period=0.02,
+        )
+        self.household.start()
+
+    def now(self) -> dt.datetime:
+        return self.begin + dt.timedelta(seconds=self.robot.robot().time)
+
+    def phase(self) -> str:
+        try:
+            return self.robot.robot().vacuum.phase
+        except RobotUnavailableError:
+            return ""
+
+    def texts(self) -> list[str]:
+        return [note.text for note in self.household.plans().notes]
+
+    def wait_for(self, text: str, count: int = 1) -> None:
+        """Wait until it is noted so often that begins so."""
+        wait_until(lambda: self.noted(text) >= count, DEADLINE, f"{text} in {self.texts()}")
+
+    def noted(self, text: str) -> int:
+        return len([each for each in self.texts() if each.startswith(text)])
+
+
+def test_plans_over_the_headless_robot(tmp_path: Path) -> None:
+    life = Life(tmp_path)
+    try:
+        life.household.set_zone("UTC")
+        edges = PlannedOrder(mode=CleanMode.EDGES)
+        life.household.set_quiet([QuietHours(begins=dt.time(8, 0), ends=dt.time(9, 5))])
+        life.household.put_plan(Plan(name="edges", at=(dt.time(9, 0),), order=edges))
+        # It is due, the hours are quiet, and once they are over it begins.
+        life.wait_for("waits: quiet hours until 09:05")
+        assert life.phase() == "docked"
+        life.wait_for("began")
+        assert life.now().time() >= dt.time(9, 5)
+        life.wait_for("done: ")
+        assert life.household.upkeep().parts[0].share < 1.0
+        # What was missed while the program did not run is made up for when it runs again.
+        wait_until(lambda: life.phase() == "docked", DEADLINE, "the robot on its station")
+        life.household.stop()
+        life.begin += dt.timedelta(days=1, hours=6)
+        life.live()
+        life.wait_for("missed: ")
+        life.wait_for("began", 2)
+        wait_until(lambda: life.phase() == "cleaning", DEADLINE, "the robot cleans again")
+        assert life.household.plans().running == "edges"
+        life.robot.stop()
+        life.wait_for("stopped by hand")
+    finally:
+        life.household.stop()
+        life.robot.end()

@@ -9,6 +9,7 @@ import * as history from "./panels/history.js";
 import * as keys from "./panels/keys.js";
 import * as maps from "./panels/maps.js";
 import * as offer from "./panels/offer.js";
+import * as plans from "./panels/plans.js";
 import * as play from "./panels/play.js";
 import * as replay from "./panels/replay.js";
 import * as rooms from "./panels/rooms.js";
@@ -21,5 +22,5 @@ import { connect } from "./link.js";
 
 draw.begin();
 gestures.begin({ tapped: offer.tapped, drawn: zones.drawn, changed: zones.change, mayCarry: play.mayCarry, carried: play.carried });
-for (const panel of [status, offer, actions, rooms, zones, drive, play, tools, keys, replay, maps, upkeep, camera, charts, history, sheet]) panel.begin();
+for (const panel of [status, offer, actions, rooms, zones, drive, play, tools, keys, replay, maps, plans, upkeep, camera, charts, history, sheet]) panel.begin();
 connect();
