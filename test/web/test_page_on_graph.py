@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import json
 import re
 import shutil
+import urllib.request
 from collections.abc import Iterator
 from contextlib import contextmanager
 
 from fixtures.graph import WITH_PAGE, RosGraph
+from fixtures.probe import Probe
 from fixtures.waiting import wait_until
 from playwright.sync_api import Page, sync_playwright
+from std_msgs.msg import Bool
 
 from roomba.history.database import History, KeptRun
 from roomba.history.folder import history_folder
@@ -61,6 +65,19 @@ def kept_runs() -> list[KeptRun]:
     return [run for run in runs if run.figures.source.program == "ros"]
 
 
+def tell_of_a_person(graph: RosGraph) -> None:
+    """Tell on the graph that a person is at home: the plans know it then."""
+    api = address(graph).split("#")[0] + "api/v1/plans"
+
+    def is_told() -> bool:
+        with urllib.request.urlopen(api, timeout=5.0) as answer:
+            return bool(json.load(answer)["is_person_home"])
+
+    assert not is_told()
+    Probe(graph).send("/person_at_home", Bool(True))
+    wait_until(is_told, 10.0, "a person at home")
+
+
 def test_it_is_served_on_loopback_alone_and_the_log_has_no_token(
     robot_with_page: RosGraph,
 ) -> None:
@@ -106,6 +123,7 @@ def test_a_person_cleans_pauses_edits_and_stops(robot_with_page: RosGraph) -> No
         page.get_by_role("textbox", name="Name").fill("Den")
         page.get_by_role("button", name="OK").click()
         page.get_by_role("button", name="Den").wait_for(timeout=WORKS_WITHIN)
+    tell_of_a_person(robot_with_page)
     # With no hand on it the page leaves the drive to others.
     wait_until(
         lambda: "/dashboard_node" not in robot_with_page.system_state()[0].get("/cmd_vel", []),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import datetime as dt
 import threading
 from collections.abc import Callable, Sequence
@@ -50,6 +51,7 @@ class LiveHousehold:
         """
         self.robot, self._totals, self._tell = robot, totals, tell
         self._told, self._period = "", period
+        self._is_full_told = False
         kept = KeptValues(folder / "upkeep.json", tell)
         self._upkeep = UpkeepKeeper(robot, kept, config.upkeep, bin_capacity)
         self._plans = PlanKeeper(
@@ -129,7 +131,9 @@ class LiveHousehold:
         self._change(lambda all_: all_.model_copy(update={"waits_for_empty_home": is_wanted}))
 
     def set_person_home(self, *, is_home: bool) -> None:
-        """Tell whether a person is at home."""
+        """Tell whether a person is at home; what is so already is not written again."""
+        if self.plans().household.is_person_home == is_home:
+            return
         self._change(lambda all_: all_.model_copy(update={"is_person_home": is_home}))
 
     # ---------------------------------------------------------------- inside
@@ -145,7 +149,17 @@ class LiveHousehold:
             view = None
         if view is not None:
             self._upkeep.look(view)
+            self._tell_full_bin()
         self._plans.look(view)
+
+    def _tell_full_bin(self) -> None:
+        """Let the robot sound once when its bin is due; in quiet hours, only after them."""
+        is_due = any(state.is_due for state in self._upkeep.states() if state.part is Part.BIN)
+        if is_due and not self._is_full_told and not self._plans.is_quiet():
+            with contextlib.suppress(RequestRefusedError, RobotUnavailableError):
+                self.robot.locate()
+            self._is_full_told = True
+        self._is_full_told = self._is_full_told and is_due
 
     def _change(self, change: Change) -> None:
         _kept(lambda: self._plans.change(change))

@@ -23,6 +23,7 @@ from roomba.household.folder import KeptValues
 from roomba.plans.memory import Memory, Note
 from roomba.plans.plan import HouseholdPlans, Plan, PlannedOrder, Preset
 from roomba.plans.scheduler import Act, Deed, PlanEnd, Scheduler, Situation, next_of
+from roomba.plans.times import quiet_until
 from roomba.vocabulary import listed
 
 _AT_REST: Final = ("docked", "idle")
@@ -57,6 +58,11 @@ class PlanKeeper:
     def view(self) -> PlansView:
         """Return the plans and what became of them, at once: a command is not waited for."""
         return self._view_of_version
+
+    def is_quiet(self) -> bool:
+        """Whether it is in quiet hours now."""
+        household = self._household
+        return quiet_until(household.quiet, household.clock, self._now()) is not None
 
     # ---------------------------------------------------------------- looks
 

@@ -8,8 +8,10 @@ import socket
 from pathlib import Path
 
 import rospy
+from std_msgs.msg import Bool
 
 from roomba.client.ports import DEFAULT_PORT, OUTSIDE_ADDRESS, PAGE_SOCKET
+from roomba.client.protocol import RequestRefusedError
 from roomba.configuration.frozen import load_config
 from roomba.configuration.household import HouseholdConfig
 from roomba.errors import ConfigError
@@ -26,10 +28,12 @@ from roomba.ui.web.guard import LOOPBACK
 from roomba.ui.web.kept_token import kept_token
 from roomba.ui.web.reach import ALL, addresses_of, guard_for, is_host
 from roomba.ui.web.server import PageServer, listen
+from roomba_ros.convert.values import data_of
 from roomba_ros.dashboard.graph_robot import GraphRobot
 from roomba_ros.rosbridge.bridge import RosBridge
 from roomba_ros.runtime.node import run_node
 from roomba_ros.runtime.parameters import read_robot_config
+from roomba_ros.runtime.subscriptions import subscribe
 
 _PERIOD = 0.05
 """s of the ROS clock between two commands while the robot is driven by hand."""
@@ -44,6 +48,8 @@ class DashboardNode:
 
     With a socket that :data:`PAGE_SOCKET` names it serves there: that of an isolated robot is
     reached from outside.
+
+    Upkeep and plans are those of :class:`LiveHousehold`; subscribes ``person_at_home``.
 
     Programs reach the graph over the same server, by rosbridge. Publishes, subscribes and calls
     what :class:`GraphRobot` does, and what programs ask :class:`RosBridge` for.
@@ -71,6 +77,7 @@ class DashboardNode:
             keeper.totals,
         )
         self._household.start()
+        subscribe("person_at_home", Bool, data_of, self._on_person)
         bound = _bound()
         guard = guard_for(kept_token(), bound.getsockname()[0])
         app = create_app(self._robot, guard, keeper, RosBridge(), self._household)
@@ -84,6 +91,12 @@ class DashboardNode:
         print(f"The page: {address}", flush=True)
         for other in others:
             print(f"The page, from other machines of the network: {other}", flush=True)
+
+    def _on_person(self, is_home: bool) -> None:
+        try:
+            self._household.set_person_home(is_home=is_home)
+        except RequestRefusedError as refusal:
+            rospy.logwarn("whether a person is at home: %s", refusal)
 
     def tick(self, _: float) -> None:
         """Drive as the hand on the page wants."""

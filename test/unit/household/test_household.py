@@ -137,6 +137,27 @@ def _advanced(robot: WrittenRobot, household: LiveHousehold) -> bool:
     return household.upkeep().parts[0].share < 1.0
 
 
+def test_a_full_bin_sounds_once_and_not_in_quiet_hours(
+    robot: WrittenRobot, household: LiveHousehold
+) -> None:
+    household.set_zone("UTC")
+    household.set_quiet([QuietHours(begins=dt.time(5, 0), ends=dt.time(7, 0))])
+    work(robot, household, 1200.0)
+    robot.view = replace(robot.view, dirt=100.0)
+    household.look()
+    assert household.upkeep().parts[4].is_due
+    assert robot.told == []
+    household.set_quiet([])
+    household.look()
+    household.look()
+    assert robot.told == [("locate", ())]
+    robot.view = replace(robot.view, dirt=0.0)
+    household.look()
+    robot.view = replace(robot.view, dirt=100.0)
+    household.look()
+    assert robot.told == [("locate", ())] * 2
+
+
 class Life:
     """A robot in the studio whose household goes by its clock, a hundred times as fast as ours."""
 
