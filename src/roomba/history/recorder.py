@@ -108,12 +108,12 @@ class HistoryKeeper:
         if ended is None:
             self._keep_so_far(home, layer)
             return
-        self._totals = None
         before, trouble = self.history.set_aside, ""
         try:
             self.history.add(*ended)
         except RoombaError as error:
             trouble = f"the run was not kept: {error}"
+        self._totals = None
         if self.history.set_aside is not before:
             trouble = f"the history was damaged; it is set aside as {self.history.set_aside}"
         self._unfinished.remove()

@@ -52,6 +52,7 @@ class LiveHousehold:
         self.robot, self._totals, self._tell = robot, totals, tell
         self._told, self._period = "", period
         self._is_full_told = False
+        self._summed = TotalsView()
         kept = KeptValues(folder / "upkeep.json", tell)
         self._upkeep = UpkeepKeeper(robot, kept, config.upkeep, bin_capacity)
         self._plans = PlanKeeper(
@@ -83,12 +84,8 @@ class LiveHousehold:
     # ---------------------------------------------------------------- what an owner sees
 
     def upkeep(self) -> UpkeepView:
-        """Return how the parts are, and the totals; without a history they are zero."""
-        try:
-            totals = self._totals()
-        except RoombaError:  # the keeper of the history tells what is wrong with it
-            totals = TotalsView()
-        return UpkeepView(self._upkeep.states(), totals)
+        """Return how the parts are, and the totals of the last look, at once."""
+        return UpkeepView(self._upkeep.states(), self._summed)
 
     def reset_part(self, part: Part) -> None:
         """Let a part count as new, clean or empty."""
@@ -143,9 +140,12 @@ class LiveHousehold:
             self.look()
 
     def _look(self) -> None:
+        # What is wrong with the history its keeper tells.
+        with contextlib.suppress(RoombaError):
+            self._summed = self._totals()
         try:
             view = self.robot.robot()
-        except RobotUnavailableError:
+        except RoombaError:
             view = None
         if view is not None:
             self._upkeep.look(view)

@@ -148,6 +148,15 @@ def test_a_robot_that_was_switched_off_during_its_clean_tries_again() -> None:
     assert begins(days.at("09:43")) == "all"
 
 
+def test_a_robot_that_stands_for_moments_is_not_taken_for_switched_off() -> None:
+    days = Days(plan())
+    days.at("09:00")
+    for minute in range(1, 10):
+        assert days.at(f"09:0{minute}") is None
+        assert days.at(f"09:0{minute}:30", WORKING) is None
+    assert days.memory.running is not None
+
+
 def test_a_person_at_home_is_waited_for_and_paused_for() -> None:
     days = Days(plan())
     days.person(is_home=True)
@@ -182,7 +191,8 @@ def test_a_person_who_lets_it_go_on_is_obeyed() -> None:
     days.at("09:10", WORKING)
     days.at("09:11", PAUSED)
     assert days.at("09:12", WORKING) is None
-    assert days.at("09:50", WORKING) is None
+    assert days.at("09:20", PAUSED) is None, "paused again, by hand"
+    assert days.at("09:50", PAUSED) is None, "and not sent home for the person"
 
 
 def test_a_person_who_does_not_mind_is_not_waited_for() -> None:

@@ -138,3 +138,18 @@ def test_without_the_token_plans_are_told_and_not_changed(served: Served) -> Non
     assert served.ask("PUT", "plans", PLAN) == 401
     assert served.ask("PUT", "household/presence", {"at_home": True}) == 401
     assert served.get("plans")["plans"] == []
+
+
+def test_each_request_with_a_body_has_an_example_that_is_taken(served: Served) -> None:
+    paths = served.client.get("/openapi.json").json()["paths"]
+    tried = 0
+    for path, methods in paths.items():
+        name = path.removeprefix("/api/v1/")
+        if not name.startswith(("plans", "presets", "upkeep", "household")):
+            continue
+        for method, operation in methods.items():
+            if "requestBody" in operation:
+                body = operation["requestBody"]["content"]["application/json"]["example"]
+                assert served.ask(method.upper(), name, body) == 200, path
+                tried += 1
+    assert tried == 7
