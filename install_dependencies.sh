@@ -147,6 +147,8 @@ system_packages() { # runtime|dev|bench, or on asking: rviz|screen|robot_state_p
     python3-rosbag python3-topic-tools
     # pictures
     python3-cv-bridge python3-opencv
+    # time zones
+    tzdata
     # messages: for Python, and the definitions that `rosmsg show` reads
     python3-actionlib-msgs ros-actionlib-msgs
     python3-diagnostic-msgs ros-diagnostic-msgs

@@ -9,7 +9,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 ROOT = Path(__file__).parents[2]
-OF_THE_DISTRIBUTION = {"numpy", "opencv-python-headless", "pyyaml"}
+OF_THE_DISTRIBUTION = {"numpy", "opencv-python-headless", "pyyaml", "tzdata"}
 """In a checkout with ROS these come from the distribution's packages."""
 
 
