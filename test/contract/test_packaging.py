@@ -15,6 +15,8 @@ OF_THE_DISTRIBUTION = {"numpy", "opencv-python-headless", "pyyaml", "tzdata"}
 
 KEYS = {
     "h11": None,  # uvicorn needs it, so it comes with that
+    "tzdata": None,  # Python looks into the system's
+    "python-dateutil": "python3-dateutil",
     "opencv-python-headless": "python3-opencv",
     "pillow": "python3-pil",
     "pyserial": "python3-serial",
