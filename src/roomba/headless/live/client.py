@@ -17,7 +17,7 @@ from roomba.headless.embodied import Embodied
 from roomba.headless.live import playing
 from roomba.headless.live.errands import begin_exploring
 from roomba.headless.live.floor_plan import FloorPlan, made
-from roomba.headless.live.household import Household
+from roomba.headless.live.live_home import LiveHome
 from roomba.headless.live.robot import LiveRobot
 from roomba.headless.live.snapshots import ErrandsEnded, Snapshots
 from roomba.mission.cleaning.request import CleanRequest
@@ -35,21 +35,21 @@ class LiveClient:
     """Observes and commands one live robot; its methods may be called from any thread."""
 
     def __init__(
-        self, household: Household, robot: Embodied, rooms: Rooms | None, speed: float
+        self, live_home: LiveHome, robot: Embodied, rooms: Rooms | None, speed: float
     ) -> None:
         """Start nothing yet."""
-        self._household = household
-        self._snapshots = Snapshots(robot, FloorPlan(rooms), household)
+        self._live_home = live_home
+        self._snapshots = Snapshots(robot, FloorPlan(rooms), live_home)
         self._live = LiveRobot(robot, speed, self._observe)
         self._watchers: list[Watcher] = []
         body = robot.robot.body
-        has_camera = household.camera is not None
+        has_camera = live_home.camera is not None
         self._bin_capacity = robot.robot.brush.bin_capacity
         self._limits = view.PageLimits(
             body.max_speed,
             body.max_angular_speed,
             camera_angles=view.camera_angles(robot.robot.camera.max_pan) if has_camera else (),
-            play=household.acts,
+            play=live_home.acts,
         )
 
     def start(self) -> None:
@@ -126,12 +126,12 @@ class LiveClient:
         if name is view.LayerName.COVERAGE:
             return self._snapshots.coverage()
         if name is view.LayerName.TRUE_DIRT:
-            return self._live.carry_out(lambda _: self._household.dirt())
+            return self._live.carry_out(lambda _: self._live_home.dirt())
         return self._live.carry_out(self._snapshots.dirt)
 
     def picture(self, degrees: float) -> NDArray[np.uint8]:
         """Return what the camera sees at an angle to the left, uint8 [height, width, 3] RGB."""
-        camera = self._household.camera
+        camera = self._live_home.camera
         if camera is None:
             raise RequestRefusedError("this robot has no camera")
         return camera.picture(self._live.carry_out, degrees)
@@ -189,7 +189,7 @@ class LiveClient:
         """Empty the bin, and tell the robot."""
 
         def empty(robot: Embodied) -> None:
-            self._household.empty_bin()
+            self._live_home.empty_bin()
             robot.mission.empty_bin(robot.senses())
 
         self.obey(empty)
@@ -289,7 +289,7 @@ class LiveClient:
         self._play(lambda simulator: playing.put_down(simulator, Pose(x, y, theta)))
 
     def _play(self, act: Callable[[Simulator], None]) -> None:
-        self.obey(lambda _: self._household.play(act))
+        self.obey(lambda _: self._live_home.play(act))
 
     # ---------------------------------------------------------------- in the robot's thread
 

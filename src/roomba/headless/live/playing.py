@@ -18,7 +18,7 @@ from roomba.world.truth import HomeTruth
 
 
 class Playing:
-    """The :class:`roomba.headless.live.household.Household` of a simulated robot.
+    """The :class:`roomba.headless.live.live_home.LiveHome` of a simulated robot.
 
     It does to a home what a hand would do, and tells what is really so.
     """

@@ -10,7 +10,7 @@ from roomba.client.protocol import CleanReport, ExploreReport, RobotUnavailableE
 from roomba.client.view import GridLayer, HomeView, RobotView, exploration_as_clean
 from roomba.headless.embodied import Embodied
 from roomba.headless.live.floor_plan import FloorPlan
-from roomba.headless.live.household import Household
+from roomba.headless.live.live_home import LiveHome
 from roomba.headless.live.views import (
     clean_report,
     dirt_layer,
@@ -34,9 +34,9 @@ class ErrandsEnded:
 class Snapshots:
     """The newest snapshots; they may be read from any thread, all else is for the robot's own."""
 
-    def __init__(self, robot: Embodied, plan: FloorPlan, household: Household) -> None:
+    def __init__(self, robot: Embodied, plan: FloorPlan, live_home: LiveHome) -> None:
         """Begin before the first frame."""
-        self.plan, self._household = plan, household
+        self.plan, self._live_home = plan, live_home
         self._lock = threading.Lock()
         self._versions = itertools.count(1)
         self._view: RobotView | None = None
@@ -89,7 +89,7 @@ class Snapshots:
         if self._home_view is None:
             self._look_at_home(robot)
         self._follow_map(robot)
-        self._view = robot_view(robot, self._last, self._household.truth())
+        self._view = robot_view(robot, self._last, self._live_home.truth())
 
     def begin_coverage(self) -> None:
         """Count sweeps from nothing on."""
@@ -104,7 +104,7 @@ class Snapshots:
 
     def _look_at_home(self, robot: Embodied) -> None:
         version = next(self._versions)
-        parts = self._household, robot, self.plan.rooms, self.plan.zones
+        parts = self._live_home, robot, self.plan.rooms, self.plan.zones
         self._home_view = home_view(version, *parts)
 
     def _follow_sweeps(self, robot: Embodied) -> None:
@@ -141,7 +141,7 @@ class Snapshots:
             if self._map is None or self._map.cells.shape != occupancy.frame.shape:
                 self._shape += 1
                 self._visits = Visits(occupancy.frame, robot.robot.brush.width)
-            cells = map_cells(self._household.plan, occupancy)
+            cells = map_cells(self._live_home.plan, occupancy)
             self._map = GridLayer.over(occupancy.frame, cells, self._shape)
         self._find_rooms(robot)
         self._look_at_home(robot)

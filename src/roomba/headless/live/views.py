@@ -30,7 +30,7 @@ from roomba.client.view import (
 )
 from roomba.grid import OccupancyMap
 from roomba.headless.embodied import Embodied
-from roomba.headless.live.household import Household
+from roomba.headless.live.live_home import LiveHome
 from roomba.mission.cleaning.request import CleanResult
 from roomba.mission.exploring.exploration import ExploreResult
 from roomba.mission.mission import Mission
@@ -141,16 +141,16 @@ def map_cells(plan: Home | None, occupancy: OccupancyMap) -> NDArray[np.uint8]:
 
 def home_view(
     version: int,
-    household: Household,
+    live_home: LiveHome,
     robot: Embodied,
     rooms: Rooms | None,
     zones: Zones,
 ) -> HomeView:
     """Return what seldom changes."""
-    station, plan = robot.mission.context.station, household.plan
+    station, plan = robot.mission.context.station, live_home.plan
     return HomeView(
         version=version,
-        name=household.name,
+        name=live_home.name,
         station=(station.x, station.y, station.theta),
         rooms=() if rooms is None else tuple(_room_views(rooms, plan)),
         zones=tuple(ZoneView(zone.name, zone.kind.value, zone.points) for zone in zones.all),

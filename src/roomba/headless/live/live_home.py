@@ -12,7 +12,7 @@ from roomba.world.home.home import Home
 from roomba.world.simulator import Simulator
 
 
-class Household(Protocol):
+class LiveHome(Protocol):
     """The home of a live robot. All but its ``name`` is for the robot's thread alone."""
 
     @property
