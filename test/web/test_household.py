@@ -112,8 +112,11 @@ def test_a_plan_is_made_changed_and_removed(opened: Opened, household: LiveHouse
     assert not form.get_by_label("Fri").is_checked()
     form.get_by_label("Times").fill("nine")
     form.get_by_role("button", name="Save").click()
-    page.locator("#refusal").wait_for()
+    form.get_by_role("alert").wait_for()
+    assert "time" in form.get_by_role("alert").inner_text()
     assert len(household.plans().household.plans[0].at) == 2
+    assert form.get_by_label("Times").input_value() == "nine"
+    form.get_by_role("button", name="Cancel").click()
     page.get_by_role("button", name="Mornings: on").click()
     wait_until(lambda: household.plans().next == "", DEADLINE, "a plan that is off")
     page.locator("#quiet-add").click()

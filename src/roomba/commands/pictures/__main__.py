@@ -16,6 +16,7 @@ import cv2
 from PIL import Image
 
 from roomba.commands.pictures.cleaning import picture_of_cleaning
+from roomba.commands.pictures.household import picture_of_household
 from roomba.commands.pictures.layers import picture_of_layers
 from roomba.commands.pictures.localization import picture_of_localization, picture_of_relocation
 from roomba.commands.pictures.mapping import picture_of_map_errors, picture_of_mapping
@@ -79,6 +80,7 @@ PICTURES: dict[str, tuple[str, Callable[[Home], Picture]]] = {
 }
 """Each picture by the name of its file: the home that it is of, and what makes it."""
 IN_BROWSER: dict[str, tuple[str, Callable[[Home], Picture]]] = {
+    "household": ("flat", picture_of_household),
     "page_phone": ("flat", picture_of_phone),
     "page_way": ("flat", picture_of_way),
     "replay": ("flat", picture_of_replay),

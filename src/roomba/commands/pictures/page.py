@@ -96,7 +96,7 @@ def picture_of_replay(home: Home) -> Picture:
         with browser_page({"width": 1280, "height": 800}) as page:
             page.goto(server.address)
             page.wait_for_selector("#timeline:not([hidden])")
-            _wait_until(page, _IS_COVERED)
+            wait_until(page, _IS_COVERED)
             page.wait_for_timeout(_SETTLED)
             return decoded(page.screenshot())
     finally:
@@ -152,7 +152,7 @@ def _opened(
     with served(home, speed, keeper) as (server, guard), browser_page(size, **wishes) as page:
         page.goto(f"{server.address}#token={guard.token}")
         page.wait_for_selector("body[data-phase='docked']")
-        _wait_until(page, _HAS_ROOMS)
+        wait_until(page, _HAS_ROOMS)
         page.wait_for_timeout(_SETTLED)
         yield page
 
@@ -220,10 +220,10 @@ def decoded(screenshot: bytes) -> Picture:
 
 
 def _wait_for_covered(page: Any) -> None:
-    _wait_until(page, _IS_CLEANED, _CLEANED)
+    wait_until(page, _IS_CLEANED, _CLEANED)
 
 
-def _wait_until(page: Any, expression: str, wanted: float | None = None) -> None:
+def wait_until(page: Any, expression: str, wanted: float | None = None) -> None:
     """Wait until the page answers a question by yes; RoombaError when it does not in time."""
     ends = time.monotonic() + _DEADLINE
     while not page.evaluate(expression, wanted):

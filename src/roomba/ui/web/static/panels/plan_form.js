@@ -14,13 +14,15 @@ export function daysInWords(rule) {
   return parts.weeks > 1 ? `${days}, every ${parts.weeks} weeks` : days;
 }
 
-/** Ask for a plan, or with no times for a preset; returns it, or null. */
-export function askPlan(title, given, presets, isPlan) {
+/** Ask for a plan, or with no times for a preset; `fault` tells what is wrong with it. Returns it, or null. */
+export function askPlan(title, given, presets, isPlan, isNew, fault) {
   const dialog = $("plan-form");
   $("plan-form-title").textContent = title;
   $("plan-when").hidden = !isPlan;
+  $("plan-fault").textContent = fault;
+  $("plan-fault").hidden = !fault;
   $("plan-name").value = given.name;
-  $("plan-name").readOnly = given.name !== "";
+  $("plan-name").readOnly = !isNew;
   if (isPlan) showWhen(given);
   $("plan-preset-label").hidden = !isPlan || presets.length === 0;
   offer($("plan-preset"), [["", "–"], ...presets.map((preset) => [preset.name, preset.name])], "");
@@ -63,7 +65,7 @@ function entered(given, isPlan) {
   const order = { mode, rooms, passes: Number($("plan-passes").value), fan: $("plan-fan").value };
   const name = $("plan-name").value.trim();
   if (!isPlan) return { name, order };
-  const at = $("plan-at").value.split(/[\s,;]+/).filter(Boolean).map((time) => time.padStart(5, "0"));
+  const at = $("plan-at").value.split(/[\s,;]+/).filter(Boolean).map((time) => time.replace(/^\d:/, "0$&"));
   return { name, is_on: given.is_on, begins: given.begins, rule: $("plan-rule").value.trim() || rule(), at, order };
 }
 

@@ -101,8 +101,12 @@ function remover(kind, name, values) {
 
 async function edit(heading, given, isPlan) {
   if (!told) return;
-  const entered = await askPlan(heading, given, told.presets, isPlan);
-  if (entered) await change(isPlan ? "plans" : "presets", entered);
+  const path = isPlan ? "plans" : "presets", isNew = given.name === "";
+  // What is refused comes back into the form, with what was entered.
+  let entered = await askPlan(heading, given, told.presets, isPlan, isNew, "");
+  while (entered && !await wish(path, entered, "PUT"))
+    entered = await askPlan(heading, entered, told.presets, isPlan, isNew, $("refusal").textContent);
+  await showAll(get("state")?.plans?.version ?? 0);
 }
 
 function quiet(hours) { return change("household/quiet", { quiet: hours }); }
@@ -124,7 +128,10 @@ function day(moment) {
   return `${date.toLocaleDateString([], { weekday: "short", day: "numeric", month: "short", timeZone: "UTC" })} ${moment.slice(11, 16)}`;
 }
 
-function today() { return new Date().toISOString().slice(0, 10); }
+function today() {
+  const now = new Date();
+  return new Date(now - 60_000 * now.getTimezoneOffset()).toISOString().slice(0, 10);
+}
 
 function line(text) {
   const made = document.createElement("li");

@@ -34,7 +34,7 @@ function showParts(parts) {
   parts.forEach((part, index) => {
     const line = list.children[index], meter = line.querySelector("meter");
     line.dataset.due = part.is_due ? "yes" : "no";
-    put(line.querySelector(".left"), part.is_due ? part.advice.split(",")[0] : `${hours(part.left)} left`);
+    put(line.querySelector(".left"), part.is_due ? "due now" : `${hours(part.left)} left`);
     meter.value = part.share;
     meter.setAttribute("aria-label", `${title(part.name)}: ${hours(part.left)} of ${hours(part.life)} left`);
   });
