@@ -119,14 +119,35 @@ def test_a_plan_is_made_changed_and_removed(opened: Opened, household: LiveHouse
     form.get_by_role("button", name="Cancel").click()
     page.get_by_role("button", name="Mornings: on").click()
     wait_until(lambda: household.plans().next == "", DEADLINE, "a plan that is off")
+    page.get_by_label("Begins on").select_option("rest")
     page.locator("#quiet-add").click()
+    page.get_by_text("Sat, Sun").wait_for()
     page.get_by_label("A person is at home now").check()
     wait_until(lambda: household.plans().household.is_person_home, DEADLINE, "a person")
     assert len(household.plans().household.quiet) == 1
+    page.get_by_role("button", name="Time zone …").click()
+    page.locator("#ask-text").fill("Asia/Tokyo")
+    page.locator("#ask").get_by_role("button", name="OK").click()
+    page.get_by_text("Times are those of Asia/Tokyo").wait_for()
     check_it_can_be_read(opened)
     page.get_by_role("button", name="Remove Mornings").click()
     page.locator("#ask").get_by_role("button", name="OK").click()
     wait_until(lambda: not household.plans().household.plans, DEADLINE, "a plan that is gone")
+
+
+def test_a_preset_is_made_and_begun(opened: Opened, household: LiveHousehold) -> None:
+    page, form = opened.page, opened.page.locator("#plan-form")
+    opened.show("more")
+    page.locator("#plans summary").click()
+    page.get_by_role("button", name="New preset …").click()
+    form.get_by_label("Name").fill("Edges")
+    form.get_by_label("What").select_option("edges")
+    assert not form.get_by_label("Times").is_visible()
+    form.get_by_role("button", name="Save").click()
+    page.get_by_role("button", name="Begin Edges").click()
+    opened.wait_for_phase("cleaning")
+    (preset,) = household.plans().household.presets
+    assert preset.order.mode.value == "edges"
 
 
 def check_it_can_be_read(opened: Opened) -> None:

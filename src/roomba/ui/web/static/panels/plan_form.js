@@ -34,6 +34,7 @@ export function askPlan(title, given, presets, isPlan, isNew, fault) {
   showOrder(given.order);
   dialog.returnValue = "";
   dialog.showModal();
+  if (fault) dialog.scrollTop = 0; // the first field has the focus, and the fault stands above it
   return new Promise((resolve) => {
     dialog.onclose = () => resolve(dialog.returnValue === "yes" ? entered(given, isPlan) : null);
   });

@@ -3,11 +3,12 @@ import { $, button, put, span } from "../dom.js";
 import { ask, note, wish } from "../link.js";
 import { get, on } from "../store.js";
 import { title } from "../words.js";
-import { askYes } from "./ask.js";
+import { askName, askYes } from "./ask.js";
 import { askPlan, daysInWords } from "./plan_form.js";
 
 const MOST_NOTES = 12;
 const EMPTY = { mode: "whole", rooms: [], passes: 1, fan: "standard" };
+const QUIET_DAYS = { all: [0, 1, 2, 3, 4, 5, 6], work: [0, 1, 2, 3, 4], rest: [5, 6] };
 const WEEK = ["Mon", "Tue", "Wed", "Thu", "Fri", "Sat", "Sun"];
 
 let told = null; // what the server told last
@@ -17,7 +18,8 @@ let asked = 0; // the version that was asked for last
 export function begin() {
   $("plan-new").onclick = () => edit("New plan", { name: "", is_on: true, begins: today(), rule: "FREQ=DAILY", at: ["09:00"], order: EMPTY }, true);
   $("preset-new").onclick = () => edit("New preset", { name: "", order: EMPTY }, false);
-  $("quiet-add").onclick = () => quiet([...told.quiet, { begins: $("quiet-begins").value, ends: $("quiet-ends").value }]);
+  $("quiet-add").onclick = () => quiet([...told.quiet, { begins: $("quiet-begins").value, ends: $("quiet-ends").value, days: QUIET_DAYS[$("quiet-days").value] }]);
+  $("zone-change").onclick = changeZone;
   $("plan-waits").onchange = () => change("household/waits", { wanted: $("plan-waits").checked });
   $("plan-person").onchange = () => change("household/presence", { at_home: $("plan-person").checked });
   $("plans").ontoggle = () => { asked = 0; show(); };
@@ -107,6 +109,11 @@ async function edit(heading, given, isPlan) {
   while (entered && !await wish(path, entered, "PUT"))
     entered = await askPlan(heading, entered, told.presets, isPlan, isNew, $("refusal").textContent);
   await showAll(get("state")?.plans?.version ?? 0);
+}
+
+async function changeZone() {
+  const zone = told && await askName("Time zone, such as Europe/Berlin", told.zone);
+  if (zone) await change("household/zone", { zone });
 }
 
 function quiet(hours) { return change("household/quiet", { quiet: hours }); }
