@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 import pytest
 from axe_playwright_python.sync_playwright import Axe
 from playwright.sync_api import Route
-from web.conftest import Opened
+from web.conftest import SIZES, Opened
 
 from roomba.ui.web.app import STATIC
 
@@ -51,6 +52,20 @@ def test_axe_finds_no_serious_fault(opened: Opened, scheme: str) -> None:
 def test_the_page_is_light() -> None:
     sizes = {file: file.stat().st_size for file in STATIC.rglob("*") if file.is_file()}
     assert 50_000 < sum(sizes.values()) <= MOST_BYTES
+
+
+def test_all_modules_are_asked_for_at_once() -> None:
+    """And not one after the other, as each names the next."""
+    asked = re.findall(r'rel="modulepreload" href="([^"]+)"', (STATIC / "index.html").read_text())
+    modules = {file.relative_to(STATIC).as_posix() for file in STATIC.rglob("*.js")}
+    assert sorted(asked) == sorted(modules - {"app.js"})
+
+
+@pytest.mark.parametrize("size", [SIZES["phone"]])
+def test_it_is_painted_within_a_second(opened: Opened) -> None:
+    """Of opening it on loopback, when nothing of it is kept yet."""
+    first = opened.page.evaluate("() => performance.getEntriesByName('first-paint')[0].startTime")
+    assert 0.0 < first <= 1000.0
 
 
 def test_nothing_comes_from_outside(opened: Opened) -> None:
