@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import signal
 import sys
+import threading
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -14,6 +16,7 @@ from fixtures.probe import Probe
 from fixtures.processes import Program
 from fixtures.waiting import unchanged, wait_until
 from roomba_robot.msg import VacuumState
+from rosgraph_msgs.msg import Clock
 from std_msgs.msg import Float32, String
 
 from roomba.recordings.bags.mending import mend_bag, needs_mending
@@ -126,7 +129,9 @@ def test_what_goes_wrong_is_saved_with_what_was_before(graph: RosGraph, tmp_path
     assert "speed-pub-node" in path.name or "both-wheels-spin" in path.name
     kept = counts(path)
     assert kept == list(range(kept[0], kept[0] + len(kept)))
-    assert wrong - 90 < kept[0] < wrong < kept[-1]
+    # Fifty a second: three seconds before, as asked for, and two after.
+    assert wrong - 160 < kept[0] < wrong - 110
+    assert wrong + 40 < kept[-1]
     with rosbag.Bag(str(path)) as bag:
         assert [message.data for _, message, _ in bag.read_messages("/map")] == ["a map"]
         said = [message.data for _, message, _ in bag.read_messages("/trouble")]
@@ -134,6 +139,44 @@ def test_what_goes_wrong_is_saved_with_what_was_before(graph: RosGraph, tmp_path
     recorder.send(signal.SIGINT)
     assert recorder.ends(20.0) == 0
     assert "1 mishaps saved" in recorder.output
+
+
+def test_a_whole_minute_before_is_saved_however_fast_the_clock_goes(
+    graph: RosGraph, tmp_path: Path
+) -> None:
+    graph.set_param("/use_sim_time", True)
+    probe, folder = Probe(graph), tmp_path / "mishaps"
+    clock = probe.publisher("/clock", Clock)
+    count = probe.publisher("/count", Float32)
+    trouble = probe.publisher("/trouble", String)
+    recorder = record(graph, "--when-wrong", str(folder))
+    tenths = 0
+
+    def tell(done: Callable[[], bool]) -> None:
+        """Let the robot's clock go twenty times as fast as ours, and tell each tenth of it."""
+        nonlocal tenths
+        pace = threading.Event()
+        while not done():
+            tenths += 1
+            clock.publish(Clock(rospy.Time(tenths // 10, tenths % 10 * 10**8)))
+            count.publish(float(tenths))
+            pace.wait(0.005)
+
+    topics = (clock, count, trouble)
+    tell(
+        lambda: (
+            all(each.get_num_connections() > 0 for each in topics) or recorder.status is not None
+        )
+    )
+    began = tenths
+    tell(lambda: tenths > began + 800)
+    wrong = tenths
+    trouble.publish("mission_node hangs")
+    tell(lambda: bool(list(folder.glob("wrong-*.bag"))) or tenths > wrong + 4000)
+    kept = counts(next(folder.glob("wrong-*.bag")))
+    assert kept == list(range(kept[0], kept[0] + len(kept)))
+    assert wrong - 660 < kept[0] < wrong - 540
+    assert kept[-1] > wrong + 20
 
 
 def test_without_a_master_it_says_so(tmp_path: Path) -> None:

@@ -115,7 +115,9 @@ def test_a_person_cleans_pauses_edits_and_stops(robot_with_page: RosGraph) -> No
         assert "emergency" in page.inner_text("#last-text").lower()
         wait_until(lambda: kept_runs() != [], 10.0)
         (kept,) = kept_runs()
-        assert kept.figures.source.home == "flat"
+        source = kept.figures.source
+        assert (source.home, source.seed) == ("flat", 0)
+        assert source.repeat == "./roomba run home:=flat seed:=0"
         assert "emergency" in kept.figures.message.lower()
         assert kept.is_recorded
         page.locator("#rooms button").first.click()

@@ -83,7 +83,7 @@ class Recording:
 
 
 class BlackBox:
-    """The last seconds, saved when something goes wrong."""
+    """The last seconds before something went wrong, and what came in the two after it, saved."""
 
     def __init__(self, folder: Path, seconds: float) -> None:
         """Keep nothing yet; raises OSError if there can be no such folder."""
@@ -91,15 +91,22 @@ class BlackBox:
         self._folder, self._ring, self._wrongs = folder, Ring(seconds, _MOST_BYTES), Wrongs()
         self._lock = threading.Lock()
         self._reason, self._due, self._rests_until = "", 0.0, 0.0
+        self._mishap: list[Message] = []
+        self._room = 0
         self.saved = 0
 
     def take(self, message: Message) -> None:
         """Keep a message, and notice what it says."""
-        self._ring.add(message)
         with self._lock:
-            reason = self._wrongs.heard(message)
+            self._ring.add(message)
             now = time.monotonic()
+            if self._reason and now < self._due and self._room > 0:
+                self._mishap.append(message)
+                self._room -= len(message.raw)
+            reason = self._wrongs.heard(message)
             if reason and not self._reason and now >= self._rests_until:
+                # What the ring has now: by a fast clock it would lose much of it until it is saved.
+                self._mishap, self._room = self._ring.messages(), _MOST_BYTES
                 self._reason, self._due = reason, now + _AFTER
 
     def tick(self) -> None:
@@ -108,22 +115,23 @@ class BlackBox:
         with self._lock:
             if not self._reason or now < self._due:
                 return
-            reason, self._reason, self._rests_until = self._reason, "", now + _REST
-        self._save(reason)
+            self._rests_until = now + _REST
+        self._save()
 
     def close(self) -> str:
         """Save what is still to be saved; return what is told. Raises OSError."""
-        with self._lock:
-            reason, self._reason = self._reason, ""
-        if reason:
-            self._save(reason)
+        if self._reason:
+            self._save()
         return f"{self._folder}: {self.saved} mishaps saved"
 
-    def _save(self, reason: str) -> None:
+    def _save(self) -> None:
+        with self._lock:
+            reason, self._reason = self._reason, ""
+            mishap, self._mishap = self._mishap, []
         begun = time.strftime("%Y%m%d-%H%M%S", time.gmtime())
         words = re.sub(r"[^a-z0-9]+", "-", reason.lower()).strip("-")[:60]
         path = self._folder / f"wrong-{begun}-{words}.bag"
-        save(self._ring.messages(), path)
+        save(mishap, path)
         self.saved += 1
         print(f"{reason}\n    saved as {path}", flush=True)
         for old in keep_newest(self._folder, _PATTERN, _MOST_FILES, _MOST_DISK):
