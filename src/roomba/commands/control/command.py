@@ -45,6 +45,8 @@ def _parser() -> argparse.ArgumentParser:
         prog=PROGRAM,
         description="The menu: dirt, position, walk, clean, pause, dock, explore. Without --demo "
         "of the robot that runs on ROS.",
+        epilog="Exit status: 0 when it was left, 1 when no robot runs on ROS, 2 for wrong usage, "
+        "130 after Ctrl-C.",
     )
     parser.add_argument(
         "--demo", action="store_true", help="of a robot in a simulated home, without ROS"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import math
+from typing import Final
 
 from roomba.commands.options import MOST_SEED, number, whole
 from roomba.commands.trials.homes import playable_home_of, rooms_of
@@ -17,6 +18,9 @@ from roomba.headless.cleaner import HeadlessMission
 from roomba.headless.live.client import LiveClient
 from roomba.headless.live.playing import Playing
 from roomba.headless.live.robot import SPEEDS
+
+_OPTIONS: Final = ("home", "seed", "speed", "map", "bin", "wheels")
+"""What :func:`add_robot_options` adds."""
 
 
 def wanted_robot(wanted: argparse.Namespace) -> LiveClient:
@@ -58,6 +62,13 @@ def live_client(
         empties_bin_after=math.inf,
     )
     return LiveClient(Playing(home, mission), mission, rooms, speed)
+
+
+def require_demo(parser: argparse.ArgumentParser, wanted: argparse.Namespace) -> None:
+    """Leave with status 2 where options of a robot of its own are given without ``--demo``."""
+    for name in _OPTIONS:
+        if not wanted.demo and getattr(wanted, name) != parser.get_default(name):
+            parser.error(f"--{name}: of a robot in a simulated home, so expected --demo as well")
 
 
 def add_robot_options(parser: argparse._ActionsContainer) -> None:

@@ -10,7 +10,7 @@ from typing import Final
 
 from roomba.client.address import HERE, page_address, token_for
 from roomba.client.ports import DEFAULT_PORT, PORTS
-from roomba.commands.play.living import add_robot_options, wanted_robot
+from roomba.commands.play.living import add_robot_options, require_demo, wanted_robot
 from roomba.commands.spelling import spelled
 from roomba.commands.status.asking import NoRobotError, find_robot, state_at
 from roomba.errors import RoombaError
@@ -27,7 +27,9 @@ PROGRAM: Final = spelled("top")
 
 def main(arguments: list[str] | None = None) -> int:
     """Show a robot until its user leaves; returns 0, 1 when none answers, or 2 for wrong usage."""
-    wanted = _parser().parse_args(arguments)
+    parser = _parser()
+    wanted = parser.parse_args(arguments)
+    require_demo(parser, wanted)
     try:
         if wanted.demo:
             with _demo_robot(wanted) as (port, token):

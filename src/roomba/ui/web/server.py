@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import errno
 import socket
 import threading
 from typing import Final
@@ -14,7 +15,7 @@ from roomba.client.ports import PORTS
 from roomba.errors import RoombaError
 from roomba.ui.web.bounded.connections import GuardedConnection, GuardedSocket
 from roomba.ui.web.bounded.limits import BACKLOG, MOST_BODY, PING, SENT_AHEAD
-from roomba.ui.web.reach import addresses_of
+from roomba.ui.web.reach import ALL, addresses_of
 
 _START: Final = 10.0
 """s of wall time within which the server must be up."""
@@ -39,6 +40,10 @@ def listen(host: str, port: int, *, is_fixed: bool) -> socket.socket:
             bound.bind((host, tried))
         except OSError as error:
             bound.close()
+            if error.errno == errno.EADDRNOTAVAIL:
+                raise ServerError(
+                    f"expected an address of this machine, got {host}; {ALL} stands for all of them"
+                ) from error
             reason = error
         else:
             return bound

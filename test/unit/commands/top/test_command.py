@@ -59,6 +59,13 @@ def test_it_says_where_it_looked_and_what_it_expects(
     assert said in capsys.readouterr().err
 
 
+def test_a_home_without_a_robot_of_its_own_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as ended:
+        main(["--home", "studio"])
+    assert ended.value.code == 2
+    assert "--home: of a robot in a simulated home, so expected --demo" in capsys.readouterr().err
+
+
 def test_an_unknown_home_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["--demo", "--home", "nowhere"]) == 2
     assert "nowhere" in capsys.readouterr().err

@@ -44,3 +44,8 @@ def test_it_answers_at_its_address_until_it_is_stopped() -> None:
     server.stop()
     with pytest.raises(OSError, match="refused"):
         urllib.request.urlopen(server.address, timeout=5.0)
+
+
+def test_an_address_of_another_machine_is_refused() -> None:
+    with pytest.raises(ServerError, match="an address of this machine, got 203"):
+        listen("203.0.113.9", 0, is_fixed=True)
