@@ -62,22 +62,25 @@ def token_for(address: PageAddress, port: int) -> str:
     """
     if address.token:
         return address.token
-    if address.host not in _LOOPBACK or listener_of(port) not in (os.geteuid(), 0):
-        return ""
-    return read_token() or ""
+    listeners = listeners_of(port)
+    is_own = bool(listeners) and listeners <= {os.geteuid(), 0}
+    return (read_token() or "") if is_own and address.host in _LOOPBACK else ""
 
 
-def listener_of(port: int, sockets: Path = _SOCKETS) -> int | None:
-    """Return the user whose program listens at a port of this machine; None if that is not told."""
+def listeners_of(port: int, sockets: Path = _SOCKETS) -> set[int]:
+    """Return the users whose programs listen at a port of this machine, at any of its addresses.
+
+    Empty where that is not told.
+    """
+    users: set[int] = set()
     try:
-        lines = sockets.read_text("ascii").splitlines()[1:]
-        for line in lines:
+        for line in sockets.read_text("ascii").splitlines()[1:]:
             _, local, _, state, _, _, _, user, *_ = line.split()
             if state == _LISTENS and int(local.rpartition(":")[2], 16) == port:
-                return int(user)
+                users.add(int(user))
     except (OSError, ValueError):
-        pass
-    return None
+        return set()
+    return users
 
 
 def outside_address() -> str:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from roomba.client.address import PageAddress, listener_of, page_address, token_for
+from roomba.client.address import PageAddress, listeners_of, page_address, token_for
 from roomba.errors import RoombaError
 
 KEPT = "a-kept-token-of-this-user"
@@ -44,7 +44,7 @@ def test_what_is_no_address_is_refused(text: str) -> None:
 def test_a_program_of_this_user_is_told_the_kept_token() -> None:
     with socket.create_server(("127.0.0.1", 0)) as server:
         port = server.getsockname()[1]
-        assert listener_of(port) == os.geteuid()
+        assert listeners_of(port) == {os.geteuid()}
         assert token_for(PageAddress(port=port), port) == KEPT
         assert token_for(PageAddress("localhost", port), port) == KEPT
         assert token_for(PageAddress("127.0.0.1", port, "given"), port) == "given"
@@ -55,16 +55,20 @@ def test_a_program_of_this_user_is_told_the_kept_token() -> None:
 def test_a_program_of_another_user_is_told_none(monkeypatch: pytest.MonkeyPatch) -> None:
     with socket.create_server(("127.0.0.1", 0)) as server:
         port = server.getsockname()[1]
-        monkeypatch.setattr("roomba.client.address.listener_of", lambda _: os.geteuid() + 7)
-        assert token_for(PageAddress(port=port), port) == ""
+        other = os.geteuid() + 7
+        for users in ({other}, {other, os.geteuid()}):
+            monkeypatch.setattr("roomba.client.address.listeners_of", lambda _, them=users: them)
+            assert token_for(PageAddress(port=port), port) == ""
 
 
 def test_sockets_that_only_speak_or_cannot_be_read_are_no_listeners(tmp_path: Path) -> None:
     table = tmp_path / "tcp"
     row = "{}: 0100007F:20D0 00000000:0000 {} 00000000:00000000 00:00000000 00000000 {} 0 1\n"
-    table.write_text("head\n" + row.format(0, "01", 5) + row.format(1, "0A", 6))
-    assert listener_of(0x20D0, table) == 6
-    assert listener_of(0x20D1, table) is None
-    assert listener_of(0x20D0, tmp_path / "none") is None
+    table.write_text(
+        "head\n" + row.format(0, "01", 5) + row.format(1, "0A", 6) + row.format(2, "0A", 7)
+    )
+    assert listeners_of(0x20D0, table) == {6, 7}
+    assert listeners_of(0x20D1, table) == set()
+    assert listeners_of(0x20D0, tmp_path / "none") == set()
     table.write_text("head\nsomething else\n")
-    assert listener_of(0x20D0, table) is None
+    assert listeners_of(0x20D0, table) == set()

@@ -14,7 +14,7 @@ from roomba.ui.top.app import TopApp
 from roomba.ui.top.link import PageLink
 from roomba.world.home.home import Home
 
-_SPEED: Final = 20.0
+_SPEED: Final = 60.0
 """The robot's seconds per second."""
 _CLEANED: Final = 6.0
 """m2 that are clean in the picture."""
