@@ -66,7 +66,7 @@ def test_a_report_has_a_policy_of_its_own(client: TestClient) -> None:
 
 def test_what_there_is_not_is_said(client: TestClient) -> None:
     assert client.get("/api/v1/history/9/report.html").status_code == 404
-    assert "newest is 2, got 9" in client.get("/api/v1/history/9/report.html").text
+    assert "the newest is 2, got 9" in client.get("/api/v1/history/9/report.html").text
     assert client.get("/replay/9/").status_code == 404
     assert "found none" in client.get("/replay/2/").json()["detail"]
     assert client.get("/replay/none").status_code == 404
