@@ -64,8 +64,11 @@ class DirtyFloor:
             return None
         patches = numbered_regions(dilated(cells, _AROUND))
         at_hand = self._are_near(patches, here)
-        if at_hand.any():
-            at_hand &= self._are_whole(patches, coverage, floor)
+        if not at_hand.any():
+            return None
+        at_hand &= self._are_whole(patches, at_hand, coverage, floor)
+        if not at_hand.any():
+            return None
         cells &= at_hand[patches]
         self._told |= cells
         self._last = cells
@@ -92,13 +95,16 @@ class DirtyFloor:
         are_near[patches[rows, columns][away < self._config.dirty_near + _HAIR]] = True
         return are_near
 
-    def _are_whole(self, patches: Labels, coverage: CoverageMap, floor: Mask) -> Mask:
-        """Return the same of whether all that is wanted of it, and around it, is swept."""
-        fine = self._dirt.over(patches, coverage.frame)
-        fine[~floor] = 0
-        count = int(patches.max()) + 1
-        wanted = np.bincount(fine.ravel(), minlength=count)
-        missed = np.bincount(fine[coverage.missed], minlength=count)
+    def _are_whole(self, patches: Labels, asked: Mask, coverage: CoverageMap, floor: Mask) -> Mask:
+        """Return the same of whether all that is wanted of it, and around it, is swept.
+
+        Only those ``asked`` for, bool [patches + 1], are looked at in full.
+        """
+        window = self._dirt.window_of(asked[patches], coverage.frame)
+        fine = self._dirt.over(patches, coverage.frame, window)
+        fine[~floor[window]] = 0
+        wanted = np.bincount(fine.ravel(), minlength=asked.size)
+        missed = np.bincount(fine[coverage.missed[window]], minlength=asked.size)
         are_whole: Mask = missed <= _MISSED * wanted
         are_whole[0] = False
         return are_whole

@@ -15,9 +15,12 @@ from roomba.raster.carried import carried
 
 Floats = NDArray[np.float32]
 Mask = NDArray[np.bool_]
+Window = tuple[slice, slice]
+"""Rows and columns of a part of a grid."""
 
 CELL: Final = 0.20
 """m; about the width of the tool, which limits the sensor's resolution."""
+_ALL_OF_IT: Final = (slice(None), slice(None))
 _LEARNING: Final = 0.4
 """Share of the newest run in what a cell is taken for."""
 _OFF_SIDES: Final = 1.3e-5
@@ -107,14 +110,29 @@ class DirtMap:
         known: Floats = np.where(self.way > 0.5 * CELL, self._density_now(), self.learned)
         return known
 
-    def over(self, values: NDArray[Any], frame: GridFrame) -> NDArray[Any]:
-        """Return values of the map's own cells at the middles of another grid's cells."""
-        rows = ((np.arange(frame.rows) + 0.5) * frame.resolution / CELL).astype(np.int64)
-        columns = ((np.arange(frame.columns) + 0.5) * frame.resolution / CELL).astype(np.int64)
+    def over(
+        self, values: NDArray[Any], frame: GridFrame, window: Window = _ALL_OF_IT
+    ) -> NDArray[Any]:
+        """Return values of the map's own cells at the middles of another grid's cells.
+
+        Only of the part of that grid in ``window``.
+        """
+        rows = ((np.arange(frame.rows)[window[0]] + 0.5) * frame.resolution / CELL).astype(np.int64)
+        columns = ((np.arange(frame.columns)[window[1]] + 0.5) * frame.resolution / CELL).astype(
+            np.int64
+        )
         over: NDArray[Any] = values[
             np.ix_(np.minimum(rows, values.shape[0] - 1), np.minimum(columns, values.shape[1] - 1))
         ]
         return over
+
+    def window_of(self, cells: Mask, frame: GridFrame) -> Window:
+        """Return the part of another grid that some of the map's own cells, not none, lie on."""
+        first, last = np.argwhere(cells).min(axis=0), np.argwhere(cells).max(axis=0) + 1
+        parts = CELL / frame.resolution
+        starts = np.floor(first * parts).astype(np.int64)
+        ends = np.ceil(last * parts).astype(np.int64)
+        return slice(int(starts[0]), int(ends[0])), slice(int(starts[1]), int(ends[1]))
 
     def _density_now(self) -> Floats:
         area = np.maximum(self.way, 0.05) * CELL

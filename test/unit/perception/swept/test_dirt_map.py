@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from roomba.grid import FREE, GridFrame, OccupancyMap
 from roomba.perception.swept.dirt_map import CELL, DirtMap, dirty_from
+from roomba.planning.coverage.floor.floor import fine_frame
 
 COARSE = GridFrame(0.05, -1.0, 2.0, 40, 61)
 MAP = OccupancyMap(COARSE, np.full(COARSE.shape, FREE, np.int8))
@@ -60,6 +61,18 @@ def test_the_last_bits_do_not_decide_which_cell_counts_on_a_way_along_its_side()
     for x in (side - 1e-12, side, side + 1e-12):
         dirt.note(x, HERE[1], 1.0, 0.1)
     assert dirt.grains.max() == dirt.grains.sum() == 3.0
+
+
+def test_a_part_of_another_grid_is_what_lies_below_the_cells() -> None:
+    dirt, fine = DirtMap(MAP), fine_frame(COARSE, 0.01)
+    cells = np.zeros(dirt.frame.shape, np.bool_)
+    cells[2, 3] = cells[4, 5] = True
+    window = dirt.window_of(cells, fine)
+    whole = dirt.over(cells, fine)
+    rows, columns = np.nonzero(whole)
+    assert (window[0].start, window[0].stop) == (rows.min(), rows.max() + 1)
+    assert (window[1].start, window[1].stop) == (columns.min(), columns.max() + 1)
+    assert (dirt.over(cells, fine, window) == whole[window]).all()
 
 
 def test_density_is_by_the_floor_that_the_tool_passed() -> None:
