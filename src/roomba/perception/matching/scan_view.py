@@ -45,6 +45,14 @@ class Fit:
     evidence: float
 
 
+def plain_ranges(ranges: Ranges) -> Ranges:
+    """Return a scan as it is, or a copy if its numbers lie apart or may not be written.
+
+    Kernels would be compiled anew, for seconds, for each such kind of array.
+    """
+    return np.require(ranges, np.float32, ("C", "W"))
+
+
 class LidarModel:
     """Where the beams of a lidar go: angles in its own frame, the mount in the robot's frame."""
 
@@ -115,15 +123,15 @@ class LidarModel:
         if self._arrays is None:
             self._arrays = self.arrays()
         still, work = np.empty(self.beams, np.float32), np.empty((SWEEP_WORK, max(self.beams, 3)))
-        at_once(ranges, self._arrays, path, stamp, still, work)
+        at_once(plain_ranges(ranges), self._arrays, path, stamp, still, work)
         return still
 
     def view(self, ranges: NDArray[np.float32]) -> ScanView:
         """Return a scan, float32 [beams], m; raises ValueError for another number of beams."""
         if ranges.shape != (self.beams,):
             raise ValueError(f"expected a scan of {self.beams} ranges, got shape {ranges.shape}")
-        ends = np.empty((self.beams, 4))
-        count = beam_ends(ranges, self._directions, self.mount, self._nearest, self._farthest, ends)
+        ends, plain = np.empty((self.beams, 4)), plain_ranges(ranges)
+        count = beam_ends(plain, self._directions, self.mount, self._nearest, self._farthest, ends)
         return ScanView(ends[:count], self.mount)
 
 

@@ -19,7 +19,7 @@ from roomba.grid import OccupancyMap
 from roomba.perception.localization.dead_reckoning import DeadReckoning
 from roomba.perception.localization.estimate import Estimate
 from roomba.perception.matching.pose_kernels import beyond
-from roomba.perception.matching.scan_view import LidarModel, PlacedScan
+from roomba.perception.matching.scan_view import LidarModel, PlacedScan, plain_ranges
 from roomba.perception.slam.following.finding_back import FindingBack
 from roomba.perception.slam.following.scan_follower import ScanFollower
 from roomba.perception.slam.following.scan_kernels import Following
@@ -104,6 +104,7 @@ class Mapper:
             raise ValueError(f"expected a scan of {lidar.beams} ranges, got shape {ranges.shape}")
         if lidar is not self._lidar:
             self._use(lidar)
+        ranges = plain_ranges(ranges)
         points = follower.see(stamp, ranges)
         if self._relocation.is_lost:
             self._relocate(stamp, points)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from roomba.geometry import Pose
-from roomba.perception.matching.scan_view import LidarModel
+from roomba.perception.matching.scan_view import LidarModel, plain_ranges
 
 
 def test_beam_0_is_ahead_and_the_others_follow_counter_clockwise() -> None:
@@ -56,3 +56,15 @@ def test_a_view_does_not_change_with_the_next_scan() -> None:
     before = first.ends.copy()
     lidar.view(np.full(4, 2.0, np.float32))
     assert (first.ends == before).all()
+
+
+def test_ranges_that_lie_apart_or_may_not_be_written_are_copied_and_others_are_not() -> None:
+    plain = np.arange(8, dtype=np.float32)
+    fixed = plain.copy()
+    fixed.flags.writeable = False
+    assert plain_ranges(plain) is plain
+    for odd in (fixed, plain[::-1], plain[::2]):
+        made = plain_ranges(odd)
+        assert made.tolist() == odd.tolist()
+        assert made.flags.c_contiguous
+        assert made.flags.writeable
