@@ -8,7 +8,6 @@ import rospy
 from actionlib_msgs.msg import GoalStatus
 from fixtures.graph import RosGraph
 from fixtures.probe import Probe, Walker
-from fixtures.standstill import PROMISE
 from fixtures.waiting import wait_until
 from nav_msgs.msg import OccupancyGrid, Odometry
 from roomba_robot.msg import RobotPosition
@@ -78,29 +77,16 @@ def test_what_cannot_be_walked_to_is_rejected_at_once(
 
 
 def test_cancel_stops_it_on_its_way(shared_robot: RosGraph) -> None:
-    """After a cancel the robot stands as soon as is promised, and stays where it is."""
+    """After a cancel the robot stands and stays where it is; how soon: test_standstill.py."""
     probe = Probe(shared_robot)
-    told: list[tuple[float, float]] = []
-    rospy.Subscriber(
-        "/odom",
-        Odometry,
-        lambda m: told.append((m.header.stamp.to_sec(), m.twist.twist.linear.x)),
-    )
     walker = Walker()
     walker.send(3.0, 4.0)
-    wait_until(lambda: told and probe.speed() > 0.45, 30.0, "full speed")
-    begin = told[-1][0]
+    wait_until(lambda: probe.speed() > 0.45, 30.0, "full speed")
     walker.cancel()
     assert walker.ends(30.0) == GoalStatus.PREEMPTED
-
-    def stood() -> list[float]:
-        return [stamp for stamp, speed in list(told) if stamp > begin and abs(speed) < 0.01]
-
-    wait_until(stood, 30.0, "it stands")
-    assert stood()[0] - begin <= PROMISE + 1e-6
-    stopped = probe.position()
-    since = told[-1][0]
-    wait_until(lambda: told[-1][0] > since + 1.0, 30.0, "a second passes")
+    wait_until(lambda: probe.speed() < 0.01, 30.0, "it stands")
+    stopped, since = probe.position(), rospy.get_time()
+    wait_until(lambda: rospy.get_time() > since + 1.0, 30.0, "a second passes")
     assert math.dist(probe.position(), stopped) < 0.02
     assert math.dist(stopped, (3.0, 4.0)) > 1.0
 
