@@ -38,30 +38,34 @@ LONGEST_FIRST = (
     "test_conformance.py",
     "test_faults.py",
     "test_supervision.py",
-    "test_map_topics.py",
+    "test_page.py",
     "test_turn_camera.py",
-    "test_clean.py",
-    "test_seed.py",
-    "test_bags.py",
-    "test_map_kept.py",
-    "test_menu.py",
-    "test_refused_messages.py",
-    "test_home_sim_sensors.py",
-    "test_walk_to_point_action_server.py",
-    "test_foreign_robot.py",
-    "test_walk.py",
+    "test_map_topics.py",
     "test_mission_node.py",
+    "test_refused_messages.py",
+    "test_bags.py",
+    "test_clean.py",
+    "test_pictures.py",
+    "test_walk_to_point_action_server.py",
+    "test_programs.py",
+    "test_home_sim_sensors.py",
+    "test_seed.py",
+    "test_menu.py",
     "test_home_sim_node.py",
+    "test_map_kept.py",
+    "test_foreign_robot.py",
+    "test_namespaces.py",
+    "test_walk.py",
     "test_speed_pub_node.py",
     "test_localization.py",
-    "test_namespaces.py",
     "test_position_pub_node.py",
-    "test_control_node.py",
     "test_explore.py",
-    "test_ros_interface.py",
-    "test_page.py",
-    "test_pictures.py",
     "test_page_on_graph.py",
+    "test_clock.py",
+    "test_control_node.py",
+    "test_record.py",
+    "test_connections.py",
+    "test_ros_interface.py",
 )
 """Files that take longest, so that no worker is left with one when the others have ended; those
 that wait and those that compute by turns."""
@@ -89,22 +93,15 @@ SLOW = (
 
 
 TIMED = (
-    "contract/test_seed.py",
     "ros/runtime",
     "ros/supervision",
-    "ros/test_control_node.py",
-    "ros/test_dirt_pub_node.py",
-    "ros/test_home_sim_node.py",
-    "ros/test_pace.py",
-    "ros/test_position_pub_node.py",
     "ros/test_speed_pub_node.py",
-    "system/faults",
-    "system/test_foreign_robot.py",
-    "system/test_isolation.py",
-    "system/test_walk.py",
+    "system/faults/test_faults.py",
+    "system/faults/test_standstill.py",
+    "system/faults/test_supervision.py",
 )
-"""Folders and files that assert promises of tenths of a second, or rates: nothing computes beside
-them."""
+"""Folders and files that assert promises of tenths of a second, or of a few seconds, of wall time:
+nothing computes beside them."""
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
