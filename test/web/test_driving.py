@@ -25,6 +25,20 @@ def test_the_emergency_stop_is_a_button_and_a_key(opened: Opened) -> None:
     opened.wait_for_phase("emergency stop")
 
 
+def test_escape_in_a_dialog_closes_that_alone(opened: Opened) -> None:
+    """The next one is the emergency stop again."""
+    page = opened.page
+    page.keyboard.press("?")
+    page.wait_for_selector("#keys[open]")
+    page.keyboard.press("Escape")
+    page.wait_for_selector("#keys:not([open])", state="attached")
+    # A robot that is held would refuse it.
+    page.get_by_role("button", name="Clean all").click()
+    opened.wait_for_phase("cleaning")
+    page.keyboard.press("Escape")
+    opened.wait_for_phase("emergency stop")
+
+
 def test_driving_by_hand_lasts_as_long_as_a_key_is_held(opened: Opened) -> None:
     page = opened.page
     page.get_by_role("button", name="Clean all").click()

@@ -4,8 +4,9 @@ import { pan, toFloor, view, zoom } from "../map/view.js";
 import { isInside } from "../map/zones.js";
 import { get, set } from "../store.js";
 import { emergency, pauseOrResume } from "./actions.js";
+import { close } from "./card.js";
 import { hold, isOpen, release } from "./drive.js";
-import { close, offerPlace } from "./offer.js";
+import { offerPlace } from "./offer.js";
 import * as replay from "./replay.js";
 import { toggleNumber } from "./rooms.js";
 import * as zones from "./zones.js";
@@ -22,6 +23,7 @@ export function begin() {
 
 function down(event) {
   if (event.key === "Escape") {
+    if (document.querySelector("dialog[open]")) return; // it closes that
     close();
     set("drawing", null);
     if (!replay.isShown()) emergency();

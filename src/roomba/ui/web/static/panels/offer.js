@@ -1,16 +1,15 @@
 /** What can be done at a place that was tapped, and only that. */
-import { $, button } from "../dom.js";
+import { $ } from "../dom.js";
 import { wish } from "../link.js";
-import { toScreen } from "../map/view.js";
 import { isInside, zoneAt } from "../map/zones.js";
 import { get, offers, set } from "../store.js";
 import { title } from "../words.js";
 import { how } from "./actions.js";
+import { open } from "./card.js";
 import { isShown } from "./replay.js";
 import { toggle } from "./rooms.js";
 import { offerZone } from "./zones.js";
 
-const MARGIN = 8, BESIDE = 20; // pixels
 const NEAR = 0.4; // m from a door's middle that still mean it
 
 /** Choose the room at (x, y), m, or the zone, and offer what else can be done at these pixels. */
@@ -46,36 +45,4 @@ function playful(x, y) {
   if (offers("door") && door) acts.push([`${door.is_shut ? "Open" : "Shut"} the door`, () => wish("play/door", { name: door.name, is_shut: !door.is_shut })]);
   if (offers("lift")) acts.push(["Put the robot here", () => wish("play/put", { x, y, theta: state?.pose[2] ?? 0 })]);
   return acts;
-}
-
-let dismiss = null; // what is to be done when the card is closed without a choice
-
-/** Let the card close when something else is touched. */
-export function begin() {
-  addEventListener("resize", close);
-  document.addEventListener("pointerdown", (event) => { if (!event.target.closest("#offer")) close(); }, true);
-}
-
-/** Open a card with a title and [words, act] for each button, beside a place, m; `otherwise` is done without a choice. */
-export function open(words, acts, at, otherwise = null) {
-  const place = $("offer");
-  close();
-  dismiss = otherwise;
-  $("offer-title").textContent = words;
-  $("offer-acts").replaceChildren(...acts.map(([text, act]) => button(text, () => { dismiss = null; close(); act(); })));
-  place.hidden = false;
-  const { clientWidth: width, clientHeight: height } = place.parentElement, { offsetWidth, offsetHeight } = place, [px, py] = toScreen(...at);
-  const above = py - BESIDE - offsetHeight, below = py + BESIDE;
-  place.style.left = `${between(px - offsetWidth / 2, MARGIN, width - offsetWidth - MARGIN)}px`;
-  place.style.top = `${between(below + offsetHeight > height - MARGIN ? above : below, MARGIN, height - offsetHeight - MARGIN)}px`;
-  $("offer-acts").firstElementChild.focus({ preventScroll: true });
-}
-
-function between(value, least, most) { return Math.max(least, Math.min(value, most)); }
-
-/** Take the card away. */
-export function close() {
-  $("offer").hidden = true;
-  dismiss?.();
-  dismiss = null;
 }

@@ -6,7 +6,7 @@ import { shifted, withCorner } from "../map/zones.js";
 import { get, on, set } from "../store.js";
 import { title } from "../words.js";
 import { how } from "./actions.js";
-import * as offer from "./offer.js";
+import * as card from "./card.js";
 import { undo } from "./rooms.js";
 import * as sheet from "./sheet.js";
 
@@ -37,7 +37,7 @@ export function drawn(draft) {
 
 function offerKinds(draft) {
   const as = (kind) => () => { set("drawing", null); make({ ...draft, kind }); };
-  offer.open("What shall this be?", [
+  card.open("What shall this be?", [
     ["Clean it now", as("clean")], ["No-go zone", as("no-go")], ["Virtual wall", as("wall")], ["Nothing", () => set("drawing", null)],
   ], draft.to, () => set("drawing", null));
 }
@@ -75,7 +75,7 @@ export async function remove(zone) {
 /** Offer what can be done with the zone that is chosen. */
 export function offerZone(zone) {
   select(zone);
-  offer.open(`${zone.name}: drag it, or a corner`, [["Remove", () => remove(get("zone") ?? zone)], ["Done", () => set("zone", null)]], zone.points[0]);
+  card.open(`${zone.name}: drag it, or a corner`, [["Remove", () => remove(get("zone") ?? zone)], ["Done", () => set("zone", null)]], zone.points[0]);
 }
 
 /** Draw or move with keys; returns whether the key meant something here. */

@@ -1,0 +1,37 @@
+/** A card beside a place of the map: what can be done there. */
+import { $, button } from "../dom.js";
+import { toScreen } from "../map/view.js";
+
+const MARGIN = 8, BESIDE = 20; // pixels
+
+let dismiss = null; // what is to be done when the card is closed without a choice
+
+/** Let the card close when something else is touched. */
+export function begin() {
+  addEventListener("resize", close);
+  document.addEventListener("pointerdown", (event) => { if (!event.target.closest("#offer")) close(); }, true);
+}
+
+/** Open a card with a title and [words, act] for each button, beside a place, m; `otherwise` is done without a choice. */
+export function open(words, acts, at, otherwise = null) {
+  const place = $("offer");
+  close();
+  dismiss = otherwise;
+  $("offer-title").textContent = words;
+  $("offer-acts").replaceChildren(...acts.map(([text, act]) => button(text, () => { dismiss = null; close(); act(); })));
+  place.hidden = false;
+  const { clientWidth: width, clientHeight: height } = place.parentElement, { offsetWidth, offsetHeight } = place, [px, py] = toScreen(...at);
+  const above = py - BESIDE - offsetHeight, below = py + BESIDE;
+  place.style.left = `${between(px - offsetWidth / 2, MARGIN, width - offsetWidth - MARGIN)}px`;
+  place.style.top = `${between(below + offsetHeight > height - MARGIN ? above : below, MARGIN, height - offsetHeight - MARGIN)}px`;
+  $("offer-acts").firstElementChild.focus({ preventScroll: true });
+}
+
+function between(value, least, most) { return Math.max(least, Math.min(value, most)); }
+
+/** Take the card away. */
+export function close() {
+  $("offer").hidden = true;
+  dismiss?.();
+  dismiss = null;
+}
