@@ -99,6 +99,7 @@ def test_from_the_command_to_the_report_in_five_minutes(browser: Browser, tmp_pa
         report = opened.value
         assert report.inner_text("h1").startswith("Run 1: flat, ")
         assert "Stopped" in report.inner_text("main")
+        assert '"mode": "rooms"' in report.inner_text("pre >> nth=1")
     assert time.monotonic() - began < PROMISED
 
 

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable
-from typing import Final
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from typing import Any, Final
 
 import numpy as np
 
@@ -17,6 +18,7 @@ from roomba.errors import RoombaError
 from roomba.geometry import wrap_angle
 from roomba.history.database import History
 from roomba.history.run import (
+    REQUEST,
     TRACE,
     TRACE_STEP,
     CellLayer,
@@ -50,15 +52,17 @@ class RunRecorder:
         self.source = source
         self._run: _RunUnderWay | None = None
         self._last: CleanReport | None = None
+        self.wish: Mapping[str, Any] | None = None
+        """What the next run was asked for by, where that is known: plain values."""
 
     @property
     def so_far(self) -> RunSoFar | None:
         """The run that is under way, if there is one."""
-        return None if self._run is None else self._run.so_far(self.source)
+        return None if self._run is None else self._run.so_far()
 
     def resume(self, run: RunSoFar, view: RobotView) -> None:
         """Go on with a run that was kept until a moment ago, at a look that sees it go on."""
-        self._run = _RunUnderWay(view)
+        self._run = _RunUnderWay(view, run.source)
         self._run.resume(run)
         self._last = view.last
 
@@ -68,7 +72,7 @@ class RunRecorder:
         """Take a look; return the run that it was the end of."""
         report, self._last = self._last, view.last
         if self._run is None and view.vacuum.phase in BEGINS:
-            self._run = _RunUnderWay(view)
+            self._run = _RunUnderWay(view, self._source_of_run())
         if self._run is None:
             return None
         self._run.take(view)
@@ -76,10 +80,15 @@ class RunRecorder:
             run, self._run = self._run, None
             if view.last.outcome in _NOT_RUN:
                 return None
-            return run.figures(self.source, view.last), run.recording(home, layer)
+            return run.figures(view.last), run.recording(home, layer)
         if self._run.rests_since is not None and view.time - self._run.rests_since > _GIVEN_UP:
             self._run = None
         return None
+
+    def _source_of_run(self) -> RunSource:
+        """Return the source with what the run that begins was asked for by."""
+        wish, self.wish = self.wish, None
+        return self.source if wish is None else replace(self.source, configuration={REQUEST: wish})
 
 
 class HistoryKeeper:
@@ -98,6 +107,10 @@ class HistoryKeeper:
         self._unfinished = UnfinishedFile(history.path.parent)
         self._has_looked = False
         self._totals: TotalsView | None = None
+
+    def note(self, wish: Mapping[str, Any] | None) -> None:
+        """Remember what the next run is asked for by, plain values; None: it was refused."""
+        self._recorder.wish = wish
 
     def look(self, view: RobotView, home: HomeView, layer: Layers) -> None:
         """Take a look, and keep a run that it was the end of."""
@@ -164,7 +177,8 @@ class HistoryKeeper:
 class _RunUnderWay:
     """A run under way."""
 
-    def __init__(self, view: RobotView) -> None:
+    def __init__(self, view: RobotView, source: RunSource) -> None:
+        self._source = source
         self._began, self._wall = view.time, time.time()
         self._rows: list[tuple[float, ...]] = []
         self._words: list[Word] = []
@@ -192,9 +206,9 @@ class _RunUnderWay:
         sweeps = float(vacuum.wanted > 0.0 and vacuum.phase in _SWEEPS)
         self._rows.append((now, *view.pose, view.speed, battery, view.dirt, *progress, sweeps))
 
-    def so_far(self, source: RunSource) -> RunSoFar:
+    def so_far(self) -> RunSoFar:
         """Return what was seen."""
-        return RunSoFar(source, self._began, self._wall, self._rows, self._words)
+        return RunSoFar(self._source, self._began, self._wall, self._rows, self._words)
 
     def resume(self, run: RunSoFar) -> None:
         """Go on with what was seen before."""
@@ -202,11 +216,11 @@ class _RunUnderWay:
         self._rows, self._words = list(run.rows), list(run.words)
         self._turning = turning_of(run.trace)
 
-    def figures(self, source: RunSource, report: CleanReport) -> RunFigures:
+    def figures(self, report: CleanReport) -> RunFigures:
         """Return what was achieved."""
         explores = any(word.phase == "exploring" for word in self._words)
         return RunFigures(
-            source,
+            self._source,
             "explore" if explores else "clean",
             self._wall,
             report.outcome.value,

@@ -19,6 +19,8 @@ TRACE: Final = (
 swept."""
 TRACE_STEP: Final = 0.5
 """s of the robot's clock between two rows of a trace."""
+REQUEST: Final = "request"
+"""In a configuration: what was asked for, as the API of a page takes it, or as sim has it."""
 CELL_LAYERS: Final = ("map", "coverage")
 
 Floats = NDArray[np.float32]

@@ -40,6 +40,16 @@ def test_one_run_is_one_record() -> None:
     assert set(recording.layers) == {"map", "coverage"}
 
 
+def test_a_run_is_kept_with_what_it_was_asked_for_by_and_the_next_is_not() -> None:
+    recorder = RunRecorder(SOURCE)
+    recorder.wish = {"mode": "spot"}
+    runs = [next(run_of(recorder, replace(REPORT, duration=float(each)))) for each in range(2)]
+    assert [figures.source.configuration for figures, _ in runs] == [
+        {"request": {"mode": "spot"}},
+        {},
+    ]
+
+
 def test_what_ended_before_the_first_look_and_what_was_refused_is_no_run() -> None:
     recorder = RunRecorder(SOURCE)
     assert recorder.look(view(0.0, "docked", REPORT), HOME, layer) is None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Iterable, Sequence
 from html import escape
@@ -16,7 +17,7 @@ from roomba.history.report import words
 from roomba.history.report.chart import chart_svg
 from roomba.history.report.picture import floor_svg
 from roomba.history.report.style import STYLE
-from roomba.history.run import RunFigures, RunRecording
+from roomba.history.run import REQUEST, RunFigures, RunRecording
 from roomba.history.totals import totals_by_week
 
 _RATE_WINDOW: Final = 20.0
@@ -199,7 +200,11 @@ def _over_time(runs: Sequence[RunFigures]) -> str:
 
 def _again(run: RunFigures) -> str:
     command = run.source.repeat
-    return _section("To repeat it", f"<pre>{escape(command)}</pre>") if command else ""
+    wish = run.source.configuration.get(REQUEST)
+    body = f"<pre>{escape(command)}</pre>" if command else ""
+    if wish is not None and run.source.program != "sim":  # whose command says it all
+        body += f"<pre>POST /api/v1/clean\n{escape(json.dumps(wish))}</pre>"
+    return _section("To repeat it", body)
 
 
 def _differences(one: KeptRun, other: KeptRun) -> str:

@@ -19,6 +19,7 @@ from roomba.client.view import CleanOrder, ZoneView
 from roomba.vocabulary import LONGEST_NAME, MOST_CORNERS, MOST_PASSES, FanLevel, RoomWay
 
 _Value = TypeVar("_Value")
+Note = Callable[[dict[str, Any] | None], None]
 _QUALITY: Final = 85
 """Percent, of JPEG."""
 Coordinate = Annotated[float, Field(ge=-1000.0, le=1000.0, allow_inf_nan=False)]
@@ -159,15 +160,19 @@ class Answer(BaseModel):
 
 
 def api_of(
-    robot: ObservedRobot, limits: Mapping[str, Any], household: Household | None = None
+    robot: ObservedRobot,
+    limits: Mapping[str, Any],
+    note: Note,
+    household: Household | None = None,
 ) -> APIRouter:
     """Return the routes for one robot; ``limits`` are those of its server.
 
-    Its state tells of its household, if there is one.
+    ``note`` is told what each clean is asked for by, and None when the robot refuses it. Its state
+    tells of its household, if there is one.
     """
     api = APIRouter(prefix="/api/v1")
     _add_views(api, robot, limits, household)
-    _add_errands(api, robot)
+    _add_errands(api, robot, note)
     _add_edits(api, robot)
     _add_replay(api, robot)
     _add_camera(api, robot)
@@ -196,10 +201,16 @@ def _add_views(
         return {**of_robot, **of_server}
 
 
-def _add_errands(api: APIRouter, robot: ObservedRobot) -> None:
+def _add_errands(api: APIRouter, robot: ObservedRobot, note: Note) -> None:
     @api.post("/clean", summary="Begin a clean")
     def clean(wish: CleanWish) -> Answer:
-        return obeyed(lambda: robot.clean(order_of(wish)))
+        # Before it: the run may have begun when the robot has answered.
+        note(wish.model_dump(mode="json"))
+        try:
+            return obeyed(lambda: robot.clean(order_of(wish)))
+        except HTTPException:
+            note(None)
+            raise
 
     plain: tuple[tuple[str, str, Callable[[], None]], ...] = (
         ("explore", "Look at what the map does not show yet", robot.explore),

@@ -78,7 +78,8 @@ def create_app(
         redoc_url=None,
     )
     limits = {"server": SERVER_LIMITS, "rosbridge": None if bridge is None else bridge.limits}
-    app.include_router(api_of(robot, limits, household))
+    note = _forget if keeper is None else keeper.note
+    app.include_router(api_of(robot, limits, note, household))
     app.include_router(events_api(feed.events))
     if household is not None:
         app.include_router(household_api(household))
@@ -98,3 +99,7 @@ def create_app(
     app.mount("/", StaticFiles(directory=STATIC, html=True), name="page")
     app.add_middleware(GuardedRequests, guard=guard)
     return app
+
+
+def _forget(_: object) -> None:
+    """Keep nothing of what was asked for."""

@@ -135,3 +135,12 @@ def test_a_place_that_is_less_than_is_told_in_numbers_is_no_nothing(kept: KeptRu
     figures = replace(kept.figures, missed=(replace(miss, area=0.004),))
     read = Read(report_of(replace(kept, figures=figures), None))
     assert ["1", "hall", "< 0.01 m²", "a thing <stood> in the way"] in read.rows
+
+
+def test_what_a_run_was_asked_for_by_is_told_where_its_command_does_not(kept: KeptRun) -> None:
+    wish = {"request": {"mode": "rooms", "rooms": ["<hall>"]}}
+    for program, is_told in (("play", True), ("sim", False)):
+        source = replace(kept.figures.source, program=program, configuration=wish)
+        document = report_of(replace(kept, figures=replace(kept.figures, source=source)), None)
+        assert ("POST /api/v1/clean\n{&quot;mode&quot;: &quot;rooms&quot;" in document) is is_told
+        assert "<hall>" not in document

@@ -5,10 +5,13 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
+from unittest import mock
 
 import numpy as np
 import pytest
 from fastapi.testclient import TestClient
+from fixtures.written_robot import WrittenRobot
 from numpy.typing import NDArray
 from starlette.testclient import WebSocketTestSession
 from unit.history.made import made_figures, made_recording
@@ -50,6 +53,23 @@ def test_the_runs_are_told(client: TestClient) -> None:
     assert told["runs"][0]["fraction"] == pytest.approx(11.0 / 12.0)
     assert told["weeks"][0]["runs"] == 2
     assert [run["number"] for run in client.get("/api/v1/history?limit=1").json()["runs"]] == [2]
+
+
+def test_what_is_asked_for_is_noted_and_forgotten_when_it_is_refused(history: History) -> None:
+    noted: list[Any] = []
+    keeper = HistoryKeeper(history, RunSource("play", "box"), lambda _: None)
+    robot, headers = WrittenRobot(), {"Authorization": "Bearer token"}
+    with (
+        mock.patch.object(keeper, "note", noted.append),
+        TestClient(
+            create_app(robot, Guard("token"), keeper), base_url="http://127.0.0.1", headers=headers
+        ) as client,
+    ):
+        body = {"mode": "rooms", "rooms": ["hall"], "passes": 2}
+        assert client.post("/api/v1/clean", json=body).status_code == 200
+        robot.refusal = "no"
+        assert client.post("/api/v1/clean", json=body).status_code == 409
+    assert [note and {name: note[name] for name in body} for note in noted] == [body, body, None]
 
 
 def test_a_report_has_a_policy_of_its_own(client: TestClient) -> None:
