@@ -127,6 +127,27 @@ class Timeline(Protocol):
 
 
 @dataclass(frozen=True, slots=True)
+class TickTimes:
+    """Wall time that the robot's ticks took to compute since it began, ``seconds`` in all.
+
+    ``counts`` are ticks that took at most the bound of the same place, s, and more than the one
+    before; the last count is of those above all bounds.
+    """
+
+    bounds: tuple[float, ...]
+    counts: tuple[int, ...]
+    seconds: float
+
+
+@runtime_checkable
+class Timed(Protocol):
+    """What a robot that knows how long its ticks take can tell beside."""
+
+    def tick_times(self) -> TickTimes:
+        """Return how long they took."""
+
+
+@dataclass(frozen=True, slots=True)
 class MapsView:
     """Names of the saved maps, and of the one that the robot goes by; empty if it is not saved."""
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.client import view
-from roomba.client.observed import SPILL
+from roomba.client.observed import SPILL, TickTimes
 from roomba.client.protocol import RequestRefusedError, RobotUnavailableError
 from roomba.errors import RoombaError
 from roomba.geometry import STANDSTILL, Pose, Twist
@@ -102,6 +102,10 @@ class LiveClient:
     def ending(self) -> str:
         """Why the robot's time does not pass any more; empty while it does."""
         return self._live.ending
+
+    def tick_times(self) -> TickTimes:
+        """Return how long the robot's ticks took to compute."""
+        return self._live.tick_times()
 
     # ---------------------------------------------------------------- what a page reads
 

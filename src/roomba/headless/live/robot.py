@@ -9,13 +9,14 @@ from __future__ import annotations
 import math
 import threading
 import time
+from bisect import bisect_left
 from collections.abc import Callable
 from concurrent.futures import Future
 from concurrent.futures import TimeoutError as FutureTimeoutError
 from queue import Empty, SimpleQueue
 from typing import Any, Final, TypeVar
 
-from roomba.client.observed import HAND_SILENCE
+from roomba.client.observed import HAND_SILENCE, TickTimes
 from roomba.client.protocol import RobotUnavailableError
 from roomba.geometry import STANDSTILL, Twist
 from roomba.headless.embodied import Embodied
@@ -26,6 +27,9 @@ _ANSWER: Final = 5.0
 """s of wall time within which a command is answered."""
 SPEEDS: Final = (0.1, 100.0)
 """The robot's seconds per second of the wall clock: the least and the most."""
+
+TICK_BOUNDS: Final = (0.0001, 0.0003, 0.001, 0.003, 0.01, 0.03, 0.05, 0.1, 0.3, 1.0)
+"""s by which ticks are counted."""
 
 _Answer = TypeVar("_Answer")
 Observer = Callable[[Embodied], None]
@@ -46,6 +50,7 @@ class LiveRobot:
         self._failure: BaseException | None = None
         self._by_hand = STANDSTILL
         self._hand_heard = -math.inf
+        self._ticks, self._ticking = [0] * (len(TICK_BOUNDS) + 1), 0.0
 
     def start(self) -> None:
         """Begin to live."""
@@ -75,6 +80,10 @@ class LiveRobot:
             raise RobotUnavailableError(
                 f"expected the robot's answer within {timeout:g} s, got none{self._reason}"
             ) from None
+
+    def tick_times(self) -> TickTimes:
+        """Return how long ticks took to compute; those of one frame count alike."""
+        return TickTimes(TICK_BOUNDS, tuple(self._ticks), self._ticking)
 
     def drive(self, twist: Twist) -> None:
         """Drive by hand for the next half second."""
@@ -125,13 +134,21 @@ class LiveRobot:
         robot = self._robot
         # A robot that lives on for days keeps only the ticks of its last frame.
         robot.rows.clear()
-        until, began = robot.now.time + _FRAME * self.speed, time.monotonic()
+        before, began = robot.now.time, time.monotonic()
+        until = before + _FRAME * self.speed
         if self._is_driven_by_hand:
             self._pass_by_hand(until)
             return
         half_tick = 0.5 * robot.robot.timing.tick
         while robot.now.time < until - half_tick and time.monotonic() - began < _FRAME:
             robot.advance()
+        self._note_ticks(round((robot.now.time - before) / robot.robot.timing.tick), began)
+
+    def _note_ticks(self, count: int, began: float) -> None:
+        if count > 0:
+            seconds = time.monotonic() - began
+            self._ticks[bisect_left(TICK_BOUNDS, seconds / count)] += count
+            self._ticking += seconds
 
     @property
     def _is_driven_by_hand(self) -> bool:

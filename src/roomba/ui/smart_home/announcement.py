@@ -70,7 +70,6 @@ def _entities(topics: MqttTopics, robot: str) -> Iterator[tuple[str, str, Json]]
 def _vacuum(topics: MqttTopics) -> Json:
     return {
         "name": None,
-        "schema": "state",
         "supported_features": list(_FEATURES),
         "state_topic": topics.state,
         "json_attributes_topic": topics.attributes,

@@ -26,6 +26,7 @@ from roomba.ui.web.past import Replays, history_api
 from roomba.ui.web.playing import playing_api
 from roomba.ui.web.speaking import Bridge, add_bridge
 from roomba.ui.web.streams.listening import events_api
+from roomba.ui.web.streams.metrics import metrics_api
 from roomba.ui.web.viewers import Viewers
 
 STATIC: Final = Path(__file__).parent / "static"
@@ -83,6 +84,7 @@ def create_app(
     app.include_router(events_api(feed.events))
     if household is not None:
         app.include_router(household_api(household))
+    app.include_router(metrics_api(feed.metrics))
     if isinstance(robot, Playground):
         app.include_router(playing_api(robot))
     viewers = Viewers(feed, robot, guard, abilities)

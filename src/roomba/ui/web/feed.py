@@ -19,6 +19,7 @@ from roomba.client.view import HomeView, LayerName, RobotView
 from roomba.errors import RoombaError
 from roomba.history.recorder import HistoryKeeper
 from roomba.ui.web.streams.events import Events
+from roomba.ui.web.streams.metrics import RobotMetrics
 from roomba.ui.web.streams.told import Told
 from roomba.ui.web.tiles import TiledLayer
 
@@ -48,6 +49,7 @@ class Feed:
         self._looks = 0
         self.number = 0
         self.events = Events()
+        self.metrics = RobotMetrics(robot)
         self.state = Told({"type": "state", "link": "connecting"})
         self.home: Told | None = None
         self.home_version = 0
@@ -71,10 +73,10 @@ class Feed:
         except (RobotUnavailableError, RoombaError) as reason:
             # What was seen last stays on the page, greyed, with the reason.
             self.state = Told({**self.state.value, "link": "gone", "reason": str(reason)})
-            self.events.note_gone(str(reason))
+            self.metrics.look(None, self.events.note_gone(str(reason)))
         else:
             self._show(view, home)
-            self.events.note(view)
+            self.metrics.look(view, self.events.note(view))
         self.number += 1
         looked, self._looked = self._looked, asyncio.Event()
         looked.set()

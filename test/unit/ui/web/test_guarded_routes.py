@@ -39,6 +39,9 @@ class AbleRobot(WrittenRobot):
     """Can do all that any robot can; recordings are moved, maps are kept."""
 
     def __getattr__(self, name: str) -> Any:
+        if name == "tick_times":
+            raise AttributeError(name)
+
         def command(*arguments: Any, **more: Any) -> None:
             self.told.append((name, (*arguments, *more)))
 
