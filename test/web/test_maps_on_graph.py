@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -60,3 +61,20 @@ def test_maps_are_chosen_removed_and_saved(graph: RosGraph, tmp_path: Path) -> N
         assert "(1 new)" in page.inner_text("#map-offer-text")
         page.get_by_role("button", name="Leave it").click()
         page.get_by_text("expected an offer").wait_for()
+
+
+def test_a_desktop_sees_the_page_by_itself_once(tmp_path: Path) -> None:
+    """Also when its node was killed and is back."""
+    browser, asked = tmp_path / "browser", tmp_path / "asked"
+    browser.write_text(f'#!/bin/sh\necho "$1" >>{asked}\n', encoding="utf-8")
+    browser.chmod(0o755)
+    with RosGraph(tmp_path) as own:
+        own.environment |= {"DISPLAY": ":99", "BROWSER": str(browser)}
+        run = own.launch("home:=studio", "page:=true", "page_port:=0")
+        wait_until(asked.exists, START_DEADLINE, "the browser")
+        assert asked.read_text(encoding="utf-8").strip() in run.output
+        own.signal("dashboard_node", signal.SIGKILL)
+        wait_until(lambda: run.output.count("The page: ") == 2, START_DEADLINE, "it is back")
+        run.send_to_leader(signal.SIGINT)
+        run.ends(10.0)
+        assert len(asked.read_text(encoding="utf-8").splitlines()) == 1

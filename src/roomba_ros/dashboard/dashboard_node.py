@@ -24,6 +24,7 @@ from roomba.household.folder import household_folder
 from roomba.household.household import LiveHousehold
 from roomba.ui.smart_home.switch import Switched, switched_on
 from roomba.ui.web.app import create_app
+from roomba.ui.web.desktop import open_on_desktop
 from roomba.ui.web.guard import LOOPBACK
 from roomba.ui.web.kept_token import kept_token
 from roomba.ui.web.reach import ALL, addresses_of, guard_for, is_host
@@ -56,6 +57,7 @@ class DashboardNode:
     Parameters: ``~port`` (by default -1: 8400, or the next that is free; 0: any), ``~host`` (by
     default 127.0.0.1, this machine alone; 0.0.0.0: the network as well), ``~home``, ``~seed``,
     ``~sensors``, ``~wheels`` (what runs are kept under in the history, and repeated by),
+    ``~open`` (whether a browser is opened, once, where there is a desktop; by default not),
     ``~smart_home`` (the file of the smart home that the robot is in, empty for none).
     """
 
@@ -91,6 +93,7 @@ class DashboardNode:
         print(f"The page: {address}", flush=True)
         for other in others:
             print(f"The page, from other machines of the network: {other}", flush=True)
+        _open_once(address)
 
     def _on_person(self, is_home: bool) -> None:
         try:
@@ -124,6 +127,15 @@ def _keeper() -> HistoryKeeper:
 def _smart_home(robot: GraphRobot) -> Switched | None:
     file = str(rospy.get_param("~smart_home", ""))
     return switched_on(robot, Path(file).expanduser(), rospy.logwarn) if file else None
+
+
+def _open_once(address: str) -> None:
+    """Open the page on the desktop, unless an earlier one of this node did."""
+    # In a network of its own no browser would reach the page: that is outside.
+    if PAGE_SOCKET in os.environ or not rospy.get_param("~open", False):
+        return
+    rospy.set_param("~open", False)
+    open_on_desktop(address)
 
 
 def _bound() -> socket.socket:

@@ -6,7 +6,6 @@ import argparse
 import contextlib
 import socket
 import sys
-import webbrowser
 
 from roomba.client.household import Household
 from roomba.client.observed import ObservedRobot
@@ -15,6 +14,7 @@ from roomba.commands.options import whole
 from roomba.history.recorder import HistoryKeeper
 from roomba.ui.smart_home.switch import Switched
 from roomba.ui.web.app import create_app
+from roomba.ui.web.desktop import open_on_desktop
 from roomba.ui.web.guard import LOOPBACK
 from roomba.ui.web.kept_token import kept_token
 from roomba.ui.web.reach import ALL, addresses_of, guard_for, is_host
@@ -39,7 +39,10 @@ def add_page_options(parser: argparse.ArgumentParser) -> None:
         "all that it shows (default: from this machine alone)",
     )
     parser.add_argument(
-        "--no-open", dest="open", action="store_false", help="open no browser on the page"
+        "--no-open",
+        dest="open",
+        action="store_false",
+        help="open no browser on the page, where there is a desktop",
     )
 
 
@@ -70,7 +73,7 @@ def serve_page(
     print("\nCtrl-C ends it.")
     sys.stdout.flush()
     if is_opened:
-        webbrowser.open(address)
+        open_on_desktop(address)
     if smart_home is not None:
         smart_home.start()
     with contextlib.suppress(KeyboardInterrupt):

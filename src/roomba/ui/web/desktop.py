@@ -1,0 +1,23 @@
+"""Opens the page in a browser, where there is a desktop to see it on."""
+
+from __future__ import annotations
+
+import os
+import sys
+import webbrowser
+from collections.abc import Mapping
+from typing import Final
+
+_SCREENS: Final = ("DISPLAY", "WAYLAND_DISPLAY")
+"""Variables that name a screen where one has to be named."""
+
+
+def has_desktop(environment: Mapping[str, str] = os.environ, platform: str = sys.platform) -> bool:
+    """Whether a window can be seen: a terminal alone would get a browser of text into it."""
+    return platform in ("darwin", "win32") or any(environment.get(name) for name in _SCREENS)
+
+
+def open_on_desktop(address: str) -> None:
+    """Open an address in the browser of the desktop; where there is none it does nothing."""
+    if has_desktop():
+        webbrowser.open(address)
