@@ -13,6 +13,7 @@ REPOSITORY=$(cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")" && pwd -P)
 VENV=$REPOSITORY/.venv
 BENCH_VENV=$REPOSITORY/.venv-bench
 AUDIT_VENV=$REPOSITORY/.venv-audit
+HA_VENV=$REPOSITORY/.venv-ha
 CACHE=$REPOSITORY/.cache
 PYTHON=/usr/bin/python3 # the one that ROS is packaged for; a pyenv or conda python has no rospy
 
@@ -445,6 +446,28 @@ make_audit_environment() {
 
 install_audit() {
   audit_is_current || run_step "Installing what makes the bill of materials into .venv-audit" make_audit_environment
+}
+
+# ---------------------------------------------------------------- step: Home Assistant, for its own checks
+
+ha_hash() {
+  (cd "$REPOSITORY" && printf '%s in %s\n' "$(readlink -f "$PYTHON")" "$HA_VENV" | hash_of requirements-ha.txt)
+}
+
+ha_is_current() {
+  [[ -x $HA_VENV/bin/python3 ]] && stamp_is "$HA_VENV/.stamp" "$(ha_hash)"
+}
+
+# The newest one that there is for this Python; it needs an older paho than the robot.
+make_ha_environment() {
+  "$PYTHON" -m venv --clear "$HA_VENV"
+  PYTHONNOUSERSITE=1 PIP_USER=no PIP_DISABLE_PIP_VERSION_CHECK=1 "$HA_VENV/bin/python3" -m pip install --no-input \
+    --progress-bar off --retries 5 --prefer-binary --requirement "$REPOSITORY/requirements-ha.txt"
+  ha_hash >"$HA_VENV/.stamp"
+}
+
+install_ha() {
+  ha_is_current || run_step "Installing Home Assistant into .venv-ha" make_ha_environment
 }
 
 # ---------------------------------------------------------------- all of it
