@@ -133,12 +133,15 @@ def fill(cleaner: Cleaner, home: Path) -> Row:
     tell(row.what)
     filler = home / "filler"
     with filler.open("wb", buffering=0) as file:
-        try:
-            while True:
-                file.write(bytes(4096))
-        except OSError:
-            pass
-    is_told = row.expect_within("told", TOLD, lambda: "No space left" in cleaner.state.message)
+
+        def is_full_and_told() -> bool:
+            # Room that a file leaves when it is replaced is taken, too.
+            with contextlib.suppress(OSError):
+                while file.write(bytes(4096)):
+                    pass
+            return "No space left" in cleaner.state.message
+
+        is_told = row.expect_within("told", TOLD, is_full_and_told)
     cleaner.goes_on(row)
     filler.unlink()
     if is_told:
