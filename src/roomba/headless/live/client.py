@@ -199,9 +199,14 @@ class LiveClient:
         self.obey(empty)
 
     def emergency_stop(self, reason: str) -> None:
-        """Hold the drive until it is released."""
+        """Hold the drive until it is released; a walk ends, however soon that is."""
         self._live.drive(STANDSTILL)
-        self._command(Event.EMERGENCY, reason)
+
+        def stop(robot: HeadlessMission) -> None:
+            robot.brain.walking.end()
+            robot.mission.command(Event.EMERGENCY, robot.senses(), reason)
+
+        self.obey(stop)
 
     def release(self) -> None:
         """Release the emergency stop."""

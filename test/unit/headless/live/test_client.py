@@ -102,15 +102,22 @@ def test_it_goes_where_it_is_sent(client: LiveClient) -> None:
         client.go_to(500.0, 500.0)
 
 
-def test_the_emergency_stop_ends_a_walk(client: LiveClient) -> None:
-    client.go_to(*client.home().rooms[0].anchor)
-    wait_until(lambda: client.robot().speed > 0.1, DEADLINE, "the robot on its way")
-    client.emergency_stop("a test")
-    client.release()
-    held = client.robot()
-    wait_until(lambda: client.robot().time > held.time + 3.0, DEADLINE, "time to pass")
-    assert math.dist(client.robot().pose[:2], held.pose[:2]) < 0.2
-    assert client.robot().speed == 0.0
+def test_the_emergency_stop_ends_a_walk() -> None:
+    # So slow that it is still on its way when that is seen.
+    client = live_client("studio", seed=1, speed=3.0, knows_map=True)
+    client.start()
+    try:
+        wait_until(lambda: phase(client) == "docked", DEADLINE, "the robot on its station")
+        client.go_to(*client.home().rooms[0].anchor)
+        wait_until(lambda: client.robot().speed > 0.1, DEADLINE, "the robot on its way")
+        client.emergency_stop("a test")
+        client.release()
+        held = client.robot()
+        wait_until(lambda: client.robot().time > held.time + 3.0, DEADLINE, "time to pass")
+        assert math.dist(client.robot().pose[:2], held.pose[:2]) < 0.2
+        assert client.robot().speed == 0.0
+    finally:
+        client.end()
 
 
 def test_a_full_bin_is_said_and_emptied() -> None:
