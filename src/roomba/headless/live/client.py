@@ -202,7 +202,7 @@ class LiveClient:
         """Hold the drive until it is released; a walk ends, however soon that is."""
         self._live.drive(STANDSTILL)
 
-        def stop(robot: HeadlessMission) -> None:
+        def stop(robot: Embodied) -> None:
             robot.brain.walking.end()
             robot.mission.command(Event.EMERGENCY, robot.senses(), reason)
 

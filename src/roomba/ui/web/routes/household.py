@@ -9,7 +9,7 @@ from pydantic import Field
 
 from roomba.client.household import Household, plans_of, upkeep_of
 from roomba.plans.plan import MOST_QUIET, Plan, Preset, QuietHours
-from roomba.ui.web.api import Answer, Wish, obeyed
+from roomba.ui.web.routes.api import Answer, Wish, obeyed
 from roomba.upkeep.parts import Part
 from roomba.vocabulary import LONGEST_NAME
 

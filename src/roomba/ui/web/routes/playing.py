@@ -8,7 +8,7 @@ from fastapi import APIRouter
 from pydantic import Field
 
 from roomba.client.observed import Playground
-from roomba.ui.web.api import Answer, Name, PlaceWish, Wish, obeyed, obeying
+from roomba.ui.web.routes.api import Answer, Name, PlaceWish, Wish, obeyed, obeying
 
 
 class DoorWish(Wish):

@@ -1,0 +1,1 @@
+"""The API of the page: what is told and asked by HTTP."""
