@@ -48,7 +48,7 @@ def test_programs_of_other_packages_are_found_or_named(tmp_path: Path) -> None:
 
 def test_its_arguments_are_described() -> None:
     lines = described(LAUNCH).splitlines()
-    assert len(lines) == 19
+    assert len(lines) == LAUNCH.read_text(encoding="utf-8").count("<arg name=") > 15
     (home,) = (line for line in lines if line.startswith("  home:=flat "))
     assert home.endswith("name of a shipped home, or path of a map_server yaml")
 
