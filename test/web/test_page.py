@@ -48,7 +48,7 @@ CONTROLS = """() => [...document.querySelectorAll("button, select, summary, canv
     .filter((element) => element.offsetParent)
     .map((element) => {
         const { width, height } = element.getBoundingClientRect();
-        const label = element.labels?.[0]?.innerText;
+        const label = element.labels?.[0]?.textContent;
         const name = element.getAttribute("aria-label") || element.textContent || label;
         return [element.id, name, width, height];
     })"""
