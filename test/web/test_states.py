@@ -1,0 +1,122 @@
+"""States of the robot and of the link that are shown as they are."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Iterator
+
+import pytest
+from fixtures.waiting import wait_until
+from web.conftest import SIZES, Opened
+from web.test_page import DEADLINE
+
+from roomba.commands.play.living import live_client
+from roomba.headless.live.client import LiveClient
+from roomba.ui.web.app import create_app
+from roomba.ui.web.guard import Guard, new_token
+from roomba.ui.web.server import PageServer, listen
+
+KNOWN = """async () => {
+    const { grid } = await import("/map/grids.js");
+    return grid("map")?.cells.reduce((sum, value) => sum + (value > 0), 0) ?? 0;
+}"""
+
+
+@pytest.fixture(params=[SIZES["phone"], SIZES["desktop"]], ids=["phone", "desktop"])
+def size(request: pytest.FixtureRequest) -> tuple[int, int]:
+    size: tuple[int, int] = request.param
+    return size
+
+
+@pytest.fixture
+def knows_map() -> bool:
+    """Whether the robot has a map to begin with."""
+    return True
+
+
+@pytest.fixture
+def bin_grams() -> float | None:
+    """What goes into the dust bin, g; None: as much as usual."""
+    return None
+
+
+@pytest.fixture
+def served(
+    home: str, speed: float, knows_map: bool, bin_grams: float | None
+) -> Iterator[tuple[LiveClient, PageServer, Guard]]:
+    robot = live_client(home, seed=1, speed=speed, knows_map=knows_map, bin_grams=bin_grams)
+    guard = Guard(new_token())
+    server = PageServer(create_app(robot, guard), listen("127.0.0.1", 0, is_fixed=True))
+    robot.start()
+    server.start()
+    yield robot, server, guard
+    server.stop()
+    robot.end()
+
+
+@pytest.mark.parametrize("home", ["studio"])
+@pytest.mark.parametrize("speed", [30.0])
+@pytest.mark.parametrize("knows_map", [False])
+def test_without_a_map_it_explores_and_the_map_is_seen_growing(opened: Opened) -> None:
+    page = opened.page
+    page.wait_for_selector("#no-map:not([hidden])")
+    page.get_by_role("button", name="Explore").click()
+    opened.wait_for_phase("exploring")
+    wait_until(lambda: page.evaluate(KNOWN) > 0, DEADLINE, "a map")
+    first = page.evaluate(KNOWN)
+    wait_until(lambda: page.evaluate(KNOWN) > 1.2 * first, DEADLINE, "a larger map")
+    opened.wait_for_phase("docked")
+    assert page.is_hidden("#no-map")
+    wait_until(lambda: opened.robot.home().rooms != (), DEADLINE, "rooms")
+    opened.show("rooms")
+    page.locator("#rooms .name").first.wait_for()
+
+
+@pytest.mark.parametrize("home", ["studio"])
+@pytest.mark.parametrize("bin_grams", [1.0])
+@pytest.mark.parametrize("speed", [30.0])
+def test_a_full_bin_is_said_with_what_to_do(opened: Opened) -> None:
+    page = opened.page
+    page.get_by_role("button", name="Clean all").click()
+    opened.wait_for_phase("bin full")
+    assert page.inner_text("#headline") == "Its dust bin is full"
+    assert "Empty the dust bin" in page.inner_text("#explanation")
+    page.get_by_role("button", name="Bin emptied").click()
+    page.wait_for_selector("body:not([data-phase='bin full'])")
+
+
+@pytest.mark.parametrize("size", [SIZES["desktop"]])
+def test_a_robot_that_tells_nothing_is_stale_and_comes_back(opened: Opened) -> None:
+    page, goes_on = opened.page, threading.Event()
+    held = threading.Thread(target=lambda: opened.robot.ask(lambda _: goes_on.wait(20.0)))
+    held.start()
+    try:
+        page.wait_for_selector("body[data-link='stale']")
+        assert "what is shown is old" in page.inner_text("#explanation")
+    finally:
+        goes_on.set()
+        held.join()
+    page.wait_for_selector("body[data-link='live']")
+
+
+@pytest.mark.parametrize("size", [SIZES["desktop"]])
+def test_a_robot_that_is_gone_is_told(opened: Opened) -> None:
+    page = opened.page
+    opened.robot.end()
+    page.wait_for_selector("body[data-link='gone']")
+    assert page.inner_text("#headline") == "The robot does not answer"
+    assert "Last seen at" in page.inner_text("#explanation")
+    assert page.get_by_role("button", name="Clean all").is_disabled()
+
+
+def test_a_robot_on_its_station_says_whether_it_charges(opened: Opened) -> None:
+    page = opened.page
+    x, y = opened.robot.home().rooms[0].anchor
+    opened.tap(x, y)
+    page.get_by_role("button", name="Go here").click()
+    opened.wait_for_phase("idle")
+    wait_until(lambda: opened.robot.robot().vacuum.battery < 0.995, DEADLINE, "a used battery")
+    page.get_by_role("button", name="Dock").click()
+    opened.wait_for_phase("docked")
+    page.get_by_text("On its station, charging").wait_for()
+    assert "full in" in page.inner_text("#battery")
