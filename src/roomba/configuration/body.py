@@ -8,6 +8,7 @@ from typing import Annotated, ClassVar, Final
 from pydantic import Field
 
 from roomba.configuration.frozen import AtLeastOne, Frozen, Positive, Ratio
+from roomba.geometry import Pose
 from roomba.vocabulary import FanLevel
 
 FASTEST_SPEED: Final = 3.0
@@ -16,6 +17,10 @@ Speed = Annotated[float, Field(gt=0.0, le=FASTEST_SPEED, allow_inf_nan=False)]
 Angles = Annotated[
     tuple[Annotated[float, Field(ge=-math.pi, le=math.pi)], ...], Field(min_length=1)
 ]
+
+
+_ABOUT: Final = Pose(0.0, 0.0, math.pi)
+"""Half a turn."""
 
 
 class BodyConfig(Frozen):
@@ -42,11 +47,20 @@ class BodyConfig(Frozen):
     its mirror image."""
     bumper_middle: Angles = (-0.45, 0.0, 0.45)
     """rad; the same of a press of both halves."""
+    docks_backwards: bool = False
+    """Whether the contacts of its charging station are behind it."""
 
     @property
     def radius(self) -> float:
         """Radius of the body's disc, m."""
         return self.diameter / 2.0
+
+    def docked_at(self, station: Pose) -> Pose:
+        """Return the pose of the robot for that of its station, which looks into the station.
+
+        They differ for a robot that docks backwards, by a half turn: so this is its own inverse.
+        """
+        return station.compose(_ABOUT) if self.docks_backwards else station
 
     @property
     def max_angular_deceleration(self) -> float:

@@ -247,6 +247,15 @@ class MissionConfig(Frozen):
         """The fastest that it wants to drive, m/s."""
         return max(self.driving.speed, self.exploring.speed)
 
+    def slowed_for(self, body: BodyConfig) -> MissionConfig:
+        """Return the same with speeds that a body can do."""
+        most = body.max_speed
+        driving, exploring = (
+            part.model_copy(update={"speed": min(part.speed, most)})
+            for part in (self.driving, self.exploring)
+        )
+        return self.model_copy(update={"driving": driving, "exploring": exploring})
+
     def require_possible(self, body: BodyConfig) -> None:
         """Raise ConfigError when a speed is more than a body can do."""
         for name, speed in (

@@ -29,8 +29,8 @@ class LidarConfig(Frozen):
 
     One that looks all around, ``field`` 360 degrees, has beam 0 ahead; another one's middle is
     ahead. It takes ``sweep_time`` from its first beam to where a next one would be; with 0 all are
-    measured at once. ``model`` is the file of ``data/configuration/lidars`` whose numbers stand
-    for what is not given.
+    measured at once. It sits ``mount_ahead`` of the middle between the wheels. ``model`` is the
+    file of ``data/configuration/lidars`` whose numbers stand for what is not given.
     """
 
     model: str = "ideal_12m"
@@ -41,6 +41,7 @@ class LidarConfig(Frozen):
     rate: Positive = 10.0
     sweep_time: NotNegative = 0.0
     mount_height: Positive = 0.085
+    mount_ahead: Annotated[float, Field(ge=-0.3, le=0.3)] = 0.0
 
     in_order: ClassVar = ("min_range < max_range",)
 
@@ -94,8 +95,12 @@ class CliffConfig(Frozen):
 
 
 class StationConfig(Frozen):
-    """What the charging station sends out: a halo, and two beams that overlap; m and degrees."""
+    """What the charging station sends out: a halo, and two beams that overlap; m and degrees.
 
+    One that sends out nothing is found by its place on the map alone.
+    """
+
+    has_beams: bool = True
     halo: Positive = 0.6
     beam: Positive = 1.0
     beam_angle: Positive = 20.0

@@ -247,7 +247,8 @@ class SimulatedRobotConfig(RobotConfig):
     def with_lidar(self, model: str) -> SimulatedRobotConfig:
         """Return the same robot with a lidar as sold, mounted as high; ConfigError for others."""
         found = lidar_file(model)
-        known = {**found[LIDAR], "model": model, "mount_height": self.lidar.mount_height}
+        mount = {"mount_height": self.lidar.mount_height, "mount_ahead": self.lidar.mount_ahead}
+        known = {**found[LIDAR], "model": model, **mount}
         errors = validated(SimulatedLidar, found[SIMULATION], f"{model}: ")
         simulation = self.simulation.model_copy(update={LIDAR: errors})
         lidar = validated(LidarConfig, known, f"{model}: ")

@@ -80,10 +80,11 @@ class SimulatedBody:
 
 
 def lidar_model(config: LidarConfig) -> LidarModel:
-    """Return where the beams of a lidar in the middle of the robot go."""
+    """Return where the beams of a lidar go."""
     angles = config.first_angle + np.arange(config.beams) * config.beam_step
     reach = config.min_range, config.max_range
-    return LidarModel(angles, *reach, time_increment=config.time_increment)
+    mount = Pose(config.mount_ahead, 0.0, 0.0)
+    return LidarModel(angles, *reach, mount, time_increment=config.time_increment)
 
 
 def readings_of(seen: Observation, scan: ScanReading | None) -> Readings:

@@ -77,7 +77,7 @@ class Brain:
         self.localizer: Localizer | None = None
         self.mapper: Mapper | None = None
         self.growing: GrowingMap | None = None
-        self.keeper = PlaceKeeper(self._place(start or station), robot)
+        self.keeper = PlaceKeeper(self._place(start or robot.body.docked_at(station)), robot)
         self.keeper.place.belief["calibration"]["base"] = robot.body.wheel_separation
         self._mapped = MappedMission(robot, mission, docking, self._max_speed)
         self.walking = Walking(robot)
@@ -197,8 +197,8 @@ class Brain:
             return
         growing.is_whole = True
         occupancy = mapper.finish()
-        # To be whole the map was turned a little.
-        self._station = mapper.start
+        # To be whole the map was turned a little; it began docked.
+        self._station = self.robot.body.docked_at(mapper.start)
         self._localize_on(occupancy, mapper.pose)
         self._use(occupancy)
 

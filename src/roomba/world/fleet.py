@@ -141,7 +141,7 @@ class Fleet:
         robots = slice(row["robots_at"], row["robots_end"])
         things = slice(row["things_at"], row["things_end"])
         count = int(row["robots_end"] - row["robots_at"])
-        starts = starts_of([home], [seed], count, self.config.body.radius)
+        starts = starts_of([home], [seed], count, self.config.body)
         fresh = first_state(
             self._layout,
             self._distinct,
@@ -317,7 +317,7 @@ class Fleet:
 
     def _place(self, starts: NDArray[np.float64] | None, robots_per_home: int) -> None:
         if starts is None:
-            starts = starts_of(self.homes, self.seeds, robots_per_home, self.config.body.radius)
+            starts = starts_of(self.homes, self.seeds, robots_per_home, self.config.body)
         if starts.shape != (len(self.robots), 3) or not np.isfinite(starts).all():
             raise ValueError(
                 f"expected finite starts of shape {(len(self.robots), 3)}, got {starts.shape}"

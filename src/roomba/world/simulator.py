@@ -134,8 +134,8 @@ class Simulator:
 
         Raises HomeError when the body does not fit at the start.
         """
-        self.start = start or home.station
         config = config or SimulatedRobotConfig()
+        self.start = start or config.body.docked_at(home.station)
         max_speed = config.body.max_speed if max_speed is None else max_speed
         own = home.own(self.start)
         starts = np.array([[own.x, own.y, own.theta]], np.float64)

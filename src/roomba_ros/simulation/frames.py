@@ -34,7 +34,9 @@ class BodyFrames:
         camera, lidar, cliff = self._config.camera, self._config.lidar, self._config.cliff
         lens = (camera.mount_forward, 0.0, camera.mount_height)
         transforms = [
-            mount_message(self._base, frame_id("laser"), (0.0, 0.0, lidar.mount_height)),
+            mount_message(
+                self._base, frame_id("laser"), (lidar.mount_ahead, 0.0, lidar.mount_height)
+            ),
             mount_message(self._base, frame_id("imu_link"), (0.0, 0.0, 0.0)),
             mount_message(self._base, frame_id("camera"), lens),
             mount_message(

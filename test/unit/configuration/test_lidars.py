@@ -18,7 +18,7 @@ from roomba.errors import ConfigError
 from roomba.files.shipped import CONFIGURATION
 
 SHIPPED = CONFIGURATION / "simulation.yaml"
-MOUNTED = {"model", "mount_height"}
+MOUNTED = {"model", "mount_ahead", "mount_height"}
 """What is the robot's choice, not the lidar's."""
 
 

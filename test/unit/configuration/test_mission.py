@@ -31,3 +31,11 @@ def test_a_speed_that_the_body_cannot_do_is_refused(tmp_path: Path, part: str) -
         load_mission_config(path, BODY)
     faster = BODY.model_copy(update={"max_speed": 0.55})
     assert getattr(load_mission_config(path, faster), part).speed == 0.55
+
+
+def test_for_a_slower_robot_it_is_slowed() -> None:
+    slow = BODY.model_copy(update={"max_speed": 0.2})
+    slowed = MissionConfig().slowed_for(slow)
+    slowed.require_possible(slow)
+    assert (slowed.driving.speed, slowed.exploring.speed) == (0.2, 0.2)
+    assert MissionConfig().slowed_for(BODY) == MissionConfig()

@@ -36,7 +36,7 @@ def main(arguments: list[str] | None = None) -> int:
 def _live(given: argparse.Namespace) -> int:
     from roomba.configuration.simulation import load_simulated_config
     from roomba.emulators.neato.dialects import Model
-    from roomba.emulators.neato.robot import NeatoRobot
+    from roomba.emulators.neato.robot import NeatoRobot, made_up
     from roomba.emulators.neato.server import NeatoServer
     from roomba.emulators.pseudo_terminal import PseudoTerminal
     from roomba.files.shipped import CONFIGURATION, HOMES
@@ -45,9 +45,10 @@ def _live(given: argparse.Namespace) -> int:
 
     robots = CONFIGURATION / "robots"
     config = load_simulated_config(robots / "neato.yaml", CONFIGURATION / "simulation.yaml")
-    simulator = Simulator(load_home(given.home, HOMES), config, seed=given.seed)
+    config = made_up(config)
+    simulator = Simulator(load_home(given.home, HOMES, config.body), config, seed=given.seed)
     robot = NeatoRobot(simulator, Model(given.model))
-    line = PseudoTerminal(given.link, BAUD if given.serial else None)
+    line = PseudoTerminal(given.link, round(BAUD * given.speed) if given.serial else None)
     is_over = threading.Event()
     for ending in (signal.SIGINT, signal.SIGTERM):
         signal.signal(ending, lambda *_: is_over.set())

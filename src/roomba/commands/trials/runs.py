@@ -18,7 +18,7 @@ from roomba.commands.trials.truth import coverable_floor, true_map
 from roomba.commands.trials.zones import zones_of
 from roomba.configuration.docking import DockingConfig
 from roomba.configuration.frozen import load_config
-from roomba.configuration.mission import MissionConfig, load_mission_config
+from roomba.configuration.mission import MissionConfig
 from roomba.configuration.robot import RobotConfig
 from roomba.configuration.simulation import SimulatedRobotConfig, load_simulated_config
 from roomba.files.shipped import CONFIGURATION
@@ -191,8 +191,8 @@ def robot_config_of(trial: Trial) -> SimulatedRobotConfig:
 
 
 def mission_config(robot: RobotConfig) -> MissionConfig:
-    """Return the shipped configuration of the mission; raises ConfigError for slower robots."""
-    return load_mission_config(CONFIGURATION / "mission.yaml", robot.body)
+    """Return the shipped configuration of the mission, slowed for a robot that is slower."""
+    return load_config(MissionConfig, CONFIGURATION / "mission.yaml").slowed_for(robot.body)
 
 
 def _things_of(trial: Trial, home: Home, config: RobotConfig, staging: Pose) -> list[RoundObstacle]:

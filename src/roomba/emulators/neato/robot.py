@@ -7,6 +7,7 @@ from typing import Final
 
 import numpy as np
 
+from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.emulators.neato.dialects import DIALECTS, Model, Power, Wheel
 from roomba.emulators.neato.drive import WheelDrive
 from roomba.emulators.neato.words import CommandError, Grammar, Words, understood
@@ -41,10 +42,21 @@ GRAMMARS: Final = (
                        "LEDGreen", "ButtonAmberDim", "ButtonGreenDim", "ButtonOff")),
     Grammar("PlaySound", ("Stop",), ("SoundID",)),
 )  # fmt: skip
+_WIDTH: Final = 0.34
+"""m, of the D; of a D5."""
 _LEAST_RPM: Final = 500
 _USUAL_VACUUM: Final = 90
 """%, of VacuumOn without VacuumSpeed."""
 _MOST_RPM: Final = 10_000
+
+
+def made_up(config: SimulatedRobotConfig) -> SimulatedRobotConfig:
+    """Return a Neato's configuration for a world that knows round bodies alone.
+
+    The disc that contains the D is wider than the D is; the made-up body is as wide as that.
+    """
+    body = config.body.model_copy(update={"diameter": _WIDTH})
+    return config.model_copy(update={"body": body})
 
 
 class NeatoRobot:

@@ -45,6 +45,7 @@ class Docking:
             raise ValueError(f"expected a finite pose of the station, got {station}")
         self._config = config
         self._track = StationTrack(body, beams, config, station)
+        self._has_beams = beams.has_beams
         self._time = RobotTime(senses.now)
         self._state = DockState.SEARCHING
         self._trouble: Trouble | None = None
@@ -77,13 +78,17 @@ class Docking:
         self._track.move(senses.pose if is_known else None, self._wanted, self._dt)
         self._track.see(senses.beams)
         now = self._time.elapsed
-        if senses.beams.leads:
+        if self._is_led(senses):
             self._led = now
         if is_known:
             self._known = now
         if not senses.is_charging:
             self._no_current = now
         self._follow_motion(is_known)
+
+    def _is_led(self, senses: DockSenses) -> bool:
+        """Whether it sees the station's beams, or there are none and its place is all it has."""
+        return senses.beams.leads or not self._has_beams
 
     def _follow_motion(self, is_known: bool) -> None:
         pose, before, config = self._track.pose, self._moved_at, self._config
@@ -130,7 +135,7 @@ class Docking:
             if self._time.elapsed - self._known > self._config.lost_timeout:
                 self._fail(Trouble.LOST)
             return Twist()
-        if senses.beams.leads:
+        if self._is_led(senses):
             return self._begin_attempt(is_blind=False)
         if self._search is None:
             self._search = BeamSearch(self._config)

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from roomba.configuration.docking import DockingConfig
 from roomba.configuration.robot import RobotConfig
-from roomba.geometry import Pose
+from roomba.geometry import Pose, Twist
 from roomba.mission.cleaning.request import CleanOutcome
 from roomba.mission.docking.docking import Docking, DockSenses, DockState
 from roomba.mission.docking.expected_time import RobotTime
@@ -37,28 +39,47 @@ class AtStation:
         is_in = senses.battery.is_docked and self._undocking is None
         if is_in and self._stood.elapsed < stand_first:
             return PhaseStep()
-        sensed = _dock_senses(senses)
+        sensed = self._sensed(senses)
         if self._undocking is None:
             self._undocking = Undocking(self._config, station, sensed)
         step = self._undocking.tick(sensed)
+        twist = self._as_wanted(step.twist)
         if step.state is UndockState.OUT:
-            return PhaseStep(step.twist, Event.OUT)
+            return PhaseStep(twist, Event.OUT)
         if step.state is UndockState.FAILED:
-            return PhaseStep(step.twist, failure=Failure(CleanOutcome.STUCK, step.reason))
-        return PhaseStep(step.twist)
+            return PhaseStep(twist, failure=Failure(CleanOutcome.STUCK, step.reason))
+        return PhaseStep(twist)
 
     def dock(self, senses: Senses, station: Pose) -> PhaseStep:
         """Drive into the station."""
-        sensed = _dock_senses(senses)
+        sensed = self._sensed(senses)
+        if self._is_turned:
+            # What its bumper meets is not the station.
+            sensed = replace(sensed, bumper_left=False, bumper_right=False)
         if self._docking is None:
             robot = self._robot
             self._docking = Docking(self._config, robot.body, robot.station, station, sensed)
         step = self._docking.tick(sensed)
+        twist = self._as_wanted(step.twist)
         if step.state is DockState.DOCKED:
-            return PhaseStep(step.twist, Event.CONTACT)
+            return PhaseStep(twist, Event.CONTACT)
         if step.state is DockState.FAILED:
-            return PhaseStep(step.twist, failure=Failure(CleanOutcome.NOT_DOCKED, step.reason))
-        return PhaseStep(step.twist)
+            return PhaseStep(twist, failure=Failure(CleanOutcome.NOT_DOCKED, step.reason))
+        return PhaseStep(twist)
+
+    @property
+    def _is_turned(self) -> bool:
+        """Whether docking and undocking are told of a robot that is turned about: they know one
+        whose nose goes to the station."""
+        return self._robot.body.docks_backwards
+
+    def _sensed(self, senses: Senses) -> DockSenses:
+        sensed = _dock_senses(senses)
+        return replace(sensed, pose=self._robot.body.docked_at(sensed.pose))
+
+    def _as_wanted(self, twist: Twist) -> Twist:
+        """Return what is to be driven when docking wants a twist."""
+        return Twist(-twist.linear, twist.angular) if self._is_turned else twist
 
     @property
     def needed(self) -> float | None:

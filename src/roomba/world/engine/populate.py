@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.configuration.body import BodyConfig
 from roomba.configuration.simulation import SimulatedRobotConfig, SimulatedWear
 from roomba.errors import HomeError
 from roomba.world.engine.layout import Layout, room_around
@@ -146,16 +147,17 @@ def _pull(config: SimulatedRobotConfig, seed: int) -> tuple[float, float]:
 
 
 def starts_of(
-    homes: Sequence[Home], seeds: Sequence[int], robots_per_home: int, radius: float
+    homes: Sequence[Home], seeds: Sequence[int], robots_per_home: int, body: BodyConfig
 ) -> NDArray[np.float64]:
     """Return where robots start, float64 [robots, 3]: the first of each home at the station.
 
-    Others stand at places found at random that are free for bodies of ``radius`` m, and of
-    moving things; raises HomeError if there is not so much room.
+    Others stand at places found at random that are free for such bodies, and of moving things;
+    raises HomeError if there is not so much room.
     """
-    starts = []
+    starts, radius = [], body.radius
     for home, seed in zip(homes, seeds, strict=True):
-        taken = [(home.station.x, home.station.y, home.station.theta)]
+        docked = body.docked_at(home.station)
+        taken = [(docked.x, docked.y, docked.theta)]
         if robots_per_home > 1:
             room = room_around(home.blocked, home.frame.resolution)
             rows, columns = np.nonzero(room > radius + 0.01)

@@ -30,7 +30,8 @@ def sense_station(solid: Solid, home: Row, body: Row, numbers: Row) -> None:
     if square > reach * reach or body.station_dead > 0.0:
         return
     is_there = square <= numbers.position_tolerance * numbers.position_tolerance
-    is_straight = abs(wrapped(body.theta - home.station_theta)) <= numbers.angle_tolerance
+    askew = body.theta - home.station_theta - numbers.contacts
+    is_straight = abs(wrapped(askew)) <= numbers.angle_tolerance
     if is_there and is_straight and body.lifted == 0.0:
         body.docked = 1.0
     if body.infrared_blocked == 0.0:

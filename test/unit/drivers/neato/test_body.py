@@ -14,13 +14,13 @@ from fixtures.waiting import wait_until
 
 from roomba.configuration.simulation import load_simulated_config
 from roomba.drivers.line import LineError, SerialLine
-from roomba.drivers.neato.body import NeatoBody, NeatoModel
+from roomba.drivers.neato.body import NeatoBody
 from roomba.drivers.neato.conversation import Conversation
-from roomba.emulators.neato.robot import NeatoRobot
+from roomba.emulators.neato.robot import NeatoRobot, made_up
 from roomba.emulators.neato.server import NeatoServer
 from roomba.emulators.pseudo_terminal import PseudoTerminal
 from roomba.files.shipped import CONFIGURATION, HOMES
-from roomba.geometry import Pose, Twist
+from roomba.geometry import Twist
 from roomba.robot.command import Command
 from roomba.robot.readings import ScanReading
 from roomba.world.layers.layer import load_home
@@ -36,14 +36,13 @@ class Rig:
     def __init__(self, baud: int | None) -> None:
         robots = CONFIGURATION / "robots"
         config = load_simulated_config(robots / "neato.yaml", CONFIGURATION / "simulation.yaml")
-        self.simulator = Simulator(load_home("studio", HOMES), config.with_sensors("ideal"), seed=1)
+        config = made_up(config.with_sensors("ideal"))
+        self.simulator = Simulator(load_home("studio", HOMES, config.body), config, seed=1)
         self.terminal = PseudoTerminal(baud=baud)
         self.server = NeatoServer(NeatoRobot(self.simulator), self.terminal)
         self.server.start()
         line = SerialLine(self.terminal.name, 115_200)
-        self.body = NeatoBody(
-            Conversation(line, time.monotonic), time.monotonic, NeatoModel(mount=Pose())
-        )
+        self.body = NeatoBody(Conversation(line, time.monotonic), time.monotonic)
         self.body.begin()
         self.errors: list[LineError] = []
         self._is_over = threading.Event()
@@ -88,7 +87,7 @@ def rig(request: pytest.FixtureRequest) -> Iterator[Rig]:
 
 def test_it_drives_and_its_odometry_is_the_way(rig: Rig) -> None:
     begin = rig.simulator.pose
-    rig.drive_until(Twist(-0.15, 0.0), lambda: rig.body.read().odometry.x < -0.25, "it drove")
+    rig.drive_until(Twist(0.15, 0.0), lambda: rig.body.read().odometry.x > 0.25, "it drove")
     rig.drive_until(Twist(), lambda: not rig.moves, "it stands")
 
     def agrees() -> bool:
@@ -101,7 +100,7 @@ def test_it_drives_and_its_odometry_is_the_way(rig: Rig) -> None:
 
 
 def test_it_stands_when_nothing_more_is_wanted_of_it(rig: Rig) -> None:
-    rig.drive_until(Twist(-0.1, 0.0), lambda: rig.moves, "it drives")
+    rig.drive_until(Twist(0.1, 0.0), lambda: rig.moves, "it drives")
     silent = rig.simulator.time
     wait_until(lambda: not rig.moves, 5.0, "it stands")
     # The looks and the steps of the world are up to 0.05 s apart.
@@ -109,7 +108,7 @@ def test_it_stands_when_nothing_more_is_wanted_of_it(rig: Rig) -> None:
 
 
 def test_it_stands_when_its_driver_hangs(rig: Rig) -> None:
-    rig.drive_until(Twist(-0.1, 0.0), lambda: rig.moves, "it drives")
+    rig.drive_until(Twist(0.1, 0.0), lambda: rig.moves, "it drives")
     rig.stop_serving()
     silent = rig.simulator.time
     wait_until(lambda: not rig.moves, 5.0, "it stands")

@@ -7,7 +7,7 @@ import pytest
 from roomba.configuration.simulation import load_simulated_config
 from roomba.drivers.neato import answers
 from roomba.emulators.neato.dialects import Model
-from roomba.emulators.neato.robot import STEP, NeatoRobot
+from roomba.emulators.neato.robot import STEP, NeatoRobot, made_up
 from roomba.files.shipped import CONFIGURATION, HOMES
 from roomba.world.layers.layer import load_home
 from roomba.world.simulator import Simulator
@@ -17,7 +17,8 @@ from roomba.world.simulator import Simulator
 def robot(request: pytest.FixtureRequest) -> NeatoRobot:
     robots = CONFIGURATION / "robots"
     config = load_simulated_config(robots / "neato.yaml", CONFIGURATION / "simulation.yaml")
-    simulator = Simulator(load_home("studio", HOMES), config.with_sensors("ideal"), seed=1)
+    config = made_up(config.with_sensors("ideal"))
+    simulator = Simulator(load_home("studio", HOMES, config.body), config, seed=1)
     return NeatoRobot(simulator, request.param)
 
 
@@ -57,20 +58,20 @@ def test_what_it_does_not_do_it_says(robot: NeatoRobot, command: str, said: str)
 def test_wheels_roll_their_distance_and_are_counted(robot: NeatoRobot) -> None:
     robot.answer("TestMode On")
     before = answers.wheel_positions_of(lines_of(robot, "GetMotors"))
-    robot.answer("SetMotor LWheelDist -300 RWheelDist -300 Speed 200 Accel 300")
+    robot.answer("SetMotor LWheelDist 300 RWheelDist 300 Speed 200 Accel 300")
     live(robot, 3.0)
     after = answers.wheel_positions_of(lines_of(robot, "GetMotors"))
-    assert after.left - before.left == pytest.approx(-0.3, abs=0.005)
-    assert after.right - before.right == pytest.approx(-0.3, abs=0.005)
+    assert after.left - before.left == pytest.approx(0.3, abs=0.005)
+    assert after.right - before.right == pytest.approx(0.3, abs=0.005)
     assert robot.seen.twist.linear == 0.0
 
 
 @pytest.mark.parametrize("command", ["SetMotor LWheelDisable RWheelDisable", "TestMode Off"])
 def test_without_power_it_stands_at_once(robot: NeatoRobot, command: str) -> None:
     robot.answer("TestMode On")
-    robot.answer("SetMotor -5000 -5000 200")
+    robot.answer("SetMotor 5000 5000 200")
     live(robot, 1.0)
-    assert robot.seen.twist.linear < -0.1
+    assert robot.seen.twist.linear > 0.1
     robot.answer(command)
     live(robot, 0.3)
     assert robot.seen.twist.linear == 0.0
@@ -97,7 +98,7 @@ def test_it_tells_its_charge_and_what_its_sensors_feel(robot: NeatoRobot) -> Non
     drops = answers.drops_of(lines_of(robot, "GetAnalogSensors"))
     assert drops.left < 0.06
     robot.answer("TestMode On")
-    robot.answer("SetMotor -400 -400 200")
+    robot.answer("SetMotor 400 400 200")
     live(robot, 4.0)
     assert not answers.charge_of(lines_of(robot, "GetCharger")).has_power
 

@@ -40,6 +40,28 @@ def test_it_drives_out_backwards() -> None:
     assert (step.event, step.failure) == (None, None)
 
 
+def test_with_contacts_behind_it_drives_out_ahead_and_in_backwards() -> None:
+    robot = RobotConfig()
+    backwards = robot.body.model_copy(update={"docks_backwards": True})
+    silent = robot.station.model_copy(update={"has_beams": False})
+    robot = robot.model_copy(update={"body": backwards, "station": silent})
+    at_it = AtStation(DockingConfig(), robot)
+    docked = replace(DOCKED, pose=backwards.docked_at(STATION))
+    assert at_it.undock(docked, STATION).twist.linear > 0.0
+    before = STATION.compose(Pose(-0.6, 0.0, 0.0))
+    # The bumper is at its other end: what it meets is not the station.
+    away = Senses(0.0, backwards.docked_at(before), bumper_left=True)
+    wanted = [at_it.dock(replace(away, now=0.05 * tick), STATION).twist for tick in range(4)]
+    assert wanted[-1].linear < 0.0
+    assert abs(wanted[-1].angular) < 0.05
+    # One that looks at the station turns about first.
+    at_it.forget()
+    faces = replace(away, pose=before)
+    turns = [at_it.dock(replace(faces, now=0.05 * tick), STATION).twist for tick in range(4)]
+    assert turns[-1].linear == 0.0
+    assert abs(turns[-1].angular) > 0.5
+
+
 @pytest.mark.parametrize(
     ("state", "event", "failure"),
     [

@@ -203,12 +203,13 @@ def is_echo(around: Surroundings, met: Met, fading: float) -> bool:
 @part
 def lidar_at(body: Row, numbers: Row, x: float, y: float, theta: float) -> Eye:
     """Return where the lidar of a body at a pose is."""
-    if numbers.worn == 0.0:
+    if numbers.worn == 0.0 and numbers.lidar_ahead == 0.0:
         return x, y, theta
     cosine, sine = math.cos(theta), math.sin(theta)
+    ahead = numbers.lidar_ahead + body.lidar_x
     return (
-        x + cosine * body.lidar_x - sine * body.lidar_y,
-        y + sine * body.lidar_x + cosine * body.lidar_y,
+        x + cosine * ahead - sine * body.lidar_y,
+        y + sine * ahead + cosine * body.lidar_y,
         theta + body.lidar_turn,
     )
 
