@@ -99,9 +99,10 @@ TIMED = (
     "system/faults/test_faults.py",
     "system/faults/test_standstill.py",
     "system/faults/test_supervision.py",
+    "system/test_foreign_robot.py",
 )
-"""Folders and files that assert promises of tenths of a second, or of a few seconds, of wall time:
-nothing computes beside them."""
+"""Folders and files that assert promises of tenths of a second, or of a few seconds, of wall time,
+or play a bag faster than it was recorded: nothing computes beside them."""
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

@@ -214,7 +214,7 @@ TESTED_BY: dict[str, tuple[str, str]] = {
     "roomba_ros/camera/": ("ros/test_turn_camera.py", NODE),
     "roomba_ros/client/": ("ros/test_ros_clean.py", NODE),
     "roomba_ros/convert/": ("ros/test_mission_node_conversions.py", NODE),
-    "roomba_ros/dashboard/": ("web/test_page_on_graph.py", NODE),
+    "roomba_ros/dashboard/": ("web/graph/test_page_on_graph.py", NODE),
     "roomba_ros/localization/": ("ros/test_position_pub_node.py", NODE),
     "roomba_ros/maps/": ("ros/test_map_topics.py", NODE),
     "roomba_ros/model/picture": ("missions/test_rviz.py", PICTURES),

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 from typing import Any
 
 import actionlib
 import rospy
 from fixtures.graph import RosGraph
 from fixtures.probe import Probe
+from fixtures.waiting import wait_until
 from roomba_robot.msg import (
     WalkToPointAction,
     WalkToPointFeedback,
@@ -44,6 +46,10 @@ class Counterpart(Probe):
 
     def _walk(self, goal: WalkToPointGoal) -> None:
         self.goals.append(goal)
+        told = self._walks.action_server
+        # The program has subscribed; its connections may come after its goal.
+        for publisher in (told.feedback_pub, told.result_pub):
+            wait_until(partial(_is_heard, publisher), 20.0, publisher.name)
         self._walks.publish_feedback(WalkToPointFeedback(distance=1.5))
         self._walks.set_succeeded(WalkToPointResult(time_spent=2.5))
 
@@ -53,6 +59,10 @@ class Counterpart(Probe):
         assert self.asked == [True]
         assert [goal.destin.dest_x for goal in self.goals] == [1.25]
         assert rospy.get_param("/beside") == {"depth": 3, "told": [1, "two"]}
+
+
+def _is_heard(publisher: rospy.Publisher) -> bool:
+    return bool(publisher.get_num_connections() > 0)
 
 
 def require_whole(told: dict[str, Any]) -> None:

@@ -13,7 +13,7 @@ from fixtures.probe import Probe
 from fixtures.waiting import wait_until
 from geometry_msgs.msg import Point
 from roomba_robot.msg import MapChange, MapUpdate
-from web.test_page_on_graph import WORKS_WITHIN, open_page
+from web.graph.test_page_on_graph import WORKS_WITHIN, open_page
 
 from roomba.files.shipped import HOMES
 from roomba.storage.map_store import MapStore, StoredMap
