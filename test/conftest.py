@@ -100,6 +100,7 @@ TIMED = (
     "system/faults/test_standstill.py",
     "system/faults/test_supervision.py",
     "system/test_foreign_robot.py",
+    "system/test_neato_line.py",
 )
 """Folders and files that assert promises of tenths of a second, or of a few seconds, of wall time,
 or play a bag faster than it was recorded: nothing computes beside them."""

@@ -62,7 +62,8 @@ def test_every_number_of_the_robot_is_there_as_it_is(
     assert lines, f"{section}.{name} is not on the page"
     for part in value if isinstance(value, tuple) else (value,):
         assert isinstance(part, int | float)
-        shown = f"{part:f}".rstrip("0").rstrip(".")
+        number = f"{part:f}".rstrip("0").rstrip(".")
+        shown = str(part).lower() if isinstance(part, bool) else number
         assert any(shown in line for line in lines), f"{section}.{name} is {shown}; {lines}"
 
 
