@@ -97,6 +97,7 @@ TIMED = (
     "ros/supervision",
     "ros/test_speed_pub_node.py",
     "system/faults/test_faults.py",
+    "system/faults/test_refused_messages.py",
     "system/faults/test_standstill.py",
     "system/faults/test_supervision.py",
     "system/test_foreign_robot.py",
