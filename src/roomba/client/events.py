@@ -7,14 +7,12 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 from roomba.client.plain import known, report_of
-from roomba.client.protocol import CleanReport
+from roomba.client.protocol import AT_REST, CleanReport
 from roomba.client.view import RobotView
 
 EVENT_KINDS: Final = ("state", "begun", "ended", "trouble")
 """``state``: what it does changed; ``begun`` and ``ended``: a run; ``trouble``: what is wrong, in
 words, which are empty when all is well again."""
-_AT_REST: Final = ("docked", "idle")
-"""States without a run under way; one that met an error may go on."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,7 +45,8 @@ class EventFinder:
         if vacuum.phase != self._phase:
             self._phase = vacuum.phase
             yield RobotEvent("state", {**_where(view), "battery": known(vacuum.battery)})
-        is_running = self._is_running if vacuum.state == "error" else vacuum.state not in _AT_REST
+        # A run that met an error may go on.
+        is_running = self._is_running if vacuum.state == "error" else vacuum.state not in AT_REST
         if self._is_running is not None:
             if is_running and not self._is_running:
                 yield RobotEvent("begun", _where(view))

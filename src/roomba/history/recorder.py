@@ -8,24 +8,23 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any, Final
 
-import numpy as np
-
 from roomba.client.household import TotalsView
 from roomba.client.plain import home_of
-from roomba.client.protocol import CleanReport, ErrandOutcome
+from roomba.client.protocol import AT_REST, CleanReport, ErrandOutcome
+from roomba.client.told_once import ToldOnce
 from roomba.client.view import GridLayer, HomeView, LayerName, RobotView
 from roomba.errors import RoombaError
 from roomba.geometry import wrap_angle
 from roomba.history.database import History
 from roomba.history.run import (
     REQUEST,
-    TRACE,
     TRACE_STEP,
     CellLayer,
     RunFigures,
     RunRecording,
     RunSource,
     Word,
+    kind_of,
     turning_of,
 )
 from roomba.history.unfinished import RunSoFar, UnfinishedFile, interrupted_runs
@@ -36,7 +35,6 @@ _SWEEPS: Final = ("undocking", "cleaning", "returning", "docking")
 """Phases of a clean in which what is driven over counts."""
 _UNDER_WAY: Final = (*BEGINS, "returning", "docking", "charging", "paused", "bin full")
 """Phases in which a run may go on."""
-_AT_REST: Final = ("docked", "idle")
 _GIVEN_UP: Final = 10.0
 """s of the robot's clock at rest without a report after which it was no run."""
 _NOT_RUN: Final = (ErrandOutcome.REFUSED, ErrandOutcome.DISCONNECTED)
@@ -101,9 +99,8 @@ class HistoryKeeper:
     def __init__(self, history: History, source: RunSource, tell: Callable[[str], None]) -> None:
         """Begin between two runs."""
         self.history = history
-        self._source, self._recorder = source, RunRecorder(source)
-        self._tell = tell
-        self._told = ""
+        self._recorder = RunRecorder(source)
+        self._tell = ToldOnce(tell)
         self._unfinished = UnfinishedFile(history.path.parent)
         self._has_looked = False
         self._totals: TotalsView | None = None
@@ -130,7 +127,7 @@ class HistoryKeeper:
         if self.history.set_aside is not before:
             trouble = f"the history was damaged; it is set aside as {self.history.set_aside}"
         self._unfinished.remove()
-        self._tell_once(trouble)
+        self._tell(trouble)
 
     def _take_up(self, view: RobotView) -> None:
         """Take the runs that were interrupted: one that goes on is resumed, others are kept."""
@@ -143,7 +140,7 @@ class HistoryKeeper:
                     elif not self._has_kept(run):
                         self.history.add(*run.interrupted())
         except (RoombaError, OSError) as error:
-            self._tell_once(f"a run that was interrupted was not kept: {error}")
+            self._tell(f"a run that was interrupted was not kept: {error}")
 
     def _has_kept(self, run: RunSoFar) -> bool:
         """Whether the program was killed only after it had kept the run."""
@@ -160,17 +157,12 @@ class HistoryKeeper:
         try:
             self._unfinished.keep(run, home_of(home), lambda: _cells(layer))
         except (OSError, ValueError) as error:
-            self._tell_once(f"the run under way is not kept until it ends: {error}")
-
-    def _tell_once(self, trouble: str) -> None:
-        if trouble and trouble != self._told:
-            self._tell(trouble)
-        self._told = trouble
+            self._tell(f"the run under way is not kept until it ends: {error}")
 
     def totals(self) -> TotalsView:
         """Return the sums over all runs that were kept of this program; raises HistoryError."""
         if self._totals is None:
-            self._totals = self.history.totals(self._source.program)
+            self._totals = self.history.totals(self._recorder.source.program)
         return self._totals
 
 
@@ -189,7 +181,7 @@ class _RunUnderWay:
     def take(self, view: RobotView) -> None:
         """Remember what is seen now."""
         now, vacuum = view.time - self._began, view.vacuum
-        if vacuum.phase not in _AT_REST:
+        if vacuum.phase not in AT_REST:
             self.rests_since = None
         elif self.rests_since is None:
             self.rests_since = view.time
@@ -218,10 +210,9 @@ class _RunUnderWay:
 
     def figures(self, report: CleanReport) -> RunFigures:
         """Return what was achieved."""
-        explores = any(word.phase == "exploring" for word in self._words)
         return RunFigures(
             self._source,
-            "explore" if explores else "clean",
+            kind_of(self._words),
             self._wall,
             report.outcome.value,
             report.message,
@@ -237,8 +228,7 @@ class _RunUnderWay:
 
     def recording(self, home: HomeView, layer: Layers) -> RunRecording:
         """Return what was seen."""
-        trace = np.array(self._rows, np.float32).reshape(-1, len(TRACE))
-        return RunRecording(trace, tuple(self._words), home_of(home), _cells(layer))
+        return RunRecording(self.so_far().trace, tuple(self._words), home_of(home), _cells(layer))
 
 
 def _cells(layer: Layers) -> dict[str, CellLayer]:

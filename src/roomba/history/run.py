@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, Final
 
@@ -117,6 +117,11 @@ class RunRecording:
     def duration(self) -> float:
         """s of the robot's clock."""
         return float(self.trace[-1, 0]) if len(self.trace) else 0.0
+
+
+def kind_of(words: Sequence[Word]) -> str:
+    """Return what kind of run it was, by what the robot said meanwhile."""
+    return "explore" if any(word.phase == "exploring" for word in words) else "clean"
 
 
 def turning_of(trace: Floats) -> float:

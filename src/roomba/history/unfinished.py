@@ -31,6 +31,7 @@ from roomba.history.run import (
     RunRecording,
     RunSource,
     Word,
+    kind_of,
     turning_of,
 )
 
@@ -81,7 +82,7 @@ class RunSoFar:
         steps = np.diff(trace[:, 1:3].astype(np.float64), axis=0)
         figures = RunFigures(
             self.source,
-            "explore" if any(word.phase == "exploring" for word in self.words) else "clean",
+            kind_of(self.words),
             self.wall,
             INTERRUPTED,
             WHY,

@@ -12,6 +12,7 @@ from typing import Final
 from roomba.client.household import PlansView, TotalsView, UpkeepView
 from roomba.client.observed import ObservedRobot
 from roomba.client.protocol import RequestRefusedError, RobotUnavailableError
+from roomba.client.told_once import ToldOnce
 from roomba.configuration.household import HouseholdConfig
 from roomba.errors import RoombaError
 from roomba.household.folder import KeptValues, Tell
@@ -49,8 +50,8 @@ class LiveHousehold:
 
         ``now`` is the wall clock, aware of its zone; ``period`` is s of wall time between looks.
         """
-        self.robot, self._totals, self._tell = robot, totals, tell
-        self._told, self._period = "", period
+        self.robot, self._totals, self._period = robot, totals, period
+        self._tell = ToldOnce(tell)
         self._is_full_told = False
         self._summed = TotalsView()
         kept = KeptValues(folder / "upkeep.json", tell)
@@ -171,9 +172,7 @@ class LiveHousehold:
             write()
         except OSError as error:
             trouble = f"what belongs to the household was not kept: {error}"
-        if trouble and trouble != self._told:
-            self._tell(trouble)
-        self._told = trouble
+        self._tell(trouble)
 
 
 def _kept(change: Callable[[], None]) -> None:

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import os
-import zoneinfo
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Final
+
+from roomba.plans.plan import is_zone
 
 _LINK: Final = Path("/etc/localtime")
 _FOLDER: Final = "zoneinfo/"
@@ -21,14 +22,6 @@ def local_zone(environment: Mapping[str, str] | None = None, link: Path = _LINK)
     except OSError:  # no link, or another kind of file: it does not tell its name
         linked = ""
     for name in (given.get("TZ", "").removeprefix(":"), linked):
-        if name and _is_zone(name):
+        if name and is_zone(name):
             return name
     return _OTHERWISE
-
-
-def _is_zone(name: str) -> bool:
-    try:
-        zoneinfo.ZoneInfo(name)
-    except (zoneinfo.ZoneInfoNotFoundError, ValueError, OSError):
-        return False
-    return True

@@ -12,6 +12,7 @@ from pydantic import ValidationError
 from roomba.client.household import PlansView, PlanView
 from roomba.client.observed import ObservedRobot
 from roomba.client.protocol import (
+    AT_REST,
     CleanReport,
     ErrandOutcome,
     RequestRefusedError,
@@ -26,7 +27,6 @@ from roomba.plans.scheduler import Act, Deed, PlanEnd, Scheduler, Situation, nex
 from roomba.plans.times import quiet_until
 from roomba.vocabulary import listed
 
-_AT_REST: Final = ("docked", "idle")
 _DONE: Final = (ErrandOutcome.COMPLETED, ErrandOutcome.NOT_DOCKED)
 
 Change = Callable[[HouseholdPlans], HouseholdPlans]
@@ -81,9 +81,7 @@ class PlanKeeper:
             return Situation(unfit="the robot does not answer")
         ended, message = self._ending(view.last)
         phase = view.vacuum.phase
-        return Situation(
-            self._unfit(view), phase not in _AT_REST, phase == "paused", ended, message
-        )
+        return Situation(self._unfit(view), phase not in AT_REST, phase == "paused", ended, message)
 
     def _ending(self, last: CleanReport | None) -> tuple[PlanEnd | None, str]:
         """Return how an errand ended since the last look, and what is said of it."""
@@ -106,7 +104,7 @@ class PlanKeeper:
             return "the emergency stop holds the drive"
         if vacuum.state == "error":
             return "the robot needs help"
-        if vacuum.phase not in _AT_REST:
+        if vacuum.phase not in AT_REST:
             return "the robot is busy"
         if vacuum.battery < least:  # a battery that is not heard of is not judged
             return f"the battery is below {100.0 * least:.0f} %"

@@ -123,12 +123,8 @@ class HouseholdPlans(Frozen):
     @field_validator("zone")
     @classmethod
     def _is_zone(cls, zone: str) -> str:
-        try:
-            zoneinfo.ZoneInfo(zone)
-        except (zoneinfo.ZoneInfoNotFoundError, ValueError, OSError) as error:
-            raise ValueError(
-                f"expected a time zone such as Europe/Berlin, got {zone[:40]!r}"
-            ) from error
+        if not is_zone(zone):
+            raise ValueError(f"expected a time zone such as Europe/Berlin, got {zone[:40]!r}")
         return zone
 
     @model_validator(mode="after")
@@ -143,6 +139,15 @@ class HouseholdPlans(Frozen):
     def clock(self) -> zoneinfo.ZoneInfo:
         """The time zone."""
         return zoneinfo.ZoneInfo(self.zone)
+
+
+def is_zone(name: str) -> bool:
+    """Whether a name is that of a time zone."""
+    try:
+        zoneinfo.ZoneInfo(name)
+    except (zoneinfo.ZoneInfoNotFoundError, ValueError, OSError):
+        return False
+    return True
 
 
 def _minute(time: dt.time) -> dt.time:

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from roomba.geometry import Pose
 from roomba.grid import GridFrame
 from roomba.world.home.home import Box, Home, MovingKind
+from roomba.world.home.raster import footprint
 from roomba.world.simulator import Simulator
 
 Point = tuple[float, float]
@@ -51,7 +52,7 @@ class HomeTruth:
         own = home.exact
         self._openings = {door.name: door.opening for door in own.doors} if own is home else {}
         self._unmapped = tuple(
-            tuple(_corners(box, Pose()))
+            _corners(box, Pose())
             for piece in home.furniture
             if not piece.on_map
             for box in piece.boxes
@@ -87,7 +88,7 @@ class HomeTruth:
         ):
             if is_present and thing.kind is not MovingKind.DOOR:
                 for box in thing.boxes:
-                    yield tuple(_corners(box, Pose(x, y, theta)))
+                    yield _corners(box, Pose(x, y, theta))
 
     def _doors(self, simulator: Simulator) -> Iterator[DoorNow]:
         for thing, (_, _, _, is_present) in zip(
@@ -99,15 +100,8 @@ class HomeTruth:
                 yield DoorNow(thing.name, corners, bool(is_present))
 
 
-def _corners(box: Box, pose: Pose) -> Iterator[Point]:
-    placed = box.placed_at(pose)
-    ahead = 0.5 * box.length * math.cos(placed.theta), 0.5 * box.length * math.sin(placed.theta)
-    aside = -0.5 * box.width * math.sin(placed.theta), 0.5 * box.width * math.cos(placed.theta)
-    for along, across in ((1, 1), (-1, 1), (-1, -1), (1, -1)):
-        yield (
-            placed.x + along * ahead[0] + across * aside[0],
-            placed.y + along * ahead[1] + across * aside[1],
-        )
+def _corners(box: Box, pose: Pose) -> tuple[Point, ...]:
+    return tuple(footprint(box.placed_at(pose)).exterior.coords[:-1])
 
 
 def _ring(disc: list[float]) -> tuple[Point, ...]:

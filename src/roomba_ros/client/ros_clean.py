@@ -26,6 +26,7 @@ from roomba_robot.msg import (
 from std_srvs.srv import Trigger
 
 from roomba.client.protocol import (
+    AT_REST,
     CleanHandle,
     DockingHandle,
     ExploringHandle,
@@ -44,11 +45,10 @@ OLDEST_VACUUM_STATE: Final = 6.0
 _SIMULATION_DEADLINE: Final = 1.0
 """s of wall time in which a simulation's service is found; a real robot has none."""
 _HELD: Final = ("paused", "error")
-_AT_REST: Final = ("idle", "docked")
 _IS_OBEYED: Final[dict[str, Callable[[str], bool]]] = {
     "pause": lambda phase: phase == "paused",
     "resume": lambda phase: phase not in _HELD,
-    "stop": lambda phase: phase in _AT_REST,
+    "stop": lambda phase: phase in AT_REST,
 }
 """By an order whether a phase may come after it; in any other the state is from before."""
 

@@ -21,6 +21,7 @@ from paho.mqtt.packettypes import PacketTypes
 from paho.mqtt.properties import Properties
 from paho.mqtt.subscribeoptions import SubscribeOptions
 
+from roomba.client.told_once import ToldOnce
 from roomba.errors import RoombaError
 from roomba.ui.smart_home.settings import MqttConfig, TlsConfig
 from roomba.ui.smart_home.topics import OFFLINE, MqttTopics
@@ -65,7 +66,8 @@ class Broker:
         After ``keep_alive`` s of silence a sign of life is asked for, and waited for as long.
         """
         self._keep_alive = keep_alive
-        self._config, self._topics, self._wake, self._tell = config, topics, wake, tell
+        self._config, self._topics, self._wake = config, topics, wake
+        self._tell = ToldOnce(lambda text: tell(f"smart home: {text}"))
         self.commands: queue.Queue[tuple[str, str]] = queue.Queue(MOST_WAITING)
         self.dropped = 0
         """Messages that were not taken."""
@@ -79,7 +81,6 @@ class Broker:
         self._on_the_way: dict[str, mqtt.MQTTMessageInfo] = {}
         self._ends = threading.Event()
         self._budget, self._filled = float(_AT_ONCE), time.monotonic()
-        self._told = ""
         self._client = self._made()
         self._thread = threading.Thread(target=self._live, name="mqtt", daemon=True)
 
@@ -88,7 +89,7 @@ class Broker:
         self._thread.start()
 
     def stop(self) -> None:
-        """Say that the robot is gone, and end; within two seconds, whatever the broker does."""
+        """Say that the robot is gone, and end: within 2 s, also if the broker takes nothing."""
         self._ends.set()
         self._thread.join(2.0 * _END)
 
@@ -117,7 +118,7 @@ class Broker:
             # A broker can send anything; what paho makes of it ends this connection alone.
             except Exception as reason:
                 host, port = self._config.address
-                self._tell_once(f"no connection to the broker at {host}:{port}: {reason}")
+                self._tell(f"no connection to the broker at {host}:{port}: {reason}")
             self.is_connected = False
             if self.connections > before:
                 pause = _RECONNECT[0]
@@ -180,7 +181,7 @@ class Broker:
 
     def _connected(self, _: Any, __: Any, ___: Any, reason: Any, ____: Any) -> None:
         if reason.is_failure:
-            self._tell_once(f"the broker refuses the robot: {reason}")
+            self._tell(f"the broker refuses the robot: {reason}")
             return
         wanted = [(topic, SubscribeOptions(qos=1)) for topic in self._topics.heard]
         self._client.subscribe(wanted)
@@ -188,12 +189,12 @@ class Broker:
         self.hold_again()
         self.connections += 1
         self.is_connected = True
-        self._tell_once(f"connected to the broker at {self._config.host}")
+        self._tell(f"connected to the broker at {self._config.host}")
         self._wake()
 
     def _disconnected(self, _: Any, __: Any, ___: Any, reason: Any, ____: Any) -> None:
         if self.is_connected and not self._ends.is_set():
-            self._tell_once(f"the broker is gone ({reason}); the robot connects again by itself")
+            self._tell(f"the broker is gone ({reason}); the robot connects again by itself")
         self.is_connected = False
 
     def _came(self, _: Any, __: Any, message: mqtt.MQTTMessage) -> None:
@@ -216,11 +217,6 @@ class Broker:
         self._filled = now
         if self._budget < 0.0:
             self._ends.wait(-self._budget / MOST_RATE)
-
-    def _tell_once(self, text: str) -> None:
-        if text != self._told:
-            self._told = text
-            self._tell(f"smart home: {text}")
 
 
 def _tls(config: TlsConfig | bool) -> ssl.SSLContext:

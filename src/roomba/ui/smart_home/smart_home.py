@@ -19,6 +19,7 @@ from typing import Final
 from roomba.client.events import EventFinder
 from roomba.client.floor_map import FloorMap, valetudo_of
 from roomba.client.observed import ObservedRobot
+from roomba.client.told_once import ToldOnce
 from roomba.client.view import GridLayer, HomeView, LayerName, Point, RobotView
 from roomba.errors import RoombaError
 from roomba.files.valetudo import ValetudoError
@@ -55,7 +56,7 @@ class SmartHome:
             None if config.mqtt is None else MqttBridge(robot, config.mqtt, self._wake, tell)
         )
         """The bridge to the broker, if there is one."""
-        self._tell, self._told = tell, ""
+        self._tell = ToldOnce(tell)
         self._thread = threading.Thread(target=self._live, name="smart home", daemon=True)
 
     def start(self) -> None:
@@ -89,12 +90,7 @@ class SmartHome:
                     self._look()
             # What a robot of another program answers is not known here: the next look may do.
             except Exception as fault:
-                self._tell_once(f"smart home: a look failed: {type(fault).__name__}: {fault}")
-
-    def _tell_once(self, text: str) -> None:
-        if text != self._told:
-            self._told = text
-            self._tell(text)
+                self._tell(f"smart home: a look failed: {type(fault).__name__}: {fault}")
 
     def _look(self) -> None:
         try:

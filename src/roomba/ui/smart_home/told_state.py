@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from typing import Any, Final
 
+from roomba.client.protocol import AT_REST
 from roomba.client.view import HomeView, RobotView
 
-_AT_REST: Final = ("docked", "idle")
 _LONGEST: Final = 255
 """Characters of a state in Home Assistant."""
 _STEP: Final = 5
@@ -29,7 +29,7 @@ class StateTeller:
         with which a clean begins.
         """
         vacuum, last = view.vacuum, view.last
-        is_running = vacuum.state not in _AT_REST
+        is_running = vacuum.state not in AT_REST
         if not is_running:
             self._began = None
         elif self._began is None or self._began > view.time:

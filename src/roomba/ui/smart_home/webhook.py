@@ -1,7 +1,7 @@
 """Events posted to an address: JSON, signed if there is a secret, tried again, never waited for.
 
 Events wait in a short queue, of which the oldest is dropped when it is full. A thread of its own
-posts one after the other; each attempt has a deadline, whatever the receiver does.
+posts one after the other; each attempt has a deadline, also when the receiver answers byte by byte.
 """
 
 from __future__ import annotations
@@ -21,6 +21,7 @@ from typing import Final
 from urllib.parse import urlsplit
 
 from roomba.client.events import RobotEvent
+from roomba.client.told_once import ToldOnce
 from roomba.ui.smart_home.settings import WebhookConfig
 
 MOST_WAITING: Final = 100
@@ -47,13 +48,14 @@ class Webhook:
         within: float = _WITHIN,
     ) -> None:
         """Post nothing yet."""
-        self._config, self._tell, self._pauses, self._within = config, tell, pauses, within
+        self._config, self._pauses, self._within = config, pauses, within
+        host = urlsplit(config.url.get_secret_value()).hostname
+        self._tell = ToldOnce(lambda text: tell(f"smart home: the webhook at {host}: {text}"))
         self._waiting: queue.Queue[bytes] = queue.Queue(MOST_WAITING)
         self.dropped = 0
         """Events that were not delivered."""
         self._ends = threading.Event()
         self._thread = threading.Thread(target=self._live, name="webhook", daemon=True)
-        self._told = ""
 
     def start(self) -> None:
         """Begin to post."""
@@ -103,12 +105,12 @@ class Webhook:
             try:
                 status = self._post(body)
             except (OSError, http.client.HTTPException, ValueError) as error:
-                self._tell_once(f"it does not answer: {type(error).__name__}")
+                self._tell(f"it does not answer: {type(error).__name__}")
                 continue
             if 200 <= status < 300:
-                self._told = ""
+                self._tell("")
                 return True
-            self._tell_once(f"it answers with status {status}")
+            self._tell(f"it answers with status {status}")
             if status in _FAULTY and status not in _LATER:
                 return False
         return False
@@ -145,12 +147,6 @@ class Webhook:
             signature = hmac.new(key, body, hashlib.sha256).hexdigest()
             headers["X-Roomba-Signature"] = f"sha256={signature}"
         return headers
-
-    def _tell_once(self, text: str) -> None:
-        if text != self._told:
-            self._told = text
-            host = urlsplit(self._config.url.get_secret_value()).hostname
-            self._tell(f"smart home: the webhook at {host}: {text}")
 
 
 def _shut(connection: socket.socket) -> None:
