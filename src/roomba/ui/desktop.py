@@ -1,4 +1,4 @@
-"""Opens the page in a browser, where there is a desktop to see it on."""
+"""Whether there is a desktop to see windows on, and the page opened there in a browser."""
 
 from __future__ import annotations
 
@@ -12,9 +12,14 @@ _SCREENS: Final = ("DISPLAY", "WAYLAND_DISPLAY")
 """Variables that name a screen where one has to be named."""
 
 
+def names_screen(environment: Mapping[str, str] = os.environ) -> bool:
+    """Whether a screen is named on which windows open."""
+    return any(environment.get(name) for name in _SCREENS)
+
+
 def has_desktop(environment: Mapping[str, str] = os.environ, platform: str = sys.platform) -> bool:
     """Whether a window can be seen: a terminal alone would get a browser of text into it."""
-    return platform in ("darwin", "win32") or any(environment.get(name) for name in _SCREENS)
+    return platform in ("darwin", "win32") or names_screen(environment)
 
 
 def open_on_desktop(address: str) -> None:

@@ -25,6 +25,7 @@ from rich.console import Console
 from roomba.client.protocol import CameraClient, RobotUnavailableError
 from roomba.errors import PictureError, RoombaError
 from roomba.files.atomic import write_whole
+from roomba.ui.desktop import names_screen
 from roomba.ui.progress import say
 from roomba.ui.prompt import (
     STATUS_DONE,
@@ -182,9 +183,7 @@ def save_picture(image: bytes, degrees: float, directories: tuple[Path, ...]) ->
 
 def open_window(environment: Mapping[str, str] = os.environ) -> Window | None:
     """Return a window to be shown at the first picture, or None without a display."""
-    if environment.get("DISPLAY") or environment.get("WAYLAND_DISPLAY"):
-        return ProcessWindow()
-    return None
+    return ProcessWindow() if names_screen(environment) else None
 
 
 class ProcessWindow:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from roomba.ui.web.desktop import has_desktop, open_on_desktop
+from roomba.ui.desktop import has_desktop, open_on_desktop
 
 
 @pytest.mark.parametrize("name", ["DISPLAY", "WAYLAND_DISPLAY"])
@@ -21,8 +21,8 @@ def test_some_systems_always_have_one() -> None:
 
 def test_without_one_no_browser_is_looked_for(monkeypatch: pytest.MonkeyPatch) -> None:
     opened: list[str] = []
-    monkeypatch.setattr("roomba.ui.web.desktop.webbrowser.open", opened.append)
+    monkeypatch.setattr("roomba.ui.desktop.webbrowser.open", opened.append)
     for is_there in (False, True):
-        monkeypatch.setattr("roomba.ui.web.desktop.has_desktop", lambda is_there=is_there: is_there)
+        monkeypatch.setattr("roomba.ui.desktop.has_desktop", lambda is_there=is_there: is_there)
         open_on_desktop("http://127.0.0.1:8400/")
     assert opened == ["http://127.0.0.1:8400/"]

@@ -12,9 +12,9 @@ from roomba.client.observed import ObservedRobot
 from roomba.client.ports import DEFAULT_PORT, LAST_PORT
 from roomba.commands.options import whole
 from roomba.history.recorder import HistoryKeeper
+from roomba.ui.desktop import open_on_desktop
 from roomba.ui.smart_home.switch import Switched
 from roomba.ui.web.app import create_app
-from roomba.ui.web.desktop import open_on_desktop
 from roomba.ui.web.guard import LOOPBACK
 from roomba.ui.web.kept_token import kept_token
 from roomba.ui.web.reach import ALL, addresses_of, guard_for, is_host
