@@ -164,7 +164,7 @@ system_packages() { # runtime|dev|bench, or on asking: rviz|screen|robot_state_p
     python3-visualization-msgs ros-visualization-msgs
   )
   if [[ $1 == dev ]]; then
-    packages+=(catkin-lint git mosquitto nodejs openssl shellcheck systemd)
+    packages+=(catkin-lint curl git mosquitto nodejs openssl shellcheck systemd)
     command -v npm >/dev/null || packages+=(npm) # some packages of nodejs have it in them
     # Ubuntu's package only fetches a snap.
     ! grep -qx 'ID=debian' /etc/os-release || packages+=(chromium)
@@ -299,14 +299,20 @@ make_library_environment() {
 }
 
 # What a user has in ~/.local does not count: it may be built against another numpy than the distribution's.
+pip_install() { # VENV ARGUMENT...
+  local venv=$1
+  shift
+  PYTHONNOUSERSITE=1 PIP_USER=no PIP_DISABLE_PIP_VERSION_CHECK=1 "$venv/bin/python3" -m pip install --no-input \
+    --progress-bar off --retries 5 --prefer-binary "$@"
+}
+
 install_requirements() { # library|runtime|dev
   local -a arguments=()
   local file
   while read -r file; do
     arguments+=(--requirement "$REPOSITORY/$file")
   done < <(requirement_files "$1")
-  PYTHONNOUSERSITE=1 PIP_USER=no PIP_DISABLE_PIP_VERSION_CHECK=1 "$VENV/bin/python3" -m pip install --no-input \
-    --progress-bar off --retries 5 --prefer-binary --constraint "$REPOSITORY/constraints.txt" "${arguments[@]}"
+  pip_install "$VENV" --constraint "$REPOSITORY/constraints.txt" "${arguments[@]}"
 }
 
 # An environment is made anew if its Python is gone, it was moved, or an installation into it was interrupted.
@@ -337,8 +343,7 @@ install_smart_home() {
 }
 
 add_smart_home() {
-  PYTHONNOUSERSITE=1 PIP_USER=no PIP_DISABLE_PIP_VERSION_CHECK=1 "$VENV/bin/python3" -m pip install --no-input \
-    --progress-bar off --retries 5 --prefer-binary --requirement "$REPOSITORY/requirements-smart-home.txt"
+  pip_install "$VENV" --requirement "$REPOSITORY/requirements-smart-home.txt"
 }
 
 # ---------------------------------------------------------------- step: npm packages of the tests
@@ -392,8 +397,7 @@ make_bench_environment() {
 install_peer() { # NAME PIP_ARGUMENT...
   local name=$1 output
   shift
-  if output=$(PYTHONNOUSERSITE=1 PIP_USER=no PIP_DISABLE_PIP_VERSION_CHECK=1 "$BENCH_VENV/bin/python3" -m pip install \
-    --no-input --progress-bar off --retries 5 --prefer-binary "$@" 2>&1); then
+  if output=$(pip_install "$BENCH_VENV" "$@" 2>&1); then
     printf '%s: installed\n' "$name"
   else
     printf '%s\n' "$output"
@@ -426,48 +430,34 @@ install_bench() {
   run_step "Installing the peers of the benchmarks into .venv-bench" make_bench_environment
 }
 
-# ---------------------------------------------------------------- step: what makes the bill of materials
+# ---------------------------------------------------------------- step: tools apart from the robot's environment
 
-audit_hash() {
-  (cd "$REPOSITORY" && printf '%s in %s\n' "$(readlink -f "$PYTHON")" "$AUDIT_VENV" | hash_of requirements-audit.txt)
+tool_hash() { # VENV REQUIREMENTS
+  (cd "$REPOSITORY" && printf '%s in %s\n' "$(readlink -f "$PYTHON")" "$1" | hash_of "$2")
 }
 
-audit_is_current() {
-  [[ -x $AUDIT_VENV/bin/python3 ]] && stamp_is "$AUDIT_VENV/.stamp" "$(audit_hash)"
+tool_is_current() { # VENV REQUIREMENTS
+  [[ -x $1/bin/python3 ]] && stamp_is "$1/.stamp" "$(tool_hash "$1" "$2")"
+}
+
+make_tool_environment() { # VENV REQUIREMENTS
+  "$PYTHON" -m venv --clear "$1"
+  pip_install "$1" --requirement "$REPOSITORY/$2"
+  tool_hash "$1" "$2" >"$1/.stamp"
+}
+
+install_tool() { # TITLE VENV REQUIREMENTS
+  tool_is_current "$2" "$3" || run_step "$1" make_tool_environment "$2" "$3"
 }
 
 # Its packages are none of the robot's, and would be in its bill.
-make_audit_environment() {
-  "$PYTHON" -m venv --clear "$AUDIT_VENV"
-  PYTHONNOUSERSITE=1 PIP_USER=no PIP_DISABLE_PIP_VERSION_CHECK=1 "$AUDIT_VENV/bin/python3" -m pip install --no-input \
-    --progress-bar off --retries 5 --prefer-binary --requirement "$REPOSITORY/requirements-audit.txt"
-  audit_hash >"$AUDIT_VENV/.stamp"
-}
-
 install_audit() {
-  audit_is_current || run_step "Installing what makes the bill of materials into .venv-audit" make_audit_environment
-}
-
-# ---------------------------------------------------------------- step: Home Assistant, for its own checks
-
-ha_hash() {
-  (cd "$REPOSITORY" && printf '%s in %s\n' "$(readlink -f "$PYTHON")" "$HA_VENV" | hash_of requirements-ha.txt)
-}
-
-ha_is_current() {
-  [[ -x $HA_VENV/bin/python3 ]] && stamp_is "$HA_VENV/.stamp" "$(ha_hash)"
+  install_tool "Installing what makes the bill of materials into .venv-audit" "$AUDIT_VENV" requirements-audit.txt
 }
 
 # The newest one that there is for this Python; it needs an older paho than the robot.
-make_ha_environment() {
-  "$PYTHON" -m venv --clear "$HA_VENV"
-  PYTHONNOUSERSITE=1 PIP_USER=no PIP_DISABLE_PIP_VERSION_CHECK=1 "$HA_VENV/bin/python3" -m pip install --no-input \
-    --progress-bar off --retries 5 --prefer-binary --requirement "$REPOSITORY/requirements-ha.txt"
-  ha_hash >"$HA_VENV/.stamp"
-}
-
 install_ha() {
-  ha_is_current || run_step "Installing Home Assistant into .venv-ha" make_ha_environment
+  install_tool "Installing Home Assistant into .venv-ha" "$HA_VENV" requirements-ha.txt
 }
 
 # ---------------------------------------------------------------- all of it
