@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import shutil
 from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 
 import pytest
+from fastapi import FastAPI
 from playwright.sync_api import Browser, Page, sync_playwright
 
 from roomba.commands.play.living import live_client
@@ -95,15 +97,57 @@ def speed() -> float:
 
 
 @pytest.fixture
-def served(home: str, speed: float) -> Iterator[tuple[LiveClient, PageServer, Guard]]:
-    """A robot, and its page on a free port."""
-    robot = live_client(home, seed=1, speed=speed, knows_map=True)
-    guard = Guard(new_token())
-    server = PageServer(create_app(robot, guard), listen("127.0.0.1", 0, is_fixed=True))
-    robot.start()
+def knows_map() -> bool:
+    """Whether the robot has a map to begin with."""
+    return True
+
+
+@pytest.fixture
+def bin_grams() -> float | None:
+    """What goes into the dust bin, g; None: as much as usual."""
+    return None
+
+
+@contextmanager
+def serving(app: FastAPI) -> Iterator[PageServer]:
+    """Serve a page on a free port."""
+    server = PageServer(app, listen("127.0.0.1", 0, is_fixed=True))
     server.start()
-    yield robot, server, guard
-    server.stop()
+    try:
+        yield server
+    finally:
+        server.stop()
+
+
+@contextmanager
+def page_at(
+    browser: Browser, address: str, size: tuple[int, int], *, has_touch: bool = False
+) -> Iterator[Page]:
+    """Open an address in a window, px; no script failed when that closes."""
+    context = browser.new_context(
+        viewport={"width": size[0], "height": size[1]}, has_touch=has_touch
+    )
+    page = context.new_page()
+    errors: list[str] = []
+    page.on("pageerror", lambda error: errors.append(str(error)))
+    page.goto(address)
+    try:
+        yield page
+    finally:
+        context.close()
+    assert errors == []
+
+
+@pytest.fixture
+def served(
+    home: str, speed: float, knows_map: bool, bin_grams: float | None
+) -> Iterator[tuple[LiveClient, PageServer, Guard]]:
+    """A robot, and its page on a free port."""
+    robot = live_client(home, seed=1, speed=speed, knows_map=knows_map, bin_grams=bin_grams)
+    guard = Guard(new_token())
+    robot.start()
+    with serving(create_app(robot, guard)) as server:
+        yield robot, server, guard
     robot.end()
 
 
@@ -121,15 +165,8 @@ def opened(
 ) -> Iterator[Opened]:
     """The page by the printed address, live; no script failed when the test ends."""
     robot, server, guard = served
-    context = browser.new_context(
-        viewport={"width": size[0], "height": size[1]}, has_touch=size[0] < 900
-    )
-    page = context.new_page()
-    errors: list[str] = []
-    page.on("pageerror", lambda error: errors.append(str(error)))
-    page.goto(f"{server.address}#token={guard.token}")
-    opened = Opened(page, robot, server, guard)
-    opened.wait_for_phase("docked")
-    yield opened
-    context.close()
-    assert errors == []
+    address = f"{server.address}#token={guard.token}"
+    with page_at(browser, address, size, has_touch=size[0] < 900) as page:
+        opened = Opened(page, robot, server, guard)
+        opened.wait_for_phase("docked")
+        yield opened

@@ -9,7 +9,7 @@ import pytest
 from fixtures.waiting import wait_until
 from playwright.sync_api import Browser
 from unit.history.made import made_figures, made_recording
-from web.conftest import SIZES, Opened
+from web.conftest import Opened, page_at, serving
 from web.test_page import CONTRASTS, CONTROLS, DEADLINE
 
 from roomba.commands.play.living import live_client
@@ -18,7 +18,6 @@ from roomba.history.recorder import HistoryKeeper
 from roomba.history.run import RunSource
 from roomba.ui.web.app import create_app
 from roomba.ui.web.guard import Guard, new_token
-from roomba.ui.web.server import PageServer, listen
 
 
 @pytest.fixture
@@ -30,28 +29,21 @@ def history(tmp_path: Path) -> History:
     return history
 
 
-@pytest.fixture(params=list(SIZES))
-def opened(request: pytest.FixtureRequest, browser: Browser, history: History) -> Iterator[Opened]:
+@pytest.fixture
+def opened(browser: Browser, history: History, size: tuple[int, int]) -> Iterator[Opened]:
     """The page of a live robot, whose runs are kept."""
     robot = live_client("studio", seed=1, speed=10.0, knows_map=True)
     keeper = HistoryKeeper(history, RunSource("play", "studio", 1), lambda text: pytest.fail(text))
     guard = Guard(new_token())
-    server = PageServer(create_app(robot, guard, keeper), listen("127.0.0.1", 0, is_fixed=True))
     robot.start()
-    server.start()
-    width, height = SIZES[request.param]
-    context = browser.new_context(viewport={"width": width, "height": height})
-    page = context.new_page()
-    errors: list[str] = []
-    page.on("pageerror", lambda error: errors.append(str(error)))
-    page.goto(f"{server.address}#token={guard.token}")
-    opened = Opened(page, robot, server, guard)
-    opened.wait_for_phase("docked")
-    yield opened
-    context.close()
-    server.stop()
+    with (
+        serving(create_app(robot, guard, keeper)) as server,
+        page_at(browser, f"{server.address}#token={guard.token}", size) as page,
+    ):
+        opened = Opened(page, robot, server, guard)
+        opened.wait_for_phase("docked")
+        yield opened
     robot.end()
-    assert errors == []
 
 
 def test_a_run_that_ended_is_looked_back_at(opened: Opened, history: History) -> None:

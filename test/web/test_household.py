@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from fixtures.waiting import wait_until
 from playwright.sync_api import Browser
-from web.conftest import SIZES, Opened
+from web.conftest import Opened, page_at, serving
 from web.test_page import CONTRASTS, CONTROLS, DEADLINE
 
 from roomba.client.household import TotalsView
@@ -17,7 +17,6 @@ from roomba.configuration.household import HouseholdConfig, UpkeepConfig
 from roomba.household.household import LiveHousehold
 from roomba.ui.web.app import create_app
 from roomba.ui.web.guard import Guard, new_token
-from roomba.ui.web.server import PageServer, listen
 
 WORN = UpkeepConfig(sensors=0.001)
 """Sensors that are due after 3.6 s of work."""
@@ -41,29 +40,19 @@ def household(tmp_path: Path) -> Iterator[LiveHousehold]:
     robot.end()
 
 
-@pytest.fixture(params=list(SIZES))
-def opened(
-    request: pytest.FixtureRequest, browser: Browser, household: LiveHousehold
-) -> Iterator[Opened]:
+@pytest.fixture
+def opened(browser: Browser, household: LiveHousehold, size: tuple[int, int]) -> Iterator[Opened]:
     """The page of a live robot in its household."""
     guard = Guard(new_token())
-    app = create_app(household.robot, guard, household=household)
-    server = PageServer(app, listen("127.0.0.1", 0, is_fixed=True))
     household.start()
-    server.start()
-    width, height = SIZES[request.param]
-    context = browser.new_context(viewport={"width": width, "height": height})
-    page = context.new_page()
-    errors: list[str] = []
-    page.on("pageerror", lambda error: errors.append(str(error)))
-    page.goto(f"{server.address}#token={guard.token}")
-    opened = Opened(page, household.robot, server, guard)  # type: ignore[arg-type]
-    opened.wait_for_phase("docked")
-    yield opened
-    context.close()
-    server.stop()
+    with (
+        serving(create_app(household.robot, guard, household=household)) as server,
+        page_at(browser, f"{server.address}#token={guard.token}", size) as page,
+    ):
+        opened = Opened(page, household.robot, server, guard)  # type: ignore[arg-type]
+        opened.wait_for_phase("docked")
+        yield opened
     household.stop()
-    assert errors == []
 
 
 def test_what_is_worn_is_told_and_reset(opened: Opened, household: LiveHousehold) -> None:

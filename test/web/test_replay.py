@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import pytest
 from fixtures.waiting import wait_until
 from playwright.sync_api import Browser, Page
-from web.conftest import SIZES
+from web.conftest import page_at, serving
 from web.test_page import CONTRASTS, CONTROLS, DEADLINE
 
 from roomba.commands.sim.kept_run import StateSamples, figures_of, recording_of
@@ -18,7 +18,6 @@ from roomba.history.replay import RecordedRobot
 from roomba.history.run import RunFigures, RunRecording, RunSource
 from roomba.ui.web.app import create_app
 from roomba.ui.web.guard import Guard, new_token
-from roomba.ui.web.server import PageServer, listen
 
 SWEPT = """async () => {
     const { grid } = await import("/map/grids.js");
@@ -61,25 +60,17 @@ class Replayed:
         return int(self.page.evaluate(SWEPT))
 
 
-@pytest.fixture(params=list(SIZES))
+@pytest.fixture
 def replayed(
-    request: pytest.FixtureRequest, browser: Browser, recorded: tuple[RunFigures, RunRecording]
+    browser: Browser, recorded: tuple[RunFigures, RunRecording], size: tuple[int, int]
 ) -> Iterator[Replayed]:
-    robot = RecordedRobot(*recorded)
-    guard = Guard(new_token())
-    server = PageServer(create_app(robot, guard), listen("127.0.0.1", 0, is_fixed=True))
-    server.start()
-    width, height = SIZES[request.param]
-    context = browser.new_context(viewport={"width": width, "height": height})
-    page = context.new_page()
-    errors: list[str] = []
-    page.on("pageerror", lambda error: errors.append(str(error)))
-    page.goto(f"{server.address}#token={guard.token}")
-    page.wait_for_selector("#timeline:not([hidden])")
-    yield Replayed(page, robot, recorded[1])
-    context.close()
-    server.stop()
-    assert errors == []
+    robot, guard = RecordedRobot(*recorded), Guard(new_token())
+    with (
+        serving(create_app(robot, guard)) as server,
+        page_at(browser, f"{server.address}#token={guard.token}", size) as page,
+    ):
+        page.wait_for_selector("#timeline:not([hidden])")
+        yield Replayed(page, robot, recorded[1])
 
 
 def test_dragging_shows_another_time(replayed: Replayed) -> None:

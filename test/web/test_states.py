@@ -3,18 +3,11 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Iterator
 
 import pytest
 from fixtures.waiting import wait_until
 from web.conftest import SIZES, Opened
 from web.test_page import DEADLINE
-
-from roomba.commands.play.living import live_client
-from roomba.headless.live.client import LiveClient
-from roomba.ui.web.app import create_app
-from roomba.ui.web.guard import Guard, new_token
-from roomba.ui.web.server import PageServer, listen
 
 WATCH = """async () => {
     const { grid } = await import("/map/grids.js");
@@ -25,38 +18,6 @@ WATCH = """async () => {
     }, 50);
 }"""
 """Collects how many cells of the map were known, all the time."""
-
-
-@pytest.fixture(params=[SIZES["phone"], SIZES["desktop"]], ids=["phone", "desktop"])
-def size(request: pytest.FixtureRequest) -> tuple[int, int]:
-    size: tuple[int, int] = request.param
-    return size
-
-
-@pytest.fixture
-def knows_map() -> bool:
-    """Whether the robot has a map to begin with."""
-    return True
-
-
-@pytest.fixture
-def bin_grams() -> float | None:
-    """What goes into the dust bin, g; None: as much as usual."""
-    return None
-
-
-@pytest.fixture
-def served(
-    home: str, speed: float, knows_map: bool, bin_grams: float | None
-) -> Iterator[tuple[LiveClient, PageServer, Guard]]:
-    robot = live_client(home, seed=1, speed=speed, knows_map=knows_map, bin_grams=bin_grams)
-    guard = Guard(new_token())
-    server = PageServer(create_app(robot, guard), listen("127.0.0.1", 0, is_fixed=True))
-    robot.start()
-    server.start()
-    yield robot, server, guard
-    server.stop()
-    robot.end()
 
 
 @pytest.mark.parametrize("home", ["studio"])

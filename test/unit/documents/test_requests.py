@@ -6,7 +6,6 @@ import itertools
 import json
 import os
 import re
-import shutil
 import signal
 import subprocess
 from collections.abc import Iterator
@@ -26,8 +25,6 @@ from roomba.ui.web.server import PageServer, listen
 PAGE = Path(__file__).parents[3] / "docs" / "page.md"
 PRINTED = "127.0.0.1:8400"
 TOKEN = "TOKEN=$(cat ~/.local/state/roomba_robot/token)"
-
-pytestmark = pytest.mark.skipif(not shutil.which("curl"), reason="needs curl, as the lines do")
 
 
 @dataclass
