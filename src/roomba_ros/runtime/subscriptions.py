@@ -55,6 +55,10 @@ def subscribe(
             take(value)
         except MessageError as error:
             refuse(topic, error)
+        except rospy.ROSException:
+            # While the node ends its own topics are closed one after the other.
+            if not rospy.core.is_shutdown_requested():
+                raise
 
     return rospy.Subscriber(topic, kind, hear, queue_size=queue_size, tcp_nodelay=tcp_nodelay)
 

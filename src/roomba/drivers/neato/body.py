@@ -181,7 +181,9 @@ class NeatoBody:
         with self._lock:
             is_silent = self._now() - self._wanted_at > _SILENT
             twist, power = (STANDSTILL if is_silent else self._wanted), self._power
-        command = wheel_command(twist, self._model.track, seconds)
+            now, half = self._twist, 0.5 * self._model.track * self._twist.angular
+        moving = max(abs(now.linear - half), abs(now.linear + half))
+        command = wheel_command(twist, self._model.track, seconds, moving)
         if command is None:
             if self._is_enabled:
                 self._line.ask(STOP, _ANSWER)

@@ -6,6 +6,7 @@ So each command is for as long as the next one may take, and a silent line is a 
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Final
 
@@ -37,13 +38,18 @@ class WheelCommand:
 
 _ACCELERATION: Final = 300
 """mm/s2, the most that there is: the wheels then follow soonest."""
+_GAIN: Final = 1e-3 * _ACCELERATION
+"""m/s2."""
 
 
-def wheel_command(twist: Twist, track: float, seconds: float) -> WheelCommand | None:
+def wheel_command(
+    twist: Twist, track: float, seconds: float, moving: float = math.inf
+) -> WheelCommand | None:
     """Return what drives ``twist`` for ``seconds``; None for standing still.
 
-    ``track`` is how far the wheels are apart, m. Too fast a twist is driven slower, along the same
-    curve. Raises ValueError for one that is not finite.
+    ``track`` is how far the wheels are apart, m; ``moving`` how fast the faster wheel goes already,
+    m/s: as long as it gains speed it comes less far in that time. Too fast a twist is driven
+    slower, along the same curve. Raises ValueError for one that is not finite.
     """
     if not twist.is_finite:
         raise ValueError(f"expected a finite twist, got {twist}")
@@ -54,7 +60,13 @@ def wheel_command(twist: Twist, track: float, seconds: float) -> WheelCommand | 
         left, right = left * _FASTEST / fastest, right * _FASTEST / fastest
         fastest = _FASTEST
     speed = round(1e3 * fastest)
-    ways = round(1e3 * left * seconds), round(1e3 * right * seconds)
-    if speed == 0 or ways == (0, 0):
+    if speed == 0:
+        return None
+    # What it lacks while it gains speed it does not come in that time.
+    lacking = max(0.0, fastest - moving)
+    gaining = min(seconds, lacking / _GAIN)
+    full = seconds - gaining * (lacking - 0.5 * _GAIN * gaining) / fastest
+    ways = round(1e3 * left * full), round(1e3 * right * full)
+    if ways == (0, 0):
         return None
     return WheelCommand(*ways, speed)

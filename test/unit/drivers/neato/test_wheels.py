@@ -32,6 +32,17 @@ def test_the_curve_is_that_of_the_twist_and_no_wheel_is_faster_than_it_can(
     assert command.right == pytest.approx(300.0 * scale * wanted[1], abs=0.51)
 
 
+@given(st.floats(0.02, 0.3), st.floats(0.0, 0.3), st.floats(0.1, 0.5))
+def test_it_comes_as_far_as_it_can_in_that_time(fast: float, moving: float, seconds: float) -> None:
+    """It gains 0.3 m/s in a second; what it is compared with goes by small steps."""
+    command = wheel_command(Twist(fast, 0.0), TRACK, seconds, moving)
+    speed, way, steps = min(moving, fast), 0.0, 1000
+    for _ in range(steps):
+        speed = min(fast, speed + 0.3 * seconds / steps)
+        way += speed * seconds / steps
+    assert (0 if command is None else command.left) == pytest.approx(1e3 * way, abs=1.1)
+
+
 def test_it_is_sent_with_names() -> None:
     command = WheelCommand(60, -60, 200)
     assert command.text == "SetMotor LWheelDist 60 RWheelDist -60 Speed 200 Accel 300"

@@ -13,6 +13,7 @@ const WEEK = ["Mon", "Tue", "Wed", "Thu", "Fri", "Sat", "Sun"];
 
 let told = null; // what the server told last
 let asked = 0; // the version that was asked for last
+let changes = 0; // grows when a change begins, and when it is answered: what was asked for before is old
 
 /** Connect the buttons, and keep it up to date. */
 export function begin() {
@@ -46,8 +47,8 @@ function now(plans) {
 /** Ask for all plans, and show them. */
 async function showAll(version) {
   asked = version;
-  const found = await ask("plans");
-  if (!found) return;
+  const before = changes, found = await ask("plans");
+  if (!found || before !== changes) return;
   told = found;
   $("plan-list").replaceChildren(...told.plans.map(planLine));
   $("preset-list").replaceChildren(...told.presets.map(presetLine));
@@ -120,7 +121,9 @@ function quiet(hours) { return change("household/quiet", { quiet: hours }); }
 
 /** Change something, and show what is so then, also where it was refused. */
 async function change(path, body) {
+  changes += 1;
   await wish(path, body, "PUT");
+  changes += 1;
   await showAll(get("state")?.plans?.version ?? 0);
 }
 
