@@ -131,8 +131,9 @@ def test_another_robots_bag_is_localized_on_a_map_of_it(graph: RosGraph, bag: Pa
     publisher = rospy.Publisher("/map", OccupancyGrid, queue_size=1, latch=True)
     publisher.publish(map_message(BEGAN, made.occupancy, "map"))
     play(graph, bag, "given", listener)
-    # When the map was made whole it was turned to its walls, around where it began.
-    errors = listener.errors(made.begin.compose(pose_at(0.0).inverse()).inverse())
+    # When the map was made whole it was turned to its walls, around where it began. Until the first
+    # scan the node takes itself to be there, also if it missed the first odometry of the bag.
+    errors = listener.errors(made.begin.compose(pose_at(0.0).inverse()).inverse())[FIRST_SCANS:]
     assert len(errors) > 100
     assert listener.states.count(Localization.KNOWN) > 0.9 * len(listener.states)
     assert max(errors) < WITHIN
