@@ -1,6 +1,6 @@
 import signal
 
-from fixtures.graph import RosGraph
+from fixtures.graph import RosGraph, rosrun
 
 
 def test_end_of_input_ends_it(master: RosGraph) -> None:
@@ -41,9 +41,7 @@ def test_without_a_robot_it_says_so_and_goes_on(master: RosGraph) -> None:
 
 def test_without_a_master_it_says_so(master: RosGraph) -> None:
     menu = master.run(
-        "rosrun",
-        "roomba_robot",
-        "control_node.py",
+        *rosrun("control_node.py"),
         environment={"ROS_MASTER_URI": "http://127.0.0.1:9"},
     )
     assert menu.ends(20.0) == 1

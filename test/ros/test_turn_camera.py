@@ -7,7 +7,7 @@ import cv2
 import numpy as np
 import pytest
 import rospy
-from fixtures.graph import RosGraph
+from fixtures.graph import RosGraph, rosrun
 from fixtures.probe import Probe
 from fixtures.waiting import wait_until
 from geometry_msgs.msg import PoseStamped
@@ -179,9 +179,7 @@ def test_the_client_asks_again_for_what_is_no_number_and_ends(
     start(graph, tmp_path / "Images")
     client = graph.run(
         *("env", "-C", str(tmp_path)),
-        "rosrun",
-        "roomba_robot",
-        "turn_camera_client.py",
+        *rosrun("turn_camera_client.py"),
         environment={"DISPLAY": "", "WAYLAND_DISPLAY": ""},
     )
     client.says("Enter the angle: ", 30.0)
