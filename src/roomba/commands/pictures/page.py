@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import functools
 import shutil
 import tempfile
 import time
@@ -29,7 +30,7 @@ from roomba.ui.web.guard import Guard, new_token
 from roomba.ui.web.server import PageServer, listen
 from roomba.world.home.home import Home
 
-_SPEED: Final = 20.0
+_SPEED: Final = 60.0
 """The robot's seconds per second."""
 _CLEANED: Final = 4.0
 """m2 that are clean in the picture."""
@@ -77,17 +78,18 @@ def picture_of_phone(home: Home) -> Picture:
         return decoded(page.screenshot())
 
 
-def _recorded_clean(home: Home) -> tuple[RunFigures, RunRecording]:
+@functools.cache
+def _recorded_clean(home: str) -> tuple[RunFigures, RunRecording]:
     """Return a clean with three things that the map does not show."""
     samples = StateSamples()
-    run = run_trial(Trial(home=home.name, seed=1, things=3), (samples,))
-    source = RunSource("sim", home.name, 1, f"./roomba sim --home {home.name} --seed 1 --things 3")
+    run = run_trial(Trial(home=home, seed=1, things=3), (samples,))
+    source = RunSource("sim", home, 1, f"./roomba sim --home {home} --seed 1 --things 3")
     return figures_of(run.figures, source), recording_of(run, samples)
 
 
 def picture_of_replay(home: Home) -> Picture:
     """Return that clean again on the page, half way through."""
-    robot = RecordedRobot(*_recorded_clean(home))
+    robot = RecordedRobot(*_recorded_clean(home.name))
     robot.seek(0.5 * robot.timeline().duration)
     guard = Guard(new_token())
     server = PageServer(create_app(robot, guard), listen("127.0.0.1", 0, is_fixed=True))
@@ -105,7 +107,7 @@ def picture_of_replay(home: Home) -> Picture:
 
 def picture_of_report(home: Home) -> Picture:
     """Return the report of that clean."""
-    figures, recording = _recorded_clean(home)
+    figures, recording = _recorded_clean(home.name)
     with browser_page({"width": 1100, "height": 1250}) as page:
         page.set_content(report_of(KeptRun(1, figures, True), recording))
         return decoded(page.screenshot())
