@@ -95,7 +95,7 @@ SLOW = (
 TIMED = (
     "ros/runtime",
     "ros/supervision",
-    "ros/test_speed_pub_node.py",
+    "ros/speed/test_speed_pub_node.py",
     "system/faults/test_faults.py",
     "system/faults/test_refused_messages.py",
     "system/faults/test_standstill.py",

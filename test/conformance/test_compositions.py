@@ -6,10 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from fixtures.compositions import COMPOSITIONS, REFERENCE, Case, Outcome, assert_same
-from fixtures.missions import HOME, TWO_ROOMS
-from fixtures.rooms import room_home
-from fixtures.worlds import NOISY
+from fixtures.homes.rooms import room_home
+from fixtures.homes.worlds import NOISY
+from fixtures.robots.compositions import COMPOSITIONS, REFERENCE, Case, Outcome, assert_same
+from fixtures.robots.missions import HOME, TWO_ROOMS
 from hypothesis import Phase as Stage
 from hypothesis import given, settings
 from hypothesis import strategies as st

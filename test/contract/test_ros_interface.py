@@ -6,8 +6,8 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 from fixtures.graph import WITH_PAGE, RosGraph
+from fixtures.nodes.rviz import TYPES, displays, settings, tools
 from fixtures.probe import Probe
-from fixtures.rviz import TYPES, displays, settings, tools
 from fixtures.waiting import wait_until
 from tf2_msgs.msg import TFMessage
 

@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 import rospy
 from actionlib_msgs.msg import GoalStatus
-from fixtures.explorer import LONG, SPEED, Explorer, is_growing
 from fixtures.graph import RosGraph
-from fixtures.mapping_home import other_home
+from fixtures.homes.mapping_home import other_home
+from fixtures.nodes.explorer import LONG, SPEED, Explorer, is_growing
 from fixtures.waiting import wait_until
 from roomba_robot.msg import CleanGoal, VacuumState
 

@@ -7,9 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 import rospy
-from fixtures.explorer import SPEED, Explorer
 from fixtures.graph import RosGraph
-from fixtures.mapping_home import (
+from fixtures.homes.mapping_home import (
     FLOOR,
     GOOD_SHARE,
     KITCHEN,
@@ -20,6 +19,7 @@ from fixtures.mapping_home import (
     mapping_home,
     stray_cells,
 )
+from fixtures.nodes.explorer import SPEED, Explorer
 from fixtures.waiting import wait_until
 from roomba_robot.msg import ZoneArray
 

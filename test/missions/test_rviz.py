@@ -12,8 +12,8 @@ import cv2
 import numpy as np
 import pytest
 from fixtures.graph import RosGraph
+from fixtures.nodes.rviz import displays
 from fixtures.probe import Probe
-from fixtures.rviz import displays
 from fixtures.waiting import wait_until
 from geometry_msgs.msg import TransformStamped
 from roslib.packages import find_node

@@ -3,10 +3,10 @@
 from pathlib import Path
 
 import pytest
-from fixtures.compositions import REFERENCE, Case, Outcome, assert_same, assert_same_end
 from fixtures.forked import run_forked
-from fixtures.missions import HOME, TWO_ROOMS
-from fixtures.node_compositions import in_lockstep
+from fixtures.nodes.node_compositions import in_lockstep
+from fixtures.robots.compositions import REFERENCE, Case, Outcome, assert_same, assert_same_end
+from fixtures.robots.missions import HOME, TWO_ROOMS
 
 from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.files.shipped import HOMES

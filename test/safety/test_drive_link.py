@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 import rospy
-from fixtures.lockstep import Lockstep
+from fixtures.nodes.lockstep import Lockstep
 from geometry_msgs.msg import Twist as TwistMessage
 from std_msgs.msg import String
 

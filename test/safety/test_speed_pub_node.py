@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 import rospy
-from fixtures.lockstep import Lockstep
+from fixtures.nodes.lockstep import Lockstep
 from geometry_msgs.msg import Twist as TwistMessage
 from nav_msgs.msg import Odometry
 from roomba_robot.msg import Bumper, Cliff, WheelDrop

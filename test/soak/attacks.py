@@ -15,7 +15,7 @@ from urllib.parse import urlparse
 import rosgraph
 import rospy
 from fixtures.graph import START_DEADLINE, RosGraph
-from fixtures.tiny_home import tiny_home
+from fixtures.homes.tiny_home import tiny_home
 from roomba_robot.srv import EmergencyStop
 from roslib.message import get_message_class
 from soak.arena import Arena

@@ -12,8 +12,8 @@ from typing import Final
 
 import rospy
 from fixtures.graph import START_DEADLINE, RosGraph
+from fixtures.homes.tiny_home import tiny_home
 from fixtures.probe import Probe
-from fixtures.tiny_home import tiny_home
 from fixtures.waiting import wait_until
 from rosgraph_msgs.msg import Clock
 from soak.arena import Arena

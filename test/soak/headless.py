@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Final, NamedTuple
 
 import numpy as np
-from fixtures.missions import HOME
+from fixtures.robots.missions import HOME
 
 from roomba.headless.cleaner import HeadlessMission
 from roomba.headless.live.robot import LiveRobot

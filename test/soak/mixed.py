@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import Final
 
 from fixtures.graph import START_DEADLINE, RosGraph
+from fixtures.homes.tiny_home import tiny_home
 from fixtures.probe import Probe
-from fixtures.tiny_home import tiny_home
 from fixtures.waiting import wait_until
 from soak.arena import Arena
 from soak.attacks import connect_senselessly, flood, look

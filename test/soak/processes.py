@@ -9,7 +9,7 @@ import time
 from typing import Final
 
 from fixtures.graph import RUN, RosGraph
-from fixtures.tiny_home import tiny_home
+from fixtures.homes.tiny_home import tiny_home
 from soak.arena import Arena
 from soak.cleaner import ENDED, Cleaner
 from soak.rows import Row, in_child, tell

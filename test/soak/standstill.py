@@ -7,9 +7,9 @@ import sys
 from functools import partial
 from typing import Final
 
-from fixtures.ended_drives import CASES, seconds_to_rest
 from fixtures.graph import RosGraph
-from fixtures.standstill import PROMISE
+from fixtures.nodes.ended_drives import CASES, seconds_to_rest
+from fixtures.nodes.standstill import PROMISE
 from soak.arena import Arena
 from soak.rows import Row, in_child, tell
 

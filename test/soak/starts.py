@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Final
 
 from fixtures.graph import RosGraph
+from fixtures.homes.tiny_home import tiny_home
 from fixtures.processes import Program
-from fixtures.tiny_home import tiny_home
 from soak.arena import Arena
 from soak.rows import Row, tell, until
 

@@ -10,8 +10,8 @@ import pytest
 import rospy
 from actionlib_msgs.msg import GoalStatus
 from fixtures.graph import RosGraph
+from fixtures.homes.tiny_home import DOORWAY, FAR_ROOM, STATION, tiny_home
 from fixtures.probe import Probe
-from fixtures.tiny_home import DOORWAY, FAR_ROOM, STATION, tiny_home
 from fixtures.waiting import wait_until
 from geometry_msgs.msg import Point, PoseStamped, Twist
 from nav_msgs.msg import OccupancyGrid, Odometry

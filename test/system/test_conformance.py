@@ -6,8 +6,8 @@ import pytest
 import rospy
 from actionlib_msgs.msg import GoalStatus
 from fixtures.graph import RosGraph
+from fixtures.homes.tiny_home import tiny_home
 from fixtures.probe import Probe
-from fixtures.tiny_home import tiny_home
 from fixtures.waiting import wait_until
 from roomba_robot.msg import CleanAction, CleanGoal, CleanResult, Rectangle, VacuumState
 

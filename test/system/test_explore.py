@@ -6,9 +6,8 @@ from collections.abc import Iterator
 import pytest
 import rospy
 from actionlib_msgs.msg import GoalStatus
-from fixtures.explorer import SPEED, Explorer, free_cells, is_growing, known
 from fixtures.graph import RosGraph
-from fixtures.mapping_home import (
+from fixtures.homes.mapping_home import (
     FLOOR,
     GOOD_SHARE,
     KITCHEN,
@@ -18,6 +17,7 @@ from fixtures.mapping_home import (
     kept_maps,
     mapping_home,
 )
+from fixtures.nodes.explorer import SPEED, Explorer, free_cells, is_growing, known
 from fixtures.waiting import wait_until
 from geometry_msgs.msg import Point, PoseStamped
 from roomba_robot.msg import CleanGoal, CleanResult, ExploreResult, Zone

@@ -12,8 +12,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 import rospy
+from fixtures.drives.made_logs import BEGAN, PILLAR, ROOM, drive, poor, pose_at, write_bag
 from fixtures.graph import RosGraph
-from fixtures.made_logs import BEGAN, PILLAR, ROOM, drive, poor, pose_at, write_bag
 from fixtures.probe import Probe
 from fixtures.waiting import unchanged, wait_until
 from geometry_msgs.msg import PoseStamped

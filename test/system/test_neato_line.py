@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import pytest
-from fixtures.neato_rig import NeatoRig
+from fixtures.robots.neato_rig import NeatoRig
 from fixtures.waiting import wait_until
 
 from roomba.geometry import Twist

@@ -1,7 +1,7 @@
 """Tests mirror the modules: each has a file of its own, or its test is told here with the reason.
 
-``test/unit/a/b/test_c.py`` tests ``src/roomba/a/b/c.py``; nodes and what they are made of have
-``test/ros/test_c.py``. Folders stay small enough to be looked over.
+``test/unit/a/b/test_c.py`` tests ``src/roomba/a/b/c.py``, and ``test/ros/b/test_c.py``
+``src/roomba_ros/b/c.py``. Folders stay small enough to be looked over.
 """
 
 from __future__ import annotations
@@ -210,27 +210,25 @@ TESTED_BY: dict[str, tuple[str, str]] = {
     "roomba/world/home/": ("unit/world/layers/test_layer.py", WORLD),
     "roomba/world/layers/": ("unit/world/layers/test_layer.py", WORLD),
     "roomba/world/random/": ("unit/world/random/test_home.py", WORLD),
-    "roomba_ros/bags/": ("ros/test_sim_command.py", COMMAND),
-    "roomba_ros/camera/": ("ros/test_turn_camera.py", NODE),
-    "roomba_ros/client/": ("ros/test_ros_clean.py", NODE),
-    "roomba_ros/convert/": ("ros/test_mission_node_conversions.py", NODE),
+    "roomba_ros/bags/": ("ros/bags/test_sim_command.py", COMMAND),
+    "roomba_ros/camera/": ("ros/camera/test_turn_camera.py", NODE),
+    "roomba_ros/client/": ("ros/client/test_ros_clean.py", NODE),
+    "roomba_ros/convert/": ("ros/mission/test_mission_node_conversions.py", NODE),
     "roomba_ros/dashboard/": ("web/graph/test_page_on_graph.py", NODE),
-    "roomba_ros/localization/": ("ros/test_position_pub_node.py", NODE),
-    "roomba_ros/maps/": ("ros/test_map_topics.py", NODE),
+    "roomba_ros/localization/": ("ros/position/test_position_pub_node.py", NODE),
+    "roomba_ros/maps/": ("ros/maps/test_map_topics.py", NODE),
     "roomba_ros/model/picture": ("missions/test_rviz.py", PICTURES),
-    "roomba_ros/mission/": ("ros/test_mission_node.py", NODE),
-    "roomba_ros/rooms/": ("ros/test_position_pub_node.py", NODE),
-    "roomba_ros/runtime/": ("ros/test_position_pub_node.py", NODE),
-    "roomba_ros/simulation/": ("ros/test_home_sim_node.py", NODE),
-    "roomba_ros/walking/": ("ros/test_walk_to_point_action_server.py", NODE),
+    "roomba_ros/mission/": ("ros/mission/test_mission_node.py", NODE),
+    "roomba_ros/rooms/": ("ros/position/test_position_pub_node.py", NODE),
+    "roomba_ros/runtime/": ("ros/position/test_position_pub_node.py", NODE),
+    "roomba_ros/simulation/": ("ros/simulation/test_home_sim_node.py", NODE),
+    "roomba_ros/walking/": ("ros/walking/test_walk_to_point_action_server.py", NODE),
 }
 """Modules, or folders of them, without files of their own: the test that would fail, and why."""
 
 LARGE_FOLDERS = {
     "benchmarks/peers": "one script a peer",
     "src/roomba/configuration": "one part of the configuration a file",
-    "test/fixtures": "one file a fixture",
-    "test/ros": "one file a node",
 }
 
 
@@ -249,8 +247,7 @@ def own_test(module: str) -> Path:
     package, *folders, name = module.split("/")
     if package == "roomba":
         return TEST.joinpath("unit", *folders, f"test_{name}.py")
-    nested = TEST.joinpath("ros", *folders, f"test_{name}.py")
-    return nested if nested.exists() else TEST / "ros" / f"test_{name}.py"
+    return TEST.joinpath("ros", *folders, f"test_{name}.py")
 
 
 def entry_of(module: str) -> str | None:

@@ -20,8 +20,8 @@ import numpy as np
 import PIL.Image
 import pytest
 import shapely
-from fixtures.made_logs import drive, write_bag, write_bag_2, write_carmen
-from fixtures.rooms import room_home
+from fixtures.drives.made_logs import drive, write_bag, write_bag_2, write_carmen
+from fixtures.homes.rooms import room_home
 from fixtures.spoiled import spoiled
 from hypothesis import HealthCheck, given, settings
 from rosbags.rosbag2 import StoragePlugin

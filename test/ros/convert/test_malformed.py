@@ -4,7 +4,7 @@ import math
 from io import BytesIO
 
 import pytest
-from fixtures.malformed import CANNOT_BE_WRONG, filled, has_numbers, malformed, not_finite
+from fixtures.nodes.malformed import CANNOT_BE_WRONG, filled, has_numbers, malformed, not_finite
 from roomba_robot.msg import VacuumState
 from sensor_msgs.msg import LaserScan
 

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from fixtures.malformed import filled, grid, rooms, zones
+from fixtures.nodes.malformed import filled, grid, rooms, zones
 from geometry_msgs.msg import Point, PoseStamped, Quaternion
 from hypothesis import given
 from hypothesis import strategies as st

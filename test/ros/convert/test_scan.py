@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from fixtures.malformed import filled, scan
+from fixtures.nodes.malformed import filled, scan
 from geometry_msgs.msg import Quaternion, TransformStamped
 from hypothesis import given
 from hypothesis import strategies as st

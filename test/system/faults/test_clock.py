@@ -9,8 +9,8 @@ import pytest
 import rospy
 from actionlib_msgs.msg import GoalStatus, GoalStatusArray
 from fixtures.graph import START_DEADLINE, RosGraph
+from fixtures.homes.tiny_home import tiny_home
 from fixtures.probe import Probe
-from fixtures.tiny_home import tiny_home
 from fixtures.waiting import wait_until
 from roomba_robot.msg import CleanAction, CleanGoal, UndockAction, VacuumState
 from rosgraph_msgs.msg import Clock

@@ -10,9 +10,9 @@ import pytest
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray
 from fixtures.graph import LAUNCHED, RosGraph
-from fixtures.malformed import CANNOT_BE_WRONG, has_numbers, malformed, not_finite
-from fixtures.onlooker import Onlooker
-from fixtures.tiny_home import tiny_home
+from fixtures.homes.tiny_home import tiny_home
+from fixtures.nodes.malformed import CANNOT_BE_WRONG, has_numbers, malformed, not_finite
+from fixtures.nodes.onlooker import Onlooker
 from fixtures.waiting import wait_until
 from geometry_msgs.msg import PoseStamped, Twist
 from nav_msgs.msg import Odometry

@@ -3,9 +3,9 @@
 from collections.abc import Iterator
 
 import pytest
-from fixtures.ended_drives import CASES, seconds_to_rest
 from fixtures.graph import RosGraph
-from fixtures.standstill import PROMISE
+from fixtures.nodes.ended_drives import CASES, seconds_to_rest
+from fixtures.nodes.standstill import PROMISE
 
 TIMES = 2
 """How often each cause is tried that leaves all nodes as they were."""

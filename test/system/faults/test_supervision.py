@@ -11,10 +11,10 @@ import rospy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from fixtures.forked import run_forked
 from fixtures.graph import LAUNCHED, RosGraph
-from fixtures.onlooker import Onlooker
+from fixtures.homes.tiny_home import tiny_home
+from fixtures.nodes.onlooker import Onlooker
 from fixtures.probe import Probe
 from fixtures.processes import listening, processes_of
-from fixtures.tiny_home import tiny_home
 from fixtures.waiting import promised, wait_until
 from nav_msgs.msg import Odometry
 from roomba_robot.srv import EmergencyStop

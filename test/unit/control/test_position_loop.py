@@ -3,7 +3,7 @@ import math
 
 import numpy as np
 import pytest
-from fixtures.rooms import room_home
+from fixtures.homes.rooms import room_home
 from hypothesis import given, settings
 from hypothesis import strategies as st
 

@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from fixtures.rooms import room_home
+from fixtures.homes.rooms import room_home
 
 from roomba.configuration.sensors import LidarConfig
 from roomba.configuration.simulation import SimulatedRobotConfig

@@ -4,7 +4,7 @@ from typing import Any
 import gymnasium
 import numpy as np
 import pytest
-from fixtures.rooms import room_home
+from fixtures.homes.rooms import room_home
 from gymnasium.utils.env_checker import check_env
 
 import roomba.gym

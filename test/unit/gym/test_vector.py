@@ -3,7 +3,7 @@ from typing import Any
 import gymnasium
 import numpy as np
 import pytest
-from fixtures.rooms import room_home
+from fixtures.homes.rooms import room_home
 from gymnasium.vector import AutoresetMode, SyncVectorEnv
 
 import roomba.gym

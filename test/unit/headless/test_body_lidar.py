@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from fixtures.rooms import room_home
+from fixtures.homes.rooms import room_home
 
 from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.geometry import Pose

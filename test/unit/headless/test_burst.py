@@ -10,8 +10,8 @@ from typing import Final
 
 import numpy as np
 import pytest
-from fixtures.missions import HOME, TWO_ROOMS, in_phase, until
-from fixtures.worlds import NOISY
+from fixtures.homes.worlds import NOISY
+from fixtures.robots.missions import HOME, TWO_ROOMS, in_phase, until
 
 from roomba.configuration.mapping import MappingConfig
 from roomba.errors import HomeError

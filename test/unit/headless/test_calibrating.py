@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from fixtures.missions import TWO_ROOMS
-from fixtures.worlds import NOISY
+from fixtures.homes.worlds import NOISY
+from fixtures.robots.missions import TWO_ROOMS
 from numpy.typing import NDArray
 
 from roomba.configuration.mapping import MappingConfig

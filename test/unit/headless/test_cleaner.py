@@ -10,8 +10,9 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from fixtures.headless_cleans import THING, assert_all_clean, begun, command
-from fixtures.missions import (
+from fixtures.homes.worlds import IDEAL, NOISY
+from fixtures.robots.headless_cleans import THING, assert_all_clean, begun, command
+from fixtures.robots.missions import (
     DEN,
     FLOOR_TOO_LITTLE,
     HALL,
@@ -27,7 +28,6 @@ from fixtures.missions import (
     until,
     wait,
 )
-from fixtures.worlds import IDEAL, NOISY
 
 from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.geometry import Pose

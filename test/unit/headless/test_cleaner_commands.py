@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import pytest
-from fixtures.headless_cleans import assert_all_clean, assert_stands, begun, command
-from fixtures.missions import HOME, STATION, TWO_ROOMS, in_phase, until, wait
+from fixtures.robots.headless_cleans import assert_all_clean, assert_stands, begun, command
+from fixtures.robots.missions import HOME, STATION, TWO_ROOMS, in_phase, until, wait
 
 from roomba.geometry import Pose
 from roomba.headless.cleaner import HeadlessMission

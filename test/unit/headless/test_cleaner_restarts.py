@@ -8,9 +8,17 @@ from typing import Any
 
 import numpy as np
 import pytest
-from fixtures.headless_cleans import THING, assert_all_clean, assert_stands, begun, command
-from fixtures.missions import FLOOR_TOO_LITTLE, HOME, TWO_ROOMS, floor_clean, in_phase, until, wait
-from fixtures.worlds import IDEAL
+from fixtures.homes.worlds import IDEAL
+from fixtures.robots.headless_cleans import THING, assert_all_clean, assert_stands, begun, command
+from fixtures.robots.missions import (
+    FLOOR_TOO_LITTLE,
+    HOME,
+    TWO_ROOMS,
+    floor_clean,
+    in_phase,
+    until,
+    wait,
+)
 
 from roomba.configuration.docking import DockingConfig
 from roomba.geometry import Pose

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from fixtures.headless_cleans import BODY, assert_all_clean, begun
-from fixtures.missions import FLOOR_TOO_LITTLE, HOME, TWO_ROOMS, WALL_X, floor_clean, until
+from fixtures.robots.headless_cleans import BODY, assert_all_clean, begun
+from fixtures.robots.missions import FLOOR_TOO_LITTLE, HOME, TWO_ROOMS, WALL_X, floor_clean, until
 
 from roomba.configuration.docking import DockingConfig
 from roomba.headless.cleaner import HeadlessMission

@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from fixtures.missions import FLOOR_TOO_LITTLE, STATION, TABLE, floor_clean, in_phase, until
-from fixtures.rooms import room_home
-from fixtures.worlds import NOISY
+from fixtures.homes.rooms import room_home
+from fixtures.homes.worlds import NOISY
+from fixtures.robots.missions import FLOOR_TOO_LITTLE, STATION, TABLE, floor_clean, in_phase, until
 
 from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.headless.cleaner import HeadlessMission

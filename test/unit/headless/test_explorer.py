@@ -9,10 +9,10 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from fixtures.mapped import wrong_cells
-from fixtures.missions import HOME, TWO_ROOMS
-from fixtures.rooms import room_home
-from fixtures.worlds import IDEAL, NOISY
+from fixtures.homes.rooms import room_home
+from fixtures.homes.worlds import IDEAL, NOISY
+from fixtures.robots.mapped import wrong_cells
+from fixtures.robots.missions import HOME, TWO_ROOMS
 
 from roomba.configuration.mapping import MappingConfig
 from roomba.configuration.simulation import SimulatedRobotConfig

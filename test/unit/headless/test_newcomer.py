@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from fixtures.mapped import wrong_cells
-from fixtures.missions import HOME, TWO_ROOMS
-from fixtures.worlds import NOISY
+from fixtures.homes.worlds import NOISY
+from fixtures.robots.mapped import wrong_cells
+from fixtures.robots.missions import HOME, TWO_ROOMS
 from numpy.typing import NDArray
 
 from roomba.configuration.docking import DockingConfig

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from fixtures.worn import BASE, TICK, Worn, drive, rooms
+from fixtures.robots.worn import BASE, TICK, Worn, drive, rooms
 from numpy.typing import NDArray
 
 from roomba.configuration.robot import RobotConfig

@@ -1,7 +1,7 @@
 """What headless robots have in common."""
 
 import pytest
-from fixtures.missions import HOME
+from fixtures.robots.missions import HOME
 
 from roomba.errors import RoombaError
 from roomba.headless.records import longest_errand, require_end

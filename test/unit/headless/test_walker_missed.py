@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 import pytest
-from fixtures.missions import DEN, HALL, TWO_ROOMS, shut_door, two_rooms
+from fixtures.robots.missions import DEN, HALL, TWO_ROOMS, shut_door, two_rooms
 
 from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.files.shipped import HOMES

@@ -6,7 +6,7 @@ import json
 from typing import Any
 
 import pytest
-from fixtures.missions import HOME
+from fixtures.robots.missions import HOME
 
 from roomba.configuration.docking import DockingConfig
 from roomba.configuration.mission import MissionConfig

@@ -12,9 +12,9 @@ import time
 from typing import Any, Final
 
 import pytest
-from fixtures.missions import HOME, wait
+from fixtures.homes.worlds import IDEAL
+from fixtures.robots.missions import HOME, wait
 from fixtures.spoiled import NUMBERS, spoiled_values
-from fixtures.worlds import IDEAL
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 from itertools import pairwise
 
 import pytest
-from fixtures.missions import HOME, STATION
+from fixtures.robots.missions import HOME, STATION
 
 from roomba.configuration.docking import DockingConfig
 from roomba.configuration.mission import DrivingConfig, MissionConfig

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
-from fixtures.exploring import (
+from fixtures.robots.exploring import (
     AWAY,
     CONFIG,
     DOCKED,
@@ -19,7 +19,7 @@ from fixtures.exploring import (
     exploring,
     known_to,
 )
-from fixtures.missions import DOOR, TWO_ROOMS, WALL_X
+from fixtures.robots.missions import DOOR, TWO_ROOMS, WALL_X
 
 from roomba.geometry import STANDSTILL, Twist
 from roomba.grid import OCCUPIED, OccupancyMap

@@ -6,7 +6,7 @@ import json
 from dataclasses import replace
 
 import pytest
-from fixtures.exploring import AWAY, DOCKED, HALL, LOW, TICK, Rig, exploring
+from fixtures.robots.exploring import AWAY, DOCKED, HALL, LOW, TICK, Rig, exploring
 
 from roomba.geometry import Pose
 from roomba.grid import OccupancyMap

@@ -6,7 +6,7 @@ import json
 
 import numpy as np
 import pytest
-from fixtures.exploring import (
+from fixtures.robots.exploring import (
     AWAY,
     CONFIG,
     DOCKED,
@@ -18,7 +18,7 @@ from fixtures.exploring import (
     Rig,
     known_to,
 )
-from fixtures.missions import TWO_ROOMS, WALL_X
+from fixtures.robots.missions import TWO_ROOMS, WALL_X
 
 from roomba.geometry import Pose, Twist
 from roomba.grid import OccupancyMap

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from fixtures.made_logs import (
+from fixtures.drives.made_logs import (
     BEGAN,
     LASER,
     PERIOD,

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from fixtures.made_logs import LASER, NO_ECHO, drive, write_carmen
+from fixtures.drives.made_logs import LASER, NO_ECHO, drive, write_carmen
 
 from roomba.geometry import Pose
 from roomba.perception.matching.mounts import Mount, Mounts

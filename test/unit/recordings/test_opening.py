@@ -8,7 +8,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from fixtures.made_logs import drive, write_bag, write_bag_2, write_carmen
+from fixtures.drives.made_logs import drive, write_bag, write_bag_2, write_carmen
 
 from roomba.recordings.bag import BagLog
 from roomba.recordings.carmen import CarmenLog

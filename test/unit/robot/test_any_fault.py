@@ -13,9 +13,9 @@ from typing import Final
 
 import numpy as np
 import pytest
-from fixtures.faulty_robot import FaultyRobot
-from fixtures.missions import FLOOR_TOO_LITTLE, HOME, floor_clean
-from fixtures.worlds import IDEAL
+from fixtures.homes.worlds import IDEAL
+from fixtures.robots.faulty_robot import FaultyRobot
+from fixtures.robots.missions import FLOOR_TOO_LITTLE, HOME, floor_clean
 from hypothesis import HealthCheck, settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, rule, run_state_machine_as_test

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from fixtures.missions import DEN, HALL, HOME, STATION, TWO_ROOMS, two_rooms
-from fixtures.worlds import NOISY
+from fixtures.homes.worlds import NOISY
+from fixtures.robots.missions import DEN, HALL, HOME, STATION, TWO_ROOMS, two_rooms
 
 from roomba.configuration.docking import DockingConfig
 from roomba.configuration.mapping import MappingConfig

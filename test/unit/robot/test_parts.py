@@ -9,8 +9,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from fixtures.missions import HOME
-from fixtures.worlds import NOISY
+from fixtures.homes.worlds import NOISY
+from fixtures.robots.missions import HOME
 from numpy.typing import NDArray
 
 from roomba.configuration.robot import RobotConfig

@@ -12,9 +12,9 @@ from typing import Final
 import numpy as np
 import pytest
 import shapely
-from fixtures.missions import floor_clean
-from fixtures.rooms import room_home
-from fixtures.worlds import NOISY
+from fixtures.homes.rooms import room_home
+from fixtures.homes.worlds import NOISY
+from fixtures.robots.missions import floor_clean
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 

@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 import pytest
-from fixtures.rooms import room_home
-from fixtures.worlds import DT, IDEAL, drive
+from fixtures.homes.rooms import room_home
+from fixtures.homes.worlds import DT, IDEAL, drive
 
 from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.errors import HomeError

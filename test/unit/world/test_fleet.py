@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from fixtures.rooms import room_home
-from fixtures.worlds import DT, NOISY, SOURCES, block_that_moves
+from fixtures.homes.rooms import room_home
+from fixtures.homes.worlds import DT, NOISY, SOURCES, block_that_moves
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray

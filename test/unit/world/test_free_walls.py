@@ -11,9 +11,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import shapely
-from fixtures.free_walls import home_with, room_outline, straight_wall, way_to
-from fixtures.rooms import room_home
-from fixtures.worlds import DT, IDEAL
+from fixtures.homes.free_walls import home_with, room_outline, straight_wall, way_to
+from fixtures.homes.rooms import room_home
+from fixtures.homes.worlds import DT, IDEAL
 from hypothesis import given, settings
 from hypothesis import strategies as st
 

@@ -2,7 +2,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from fixtures.rooms import room_home
+from fixtures.homes.rooms import room_home
 
 from roomba.configuration.body import HealthConfig
 from roomba.world.health import Level, PartHealth, health_of

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from fixtures.rooms import room_home
-from fixtures.slow_lidar import disagreeing, ranges_to_cells, within
+from fixtures.homes.rooms import room_home
+from fixtures.references.slow_lidar import disagreeing, ranges_to_cells, within
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray

@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 import pytest
-from fixtures.rooms import Block, room_home
-from fixtures.worlds import DT, IDEAL, block_that_moves, drive
+from fixtures.homes.rooms import Block, room_home
+from fixtures.homes.worlds import DT, IDEAL, block_that_moves, drive
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 

@@ -4,8 +4,8 @@ import subprocess
 import sys
 
 import pytest
-from fixtures.rooms import room_home
-from fixtures.worlds import IDEAL, drive_around, simulator
+from fixtures.homes.rooms import room_home
+from fixtures.homes.worlds import IDEAL, drive_around, simulator
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -17,7 +17,8 @@ from roomba.world.simulator import Simulator
 
 def test_same_seed_and_commands_give_the_same_trace_in_another_process_too() -> None:
     program = (
-        "from fixtures.worlds import drive_around, simulator; print(drive_around(simulator()))"
+        "from fixtures.homes.worlds import drive_around, simulator\n"
+        "print(drive_around(simulator()))"
     )
     elsewhere = subprocess.run(
         [sys.executable, "-c", program],

@@ -8,8 +8,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import shapely
-from fixtures.rooms import room_home
-from fixtures.worlds import DT, IDEAL, block_that_moves
+from fixtures.homes.rooms import room_home
+from fixtures.homes.worlds import DT, IDEAL, block_that_moves
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely.affinity import rotate

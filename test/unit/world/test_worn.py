@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 import pytest
-from fixtures.rooms import room_home
-from fixtures.worlds import IDEAL, NOISY
+from fixtures.homes.rooms import room_home
+from fixtures.homes.worlds import IDEAL, NOISY
 
 from roomba.geometry import Pose, Twist
 from roomba.world.home.home import Home

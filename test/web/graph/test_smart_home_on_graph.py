@@ -6,8 +6,8 @@ import json
 from pathlib import Path
 
 from fixtures.graph import RosGraph
+from fixtures.homes.tiny_home import tiny_home
 from fixtures.mosquitto import HomeSide, Mosquitto
-from fixtures.tiny_home import tiny_home
 from fixtures.waiting import wait_until
 
 BASE = "roomba/roomba"

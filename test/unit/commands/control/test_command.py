@@ -10,8 +10,8 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
+from fixtures.homes.tiny_home import tiny_home
 from fixtures.processes import Program
-from fixtures.tiny_home import tiny_home
 from fixtures.waiting import wait_until
 
 from roomba.commands.control.command import main

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from fixtures.made_logs import (
+from fixtures.drives.made_logs import (
     BEGAN,
     LASER,
     Item,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from fixtures.located import CONFIG, FURNISHED
+from fixtures.robots.located import CONFIG, FURNISHED
 
 from roomba.commands.localize.replay import Replay, Row
 from roomba.geometry import Pose

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from fixtures.neato_rig import NeatoRig
+from fixtures.robots.neato_rig import NeatoRig
 from fixtures.waiting import wait_until
 
 from roomba.drivers.line import LineError, SerialLine

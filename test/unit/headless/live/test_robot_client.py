@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Protocol, TypeVar
 
 import pytest
-from fixtures.tiny_home import DOORWAY, STATION, tiny_home
+from fixtures.homes.tiny_home import DOORWAY, STATION, tiny_home
 from fixtures.waiting import wait_until
 
 from roomba.client.protocol import (

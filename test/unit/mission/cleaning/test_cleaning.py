@@ -6,8 +6,8 @@ import json
 
 import numpy as np
 import pytest
-from fixtures.driven_cleans import HERE, cleaning, context, drive, finish
-from fixtures.missions import DEN, HALL, HOME, TWO_ROOMS
+from fixtures.robots.driven_cleans import HERE, cleaning, context, drive, finish
+from fixtures.robots.missions import DEN, HALL, HOME, TWO_ROOMS
 
 from roomba.configuration.mission import MissionConfig
 from roomba.geometry import Pose

@@ -6,8 +6,8 @@ import json
 
 import numpy as np
 import pytest
-from fixtures.exploring import HALL, HERE, WHOLE, context_of, known_to
-from fixtures.missions import WALL_X
+from fixtures.robots.exploring import HALL, HERE, WHOLE, context_of, known_to
+from fixtures.robots.missions import WALL_X
 
 from roomba.geometry import Pose
 from roomba.grid import GridFrame, OccupancyMap

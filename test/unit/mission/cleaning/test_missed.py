@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from fixtures.missions import DEN, HOME, TWO_ROOMS, WALL_X, two_rooms
+from fixtures.robots.missions import DEN, HOME, TWO_ROOMS, WALL_X, two_rooms
 from numpy.typing import NDArray
 
 from roomba.configuration.docking import DockingConfig

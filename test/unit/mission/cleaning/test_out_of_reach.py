@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from fixtures.driven_cleans import FENCE, HERE, cleaning, context, drive, finish
-from fixtures.missions import DEN, TWO_ROOMS, WALL_X
+from fixtures.robots.driven_cleans import FENCE, HERE, cleaning, context, drive, finish
+from fixtures.robots.missions import DEN, TWO_ROOMS, WALL_X
 
 from roomba.geometry import Pose
 from roomba.mission.cleaning.request import MissReason

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 import pytest
-from fixtures.docking_rig import CONFIG, ROBOT, STATION, TICK, Rig
+from fixtures.robots.docking_rig import CONFIG, ROBOT, STATION, TICK, Rig
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 import pytest
-from fixtures.docking_rig import CONFIG, STATION, Rig
+from fixtures.robots.docking_rig import CONFIG, STATION, Rig
 
 from roomba.geometry import Pose, Twist
 from roomba.mission.docking.docking import DockState, Trouble

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Iterable
 
 import pytest
-from fixtures.docking_rig import BROUGHT, CONFIG, ENDS, RADIUS, ROBOT, TICK, Rig
+from fixtures.robots.docking_rig import BROUGHT, CONFIG, ENDS, RADIUS, ROBOT, TICK, Rig
 
 from roomba.geometry import Pose, Twist
 from roomba.mission.docking.docking import Docking, DockSenses, DockState, DockStep, Trouble

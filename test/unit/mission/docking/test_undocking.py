@@ -7,8 +7,8 @@ from collections import deque
 from collections.abc import Callable, Iterable
 
 import pytest
-from fixtures.rooms import room_home
-from fixtures.worlds import DT
+from fixtures.homes.rooms import room_home
+from fixtures.homes.worlds import DT
 from hypothesis import given, settings
 from hypothesis import strategies as st
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from fixtures.missions import HOME
+from fixtures.robots.missions import HOME
 
 from roomba.configuration.docking import DockingConfig
 from roomba.configuration.mission import MissionConfig

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from fixtures.missions import TWO_ROOMS, WALL_X
-from fixtures.obstacles import Standing
+from fixtures.homes.obstacles import Standing
+from fixtures.robots.missions import TWO_ROOMS, WALL_X
 from numpy.typing import NDArray
 
 from roomba.configuration.mission import GivingWayConfig

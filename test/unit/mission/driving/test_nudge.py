@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from fixtures.missions import HOME
+from fixtures.robots.missions import HOME
 from numpy.typing import NDArray
 
 from roomba.configuration.docking import DockingConfig

@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from fixtures.missions import HOME
+from fixtures.robots.missions import HOME
 from numpy.typing import NDArray
 
 from roomba.configuration.docking import DockingConfig

@@ -6,7 +6,7 @@ import itertools
 
 import numpy as np
 import pytest
-from fixtures.missions import HOME
+from fixtures.robots.missions import HOME
 from numpy.typing import NDArray
 
 from roomba.configuration.docking import DockingConfig

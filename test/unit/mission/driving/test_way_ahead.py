@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from fixtures.rooms import room_home
+from fixtures.homes.rooms import room_home
 
 from roomba.configuration.mission import MissionConfig
 from roomba.configuration.robot import RobotConfig

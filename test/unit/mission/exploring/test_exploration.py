@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from fixtures.missions import DOOR, TWO_ROOMS, WALL_X
+from fixtures.robots.missions import DOOR, TWO_ROOMS, WALL_X
 
 from roomba.configuration.docking import DockingConfig
 from roomba.configuration.mission import MissionConfig

@@ -6,9 +6,9 @@ import math
 
 import numpy as np
 import pytest
-from fixtures.located import CONFIG, FURNISHED, TWO_ROOMS, Located, steps
-from fixtures.rooms import room_home
-from fixtures.worlds import DT
+from fixtures.homes.rooms import room_home
+from fixtures.homes.worlds import DT
+from fixtures.robots.located import CONFIG, FURNISHED, TWO_ROOMS, Located, steps
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray

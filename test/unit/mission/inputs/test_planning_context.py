@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 import shapely
-from fixtures.missions import DEN, HALL, HOME, STATION, TABLE, TWO_ROOMS, WALL_X, two_rooms
+from fixtures.robots.missions import DEN, HALL, HOME, STATION, TABLE, TWO_ROOMS, WALL_X, two_rooms
 
 from roomba.configuration.docking import DockingConfig
 from roomba.configuration.mission import MissionConfig

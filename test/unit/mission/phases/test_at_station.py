@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from fixtures.missions import HOME, STATION
+from fixtures.robots.missions import HOME, STATION
 
 from roomba.configuration.docking import DockingConfig
 from roomba.configuration.mission import MissionConfig

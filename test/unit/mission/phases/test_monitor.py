@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
-from fixtures.missions import HOME
+from fixtures.robots.missions import HOME
 
 from roomba.configuration.docking import DockingConfig
 from roomba.configuration.mission import MissionConfig

@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from fixtures.missions import TWO_ROOMS, WALL_X
-from fixtures.obstacles import Standing
+from fixtures.homes.obstacles import Standing
+from fixtures.robots.missions import TWO_ROOMS, WALL_X
 
 from roomba.configuration.docking import DockingConfig
 from roomba.configuration.mission import MissionConfig

@@ -2,7 +2,7 @@ import math
 from dataclasses import replace
 
 import pytest
-from fixtures.rooms import Block, room_home
+from fixtures.homes.rooms import Block, room_home
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 

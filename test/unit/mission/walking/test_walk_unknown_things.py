@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 import pytest
-from fixtures.rooms import Block, room_home
-from fixtures.worlds import block_that_moves
+from fixtures.homes.rooms import Block, room_home
+from fixtures.homes.worlds import block_that_moves
 from hypothesis import given, settings
 from hypothesis import strategies as st
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from fixtures.worn import BASE, Worn, drive, measure, rooms
+from fixtures.robots.worn import BASE, Worn, drive, measure, rooms
 
 from roomba.configuration.localization import LocalizationConfig
 from roomba.configuration.sensors import GyroConfig

@@ -7,7 +7,17 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from fixtures.worn import BASE, TICK, Told, Worn, corrected_path, drive, fresh, measure, rooms
+from fixtures.robots.worn import (
+    BASE,
+    TICK,
+    Told,
+    Worn,
+    corrected_path,
+    drive,
+    fresh,
+    measure,
+    rooms,
+)
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray

@@ -10,8 +10,8 @@ from functools import cache
 
 import numpy as np
 import pytest
-from fixtures.located import CONFIG, LIDAR, Eye
-from fixtures.rooms import Block, room_home
+from fixtures.homes.rooms import Block, room_home
+from fixtures.robots.located import CONFIG, LIDAR, Eye
 from numpy.typing import NDArray
 
 from roomba.configuration.mapping import MapChangesConfig

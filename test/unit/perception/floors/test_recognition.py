@@ -7,7 +7,7 @@ from functools import cache
 
 import numpy as np
 import pytest
-from fixtures.located import (
+from fixtures.robots.located import (
     CONFIG,
     FURNISHED,
     LIDAR,

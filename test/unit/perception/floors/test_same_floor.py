@@ -9,7 +9,7 @@ from functools import cache
 
 import numpy as np
 import pytest
-from fixtures.located import FURNISHED, MOVED
+from fixtures.robots.located import FURNISHED, MOVED
 
 from roomba.commands.trials.homes import with_doors_shut
 from roomba.configuration.mapping import FloorsConfig, MappingConfig

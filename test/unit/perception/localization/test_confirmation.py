@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
-from fixtures.located import CONFIG, LIDAR, SQUARE, TWO_ROOMS, Eye
-from fixtures.missions import HOME
+from fixtures.robots.located import CONFIG, LIDAR, SQUARE, TWO_ROOMS, Eye
+from fixtures.robots.missions import HOME
 
 from roomba.geometry import Pose
 from roomba.perception.localization.confirmation import Confirmation, Refuted

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
-from fixtures.located import CONFIG, LIDAR, TWO_ROOMS, Eye
+from fixtures.robots.located import CONFIG, LIDAR, TWO_ROOMS, Eye
 
 from roomba.geometry import Pose
 from roomba.perception.localization import doubt

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from fixtures.located import CONFIG
+from fixtures.robots.located import CONFIG
 
 from roomba.geometry import Pose
 from roomba.perception.localization.expecting import (

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from fixtures.corridors import STEP, TELLING, coarse_and_thick, half_of
-from fixtures.located import CONFIG, LIDAR, SQUARE, TWO_ROOMS, Eye
+from fixtures.homes.corridors import STEP, TELLING, coarse_and_thick, half_of
+from fixtures.robots.located import CONFIG, LIDAR, SQUARE, TWO_ROOMS, Eye
 
 from roomba.geometry import Pose
 from roomba.grid import OccupancyMap

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
-from fixtures.located import CONFIG
+from fixtures.robots.located import CONFIG
 
 from roomba.perception.localization.estimate import Knowledge
 from roomba.perception.localization.knowledge import Circumstances, Searched, knowledge_in

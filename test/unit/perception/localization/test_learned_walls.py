@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from fixtures.corridors import coarse_and_thick
-from fixtures.located import CONFIG, FURNISHED, LIDAR, TWO_ROOMS, Eye
+from fixtures.homes.corridors import coarse_and_thick
+from fixtures.robots.located import CONFIG, FURNISHED, LIDAR, TWO_ROOMS, Eye
 
 from roomba.geometry import Pose
 from roomba.perception.localization.belief.belief import Rows, unknown_belief

@@ -7,7 +7,8 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from fixtures.located import (
+from fixtures.homes.rooms import room_home
+from fixtures.robots.located import (
     CLOSED,
     CONFIG,
     CORRIDOR,
@@ -26,7 +27,6 @@ from fixtures.located import (
     started,
     steps,
 )
-from fixtures.rooms import room_home
 from numpy.typing import NDArray
 
 from roomba.geometry import Pose, Twist

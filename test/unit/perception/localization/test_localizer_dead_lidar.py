@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from fixtures.located import (
+from fixtures.robots.located import (
     CONFIG,
     HASTY,
     START,

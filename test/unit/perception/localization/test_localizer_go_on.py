@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from fixtures.located import FURNISHED, MOVED, SQUARE, START, TWO_ROOMS, Located, steps
-from fixtures.rooms import room_home
+from fixtures.homes.rooms import room_home
+from fixtures.robots.located import FURNISHED, MOVED, SQUARE, START, TWO_ROOMS, Located, steps
 
 from roomba.geometry import Pose
 from roomba.grid import OccupancyMap

@@ -6,8 +6,9 @@ import math
 
 import numpy as np
 import pytest
-from fixtures.corridors import AHEAD, TELLING, coarse_and_thick, ranges_ahead
-from fixtures.located import (
+from fixtures.homes.corridors import AHEAD, TELLING, coarse_and_thick, ranges_ahead
+from fixtures.homes.worlds import DT
+from fixtures.robots.located import (
     CONFIG,
     FURNISHED,
     LIDAR,
@@ -23,8 +24,7 @@ from fixtures.located import (
     started,
     steps,
 )
-from fixtures.missions import HOME
-from fixtures.worlds import DT
+from fixtures.robots.missions import HOME
 
 from roomba.geometry import Pose, Twist
 from roomba.perception.localization.estimate import Knowledge

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from fixtures.made_lidars import TICK, Lidar, outlines
-from fixtures.mapped import CUPBOARD, FURNISHED, SHELF
+from fixtures.drives.made_lidars import TICK, Lidar, outlines
+from fixtures.robots.mapped import CUPBOARD, FURNISHED, SHELF
 
 from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose, wrap_angle

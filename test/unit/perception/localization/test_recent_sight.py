@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from fixtures.located import CONFIG, FURNISHED, LIDAR, MOVED, TWO_ROOMS, Eye, free_poses
+from fixtures.robots.located import CONFIG, FURNISHED, LIDAR, MOVED, TWO_ROOMS, Eye, free_poses
 from numpy.random import default_rng
 
 from roomba.geometry import Pose

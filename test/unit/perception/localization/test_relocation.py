@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from fixtures.located import (
+from fixtures.robots.located import (
     CONFIG,
     FURNISHED,
     LIDAR,

@@ -8,7 +8,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from fixtures.located import (
+from fixtures.robots.located import (
     CLOSED,
     CONFIG,
     CORRIDOR,

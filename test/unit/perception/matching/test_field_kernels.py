@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 import pytest
-from fixtures.located import FURNISHED, free_poses
-from fixtures.slow_lidar import ranges_to_cells
+from fixtures.references.slow_lidar import ranges_to_cells
+from fixtures.robots.located import FURNISHED, free_poses
 from hypothesis import given
 from hypothesis import strategies as st
 

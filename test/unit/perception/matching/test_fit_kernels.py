@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from fixtures.located import FURNISHED, LIDAR, TWO_ROOMS, Eye, free_poses
+from fixtures.robots.located import FURNISHED, LIDAR, TWO_ROOMS, Eye, free_poses
 from hypothesis import given, settings
 from hypothesis import strategies as st
 

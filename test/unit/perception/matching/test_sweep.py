@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from fixtures.made_lidars import Lidar, cast, outlines
+from fixtures.drives.made_lidars import Lidar, cast, outlines
 
 from roomba.geometry import Pose
 from roomba.perception.matching.reckoned_path import ReckonedPath, remember

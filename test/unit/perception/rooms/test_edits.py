@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from fixtures.straight_ways import parts_of
+from fixtures.references.straight_ways import parts_of
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 import shapely
-from fixtures.straight_ways import Mask, parts_of
+from fixtures.references.straight_ways import Mask, parts_of
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays

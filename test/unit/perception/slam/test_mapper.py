@@ -7,8 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from fixtures.located import LIDAR
-from fixtures.mapped import (
+from fixtures.robots.located import LIDAR
+from fixtures.robots.mapped import (
     AROUND,
     CIRCLE,
     FURNISHED,

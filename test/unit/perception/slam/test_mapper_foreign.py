@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 import pytest
-from fixtures.located import Eye
-from fixtures.mapped import FURNISHED, Floats, wrong_cells
+from fixtures.robots.located import Eye
+from fixtures.robots.mapped import FURNISHED, Floats, wrong_cells
 from numpy.typing import NDArray
 
 from roomba.configuration.mapping import MappingConfig

@@ -6,8 +6,8 @@ import math
 from dataclasses import dataclass
 
 import pytest
-from fixtures.made_lidars import Lidar, mapped, outlines
-from fixtures.mapped import CUPBOARD, FURNISHED, SHELF, wrong_cells
+from fixtures.drives.made_lidars import Lidar, mapped, outlines
+from fixtures.robots.mapped import CUPBOARD, FURNISHED, SHELF, wrong_cells
 
 from roomba.geometry import Pose
 from roomba.perception.localization.estimate import Knowledge

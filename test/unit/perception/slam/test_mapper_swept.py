@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 import pytest
-from fixtures.made_lidars import Errors, Lidar, mapped, outlines
+from fixtures.drives.made_lidars import Errors, Lidar, mapped, outlines
 
 from roomba.geometry import Pose
 

@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 import pytest
-from fixtures.mapped import AROUND, CIRCLE, FURNISHED, Mapped, driven_around, wrong_cells
-from fixtures.rooms import room_home
+from fixtures.homes.rooms import room_home
+from fixtures.robots.mapped import AROUND, CIRCLE, FURNISHED, Mapped, driven_around, wrong_cells
 
 from roomba.configuration.mapping import MappingConfig
 from roomba.geometry import Pose, Twist

@@ -7,8 +7,9 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from fixtures.located import LIDAR, Ranges
-from fixtures.mapped import (
+from fixtures.homes.rooms import room_home
+from fixtures.robots.located import LIDAR, Ranges
+from fixtures.robots.mapped import (
     AROUND,
     CIRCLE,
     FURNISHED,
@@ -17,7 +18,6 @@ from fixtures.mapped import (
     driven_around,
     wrong_cells,
 )
-from fixtures.rooms import room_home
 
 from roomba.geometry import Pose, Twist
 from roomba.grid import OCCUPIED

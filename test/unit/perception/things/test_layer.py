@@ -7,8 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from fixtures.located import CONFIG, FURNISHED, LIDAR, TWO_ROOMS, Eye, Ranges, free_poses
-from fixtures.rooms import room_home
+from fixtures.homes.rooms import room_home
+from fixtures.robots.located import CONFIG, FURNISHED, LIDAR, TWO_ROOMS, Eye, Ranges, free_poses
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from fixtures.straight_ways import Mask, connected_to, runs_between_centres_that_fit
+from fixtures.references.straight_ways import Mask, connected_to, runs_between_centres_that_fit
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays

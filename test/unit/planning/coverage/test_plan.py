@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from fixtures.straight_ways import length_of, turning_of
+from fixtures.references.straight_ways import length_of, turning_of
 from hypothesis import given, settings
 from hypothesis import strategies as st
 

@@ -7,7 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from fixtures.any_angle import Mask, Place, Sights, length_of, stays_on_floor
+from fixtures.references.any_angle import Mask, Place, Sights, length_of, stays_on_floor
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays

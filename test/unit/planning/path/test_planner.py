@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from fixtures.planned_rooms import (
+from fixtures.homes.planned_rooms import (
     CLEARANCE,
     RADIUS,
     SAGITTA,

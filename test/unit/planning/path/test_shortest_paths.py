@@ -9,7 +9,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from fixtures.planned_rooms import Point, occupancy
+from fixtures.homes.planned_rooms import Point, occupancy
 
 from roomba.planning.path.costmap import Mask
 from roomba.planning.path.planner import NoPathError, NoPathReason, Path, PathPlanner

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from fixtures.camera_rooms import (
+from fixtures.homes.camera_rooms import (
     CLEAN,
     CONFIG,
     DIRT_FRAME,
@@ -20,7 +20,7 @@ from fixtures.camera_rooms import (
     home_with,
     redness,
 )
-from fixtures.slow_camera import slow_depth
+from fixtures.references.slow_camera import slow_depth
 from hypothesis import given, settings
 from hypothesis import strategies as st
 

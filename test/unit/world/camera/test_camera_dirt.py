@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from fixtures.camera_rooms import CLEAN, DIRT_FRAME, camera_of, even_dirt, home_with
+from fixtures.homes.camera_rooms import CLEAN, DIRT_FRAME, camera_of, even_dirt, home_with
 
 from roomba.configuration.sensors import CameraConfig
 from roomba.geometry import Pose

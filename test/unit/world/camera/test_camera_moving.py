@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from fixtures.camera_rooms import CLEAN, CONFIG, DIRT_FRAME, camera_of, home_with, redness
+from fixtures.homes.camera_rooms import CLEAN, CONFIG, DIRT_FRAME, camera_of, home_with, redness
 from numpy.typing import NDArray
 
 from roomba.errors import PictureError

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from fixtures.rooms import Block, room_home
-from fixtures.worlds import DT, IDEAL, NOISY, drive
+from fixtures.homes.rooms import Block, room_home
+from fixtures.homes.worlds import DT, IDEAL, NOISY, drive
 from hypothesis import given, settings
 from hypothesis import strategies as st
 

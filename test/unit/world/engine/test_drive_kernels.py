@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 import pytest
-from fixtures.rooms import room_home
-from fixtures.worlds import DT, IDEAL, NOISY, drive
+from fixtures.homes.rooms import room_home
+from fixtures.homes.worlds import DT, IDEAL, NOISY, drive
 from hypothesis import given, settings
 from hypothesis import strategies as st
 

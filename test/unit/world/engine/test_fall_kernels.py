@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from fixtures.rooms import room_home
-from fixtures.worlds import drive
+from fixtures.homes.rooms import room_home
+from fixtures.homes.worlds import drive
 from numpy.typing import NDArray
 
 from roomba.configuration.simulation import (

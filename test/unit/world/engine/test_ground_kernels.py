@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 
 import pytest
-from fixtures.rooms import room_home
-from fixtures.worlds import drive
+from fixtures.homes.rooms import room_home
+from fixtures.homes.worlds import drive
 from hypothesis import given, settings
 from hypothesis import strategies as st
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from fixtures.rooms import room_home
-from fixtures.worlds import block_that_moves
+from fixtures.homes.rooms import room_home
+from fixtures.homes.worlds import block_that_moves
 from hypothesis import given, settings
 from hypothesis import strategies as st
 

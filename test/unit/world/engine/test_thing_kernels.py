@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 import pytest
-from fixtures.rooms import room_home
-from fixtures.worlds import DT, block_that_moves, drive
+from fixtures.homes.rooms import room_home
+from fixtures.homes.worlds import DT, block_that_moves, drive
 from hypothesis import given, settings
 from hypothesis import strategies as st
 

@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from fixtures.rooms import room_home
-from fixtures.worlds import IDEAL
+from fixtures.homes.rooms import room_home
+from fixtures.homes.worlds import IDEAL
 
 from roomba.errors import HomeError
 from roomba.geometry import Pose, Twist

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 import shapely
-from fixtures.free_walls import straight_wall
+from fixtures.homes.free_walls import straight_wall
 from hypothesis import given, settings
 from hypothesis import strategies as st
 

@@ -7,7 +7,7 @@ import math
 from pathlib import Path
 
 import pytest
-from fixtures.home_layers import STATION, loaded, room_map, value_at
+from fixtures.homes.home_layers import STATION, loaded, room_map, value_at
 
 from roomba.geometry import Pose
 from roomba.grid import FREE, OCCUPIED

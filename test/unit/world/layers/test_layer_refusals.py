@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from fixtures.home_layers import STATION, loaded
+from fixtures.homes.home_layers import STATION, loaded
 
 from roomba.errors import HomeError
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from fixtures.home_layers import STATION, loaded, value_at
+from fixtures.homes.home_layers import STATION, loaded, value_at
 
 from roomba.errors import HomeError
 from roomba.grid import FREE, OCCUPIED

@@ -10,7 +10,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 import pytest
-from fixtures.made_logs import (
+from fixtures.drives.made_logs import (
     BEAMS,
     BEGAN,
     LASER,

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from fixtures.located import LIDAR, steps
-from fixtures.mapped import AROUND, CIRCLE, START, Floats, Mapped
-from fixtures.worlds import DT
+from fixtures.homes.worlds import DT
+from fixtures.robots.located import LIDAR, steps
+from fixtures.robots.mapped import AROUND, CIRCLE, START, Floats, Mapped
 
 from roomba.commands.map.drive.trajectory import Trajectory, write_trajectory
 

@@ -8,7 +8,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 import pytest
-from fixtures.located import (
+from fixtures.homes.worlds import DT
+from fixtures.robots.located import (
     CONFIG,
     LIDAR,
     START,
@@ -20,7 +21,6 @@ from fixtures.located import (
     started,
     steps,
 )
-from fixtures.worlds import DT
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray

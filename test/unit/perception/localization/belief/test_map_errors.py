@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from fixtures.made_lidars import TICK, Floats, Lidar, outlines
+from fixtures.drives.made_lidars import TICK, Floats, Lidar, outlines
 from numpy.typing import NDArray
 
 from roomba.configuration.robot import RobotConfig

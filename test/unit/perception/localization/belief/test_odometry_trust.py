@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 import pytest
-from fixtures.made_lidars import TICK, Lidar, outlines
-from fixtures.mapped import CUPBOARD, FURNISHED, SHELF
+from fixtures.drives.made_lidars import TICK, Lidar, outlines
+from fixtures.robots.mapped import CUPBOARD, FURNISHED, SHELF
 
 from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose

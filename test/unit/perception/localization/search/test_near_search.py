@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from fixtures.located import CONFIG, FURNISHED, LIDAR, START, Eye, Located, steps
+from fixtures.robots.located import CONFIG, FURNISHED, LIDAR, START, Eye, Located, steps
 
 from roomba.geometry import Pose, Twist, wrap_angle
 from roomba.perception.localization.estimate import Knowledge

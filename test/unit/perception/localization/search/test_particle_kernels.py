@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from fixtures.located import FURNISHED, LIDAR, Eye
+from fixtures.robots.located import FURNISHED, LIDAR, Eye
 from hypothesis import given
 from hypothesis import strategies as st
 

@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 import pytest
-from fixtures.corridors import ALIKE, STEP, TELLING, coarse_and_thick, half_of
-from fixtures.located import CONFIG, FURNISHED, Eye
+from fixtures.homes.corridors import ALIKE, STEP, TELLING, coarse_and_thick, half_of
+from fixtures.robots.located import CONFIG, FURNISHED, Eye
 
 from roomba.geometry import Pose, wrap_angle
 from roomba.grid import OCCUPIED, GridFrame, OccupancyMap

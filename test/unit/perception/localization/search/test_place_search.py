@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from fixtures.located import CONFIG, FURNISHED, LIDAR, SQUARE, TWO_ROOMS, Eye, free_poses
+from fixtures.robots.located import CONFIG, FURNISHED, LIDAR, SQUARE, TWO_ROOMS, Eye, free_poses
 from numpy.typing import NDArray
 
 from roomba.geometry import Pose, wrap_angle

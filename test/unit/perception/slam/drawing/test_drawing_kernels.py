@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from fixtures.mapped import Floats
+from fixtures.robots.mapped import Floats
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from numpy.typing import NDArray

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from fixtures.located import Eye
-from fixtures.mapped import FURNISHED, Floats, points_of
+from fixtures.robots.located import Eye
+from fixtures.robots.mapped import FURNISHED, Floats, points_of
 
 from roomba.geometry import Pose
 from roomba.perception.slam.finishing.refinement import refined

@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 import pytest
-from fixtures.located import Eye
-from fixtures.rooms import room_home
+from fixtures.homes.rooms import room_home
+from fixtures.robots.located import Eye
 
 from roomba.configuration.mapping import MappingConfig
 from roomba.configuration.robot import RobotConfig

@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 import pytest
-from fixtures.located import Eye
-from fixtures.mapped import FURNISHED, Floats, points_of, row
+from fixtures.robots.located import Eye
+from fixtures.robots.mapped import FURNISHED, Floats, points_of, row
 from hypothesis import given, settings
 from hypothesis import strategies as st
 

@@ -6,9 +6,9 @@ import math
 
 import numpy as np
 import pytest
-from fixtures.located import LIDAR, Eye, Ranges
-from fixtures.mapped import FURNISHED, points_of
-from fixtures.rooms import room_home
+from fixtures.homes.rooms import room_home
+from fixtures.robots.located import LIDAR, Eye, Ranges
+from fixtures.robots.mapped import FURNISHED, points_of
 from hypothesis import given
 from hypothesis import strategies as st
 

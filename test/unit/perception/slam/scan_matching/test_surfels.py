@@ -6,9 +6,9 @@ import math
 
 import numpy as np
 import pytest
-from fixtures.located import Eye
-from fixtures.mapped import FURNISHED, START, Floats, points_of, row
-from fixtures.rooms import room_home
+from fixtures.homes.rooms import room_home
+from fixtures.robots.located import Eye
+from fixtures.robots.mapped import FURNISHED, START, Floats, points_of, row
 from hypothesis import given
 from hypothesis import strategies as st
 

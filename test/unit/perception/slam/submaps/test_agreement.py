@@ -7,9 +7,9 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from fixtures.located import LIDAR, Eye
-from fixtures.mapped import Floats, row
-from fixtures.rooms import Block, room_home
+from fixtures.homes.rooms import Block, room_home
+from fixtures.robots.located import LIDAR, Eye
+from fixtures.robots.mapped import Floats, row
 
 from roomba.configuration.mapping import MappingConfig
 from roomba.configuration.robot import RobotConfig

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 import scipy.sparse.linalg
-from fixtures.mapped import Floats
+from fixtures.robots.mapped import Floats
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from fixtures.located import Eye
-from fixtures.mapped import FURNISHED, START, Floats, points_of
+from fixtures.robots.located import Eye
+from fixtures.robots.mapped import FURNISHED, START, Floats, points_of
 from hypothesis import given
 from hypothesis import strategies as st
 

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 import shapely
-from fixtures.straight_ways import connected_to
+from fixtures.references.straight_ways import connected_to
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays

@@ -8,7 +8,7 @@ from itertools import combinations
 import numpy as np
 import pytest
 import shapely
-from fixtures.straight_ways import Mask, connected_to, runs_between_centres_that_fit
+from fixtures.references.straight_ways import Mask, connected_to, runs_between_centres_that_fit
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays

@@ -7,7 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from fixtures.straight_ways import Mask, parts_of, runs_between_centres_that_fit
+from fixtures.references.straight_ways import Mask, parts_of, runs_between_centres_that_fit
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays

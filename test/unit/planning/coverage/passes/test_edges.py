@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 import shapely
-from fixtures.straight_ways import (
+from fixtures.references.straight_ways import (
     Mask,
     connected_to,
     crosses_between_centres_that_fit,

@@ -6,7 +6,14 @@ from itertools import combinations, pairwise
 
 import numpy as np
 import pytest
-from fixtures.straight_ways import Mask, connected_to, length_of, parts_of, shrunk, swept_cells
+from fixtures.references.straight_ways import (
+    Mask,
+    connected_to,
+    length_of,
+    parts_of,
+    shrunk,
+    swept_cells,
+)
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 

@@ -9,7 +9,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 import shapely
-from fixtures.straight_ways import (
+from fixtures.references.straight_ways import (
     Line,
     Mask,
     connected_to,

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from fixtures.straight_ways import Mask, runs_between_centres_that_fit
+from fixtures.references.straight_ways import Mask, runs_between_centres_that_fit
 from hypothesis import given, settings
 from hypothesis import strategies as st
 

@@ -7,7 +7,7 @@ from itertools import pairwise, permutations, product
 
 import numpy as np
 import pytest
-from fixtures.straight_ways import Line, Mask, connected_to, turning_of
+from fixtures.references.straight_ways import Line, Mask, connected_to, turning_of
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from fixtures.straight_ways import (
+from fixtures.references.straight_ways import (
     Line,
     Mask,
     connected_to,

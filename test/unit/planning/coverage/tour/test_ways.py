@@ -6,7 +6,7 @@ import heapq
 import math
 
 import numpy as np
-from fixtures.straight_ways import (
+from fixtures.references.straight_ways import (
     Line,
     Mask,
     connected_to,

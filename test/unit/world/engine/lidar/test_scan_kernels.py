@@ -6,15 +6,15 @@ import math
 
 import numpy as np
 import pytest
-from fixtures.rooms import room_home
-from fixtures.slow_lidar import (
+from fixtures.homes.rooms import room_home
+from fixtures.homes.worlds import DT, IDEAL, NOISY, block_that_moves, drive
+from fixtures.references.slow_lidar import (
     disagreeing,
     ranges_to_box,
     ranges_to_cells,
     ranges_to_disc,
     within,
 )
-from fixtures.worlds import DT, IDEAL, NOISY, block_that_moves, drive
 from hypothesis import given, reject, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray

@@ -6,9 +6,9 @@ import math
 
 import numpy as np
 import pytest
-from fixtures.rooms import room_home
-from fixtures.slow_lidar import ranges_to_box, ranges_to_cells, ranges_to_disc
-from fixtures.worlds import DT, block_that_moves
+from fixtures.homes.rooms import room_home
+from fixtures.homes.worlds import DT, block_that_moves
+from fixtures.references.slow_lidar import ranges_to_box, ranges_to_cells, ranges_to_disc
 from numpy.typing import NDArray
 
 from roomba.configuration.sensors import LidarConfig

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from fixtures.worlds import NOISY
+from fixtures.homes.worlds import NOISY
 
 from roomba.world.engine.populate import first_robots
 from roomba.world.engine.state.arrays import WORLD, Row

@@ -1,0 +1,159 @@
+"""In which order the mission node tells things; no graph is needed for that."""
+
+from dataclasses import replace
+from unittest.mock import MagicMock
+
+import pytest
+import rospy
+from actionlib_msgs.msg import GoalID, GoalStatus
+from fixtures.robots.missions import HOME
+from roomba_robot.msg import CleanGoal, DockGoal, VacuumState
+
+from roomba.configuration.docking import DockingConfig
+from roomba.configuration.mission import MissionConfig
+from roomba.configuration.nodes import DeadlinesConfig, PeriodsConfig
+from roomba.configuration.robot import RobotConfig
+from roomba.geometry import Pose
+from roomba.mission.cleaning.cleaning import Cleaning
+from roomba.mission.inputs.planning_context import PlanningContext
+from roomba.mission.inputs.senses import Battery, Senses
+from roomba.mission.mission import Mission
+from roomba.mission.phases.machine import Event
+from roomba.perception.matching.surface_field import SurfaceField
+from roomba.perception.swept.dirt_map import DirtMap
+from roomba.perception.things.layer import ThingLayer
+from roomba_ros.mission.goals import CleaningGoal, DockingGoal, MissionGoal
+from roomba_ros.mission.orders import Cancel, MissionOrders, Order
+from roomba_ros.mission.round import MissionRound
+from roomba_ros.mission.topics import MissionTopics
+from roomba_ros.runtime.action_goal import GoalIdentity
+
+CONFIG, MISSION_CONFIG = RobotConfig(), MissionConfig()
+SITE = PlanningContext(HOME.map, HOME.station, CONFIG, MISSION_CONFIG, DockingConfig())
+AWAY = Senses(0.0, Pose(1.0, 0.6, 0.0))
+TELLS = {
+    "state.publish": "state",
+    "answer.put": "answer",
+    "handle.set_accepted": "accepted",
+    "handle.publish_feedback": "feedback",
+    "handle.set_succeeded": "succeeded",
+    "handle.set_canceled": "canceled",
+    "handle.set_aborted": "aborted",
+}
+
+
+class Publisher:
+    """A publisher without a graph: states go to the rig, and nothing else has a subscriber."""
+
+    state = MagicMock()
+
+    def __init__(self, topic: str, kind: type, **_: object) -> None:
+        self.name, self._is_state = topic, kind is VacuumState
+
+    def publish(self, message: object) -> None:
+        if self._is_state:
+            self.state.publish(message)
+
+    @staticmethod
+    def get_num_connections() -> int:
+        return 0
+
+
+class Rig:
+    """A mission between its orders and its topics, and what it tells, in its order."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.senses = AWAY
+        self.world = MagicMock()
+        self.mission = Mission(
+            SITE,
+            CONFIG,
+            MISSION_CONFIG,
+            DockingConfig(),
+            ThingLayer(SurfaceField.of(HOME.map)),
+            DirtMap(HOME.map),
+            AWAY,
+        )
+        self.orders = MissionOrders(lambda: None, DeadlinesConfig())
+        monkeypatch.setattr(Publisher, "state", self.world.state)
+        monkeypatch.setattr(rospy, "Publisher", Publisher)
+        monkeypatch.setattr(rospy, "Subscriber", MagicMock())
+        topics = MissionTopics(MISSION_CONFIG, PeriodsConfig(), MagicMock(trouble=""))
+        topics.start()
+        drive = MagicMock(is_taken=False)
+        self.round = MissionRound(self.orders, topics, drive, Mission.tick)
+        self.world.handle.get_goal_id.return_value = GoalID(id="1")
+        self.world.handle.get_goal_status.return_value = GoalStatus(status=GoalStatus.PENDING)
+
+    def tick(self) -> list[str]:
+        """Tick once; return what was told, and the phase of each state that was."""
+        self.world.mock_calls.clear()
+        self.senses = replace(self.senses, now=self.senses.now + 0.05)
+        self.round.tick(self.senses.now, self.mission, self.senses)
+        return [
+            call.args[0].phase if call[0] == "state.publish" else TELLS[call[0]]
+            for call in self.world.mock_calls
+            if call[0] in TELLS
+        ]
+
+    def ask(self, kind: type[MissionGoal], goal: object) -> list[str]:
+        self.world.handle.get_goal.return_value = goal
+        self.orders.ask(kind(self.world.handle))
+        return self.tick()
+
+    def order(self, event: Event) -> list[str]:
+        self.orders.ask(Order(event, self.world.answer))
+        return self.tick()
+
+
+def test_a_state_is_told_before_the_answer_to_the_order_that_led_to_it(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    rig = Rig(monkeypatch)
+    assert rig.ask(DockingGoal, DockGoal()) == ["accepted", "returning", "feedback"]
+    assert rig.order(Event.PAUSE) == ["paused", "feedback", "answer"]
+    assert rig.world.answer.put.call_args.args == ((True, "paused"),)
+    assert rig.order(Event.RESUME) == ["returning", "feedback", "answer"]
+    assert rig.order(Event.STOP) == ["idle", "canceled", "answer"]
+    assert rig.order(Event.PAUSE) == ["answer"]
+    assert rig.world.answer.put.call_args.args == ((False, "cannot pause now: the robot is idle"),)
+
+
+def test_a_state_is_told_before_the_result_of_a_goal_that_was_cancelled(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    rig = Rig(monkeypatch)
+    rig.ask(CleaningGoal, CleanGoal())
+    rig.orders.ask(Cancel(GoalIdentity("clean", "1", 0, 0)))
+    assert rig.tick() == ["idle", "canceled"]
+
+
+def test_a_state_is_told_before_the_result_of_a_goal_that_a_newer_one_took_over(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    rig = Rig(monkeypatch)
+    rig.ask(CleaningGoal, CleanGoal())
+    assert rig.ask(DockingGoal, DockGoal()) == ["accepted", "returning", "feedback", "canceled"]
+
+
+@pytest.mark.parametrize("emergency", [False, True])
+def test_a_state_is_told_before_the_result_of_a_goal_that_ended(
+    monkeypatch: pytest.MonkeyPatch, emergency: bool
+) -> None:
+    rig = Rig(monkeypatch)
+    rig.ask(DockingGoal, DockGoal())
+    if emergency:
+        rig.orders.hold("a child")
+        assert rig.tick() == ["emergency stop", "feedback", "aborted"]
+    else:
+        rig.senses = replace(rig.senses, battery=Battery(1.0, 26.0, is_docked=True))
+        assert rig.tick() == ["docked", "feedback", "succeeded"]
+
+
+def test_the_clean_floor_is_counted_once_for_a_state(monkeypatch: pytest.MonkeyPatch) -> None:
+    rig, areas = Rig(monkeypatch), iter((1.0, 1.5, 2.0))
+    monkeypatch.setattr(Cleaning, "clean_area", property(lambda _: next(areas)))
+    rig.ask(CleaningGoal, CleanGoal())
+    told = [call.args[0] for call in rig.world.state.publish.call_args_list]
+    assert [state.covered for state in told] == [1.0, 1.5][: len(told)]
+    assert all(state.fraction == state.covered / state.wanted for state in told)

@@ -1,0 +1,133 @@
+"""What the body tells becomes readings, one for each message of odometry."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pytest
+from fixtures.nodes.lockstep import Lockstep
+from nav_msgs.msg import Odometry
+from roomba_robot.msg import Bumper, Cliff, DockStatus, WheelDrop
+from rospy import Time
+from sensor_msgs.msg import BatteryState, Imu, LaserScan
+from std_msgs.msg import Float32, UInt16
+
+from roomba.configuration.robot import RobotConfig
+from roomba.geometry import Pose, Twist
+from roomba.mission.docking.beams import StationBeams
+from roomba.robot.readings import CliffReading
+from roomba_ros.convert.common import odometry_message
+from roomba_ros.senses.body_topics import BodyTopics
+
+CONFIG = RobotConfig()
+
+
+@pytest.fixture
+def ros() -> Iterator[Lockstep]:
+    """Topics without a master."""
+    with Lockstep().installed() as lockstep:
+        yield lockstep
+
+
+def body(*topics: str) -> BodyTopics:
+    heard = BodyTopics(CONFIG, *topics)
+    heard.start()
+    return heard
+
+
+def moved(stamp: float, x: float = 0.0, linear: float = 0.0) -> Odometry:
+    return odometry_message(stamp, Pose(x, 0.0, 0.0), Twist(linear, 0.1), "odom", "base_link")
+
+
+def turned(stamp: float, turning: float) -> Imu:
+    message = Imu()
+    message.header.stamp = Time.from_sec(stamp)
+    message.angular_velocity.z = turning
+    return message
+
+
+def scanned(stamp: float) -> LaserScan:
+    message = LaserScan(angle_increment=0.5, range_max=8.0, ranges=[1.0] * 4)
+    message.header.stamp = Time.from_sec(stamp)
+    return message
+
+
+def test_each_odometry_is_a_reading_with_the_gyro_of_its_time(ros: Lockstep) -> None:
+    heard = body("odom", "imu")
+    for stamp, turning in ((9.95, 0.1), (10.0, 0.2), (10.05, 0.3)):
+        ros.publish("/imu", turned(stamp, turning))
+    for stamp in (10.0, 10.05, 10.5):
+        ros.publish("/odom", moved(stamp, x=stamp, linear=0.2))
+    readings = heard.take()
+    assert [each.time for each in readings] == [10.0, 10.05, 10.5]
+    assert [each.odometry.x for each in readings] == [10.0, 10.05, 10.5]
+    assert [each.turning for each in readings] == [0.2, 0.3, None]
+    assert readings[0].twist == Twist(0.2, 0.1)
+    assert heard.take() == []
+
+
+def test_odometry_without_a_stamp_is_of_now(ros: Lockstep) -> None:
+    heard = body("odom")
+    ros.publish("/odom", moved(0.0))
+    assert heard.take()[0].time == ros.now
+
+
+def test_a_scan_comes_once_with_the_first_odometry_that_is_not_older(ros: Lockstep) -> None:
+    heard = body("odom", "scan")
+    ros.publish("/scan", scanned(10.1))
+    ros.publish("/odom", moved(10.05))
+    (before,) = heard.take()
+    for stamp in (10.1, 10.15):
+        ros.publish("/odom", moved(stamp))
+    first, last = heard.take()
+    assert (before.scan, first.scan) == (None, None)
+    assert last.scan is not None
+    assert last.scan.stamp == pytest.approx(10.1)
+    ros.publish("/odom", moved(10.2))
+    assert heard.take()[0].scan is None
+
+
+def test_each_has_the_newest_of_all_other_sensors(ros: Lockstep) -> None:
+    sensors = ("bumper", "cliff", "wheel_drop", "ir_omni", "dirt_detect", "bin_level")
+    heard = body("odom", *sensors)
+    assert heard.missing("odom", *sensors) == ("odom", *sensors)
+    ros.publish("/bumper", Bumper(is_left_pressed=True))
+    ros.publish("/bumper", Bumper(is_right_pressed=True))
+    ros.publish("/cliff", Cliff(is_cliff_front_left=True))
+    ros.publish("/wheel_drop", WheelDrop(is_left_dropped=True))
+    ros.publish("/ir_omni", UInt16(160 + 8))
+    ros.publish("/dirt_detect", UInt16(40))
+    ros.publish("/bin_level", Float32(0.5))
+    assert heard.missing("odom", *sensors) == ("odom",)
+    ros.publish("/odom", moved(1.0))
+    (told,) = heard.take()
+    assert (told.bumper_left, told.bumper_right) == (False, True)
+    assert told.cliff == CliffReading(front_left=True)
+    assert (told.dropped_left, told.dropped_right) == (True, False)
+    assert told.beams == StationBeams(red=True)
+    assert told.grains == 40.0
+    assert told.in_bin == 0.5 * CONFIG.brush.bin_capacity
+
+
+@pytest.mark.parametrize("is_dock_first", [True, False])
+def test_battery_and_contact_are_told_apart_and_go_together(
+    ros: Lockstep, is_dock_first: bool
+) -> None:
+    heard = body("odom", "battery_state", "dock_status")
+    told = [
+        ("/dock_status", DockStatus(is_docked=True)),
+        ("/battery_state", BatteryState(percentage=0.25, capacity=2.0)),
+    ]
+    for topic, message in told if is_dock_first else reversed(told):
+        ros.publish(topic, message)
+    ros.publish("/odom", moved(1.0))
+    battery = heard.take()[0].battery
+    assert (battery.level, battery.is_docked) == (0.25, True)
+
+
+def test_what_is_not_asked_for_is_not_heard(ros: Lockstep) -> None:
+    heard = body("odom")
+    ros.publish("/bumper", Bumper(is_left_pressed=True))
+    ros.publish("/odom", moved(1.0))
+    assert not heard.take()[0].bumps
+    assert heard.missing("bumper") == ("bumper",)
