@@ -29,6 +29,8 @@ _BUSY: Final = 10.0
 """s of wall time that a writer waits for another one."""
 _MOST_RECORDINGS: Final = 200
 """Of the newest runs; of older ones only the figures are kept."""
+_LARGEST_NUMBER: Final = 2**63 - 1
+"""Of a run: larger ones SQLite does not know."""
 
 MIGRATIONS: Final = (
     """
@@ -125,8 +127,10 @@ class History:
 
     def run(self, number: int) -> KeptRun:
         """Return a run by its number."""
-        with self._opened() as database:
-            found = _select(database, "id = ?", (number,))
+        found: list[KeptRun] = []
+        if 0 < number <= _LARGEST_NUMBER:
+            with self._opened() as database:
+                found = _select(database, "id = ?", (number,))
         if not found:
             newest = self.named(LAST).number
             raise HistoryError(

@@ -40,11 +40,14 @@ class RecordedRobot:
     """Plays a recording; its methods may be called from any thread. Commands are refused."""
 
     def __init__(self, figures: RunFigures, recording: RunRecording, speed: float = 10.0) -> None:
-        """Begin at the first row, standing; raises RunFileError for a recording of nothing."""
+        """Begin at the first row, standing; raises RunFileError for a recording of nothing.
+
+        So it does for one of which the home cannot be shown.
+        """
         if not len(recording.trace) or not recording.words:
             raise RunFileError("expected a recording with at least one row, got none")
         self._figures, self._recording = figures, recording
-        self._home = home_from(dict(recording.home))
+        self._home = _home_of(recording)
         self._times = recording.column("time").astype(np.float64)
         self._word_times = [word.time for word in recording.words]
         self._lock = threading.Lock()
@@ -192,6 +195,15 @@ class RecordedRobot:
     clean = explore = go_to = dock = pause = resume = stop = locate = empty_bin = _refuse
     emergency_stop = release = drive = put_zone = remove_zone = rename_room = _refuse
     join_rooms = split_room = undo_rooms = set_top_speed = _refuse
+
+
+def _home_of(recording: RunRecording) -> view.HomeView:
+    try:
+        return home_from(dict(recording.home))
+    except (LookupError, TypeError, ValueError, AttributeError, OverflowError) as error:
+        raise RunFileError(
+            f"expected a recording with the home that it is of, got another one ({error!r:.200})"
+        ) from error
 
 
 class _Coverage:

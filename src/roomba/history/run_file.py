@@ -10,23 +10,27 @@ from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
+from pydantic import TypeAdapter
 
-from roomba.client.protocol import MissedFloor
 from roomba.errors import RoombaError
+from roomba.files.arrays import read_arrays
 from roomba.files.atomic import UNREADABLE, write_whole
+from roomba.files.bounded import read_bytes
+from roomba.files.plain_json import load_json
 from roomba.history.run import (
     CELL_LAYERS,
     TRACE,
     CellLayer,
     RunFigures,
     RunRecording,
-    RunSource,
     Word,
 )
 
 VERSION: Final = 1
+_WORDS: Final = TypeAdapter(tuple[Word, ...])
+_FIGURES: Final = TypeAdapter(RunFigures)
 _LARGEST: Final = 256 * 1024 * 1024
-"""Bytes of a file that is read."""
+"""Bytes of a file that is read, and of what it holds when it is unpacked."""
 
 
 class RunFileError(RoombaError):
@@ -44,9 +48,7 @@ def write_run(figures: RunFigures, recording: RunRecording, path: Path) -> None:
 def read_run(path: Path) -> tuple[RunFigures, RunRecording]:
     """Return the run of a file; raises RunFileError."""
     try:
-        if path.stat().st_size > _LARGEST:
-            raise RunFileError(f"{path}: expected at most {_LARGEST} bytes; this is no run")
-        return unpacked(path.read_bytes())
+        return unpacked(read_bytes(path, _LARGEST))
     except OSError as error:
         raise RunFileError(f"{path}: cannot be read: {error.strerror}") from error
     except RunFileError as error:
@@ -77,23 +79,23 @@ def packed(figures: RunFigures, recording: RunRecording) -> bytes:
 def unpacked(content: bytes) -> tuple[RunFigures, RunRecording]:
     """Return the run of some bytes; raises RunFileError."""
     try:
-        with np.load(io.BytesIO(content), allow_pickle=False) as arrays:
-            about = json.loads(arrays["about"].tobytes())
-            if about["version"] != VERSION or tuple(about["columns"]) != TRACE:
-                raise RunFileError(
-                    f"expected a run of version {VERSION}, got version {about['version']}; "
-                    "read it with the program that wrote it"
-                )
-            trace = np.asarray(arrays["trace"], np.float32)
-            if trace.ndim != 2 or trace.shape[1] != len(TRACE) or not np.isfinite(trace).all():
-                raise RunFileError(f"expected a trace of {len(TRACE)} finite columns")
-            layers = {
-                name: _layer(about["layers"][name], arrays[name])
-                for name in CELL_LAYERS
-                if name in about["layers"]
-            }
-            words = tuple(Word(**word) for word in about["words"])
-            return _figures(about["figures"]), RunRecording(trace, words, about["home"], layers)
+        arrays = read_arrays(content, _LARGEST)
+        about = load_json(arrays["about"].tobytes().decode())
+        if about["version"] != VERSION or tuple(about["columns"]) != TRACE:
+            raise RunFileError(
+                f"expected a run of version {VERSION}, got version {about['version']}; "
+                "read it with the program that wrote it"
+            )
+        trace = np.asarray(arrays["trace"], np.float32)
+        if trace.ndim != 2 or trace.shape[1] != len(TRACE) or not np.isfinite(trace).all():
+            raise RunFileError(f"expected a trace of {len(TRACE)} finite columns")
+        layers = {
+            name: _layer(about["layers"][name], arrays[name])
+            for name in CELL_LAYERS
+            if name in about["layers"]
+        }
+        words = _WORDS.validate_python(about["words"])
+        return _figures(about["figures"]), RunRecording(trace, words, dict(about["home"]), layers)
     except UNREADABLE as error:
         raise RunFileError(
             "expected a recorded run, as ./roomba report --recording writes it, got a file that "
@@ -118,9 +120,5 @@ def _plain(values: dict[str, Any]) -> dict[str, Any]:
 
 
 def _figures(values: dict[str, Any]) -> RunFigures:
-    known: dict[str, Any] = {
-        name: math.nan if value is None else value for name, value in values.items()
-    }
-    known["source"] = RunSource(**known["source"])
-    known["missed"] = tuple(MissedFloor(**miss) for miss in known["missed"])
-    return RunFigures(**known)
+    known = {name: math.nan if value is None else value for name, value in dict(values).items()}
+    return _FIGURES.validate_python(known)

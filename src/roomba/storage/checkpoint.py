@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.errors import RoombaError
+from roomba.files.arrays import read_arrays
 from roomba.files.kept import KeptFileError, read_kept, remove_kept, write_kept
 from roomba.files.plain_json import load_json
 
@@ -105,8 +106,7 @@ def load_dirt(path: Path, shape: tuple[int, int], tell: Callable[[str], object])
     """
 
     def parse(content: bytes) -> Floats:
-        with np.load(io.BytesIO(content), allow_pickle=False) as file:
-            learned: Floats = np.asarray(file["learned"], np.float32)
+        learned: Floats = np.asarray(read_arrays(content)["learned"], np.float32)
         if learned.shape != shape:
             raise CheckpointFileError(f"expected a dirt map of shape {shape}, got {learned.shape}")
         return learned

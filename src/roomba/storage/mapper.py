@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.errors import RoombaError
+from roomba.files.arrays import read_arrays
 from roomba.files.kept import KeptFileError, read_kept, remove_kept, write_kept
 from roomba.geometry import Pose
 from roomba.perception.slam.mapper_state import LidarNumbers, MapperState
@@ -68,8 +69,7 @@ def load_mapper(path: Path, tell: Callable[[str], object]) -> KeptMap | None:
 
 
 def _parsed(content: bytes) -> KeptMap:
-    with np.load(io.BytesIO(content), allow_pickle=False) as file:
-        return _kept_of(_Fields(file))
+    return _kept_of(_Fields(read_arrays(content, _MOST_BYTES)))
 
 
 def remove_mapper(path: Path) -> None:

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import io
+import json
+import os
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from roomba.history.replay import RecordedRobot
 from roomba.history.run import RunFigures, RunRecording
-from roomba.history.run_file import RunFileError, packed, read_run, write_run
+from roomba.history.run_file import RunFileError, packed, read_run, unpacked, write_run
 
 
 def test_a_run_is_read_back(tmp_path: Path, figures: RunFigures, recording: RunRecording) -> None:
@@ -50,3 +54,58 @@ def test_half_a_file_and_another_version_are_refused(
         read_run(path)
     with pytest.raises(RunFileError, match="cannot be read"):
         read_run(tmp_path / "none.run")
+
+
+def changed(content: bytes, **about: object) -> bytes:
+    """Return a run of which it is told something else."""
+    with np.load(io.BytesIO(content)) as arrays:
+        found = dict(arrays)
+    values = {**json.loads(found["about"].tobytes()), **about}
+    found["about"] = np.frombuffer(json.dumps(values).encode(), np.uint8)
+    file = io.BytesIO()
+    np.savez(file, **found)
+    return file.getvalue()
+
+
+@pytest.mark.parametrize(
+    "about",
+    [
+        {"words": [{"time": "noon", "state": "docked", "phase": "docked"}]},
+        {"words": [{"time": 1.0, "state": ["docked"], "phase": "docked"}]},
+        {"words": [1]},
+        {"words": None},
+        {"figures": {"kind": "clean"}},
+        {"figures": [1]},
+        {"home": [1]},
+        {"home": None},
+        {"layers": {"map": ["a", "b", "c"]}},
+        {"layers": {"map": [0.05]}},
+    ],
+    ids=str,
+)
+def test_values_of_another_kind_are_refused(
+    figures: RunFigures, recording: RunRecording, about: dict[str, object]
+) -> None:
+    content = packed(figures, recording)
+    assert unpacked(changed(content))[1].words == recording.words
+    with pytest.raises(RunFileError, match="damaged, or something else"):
+        unpacked(changed(content, **about))
+
+
+def test_what_nests_deeply_or_is_no_regular_file_is_refused(tmp_path: Path) -> None:
+    file = io.BytesIO()
+    np.savez(file, about=np.frombuffer(b"[" * 100_000, np.uint8), trace=np.zeros((1, 1)))
+    with pytest.raises(RunFileError, match="damaged, or something else"):
+        unpacked(file.getvalue())
+    pipe = tmp_path / "pipe.run"
+    os.mkfifo(pipe)
+    with pytest.raises(RunFileError, match="cannot be read"):
+        read_run(pipe)
+
+
+@pytest.mark.parametrize("home", [{}, {"name": "box"}, {"version": "x"}, {"rooms": 3}])
+def test_a_home_that_cannot_be_shown_is_refused(
+    figures: RunFigures, recording: RunRecording, home: dict[str, object]
+) -> None:
+    with pytest.raises(RunFileError, match="with the home that it is of"):
+        RecordedRobot(figures, replace(recording, home=home))

@@ -213,7 +213,7 @@ def rewritten(path: Path, **changes: NDArray[Any] | None) -> None:
         ({"lidar_mount": np.full(3, np.nan)}, "and a mount"),
         ({"station": np.array([1.0, np.nan, 0.0])}, "station: expected finite numbers"),
         ({"run": np.array(7)}, "run: expected words"),
-        ({"run": np.array([None])}, "pickle"),
+        ({"run": np.array([None])}, "expected an array of numbers, got object"),
         (
             {
                 "submap_ways": np.zeros(0),

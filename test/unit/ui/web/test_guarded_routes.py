@@ -7,22 +7,19 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pytest
 from fastapi import FastAPI
 from fastapi.routing import APIRoute, APIWebSocketRoute
 from fastapi.testclient import TestClient
+from fixtures.able_robot import AbleRobot
 from fixtures.routes import all_routes
-from fixtures.written_robot import WrittenRobot
 from hypothesis import given
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 from starlette.routing import Mount
 from starlette.testclient import WebSocketDenialResponse
 from starlette.websockets import WebSocket, WebSocketDisconnect
 from unit.history.made import made_figures, made_recording
 
-from roomba.client.observed import MapsView, TimelineView
 from roomba.history.database import History
 from roomba.history.recorder import HistoryKeeper
 from roomba.history.run import RunSource
@@ -33,28 +30,6 @@ TOKEN = "the-token"
 ADDRESS = "http://127.0.0.1:8400"
 RIGHT = {"Authorization": f"Bearer {TOKEN}", "Content-Type": "application/json"}
 SAFE = {"GET", "HEAD", "OPTIONS"}
-
-
-class AbleRobot(WrittenRobot):
-    """Can do all that any robot can; recordings are moved, maps are kept."""
-
-    def __getattr__(self, name: str) -> Any:
-        if name == "tick_times":
-            raise AttributeError(name)
-
-        def command(*arguments: Any, **more: Any) -> None:
-            self.told.append((name, (*arguments, *more)))
-
-        return command
-
-    def timeline(self) -> TimelineView:
-        return TimelineView(1.0, 0.0, 1.0, False, 0)
-
-    def maps(self) -> MapsView:
-        return MapsView((), "")
-
-    def picture(self, _: float) -> NDArray[np.uint8]:
-        return np.zeros((2, 2, 3), np.uint8)
 
 
 class Bridge:
