@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import time
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
@@ -45,10 +46,10 @@ class Rig:
         self.graph.start("speed_pub_node", self.node)
         return self
 
-    def told(self, topic: str, message: Any) -> list[Twist]:
-        """Return what the drive is told at once when a message comes."""
+    def told(self, topic: str, message: Any, sender: str = "/test") -> list[Twist]:
+        """Return what the drive is told at once when a message of a node comes."""
         before = len(self.driven)
-        self.graph.publish(topic, message)
+        self.graph.publish(topic, message, sender)
         return self.driven[before:]
 
     def ticked(self, seconds: float = TICK) -> list[Twist]:
@@ -158,6 +159,48 @@ def test_one_hazard_ends_and_the_other_stays(rig: Rig) -> None:
     rig.told("bumper", Bumper())
     rig.told("cmd_vel", twist_message(AHEAD))
     assert rig.ticked() == [STANDSTILL]
+
+
+@pytest.mark.parametrize(
+    ("topic", "on", "off"),
+    [
+        ("bumper", Bumper(is_left_pressed=True), Bumper()),
+        ("cliff", Cliff(is_cliff_front_left=True), Cliff()),
+        ("wheel_drop", WheelDrop(is_left_dropped=True), WheelDrop()),
+    ],
+)
+def test_another_node_ends_no_hazard_and_makes_none_while_the_body_tells_it(
+    rig: Rig, monkeypatch: pytest.MonkeyPatch, topic: str, on: Any, off: Any
+) -> None:
+    now = [100.0]
+    monkeypatch.setattr(time, "monotonic", lambda: now[0])
+    rig.start()
+    rig.told(topic, on, "/body")
+    now[0] += 2.9
+    rig.told(topic, off, "/other")
+    rig.told("cmd_vel", twist_message(AHEAD))
+    assert rig.ticked() != [AHEAD]
+    rig.told(topic, off, "/body")
+    assert rig.told(topic, on, "/other") == []
+    rig.told("cmd_vel", twist_message(AHEAD))
+    assert rig.ticked() == [AHEAD]
+    now[0] += 3.1
+    assert rig.told(topic, on, "/other") != []
+
+
+def test_another_node_tells_no_speed_while_the_body_tells_it(
+    rig: Rig, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    now = [100.0]
+    monkeypatch.setattr(time, "monotonic", lambda: now[0])
+    rig.start()
+    rig.graph.publish("odom", odometry(0.2), "/body")
+    rig.graph.publish("odom", odometry(0.5), "/other")
+    rig.graph.tick(TICK)
+    now[0] += 1.1
+    rig.graph.publish("odom", odometry(0.5), "/other")
+    rig.graph.tick(2.0 * TICK)
+    assert rig.speeds == pytest.approx([0.2, 0.5])
 
 
 def test_why_the_drive_is_held_is_logged_once(rig: Rig, monkeypatch: pytest.MonkeyPatch) -> None:

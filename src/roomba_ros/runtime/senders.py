@@ -20,7 +20,9 @@ SPEED_NODE: Final = "speed_pub_node"
 SUPERVISOR: Final = "supervisor_node"
 """The node that tells how the robot's processes are."""
 _SILENT_AFTER: Final = 1.0
-"""s of wall time without a message, after which a node is no sender any more."""
+"""s of wall time without a message, after which a node is no sender any more,"""
+SELDOM_SILENT_AFTER: Final = 3.0
+"""and where a message a second is usual."""
 
 
 class Senders(Protocol):
@@ -46,9 +48,10 @@ class OnlyFrom:
 class OneSender:
     """Takes what the first node sends, until it is silent; notices when another one sends, too."""
 
-    def __init__(self) -> None:
-        """Begin without a sender."""
+    def __init__(self, silent_after: float = _SILENT_AFTER) -> None:
+        """Begin without a sender; one is none any more after so many s of wall time."""
         self._lock = threading.Lock()
+        self._silent_after = silent_after
         self._sender, self._heard = "", -math.inf
         self._rival, self._rival_heard = "", -math.inf
 
@@ -56,7 +59,7 @@ class OneSender:
         """Raise MessageError if another node sends already."""
         now = time.monotonic()
         with self._lock:
-            if sender == self._sender or now - self._heard > _SILENT_AFTER:
+            if sender == self._sender or now - self._heard > self._silent_after:
                 self._sender, self._heard = sender, now
                 return
             self._rival, self._rival_heard = sender, now
@@ -68,6 +71,6 @@ class OneSender:
         now = time.monotonic()
         with self._lock:
             newest = min(self._heard, self._rival_heard)
-            if self._sender == self._rival or now - newest > _SILENT_AFTER:
+            if self._sender == self._rival or now - newest > self._silent_after:
                 return ""
             return f"both {self._sender} and {self._rival} tell it: end one of them"

@@ -41,19 +41,22 @@ from roomba_ros.convert.readings import (
 from roomba_ros.convert.scan import ScanDecoder
 from roomba_ros.convert.values import data_of, number_of
 from roomba_ros.runtime.node import frame_id
+from roomba_ros.runtime.senders import SELDOM_SILENT_AFTER, OneSender
 from roomba_ros.runtime.subscriptions import subscribe
 from roomba_ros.senses.waiting_scans import WaitingScans
 
 _KEPT: Final = 40
 """Messages of odometry, and of the gyro, that wait for the next tick: two seconds of them."""
 _QUEUE: Final = 10
+_OF_ANY: Final = frozenset(("scan",))
+"""Topics on which several nodes may tell: a robot may have two lidars, each with its frame."""
 
 
 class BodyTopics:
     """Makes readings of what the body tells: one for each message of odometry.
 
     Each has the newest of all other sensors; a scan comes with the first odometry of its time or
-    later.
+    later. There is one body: of two nodes that tell its state, the first counts until it is silent.
 
     Subscribes: those of ``topics``, out of ``odom``, ``imu``, ``bumper``, ``cliff``,
     ``wheel_drop``, ``battery_state``, ``dock_status``, ``ir_omni``, ``dirt_detect``, ``bin_level``,
@@ -96,7 +99,10 @@ class BodyTopics:
         for topic in self._topics:
             kind, convert, take = known[topic]
             hear = partial(self._hear, topic, take)
-            subscribe(topic, kind, convert, hear, queue_size=_QUEUE, tcp_nodelay=True)
+            senders = None if topic in _OF_ANY else OneSender(SELDOM_SILENT_AFTER)
+            subscribe(
+                topic, kind, convert, hear, queue_size=_QUEUE, tcp_nodelay=True, senders=senders
+            )
 
     def missing(self, *topics: str) -> tuple[str, ...]:
         """Return those of the topics of which no message was heard yet."""

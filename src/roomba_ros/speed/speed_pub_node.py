@@ -36,6 +36,7 @@ from roomba_ros.runtime.parameters import (
     read_nodes_config,
     read_robot_config,
 )
+from roomba_ros.runtime.senders import SELDOM_SILENT_AFTER, OneSender
 from roomba_ros.runtime.subscriptions import subscribe
 
 EMERGENCY_PARAMETER: Final = "emergency_stop"
@@ -52,7 +53,8 @@ class SpeedPubNode:
     latched: why the drive is held, empty when it is not).
     Subscribes: ``change_speed`` (Float32, cruise speed wanted, m/s), ``cmd_vel`` (Twist), and
     ``cmd_vel_mission`` (Twist), which counts while no fresh ``cmd_vel`` does; ``odom`` (Odometry),
-    ``bumper`` (Bumper), ``cliff`` (Cliff), ``wheel_drop`` (WheelDrop): a hazard is obeyed at once.
+    ``bumper`` (Bumper), ``cliff`` (Cliff), ``wheel_drop`` (WheelDrop): a hazard is obeyed at once;
+    of two nodes that tell the same of the body, the first counts until it is silent.
     Services: ``emergency_stop`` (EmergencyStop): the drive is held until it is released.
     Parameters: ``robot_max_speed``; a bad value is refused and set back. ``emergency_stop``: kept.
     """
@@ -82,8 +84,9 @@ class SpeedPubNode:
             ("cliff", Cliff, cliff_of),
             ("wheel_drop", WheelDrop, wheel_drop_of),
         ):
-            subscribe(name, kind, convert, partial(self._on_hazard, name), tcp_nodelay=True)
-        subscribe("odom", Odometry, odometry_of, self._on_odometry)
+            felt, one = partial(self._on_hazard, name), OneSender(SELDOM_SILENT_AFTER)
+            subscribe(name, kind, convert, felt, tcp_nodelay=True, senders=one)
+        subscribe("odom", Odometry, odometry_of, self._on_odometry, senders=OneSender())
         subscribe("change_speed", Float32, speed_of, self._on_change_speed)
         for source in Source:
             take = partial(self._on_command, source)

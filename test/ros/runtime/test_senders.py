@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from roomba_ros.convert.errors import MessageError
-from roomba_ros.runtime.senders import OneSender, OnlyFrom
+from roomba_ros.runtime.senders import SELDOM_SILENT_AFTER, OneSender, OnlyFrom
 
 
 @pytest.fixture
@@ -56,6 +56,22 @@ def test_after_a_second_of_silence_another_node_may_send(clock: list[float]) -> 
     rule.check("/after")
     with pytest.raises(MessageError):
         rule.check("/before")
+
+
+def test_where_messages_are_seldom_a_node_may_be_silent_for_longer(clock: list[float]) -> None:
+    rule = OneSender(SELDOM_SILENT_AFTER)
+    rule.check("/own")
+    for _ in range(3):
+        clock[0] += 2.9
+        with pytest.raises(MessageError):
+            rule.check("/fake")
+        assert rule.conflict
+        rule.check("/own")
+    clock[0] += 2.9
+    assert rule.conflict
+    clock[0] += 0.2
+    assert rule.conflict == ""
+    rule.check("/after")
 
 
 @given(st.lists(st.tuples(st.sampled_from("abc"), st.floats(0.0, 2.0)), max_size=40))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Iterator
 
 import pytest
@@ -131,3 +132,50 @@ def test_what_is_not_asked_for_is_not_heard(ros: Lockstep) -> None:
     ros.publish("/odom", moved(1.0))
     assert not heard.take()[0].bumps
     assert heard.missing("bumper") == ("bumper",)
+
+
+def test_of_two_nodes_that_tell_of_the_body_the_first_counts(
+    ros: Lockstep, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    now = [100.0]
+    monkeypatch.setattr(time, "monotonic", lambda: now[0])
+    told = {
+        "odom": moved(1.0, linear=0.2),
+        "bumper": Bumper(is_left_pressed=True),
+        "cliff": Cliff(is_cliff_front_left=True),
+        "wheel_drop": WheelDrop(is_left_dropped=True),
+        "battery_state": BatteryState(percentage=0.75, capacity=2.0),
+        "dock_status": DockStatus(is_docked=True),
+        "ir_omni": UInt16(160 + 8),
+        "dirt_detect": UInt16(40),
+        "bin_level": Float32(0.5),
+    }
+    heard = body(*told)
+    for topic, message in told.items():
+        ros.publish(f"/{topic}", message, "/body")
+    now[0] += 2.0  # seldom told, and yet by one node
+    for topic, message in told.items():
+        for _ in range(5):
+            ros.publish(f"/{topic}", type(message)(), "/flood")
+    (reading,) = heard.take()
+    assert reading.time == 1.0
+    assert (reading.bumper_left, reading.cliff.front_left, reading.dropped_left) == (True,) * 3
+    assert (reading.battery.level, reading.battery.is_docked) == (0.75, True)
+    assert (reading.beams.red, reading.grains) == (True, 40.0)
+    assert reading.in_bin == 0.5 * CONFIG.brush.bin_capacity
+    now[0] += 3.1
+    ros.publish("/battery_state", BatteryState(percentage=0.25), "/another_body")
+    ros.publish("/odom", moved(2.0), "/another_body")
+    (reading,) = heard.take()
+    assert reading.battery.level == 0.25
+
+
+def test_a_robot_may_have_two_lidars(ros: Lockstep) -> None:
+    heard = body("odom", "scan")
+    for stamp, lidar in ((1.0, "/front"), (1.1, "/back")):
+        ros.publish("/scan", scanned(stamp), lidar)
+        ros.publish("/odom", moved(stamp))
+    assert [each.scan is not None for each in heard.take()] == [False, True]
+    ros.publish("/scan", scanned(1.2), "/front")
+    ros.publish("/odom", moved(1.2))
+    assert heard.take()[0].scan is not None
