@@ -34,10 +34,18 @@ SHOWN: Final = 5.0
 """s of wall time until each of so many viewers has the robot's state anew."""
 _AT_ONCE: Final = 50
 """Connections that are opened before the first is closed again."""
-_ORDERS: Final = tuple(
-    f"/{name}/" for name in ("clean", "dock", "undock", "explore", "walk_to_point", "move_base")
+_ORDERS: Final = (
+    *(f"/{name}/" for name in ("clean", "dock", "undock", "explore", "walk_to_point", "move_base")),
+    *("/move_base_simple/", "/change_position", "/change_heading", "/change_speed", "/cmd_vel"),
 )
-"""Topics of actions: a message of nothing may be an order, to clean all or to end all."""
+"""How topics begin that give orders: a message of nothing may be one, to clean all or to stand."""
+_SENSES: Final = (
+    *("/odom", "/imu", "/bumper", "/cliff", "/wheel_drop", "/battery_state", "/dock_status"),
+    *("/ir_omni", "/dirt_detect", "/bin_level"),
+)
+"""Topics of the body, which the simulator tells: what another node says there does not count."""
+_USUAL_SPEED: Final = 0.5
+"""m/s; a flood that wants the robot to stand is followed by this."""
 _LEFT_ALONE: Final = ("/clock", "/rosout", "/rosout_agg", "/tf", "/tf_static", "/diagnostics")
 """Topics of all programs: a flood there is one of the machine, not of the robot."""
 
@@ -58,13 +66,13 @@ def floods(arena: Arena) -> list[Row]:
 
 
 def heard_topics(graph: RosGraph) -> list[str]:
-    """Return the topics that nodes hear; those of the body's own senses are its simulator's."""
+    """Return the topics that nodes hear; of what the simulator tells only the body's senses."""
     told, heard, _ = graph.system_state()
     return sorted(
         topic
         for topic, nodes in heard.items()
         if topic not in _LEFT_ALONE
-        and "/home_sim_node" not in told.get(topic, ())
+        and (topic in _SENSES or "/home_sim_node" not in told.get(topic, ()))
         and any(not node.startswith("/soak") for node in nodes)
     )
 
@@ -91,6 +99,9 @@ def flood(graph: RosGraph, cleaner: Cleaner, topic: str) -> Row:
             row.expect_within("stop answers", ANSWERED, _emergency_stop_answers)
             time.sleep(max(0.0, began + (sent + 1) / FLOOD - time.monotonic()))
     took = time.monotonic() - began
+    if topic == "/change_speed":
+        publisher.publish(_USUAL_SPEED)
+        time.sleep(ANSWERED)
     publisher.unregister()
     row.measured("thousand messages a second", FLOOD / took / 1000.0)
     if cleaner.probe.counts["/speed"] - before < 0.5 * 10.0 * took:

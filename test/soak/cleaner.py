@@ -22,6 +22,8 @@ ENDED = 600.0
 """s of wall time that a clean takes at most."""
 READY = 60.0
 """s of wall time until a robot can be told to clean, and until it does."""
+_WAITS = ("error", "paused", "bin full")
+"""Phases in which it waits for a person."""
 
 
 class Cleaner:
@@ -43,9 +45,12 @@ class Cleaner:
         self.state = state
 
     def keep_cleaning(self) -> None:
-        """Begin another clean when the last one has ended."""
+        """Begin another clean when the last one has ended, or waits for a person."""
         if self.row.times > 0 and not self.has_ended():
-            return
+            if self.state.phase not in _WAITS:
+                return
+            self._stop()
+            until(self.has_ended, READY)
         self._judge()
         if until(self._is_ready, ENDED) is not None:
             self.may_be_told_otherwise = False
@@ -72,10 +77,13 @@ class Cleaner:
 
     def _is_ready(self) -> bool:
         """Whether it can be told to clean; one that waits for a person is told to stop."""
-        if self.state.phase in ("error", "paused", "bin full"):
-            with contextlib.suppress(rospy.ServiceException):
-                rospy.ServiceProxy("/stop", Trigger)()
+        if self.state.phase in _WAITS:
+            self._stop()
         return self.state.phase in ("docked", "idle")
+
+    def _stop(self) -> None:
+        with contextlib.suppress(rospy.ServiceException):
+            rospy.ServiceProxy("/stop", Trigger)()
 
     def _judge(self) -> None:
         """Note a clean that did not end as it should."""

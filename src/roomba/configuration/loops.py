@@ -17,6 +17,7 @@ class ControlConfig(Frozen):
     restart_distance: Positive = 0.03
     turning_speed: Positive = 2.5
     stream_timeout: Positive = 0.15
+    given_up_after: Positive = 10.0
 
 
 class WalkConfig(Frozen):

@@ -1,14 +1,15 @@
 """The setpoint: where the robot should be, and whether its sender is still connected.
 
-A single setpoint, repeated or not, is driven to the end. A stream of them, a moving setpoint, is
-only valid while it flows: when its sender vanishes, or is silent, the robot stops.
+A single setpoint, repeated or not, is driven to the end, or until the robot comes no nearer: one in
+a wall would hold the drive for ever. A stream of them, a moving setpoint, is only valid while it
+flows: when its sender vanishes, or is silent, the robot stops.
 """
 
 from __future__ import annotations
 
 import math
 
-from roomba.clock import is_recent
+from roomba.clock import LONGEST_TICK, ClockJumps, is_recent
 
 Point = tuple[float, float]
 
@@ -16,9 +17,15 @@ Point = tuple[float, float]
 class Setpoint:
     """The newest setpoint, m in the map frame; times in s of the robot's clock."""
 
-    def __init__(self, stream_timeout: float) -> None:
-        """A stream is setpoints that differ and follow in less than ``stream_timeout`` s."""
+    def __init__(self, stream_timeout: float, given_up_after: float, nearer: float) -> None:
+        """A stream is setpoints that differ and follow in less than ``stream_timeout`` s.
+
+        A single one is given up when the robot comes no ``nearer``, m, for ``given_up_after`` s.
+        """
         self._stream_timeout = stream_timeout
+        self._given_up_after, self._nearer = given_up_after, nearer
+        self._nearest, self._came_nearer = math.inf, -math.inf
+        self._jumps = ClockJumps(longest=LONGEST_TICK)
         self._target: Point | None = None
         self._received = -math.inf
         self._streamed = False
@@ -33,6 +40,8 @@ class Setpoint:
         """Take a new setpoint; ``senders`` is how many publishers are connected."""
         follows = self._target is not None and self.is_wished(now)
         self._streamed = follows and (self._streamed or target != self._target)
+        if target != self._target:
+            self._nearest = math.inf
         self._target = target
         self._received = now
         self._senders = senders
@@ -45,6 +54,16 @@ class Setpoint:
     def is_wished(self, now: float) -> bool:
         """Whether the newest setpoint is as recent as a stream's; it may be forgotten already."""
         return is_recent(now, self._received, self._stream_timeout)
+
+    def is_given_up(self, now: float, distance: float) -> bool:
+        """Tell at a tick how far it is to the setpoint, m; return whether that was dropped now."""
+        self._came_nearer += self._jumps.at(now)
+        if distance <= self._nearest - self._nearer:
+            self._nearest, self._came_nearer = distance, now
+        if self._streamed or now - self._came_nearer < self._given_up_after:
+            return False
+        self._target = None
+        return True
 
     def forget(self) -> None:
         """Forget the setpoint."""

@@ -15,10 +15,15 @@ from roomba.configuration.robot import RobotConfig
 from roomba.geometry import STANDSTILL, Twist
 from roomba.vocabulary import FanLevel
 from roomba_ros.convert.common import twist_message, twist_of
+from roomba_ros.convert.values import speed_of
 from roomba_ros.runtime.subscriptions import subscribe
 
 _STOP_REPEATS: Final = 5
 """Ticks for which a stop is repeated before the drive is left to others."""
+_OTHERS: Final = "another program drives the robot (a walk, or cmd_vel); resume when that is done"
+_STANDS: Final = (
+    "another program wants the robot to stand (change_speed 0); want another speed, and resume"
+)
 
 
 class MissionDrive:
@@ -27,7 +32,8 @@ class MissionDrive:
     Publishes: ``cmd_vel_mission`` (Twist, 20 Hz while it drives), ``look_around`` (Bool, while the
     place has to be found), ``vacuum_motor``, ``main_brush_motor`` (Float32, duty 0..1),
     ``walk_to_point/cancel``, ``move_base/cancel`` (GoalID: all walks end when it begins to drive).
-    Subscribes: ``cmd_vel`` (Twist: what others want, which counts above the mission's).
+    Subscribes: ``cmd_vel`` (Twist: what others want, which counts above the mission's),
+    ``change_speed`` (Float32, m/s: with 0 the robot stands).
     """
 
     def __init__(self, config: RobotConfig, ending: float) -> None:
@@ -37,6 +43,7 @@ class MissionDrive:
         self._looks = False
         self._others_may_until = -math.inf
         self._others_drove = -math.inf
+        self._cruise_speed = math.inf
         self._now = -math.inf
         self._jumps = ClockJumps()
         self._fan: FanLevel | None = None
@@ -54,6 +61,7 @@ class MissionDrive:
             for action in ("walk_to_point", "move_base")
         ]
         subscribe("cmd_vel", TwistMessage, twist_of, self._on_other_command)
+        subscribe("change_speed", Float32, speed_of, self._on_cruise_speed)
 
     def take(self) -> None:
         """Let all walks end: the mission is about to drive."""
@@ -69,9 +77,18 @@ class MissionDrive:
         self._now = now
 
     @property
-    def is_taken(self) -> bool:
-        """Whether another program drives: a walk that this mission did not end, or ``cmd_vel``."""
-        return self._now - self._others_drove < self._config.body.command_timeout
+    def taken_by(self) -> str:
+        """Why the mission must leave the drive to another program; empty when it need not.
+
+        That program may be a walk that this mission did not end, one that tells ``cmd_vel``, or one
+        that lets the robot stand.
+        """
+        if self._now - self._others_drove < self._config.body.command_timeout:
+            return _OTHERS
+        # A walk that is cancelled brakes by this.
+        if self._cruise_speed == 0.0 and self._now >= self._others_may_until:
+            return _STANDS
+        return ""
 
     def drive(self, twist: Twist | None, *, looks_around: bool) -> None:
         """Ask for a twist; None: leave the drive to others, after a stop."""
@@ -103,3 +120,6 @@ class MissionDrive:
     def _on_other_command(self, twist: Twist) -> None:
         if twist != STANDSTILL and self._now >= self._others_may_until:
             self._others_drove = self._now
+
+    def _on_cruise_speed(self, speed: float) -> None:
+        self._cruise_speed = speed

@@ -16,8 +16,6 @@ from roomba_ros.mission.goals import Ended
 from roomba_ros.mission.orders import MissionOrders
 from roomba_ros.mission.topics import MissionTopics
 
-_OTHERS = "another program drives the robot (a walk, or cmd_vel); resume when that is done"
-
 
 class MissionRound:
     """Ticks a mission between its orders and what is told of it."""
@@ -46,10 +44,11 @@ class MissionRound:
 
     def _give_way(self, mission: Mission, senses: Senses) -> None:
         """Pause while another program drives."""
-        if self._drive.is_taken and mission.state.drives:
+        reason = self._drive.taken_by
+        if reason and mission.state.drives:
             mission.command(Event.PAUSE, senses)
-            mission.message = _OTHERS
-            rospy.logwarn("the mission is paused: %s", _OTHERS)
+            mission.message = reason
+            rospy.logwarn("the mission is paused: %s", reason)
 
     def _act(self, mission: Mission, step: MissionStep) -> None:
         is_driving = mission.state.drives or step.twist != Twist()

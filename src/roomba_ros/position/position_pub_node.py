@@ -64,7 +64,10 @@ class PositionPubNode:
         self._config, nodes = read_robot_config(), read_nodes_config()
         self.period = self._config.timing.tick
         self._loop = PositionLoop(self._config.control, self._config.body)
-        self._setpoint = Setpoint(self._config.control.stream_timeout)
+        control = self._config.control
+        self._setpoint = Setpoint(
+            control.stream_timeout, control.given_up_after, control.arrival_tolerance
+        )
         self._may_look_around = _look_around_parameter()
         self._lock = threading.Lock()
         self._stops_left = 0
@@ -135,12 +138,25 @@ class PositionPubNode:
             max_speed = min(max_speed, self._config.walk.careful_speed)
         twist = self._loop.tick(estimate.pose, target, max_speed)
         if not self._loop.arrived:
-            return twist
+            return None if self._gives_up(now, estimate.pose.distance_to(*target)) else twist
         if self._stops_left == 0:
             # Other programs may steer now; nothing drives it back here.
             with self._lock:
                 self._setpoint.fulfilled(now)
         return None
+
+    def _gives_up(self, now: float, distance: float) -> bool:
+        """Whether the setpoint, so many m off, is out of reach; it is forgotten then."""
+        with self._lock:
+            is_given_up = self._setpoint.is_given_up(now, distance)
+        if is_given_up:
+            rospy.logwarn(
+                "change_position is given up %.2f m from its point: the robot came no nearer for "
+                "%g s",
+                distance,
+                self._config.control.given_up_after,
+            )
+        return is_given_up
 
     def _twist_to_heading(self, pose: Pose, heading: float) -> Twist:
         """Return what is wanted to turn on the spot."""

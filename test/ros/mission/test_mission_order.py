@@ -80,7 +80,7 @@ class Rig:
         monkeypatch.setattr(rospy, "Subscriber", MagicMock())
         topics = MissionTopics(MISSION_CONFIG, PeriodsConfig(), MagicMock(trouble=""))
         topics.start()
-        drive = MagicMock(is_taken=False)
+        drive = MagicMock(taken_by="")
         self.round = MissionRound(self.orders, topics, drive, Mission.tick)
         self.world.handle.get_goal_id.return_value = GoalID(id="1")
         self.world.handle.get_goal_status.return_value = GoalStatus(status=GoalStatus.PENDING)
