@@ -43,11 +43,11 @@ def changes(service: str) -> bool:
 def answer(service: str, arguments: Any) -> Plain:
     """Return the answer; raises MessageError, RequestRefusedError or RobotUnavailableError."""
     name = _full(service).removeprefix(PREFIX)
-    if name not in _SERVICES:
+    if name not in SERVICES:
         raise RequestRefusedError(
-            f"there is no service {PREFIX}{name}; there are {', '.join(sorted(_SERVICES))}"
+            f"there is no service {PREFIX}{name}; there are {', '.join(sorted(SERVICES))}"
         )
-    ask, expected = _SERVICES[name]
+    ask, expected = SERVICES[name]
     given = named(arguments, list(expected))
     if not isinstance(given, dict):
         raise MessageError(f"expected arguments as an object, got {type(given).__name__}")
@@ -188,7 +188,7 @@ def _get_time() -> Plain:
     return details.time_now(rospy.get_rostime())
 
 
-_SERVICES: Final[dict[str, tuple[Callable[..., Plain], tuple[str, ...]]]] = {
+SERVICES: Final[dict[str, tuple[Callable[..., Plain], tuple[str, ...]]]] = {
     "topics": (_topics, ()),
     "topics_and_raw_types": (_topics_and_raw_types, ()),
     "topics_for_type": (_topics_for_type, ("type",)),
