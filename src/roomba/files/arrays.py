@@ -44,21 +44,24 @@ def read_arrays(content: bytes, most: int = MOST_UNPACKED) -> dict[str, NDArray[
             if any(entry.compress_type not in _METHODS for entry in entries):
                 raise ValueError("expected arrays as numpy packs them, got another compression")
             return {
-                entry.filename.removesuffix(".npy"): _array_of(archive.read(entry))
+                entry.filename.removesuffix(".npy"): array_of(archive.read(entry))
                 for entry in entries
             }
-    except (RuntimeError, MemoryError, SyntaxError, TokenError) as error:
-        # An encrypted archive; a header that nests deeply, or ends in the middle.
+    except RuntimeError as error:
+        # It is encrypted.
         raise ValueError(f"expected an archive of arrays, got another one ({error})") from error
 
 
-def _array_of(content: bytes) -> NDArray[Any]:
-    """Return the array of a file of numpy; raises ValueError."""
+def array_of(content: bytes) -> NDArray[Any]:
+    """Return the array of a file of numpy; raises ValueError, or TypeError for an odd header."""
     file = io.BytesIO(content)
     read_header = _READERS.get(_FORMAT.read_magic(file))
     if read_header is None:
         raise ValueError("expected an array of numpy's format 1 or 2, got another one")
-    shape, is_by_columns, kind = read_header(file)
+    try:
+        shape, is_by_columns, kind = read_header(file)
+    except (RecursionError, MemoryError, SyntaxError, TokenError) as error:
+        raise ValueError(f"expected numpy's header, got another one ({error!r:.200})") from error
     if kind.hasobject or kind.itemsize == 0 or min(shape, default=0) < 0:
         raise ValueError(f"expected an array of numbers, got {kind} of shape {shape}")
     at = file.tell()

@@ -88,7 +88,7 @@ def _shake_hands(server: Any, connection: socket.socket, address: tuple[str, int
 
 def _answer(server: Any, connection: socket.socket, address: tuple[str, int]) -> str:
     """Return what is wrong with a connection; empty when it was taken."""
-    header = _header_of(connection)
+    header = header_of(connection)
     handlers: dict[str, Callable[..., str | None]] = {
         "topic": server.topic_connection_handler,
         "service": server.service_connection_handler,
@@ -104,7 +104,7 @@ def _answer(server: Any, connection: socket.socket, address: tuple[str, int]) ->
     return fault or ""
 
 
-def _header_of(connection: socket.socket) -> dict[str, str]:
+def header_of(connection: socket.socket) -> dict[str, str]:
     """Return what a connection says of itself; raises OSError or ROSHandshakeException."""
     deadline = time.monotonic() + HANDSHAKE
     length = _exactly(connection, _LENGTH.size, deadline)
@@ -113,9 +113,11 @@ def _header_of(connection: socket.socket) -> dict[str, str]:
         raise ROSHandshakeException(
             f"expected a header of at most {LONGEST_HEADER} bytes, got one of {size}"
         )
-    header: dict[str, str] = decode_ros_handshake_header(
-        length + _exactly(connection, size, deadline)
-    )
+    told = length + _exactly(connection, size, deadline)
+    try:
+        header: dict[str, str] = decode_ros_handshake_header(told)
+    except struct.error as error:
+        raise ROSHandshakeException(f"expected whole fields in a header: {error}") from error
     connection.settimeout(None)
     return header
 

@@ -31,6 +31,7 @@ MODULES = {
     "pictures": "roomba.commands.pictures.__main__",
     "bench": "benchmarks.__main__",
     "soak": "soak.__main__",
+    "fuzz": "fuzz.__main__",
     "emulate": "roomba.commands.emulate.command",
     "localize": "roomba.commands.localize.command",
 }
