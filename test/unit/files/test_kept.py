@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import os
+import re
 from pathlib import Path
 
 import numpy as np
@@ -198,3 +199,47 @@ def test_a_file_is_forgotten_with_the_one_before(tmp_path: Path) -> None:
     remove_kept(path)
     assert names(tmp_path) == []
     remove_kept(path)
+
+
+WITHOUT_SEAL: dict[str, str] = {
+    "roomba/commands/map/drive/trajectory.py": "made for the user, by a command",
+    "roomba/commands/report/command.py": "made for the user, by a command",
+    "roomba/commands/service.py": "a unit of systemd",
+    "roomba/commands/valetudo/export_command.py": "made for the user, by a command",
+    "roomba/commands/valetudo/homes.py": "made for the user, by a command",
+    "roomba/files/journal.py": "each line has a checksum",
+    "roomba/files/kept.py": "seals",
+    "roomba/history/run_file.py": "an archive, of which each part has a checksum, and a version",
+    "roomba/storage/pictures_folder.py": "a picture that is damaged is taken again",
+    "roomba/ui/pictures.py": "made for the user, by the menu",
+    "roomba/ui/web/kept_token.py": "one of another form is replaced",
+}
+"""Modules that write files whole without a seal, and why that is enough."""
+
+
+OPENED: dict[str, str] = {
+    "roomba_ros/model/picture.py": "made for the user, by a command",
+    "roomba_ros/supervision/launch_file.py": "a pipe to a process",
+    "roomba_ros/supervision/namespace.py": "files of the kernel",
+}
+"""Modules that write in another way."""
+SOURCE = Path(__file__).parents[3] / "src"
+THE_ROBOTS = ("storage", "history", "household", "plans", "upkeep", "mission", "perception")
+
+
+def found(pattern: str, *folders: Path) -> set[str]:
+    """Return the modules in folders in which there is something like a pattern."""
+    return {
+        str(path.relative_to(SOURCE))
+        for folder in folders
+        for path in folder.rglob("*.py")
+        if re.search(pattern, path.read_text(encoding="utf-8"), re.MULTILINE)
+    }
+
+
+def test_all_that_the_robot_keeps_is_sealed() -> None:
+    whole = r"^from roomba\.files\.atomic import .*\bwrite_whole\b"
+    assert found(whole, SOURCE) == set(WITHOUT_SEAL)
+    opened = r"\.write_(bytes|text)\(|\bopen\([^)]*\"[wax]b?\""
+    robots = [SOURCE / "roomba" / name for name in THE_ROBOTS]
+    assert found(opened, SOURCE / "roomba_ros", *robots) == set(OPENED)
