@@ -39,6 +39,7 @@ from roomba.perception.slam.mapper import Mapper
 from roomba.perception.swept.coverage_map import CoverageMap
 from roomba.perception.things.layer import ThingLayer
 from roomba.planning.coverage.floor.floor import fine_frame
+from roomba.planning.coverage.stages import OUR_STAGES, CoverageStages
 from roomba.robot.brain import Brain
 from roomba.world.home.home import Home
 from roomba.world.simulator import Observation, Simulator
@@ -70,6 +71,7 @@ class HeadlessMission(Embodied):
         max_speed: float | None = None,
         longest_burst: int = LONGEST_BURST,
         empties_bin_after: float = 120.0,
+        stages: CoverageStages = OUR_STAGES,
     ) -> None:
         """Put the robot on its station, or at ``start``.
 
@@ -77,7 +79,7 @@ class HeadlessMission(Embodied):
         station; the home's own one by default. ``max_speed``, m/s, is its top speed, by default its
         body's. ``longest_burst`` is how many ticks pass at once at most, while nothing comes up.
         So long after the robot said that its dust bin is full, ``empties_bin_after``, s, it is
-        emptied.
+        emptied. ``stages`` are those of planning coverage.
         """
         robot, self.config = robot or SimulatedRobotConfig(), mission or MissionConfig()
         known = known or home.map
@@ -92,6 +94,7 @@ class HeadlessMission(Embodied):
             zones=zones,
             start=start,
             max_speed=max_speed,
+            stages=stages,
         )
         super().__init__(body, brain, robot)
         self.whole_at: float | None = None

@@ -31,6 +31,7 @@ from roomba.perception.rooms.rooms import Rooms
 from roomba.perception.rooms.zones import Zones
 from roomba.perception.slam.mapper import Mapper
 from roomba.perception.things.layer import ThingLayer
+from roomba.planning.coverage.stages import OUR_STAGES, CoverageStages
 from roomba.planning.path.polyline import Path
 from roomba.robot.command import Command
 from roomba.robot.growing_map import GrowingMap
@@ -64,15 +65,18 @@ class Brain:
         zones: Zones | None = None,
         start: Pose | None = None,
         max_speed: float | None = None,
+        stages: CoverageStages = OUR_STAGES,
     ) -> None:
         """Begin at ``start``, map frame, or docked at ``station``.
 
         ``known`` is the map, or says how one is made. ``max_speed`` is the robot's top speed, m/s:
-        by default the body's. Raises ConfigError for speeds that the robot cannot do.
+        by default the body's. ``stages`` are those of planning coverage. Raises ConfigError for
+        speeds that the robot cannot do.
         """
         mission.require_possible(robot.body)
         self.robot, self.config, self._docking = robot, mission, docking
         self._known, self._station, self._rooms, self._zones = known, station, rooms, zones
+        self._stages = stages
         self._max_speed = robot.body.max_speed if max_speed is None else max_speed
         self.localizer: Localizer | None = None
         self.mapper: Mapper | None = None
@@ -291,7 +295,14 @@ class Brain:
     def _context(self, occupancy: OccupancyMap) -> PlanningContext:
         is_growing = self.growing is not None and not self.growing.is_whole
         parts = self._station, self.robot, self.config, self._docking
-        return PlanningContext(occupancy, *parts, self._rooms, self._zones, is_growing=is_growing)
+        return PlanningContext(
+            occupancy,
+            *parts,
+            self._rooms,
+            self._zones,
+            is_growing=is_growing,
+            stages=self._stages,
+        )
 
     def _surfaces(self, context: PlanningContext) -> SurfaceField:
         """Return the surfaces beside which things are looked for."""

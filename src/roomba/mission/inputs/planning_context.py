@@ -21,6 +21,7 @@ from roomba.perception.rooms.zones import Zones
 from roomba.planning.coverage.floor.floor import CoverageFloor
 from roomba.planning.coverage.plan import CoveragePlan
 from roomba.planning.coverage.planner import CoveragePlanner
+from roomba.planning.coverage.stages import OUR_STAGES, CoverageStages
 from roomba.planning.path.costmap import Point, RoundObstacle
 from roomba.planning.path.planner import NoPathError, NoPathReason, PathPlanner
 
@@ -71,10 +72,12 @@ class PlanningContext:
         zones: Zones | None = None,
         *,
         is_growing: bool = False,
+        stages: CoverageStages = OUR_STAGES,
     ) -> None:
         """Make the planners; ``station`` is where the docked robot stands, map frame.
 
-        In a map that ``is_growing`` paths keep the distances of exploring.
+        In a map that ``is_growing`` paths keep the distances of exploring. ``stages`` are those of
+        planning coverage.
         """
         self.occupancy, self.station = occupancy, station
         self.rooms, self.zones = rooms, zones or Zones()
@@ -86,7 +89,7 @@ class PlanningContext:
         self.staging_tolerance = docking.place_tolerance
         self.spot_size = mission.cleaning.spot_size
         self.tool_width = robot.brush.width
-        self._coverage_config = mission.coverage
+        self._coverage_config, self._stages = mission.coverage, stages
         self.plans, self.planning_time = 0, 0.0
         self.body_radius, self.is_growing = radius, is_growing
         # Paths may come as near to walls as swaths do, so that they can join them.
@@ -99,13 +102,16 @@ class PlanningContext:
     @cached_property
     def coverage(self) -> CoveragePlanner:
         """The planner of ways over the floor; made when it is first asked for: that takes time."""
-        return CoveragePlanner(self.known, self.reach, self.tool_width, self._coverage_config)
+        return self._coverage_planner(self.reach)
 
     @cached_property
     def growing_coverage(self) -> CoveragePlanner:
         """The same for a map that grows: farther from walls, as these and the place may be off."""
+        return self._coverage_planner(self._growing_reach)
+
+    def _coverage_planner(self, reach: float) -> CoveragePlanner:
         return CoveragePlanner(
-            self.known, self._growing_reach, self.tool_width, self._coverage_config
+            self.known, reach, self.tool_width, self._coverage_config, self._stages
         )
 
     @property

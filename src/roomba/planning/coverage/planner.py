@@ -5,7 +5,8 @@ Its stages: :mod:`~roomba.planning.coverage.floor.floor` tells what floor can be
 :mod:`~roomba.planning.coverage.passes.swaths` sweeps the floor between them in straight parallel
 ways, :mod:`~roomba.planning.coverage.tour.order` puts these pieces in order,
 :mod:`~roomba.planning.coverage.tour.connection` joins them to one way, and
-:mod:`~roomba.planning.coverage.tour.polish` makes that shorter and straighter.
+:mod:`~roomba.planning.coverage.tour.polish` makes that shorter and straighter. All but the first
+can be replaced: :class:`~roomba.planning.coverage.stages.CoverageStages`.
 """
 
 from __future__ import annotations
@@ -19,13 +20,10 @@ from roomba.configuration.coverage import CoverageConfig
 from roomba.grid import OccupancyMap
 from roomba.planning.coverage.floor.floor import CoverageFloor
 from roomba.planning.coverage.ground import Ground
-from roomba.planning.coverage.passes.edges import edges
-from roomba.planning.coverage.passes.swaths import swaths
 from roomba.planning.coverage.passes.sweep import unswept
 from roomba.planning.coverage.plan import CoveragePlan
-from roomba.planning.coverage.tour.connection import connected, tidy
-from roomba.planning.coverage.tour.order import ordered
-from roomba.planning.coverage.tour.polish import polished
+from roomba.planning.coverage.stages import OUR_STAGES, CoverageStages
+from roomba.planning.coverage.tour.connection import tidy
 from roomba.planning.path.costmap import Mask, Point, RoundObstacle
 from roomba.planning.path.planner import NoPathError, NoPathReason
 
@@ -42,14 +40,19 @@ class CoveragePlanner:
     """Plans over one map for one body and one tool; all lengths in m, map frame."""
 
     def __init__(
-        self, map: OccupancyMap, reach: float, tool_width: float, config: CoverageConfig
+        self,
+        map: OccupancyMap,
+        reach: float,
+        tool_width: float,
+        config: CoverageConfig,
+        stages: CoverageStages = OUR_STAGES,
     ) -> None:
         """Take the map, how far the middle keeps from all that is solid, and the tool's width.
 
         Raises ValueError for lengths that are not finite or not above 0.
         """
         self.floor = CoverageFloor.build(map, reach, tool_width, config)
-        self._config = config
+        self._config, self._stages = config, stages
         self._ground: Ground | None = None
 
     def plan(
@@ -77,17 +80,17 @@ class CoveragePlanner:
         ground, first = self._ground_from(start, obstacles)
         last = None if end is None else _end_on(ground, end)
         need = ground.coverable if todo is None else ground.coverable & todo[ground.window]
-        config, radius = self._config, ground.radius
-        edge_pieces = edges(ground.rings, need, radius, config.piece * 2 * radius, config)
+        config, radius, stages = self._config, ground.radius, self._stages
+        edge_pieces = stages.edges(ground.rings, need, radius, config.piece * 2 * radius, config)
         swath_pieces: list[Line] = []
         if not edges_only:
             left = unswept(need, edge_pieces, radius) & ground.middles
             swath_pieces = [
-                _off_middles(line) for line in swaths(left, ground.middles, radius, config)
+                _off_middles(line) for line in stages.swaths(left, ground.middles, radius, config)
             ]
-        pieces = ordered(ground.net, edge_pieces + swath_pieces, first, last, config)
-        line = connected(ground.net, pieces, first, last)
-        line = polished(line, need, ground.middles, radius, config)
+        pieces = stages.order(ground.net, edge_pieces + swath_pieces, first, last, config)
+        line = stages.connection(ground.net, pieces, first, last)
+        line = stages.polish(line, need, ground.middles, radius, config)
         return CoveragePlan(
             _from_to(ground, line, start, end),
             tuple(ground.metres(piece) for piece in swath_pieces),

@@ -1,0 +1,50 @@
+"""The stages of planning coverage as functions, each of which a program may replace by its own.
+
+Places are in cells of the window, (x, y) as (column, row); whole numbers are the cells' centres.
+What each stage takes and gives is said where ours is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.configuration.coverage import CoverageConfig
+from roomba.planning.coverage.passes.edges import edges as our_edges
+from roomba.planning.coverage.passes.swaths import swaths as our_swaths
+from roomba.planning.coverage.tour.connection import connected as our_connection
+from roomba.planning.coverage.tour.net import Net
+from roomba.planning.coverage.tour.order import ordered as our_order
+from roomba.planning.coverage.tour.polish import polished as our_polish
+from roomba.raster.regions import Mask
+
+Line = NDArray[np.float64]
+
+Edges = Callable[[list[Line], Mask, float, float, CoverageConfig], list[Line]]
+"""rings, need, radius, length of a piece, configuration: lines along walls and furniture."""
+Swaths = Callable[[Mask, Mask, float, CoverageConfig], list[Line]]
+"""left, middles, radius, configuration: straight lines that sweep what is left."""
+Order = Callable[[Net, list[Line], Line, Line | None, CoverageConfig], list[Line]]
+"""net, lines, first place, last place, configuration: all lines in order and direction."""
+Connection = Callable[[Net, list[Line], Line, Line | None], Line]
+"""net, lines in order, first place, last place: one line."""
+Polish = Callable[[Line, Mask, Mask, float, CoverageConfig], Line]
+"""line, need, middles, radius, configuration: a shorter and straighter line."""
+
+
+@dataclass(frozen=True, slots=True)
+class CoverageStages:
+    """The stages in the order in which they are called; each is ours by default."""
+
+    edges: Edges = our_edges
+    swaths: Swaths = our_swaths
+    order: Order = our_order
+    connection: Connection = our_connection
+    polish: Polish = our_polish
+
+
+OUR_STAGES: Final = CoverageStages()
