@@ -16,6 +16,7 @@ from roomba.commands.spelling import spelled
 
 _COMMANDS: Final = {
     "sim": "roomba.commands.sim.command",
+    "campaign": "roomba.commands.campaign.command",
     "map": "roomba.commands.map.command",
     "localize": "roomba.commands.localize.command",
     "play": "roomba.commands.play.command",
@@ -43,6 +44,9 @@ usage: roomba COMMAND ...
 
   sim [ARGS]       clean a home with the whole robot: --home NAME --seed N, --map FILE.yaml,
                    --homes N, --plot FILE.png, --json FILE (see --help)
+  campaign FILE.yaml [ARGS]
+                   homes, seeds and variants of the robot, on all cores or --cluster HOST:PORT,
+                   compared by pairs (see --help)
   map [ARGS]       explore a home without a map, and tell how good the map becomes: --home NAME
                    --seed N, --map FILE.yaml, --out FOLDER, --plot FILE.png; --bag FILE ...: map a
                    recorded drive (see --help)
@@ -74,13 +78,15 @@ The commands run, camera, exec, record, and control without --demo, need ROS, te
 checkout: there it is ./roomba COMMAND.
 """
 _MODULES: Final = (
-    "cv2", "fastapi", "matplotlib", "numba", "numpy", "PIL", "pydantic", "rich", "rosbags", "scipy",
-    "serial", "shapely", "textual", "uvicorn", "websockets", "yaml",
+    "cv2", "fastapi", "matplotlib", "numba", "numpy", "pebble", "PIL", "pydantic", "rich",
+    "rosbags", "scipy", "serial", "shapely", "textual", "uvicorn", "websockets", "yaml",
 )  # fmt: skip
 _EXTRAS: Final = {
+    "distributed": "campaign",
     "gymnasium": "gym",
     "paho": "smart-home",
     "prometheus_client": "smart-home",
+    "pyarrow": "campaign",
 }
 
 

@@ -20,8 +20,8 @@ from roomba.commands.trials.trial import RANDOM, Trial
 from roomba.errors import RoombaError
 
 if TYPE_CHECKING:
-    from roomba.commands.sim.many import Outcome
     from roomba.commands.trials.figures import Figures
+    from roomba.commands.trials.many import Outcome
     from roomba.commands.trials.runs import Run, RunObserver, TrialSetup
     from roomba.headless.cleaner import HeadlessMission
 
@@ -123,7 +123,7 @@ def _tell_run(options: SimOptions, run: Run) -> None:
 
 
 def _run_homes(options: SimOptions, homes: int) -> int:
-    from roomba.commands.sim.many import run_many
+    from roomba.commands.trials.many import figures_of, run_many
 
     first = options.trial.seed
     trials = [options.trial.with_seed(first + number) for number in range(homes)]
@@ -131,7 +131,7 @@ def _run_homes(options: SimOptions, homes: int) -> int:
     failures: dict[int, str] = {}
     began = time.monotonic()
     with progress("Homes", options.quiet) as show:
-        for trial, outcome in run_many(trials):
+        for trial, outcome in run_many(trials, figures_of):
             _sort_in(trial, outcome, figures, failures)
             done = len(figures) + len(failures)
             bad = done - sum(each.is_completed for each in figures.values())

@@ -12,15 +12,22 @@ from numpy.typing import NDArray
 
 from roomba.commands.trials.figures import Figures, MissedShare
 from roomba.commands.trials.homes import home_of, rooms_of
+from roomba.commands.trials.numbers import DOCKING, MISSION, ROBOT, with_numbers
+from roomba.commands.trials.stages import stages_of
 from roomba.commands.trials.things import Disc, seeded_things
-from roomba.commands.trials.trial import Trial
+from roomba.commands.trials.trial import Setting, Trial
 from roomba.commands.trials.truth import coverable_floor, true_map
 from roomba.commands.trials.zones import zones_of
 from roomba.configuration.docking import DockingConfig
-from roomba.configuration.frozen import load_config
+from roomba.configuration.frozen import load_config, validated
 from roomba.configuration.mission import MissionConfig
 from roomba.configuration.robot import RobotConfig
-from roomba.configuration.simulation import SimulatedRobotConfig, load_simulated_config
+from roomba.configuration.sensors import SIMULATION
+from roomba.configuration.simulation import (
+    SimulatedRobotConfig,
+    SimulationConfig,
+    load_simulated_config,
+)
 from roomba.files.shipped import CONFIGURATION
 from roomba.geometry import Pose
 from roomba.grid import FREE
@@ -81,8 +88,8 @@ class TrialSetup:
         self.trial = trial
         self.config = robot_config_of(trial)
         self.home = home_of(trial, self.config.body)
-        mission = mission_config(self.config)
-        docking = load_config(DockingConfig, CONFIGURATION / "docking.yaml")
+        mission = mission_config(self.config, trial.numbers)
+        docking = docking_config(trial.numbers)
         self.robot = ObservedMission(
             self.home,
             self.config,
@@ -93,6 +100,7 @@ class TrialSetup:
             zones=zones_of(trial),
             longest_burst=longest_burst,
             empties_bin_after=trial.empties_bin_after,
+            stages=stages_of(trial.stages, trial.code),
         )
         self.things = _things_of(trial, self.home, self.config, self.robot.context.staging)
         for x, y, radius in self.things:
@@ -178,6 +186,10 @@ def robot_config_of(trial: Trial) -> SimulatedRobotConfig:
     config = load_simulated_config(
         trial.config or CONFIGURATION / "robot.yaml", CONFIGURATION / "simulation.yaml"
     )
+    config = with_numbers(config, ROBOT, trial.numbers)
+    true = with_numbers(config.simulation, SIMULATION, trial.numbers)
+    if true is not config.simulation:
+        config = with_simulation(config, true)
     if trial.bin is not None:
         brush = config.brush.model_copy(update={"bin_capacity": trial.bin})
         config = config.model_copy(update={"brush": brush})
@@ -190,9 +202,25 @@ def robot_config_of(trial: Trial) -> SimulatedRobotConfig:
     return config.with_sensors(trial.sensors)
 
 
-def mission_config(robot: RobotConfig) -> MissionConfig:
-    """Return the shipped configuration of the mission, slowed for a robot that is slower."""
-    return load_config(MissionConfig, CONFIGURATION / "mission.yaml").slowed_for(robot.body)
+def with_simulation(config: SimulatedRobotConfig, true: SimulationConfig) -> SimulatedRobotConfig:
+    """Return a robot of which something else is true; raises ConfigError."""
+    values = config.model_dump() | {SIMULATION: true.model_dump()}
+    return validated(SimulatedRobotConfig, values, "numbers: ")
+
+
+def mission_config(robot: RobotConfig, numbers: Iterable[Setting] = ()) -> MissionConfig:
+    """Return the shipped configuration of the mission, slowed for a robot that is slower.
+
+    ``numbers`` change it first; raises ConfigError.
+    """
+    shipped = load_config(MissionConfig, CONFIGURATION / "mission.yaml")
+    return with_numbers(shipped, MISSION, numbers).slowed_for(robot.body)
+
+
+def docking_config(numbers: Iterable[Setting] = ()) -> DockingConfig:
+    """Return the shipped configuration of docking, with some numbers changed."""
+    shipped = load_config(DockingConfig, CONFIGURATION / "docking.yaml")
+    return with_numbers(shipped, DOCKING, numbers)
 
 
 def _things_of(trial: Trial, home: Home, config: RobotConfig, staging: Pose) -> list[RoundObstacle]:

@@ -16,6 +16,8 @@ MOST_THINGS: Final = 16
 
 Sensors = Literal["noisy", "ideal"]
 Wheels = Literal["factory", "worn"]
+Setting = tuple[str, float | str]
+"""The dotted name of a number of the configuration, and its value."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,7 +32,9 @@ class Trial:
     start, 0..1. ``bin`` is how much its dust bin takes, g, in place of what the configuration
     says; ``empties_bin_after`` s of standing with a full one it is emptied. ``turned`` is by how
     many degrees, counter-clockwise, the home is turned about the origin of its map; ``station``
-    turns with it.
+    turns with it. ``numbers`` are numbers of the configuration in place of what the files say, as
+    of :mod:`roomba.commands.trials.numbers`; ``stages`` are stages of planning coverage by import
+    path, as of :mod:`roomba.commands.trials.stages`, also of modules in the folder ``code``.
     """
 
     home: str = "flat"
@@ -48,6 +52,9 @@ class Trial:
     bin: float | None = None
     empties_bin_after: float = 120.0
     turned: float = 0.0
+    numbers: tuple[Setting, ...] = ()
+    stages: tuple[tuple[str, str], ...] = ()
+    code: Path | None = None
 
     def with_seed(self, seed: int) -> Trial:
         """Return the same with another seed."""

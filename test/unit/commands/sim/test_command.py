@@ -15,9 +15,10 @@ from pathlib import Path
 import pytest
 from fixtures.waiting import promised, wait_until
 
-from roomba.commands.sim import command, many
-from roomba.commands.sim.many import Outcome
+from roomba.commands.sim import command
+from roomba.commands.trials import many
 from roomba.commands.trials.figures import Figures, MissedShare
+from roomba.commands.trials.many import Outcome
 from roomba.commands.trials.trial import Trial
 
 REPOSITORY = Path(__file__).parents[4]
@@ -46,7 +47,7 @@ def outcomes(monkeypatch: pytest.MonkeyPatch) -> dict[int, Outcome]:
     """What becomes of each seed; the others are fine."""
     given: dict[int, Outcome] = {}
 
-    def run(trials: Sequence[Trial]) -> Iterator[tuple[Trial, Outcome]]:
+    def run(trials: Sequence[Trial], work: object) -> Iterator[tuple[Trial, Outcome]]:
         for trial in trials:
             yield trial, given.get(trial.seed, FINE)
 

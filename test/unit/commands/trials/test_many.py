@@ -1,8 +1,11 @@
-"""Many trials in several processes, with work that takes no time."""
+"""Much work in several processes, with work that takes no time."""
 
 from __future__ import annotations
 
+import math
+import multiprocessing
 import os
+import threading
 import time
 from collections.abc import Generator
 from dataclasses import replace
@@ -11,9 +14,9 @@ from pathlib import Path
 import pytest
 from fixtures.waiting import wait_until
 
-from roomba.commands.sim import many
-from roomba.commands.sim.many import Outcome, run_many
+from roomba.commands.trials import many
 from roomba.commands.trials.figures import Figures
+from roomba.commands.trials.many import Outcome, run_many
 from roomba.commands.trials.trial import Trial
 
 NOTHING = Figures(
@@ -83,3 +86,25 @@ def test_what_hangs_is_ended(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) ->
     monkeypatch.setattr(many, "LONGEST_RUN", 0.2)
     ((_, outcome),) = run_many([Trial(home=str(tmp_path / "pid"), seed=99)], worked, 1, FORK)
     assert "no result within 0.2 s" in str(outcome)
+
+
+def test_processes_that_die_before_they_have_begun_are_replaced() -> None:
+    def kill_the_first() -> None:
+        first = wait_until(multiprocessing.active_children, 20.0, "a process", 0.001)[0]
+        first.kill()
+        killed.append(first.pid)
+
+    killed: list[int | None] = []
+    killer = threading.Thread(target=kill_the_first)
+    killer.start()
+    found = dict(run_many([4.0, 9.0], math.sqrt, 1))
+    killer.join()
+    assert killed != []
+    assert found == {4.0: 2.0, 9.0: 3.0}
+
+
+def test_each_process_computes_in_one_thread() -> None:
+    before = os.environ.get("NUMBA_NUM_THREADS")
+    names = ["NUMBA_NUM_THREADS", "OMP_NUM_THREADS", "OPENCV_FOR_THREADS_NUM"]
+    assert dict(run_many(names, os.getenv, 2)) == dict.fromkeys(names, "1")
+    assert os.environ.get("NUMBA_NUM_THREADS") == before

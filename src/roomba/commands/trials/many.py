@@ -1,0 +1,150 @@
+"""Much work on all cores, in a pool of processes; what fails takes nothing else with it."""
+
+from __future__ import annotations
+
+import contextlib
+import multiprocessing
+import os
+import signal
+from collections import deque
+from collections.abc import Callable, Generator, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, wait
+from concurrent.futures.process import BrokenProcessPool
+from typing import Any, Final, TypeAlias, TypeVar
+
+from pebble import ProcessExpired, ProcessPool
+
+from roomba.commands.trials.figures import Figures
+from roomba.commands.trials.trial import Trial
+from roomba.errors import RoombaError
+
+_Item = TypeVar("_Item")
+_Result = TypeVar("_Result")
+Outcome: TypeAlias = Figures | str
+"""The figures of a run, or why there are none."""
+
+LONGEST_RUN: Final = 900.0
+"""s; a run that takes longer than that hangs."""
+_LOOK: Final = 1.0
+"""s between two looks whether the pool is whole."""
+_MOST_BROKEN: Final = 3
+"""Pools one after the other that broke before anything was done."""
+_THREADS: Final = (
+    "NUMBA_NUM_THREADS", "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS",
+    "OPENCV_FOR_THREADS_NUM",
+)  # fmt: skip
+"""What libraries read about how many threads they start."""
+
+
+def figures_of(trial: Trial) -> Outcome:
+    """Run one trial; an error becomes its text."""
+    # Here, so that the parent, which only waits, does not load it all.
+    from roomba.commands.trials.runs import run_trial
+    from roomba.commands.trials.warm import warm_up
+
+    try:
+        warm_up()
+        return run_trial(trial).figures
+    except RoombaError as error:
+        return str(error)
+    except Exception as error:  # the other trials go on
+        return f"a fault of the program: {error!r}"
+
+
+def run_many(
+    items: Sequence[_Item],
+    work: Callable[[_Item], _Result],
+    processes: int | None = None,
+    method: str = "spawn",
+) -> Iterator[tuple[_Item, _Result | str]]:
+    """Yield each item with what came of it, in the order in which they end.
+
+    In place of a result is the reason, a text, where a process died or hung for LONGEST_RUN; such
+    processes are replaced. Closing the iterator ends them all. ``method`` is how processes start:
+    spawned ones share nothing with this one, whose compiled code may have threads that a fork would
+    lose.
+    """
+    left, broken = deque(items), 0
+    while left and broken < _MOST_BROKEN:
+        with contextlib.closing(_run_in_pool(left, work, processes, method)) as results:
+            for item, result in results:
+                broken = 0
+                yield item, result
+        broken += 1
+    for item in left:
+        yield item, f"processes ended before they did anything, {broken} times"
+
+
+def _run_in_pool(
+    left: deque[_Item], work: Callable[[_Item], _Result], processes: int | None, method: str
+) -> Generator[tuple[_Item, _Result | str]]:
+    """Run what is left until all is done or the pool breaks; what was at work then is left again.
+
+    A pool breaks when a process dies that has nothing to do.
+    """
+    count = min(processes or len(os.sched_getaffinity(0)), len(left))
+    pool = ProcessPool(count, context=multiprocessing.get_context(method))
+    at_work: dict[Future[_Result], _Item] = {}
+
+    def give_one() -> None:
+        with contextlib.suppress(RuntimeError):  # the pool broke just now
+            at_work[pool.schedule(work, args=(left[0],), timeout=LONGEST_RUN)] = left[0]
+            left.popleft()
+
+    with one_thread_each():
+        try:
+            with undisturbed():
+                for _ in range(count):
+                    give_one()
+            while at_work and pool.active:
+                for future in wait(at_work, _LOOK, FIRST_COMPLETED).done:
+                    if isinstance(future.exception(), BrokenProcessPool):
+                        return
+                    item = at_work.pop(future)
+                    if left:
+                        give_one()
+                    yield item, _result_of(future)
+        finally:
+            left.extendleft(at_work.values())
+            pool.stop()
+            pool.join()
+
+
+def _result_of(future: Future[Any]) -> Any:
+    try:
+        return future.result()
+    except ProcessExpired as error:
+        return f"its process ended (status {error.exitcode})"
+    except TimeoutError:
+        return f"no result within {LONGEST_RUN:g} s"
+
+
+@contextlib.contextmanager
+def one_thread_each() -> Iterator[None]:
+    """Let programs that are started meanwhile compute in one thread: a core each is theirs."""
+    before = {name: os.environ.get(name) for name in _THREADS}
+    os.environ.update(dict.fromkeys(_THREADS, "1"))
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            if value is None:
+                del os.environ[name]
+            else:
+                os.environ[name] = value
+
+
+@contextlib.contextmanager
+def undisturbed() -> Iterator[None]:
+    """Put off Ctrl-C; what is started meanwhile never sees it: it is for this process."""
+    came: list[Any] = []
+    handler = signal.signal(signal.SIGINT, lambda *_: came.append(True))
+    # Inherited by what is started; here another thread may get the signal all the same.
+    mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, mask)
+        signal.signal(signal.SIGINT, handler)
+    if came:
+        raise KeyboardInterrupt

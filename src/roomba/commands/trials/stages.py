@@ -1,0 +1,110 @@
+"""Stages of planning coverage of one's own, by import path: ``{swaths: my_module:my_swaths}``."""
+
+from __future__ import annotations
+
+import functools
+import importlib
+import importlib.util
+import sys
+from collections.abc import Callable, Iterable
+from dataclasses import fields
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+
+from roomba.commands.options import UsageError
+from roomba.errors import RoombaError
+from roomba.planning.coverage.stages import OUR_STAGES, CoverageStages
+
+NAMES: Final = tuple(field.name for field in fields(CoverageStages))
+_OF_ONE_LINE: Final = ("connection", "polish")
+"""Stages that give one line; the others give a list of lines."""
+
+
+class StageError(RoombaError):
+    """A stage gave what is no line of places."""
+
+
+def stages_of(paths: Iterable[tuple[str, str]], code: Path | None = None) -> CoverageStages:
+    """Return the stages of a trial: of its import paths, and ours for the others.
+
+    Modules may lie in the folder ``code``. Raises UsageError for a stage that there is not and for
+    what cannot be imported.
+    """
+    chosen = {name: _checked(name, path, _function_of(name, path, code)) for name, path in paths}
+    return CoverageStages(**chosen) if chosen else OUR_STAGES
+
+
+def file_of_stage(name: str, path: str, code: Path | None = None) -> Path | None:
+    """Return the file that a stage is in, None for one that has none; raises UsageError."""
+    module = _module_of(name, path, code)
+    return None if module.__file__ is None else Path(module.__file__)
+
+
+def _module_of(name: str, path: str, code: Path | None) -> Any:
+    if name not in NAMES:
+        raise UsageError(f"stages: expected {', '.join(NAMES)}, got {name!r}")
+    module, sign, function = path.partition(":")
+    if not (module and sign and function):
+        raise UsageError(f"stages: {name}: expected MODULE:FUNCTION, got {path!r}")
+    if code is not None and str(code) not in sys.path:
+        sys.path.append(str(code))
+    try:
+        return importlib.import_module(module)
+    except Exception as error:  # a module of others may raise anything
+        where = "" if code is None else f", also not in {code}"
+        raise UsageError(
+            f"stages: {name}: expected a module that can be imported, got {module!r}{where}: "
+            f"{error!r}"
+        ) from error
+
+
+def _function_of(name: str, path: str, code: Path | None) -> Callable[..., Any]:
+    function = functools.reduce(
+        lambda found, word: getattr(found, word, None),
+        path.partition(":")[2].split("."),
+        _module_of(name, path, code),
+    )
+    if not callable(function):
+        raise UsageError(f"stages: {name}: expected a function, got none at {path!r}")
+    found: Callable[..., Any] = function
+    return found
+
+
+def _checked(name: str, path: str, stage: Callable[..., Any]) -> Callable[..., Any]:
+    """Return the stage with a look at what it gives: what the next one cannot take is told."""
+
+    @functools.wraps(stage)
+    def checked(*arguments: Any) -> Any:
+        given = stage(*arguments)
+        lines = [given] if name in _OF_ONE_LINE else given
+        if not isinstance(lines, list) or not all(map(_is_line, lines)):
+            what = "an array" if name in _OF_ONE_LINE else "a list of arrays"
+            raise StageError(
+                f"{path}: expected {what}, float64 [n >= 1, 2], of finite places, in cells, got "
+                f"{_description(given)}"
+            )
+        return given
+
+    return checked
+
+
+def _is_line(line: object) -> bool:
+    return (
+        isinstance(line, np.ndarray)
+        and line.dtype == np.float64
+        and line.ndim == 2
+        and line.shape[0] >= 1
+        and line.shape[1] == 2
+        and bool(np.isfinite(line).all())
+    )
+
+
+def _description(given: object) -> str:
+    if isinstance(given, np.ndarray):
+        return f"{given.dtype} of shape {given.shape}"
+    if isinstance(given, list):
+        bad = next((line for line in given if not _is_line(line)), None)
+        return f"a list with {_description(bad)}"
+    return type(given).__name__

@@ -1,0 +1,95 @@
+"""Stages by import path: what cannot be one is told at once, and what it gives is looked at."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from roomba.commands.options import UsageError
+from roomba.commands.trials.runs import run_trial
+from roomba.commands.trials.stages import StageError, file_of_stage, stages_of
+from roomba.commands.trials.trial import Trial
+from roomba.planning.coverage.stages import OUR_STAGES
+
+MODULE = """
+import numpy as np
+ANSWER = 42
+def nothing(left, middles, radius, config): return []
+def text(left, middles, radius, config): return "no lines"
+def whole(left, middles, radius, config): return [np.zeros((2, 2), np.int64)]
+def wild(*arguments): return np.array([(0.0, np.nan)])
+"""
+
+
+@pytest.fixture(scope="module")
+def code(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """One folder for all, as a module is imported once."""
+    folder = tmp_path_factory.mktemp("code")
+    (folder / "made_stages.py").write_text(MODULE, encoding="utf-8")
+    return folder
+
+
+def given(stage: Any) -> Any:
+    return stage(None, None, 1.0, None)
+
+
+def test_without_any_they_are_ours() -> None:
+    assert stages_of(()) is OUR_STAGES
+
+
+def test_one_of_a_folder_takes_the_place_of_ours(code: Path) -> None:
+    stages = stages_of([("swaths", "made_stages:nothing")], code)
+    assert given(stages.swaths) == []
+    assert stages.order is OUR_STAGES.order
+    assert file_of_stage("swaths", "made_stages:nothing", code) == code / "made_stages.py"
+
+
+@pytest.mark.parametrize(
+    ("name", "path", "said"),
+    [
+        ("swath", "made_stages:nothing", "expected edges, swaths, order, connection, polish"),
+        ("swaths", "made_stages", "expected MODULE:FUNCTION, got 'made_stages'"),
+        ("swaths", "no_such_module:f", "a module that can be imported, got 'no_such_module'"),
+        ("swaths", "made_stages:bogus", "expected a function, got none at 'made_stages:bogus'"),
+        ("swaths", "made_stages:ANSWER", "expected a function"),
+    ],
+)
+def test_what_is_no_stage_is_refused(code: Path, name: str, path: str, said: str) -> None:
+    with pytest.raises(UsageError, match=said):
+        stages_of([(name, path)], code)
+
+
+@pytest.mark.parametrize(
+    ("name", "function", "said"),
+    [
+        ("swaths", "text", "a list of arrays.*got str"),
+        ("swaths", "whole", "a list.*got a list with int64 of shape"),
+        ("polish", "wild", "an array.*got float64 of shape"),
+    ],
+)
+def test_what_the_next_stage_cannot_take_is_told(
+    code: Path, name: str, function: str, said: str
+) -> None:
+    stages = stages_of([(name, f"made_stages:{function}")], code)
+    with pytest.raises(StageError, match=f"made_stages:{function}: expected {said}"):
+        given(getattr(stages, name))
+
+
+def test_a_run_is_made_by_them() -> None:
+    examples = Path(__file__).resolve().parents[4] / "examples" / "campaign"
+    usual = Trial(home="studio", seed=1, sensors="ideal")
+    own = Trial(
+        home="studio",
+        seed=1,
+        sensors="ideal",
+        stages=(("order", "nearest_next:order"),),
+        code=examples,
+    )
+    ours, theirs = (run_trial(trial).figures for trial in (usual, own))
+    assert theirs.is_completed
+    assert theirs.fraction > 0.98
+    assert theirs.distance_m > 1.02 * ours.distance_m
+    assert np.isfinite(theirs.turning_rad)
