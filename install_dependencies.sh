@@ -255,7 +255,7 @@ environment_identity() {
 requirement_files() { # library|runtime|dev
   printf '%s\n' requirements.txt
   [[ $1 != library ]] || printf '%s\n' requirements-library.txt
-  [[ $1 != dev ]] || printf '%s\n' requirements-smart-home.txt requirements-dev.txt
+  [[ $1 != dev ]] || printf '%s\n' requirements-smart-home.txt requirements-campaign.txt requirements-dev.txt
 }
 
 python_hash() { # library|runtime|dev
@@ -344,6 +344,19 @@ install_smart_home() {
 
 add_smart_home() {
   pip_install "$VENV" --requirement "$REPOSITORY/requirements-smart-home.txt"
+}
+
+# What `./roomba campaign` asks for: dask for clusters, pyarrow for Parquet.
+campaign_is_current() {
+  PYTHONNOUSERSITE=1 "$VENV/bin/python3" -c 'import distributed, pyarrow' 2>/dev/null
+}
+
+install_campaign() {
+  campaign_is_current || run_step "Installing dask and pyarrow into .venv" add_campaign
+}
+
+add_campaign() {
+  pip_install "$VENV" --constraint "$REPOSITORY/constraints.txt" --requirement "$REPOSITORY/requirements-campaign.txt"
 }
 
 # ---------------------------------------------------------------- step: npm packages of the tests

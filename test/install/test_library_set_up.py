@@ -13,6 +13,7 @@ REPOSITORY = Path(__file__).resolve().parents[2]
 FILES = (
     "install_dependencies.sh", "roomba", "constraints.txt", "requirements.txt",
     "requirements-library.txt", "requirements-dev.txt", "requirements-smart-home.txt",
+    "requirements-campaign.txt",
 )  # fmt: skip
 DEADLINE = 900.0
 """s; the packages come from the network."""

@@ -55,6 +55,7 @@ TESTED_BY: dict[str, tuple[str, str]] = {
     "roomba/client/ports": ("unit/commands/status/test_command.py", VALUES),
     "roomba/client/protocol": ("unit/client/fake/test_robot.py", "an interface"),
     "roomba/client/observed": ("unit/ui/web/test_app.py", "an interface"),
+    "roomba/commands/campaign/": ("unit/commands/campaign/test_command.py", COMMAND),
     "roomba/commands/draw_homes": ("unit/world/layers/test_homes.py", COMMAND),
     "roomba/commands/localize/": ("unit/commands/localize/test_command.py", COMMAND),
     "roomba/commands/map/": ("unit/commands/map/test_command.py", COMMAND),

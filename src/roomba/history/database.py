@@ -9,7 +9,7 @@ import math
 import os
 import sqlite3
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
@@ -106,6 +106,25 @@ class History:
                     (_MOST_RECORDINGS,),
                 )
         return number
+
+    def add_all(self, runs: Sequence[RunFigures]) -> int:
+        """Keep many runs without recordings, all or none; return how many."""
+        if not runs:
+            return 0
+        with self._opened() as database, _transaction(database):
+            for figures in runs:
+                number = _insert(database, figures)
+                append_line(self._journal, {"number": number, **_row(figures)})
+        return len(runs)
+
+    def configured(self, program: str, name: str) -> set[str]:
+        """Return the values that the runs of a program have in their configurations."""
+        with self._opened() as database:
+            rows = database.execute(
+                "SELECT DISTINCT configuration FROM runs WHERE program = ?", (program,)
+            ).fetchall()
+        values = (json.loads(text).get(name) for (text,) in rows)
+        return {str(value) for value in values if value is not None}
 
     def runs(self, limit: int = 1000, home: str | None = None) -> list[KeptRun]:
         """Return the newest runs, the newest first; ``home`` chooses those of one home."""

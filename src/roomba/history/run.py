@@ -28,7 +28,7 @@ Floats = NDArray[np.float32]
 
 @dataclass(frozen=True, slots=True)
 class RunSource:
-    """What is run: ``program`` is sim, play or ros; ``seed`` is None where there is none.
+    """What is run: ``program`` is sim, campaign, play or ros; ``seed`` is None where there is none.
 
     ``repeat`` is the command that repeats it, and ``configuration`` plain values that differ from
     what is usual.

@@ -16,6 +16,7 @@ from roomba.errors import RoombaError
 ROOT = Path(__file__).parents[3]
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
 MODULES = {
+    "campaign": "roomba.commands.campaign.command",
     "sim": "roomba.commands.sim.command",
     "map": "roomba.commands.map.command",
     "map --bag": "roomba.commands.map.drive.command",
@@ -36,7 +37,7 @@ MODULES = {
     "localize": "roomba.commands.localize.command",
 }
 """The module whose ``main`` parses what follows a command; the others are told below."""
-PROGRAMS = {"rostopic", "rosservice", "roscore", "rosparam", "rosbag", "bash"}
+PROGRAMS = {"dask", "rostopic", "rosservice", "roscore", "rosparam", "rosbag", "bash"}
 """What ``./roomba exec`` runs of others, whose arguments are theirs."""
 MENTIONED = {"import valetudo", "map --bag", "emulate"}
 """What the text names without the rest of the line."""

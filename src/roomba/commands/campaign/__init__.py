@@ -1,0 +1,1 @@
+"""Campaigns: homes, seeds and variants of the robot, run on many machines and compared."""

@@ -1,0 +1,81 @@
+"""The differences of a campaign's variants as a picture: means with their intervals."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Final
+
+import cv2
+from matplotlib.figure import Figure
+
+from roomba.commands.campaign.comparison import Comparison
+from roomba.commands.campaign.running.measures import MEASURES
+from roomba.commands.campaign.running.specification import Campaign
+from roomba.plots.style import BLUE, GREEN, GREY, INK, ORANGE, PINK, RED, drawn, empty_figure
+
+_WIDTH: Final = 1000
+_PER_ROW, _REST = 16, 150
+"""px of height: of each mark, and of title, axis and legend."""
+_COLOURS: Final = (BLUE, ORANGE, GREEN, RED, PINK, INK)
+_BETWEEN: Final = 1.2
+"""Rows between two measures."""
+
+
+def write_plot(path: Path, campaign: Campaign, comparisons: Sequence[Comparison]) -> None:
+    """Draw the comparisons into a PNG file; raises OSError."""
+    if not cv2.imwrite(str(path), picture_of(campaign, comparisons)[:, :, ::-1]):
+        raise OSError(f"{path}: cannot be written")
+
+
+@drawn
+def picture_of(campaign: Campaign, comparisons: Sequence[Comparison]) -> Figure:
+    """Return the picture: a group for each measure, in it a mark for each variant and home.
+
+    Differences are in % of the baseline's mean; what has none is left out.
+    """
+    shown = [each for each in comparisons if each.percent is not None]
+    measures = list(dict.fromkeys(each.measure for each in shown))
+    variants = list(dict.fromkeys(each.variant for each in shown))
+    rows = len(shown) + _BETWEEN * len(measures)
+    figure = empty_figure(_WIDTH, round(_REST + _PER_ROW * max(rows, 1.0)))
+    axes = figure.subplots()
+    axes.axvline(0.0, color=GREY, linewidth=1.0)
+    at, ticks = 0.0, []
+    for measure in measures:
+        group = [each for each in shown if each.measure == measure]
+        ticks.append(at + 0.5 * (len(group) - 1))
+        for each in group:
+            assert each.percent is not None
+            colour = _COLOURS[variants.index(each.variant) % len(_COLOURS)]
+            middle, low, high = each.percent
+            if low is not None and high is not None:
+                axes.plot([low, high], [at, at], color=colour, linewidth=1.4 if each.home else 2.6)
+            fill = "none" if each.home else "full"
+            axes.plot([middle], [at], "o", color=colour, markersize=6.0, fillstyle=fill)
+            if each.home:
+                axes.annotate(
+                    each.home,
+                    (high if high is not None else middle, at),
+                    xytext=(6, 0),
+                    textcoords="offset points",
+                    va="center",
+                    color=GREY,
+                    fontsize=8.0,
+                )
+            at += 1.0
+        at += _BETWEEN
+    axes.set_yticks(ticks, [MEASURES[measure].label.partition(",")[0] for measure in measures])
+    axes.invert_yaxis()
+    axes.grid(visible=False, axis="y")
+    axes.set_xlabel(f"difference from {campaign.baseline}, % of its mean")
+    pairs = max((each.pairs for each in shown), default=0)
+    axes.set_title(
+        f"{campaign.name}: up to {pairs} pairs of home and seed, "
+        f"{100.0 * campaign.file.confidence:g} % intervals"
+    )
+    for number, variant in enumerate(variants):
+        axes.plot([], [], "o-", color=_COLOURS[number % len(_COLOURS)], label=variant)
+    if variants:
+        axes.legend(loc="best")
+    return figure

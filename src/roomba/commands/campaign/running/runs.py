@@ -1,0 +1,140 @@
+"""The runs of a campaign, each with a key: the same key means the same run, bit for bit."""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import importlib.metadata
+import json
+import socket
+from collections.abc import Iterable
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any, Final
+
+from roomba.commands.campaign.running.specification import Campaign
+from roomba.commands.options import UsageError
+from roomba.commands.trials.stages import file_of_stage
+from roomba.commands.trials.trial import RANDOM, Trial
+from roomba.compiled_sources import PACKAGE, Sources
+from roomba.errors import RoombaError
+from roomba.files.bounded import read_bytes
+from roomba.files.shipped import CONFIGURATION, HOMES
+from roomba.mission.cleaning.checkpoint import request_values
+
+_ENTRY: Final = PACKAGE / "commands" / "trials" / "runs.py"
+"""What a run is made of is this file and all that it imports."""
+_COMPUTE: Final = ("numpy", "numba")
+"""Packages by whose version numbers may differ in the last bit."""
+_MOST_BYTES: Final = 64_000_000
+"""Of one file of a home."""
+_DIGITS: Final = 24
+"""Of a key."""
+
+
+class OtherMachineError(RoombaError):
+    """A machine that would not do the same run: its program or files are others."""
+
+
+@dataclass(frozen=True, slots=True)
+class CampaignRun:
+    """One run, as it is sent to a worker.
+
+    ``home`` is as the file names it. ``program`` and ``content`` are hashes of the program, and of
+    the home and the stages, that the run must be made of.
+    """
+
+    home: str
+    seed: int
+    variant: str
+    trial: Trial
+    program: str
+    content: str
+    key: str
+
+
+def runs_of(campaign: Campaign) -> list[CampaignRun]:
+    """Return the runs; those of one home and seed one after the other, to be compared.
+
+    Raises UsageError for homes and stages that cannot be read.
+    """
+    file = campaign.file
+    contents: dict[tuple[str, tuple[tuple[str, str], ...]], str] = {}
+    runs = []
+    for home in file.homes:
+        place = campaign.place_of(home)
+        for seed in file.all_seeds:
+            for name, variant in file.variants.items():
+                trial = variant.trial(place, seed, campaign.folder)
+                made_of = (place, trial.stages)
+                if made_of not in contents:
+                    contents[made_of] = content_of(trial)
+                content = contents[made_of]
+                key = _key_of(home, trial, content)
+                runs.append(CampaignRun(home, seed, name, trial, program(), content, key))
+    return runs
+
+
+def require_same(run: CampaignRun) -> None:
+    """Raise OtherMachineError where this machine would not do the same run."""
+    here = f"the worker on {socket.gethostname()}"
+    if program() != run.program:
+        raise OtherMachineError(
+            f"{here}: expected the program, numpy and numba of the machine that the campaign was "
+            f"started on ({run.program}), got others ({program()}); start it from the same "
+            "checkout, or the same wheel"
+        )
+    try:
+        content = content_of(run.trial)
+    except (RoombaError, OSError) as error:
+        raise OtherMachineError(f"{here}: {error}") from error
+    if content != run.content:
+        raise OtherMachineError(
+            f"{here}: expected home {run.home} and the stages of variant {run.variant} as on the "
+            "machine that the campaign was started on, got other files; copy them"
+        )
+
+
+def content_of(trial: Trial) -> str:
+    """Return a hash of the files of a trial: its home's, and those with its stages."""
+    files: list[tuple[str, Path]] = []
+    if trial.home != RANDOM:
+        folder = Path(trial.home) if Path(trial.home).is_absolute() else HOMES / trial.home
+        files += [(path.name, path) for path in sorted(folder.iterdir()) if path.is_file()]
+    for name, stage in trial.stages:
+        path = file_of_stage(name, stage, trial.code)
+        if path is None:
+            raise UsageError(f"stages: {name}: expected a module with a file, got {stage!r}")
+        files.append((stage, path))
+    return _hash_of_files(files)
+
+
+@functools.cache
+def program() -> str:
+    """Return a hash of all that decides about a run beside its trial: sources, numbers, packages.
+
+    A change of another part of the program, or of a page, leaves it as it is.
+    """
+    sources = Sources(PACKAGE).key(_ENTRY)
+    files = [(path.name, path) for path in sorted(CONFIGURATION.rglob("*.yaml"))]
+    packages = [f"{name} {importlib.metadata.version(name)}" for name in _COMPUTE]
+    return _hash_of("\n".join([sources, _hash_of_files(files), *packages]))
+
+
+def _key_of(home: str, trial: Trial, content: str) -> str:
+    values: dict[str, Any] = asdict(trial) | {"request": request_values(trial.request)}
+    # Where the files lie does not matter, only what is in them.
+    values |= {"home": home, "code": None, "content": content, "program": program()}
+    return _hash_of(json.dumps(values, sort_keys=True))
+
+
+def _hash_of_files(files: Iterable[tuple[str, Path]]) -> str:
+    told = [
+        f"{name} {hashlib.sha256(read_bytes(path, _MOST_BYTES)).hexdigest()}"
+        for name, path in files
+    ]
+    return _hash_of("\n".join(told))
+
+
+def _hash_of(text: str) -> str:
+    return hashlib.sha256(text.encode()).hexdigest()[:_DIGITS]

@@ -1,0 +1,55 @@
+"""One run of a campaign, carried out in a process that may be on another machine."""
+
+from __future__ import annotations
+
+import os
+import socket
+import threading
+import time
+from dataclasses import dataclass
+from typing import Final
+
+from roomba.commands.campaign.running.runs import CampaignRun, OtherMachineError, require_same
+from roomba.commands.trials.figures import Figures
+from roomba.errors import RoombaError
+
+_ONE_AT_A_TIME: Final = threading.Lock()
+"""Of a process: a worker with several threads would let runs slow each other down."""
+
+
+@dataclass(frozen=True, slots=True)
+class RunEnd:
+    """What came of a run: its figures, or why there are none, and where and when it was made.
+
+    ``began`` is s since 1970.
+    """
+
+    figures: Figures | None
+    failure: str
+    where: str
+    began: float
+
+
+def carried_out(run: CampaignRun) -> RunEnd:
+    """Make a run; a failure that it would have anywhere becomes its text.
+
+    Raises OtherMachineError where this machine would not do the same run.
+    """
+    # Here, so that the machine that only waits does not load it all.
+    from roomba.commands.trials.runs import run_trial
+    from roomba.commands.trials.warm import warm_up
+
+    with _ONE_AT_A_TIME:
+        require_same(run)
+        warm_up()
+        began = time.time()
+        figures, failure = None, ""
+        try:
+            figures = run_trial(run.trial).figures
+        except OtherMachineError:
+            raise
+        except RoombaError as error:
+            failure = str(error)
+        except Exception as error:  # the other runs go on
+            failure = f"a fault of the program: {error!r}"
+        return RunEnd(figures, failure, f"{socket.gethostname()}:{os.getpid()}", began)
