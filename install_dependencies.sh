@@ -15,6 +15,7 @@ BENCH_VENV=$REPOSITORY/.venv-bench
 AUDIT_VENV=$REPOSITORY/.venv-audit
 HA_VENV=$REPOSITORY/.venv-ha
 CACHE=$REPOSITORY/.cache
+OS_RELEASE=/etc/os-release
 PYTHON=/usr/bin/python3 # the one that ROS is packaged for; a pyenv or conda python has no rospy
 
 # ---------------------------------------------------------------- telling what goes on
@@ -116,15 +117,32 @@ hash_of() { # FILE...  (also of what is given on standard input)
 
 # ---------------------------------------------------------------- step: system packages
 
-distribution() { # prints bookworm, trixie or jammy
+# Prints bookworm, trixie or jammy; on any other system why there is no ROS 1, with status 1.
+distribution() {
   local VERSION_CODENAME="" UBUNTU_CODENAME="" PRETTY_NAME="an unknown system"
   # shellcheck source=/dev/null
-  [[ ! -r /etc/os-release ]] || . /etc/os-release
+  [[ ! -r $OS_RELEASE ]] || . "$OS_RELEASE"
   case ${UBUNTU_CODENAME:-$VERSION_CODENAME} in
-    bookworm | trixie | jammy) printf '%s\n' "${UBUNTU_CODENAME:-$VERSION_CODENAME}" ;;
-    *) fail "expected Debian 12 (bookworm), Debian 13 (trixie) or Ubuntu 22.04 (jammy), whose own packages hold ROS 1;" \
-      "this is $PRETTY_NAME. Use one of those, a container of one of those will do." ;;
+    bookworm | trixie | jammy)
+      if command -v dpkg-query >/dev/null; then
+        printf '%s\n' "${UBUNTU_CODENAME:-$VERSION_CODENAME}"
+        return
+      fi
+      printf 'expected dpkg-query, which tells what packages there are, on %s; there is none\n' "$PRETTY_NAME"
+      ;;
+    *)
+      printf 'expected Debian 12 (bookworm), Debian 13 (trixie) or Ubuntu 22.04 (jammy), whose own packages hold ROS 1; this is %s\n' \
+        "$PRETTY_NAME"
+      ;;
   esac
+  return 1
+}
+
+require_ros() {
+  local reason
+  reason=$(distribution) || fail "this needs ROS 1: $reason." \
+    $'\n'"       In a container of Debian: podman build --tag roomba . (docs/install.md; docker does as well)." \
+    $'\n'"       Without ROS: ./roomba play, sim, map, campaign, top --demo, control --demo and others (./roomba help)."
 }
 
 # The names are the same in bookworm, trixie and jammy, but for those that the case at the end adds.
@@ -173,7 +191,6 @@ system_packages() { # runtime|dev|bench, or on asking: rviz|screen|robot_state_p
 }
 
 missing_system_packages() { # as above
-  command -v dpkg-query >/dev/null || fail "expected a system with dpkg and apt (Debian or Ubuntu); there is no dpkg-query."
   local -a packages
   mapfile -t packages < <(system_packages "$1")
   comm -23 <(printf '%s\n' "${packages[@]}" | sort) \
@@ -182,7 +199,12 @@ missing_system_packages() { # as above
 }
 
 system_is_current() { # as above
-  [[ -z $(missing_system_packages "$1") ]]
+  command -v dpkg-query >/dev/null && [[ -z $(missing_system_packages "$1") ]]
+}
+
+# Prints what is missing in words; nothing where all is there.
+system_words() { # as above
+  if distribution >/dev/null; then missing_system_packages "$1" | xargs; else distribution || true; fi
 }
 
 as_root() {
@@ -239,6 +261,7 @@ install_system_packages() { # as above
 # What is asked for, and no other command needs.
 install_on_asking() { # rviz|screen|robot_state_publisher
   system_is_current "$1" && return
+  require_ros
   local -a missing
   mapfile -t missing < <(missing_system_packages "$1")
   require_root "${missing[@]}"
@@ -274,7 +297,7 @@ library_is_current() {
 }
 
 ros_is_installed() {
-  command -v dpkg-query >/dev/null && system_is_current runtime
+  system_is_current runtime
 }
 
 # Nothing is installed for the library but into .venv: what is missing is told.
@@ -488,7 +511,7 @@ install_dependencies() { # library|runtime|dev
     return
   fi
   if ! system_is_current "$1"; then
-    distribution >/dev/null
+    require_ros
     local -a missing
     mapfile -t missing < <(missing_system_packages "$1")
     require_root "${missing[@]}"
