@@ -100,6 +100,7 @@ TIMED = (
     "system/faults/test_refused_messages.py",
     "system/faults/test_standstill.py",
     "system/faults/test_supervision.py",
+    "system/test_create2_line.py",
     "system/test_foreign_robot.py",
     "system/test_neato_line.py",
 )

@@ -56,7 +56,8 @@ usage: roomba COMMAND ...
   control --demo [ARGS]
                    the menu in the terminal over a robot that lives in a home: --home NAME,
                    --speed N, --map none (see --demo --help)
-  emulate neato    a made-up Neato on a pseudo terminal: --link NAME, --home NAME
+  emulate neato|create2|ld19
+                   a made-up robot or lidar on a pseudo terminal: --link NAME, --home NAME
   status [ARGS]    what a robot with a page does now: --json, --watch
   top [ADDRESS]    the same on a whole terminal, with map, log, and keys that command it; --demo:
                    of a robot that lives in a home meanwhile

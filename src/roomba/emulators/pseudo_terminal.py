@@ -18,6 +18,12 @@ _BITS: Final = 10
 """Of a byte on a serial line: start, eight, stop."""
 _PIECE: Final = 256
 """Bytes."""
+_RATES: Final = {
+    getattr(termios, name): int(name[1:])
+    for name in dir(termios)
+    if name.startswith("B") and name[1:].isdigit()
+}
+"""Baud by the system's code."""
 
 
 class PseudoTerminal:
@@ -26,12 +32,18 @@ class PseudoTerminal:
     Raises RoombaError where ``link``, a name to find it by, is taken by a file that is no link.
     """
 
-    def __init__(self, link: Path | None = None, baud: int | None = None) -> None:
-        """``baud`` bits a second go over the line; None: as over USB, at once."""
+    def __init__(
+        self, link: Path | None = None, baud: int | None = None, speed: float = 1.0
+    ) -> None:
+        """``baud`` bits a second go over the line; None: as over USB, at once.
+
+        ``speed`` of the line's seconds pass in one, of one whose rate is set later.
+        """
         self._master, self._slave = pty.openpty()
         tty.setraw(self._slave, termios.TCSANOW)
         os.set_blocking(self._master, False)
         self.name, self._baud, self._link = os.ttyname(self._slave), baud, link
+        self._speed = speed
         if link is not None:
             if link.exists() and not link.is_symlink():
                 raise RoombaError(f"expected a new name for the line, got {link}: a file is there")
@@ -60,6 +72,17 @@ class PseudoTerminal:
             if self._baud is not None:
                 ends = began + sent * _BITS / self._baud
                 time.sleep(max(0.0, ends - time.monotonic()))
+
+    def set_rate(self, baud: int) -> bool:
+        """Send at ``baud``; return whether the program at the other end does, too.
+
+        A line that is as quick as USB has no rate.
+        """
+        if self._baud is None:
+            return True
+        self._baud = round(baud * self._speed)
+        _in, _out, _control, _local, _sent, code, _characters = termios.tcgetattr(self._slave)
+        return _RATES.get(code) == baud
 
     def close(self) -> None:
         """Unplug it."""

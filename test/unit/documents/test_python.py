@@ -47,7 +47,7 @@ def test_the_pages_with_python_are_known() -> None:
         "README.md": 1,
         "gym.md": 2,
         "programs.md": 3,
-        "real_robots.md": 1,
+        "real_robots.md": 2,
     }
 
 

@@ -1,4 +1,4 @@
-"""``./roomba emulate neato``: a made-up robot on a pseudo terminal, for programs that drive it."""
+"""``./roomba emulate``: a made-up robot or lidar on a pseudo terminal, for programs that use it."""
 
 from __future__ import annotations
 
@@ -9,13 +9,15 @@ import threading
 from pathlib import Path
 from typing import Final
 
+from roomba.commands.emulate.making import BAUD, LD19_BAUD, MADE_UP
 from roomba.commands.options import MOST_SEED, Parser, UsageError, choice, number, whole
 from roomba.commands.spelling import spelled
 from roomba.errors import RoombaError
 
 PROGRAM: Final = spelled("emulate")
-BAUD: Final = 115_200
 _DONE, _USAGE = 0, 2
+_SLOW_BAUD: Final = 19_200
+"""At which a robot starts that was asked for it by its button."""
 _SPEEDS: Final = (0.1, 20.0)
 _speed = number(
     lambda value: _SPEEDS[0] <= value <= _SPEEDS[1],
@@ -34,32 +36,13 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def _live(given: argparse.Namespace) -> int:
-    from roomba.configuration.simulation import load_simulated_config
-    from roomba.emulators.neato.dialects import Model
-    from roomba.emulators.neato.robot import NeatoRobot, made_up
-    from roomba.emulators.neato.server import NeatoServer
-    from roomba.emulators.pseudo_terminal import PseudoTerminal
-    from roomba.files.shipped import CONFIGURATION, HOMES
-    from roomba.world.layers.layer import load_home
-    from roomba.world.simulator import Simulator
-
-    robots = CONFIGURATION / "robots"
-    config = load_simulated_config(robots / "neato.yaml", CONFIGURATION / "simulation.yaml")
-    config = made_up(config)
-    simulator = Simulator(load_home(given.home, HOMES, config.body), config, seed=given.seed)
-    robot = NeatoRobot(simulator, Model(given.model))
-    line = PseudoTerminal(given.link, round(BAUD * given.speed) if given.serial else None)
     is_over = threading.Event()
     for ending in (signal.SIGINT, signal.SIGTERM):
         signal.signal(ending, lambda *_: is_over.set())
-    try:
-        with NeatoServer(robot, line, given.speed):
-            where = given.link or line.name
-            print(f"A Neato lives in the home {given.home}, on {where}. Ctrl-C ends it.")
-            sys.stdout.flush()
-            is_over.wait()
-    finally:
-        line.close()
+    with MADE_UP[given.robot](given) as told:
+        print(f"{told} Ctrl-C ends it.")
+        sys.stdout.flush()
+        is_over.wait()
     return _DONE
 
 
@@ -67,16 +50,17 @@ def _parser() -> Parser:
     parser = Parser(
         PROGRAM,
         "A robot that people own, made up: a robot in a simulated home that speaks the protocol of "
-        "one on a pseudo terminal, for programs that drive such robots.",
+        "one on a pseudo terminal, for programs that drive such robots. An LD19 alone stands where "
+        "a robot would charge.",
         "What it knows of the protocol: docs/real_robots.md.",
     )
-    parser.add_argument("robot", choices=("neato",), help="which robot")
+    parser.add_argument("robot", choices=tuple(MADE_UP), help="which robot, or lidar")
     parser.add_argument(
         "--model",
         type=choice("botvac", "xv11"),
         default="botvac",
         metavar="botvac|xv11",
-        help="whose labels it has: Botvac D3 to D7 (default), or XV-11",
+        help="neato: whose labels it has: Botvac D3 to D7 (default), or XV-11",
     )
     parser.add_argument(
         "--home", default="studio", metavar="NAME|FOLDER", help="where it lives (default: studio)"
@@ -86,9 +70,23 @@ def _parser() -> Parser:
         "--link", type=Path, metavar="NAME", help="a link to the line, to find it by a fixed name"
     )
     parser.add_argument(
+        "--lidar-link",
+        type=Path,
+        metavar="NAME",
+        help="create2: the same for the line of its lidar, an LD19",
+    )
+    parser.add_argument(
+        "--baud",
+        type=int,
+        choices=(BAUD, _SLOW_BAUD),
+        default=BAUD,
+        help=f"create2: the rate at which it starts, with --serial (default: {BAUD})",
+    )
+    parser.add_argument(
         "--serial",
         action="store_true",
-        help=f"as slow as a serial line of {BAUD} baud; without it as quick as USB",
+        help=f"as slow as a serial line: {BAUD} baud, {LD19_BAUD} of an LD19; without it as "
+        "quick as USB",
     )
     parser.add_argument(
         "--speed",

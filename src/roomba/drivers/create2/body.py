@@ -1,0 +1,270 @@
+"""A Create 2 as a body of the brain: its stream becomes readings, what is wanted wheel speeds.
+
+The robot drives as it was told last, for ever: the Open Interface has no time-out. So it is told
+anew twenty times a second; :mod:`roomba.drivers.create2.dead_man` stops it when the driver dies,
+and safe mode where a wheel drops or the floor ends. A cable that is pulled while it drives nothing
+can make up for. :meth:`Create2Body.serve` is called again and again by a thread of its own.
+"""
+
+from __future__ import annotations
+
+import math
+import threading
+from collections.abc import Callable, Sequence
+from typing import Final
+
+from roomba.configuration.robot import RobotConfig
+from roomba.drivers.create2 import commands
+from roomba.drivers.create2.dead_man import PADDING as LONG_PADDING
+from roomba.drivers.create2.dead_man import STOP, DeadManSwitch, Switch
+from roomba.drivers.create2.frames import FrameReader
+from roomba.drivers.create2.odometry import EncoderOdometry
+from roomba.drivers.create2.open_interface import OpenMode, Packet
+from roomba.drivers.create2.telling import ALL, FAST, SLOW, Create2State, state_of
+from roomba.drivers.line import Line, LineError, SerialLine
+from roomba.geometry import STANDSTILL, Twist
+from roomba.mission.inputs.senses import Battery
+from roomba.robot.command import Command
+from roomba.robot.readings import Readings, ScanReading
+
+BAUDS: Final = (115_200, 19_200)
+"""What its line is tried with: the usual rate, and the one of a robot that was asked for it."""
+_ROOMY: Final = 57_600
+"""Baud, from which on all packets come in each frame."""
+_PERIOD: Final = 0.05
+"""s, between two commands."""
+_SILENT: Final = 0.15
+"""s; the robot stands when what it is to do, or what it told last, is older than this."""
+_GONE: Final = 0.5
+"""s without a frame, after which the line counts as gone."""
+_FIRST: Final = 0.5
+"""s, for the first frame at each rate."""
+_TURNS: Final = 5
+"""Of as many commands on a slow line one is followed by the packets that may be old."""
+
+
+class Create2Body:
+    """One robot on a serial port. ``trouble`` says what is wrong with the line, "" if nothing."""
+
+    def __init__(
+        self,
+        port: str,
+        now: Callable[[], float],
+        config: RobotConfig,
+        *,
+        scans: Callable[[], ScanReading | None] = lambda: None,
+        bauds: Sequence[int] = BAUDS,
+        opened: Callable[[str, int], Line] = SerialLine,
+        switch: Switch | None = None,
+    ) -> None:
+        """Be about to drive the robot of ``config`` on ``port``; nothing is opened yet.
+
+        ``now`` is the robot's clock, s, which never goes back; ``scans`` returns the newest scan of
+        a lidar on a line of its own; ``bauds`` are the rates to try; ``opened`` opens a port.
+        """
+        self._port, self._now, self._config, self._bauds = port, now, config, bauds
+        self._scans, self._opened = scans, opened
+        self._switch = switch or DeadManSwitch(port)
+        self._line: Line | None = None
+        self._lock = threading.Lock()
+        self._wanted, self._wanted_at = Command(), -math.inf
+        self._sings_until, self._is_to_sing = -math.inf, False
+        self._lists: tuple[tuple[Packet, ...], ...] = (ALL,)
+        self._reader = FrameReader(self._lists)
+        self._odometry = EncoderOdometry(config)
+        self._told: dict[int, int] = {}
+        self._state = Create2State()
+        self._heard = self._due = -math.inf
+        self._sent = 0
+        self._given: ScanReading | None = None
+        self.trouble = "not asked yet"
+
+    # ---------------------------------------------------------------- the brain's side
+
+    def read(self) -> Readings:
+        """Return what the robot told last; a scan once."""
+        scan = self._scans()
+        with self._lock:
+            is_new = scan is not None and scan is not self._given
+            self._given = scan
+            state, odometry = self._state, self._odometry
+            return Readings(
+                self._now(),
+                odometry.pose,
+                odometry.twist,
+                None,
+                scan if is_new else None,
+                state.bumper_left,
+                state.bumper_right,
+                state.cliff,
+                state.dropped_left,
+                state.dropped_right,
+                state.beams,
+                Battery(state.level, self._config.battery.capacity, state.has_power),
+                state.grains,
+            )
+
+    def newest_scan(self) -> ScanReading | None:
+        """Return the newest scan; None before the first one."""
+        return self._scans()
+
+    def act(self, command: Command) -> None:
+        """Take what is wanted; it holds for 0.15 s, then the robot stands.
+
+        Raises ValueError for a twist that is not finite.
+        """
+        if not command.twist.is_finite:
+            raise ValueError(f"expected a finite twist, got {command.twist}")
+        with self._lock:
+            self._wanted, self._wanted_at = command, self._now()
+
+    def locate(self) -> None:
+        """Play a few notes."""
+        with self._lock:
+            self._is_to_sing = True
+
+    # ---------------------------------------------------------------- the line's side
+
+    def begin(self) -> None:
+        """Open the line and take the robot over, which stands then; raises LineError."""
+        self._let_go()
+        for baud in self._bauds:
+            if self._wakes(baud):
+                self._switch.start()
+                self.trouble = ""
+                return
+        raise LineError(
+            f"expected a Create 2 on {self._port}, got no answer at "
+            f"{' or '.join(map(str, self._bauds))} baud. Is it switched on (CLEAN lights up)?"
+        )
+
+    def serve(self) -> None:
+        """Take what comes, and send what is due; raises LineError, after which begin() is due."""
+        try:
+            if self._line is None:
+                raise LineError("expected begin() before serve()")
+            self._take(self._line.read(max(0.001, min(_PERIOD, self._due - self._now()))))
+            now = self._now()
+            if now - self._heard > _GONE:
+                raise LineError(f"expected a frame each 15 ms, got none for {_GONE:g} s")
+            if now >= self._due:
+                self._due = now + _PERIOD
+                self._send(self._line, now)
+        except LineError as error:
+            with self._lock:
+                self._odometry.forget()
+                self.trouble = str(error)
+            self._let_go()
+            raise
+
+    def end(self) -> None:
+        """Let the robot stand, give it back, and let go of the line."""
+        line = self._line
+        if line is not None:
+            try:
+                line.write(STOP + commands.silence() + commands.into(OpenMode.PASSIVE))
+                line.write(commands.into(OpenMode.OFF))
+            except LineError as error:
+                self.trouble = str(error)
+        self._let_go()
+
+    def _let_go(self) -> None:
+        """Let go of the line; the dead man's switch stops the robot once more, if it can."""
+        with self._lock:
+            self._odometry.forget()
+        self._switch.end()
+        line, self._line = self._line, None
+        if line is not None:
+            line.close()
+
+    def _wakes(self, baud: int) -> bool:
+        """Open the line at a rate, and ask for the stream; whether it comes."""
+        self._lists = (ALL,) if baud >= _ROOMY else (FAST, SLOW)
+        self._reader = FrameReader(self._lists)
+        self._line = self._opened(self._port, baud)
+        try:
+            self._line.discard()
+            self._line.write(LONG_PADDING + commands.into(OpenMode.PASSIVE))
+            self._line.write(commands.song() + commands.stream(self._lists[0]))
+            self._due, until = self._now(), self._now() + _FIRST
+            self._heard = -math.inf
+            while not math.isfinite(self._heard) and self._now() < until:
+                self._take(self._line.read(_PERIOD))
+        except LineError:
+            self._let_go()
+            raise
+        if not math.isfinite(self._heard):
+            self._let_go()
+            return False
+        return True
+
+    def _take(self, data: bytes) -> None:
+        for told in self._reader.take(data):
+            self._heard = now = self._now()
+            with self._lock:
+                self._told.update(told)
+                self._state = state_of(self._told)
+                if Packet.LEFT_ENCODER in told:
+                    self._odometry.take(now, told[Packet.LEFT_ENCODER], told[Packet.RIGHT_ENCODER])
+
+    # ---------------------------------------------------------------- what is sent
+
+    def _send(self, line: Line, now: float) -> None:
+        with self._lock:
+            fresh = now - self._wanted_at <= _SILENT and now - self._heard <= _SILENT
+            wanted = self._wanted if fresh else Command()
+            sings, self._is_to_sing = self._is_to_sing, False
+            state = self._state
+        if sings:
+            self._sings_until = now + commands.SONG_TIME
+        twist = _allowed(wanted.twist, state)
+        mode = self._mode_for(twist, state, now)
+        data = commands.PADDING
+        if mode is not state.mode:
+            data += commands.into(mode)
+        if mode is not OpenMode.PASSIVE:
+            data += commands.drive(twist, self._config.body.wheel_separation)
+            data += commands.power(*self._duties(wanted, twist))
+        if sings:
+            data += commands.play()
+        line.write(data + self._next_list())
+        self._switch.tell(mode is not OpenMode.PASSIVE and twist != STANDSTILL)
+
+    def _mode_for(self, twist: Twist, state: Create2State, now: float) -> OpenMode:
+        """Return the mode: passive where it charges, else safe; only off its station full."""
+        if state.dropped_left or state.dropped_right:
+            return OpenMode.PASSIVE
+        if not state.has_power:
+            return OpenMode.SAFE
+        # With a charger safe mode ends at once, and passive mode alone charges.
+        leaves = twist != STANDSTILL or now < self._sings_until
+        return OpenMode.FULL if leaves else OpenMode.PASSIVE
+
+    def _duties(self, wanted: Command, twist: Twist) -> tuple[float, float]:
+        """Return those of brush and fan, which rest while the robot stands."""
+        if twist == STANDSTILL:
+            return 0.0, 0.0
+        brush = self._config.brush.duty if wanted.brush is None else wanted.brush
+        return brush, self._config.fan.duty if wanted.fan is None else wanted.fan
+
+    def _next_list(self) -> bytes:
+        """Return the command for what is streamed until the next one, where lists take turns."""
+        if len(self._lists) == 1:
+            return b""
+        self._sent = (self._sent + 1) % _TURNS
+        if self._sent > 1:
+            return b""
+        fast, slow = self._lists
+        return commands.stream(slow if self._sent == 0 else fast)
+
+
+def _allowed(twist: Twist, state: Create2State) -> Twist:
+    """Return what of a twist is driven: nothing ahead at a cliff, on the station only off it."""
+    is_blocked = (
+        state.dropped_left
+        or state.dropped_right
+        or state.has_cable
+        or (twist.linear > 0.0 and state.cliff.any)
+        or (twist.linear >= 0.0 and state.has_power)
+    )
+    return STANDSTILL if is_blocked else twist

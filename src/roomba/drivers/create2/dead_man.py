@@ -1,0 +1,109 @@
+"""A process of its own that lets a robot stand when the driver's program is killed or frozen.
+
+The Open Interface has no time-out: a robot drives as it was told last, for ever. This process hears
+ten times a second that the driver lives, through a pipe that closes when it dies. Then, and after
+0.2 s of silence while the robot drives, it sends the stop on the same line. It is run as a program
+and needs nothing but Python, so that it is there soon and that nothing can go wrong with it.
+"""
+
+import os
+import select
+import signal
+import subprocess
+import sys
+from typing import Final, Protocol
+
+SILENT: Final = 0.2
+"""s; without a word for so long, while the robot drives, it is stopped."""
+DRIVES, STANDS = b"d", b"s"
+PADDING: Final = bytes(32)
+"""A command that was cut takes zeros for its data; as commands they are passed over."""
+STOP: Final = PADDING + bytes([145, 0, 0, 0, 0, 144, 0, 0, 0])
+"""Both wheels at 0 mm/s, and all brushes off."""
+
+
+class Switch(Protocol):
+    """What a driver needs of it."""
+
+    def start(self) -> None:
+        """Watch from now on."""
+
+    def tell(self, drives: bool) -> None:
+        """Say that the driver lives, and whether the robot is to drive."""
+
+    def end(self) -> None:
+        """Watch no more."""
+
+
+class DeadManSwitch:
+    """The process, as its driver has it; for a port that is a file of this machine."""
+
+    def __init__(self, port: str) -> None:
+        """Be about to watch over who drives the robot on ``port``."""
+        self._port = port
+        self._process: subprocess.Popen[bytes] | None = None
+
+    def start(self) -> None:
+        """Start the process; one that runs already is ended first."""
+        self.end()
+        # A session of its own: what ends the program by the terminal must not end this, too.
+        self._process = subprocess.Popen(
+            [sys.executable, "-I", __file__, self._port],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+            start_new_session=True,
+            bufsize=0,
+        )
+
+    def tell(self, drives: bool) -> None:
+        """Say that the driver lives, and whether the robot is to drive."""
+        if self._process is None or self._process.stdin is None:
+            return
+        try:
+            self._process.stdin.write(DRIVES if drives else STANDS)
+        except BrokenPipeError:
+            # Its line was unplugged, or it was killed: the next start() is another one.
+            self._process.stdin = None
+
+    @property
+    def is_alive(self) -> bool:
+        """Whether the process runs."""
+        return self._process is not None and self._process.poll() is None
+
+    def end(self) -> None:
+        """Close the pipe: it stops the robot once more, and ends."""
+        process, self._process = self._process, None
+        if process is None:
+            return
+        if process.stdin is not None:
+            process.stdin.close()
+        try:
+            process.wait(2.0)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.wait()
+
+
+def watch(words: int, port: str) -> None:
+    """Read words from a pipe until it closes; stop the robot on ``port`` when they fail to come."""
+    line = os.open(port, os.O_WRONLY | os.O_NOCTTY | os.O_NONBLOCK)
+    drives = False
+    while True:
+        readable, _, _ = select.select([words], [], [], SILENT if drives else None)
+        if not readable:
+            os.write(line, STOP)
+            drives = False
+            continue
+        came = os.read(words, 4096)
+        if not came:
+            break
+        drives = came.endswith(DRIVES)
+    os.write(line, STOP)
+    os.close(line)
+
+
+if __name__ == "__main__":
+    for ending in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        signal.signal(ending, signal.SIG_IGN)
+    watch(sys.stdin.fileno(), sys.argv[1])

@@ -1,0 +1,71 @@
+"""Where the robot came, by the encoders of its wheels, which begin anew after 65,536 counts."""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from typing import Final
+
+from roomba.configuration.robot import RobotConfig
+from roomba.drivers.create2.open_interface import ENCODER_SPAN
+from roomba.geometry import STANDSTILL, Pose, Twist
+
+_WINDOW: Final = 0.1
+"""s; over which speeds are measured: a count is 0.4 mm."""
+_FASTEST: Final = 1.0
+"""m/s, of a wheel; what is faster are encoders that began anew."""
+_SLACK: Final = 0.05
+"""m; more than what a wheel rolls while bytes wait."""
+
+
+class EncoderOdometry:
+    """``pose`` in the frame in which it began, and ``twist``, by the counts of both wheels."""
+
+    def __init__(self, config: RobotConfig) -> None:
+        """Be of a robot with these wheels."""
+        body = config.body
+        self._way = math.pi * body.wheel_diameter / config.wheels.counts_per_turn
+        self._track = body.wheel_separation
+        self._last: tuple[float, int, int] | None = None
+        self._steps: deque[tuple[float, float, float]] = deque()
+        self.pose, self.twist = Pose(), STANDSTILL
+
+    def forget(self) -> None:
+        """Begin anew with the next counts, where the robot is by now: what lies between is lost."""
+        self._last, self.twist = None, STANDSTILL
+        self._steps.clear()
+
+    def take(self, now: float, left: int, right: int) -> None:
+        """Take the counts of both encoders, 0 to 65,535, at ``now``, s."""
+        before, self._last = self._last, (now, left, right)
+        if before is None:
+            self._steps.append((now, 0.0, 0.0))
+            return
+        at, left_before, right_before = before
+        rolled = self._rolled(left_before, left), self._rolled(right_before, right)
+        if max(map(abs, rolled)) > _SLACK + _FASTEST * (now - at):
+            self.forget()
+            self._last = now, left, right
+            return
+        way, turn = 0.5 * (rolled[0] + rolled[1]), (rolled[1] - rolled[0]) / self._track
+        # The chord of an arc, in the middle of its turn.
+        half = 0.5 * turn
+        chord = way * (math.sin(half) / half if half else 1.0)
+        self.pose = self.pose.compose(Pose(chord * math.cos(half), chord * math.sin(half), turn))
+        self._steps.append((now, way, turn))
+        self._measure(now)
+
+    def _rolled(self, before: int, now: int) -> float:
+        half = ENCODER_SPAN // 2
+        return self._way * ((now - before + half) % ENCODER_SPAN - half)
+
+    def _measure(self, now: float) -> None:
+        while len(self._steps) > 2 and now - self._steps[1][0] >= _WINDOW:
+            self._steps.popleft()
+        passed = now - self._steps[0][0]
+        if passed <= 0.0:
+            return
+        ways = [step[1:] for step in list(self._steps)[1:]]
+        self.twist = Twist(
+            sum(way for way, _ in ways) / passed, sum(turn for _, turn in ways) / passed
+        )

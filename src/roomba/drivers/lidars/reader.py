@@ -1,0 +1,86 @@
+"""A lidar on a line: read again and again, opened anew when it was unplugged."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from typing import Final, Protocol
+
+from roomba.drivers.line import Line, LineError
+from roomba.robot.readings import ScanReading
+
+_SILENT: Final = 1.0
+"""s without a scan, after which that is told."""
+_AGAIN: Final = 1.0
+"""s, after which a line is opened anew."""
+
+
+class LidarLanguage(Protocol):
+    """How a lidar speaks: :class:`roomba.drivers.lidars.ld19.Ld19Frames` and others."""
+
+    def begin(self, line: Line) -> None:
+        """Let it measure; raises LineError."""
+
+    def take(self, data: bytes, arrived: float) -> list[ScanReading]:
+        """Return the scans that are whole, of bytes that ``arrived`` by now, s."""
+
+
+class LidarReader:
+    """Keeps the newest scan. ``trouble`` says what is wrong, "" if nothing."""
+
+    def __init__(
+        self, opened: Callable[[], Line], language: LidarLanguage, now: Callable[[], float]
+    ) -> None:
+        """Read what ``opened`` returns; it raises LineError where there is none.
+
+        ``now`` is the robot's clock, s, which never goes back.
+        """
+        self._opened, self._language, self._now = opened, language, now
+        self._line: Line | None = None
+        self._lock = threading.Lock()
+        self._newest: ScanReading | None = None
+        self._came_at = self._tried_at = now() - _AGAIN
+        self.trouble = "not asked yet"
+
+    def serve(self, seconds: float) -> None:
+        """Take what comes within ``seconds``; a line that is gone is opened anew, once a second."""
+        try:
+            line = self._line or self._begin()
+            if line is None:
+                threading.Event().wait(seconds)
+                return
+            data = line.read(seconds)
+            now = self._now()
+            for scan in self._language.take(data, now):
+                with self._lock:
+                    self._newest = scan
+                self._came_at, self.trouble = now, ""
+            if now - self._came_at > _SILENT:
+                self.trouble = (
+                    f"expected scans of the lidar, got none for {now - self._came_at:.0f} s. "
+                    "Does it turn, and is it the right kind and rate?"
+                )
+        except LineError as error:
+            self.trouble = str(error)
+            self.end()
+
+    def newest(self) -> ScanReading | None:
+        """Return the newest scan; None before the first one."""
+        with self._lock:
+            return self._newest
+
+    def end(self) -> None:
+        """Let go of the line."""
+        line, self._line = self._line, None
+        if line is not None:
+            line.close()
+
+    def _begin(self) -> Line | None:
+        now = self._now()
+        if now - self._tried_at < _AGAIN:
+            return None
+        self._tried_at = now
+        self._line = self._opened()
+        self._language.begin(self._line)
+        self._came_at = now
+        return self._line

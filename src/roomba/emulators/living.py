@@ -1,0 +1,44 @@
+"""A simulated world that goes on in real time, while made-up robots are asked about it."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable
+from typing import Final
+
+STEP: Final = 0.025
+"""s of the world; what is asked comes between two."""
+_LATE: Final = 0.1
+"""s; a machine that is later than this has a slower world."""
+
+
+class LivingWorld:
+    """Takes a step, and another; ``lock`` is held meanwhile, and by all who look at the world."""
+
+    def __init__(self, step: Callable[[], None], speed: float = 1.0) -> None:
+        """``step`` lets STEP s pass; ``speed`` of the world's seconds pass in one."""
+        self.lock = threading.Lock()
+        self._step, self._speed = step, speed
+        self._is_over = threading.Event()
+        self._thread = threading.Thread(target=self._live, name="made-up world", daemon=True)
+
+    def start(self) -> None:
+        """Let the world go on."""
+        self._thread.start()
+
+    def end(self) -> None:
+        """Let the world stand."""
+        self._is_over.set()
+        self._thread.join(2.0)
+
+    def _live(self) -> None:
+        following = time.monotonic()
+        while not self._is_over.is_set():
+            with self.lock:
+                self._step()
+            following += STEP / self._speed
+            late = time.monotonic() - following
+            if late > _LATE:
+                following += late
+            self._is_over.wait(max(0.0, -late))

@@ -1,0 +1,66 @@
+"""The process that stops a robot when its driver is silent."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from fixtures.waiting import wait_until
+
+from roomba.drivers.create2.dead_man import SILENT, STOP, DeadManSwitch
+from roomba.emulators.pseudo_terminal import PseudoTerminal
+
+
+@pytest.fixture
+def line() -> Iterator[PseudoTerminal]:
+    made = PseudoTerminal()
+    yield made
+    made.close()
+
+
+def heard(line: PseudoTerminal) -> bytes:
+    came = b""
+    while piece := line.read(0.0):
+        came += piece
+    return came
+
+
+def test_while_the_driver_lives_it_says_nothing(line: PseudoTerminal) -> None:
+    switch = DeadManSwitch(line.name)
+    switch.start()
+    until = time.monotonic() + 5.0 * SILENT
+    while time.monotonic() < until:
+        switch.tell(True)
+        time.sleep(0.02)
+    assert heard(line) == b""
+    switch.end()
+
+
+def test_a_silent_driver_of_a_robot_that_drives_is_replaced_by_the_stop(
+    line: PseudoTerminal,
+) -> None:
+    switch = DeadManSwitch(line.name)
+    switch.start()
+    switch.tell(True)
+    wait_until(lambda: heard(line) == STOP, 5.0, "the stop")
+    switch.end()
+    assert heard(line) == STOP
+
+
+def test_a_robot_that_stands_may_be_left_alone(line: PseudoTerminal) -> None:
+    switch = DeadManSwitch(line.name)
+    switch.start()
+    switch.tell(False)
+    assert line.read(3.0 * SILENT) == b""
+    switch.end()
+
+
+def test_one_whose_line_is_not_there_costs_its_driver_nothing(tmp_path: Path) -> None:
+    switch = DeadManSwitch(str(tmp_path / "nowhere"))
+    switch.start()
+    wait_until(lambda: not switch.is_alive, 5.0, "it ended")
+    switch.tell(True)
+    switch.tell(True)
+    switch.end()
