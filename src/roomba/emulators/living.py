@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable
 from typing import Final
 
-STEP: Final = 0.025
+STEP: Final = 0.0125
 """s of the world; what is asked comes between two."""
 _LATE: Final = 0.1
 """s; a machine that is later than this has a slower world."""

@@ -21,6 +21,7 @@ from roomba.drivers.create2.frames import FrameReader
 from roomba.drivers.create2.odometry import EncoderOdometry
 from roomba.drivers.create2.open_interface import OpenMode, Packet
 from roomba.drivers.create2.telling import ALL, FAST, SLOW, Create2State, state_of
+from roomba.drivers.lidars.reader import LidarReader
 from roomba.drivers.line import Line, LineError, SerialLine
 from roomba.geometry import STANDSTILL, Twist
 from roomba.mission.inputs.senses import Battery
@@ -52,18 +53,19 @@ class Create2Body:
         now: Callable[[], float],
         config: RobotConfig,
         *,
-        scans: Callable[[], ScanReading | None] = lambda: None,
+        lidar: LidarReader | None = None,
         bauds: Sequence[int] = BAUDS,
         opened: Callable[[str, int], Line] = SerialLine,
         switch: Switch | None = None,
     ) -> None:
         """Be about to drive the robot of ``config`` on ``port``; nothing is opened yet.
 
-        ``now`` is the robot's clock, s, which never goes back; ``scans`` returns the newest scan of
-        a lidar on a line of its own; ``bauds`` are the rates to try; ``opened`` opens a port.
+        ``now`` is the robot's clock, s, which never goes back; ``lidar`` is one on a line of its
+        own, read from :meth:`begin` to :meth:`end`; ``bauds`` are the rates to try, ``opened``
+        opens a port.
         """
         self._port, self._now, self._config, self._bauds = port, now, config, bauds
-        self._scans, self._opened = scans, opened
+        self._lidar, self._opened = lidar, opened
         self._switch = switch or DeadManSwitch(port)
         self._line: Line | None = None
         self._lock = threading.Lock()
@@ -83,7 +85,7 @@ class Create2Body:
 
     def read(self) -> Readings:
         """Return what the robot told last; a scan once."""
-        scan = self._scans()
+        scan = self.newest_scan()
         with self._lock:
             is_new = scan is not None and scan is not self._given
             self._given = scan
@@ -106,7 +108,7 @@ class Create2Body:
 
     def newest_scan(self) -> ScanReading | None:
         """Return the newest scan; None before the first one."""
-        return self._scans()
+        return None if self._lidar is None else self._lidar.newest()
 
     def act(self, command: Command) -> None:
         """Take what is wanted; it holds for 0.15 s, then the robot stands.
@@ -131,6 +133,8 @@ class Create2Body:
         for baud in self._bauds:
             if self._wakes(baud):
                 self._switch.start()
+                if self._lidar is not None:
+                    self._lidar.start()
                 self.trouble = ""
                 return
         raise LineError(
@@ -167,6 +171,8 @@ class Create2Body:
             except LineError as error:
                 self.trouble = str(error)
         self._let_go()
+        if self._lidar is not None:
+            self._lidar.stop()
 
     def _let_go(self) -> None:
         """Let go of the line; the dead man's switch stops the robot once more, if it can."""

@@ -13,6 +13,10 @@ _SILENT: Final = 1.0
 """s without a scan, after which that is told."""
 _AGAIN: Final = 1.0
 """s, after which a line is opened anew."""
+_LOOK: Final = 0.05
+"""s; between two looks for whether it is to end."""
+_ENDING: Final = 2.0
+"""s, for its thread to end."""
 
 
 class LidarLanguage(Protocol):
@@ -26,7 +30,10 @@ class LidarLanguage(Protocol):
 
 
 class LidarReader:
-    """Keeps the newest scan. ``trouble`` says what is wrong, "" if nothing."""
+    """Keeps the newest scan. ``trouble`` says what is wrong, "" if nothing.
+
+    Between :meth:`start` and :meth:`stop` a thread of its own calls :meth:`serve` again and again.
+    """
 
     def __init__(
         self, opened: Callable[[], Line], language: LidarLanguage, now: Callable[[], float]
@@ -41,13 +48,30 @@ class LidarReader:
         self._newest: ScanReading | None = None
         self._came_at = self._tried_at = now() - _AGAIN
         self.trouble = "not asked yet"
+        self._is_over = threading.Event()
+        self._thread: threading.Thread | None = None
+
+    def start(self) -> None:
+        """Read from now on; while it does already nothing changes."""
+        if self._thread is None:
+            self._is_over.clear()
+            self._thread = threading.Thread(target=self._read_on, name="lidar", daemon=True)
+            self._thread.start()
+
+    def stop(self) -> None:
+        """Read no more, and let go of the line."""
+        self._is_over.set()
+        if self._thread is not None:
+            self._thread.join(_ENDING)
+            self._thread = None
+        self._let_go()
 
     def serve(self, seconds: float) -> None:
         """Take what comes within ``seconds``; a line that is gone is opened anew, once a second."""
         try:
             line = self._line or self._begin()
             if line is None:
-                threading.Event().wait(seconds)
+                self._is_over.wait(seconds)
                 return
             data = line.read(seconds)
             now = self._now()
@@ -62,15 +86,18 @@ class LidarReader:
                 )
         except LineError as error:
             self.trouble = str(error)
-            self.end()
+            self._let_go()
 
     def newest(self) -> ScanReading | None:
         """Return the newest scan; None before the first one."""
         with self._lock:
             return self._newest
 
-    def end(self) -> None:
-        """Let go of the line."""
+    def _read_on(self) -> None:
+        while not self._is_over.is_set():
+            self.serve(_LOOK)
+
+    def _let_go(self) -> None:
         line, self._line = self._line, None
         if line is not None:
             line.close()

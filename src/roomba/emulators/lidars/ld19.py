@@ -1,7 +1,7 @@
 """An LD19 made up: frames, byte for byte, of what a simulated robot's lidar sees.
 
 It turns clockwise, ten times a second. The simulated lidar measures all of its beams at once, again
-at each step of the world; the frames of a step have those towards which it looks meanwhile.
+at each step of the world; frames have those towards which it looks, of the step that is nearest.
 """
 
 from __future__ import annotations
@@ -43,15 +43,18 @@ class Ld19Emulator:
         self._simulator = simulator
         self._beams = simulator.config.lidar.beams
         self._sent = 0
+        self._before = simulator.ranges
 
     def advance(self) -> bytes:
         """Return the frames that are due by now."""
-        time = self._simulator.time
-        due = int(time * TURNS * self._beams)
-        ranges = self._simulator.ranges
+        rate = TURNS * self._beams
+        due = round(self._simulator.time * rate)
+        middle = (self._simulator.time - 0.5 * STEP) * rate
+        before, self._before = self._before, self._simulator.ranges
         frames = b""
         while self._sent + POINTS <= due:
             places = np.arange(self._sent, self._sent + POINTS) % self._beams
+            ranges = before if self._sent + POINTS // 2 < middle else self._before
             # Beams count counter-clockwise, and the points of a frame clockwise.
             seen = ranges[-places]
             self._sent += POINTS

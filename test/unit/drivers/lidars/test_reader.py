@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from fixtures.waiting import wait_until
 
 from roomba.drivers.lidars.reader import LidarReader
 from roomba.drivers.line import Line, LineError
@@ -64,7 +65,7 @@ def test_the_newest_scan_is_kept(clock: Clock) -> None:
     reader.serve(0.0)
     assert reader.newest() is SCAN
     assert reader.trouble == ""
-    reader.end()
+    reader.stop()
     assert line.is_closed
 
 
@@ -106,3 +107,17 @@ def test_a_line_that_is_gone_is_opened_anew_once_a_second(clock: Clock) -> None:
     lines[1].has = b"x"
     reader.serve(0.0)
     assert (len(opened), language.begun, reader.trouble) == (2, 2, "")
+
+
+def test_its_thread_reads_until_it_is_stopped(clock: Clock) -> None:
+    line = ShortLine()
+    line.has = b"x"
+    reader = LidarReader(lambda: line, EachByteAScan(), clock)
+    reader.start()
+    reader.start()
+    wait_until(lambda: reader.newest() is SCAN, 5.0, "a scan")
+    reader.stop()
+    assert line.is_closed
+    reader.start()
+    wait_until(lambda: reader.trouble == "", 5.0, "it reads on")
+    reader.stop()
