@@ -22,7 +22,7 @@ _SIZE: Final = 5
 _ANGLES: Final = 64.0
 _RANGES: Final = 4000.0
 _SURE: Final = 3
-"""Points that must follow each other before the first of them counts."""
+"""Points that must follow each other for the first of them to count: bytes may be lost."""
 
 
 class RplidarPoints:
@@ -32,7 +32,6 @@ class RplidarPoints:
         """Read the lidar of ``config``, turned by ``facing``, rad, in the robot."""
         self._turns = TurnCollector(config, facing)
         self._came = b""
-        self._is_in_step = False
 
     def begin(self, line: Line) -> None:
         """Let it measure. On the usual USB adapter its motor turns while DTR is off."""
@@ -40,7 +39,7 @@ class RplidarPoints:
         line.read(0.05)
         line.discard()
         line.write(SCAN)
-        self._came, self._is_in_step = b"", False
+        self._came = b""
 
     def take(self, data: bytes, arrived: float) -> list[ScanReading]:
         """Return the scans that are whole by now; ``arrived``, s, is when the bytes did."""
@@ -49,12 +48,8 @@ class RplidarPoints:
             self._came = self._came.partition(ANSWER)[2]
         scans: list[ScanReading] = []
         while len(self._came) >= _SURE * _SIZE:
-            needed = 1 if self._is_in_step else _SURE
-            self._is_in_step = all(
-                _is_point(self._came[place * _SIZE : (place + 1) * _SIZE])
-                for place in range(needed)
-            )
-            if not self._is_in_step:
+            followed = range(0, _SURE * _SIZE, _SIZE)
+            if not all(_is_point(self._came[place : place + _SIZE]) for place in followed):
                 self._came = self._came[1:]
                 continue
             scan = self._turns.add(*_point_of(self._came[:_SIZE]), arrived)

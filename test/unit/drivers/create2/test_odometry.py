@@ -28,7 +28,7 @@ def driven(left: float, right: float, seconds: float, begin: int = 0) -> Encoder
 @pytest.mark.parametrize("speed", [0.3, -0.3])
 def test_straight_on_over_the_end_of_the_counts(begin: int, speed: float) -> None:
     odometry = driven(speed, speed, 2.0, begin)
-    assert odometry.pose.x == pytest.approx(2.0 * speed, abs=0.01)
+    assert odometry.pose.x == pytest.approx(2.0 * speed, abs=0.002)
     assert odometry.pose.y == pytest.approx(0.0, abs=1e-6)
     assert odometry.twist.linear == pytest.approx(speed, abs=0.01)
 
