@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 import threading
+import time
 from collections.abc import Callable, Sequence
 from typing import Final
 
@@ -57,14 +58,17 @@ class Create2Body:
         bauds: Sequence[int] = BAUDS,
         opened: Callable[[str, int], Line] = SerialLine,
         switch: Switch | None = None,
+        wall: Callable[[], float] = time.monotonic,
     ) -> None:
         """Be about to drive the robot of ``config`` on ``port``; nothing is opened yet.
 
-        ``now`` is the robot's clock, s, which never goes back; ``lidar`` is one on a line of its
-        own, read from :meth:`begin` to :meth:`end`; ``bauds`` are the rates to try, ``opened``
-        opens a port.
+        ``now`` is the robot's clock, s, by which readings are timed; it never goes back, and may
+        stand while the line is gone, as ``wall`` does not, by which waits end. ``lidar`` is one on
+        a line of its own, read from :meth:`begin` to :meth:`end`; ``bauds`` are the rates to try,
+        ``opened`` opens a port.
         """
-        self._port, self._now, self._config, self._bauds = port, now, config, bauds
+        self._port, self._now, self._wall = port, now, wall
+        self._config, self._bauds = config, bauds
         self._lidar, self._opened = lidar, opened
         self._switch = switch or DeadManSwitch(port)
         self._line: Line | None = None
@@ -118,7 +122,7 @@ class Create2Body:
         if not command.twist.is_finite:
             raise ValueError(f"expected a finite twist, got {command.twist}")
         with self._lock:
-            self._wanted, self._wanted_at = command, self._now()
+            self._wanted, self._wanted_at = command, self._wall()
 
     def locate(self) -> None:
         """Play a few notes."""
@@ -147,8 +151,8 @@ class Create2Body:
         try:
             if self._line is None:
                 raise LineError("expected begin() before serve()")
-            self._take(self._line.read(max(0.001, min(_PERIOD, self._due - self._now()))))
-            now = self._now()
+            self._take(self._line.read(max(0.001, min(_PERIOD, self._due - self._wall()))))
+            now = self._wall()
             if now - self._heard > _GONE:
                 raise LineError(f"expected a frame each 15 ms, got none for {_GONE:g} s")
             if now >= self._due:
@@ -192,9 +196,9 @@ class Create2Body:
             self._line.discard()
             self._line.write(LONG_PADDING + commands.into(OpenMode.PASSIVE))
             self._line.write(commands.song() + commands.stream(self._lists[0]))
-            self._due, until = self._now(), self._now() + _FIRST
+            self._due, until = self._wall(), self._wall() + _FIRST
             self._heard = -math.inf
-            while not math.isfinite(self._heard) and self._now() < until:
+            while not math.isfinite(self._heard) and self._wall() < until:
                 self._take(self._line.read(_PERIOD))
         except LineError:
             self._let_go()
@@ -206,7 +210,7 @@ class Create2Body:
 
     def _take(self, data: bytes) -> None:
         for told in self._reader.take(data):
-            self._heard = now = self._now()
+            self._heard, now = self._wall(), self._now()
             with self._lock:
                 self._told.update(told)
                 self._state = state_of(self._told)

@@ -187,8 +187,9 @@ def test_a_robot_that_is_not_there_is_told_with_what_to_do(tmp_path: Path) -> No
     with pytest.raises(LineError, match="Is it plugged in"):
         Create2Body(str(tmp_path / "ttyNone"), time.monotonic, config).begin()
     silent = PseudoTerminal()
+    # Its own clock may stand while its line is gone.
     with pytest.raises(LineError, match="no answer at 115200 or 19200 baud"):
-        Create2Body(silent.name, time.monotonic, config).begin()
+        Create2Body(silent.name, lambda: 0.0, config).begin()
     with pytest.raises(LineError, match="begin"):
         Create2Body(silent.name, time.monotonic, config).serve()
     silent.close()
@@ -198,3 +199,22 @@ def test_what_is_no_number_is_not_driven() -> None:
     body = Create2Body("nowhere", time.monotonic, create2_config())
     with pytest.raises(ValueError, match="finite"):
         body.act(Command(Twist(math.nan, 0.0)))
+
+
+def test_while_its_clock_stands_the_line_is_served_all_the_same(quick: Create2Rig) -> None:
+    quick.stop_serving()
+    quick.body.end()
+    body = Create2Body(str(quick.link), lambda: 7.0, quick.simulator.config)
+    body.begin()
+
+    def served() -> bool:
+        body.act(Command(Twist(-0.1, 0.0)))
+        body.serve()
+        return quick.moves
+
+    wait_until(served, 5.0, "it drives", pause=0.0)
+    assert body.read().time == 7.0
+    quick.robot.is_streaming = False
+    with pytest.raises(LineError, match=r"none for 0\.5 s"):
+        wait_until(lambda: served() and False, 5.0, "it is told", pause=0.0)
+    body.end()
