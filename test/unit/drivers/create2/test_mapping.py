@@ -87,5 +87,4 @@ def test_a_drive_in_the_studio_makes_its_map(rig: Create2Rig) -> None:
     ghosts, holes = wrong_cells(driven.mapper.occupancy(), rig.simulator.home)
     assert max(ghosts, holes) <= STRAY
     assert (driven.mapper.occupancy().values == 100).sum() > 200
-    assert not rig.errors
     assert rig.body.trouble == rig.lidar.trouble == ""
