@@ -1,9 +1,9 @@
 """A process of its own that lets a robot stand when the driver's program is killed or frozen.
 
 The Open Interface has no time-out: a robot drives as it was told last, for ever. This process hears
-ten times a second that the driver lives, through a pipe that closes when it dies. Then, and after
-0.2 s of silence while the robot drives, it sends the stop on the same line. It is run as a program
-and needs nothing but Python, so that it is there soon and that nothing can go wrong with it.
+twenty times a second that the driver lives, through a pipe that closes when it dies. Then, and when
+it is silent for 0.15 s while the robot drives, the process sends the stop on the same line. It is
+run as a program and needs nothing but Python, so that it is there soon and little can go wrong.
 """
 
 import os
@@ -13,7 +13,7 @@ import subprocess
 import sys
 from typing import Final, Protocol
 
-SILENT: Final = 0.2
+SILENT: Final = 0.15
 """s; without a word for so long, while the robot drives, it is stopped."""
 DRIVES, STANDS = b"d", b"s"
 PADDING: Final = bytes(32)
