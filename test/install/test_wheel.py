@@ -10,6 +10,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import pytest
+from fixtures.interpreters import interpreter_of
 
 from roomba.commands.doctor import SYSTEM_PYTHON
 from roomba.files.shipped import HOMES
@@ -20,6 +21,7 @@ INSTALL_DEADLINE = 600.0
 RUN_DEADLINE = 1200.0
 """s; the first run compiles the loops, which takes two minutes of a core."""
 ROS_MODULES = "rospy", "rosgraph", "genpy", "catkin_pkg", "roomba_robot"
+CAMPAIGN = Path(__file__).with_name("campaign.yaml")
 AGENT = """
 import sys
 import gymnasium
@@ -53,9 +55,11 @@ def run(
 
 
 class Installation:
-    """An environment with the wheel and its extra, and a folder that is no checkout."""
+    """An environment with the wheel and its extras, and a folder that is no checkout."""
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(
+        self, folder: Path, python: str | Path = SYSTEM_PYTHON, extras: str = "gym"
+    ) -> None:
         """Build the wheel of the sources as they are, and install it."""
         self.away = folder / "elsewhere"
         self.away.mkdir()
@@ -73,11 +77,11 @@ class Installation:
             shutil.copy2(REPOSITORY / name, sources)
         ignored = shutil.ignore_patterns("__pycache__", "*.egg-info")
         shutil.copytree(REPOSITORY / "src", sources / "src", ignore=ignored)
-        self._done([SYSTEM_PYTHON, "-m", "venv", folder / "venv"])
+        self._done([python, "-m", "venv", folder / "venv"])
         pip: list[str | Path] = [self._bin / "python", "-m", "pip", "--disable-pip-version-check"]
         self._done([*pip, "wheel", "--quiet", "--no-deps", "--wheel-dir", wheels, sources])
         (wheel,) = wheels.glob("*.whl")
-        self._done([*pip, "install", "--quiet", "--prefer-binary", f"{wheel}[gym]"])
+        self._done([*pip, "install", "--quiet", "--prefer-binary", f"{wheel}[{extras}]"])
 
     def roomba(self, *arguments: str) -> subprocess.CompletedProcess[str]:
         """Return what the installed program did, called from elsewhere."""
@@ -158,6 +162,28 @@ def test_a_command_that_is_not_here_says_so_in_one_line(
     assert (done.returncode, done.stdout) == (2, "")
     assert said in done.stderr
     assert len(done.stderr.splitlines()) == 1
+
+
+@pytest.mark.parametrize("version", ["3.10", "3.11", "3.12", "3.13"])
+def test_every_python_cleans_and_compares(version: str, tmp_path: Path) -> None:
+    """Each that is installed here: the library, its extra and a whole campaign in it."""
+    python = interpreter_of(version)
+    if python is None:
+        pytest.skip(f"no Python {version} is installed")
+    installed = Installation(tmp_path, python, "campaign")
+    assert installed.python("import sys; print(*sys.version_info[:2], sep='.')").stdout.strip() == (
+        version
+    )
+    done = installed.roomba("doctor", "--json")
+    assert done.returncode == 0, done.stdout
+    rows = {row["subject"]: row["state"] for row in json.loads(done.stdout)}
+    assert (rows["pyarrow"], rows["distributed"]) == ("fine", "fine")
+    shutil.copy(CAMPAIGN, installed.away / "made.yaml")
+    done = installed.roomba("campaign", "made.yaml", "--cluster", "local:1", "--json", "--quiet")
+    assert done.returncode == 0, done.stderr
+    told = json.loads(done.stdout)
+    assert [run["figures"]["outcome"] for run in told["runs"]] == ["COMPLETED"] * 2
+    assert (installed.away / "made.results" / "results.parquet").is_file()
 
 
 def test_types_come_along(installed: Installation) -> None:

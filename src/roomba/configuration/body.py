@@ -92,7 +92,7 @@ class FanConfig(Frozen):
     standard: Ratio = 0.60
     strong: Ratio = 1.0
 
-    in_order: ClassVar = ("quiet <= standard <= strong",)
+    in_order: ClassVar[tuple[str, ...]] = ("quiet <= standard <= strong",)
 
     def duty_at(self, level: FanLevel) -> float:
         """Return the duty at a level of a clean, 0..1."""
@@ -127,4 +127,4 @@ class HealthConfig(Frozen):
     most_misses: Ratio = 0.5
     """Of the beams without a range; a home with walls explains no more."""
 
-    in_order: ClassVar = ("empty_battery <= low_battery",)
+    in_order: ClassVar[tuple[str, ...]] = ("empty_battery <= low_battery",)

@@ -6,7 +6,7 @@ import math
 import operator
 from itertools import pairwise
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Final, Self, TypeVar
+from typing import Annotated, Any, ClassVar, Final, TypeVar
 
 import yaml
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
@@ -39,7 +39,7 @@ class Frozen(BaseModel):
     in_order: ClassVar[tuple[str, ...]] = ()
 
     @model_validator(mode="after")
-    def _fields_in_order(self) -> Self:
+    def _fields_in_order(self) -> Frozen:
         for relation in self.in_order:
             names, signs = relation.split()[::2], relation.split()[1::2]
             values = [getattr(self, name) for name in names]

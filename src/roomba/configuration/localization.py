@@ -53,7 +53,7 @@ class FitConfig(Frozen):
     carried_through: Ratio = 0.08
     """The same of a place where the robot is not expected: it was carried there unnoticed."""
 
-    in_order: ClassVar = (
+    in_order: ClassVar[tuple[str, ...]] = (
         "told_agree <= fair_agree <= good_agree",
         "good_through <= fair_through",
         "found_agree <= carried_agree",
@@ -116,7 +116,7 @@ class RecentSightConfig(Frozen):
     most_other: Ratio = 0.2
     """Share, of these and those that end where nothing was, that the latter may have."""
 
-    in_order: ClassVar = ("newest < oldest",)
+    in_order: ClassVar[tuple[str, ...]] = ("newest < oldest",)
 
 
 class CalibrationConfig(Frozen):
@@ -178,4 +178,7 @@ class LocalizationConfig(Frozen):
     searching: SearchingConfig = SearchingConfig()
     recent_sight: RecentSightConfig = RecentSightConfig()
 
-    in_order: ClassVar = ("known_deviation < lost_deviation", "astray_deviation < lost_deviation")
+    in_order: ClassVar[tuple[str, ...]] = (
+        "known_deviation < lost_deviation",
+        "astray_deviation < lost_deviation",
+    )

@@ -77,7 +77,7 @@ class LookingAroundConfig(Frozen):
     aimed: Positive = 0.08
     """Tolerance of the heading before it drives."""
 
-    in_order: ClassVar = ("shortest_leg <= longest_leg",)
+    in_order: ClassVar[tuple[str, ...]] = ("shortest_leg <= longest_leg",)
 
 
 class TrackingConfig(Frozen):

@@ -41,7 +41,7 @@ class MapChangesConfig(Frozen):
     open_share: Ratio = 0.1
     """With less of them a cell is open."""
 
-    in_order: ClassVar = ("open_share <= solid_share",)
+    in_order: ClassVar[tuple[str, ...]] = ("open_share <= solid_share",)
 
 
 class FloorsConfig(Frozen):
@@ -102,7 +102,7 @@ class FollowingConfig(Frozen):
     unsure_heading: Positive = 0.05
     """What is told of the pose, against what was seen just now, with a match and without one."""
 
-    in_order: ClassVar = ("fewest_points <= least_points",)
+    in_order: ClassVar[tuple[str, ...]] = ("fewest_points <= least_points",)
 
 
 class WindowsConfig(Frozen):
@@ -128,7 +128,7 @@ class WindowsConfig(Frozen):
     hardly: Positive = 0.3
     """A link with a larger standard deviation was made without a scan that confirmed it."""
 
-    in_order: ClassVar = ("beside <= narrow <= ambiguous <= widest",)
+    in_order: ClassVar[tuple[str, ...]] = ("beside <= narrow <= ambiguous <= widest",)
 
 
 class BackingConfig(Frozen):

@@ -127,7 +127,7 @@ class PaceConfig(Frozen):
     longest_absence: Positive = 60.0
     """A part that was not heard for longer does not come back."""
 
-    in_order: ClassVar = ("longest_hold <= longest_absence",)
+    in_order: ClassVar[tuple[str, ...]] = ("longest_hold <= longest_absence",)
 
 
 class PicturesConfig(Frozen):
@@ -157,7 +157,7 @@ class SupervisionConfig(Frozen):
     most_short_lives: AtLeastOne = 15
     """after so many of them in a row it is not started any more: a start does not mend it."""
 
-    in_order: ClassVar = ("busy <= stopped <= hung",)
+    in_order: ClassVar[tuple[str, ...]] = ("busy <= stopped <= hung",)
 
 
 class NodesConfig(Frozen):

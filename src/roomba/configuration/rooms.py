@@ -69,7 +69,7 @@ class RoomsConfig(Frozen):
     smallest_room: Area = 1.5
     most_unknown: Ratio = 0.6
 
-    in_order: ClassVar = (
+    in_order: ClassVar[tuple[str, ...]] = (
         "tightest_passage <= narrowest_door < widest_door <= widest_double_door",
         "thickest_wall <= deepest_passage",
         "deep_narrowing <= narrowing <= door_to_corridor",

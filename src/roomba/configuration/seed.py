@@ -27,7 +27,7 @@ class SeedParameters(Frozen):
     min_cordinate: Finite = -100.0
     max_cordinate: Finite = 100.0
 
-    in_order: ClassVar = ("min_cordinate < max_cordinate",)
+    in_order: ClassVar[tuple[str, ...]] = ("min_cordinate < max_cordinate",)
 
     def allows(self, x: float, y: float) -> bool:
         """Whether a point, m, is finite and within the limits of both coordinates."""

@@ -43,7 +43,7 @@ class LidarConfig(Frozen):
     mount_height: Positive = 0.085
     mount_ahead: Annotated[float, Field(ge=-0.3, le=0.3)] = 0.0
 
-    in_order: ClassVar = ("min_range < max_range",)
+    in_order: ClassVar[tuple[str, ...]] = ("min_range < max_range",)
 
     @property
     def beam_step(self) -> float:

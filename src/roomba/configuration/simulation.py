@@ -204,7 +204,7 @@ class SimulatedSurroundings(Frozen):
     quiet: NotNegative = 20.0
     """dB(A) at 1 m; of a robot that stands in a quiet room."""
 
-    in_order: ClassVar = ("black < dimmest <= white",)
+    in_order: ClassVar[tuple[str, ...]] = ("black < dimmest <= white",)
 
 
 class SimulationConfig(Frozen):

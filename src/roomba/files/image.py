@@ -1,11 +1,11 @@
-"""Reads pictures of floor plans, of bounded size: PGM by itself, PNG and others through Pillow."""
+"""Reads pictures of floor plans through Pillow: PGM, PNG and others, of bounded size."""
 
 from __future__ import annotations
 
 import io
-import re
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Final
 
 import numpy as np
 import PIL.Image
@@ -20,8 +20,8 @@ PNG_BEGIN = b"\x89PNG\r\n\x1a\n"
 FORMATS = ("PNG", "PPM", "BMP", "GIF", "JPEG", "TIFF", "WEBP")
 """What Pillow may read: other formats run programs, or describe what is to be drawn."""
 PNG_END = b"IEND\xaeB`\x82"
-_PGM_TOKEN = rb"(?:\s|#[^\n]*\n)+(\d{1,9})"
-_PGM_HEADER = re.compile(rb"P([25])(?:%s)(?:%s)(?:%s)\s" % ((_PGM_TOKEN,) * 3))
+_CUT_SHORT: Final = ("truncated", "not enough image data", "Reached EOF")
+"""What Pillow says of a picture whose end is missing."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -40,40 +40,7 @@ def read_image(path: Path) -> Image:
         raise HomeError(f"{path}: {error}") from error
     except OSError as error:
         raise HomeError(f"expected a picture at {path}, got: {error.strerror or error}") from error
-    if content[:2] in (b"P2", b"P5"):
-        grey = _read_pgm(path, content)
-        return Image(grey, np.zeros(grey.shape, np.bool_))
     return _read_with_pillow(path, content)
-
-
-def _read_pgm(path: Path, content: bytes) -> NDArray[np.float64]:
-    header = _PGM_HEADER.match(content)
-    if header is None:
-        raise HomeError(
-            f"{path}: expected a PGM header (P5 width height 255), got another; save anew"
-        )
-    width, height, highest = (int(number) for number in header.groups()[1:])
-    if width == 0 or height == 0 or not 0 < highest < 65536:
-        raise HomeError(f"{path}: expected a picture, got {width} x {height} px, grey to {highest}")
-    _require_size(path, width, height)
-    body = content[header.end() :]
-    if header.group(1) == b"2":
-        try:
-            pixels = np.array(re.sub(rb"#[^\n]*", b"", body).split(), dtype=np.int64)
-        except (ValueError, OverflowError):
-            raise HomeError(f"{path}: expected numbers after the header, got other text") from None
-    else:
-        item = np.dtype(">u2" if highest > 255 else "u1")
-        pixels = np.frombuffer(body[: len(body) // item.itemsize * item.itemsize], item)
-    if pixels.size < width * height:
-        raise HomeError(
-            f"{path}: expected {width} x {height} = {width * height} pixels, got {pixels.size}; "
-            "the file is cut short, copy it again"
-        )
-    grey = pixels[: width * height].reshape(height, width).astype(np.float64)
-    if grey.min() < 0 or grey.max() > highest:
-        raise HomeError(f"{path}: expected grey values from 0 to {highest}, got others")
-    return grey * (255.0 / highest)
 
 
 def _require_size(path: Path, width: int, height: int) -> None:
@@ -94,7 +61,17 @@ def _read_with_pillow(path: Path, content: bytes) -> Image:
         picture = PIL.Image.open(io.BytesIO(content), formats=FORMATS)
         _require_size(path, *picture.size)
         return _decoded(picture)
-    except (OSError, SyntaxError, ValueError, PIL.Image.DecompressionBombError) as error:
+    except PIL.Image.DecompressionBombError as error:
+        raise HomeError(
+            f"{path}: expected at most {MOST_CELLS} pixels, got a larger picture ({error}); cut it "
+            "to the home, or make its cells larger"
+        ) from error
+    except (OSError, SyntaxError, ValueError) as error:
+        if any(words in str(error) for words in _CUT_SHORT):
+            raise HomeError(
+                f"{path}: expected a whole picture, got one that is cut short ({error}); copy it "
+                "again"
+            ) from error
         raise HomeError(
             f"{path}: expected a PGM or PNG picture, got something else ({error}); convert it"
         ) from error
@@ -107,5 +84,8 @@ def _decoded(picture: PIL.Image.Image) -> Image:
         if picture.mode == "F" or grey.min() < 0.0 or grey.max() > 65535.0:
             raise ValueError("greys of more than 16 bits")
         return Image(grey * (255.0 / 65535.0), np.zeros(grey.shape, np.bool_))
+    if picture.mode == "L" and "transparency" not in picture.info:
+        grey = np.asarray(picture, np.float64)
+        return Image(grey, np.zeros(grey.shape, np.bool_))
     pixels = np.asarray(picture.convert("RGBA"))
     return Image(pixels[..., :3].mean(axis=2), pixels[..., 3] == 0)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import datetime as dt
 import zoneinfo
-from typing import Annotated, Final, Self
+from typing import Annotated, Final
 
 from pydantic import Field, field_validator, model_validator
 
@@ -39,7 +39,7 @@ class PlannedOrder(Frozen):
     fan: FanLevel = FanLevel.STANDARD
 
     @model_validator(mode="after")
-    def _rooms_for_rooms(self) -> Self:
+    def _rooms_for_rooms(self) -> PlannedOrder:
         if self.mode not in PLANNED_MODES:
             modes = ", ".join(mode.value for mode in PLANNED_MODES)
             raise ValueError(f"expected one of {modes}, got {self.mode.value}")
@@ -86,7 +86,7 @@ class Plan(Named):
         return tuple(sorted({_minute(time) for time in at}))
 
     @model_validator(mode="after")
-    def _has_days(self) -> Self:
+    def _has_days(self) -> Plan:
         require_days(self.rule, self.begins)
         return self
 
@@ -102,7 +102,7 @@ class QuietHours(Frozen):
     days: tuple[Weekday, ...] = (0, 1, 2, 3, 4, 5, 6)
 
     @model_validator(mode="after")
-    def _has_length(self) -> Self:
+    def _has_length(self) -> QuietHours:
         if _minute(self.begins) == _minute(self.ends):
             raise ValueError("expected quiet hours that end at another time than they begin")
         return self
@@ -128,7 +128,7 @@ class HouseholdPlans(Frozen):
         return zone
 
     @model_validator(mode="after")
-    def _names_once(self) -> Self:
+    def _names_once(self) -> HouseholdPlans:
         for named in (self.plans, self.presets):
             names = [each.name for each in named]
             if len(set(names)) < len(names):

@@ -109,7 +109,7 @@ def remind(handler: Any, memory: Memory) -> None:
 def _listens(address: str) -> bool:
     place = urlparse(address)
     with contextlib.suppress(OSError):
-        socket.create_connection((place.hostname, place.port), ANSWER_WITHIN).close()
+        socket.create_connection((place.hostname, place.port or 0), ANSWER_WITHIN).close()
         return True
     return False
 

@@ -24,7 +24,7 @@ class Ordered(Frozen):
     middle: float = 2.0
     high: float = 3.0
 
-    in_order: ClassVar = ("low <= middle < high",)
+    in_order: ClassVar[tuple[str, ...]] = ("low <= middle < high",)
 
 
 class Whole(Frozen):

@@ -9,6 +9,9 @@ import signal
 from collections import deque
 from collections.abc import Callable, Generator, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, wait
+from concurrent.futures import (
+    TimeoutError as FutureTimeoutError,  # before 3.11 not the built-in one
+)
 from concurrent.futures.process import BrokenProcessPool
 from typing import Any, Final, TypeAlias, TypeVar
 
@@ -115,7 +118,7 @@ def _result_of(future: Future[Any]) -> Any:
         return future.result()
     except ProcessExpired as error:
         return f"its process ended (status {error.exitcode})"
-    except TimeoutError:
+    except FutureTimeoutError:
         return f"no result within {LONGEST_RUN:g} s"
 
 

@@ -18,7 +18,7 @@ def add_place(parser: argparse.ArgumentParser) -> argparse._ArgumentGroup:
     where = parser.add_argument_group("where")
     where.add_argument(
         "--home",
-        metavar="NAME|PATH",
+        metavar="NAME|FOLDER",
         help=f"a home that comes along or a folder like theirs (default: {DEFAULT_HOME}); "
         f"{RANDOM}: the one that the seed makes",
     )

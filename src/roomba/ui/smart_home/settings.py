@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import stat
 from pathlib import Path
-from typing import Annotated, Final, Self
+from typing import Annotated, Final
 from urllib.parse import urlsplit
 
 import yaml
@@ -55,7 +55,7 @@ class MqttConfig(Frozen):
         return self.host, self.port or (8883 if self.tls else 1883)
 
     @model_validator(mode="after")
-    def _password_of_a_user(self) -> Self:
+    def _password_of_a_user(self) -> MqttConfig:
         if self.password is not None and self.user is None:
             raise ValueError("expected a user beside the password")
         return self

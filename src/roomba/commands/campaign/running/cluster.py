@@ -6,6 +6,7 @@ gone, what had no result yet is given to the one that comes back under its addre
 
 from __future__ import annotations
 
+import asyncio
 import contextlib
 import logging
 import re
@@ -37,7 +38,9 @@ _ENDING: Final = 10.0
 _AHEAD: Final = 2
 """Runs that each thread of a worker is given at a time: no one waits for this machine."""
 _LEAST_AHEAD: Final = 4
-_GONE: Final = (CancelledError, OSError, TimeoutError)
+_LATE: Final = (TimeoutError, asyncio.TimeoutError)
+"""Two before Python 3.11."""
+_GONE: Final = (CancelledError, OSError, *_LATE)
 """What dask raises when the connection to the scheduler is lost."""
 
 
@@ -90,7 +93,7 @@ def _local_cluster(workers: int) -> Iterator[LocalCluster]:
         try:
             yield cluster
         finally:
-            with contextlib.suppress(TimeoutError):
+            with contextlib.suppress(*_LATE):
                 cluster.close(timeout=_ENDING)
 
 
@@ -153,7 +156,7 @@ class _Round:
 
     def _ended(self) -> list[Any]:
         """Wait for the next ends, a while; raises one of _GONE when the scheduler is gone."""
-        with contextlib.suppress(TimeoutError):
+        with contextlib.suppress(*_LATE):
             wait(list(self._at_work), timeout=_LOOK, return_when="FIRST_COMPLETED")
         ended = [future for future in self._at_work if future.done()]
         if any(future.cancelled() for future in ended) or self._client.status != "running":

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Final, Literal, Self
+from typing import Annotated, Final, Literal
 
 from pydantic import Field, model_validator
 
@@ -99,7 +99,7 @@ class CampaignFile(Frozen):
     confidence: Annotated[float, Field(ge=0.5, lt=1.0)] = 0.95
 
     @model_validator(mode="after")
-    def _names_are_known(self) -> Self:
+    def _names_are_known(self) -> CampaignFile:
         if self.baseline is not None and self.baseline not in self.variants:
             raise ValueError(
                 f"baseline: expected one of {', '.join(self.variants)}, got {self.baseline!r}"
