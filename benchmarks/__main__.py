@@ -40,10 +40,10 @@ def main(arguments: list[str] | None = None) -> int:
     for topic in topics:
         with tempfile.TemporaryDirectory() as folder:
             records += _measure(topic, Bench(pace, Path(folder), options.maps, options.logs))
-    _tell(records, preface)
+    _tell(records, preface, to_errors=options.json == "-")
     write_plot(options.plot or RESULTS / f"{'-'.join(topics)}.png", records, " ".join(preface))
     if options.json:
-        write_json(options.json, records)
+        write_json(None if options.json == "-" else Path(options.json), records)
     if options.markdown:
         options.markdown.write_text(markdown(records, preface) + "\n", encoding="utf-8")
     return 1 if any(record.value is None for record in records) else 0
@@ -58,7 +58,13 @@ def _parser() -> argparse.ArgumentParser:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("topics", nargs="*", metavar="TOPIC", help="all, if none is named")
-    parser.add_argument("--json", type=Path, metavar="FILE", help="write the records as a list")
+    parser.add_argument(
+        "--json",
+        nargs="?",
+        const="-",
+        metavar="FILE|-",
+        help="write the records as a list; -, or nothing: to standard output",
+    )
     parser.add_argument(
         "--plot", type=Path, metavar="FILE.png", help="default: in benchmarks/results"
     )
@@ -91,9 +97,10 @@ def _measure(topic: str, bench: Bench) -> list[Record]:
         return [Record(topic, "all", "everything", None, "", Better.HIGHER, error=reason)]
 
 
-def _tell(records: list[Record], preface: tuple[str, ...]) -> None:
+def _tell(records: list[Record], preface: tuple[str, ...], *, to_errors: bool) -> None:
     # A pipe has no width of its own; narrow columns would tear every name apart.
-    console = Console(width=None if sys.stdout.isatty() else 180)
+    width = None if (sys.stderr if to_errors else sys.stdout).isatty() else 180
+    console = Console(width=width, stderr=to_errors)
     console.print(rich_table(records))
     for line in preface:
         console.print(line, highlight=False)

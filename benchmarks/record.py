@@ -124,7 +124,10 @@ def gain(record: Record, peer_name: str, aim: float) -> Record:
     )
 
 
-def write_json(path: Path, records: Sequence[Record]) -> None:
-    """Write the records as a list."""
-    rows = [record.to_json() for record in records]
-    path.write_text(json.dumps(rows, indent=2) + "\n", encoding="utf-8")
+def write_json(path: Path | None, records: Sequence[Record]) -> None:
+    """Write the records as a list; to standard output without a path."""
+    text = json.dumps([record.to_json() for record in records], indent=2)
+    if path is None:
+        print(text)
+    else:
+        path.write_text(f"{text}\n", encoding="utf-8")

@@ -149,7 +149,7 @@ def test_a_recording_is_localized_and_what_was_found_is_played(
 ) -> None:
     output, figures = tmp_path / "localized.bag", tmp_path / "figures.json"
     words = ["--map", HOMES / "flat" / "map.yaml", "--bag", bag, "--quiet"]
-    assert main(list(map(str, [*words, "--output", output, "--json", figures]))) == 0
+    assert main(list(map(str, [*words, "--out", output, "--json", figures]))) == 0
     values = json.loads(figures.read_text("utf-8"))
     # The recorder may hear the first scans seconds after the rest.
     seen = values["scans"] * SCAN_PERIOD / values["seconds"]

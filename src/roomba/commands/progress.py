@@ -9,7 +9,9 @@ from collections.abc import Callable, Iterator
 from typing import Final
 
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn
+
+from roomba.shares import whole_percent
+from roomba.ui.live_bar import live_bar
 
 Show = Callable[[float, str], None]
 """Takes the share that is done, 0..1, and some words."""
@@ -34,23 +36,20 @@ def progress(title: str, is_quiet: bool) -> Iterator[Show]:
             nonlocal told, pause
             if time.monotonic() - told >= pause:
                 told, pause = time.monotonic(), min(_SLOWER * pause, _SELDOM)
-                print(f"{title}: {100.0 * share:.0f} %, {words}", file=sys.stderr, flush=True)
+                print(f"{title}: {whole_percent(share)} %, {words}", file=sys.stderr, flush=True)
 
         yield tell
         return
-    columns = (
-        TextColumn("{task.description}"),
-        BarColumn(),
-        TextColumn("{task.percentage:>3.0f} %  {task.fields[words]}"),
-    )
-    # without a refresh thread, which would take its time from the work
-    with Progress(*columns, console=console, auto_refresh=False, transient=True) as bar:
-        task = bar.add_task(title, total=1.0, words="")
+    with live_bar(console, ("percent", "words"), stays=False) as bar:
+        task = bar.add_task(title, total=100, percent="", words="")
 
         def draw(share: float, words: str) -> None:
             nonlocal told
             if time.monotonic() - told >= _REDRAWN:
                 told = time.monotonic()
-                bar.update(task, completed=share, words=words, refresh=True)
+                percent = whole_percent(share)
+                bar.update(
+                    task, completed=percent, percent=f"{percent} %", words=words, refresh=True
+                )
 
         yield draw

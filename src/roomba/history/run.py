@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.client.protocol import MissedFloor
+from roomba.shares import share_of
 
 TRACE: Final = (
     "time", "x", "y", "theta", "speed", "battery", "dirt", "covered", "wanted", "to_go", "sweeps",
@@ -66,7 +67,7 @@ class RunFigures:
     @property
     def fraction(self) -> float:
         """Share of the wanted floor that is clean, 0..1; NaN where none was wanted."""
-        return self.covered / self.wanted if self.wanted > 0.0 else math.nan
+        return share_of(self.covered, self.wanted) if self.wanted > 0.0 else math.nan
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -12,10 +12,12 @@ from collections.abc import Callable, Iterator
 from typing import Protocol, TypeVar
 
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn
+from rich.progress import Progress
 
 from roomba.client.clock import Clock
 from roomba.client.protocol import CleanProgress, RobotUnavailableError
+from roomba.shares import share_of, whole_percent
+from roomba.ui.live_bar import live_bar
 from roomba.ui.progress import POLL_TIME, quantity, say
 
 ERRAND_SILENCE_LIMIT = 15.0
@@ -70,7 +72,7 @@ def follow_errand(
 
 def percent(share: float) -> str:
     """Return a share, 0..1, for people; 100% is all of it, and nothing less."""
-    return f"{math.floor(100.0 * share + 1e-6)}%" if math.isfinite(share) else "unknown"
+    return f"{whole_percent(share)}%" if math.isfinite(share) else "unknown"
 
 
 def time_text(seconds: float) -> str:
@@ -92,8 +94,8 @@ def area_text(covered: float, wanted: float) -> str:
     """Return how much floor is clean, for people."""
     if not (math.isfinite(covered) and math.isfinite(wanted)):
         return "unknown"
-    share = covered / wanted if wanted > 0.0 else 1.0
-    return f"{covered:.1f} of {quantity(wanted, 'm2', 1)} ({percent(share)})"
+    share = percent(share_of(covered, wanted))
+    return f"{covered:.1f} of {quantity(wanted, 'm2', 1)} ({share})"
 
 
 class CleanView(Protocol):
@@ -161,14 +163,6 @@ def clean_view(console: Console, clock: Clock) -> Iterator[CleanView]:
     if not console.is_interactive:
         yield CleanLines(console, clock)
         return
-    # a room's name may hold what rich takes for markup
-    progress = Progress(
-        TextColumn("{task.description}", markup=False),
-        # narrow: all of it should fit into 80 columns
-        BarColumn(bar_width=8, style="bright_black", complete_style="cyan", finished_style="green"),
-        *(TextColumn(f"{{task.fields[{field}]}}", markup=False) for field in _FIELDS),
-        console=console,
-        auto_refresh=False,
-    )
-    with progress:
+    # narrow: all of it should fit into 80 columns
+    with live_bar(console, _FIELDS, width=8) as progress:
         yield CleanBar(progress)

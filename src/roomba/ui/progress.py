@@ -12,11 +12,12 @@ from collections.abc import Callable, Iterator
 from typing import Any, Protocol
 
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn
+from rich.progress import Progress
 
 from roomba.client.clock import Clock
 from roomba.client.protocol import RobotClient, RobotState, WalkHandle, WalkOutcome, WalkReport
 from roomba.errors import RoombaError
+from roomba.ui.live_bar import live_bar
 
 POLL_TIME = 0.25
 """s between two looks at a walk: how late a Ctrl-C is seen at most."""
@@ -85,29 +86,37 @@ class LiveView:
         self._progress = progress
         self._total = max(total, 1e-6)
         self._task = progress.add_task(
-            "Walking", total=self._total, left=quantity(total, "m"), pace=quantity(0.0, "m/s")
+            "Walking", total=self._total, left=_left(total), pace=_pace(0.0)
         )
 
     def feedback(self, left: float, speed: float) -> None:
         """Move the bar; a way around something may leave more than there was at first."""
         self._update(
             completed=self._total - left,  # rich draws less than nothing as nothing
-            left=quantity(left, "m"),
-            pace=quantity(speed, "m/s"),
+            left=_left(left),
+            pace=_pace(speed),
         )
 
     def speed(self, speed: float) -> None:
         """Show a newer speed, if it reads differently."""
-        pace = quantity(speed, "m/s")
+        pace = _pace(speed)
         if pace != self._progress.tasks[self._task].fields["pace"]:
             self._update(pace=pace)
 
     def arrived(self) -> None:
         """Fill the bar."""
-        self._update(completed=self._total, left=quantity(0.0, "m"), pace=quantity(0.0, "m/s"))
+        self._update(completed=self._total, left=_left(0.0), pace=_pace(0.0))
 
     def _update(self, completed: float | None = None, **fields: Any) -> None:
         self._progress.update(self._task, completed=completed, refresh=True, **fields)
+
+
+def _left(distance: float) -> str:
+    return f"{quantity(distance, 'm')} left"
+
+
+def _pace(speed: float) -> str:
+    return f"at {quantity(speed, 'm/s')}"
 
 
 @contextlib.contextmanager
@@ -116,17 +125,7 @@ def walk_view(console: Console, total: float) -> Iterator[WalkView]:
     if not console.is_interactive:
         yield LineView(console)
         return
-    # without a refresh thread: a view that shows nothing new costs nothing
-    progress = Progress(
-        TextColumn("{task.description}"),
-        # rich's own colours look all the same on a terminal with 16 of them
-        BarColumn(style="bright_black", complete_style="cyan", finished_style="green"),
-        TextColumn("{task.fields[left]} left"),
-        TextColumn("at {task.fields[pace]}"),
-        console=console,
-        auto_refresh=False,
-    )
-    with progress:
+    with live_bar(console, ("left", "pace")) as progress:
         yield LiveView(progress, total)
 
 

@@ -21,6 +21,7 @@ from roomba.mission.inputs.senses import Senses
 from roomba.mission.mission import Mission
 from roomba.mission.phases.machine import VACUUM_STATES
 from roomba.perception.swept.dirt_map import dirty_from
+from roomba.shares import share_of
 from roomba_ros.convert.client import BATTERY_NOT_HEARD
 from roomba_ros.convert.common import header, path_message
 from roomba_ros.convert.mission import coverage_message, dirt_message, shown
@@ -156,6 +157,6 @@ def state_of(now: float, mission: Mission, senses: Senses) -> VacuumState:
         # Counted once: it is a look at every cell of the floor.
         state.covered = mission.cleaning.clean_area
         state.wanted = mission.cleaning.coverage.wanted_area
-        state.fraction = state.covered / state.wanted if state.wanted > 0.0 else 1.0
+        state.fraction = share_of(state.covered, state.wanted)
         state.seconds_to_go = mission.seconds_to_go()
     return state

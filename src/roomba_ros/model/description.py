@@ -31,6 +31,7 @@ def main(arguments: list[str] | None = None) -> int:
     """Print the model; returns 0, or 1 when there is none."""
     parser = argparse.ArgumentParser(prog="python3 -m roomba_ros.model", description=__doc__)
     parser.add_argument(
+        "--config",
         "--configuration",
         type=Path,
         default=CONFIGURATION / "robot.yaml",
@@ -38,7 +39,7 @@ def main(arguments: list[str] | None = None) -> int:
         help="the robot's numbers (default: those that come along)",
     )
     try:
-        sys.stdout.write(description(parser.parse_args(arguments).configuration))
+        sys.stdout.write(description(parser.parse_args(arguments).config))
     except RoombaError as error:
         print(error, file=sys.stderr)
         return 1

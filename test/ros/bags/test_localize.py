@@ -41,7 +41,7 @@ def words(tmp_path: Path) -> list[str]:
 
 def test_what_was_written_are_messages_of_ros(words: list[str], tmp_path: Path) -> None:
     output, way = tmp_path / "out.bag", tmp_path / "way.txt"
-    assert main([*words, "--quiet", "--output", str(output), "--trajectory", str(way)]) == 0
+    assert main([*words, "--quiet", "--out", str(output), "--trajectory", str(way)]) == 0
     rows = [list(map(float, line.split())) for line in way.read_text("utf-8").splitlines()]
     messages: dict[str, list[Any]] = {}
     with rosbag.Bag(str(output)) as written:

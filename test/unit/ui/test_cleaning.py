@@ -365,5 +365,7 @@ def test_shares_and_areas_for_people() -> None:
         "100%",
         "unknown",
     ]
+    assert percent(1.012) == "100%"
     assert area_text(0.0, 0.0) == "0.0 of 0.0 m2 (100%)"
+    assert area_text(10.1, 10.0) == "10.1 of 10.0 m2 (100%)"
     assert area_text(math.nan, 1.0) == "unknown"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final
@@ -45,7 +46,7 @@ def options_of(arguments: list[str] | None) -> LocalizeOptions:
             ("--csv", given.csv),
             ("--trajectory", given.trajectory),
             ("--plot", given.plot),
-            ("--output", given.output),
+            ("--out", given.output),
         ],
         [("--map", given.map), *(("--bag", path) for path in given.bag)],
     )
@@ -84,10 +85,13 @@ def _parser() -> Parser:
         "--trajectory", type=Path, metavar="FILE", help="the path alone: lines 't x y theta'"
     )
     told.add_argument(
-        "--output",
+        "--out",
+        dest="output",
         type=Path,
         metavar="FILE.bag",
         help="/pose, /amcl_pose, /localization and /tf as a bag of ROS 1, to be played beside the "
         "recorded one",
     )
+    # how it was spelled once
+    told.add_argument("--output", type=Path, help=argparse.SUPPRESS)
     return parser

@@ -94,6 +94,7 @@ def add_robot_options(parser: argparse._ActionsContainer) -> None:
         "--map",
         choices=("home", "none"),
         default="home",
+        metavar="home|none",
         help="whether the robot knows the home, or makes a map of it (default: home)",
     )
     parser.add_argument(
@@ -105,6 +106,7 @@ def add_robot_options(parser: argparse._ActionsContainer) -> None:
     parser.add_argument(
         "--wheels",
         choices=("factory", "worn"),
+        metavar="factory|worn",
         help="worn: wheels, gyro and lidar are off by up to 2 %% (default: as configured)",
     )
 

@@ -39,6 +39,7 @@ from roomba.perception.localization.estimate import Knowledge
 from roomba.perception.rooms.rooms import Rooms
 from roomba.perception.rooms.zones import Zones
 from roomba.perception.swept.dirt_map import DirtMap
+from roomba.shares import share_of
 from roomba.world.home.home import Home
 from roomba.world.home.materials import MATERIALS
 from roomba.world.home.raster import footprint, outline
@@ -82,7 +83,7 @@ def vacuum_snapshot(robot: Embodied) -> VacuumSnapshot:
     if cleaning is not None:
         covered = cleaning.clean_area
         wanted = cleaning.coverage.wanted_area
-        fraction = covered / wanted if wanted else 1.0
+        fraction = share_of(covered, wanted)
     pose = robot.brain.pose
     phase = mission.state.phase
     return VacuumSnapshot(

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from enum import Enum
 
 from roomba.errors import RoombaError
+from roomba.shares import share_of
 from roomba.vocabulary import MOST_PASSES, MOST_ZONES, CleanMode, FanLevel, RoomWay, fault_of_name
 
 
@@ -135,4 +136,4 @@ class CleanResult:
     @property
     def fraction(self) -> float:
         """Share of the wanted floor that is clean, 0..1."""
-        return self.covered / self.wanted if self.wanted > 0.0 else 1.0
+        return share_of(self.covered, self.wanted)

@@ -120,7 +120,7 @@ def at_start() -> list[object]:
 def test_a_drive_is_followed_from_a_given_start(localize: Localize, tmp_path: Path) -> None:
     bag = write_bag(tmp_path / "made.bag", said(drive(SECONDS), "/pose"))
     plot, output, way = tmp_path / "a.png", tmp_path / "out.bag", tmp_path / "way.txt"
-    files = ["--plot", plot, "--output", output, "--trajectory", way]
+    files = ["--plot", plot, "--out", output, "--trajectory", way]
     done = localize(bag, *at_start(), *files)
     assert done.status == 0
     assert done.is_at_the_end
@@ -301,10 +301,10 @@ def test_wheels_that_hang_make_it_search(localize: Localize, tmp_path: Path) -> 
         ("{bag} --start -1e9 0 0", 2, "expected a place on the map, x -0.1 to 6.1"),
         ("{bag} --start 1 1", 2, "expected 3 arguments"),
         ("{bag} --plot drive.gif", 2, "ends with .png"),
-        ("{bag} --output /no/such/folder/a.bag", 2, "--output: expected a file in a folder"),
+        ("{bag} --output /no/such/folder/a.bag", 2, "--out: expected a file in a folder"),
         ("{bag} --trajectory /no/such/folder/a", 2, "--trajectory: expected a file in a folder"),
-        ("{bag} --output {bag}", 2, "is the file of --bag already"),
-        ("{bag} --output {link}", 2, "is the file of --bag already"),
+        ("{bag} --out {bag}", 2, "is the file of --bag already"),
+        ("{bag} --out {link}", 2, "is the file of --bag already"),
         ("{bag} --colour red", 2, "unrecognized arguments"),
         ("no.bag", 1, "no.bag: no such file"),
         ("{bag} --odom /none", 1, "expected nav_msgs/Odometry on /none, there is none"),
