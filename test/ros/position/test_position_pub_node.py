@@ -36,6 +36,11 @@ def at_origin(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RosGraph]:
         yield graph
 
 
+def body(graph: RosGraph) -> Probe:
+    """Become the robot's body, as the tests before were."""
+    return Probe(graph, "body", is_one_of_many=False)
+
+
 def is_silent(probe: Probe, topic: str) -> bool:
     """Whether nothing comes on a topic while five positions do."""
     before = probe.counts[topic]
@@ -74,7 +79,7 @@ def test_the_pose_is_where_odometry_began_and_the_way_since(graph: RosGraph) -> 
 
 def test_wishes_that_are_no_places_are_refused(at_origin: RosGraph) -> None:
     """A wish that is not finite, or outside the default limits, moves nothing and is logged."""
-    probe, node = Probe(at_origin), at_origin.programs[-1]
+    probe, node = body(at_origin), at_origin.programs[-1]
     probe.hear("/cmd_vel", Twist)
     probe.send("/odom", odometry(0.0, 0.0))
     assert probe.position() == (0.0, 0.0)
@@ -87,7 +92,7 @@ def test_wishes_that_are_no_places_are_refused(at_origin: RosGraph) -> None:
 
 
 def test_a_single_wish_makes_it_drive_there_and_no_teleport(at_origin: RosGraph) -> None:
-    probe = Probe(at_origin)
+    probe = body(at_origin)
     probe.hear("/cmd_vel", Twist)
     probe.send("/odom", odometry(0.0, 0.0))
     probe.next("/position", RobotPosition)
@@ -99,7 +104,7 @@ def test_a_single_wish_makes_it_drive_there_and_no_teleport(at_origin: RosGraph)
 
 
 def test_having_arrived_it_leaves_the_drive_to_others(at_origin: RosGraph) -> None:
-    probe = Probe(at_origin)
+    probe = body(at_origin)
     probe.hear("/cmd_vel", Twist)
     probe.send("/odom", odometry(0.0, 0.0))
     probe.next("/position", RobotPosition)
