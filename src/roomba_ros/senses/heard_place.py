@@ -21,7 +21,7 @@ from roomba.perception.matching.reckoned_path import ReckonedPath, forget_path, 
 from roomba.robot.readings import Readings
 from roomba_ros.convert.localization import knowledge_of
 from roomba_ros.convert.readings import StampedPose, stamped_pose_of
-from roomba_ros.runtime.senders import OneSender
+from roomba_ros.runtime.senders import SELDOM_SILENT_AFTER, OneSender
 from roomba_ros.runtime.subscriptions import subscribe
 
 _KEPT: Final = 40
@@ -53,7 +53,14 @@ class HeardPlace:
 
     def start(self) -> None:
         """Connect."""
-        subscribe("localization", Localization, knowledge_of, self._on_localization, queue_size=5)
+        subscribe(
+            "localization",
+            Localization,
+            knowledge_of,
+            self._on_localization,
+            queue_size=5,
+            senders=OneSender(SELDOM_SILENT_AFTER),
+        )
         subscribe(
             "pose",
             PoseStamped,

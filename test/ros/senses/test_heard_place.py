@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import time as wall
 from collections.abc import Iterator
 
 import pytest
@@ -108,3 +109,19 @@ def test_it_passes_on_how_well_the_place_is_known(ros: Lockstep) -> None:
     heard = place()
     ros.publish("/localization", Localization(state=Localization.LOST, message="fog"))
     assert heard.knowledge == (Knowledge.LOST, "fog")
+
+
+def test_another_node_does_not_say_that_the_place_is_known(
+    ros: Lockstep, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    now = [100.0]
+    monkeypatch.setattr(wall, "monotonic", lambda: now[0])
+    heard = place()
+    lost = Localization(state=Localization.LOST, message="carried away")
+    ros.publish("/localization", lost, "/own")
+    for _ in range(5):
+        ros.publish("/localization", Localization(), "/other")
+    assert heard.knowledge == (Knowledge.LOST, "carried away")
+    now[0] += 3.1
+    ros.publish("/localization", Localization(), "/other")
+    assert heard.knowledge == (Knowledge.KNOWN, "")
