@@ -63,7 +63,13 @@ from roomba_ros.convert.page import (
 from roomba_ros.convert.scan import ScanDecoder
 from roomba_ros.convert.values import data_of, number_of
 from roomba_ros.runtime.node import frame_id
-from roomba_ros.runtime.senders import SPEED_NODE, SUPERVISOR, OnlyFrom
+from roomba_ros.runtime.senders import (
+    SELDOM_SILENT_AFTER,
+    SPEED_NODE,
+    SUPERVISOR,
+    OneSender,
+    OnlyFrom,
+)
 from roomba_ros.runtime.subscriptions import subscribe
 
 _OLDEST_POSE: Final = 2.0
@@ -107,12 +113,13 @@ class PageTopics:
         """Connect."""
         subscribe("/tf_static", TFMessage, transforms_of, self._mounts.add, queue_size=10)
         subscribe("pose", PoseStamped, pose_in_map, self._on_pose)
-        subscribe("localization", Localization, doubt_of, partial(self._set, "doubt"))
+        doubt = partial(self._set, "doubt")
+        subscribe("localization", Localization, doubt_of, doubt, senders=_one())
         subscribe("speed", Float32, number_of, partial(self._set, "speed"))
-        subscribe("bin_level", Float32, number_of, self._on_bin_level)
-        battery = partial(self._set, "battery_seconds")
-        subscribe("battery_state", BatteryState, battery_seconds_of, battery)
-        subscribe("battery_state", BatteryState, charges_of, partial(self._set, "charges"))
+        subscribe("bin_level", Float32, number_of, self._on_bin_level, senders=_one())
+        seconds, charges = partial(self._set, "battery_seconds"), partial(self._set, "charges")
+        subscribe("battery_state", BatteryState, battery_seconds_of, seconds, senders=_one())
+        subscribe("battery_state", BatteryState, charges_of, charges, senders=_one())
         drive, supervisor = OnlyFrom(SPEED_NODE), OnlyFrom(SUPERVISOR)
         subscribe("trouble", String, data_of, partial(self._set, "trouble"), senders=supervisor)
         subscribe("emergency_stop", String, data_of, partial(self._set, "held"), senders=drive)
@@ -236,3 +243,8 @@ def _lies_as(before: GridLayer, frame: GridFrame) -> bool:
         before.origin_x,
         before.origin_y,
     ) == (frame.resolution, frame.origin_x, frame.origin_y)
+
+
+def _one() -> OneSender:
+    """Return what lets one node tell of the body at a time, as all nodes take it."""
+    return OneSender(SELDOM_SILENT_AFTER)

@@ -1,0 +1,31 @@
+"""What the page is told of the body is what the nodes go by."""
+
+from __future__ import annotations
+
+from fixtures.nodes.lockstep import Lockstep
+from roomba_robot.msg import Localization
+from sensor_msgs.msg import BatteryState
+from std_msgs.msg import Float32
+
+from roomba.configuration.robot import RobotConfig
+from roomba_ros.dashboard.page_topics import PageTopics
+
+
+def test_of_two_nodes_that_tell_of_the_body_the_page_shows_the_first() -> None:
+    with Lockstep().installed() as ros:
+        shown = PageTopics(RobotConfig())
+        shown.start()
+        ros.publish("/localization", Localization(state=Localization.LOST, message="up"), "/own")
+        ros.publish("/battery_state", BatteryState(current=1.5), "/own")
+        ros.publish("/bin_level", Float32(0.5), "/own")
+        doubt, in_bin = shown.doubt, shown.in_bin
+        assert doubt
+        assert in_bin > 0.0
+        assert shown.charges
+        for topic, message in (
+            ("/localization", Localization()),
+            ("/battery_state", BatteryState()),
+            ("/bin_level", Float32(0.0)),
+        ):
+            ros.publish(topic, message, "/other")
+        assert (shown.doubt, shown.in_bin, shown.charges) == (doubt, in_bin, True)
