@@ -7,15 +7,20 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
+from actionlib_msgs.msg import GoalID, GoalStatus
 from fixtures.nodes.node_compositions import NodeRobot, started
 from fixtures.robots.compositions import Case
 from fixtures.robots.missions import HOME
 from geometry_msgs.msg import Twist
-from roomba_robot.msg import CleanActionGoal, RobotPosition
+from roomba_robot.msg import CleanActionGoal, RobotPosition, WalkToPointActionGoal
 from sensor_msgs.msg import BatteryState
 from std_msgs.msg import Float32
+
+from roomba.mission.walking.walk import Walk
+from roomba_ros.walking import walk_to_point_action_server
 
 CORNER = (0.0, 0.0)
 """m; in the wall, as a message of nothing wants it."""
@@ -109,3 +114,32 @@ def test_empty_messages_of_another_node_do_not_empty_the_battery(watched: Watche
         watched.robot.tick()
     assert {state.phase for state in watched.robot.states[-5:]} == {"cleaning"}
     watched.goes_on()
+
+
+def test_of_many_walks_at_once_the_newest_possible_one_alone_is_planned(
+    watched: Watched, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    planned: list[tuple[float, float]] = []
+
+    def plan(*arguments: Any) -> Walk:
+        planned.append(arguments[3])
+        return Walk(*arguments)
+
+    monkeypatch.setattr(walk_to_point_action_server, "Walk", plan)
+    ended: dict[str, tuple[int, str]] = {}
+    watched.robot.lockstep.hear(
+        "/walk_to_point/result",
+        lambda told: ended.update({told.status.goal_id.id: (told.status.status, told.status.text)}),
+    )
+    places = [*((0.4 + 0.01 * number, 0.6) for number in range(100)), (99.0, 99.0)]
+    for number, place in enumerate(places):
+        order = WalkToPointActionGoal(goal_id=GoalID(id=f"{number}"))
+        order.goal.destin.dest_x, order.goal.destin.dest_y = place
+        watched.robot.lockstep.publish("/walk_to_point/goal", order)
+    watched.robot.tick()
+    assert planned == [places[-1], places[-2]]
+    assert ended.pop("100")[0] == GoalStatus.REJECTED
+    assert set(ended.values()) == {(GoalStatus.RECALLED, "a newer goal took over")}
+    assert len(ended) == 99
+    watched.until(lambda: "99" in ended, 60.0)
+    assert ended["99"][0] == GoalStatus.SUCCEEDED

@@ -44,6 +44,7 @@ from roomba_ros.walking.walk_goals import MoveBaseGoal, WalkGoal, WalkToPointGoa
 
 NAME = "walk_to_point_action_server_node"
 _HEARD = ("odom", "scan", "bumper", "cliff")
+_OVERTAKEN = "a newer goal took over"
 
 
 @dataclass
@@ -173,10 +174,11 @@ class WalkToPointActionServer:
                 server.start()
 
     def _take_goals(self, senses: Senses | None) -> None:
-        while self._goals:
-            goal = self._goals.popleft()
-            if goal.is_recalled:
-                goal.cancelled(0.0, "cancelled before it began")
+        """Begin the newest goal that can be walked; of many at once the older are not planned."""
+        has_newer = False
+        for goal in reversed([self._goals.popleft() for _ in range(len(self._goals))]):
+            if goal.is_recalled or has_newer:
+                goal.cancelled(0.0, _OVERTAKEN if has_newer else "cancelled before it began")
                 continue
             try:
                 walk = self._begin(goal.destination, senses)
@@ -184,6 +186,7 @@ class WalkToPointActionServer:
                 rospy.logwarn("goal rejected: %s", error)
                 goal.reject(str(error))
                 continue
+            has_newer = True
             self._replace_job(goal, walk)
 
     def _begin(self, goal: tuple[float, float], senses: Senses | None) -> Walk:
@@ -211,7 +214,7 @@ class WalkToPointActionServer:
         now = rospy.get_time()
         old, self._job = self._job, None
         if old is not None:
-            old.goal.cancelled(old.walk.time_spent(now), "a newer goal took over")
+            old.goal.cancelled(old.walk.time_spent(now), _OVERTAKEN)
         duration = expected_duration(walk.path, self._parameters.values.robot_max_speed)
         goal.accept(f"{walk.path.length:.2f} m to walk")
         self._job = _Job(goal, walk, goal.feedback_period(duration), now)
