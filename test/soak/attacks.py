@@ -86,13 +86,13 @@ def flood(graph: RosGraph, cleaner: Cleaner, topic: str) -> Row:
     kind = get_message_class(graph.topic_types().get(topic, ""))
     if kind is None:
         return row
-    before = cleaner.probe.counts.get("/speed", 0)
-    cleaner.probe.hear("/speed", Float32)
+    # The first time the connection to it takes a while.
+    cleaner.probe.next("/speed", Float32)
     publisher = rospy.Publisher(topic, kind, queue_size=10)
     if until(lambda: publisher.get_num_connections() > 0, 5.0) is None:
         publisher.unregister()
         return row
-    began, message = time.monotonic(), kind()
+    before, began, message = cleaner.probe.counts["/speed"], time.monotonic(), kind()
     for sent in range(FLOOD):
         publisher.publish(message)
         if sent % 1000 == 999:
