@@ -65,8 +65,11 @@ class Cleaner:
         self.keep_cleaning()
 
     def finish(self) -> None:
-        """Let the last clean end."""
-        if until(self.has_ended, ENDED) is None:
+        """Let the last clean end; one that waits for a person, or takes too long, is stopped."""
+        until(lambda: self.has_ended() or self.state.phase in _WAITS, ENDED)
+        if not self.has_ended():
+            self._stop()
+        if until(self.has_ended, READY) is None:
             self.row.broken.append(f"the last one has not ended: {self.state.phase}")
         else:
             self._judge()
