@@ -18,7 +18,7 @@ PROMISE = 0.5
 def rig(request: pytest.FixtureRequest) -> Iterator[NeatoRig]:
     made = NeatoRig(request.param)
     yield made
-    made.end()
+    made.close()
 
 
 def test_it_stands_when_nothing_more_is_wanted_of_it(rig: NeatoRig) -> None:

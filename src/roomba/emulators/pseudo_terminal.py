@@ -42,6 +42,7 @@ class PseudoTerminal:
         self._master, self._slave = pty.openpty()
         tty.setraw(self._slave, termios.TCSANOW)
         os.set_blocking(self._master, False)
+        self._ends: tuple[int, ...] = self._master, self._slave
         self.name, self._baud, self._link = os.ttyname(self._slave), baud, link
         self._speed = speed
         if link is not None:
@@ -85,8 +86,9 @@ class PseudoTerminal:
         return _RATES.get(code) == baud
 
     def close(self) -> None:
-        """Unplug it."""
-        for end in (self._master, self._slave):
+        """Unplug it; once is enough: the numbers of its files may be others' after that."""
+        ends, self._ends = self._ends, ()
+        for end in ends:
             with contextlib.suppress(OSError):
                 os.close(end)
         if self._link is not None:

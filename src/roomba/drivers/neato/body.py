@@ -9,16 +9,19 @@ from __future__ import annotations
 import math
 import threading
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
+from roomba.configuration.robot import RobotConfig
 from roomba.drivers.line import LineError
 from roomba.drivers.neato import answers
 from roomba.drivers.neato.answers import AnswerError
-from roomba.drivers.neato.conversation import Conversation
+from roomba.drivers.neato.conversation import Conversation, SilenceError
+from roomba.drivers.neato.sweeps import SweepClock
 from roomba.drivers.neato.wheels import ENABLE, STOP, wheel_command
+from roomba.drivers.wheel_odometry import WheelOdometry
 from roomba.geometry import STANDSTILL, Pose, Twist
 from roomba.mission.inputs.senses import Battery
 from roomba.perception.matching.scan_view import LidarModel
@@ -28,32 +31,25 @@ from roomba.robot.readings import CliffReading, Readings, ScanReading
 _ANSWER: Final = 0.3
 """s; the longest wait for a short answer."""
 _SCAN_ANSWER: Final = 1.5
+_BEGINNING: Final = 1.0
+"""s; the same for what takes the robot over."""
 _SILENT: Final = 0.15
 """s; the robot stands when what it is to do is older than this."""
 _HOLD: Final = 0.3
 """s; that the wheels go on after a command, while others are on the line."""
 _SCAN_HOLD: Final = 0.45
 """s; the same before a scan, which takes longer on a serial line."""
-
-
-@dataclass(frozen=True, slots=True)
-class NeatoModel:
-    """What differs between the robots: lengths in m.
-
-    ``track`` is how far the wheels are apart, ``mount`` the lidar's pose in the robot's frame, that
-    begins between the wheels, ``nearest`` and ``farthest`` its ranges. A floor that is ``drop``
-    below a drop sensor is none. ``capacity`` is the battery's, Wh.
-
-    Sources: OpenNeato's page of the protocol (track, battery of a D5); mikeferguson/neato_robot
-    (mount); ROS xv_11_laser_driver, and scans of a D-series robot that reach 5.7 m (ranges).
-    """
-
-    track: float = 0.248
-    mount: Pose = field(default_factory=lambda: Pose(-0.1016, 0.0, 0.0))
-    nearest: float = 0.06
-    farthest: float = 6.0
-    drop: float = 0.06
-    capacity: float = 60.0
+_AGAIN: Final = 0.1
+"""s; from a command of the wheels to the next."""
+_SCAN_PERIOD: Final = 0.1
+"""s; more often than the lidar turns, so that it is seen when its sweeps end."""
+_SCAN_SHARE: Final = 0.5
+"""Of the line's time for scans, at most, where they take long."""
+_NO_FLOOR: Final = 0.06
+"""m; a floor so far below a drop sensor is none."""
+_SAME_TURN: Final = 0.05
+"""Share by which the lidar's turns may differ and its beams are taken to be the same."""
+_BEEP: Final = "PlaySound SoundID 3"
 
 
 @dataclass(slots=True)
@@ -68,34 +64,40 @@ class _Due:
 
 
 class NeatoBody:
-    """One robot on a line. ``trouble`` says what is wrong with the line, "" if nothing."""
+    """One robot on a line: a :class:`roomba.drivers.driver.Driver`."""
 
     def __init__(
-        self, conversation: Conversation, now: Callable[[], float], model: NeatoModel | None = None
+        self, conversation: Conversation, now: Callable[[], float], config: RobotConfig
     ) -> None:
         """Talk by ``conversation``; ``now`` is the robot's clock, s, which never goes back."""
-        self._line, self._now, self._model = conversation, now, model or NeatoModel()
+        self._line, self._now, self._config = conversation, now, config
+        self._track = config.body.wheel_separation
         self._angles = np.arange(answers.BEAMS) * (2.0 * math.pi / answers.BEAMS)
         self._lock = threading.Lock()
         self._wanted, self._wanted_at = STANDSTILL, -math.inf
         self._power = (False, 0)
+        self._beeps = False
         self._driven: tuple[bool, float] = (False, -math.inf)
+        self._moves_until = -math.inf
         self._is_enabled = False
-        self._fan_told = (False, 0)
-        self.trouble = "not asked yet"
-        self._pose, self._twist = Pose(), STANDSTILL
-        self._wheels: tuple[float, answers.WheelPositions] | None = None
+        self._power_told = (False, 0)
+        self._odometry = WheelOdometry(self._track)
         self._touches = answers.Touches(False, False, False, False, True)
         self._drops = answers.Drops(0.0, 0.0)
         self._charge = answers.Charge(1.0, False, False)
+        self._sweeps = SweepClock()
+        self._lidar: LidarModel | None = None
+        self._turn = 0.0
         self._scan: ScanReading | None = None
-        self._scan_asked = 0.0
+        self._newest_scan: ScanReading | None = None
+        self._is_unanswered = False
+        self._scans = _Due("GetLDSScan", _SCAN_PERIOD, self._take_scan, _SCAN_ANSWER)
         self._due = [
             _Due("GetMotors", 0.05, self._take_motors),
             _Due("GetDigitalSensors", 0.1, self._take_touches),
             _Due("GetAnalogSensors", 0.2, self._take_drops),
-            _Due("GetLDSScan", 0.25, self._take_scan, _SCAN_ANSWER),
-            _Due("GetCharger", 5.0, self._take_charge),
+            self._scans,
+            _Due("GetCharger", 0.5, self._take_charge),
         ]
 
     # ---------------------------------------------------------------- the brain's side
@@ -105,20 +107,26 @@ class NeatoBody:
         with self._lock:
             scan, self._scan = self._scan, None
             touches, charge, drops = self._touches, self._charge, self._drops
-            deep = self._model.drop
+            now = self._now()
+            pose, twist = self._odometry.at(now, self._moves_until)
             return Readings(
-                self._now(),
-                self._pose,
-                self._twist,
+                now,
+                pose,
+                twist,
                 None,
                 scan,
                 touches.bumper_left,
                 touches.bumper_right,
-                CliffReading(drops.left > deep, False, False, drops.right > deep),
+                CliffReading(drops.left > _NO_FLOOR, False, False, drops.right > _NO_FLOOR),
                 touches.dropped_left,
                 touches.dropped_right,
-                battery=Battery(charge.level, self._model.capacity, charge.has_power),
+                battery=Battery(charge.level, self._config.battery.capacity, charge.has_power),
             )
+
+    def newest_scan(self) -> ScanReading | None:
+        """Return the newest scan; None before the first one."""
+        with self._lock:
+            return self._newest_scan
 
     def act(self, command: Command) -> None:
         """Take what is wanted; it holds for 0.15 s, then the robot stands."""
@@ -128,101 +136,127 @@ class NeatoBody:
             is_cleaning = command.brush is None or command.brush > 0.0
             self._power = is_cleaning, round(100.0 * fan)
 
+    def locate(self) -> None:
+        """Let the robot beep as soon as the line is free."""
+        with self._lock:
+            self._beeps = True
+
     # ---------------------------------------------------------------- the line's side
 
     def begin(self) -> None:
         """Take the robot over and let its lidar turn; raises LineError."""
-        self._line.ask("TestMode On", 2.0)
-        self._line.ask("SetLDSRotation On", 2.0)
-        self._line.ask(STOP, 2.0)
-        self._is_enabled, self._wheels = False, None
-        self.trouble = ""
+        for command in ("TestMode On", "SetLDSRotation On", STOP):
+            self._line.ask(command, _BEGINNING)
+        self._is_enabled, self._is_unanswered = False, False
+        self._power_told = (False, 0)
+        with self._lock:
+            self._odometry.stand()
 
     def end(self) -> None:
         """Let the robot stand, and give it back."""
-        for command in (STOP, "SetMotor VacuumOff", "SetLDSRotation Off", "TestMode Off"):
+        for command in (STOP, *_AT_REST, "SetLDSRotation Off", "TestMode Off"):
             try:
                 self._line.ask(command, _ANSWER)
-            except LineError:
+            except SilenceError:
                 continue
+            except LineError:
+                return
 
     def serve(self) -> None:
-        """Send the command that is due; raises LineError, after which :meth:`begin` is due."""
+        """Send the command that is due; raises LineError, after which :meth:`begin` is due.
+
+        One answer that does not come is passed over.
+        """
         try:
-            if self._drive_is_due():
-                self._drive(_HOLD)
-                return
-            question = max(self._due, key=lambda due: (self._now() - due.last) / due.period)
-            if question.command == "GetLDSScan":
-                self._drive(_SCAN_HOLD)
-            question.last = self._scan_asked = self._now()
-            self._take(question)
-        except LineError as error:
-            self.trouble, self._twist = str(error), STANDSTILL
-            raise
-        self.trouble = ""
+            self._serve()
+            self._is_unanswered = False
+        except SilenceError:
+            if self._is_unanswered:
+                raise
+            self._is_unanswered = True
+
+    def _serve(self) -> None:
+        if self._drive_is_due():
+            self._drive(_HOLD)
+            return
+        if self._takes_beep():
+            self._line.ask(_BEEP, _ANSWER)
+            return
+        question = max(self._due, key=lambda due: (self._now() - due.last) / due.period)
+        if question is self._scans:
+            self._drive(_SCAN_HOLD)
+        question.last = self._now()
+        self._take(question)
+        if question is self._scans:
+            took = self._now() - question.last
+            question.period = max(_SCAN_PERIOD, took / _SCAN_SHARE)
 
     def _take(self, question: _Due) -> None:
         try:
-            lines = self._line.ask(question.command, question.within)
-            question.take(lines)
+            question.take(self._line.ask(question.command, question.within))
         except AnswerError:
             # What a bad line garbled; it is asked again at its time.
             return
 
-    def _drive_is_due(self) -> bool:
+    def _takes_beep(self) -> bool:
         with self._lock:
-            is_silent = self._now() - self._wanted_at > _SILENT
-            wants = self._wanted != STANDSTILL and not is_silent
+            beeps, self._beeps = self._beeps, False
+            return beeps
+
+    def _drive_is_due(self) -> bool:
+        wants = self._wanted_now()[0] != STANDSTILL
         was_driving, at = self._driven
-        return wants != was_driving or (wants and self._now() - at >= 0.1)
+        return wants != was_driving or (wants and self._now() - at >= _AGAIN)
+
+    def _wanted_now(self) -> tuple[Twist, tuple[bool, int]]:
+        """Return the twist, and whether the brush turns and the fan's duty, %."""
+        with self._lock:
+            if self._now() - self._wanted_at > _SILENT or self._wanted == STANDSTILL:
+                return STANDSTILL, (False, 0)
+            return self._wanted, self._power
 
     def _drive(self, seconds: float) -> None:
+        twist, power = self._wanted_now()
         with self._lock:
-            is_silent = self._now() - self._wanted_at > _SILENT
-            twist, power = (STANDSTILL if is_silent else self._wanted), self._power
-            now, half = self._twist, 0.5 * self._model.track * self._twist.angular
+            now = self._odometry.twist
+        half = 0.5 * self._track * now.angular
         moving = max(abs(now.linear - half), abs(now.linear + half))
-        command = wheel_command(twist, self._model.track, seconds, moving)
+        command = wheel_command(twist, self._track, seconds, moving)
         if command is None:
             if self._is_enabled:
                 self._line.ask(STOP, _ANSWER)
                 self._is_enabled = False
+            seconds = 0.0
         else:
             if not self._is_enabled:
                 self._line.ask(ENABLE, _ANSWER)
                 self._is_enabled = True
             self._line.ask(command.text, _ANSWER)
         self._driven = twist != STANDSTILL, self._now()
-        self._set_power(power if twist != STANDSTILL else (False, 0))
+        with self._lock:
+            self._moves_until = self._now() + seconds
+        self._set_power(power)
 
     def _set_power(self, power: tuple[bool, int]) -> None:
         """Switch brush and fan, where they change: they rest while the robot stands."""
-        if power == self._fan_told:
+        if power == self._power_told:
             return
         is_cleaning, fan = power
-        if is_cleaning and fan > 0:
-            self._line.ask(f"SetMotor VacuumOn VacuumSpeed {fan}", _ANSWER)
-            self._line.ask("SetMotor BrushEnable Brush RPM 1200", _ANSWER)
-        else:
-            self._line.ask("SetMotor VacuumOff", _ANSWER)
-            self._line.ask("SetMotor BrushDisable", _ANSWER)
-        self._fan_told = power
+        on = f"SetMotor VacuumOn VacuumSpeed {fan}", "SetMotor BrushEnable Brush RPM 1200"
+        for command in on if is_cleaning and fan > 0 else _AT_REST:
+            self._line.ask(command, _ANSWER)
+        self._power_told = power
 
     # ---------------------------------------------------------------- what came
 
+    def _heard_at(self) -> float:
+        """When the newest answer began to come: what it tells was so then, s."""
+        return self._now() - self._line.since_heard
+
     def _take_motors(self, lines: list[str]) -> None:
-        positions, now = answers.wheel_positions_of(lines), self._now()
-        before, self._wheels = self._wheels, (now, positions)
-        if before is None:
-            return
-        left, right = positions.left - before[1].left, positions.right - before[1].right
-        way, turn = 0.5 * (left + right), (right - left) / self._model.track
-        passed = max(now - before[0], 1e-3)
+        positions, at = answers.wheel_positions_of(lines), self._heard_at()
         with self._lock:
-            arc = Pose(way * math.cos(0.5 * turn), way * math.sin(0.5 * turn), turn)
-            self._pose = self._pose.compose(arc)
-            self._twist = Twist(way / passed, turn / passed)
+            self._odometry.take(at, positions.left, positions.right)
 
     def _take_touches(self, lines: list[str]) -> None:
         touches = answers.touches_of(lines)
@@ -240,13 +274,27 @@ class NeatoBody:
             self._charge = charge
 
     def _take_scan(self, lines: list[str]) -> None:
-        scan = answers.scan_of(lines)
-        if scan.rotation <= 0.0:
+        told = answers.scan_of(lines)
+        if told.rotation <= 0.0:
             return
-        sweep = 1.0 / scan.rotation
-        model = self._model
-        lidar = LidarModel(
-            self._angles, model.nearest, model.farthest, model.mount, sweep / answers.BEAMS
-        )
+        before, turn = self._newest_scan, 1.0 / told.rotation
+        is_other = before is None or not np.array_equal(before.ranges, told.ranges)
+        ended = self._sweeps.ended(self._heard_at(), turn, is_other=is_other)
+        if ended is None:
+            return
+        scan = ScanReading(ended - turn, told.ranges, self._lidar_turning(turn))
         with self._lock:
-            self._scan = ScanReading(self._scan_asked - sweep, scan.ranges, lidar)
+            self._scan = self._newest_scan = scan
+
+    def _lidar_turning(self, turn: float) -> LidarModel:
+        """Return the lidar when a turn takes so long, s: the same one while that hardly changes."""
+        if self._lidar is None or abs(turn - self._turn) > _SAME_TURN * turn:
+            lidar = self._config.lidar
+            mount = Pose(lidar.mount_ahead, 0.0, 0.0)
+            reach = lidar.min_range, lidar.max_range
+            self._lidar = LidarModel(self._angles, *reach, mount, turn / answers.BEAMS)
+            self._turn = turn
+        return self._lidar
+
+
+_AT_REST: Final = ("SetMotor VacuumOff", "SetMotor BrushDisable")

@@ -10,6 +10,12 @@ from roomba.drivers.line import Line, LineError
 END: Final = b"\x1a"
 _LONGEST: Final = 65_536
 """Bytes; a scan has some 6,000."""
+_MOST_LATE: Final = 8
+"""Pieces that are read after their time: what a line holds while none is read fits in."""
+
+
+class SilenceError(LineError):
+    """The line is there, and no whole answer came in time."""
 
 
 class Conversation:
@@ -18,17 +24,24 @@ class Conversation:
     def __init__(self, line: Line, now: Callable[[], float]) -> None:
         """Ask over ``line``; ``now`` is a clock that never goes back, s."""
         self._line, self._now = line, now
+        self._heard_at = now()
+
+    @property
+    def since_heard(self) -> float:
+        """How long ago the newest answer began to come, s."""
+        return self._now() - self._heard_at
 
     def ask(self, command: str, within: float) -> list[str]:
         """Return the lines of the answer, without the echo of the command.
 
         What an earlier question left on the line is forgotten; an answer that echoes another
-        command is passed over. Raises LineError when nothing whole came ``within`` s.
+        command is passed over. Raises SilenceError when nothing whole came ``within`` s, and
+        LineError when the line is gone.
         """
         end = self._now() + within
         self._line.discard()
         self._line.write(command.encode("ascii") + b"\n")
-        came = b""
+        came, late = b"", 0
         while True:
             answer, separator, rest = came.partition(END)
             if separator:
@@ -38,12 +51,17 @@ class Conversation:
                     return [line.strip() for line in lines[1:] if line.strip()]
                 continue
             left = end - self._now()
-            if left <= 0.0 or len(came) > _LONGEST:
-                raise LineError(
+            # What came while this program was held up is read although it is late.
+            late += left <= 0.0
+            piece = self._line.read(max(0.0, left))
+            if (not piece and late) or late > _MOST_LATE or len(came) > _LONGEST:
+                raise SilenceError(
                     f"expected an answer to {command!r} within {within:g} s, got "
                     f"{len(came)} bytes without an end"
                 )
-            came += self._line.read(left)
+            if not came:
+                self._heard_at = self._now()
+            came += piece
 
     def close(self) -> None:
         """Let go of the line."""

@@ -12,6 +12,7 @@ from fixtures.robots.neato_rig import NeatoRig
 from fixtures.waiting import wait_until
 
 from roomba.drivers.line import LineError, SerialLine
+from roomba.drivers.neato.conversation import SilenceError
 from roomba.emulators.pseudo_terminal import PseudoTerminal
 from roomba.geometry import Twist
 from roomba.robot.command import Command
@@ -22,7 +23,7 @@ from roomba.robot.readings import ScanReading
 def rig(request: pytest.FixtureRequest) -> Iterator[NeatoRig]:
     made = NeatoRig(request.param)
     yield made
-    made.end()
+    made.close()
 
 
 def test_it_drives_and_its_odometry_is_the_way(rig: NeatoRig) -> None:
@@ -63,7 +64,7 @@ def test_garbage_on_the_line_is_passed_over(rig: NeatoRig) -> None:
         rig.terminal.write(random.bytes(200))
     told = rig.body.read().odometry
     rig.drive_until(Twist(0.0, 0.5), lambda: rig.body.read().odometry != told, "it goes on")
-    assert rig.body.trouble == ""
+    assert all(isinstance(error, SilenceError) for error in rig.errors)
 
 
 def test_a_line_that_is_gone_is_told() -> None:
@@ -71,8 +72,7 @@ def test_a_line_that_is_gone_is_told() -> None:
     rig.server.end()
     rig.terminal.close()
     wait_until(lambda: bool(rig.errors), 10.0, "the driver notices")
-    assert rig.body.trouble
-    rig.end()
+    rig.close()
 
 
 def test_a_port_that_is_not_there_is_told_with_what_to_do(tmp_path: Path) -> None:

@@ -1,0 +1,44 @@
+"""What a driver of a robot that people own is: its protocol on a line, as a brain needs it."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+from roomba.drivers.line import LineError
+from roomba.robot.command import Command
+from roomba.robot.readings import Readings, ScanReading
+
+__all__ = ["Driver", "LineError"]
+
+
+class Driver(Protocol):
+    """One robot on a line that others open.
+
+    The first four methods are for the thread of the brain and return at once; the others are for
+    the one thread that serves the line, :class:`roomba.drivers.line_body.LineBody`. Whatever
+    happens to the program or the line, the robot stands within 0.5 s after the last command.
+    """
+
+    def read(self) -> Readings:
+        """Return what the robot told last, at the time of now; a scan once."""
+
+    def newest_scan(self) -> ScanReading | None:
+        """Return the newest scan; None before the first one."""
+
+    def act(self, command: Command) -> None:
+        """Take what is wanted; without another command the robot stands soon."""
+
+    def locate(self) -> None:
+        """Let the robot beep soon."""
+
+    def begin(self) -> None:
+        """Take the robot over, for the first time or after its line was gone; raises LineError."""
+
+    def serve(self) -> None:
+        """Do on the line what is due, some 0.1 s at most but for a scan.
+
+        Raises LineError, after which :meth:`begin` is due.
+        """
+
+    def end(self) -> None:
+        """Let the robot stand, and give it back; raises nothing."""

@@ -1,0 +1,158 @@
+"""A body of a brain by a driver on a line: served by a thread of its own, in real time.
+
+The brain's thread reads what was told and says what is wanted; the line's thread talks with the
+robot. A line that is gone is opened again and again until the robot answers.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from typing import Final, Protocol
+
+from roomba.drivers.body_clock import BodyClock
+from roomba.drivers.driver import Driver
+from roomba.drivers.line import LineError
+from roomba.errors import RoombaError
+from roomba.robot.command import Command
+from roomba.robot.readings import Readings, ScanReading
+
+_AGAIN: Final = 0.5
+"""s of wall time between two attempts to open a line that is gone."""
+_FIRST_SCAN: Final = 15.0
+"""s of wall time; a lidar needs some to come up to its speed."""
+_LOOK: Final = 0.05
+"""s of wall time between two looks for the first scan."""
+_ENDING: Final = 5.0
+"""s of wall time for the thread of the line to end: longer than any answer takes."""
+
+
+class LineAgain(Protocol):
+    """A line that can be opened anew."""
+
+    def reopen(self) -> None:
+        """Let go of it and open it; raises LineError as long as it is gone."""
+
+    def close(self) -> None:
+        """Let go of it."""
+
+
+class NoScanError(RoombaError):
+    """The robot answers, and its lidar does not."""
+
+
+class LineBody:
+    """A :class:`roomba.robot.body.Body` by ``driver``, which times itself by ``clock``.
+
+    :meth:`act` lets a ``tick``, s, of wall time pass. Between :meth:`start` and :meth:`stop` the
+    line is the thread's of this body.
+    """
+
+    def __init__(self, driver: Driver, line: LineAgain, clock: BodyClock, tick: float) -> None:
+        """Connect nothing yet."""
+        self._driver, self._line, self._clock, self._tick = driver, line, clock, tick
+        self._trouble = "its line is not served yet"
+        self._is_over = threading.Event()
+        self._thread = threading.Thread(target=self._serve, name="robot's line", daemon=True)
+        self._due = 0.0
+
+    # ---------------------------------------------------------------- life
+
+    def start(self, first_scan: float = _FIRST_SCAN) -> None:
+        """Take the robot over, and return when its lidar told a scan.
+
+        Raises LineError when it does not answer, NoScanError when no scan comes within
+        ``first_scan`` s; then it was given back.
+        """
+        self._driver.begin()
+        self._trouble = ""
+        self._clock.go_on()
+        self._thread.start()
+        end = time.monotonic() + first_scan
+        while self._driver.newest_scan() is None:
+            if time.monotonic() > end:
+                why = self._trouble
+                self.stop()
+                raise NoScanError(
+                    why
+                    or f"expected a scan of the lidar within {first_scan:g} s, got none: does it "
+                    "turn, and is nothing in its way?"
+                )
+            self._driver.act(Command())
+            self._is_over.wait(_LOOK)
+        self._due = time.monotonic()
+
+    def stop(self) -> None:
+        """Let the robot stand, give it back, and let go of the line."""
+        self._is_over.set()
+        if self._thread.ident is not None:
+            self._thread.join(_ENDING)
+        self._driver.end()
+        self._line.close()
+
+    # ---------------------------------------------------------------- the brain's side
+
+    @property
+    def trouble(self) -> str:
+        """Why the robot cannot be reached, and what helps; empty while it can."""
+        return self._trouble
+
+    def read(self) -> Readings:
+        """Return what the robot told last; a scan once."""
+        return self._driver.read()
+
+    def newest_scan(self) -> ScanReading | None:
+        """Return the newest scan; None before the first one."""
+        return self._driver.newest_scan()
+
+    def tell(self, command: Command) -> None:
+        """Tell what is wanted; without another command the robot stands soon."""
+        self._driver.act(command)
+
+    def act(self, command: Command) -> None:
+        """Tell what is wanted, and return when a tick has passed since the last time."""
+        self.tell(command)
+        now = time.monotonic()
+        # A brain that took longer than a tick to think does not catch up.
+        self._due = max(self._due + self._tick, now)
+        self._is_over.wait(self._due - now)
+
+    def locate(self) -> None:
+        """Beep."""
+        self._driver.locate()
+
+    # ---------------------------------------------------------------- the line's thread
+
+    def _serve(self) -> None:
+        while not self._is_over.is_set():
+            try:
+                self._driver.serve()
+            except LineError as error:
+                self._take_over_again(error)
+
+    def _take_over_again(self, error: LineError) -> None:
+        """Try until the robot answers again, or all ends; meanwhile its clock stands."""
+        self._clock.stand()
+        is_open = True
+        while not self._is_over.is_set():
+            self._trouble = _told(error)
+            try:
+                if not is_open:
+                    self._line.reopen()
+                self._driver.begin()
+            except LineError as newer:
+                error, is_open = newer, False
+                self._is_over.wait(_AGAIN)
+                continue
+            self._clock.go_on()
+            self._trouble = ""
+            return
+
+
+def _told(error: LineError) -> str:
+    why = str(error).rstrip(". ")
+    end = "" if why.endswith("?") else "."
+    return (
+        f"the robot cannot be reached: {why}{end} Plug its line in and switch it on: it goes on by "
+        "itself"
+    )

@@ -1,0 +1,1 @@
+"""The robots that people own and this brain drives: one table."""

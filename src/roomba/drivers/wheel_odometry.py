@@ -1,0 +1,89 @@
+"""Where a robot is by how far its wheels rolled, told now and then and wanted at any time."""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from dataclasses import dataclass
+from typing import Final
+
+from roomba.geometry import STANDSTILL, Pose, Twist
+
+_WINDOW: Final = 0.15
+"""s; speeds are taken over at least that: wheels are told in steps of a millimetre or so."""
+_JUMP: Final = 0.5
+"""m; a wheel that is told farther than this from before began to count anew."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Told:
+    at: float
+    left: float
+    right: float
+
+
+class WheelOdometry:
+    """The pose since it was made, and the speeds; ``track`` is how far the wheels are apart, m."""
+
+    def __init__(self, track: float) -> None:
+        """Begin with nothing told: at the origin, standing."""
+        self._track = track
+        self._told: deque[_Told] = deque()
+        self._pose, self._twist = Pose(), STANDSTILL
+
+    def take(self, at: float, left: float, right: float) -> None:
+        """Take how far the wheels had rolled at a time: m since any time, the same for each call.
+
+        ``at``, s, grows from call to call.
+        """
+        now = _Told(at, left, right)
+        if self._told:
+            before = self._told[-1]
+            ways = left - before.left, right - before.right
+            if max(map(abs, ways)) > _JUMP or at <= before.at:
+                self._told.clear()
+                self._twist = STANDSTILL
+            else:
+                self._pose = self._pose.compose(self._arc(*ways))
+        self._told.append(now)
+        self._measure()
+
+    def stand(self) -> None:
+        """Take no speed from what was told before: the robot may have stood since."""
+        self._twist = STANDSTILL
+        while len(self._told) > 1:
+            self._told.popleft()
+
+    def at(self, now: float, moves_until: float) -> tuple[Pose, Twist]:
+        """Return where the robot is ``now``, s, and how it moves, m/s and rad/s.
+
+        Since it was told it is taken to move on as before, but not after ``moves_until``, s.
+        """
+        if not self._told:
+            return self._pose, STANDSTILL
+        since = min(now, moves_until) - self._told[-1].at
+        if since <= 0.0:
+            return self._pose, self._twist
+        half = 0.5 * self._track * self._twist.angular
+        left, right = self._twist.linear - half, self._twist.linear + half
+        return self._pose.compose(self._arc(left * since, right * since)), self._twist
+
+    @property
+    def twist(self) -> Twist:
+        """How it moved between what was told last, m/s and rad/s."""
+        return self._twist
+
+    def _measure(self) -> None:
+        newest = self._told[-1]
+        while len(self._told) > 2 and newest.at - self._told[1].at >= _WINDOW:
+            self._told.popleft()
+        first = self._told[0]
+        passed = newest.at - first.at
+        if passed > 0.0:
+            left, right = (newest.left - first.left) / passed, (newest.right - first.right) / passed
+            self._twist = Twist(0.5 * (left + right), (right - left) / self._track)
+
+    def _arc(self, left: float, right: float) -> Pose:
+        """Return the pose after both wheels rolled on, m, in the robot's frame."""
+        way, turn = 0.5 * (left + right), (right - left) / self._track
+        return Pose(way * math.cos(0.5 * turn), way * math.sin(0.5 * turn), turn)
