@@ -52,7 +52,8 @@ usage: roomba COMMAND ...
                    recorded drive (see --help)
   localize ARGS    localize a recorded drive on a map: --map FILE.yaml --bag FILE ... (see --help)
   play [ARGS]      a robot that lives in a home, on a web page: --home NAME, --speed N,
-                   --map none, --smart-home FILE.yaml (see --help)
+                   --map none, --smart-home FILE.yaml; one that you own: --robot neato
+                   --line /dev/ttyACM0 (see --help)
   control --demo [ARGS]
                    the menu in the terminal over a robot that lives in a home: --home NAME,
                    --speed N, --map none (see --demo --help)

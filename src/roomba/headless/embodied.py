@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.configuration.robot import RobotConfig
+from roomba.errors import RoombaError
 from roomba.geometry import Pose, Twist
 from roomba.headless.rows import PASSED
 from roomba.mission.inputs.senses import Senses
@@ -19,6 +20,8 @@ from roomba.robot.brain import Brain
 from roomba.robot.command import Command
 from roomba.robot.readings import Readings
 
+_FIRST_MAP: Final = 1200
+"""Ticks, a minute; a robot whose scans show so little for so long has no room around it."""
 _UNKNOWN: Final = (math.nan, math.nan, math.nan)
 """The true pose of a robot that is not simulated."""
 
@@ -32,15 +35,25 @@ class Embodied:
     body: Body
 
     def __init__(self, body: Body, brain: Brain, robot: RobotConfig) -> None:
-        """Put a brain in a body, and stand until the first scan came: there is no map before."""
+        """Put a brain in a body, and stand until the first scan came: there is no map before.
+
+        Raises RoombaError when there is none after a minute of ticks.
+        """
         self.body, self.brain, self.robot = body, brain, robot
         self.rows: list[NDArray[np.float64]] = []
         self._way, self._last = 0.0, Pose()
         self._sense()
-        while not self.brain.is_ready:
+        for _ in range(_FIRST_MAP):
+            if self.brain.is_ready:
+                return
             self.body.act(self.brain.decide())
             self._sense()
             self.rows.append(self.row())
+        raise RoombaError(
+            self.body.trouble
+            or "expected a scan that a map can begin with, got none: put the robot on its station, "
+            "with room before it, and see whether its lidar turns"
+        )
 
     # ---------------------------------------------------------------- time
 

@@ -43,7 +43,7 @@ MENTIONED = {"import valetudo", "map --bag", "emulate"}
 """What the text names without the rest of the line."""
 SUITES = {
     *("lint", "unit", "conformance", "safety", "web", "contract", "ros", "system", "missions"),
-    *("install", "mutants", "ha", "campaigns"),
+    *("install", "mutants", "ha", "campaigns", "realtime"),
 }
 
 

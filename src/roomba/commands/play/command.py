@@ -1,43 +1,82 @@
-"""``roomba play``: the page over a robot that lives in a simulated home, without ROS."""
+"""``roomba play``: the page over a robot that lives in a simulated home, or over one's own."""
 
 from __future__ import annotations
 
 import argparse
+import contextlib
 import shlex
+import signal
+import socket
 import sys
 from pathlib import Path
 from typing import Final
 
 from roomba.commands.play.living import add_robot_options, wanted_robot
+from roomba.commands.play.owned import add_line_options, owned_life, require_fitting
 from roomba.commands.play.serving import add_page_options, listen_at, serve_page
 from roomba.commands.spelling import spelled
 from roomba.configuration.frozen import load_config
 from roomba.configuration.household import HouseholdConfig
 from roomba.errors import RoombaError
 from roomba.files.shipped import CONFIGURATION
+from roomba.headless.live.client import LiveClient
 from roomba.history.database import History
 from roomba.history.folder import history_folder
 from roomba.history.recorder import HistoryKeeper
 from roomba.history.run import RunSource
 from roomba.household.folder import household_folder
 from roomba.household.household import LiveHousehold
-from roomba.ui.smart_home.switch import switched_on
+from roomba.ui.smart_home.switch import Switched, switched_on
 
 PROGRAM: Final = spelled("play")
 
 
 def main(arguments: list[str] | None = None) -> int:
     """Let a robot live until Ctrl-C; returns 0, or 2 for wrong usage."""
-    wanted = _parser().parse_args(arguments)
-    try:
+    parser = _parser()
+    wanted = parser.parse_args(arguments)
+    require_fitting(parser, wanted)
+    with contextlib.ExitStack() as until_end:
+        try:
+            client, source, told = _robot(wanted, until_end, _repeat(arguments))
+            file = wanted.smart_home
+            smart_home = None if file is None else switched_on(client, file, _warn)
+            bound = listen_at(wanted)
+        except RoombaError as error:
+            print(f"{PROGRAM}: {error}", file=sys.stderr)
+            return 2
+        except KeyboardInterrupt:
+            return 0
+        _live(wanted, client, bound, source, told, smart_home)
+    return 0
+
+
+def _robot(
+    wanted: argparse.Namespace, until_end: contextlib.ExitStack, repeat: str
+) -> tuple[LiveClient, RunSource, str]:
+    """Return the robot, whose life it is, and what is told of it; raises RoombaError."""
+    if wanted.robot is None:
         client = wanted_robot(wanted)
-        file = wanted.smart_home
-        smart_home = None if file is None else switched_on(client, file, _warn)
-        bound = listen_at(wanted)
-    except RoombaError as error:
-        print(f"{PROGRAM}: {error}", file=sys.stderr)
-        return 2
-    source = RunSource("play", wanted.home, wanted.seed, _repeat(arguments))
+        until_end.callback(client.end)
+        source = RunSource("play", wanted.home, wanted.seed, repeat)
+        return client, source, f"The robot lives in {wanted.home!r}. Its page:"
+    # It is given back however the program is told to end.
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    life = owned_life(wanted, _warn)
+    until_end.callback(life.end)
+    source = RunSource("play", wanted.robot, None, repeat)
+    return life.client, source, f"Your {wanted.robot} on {wanted.line} is taken over. Its page:"
+
+
+def _live(
+    wanted: argparse.Namespace,
+    client: LiveClient,
+    bound: socket.socket,
+    source: RunSource,
+    told: str,
+    smart_home: Switched | None,
+) -> None:
+    """Let the robot live, with its household, history and page, until Ctrl-C."""
     keeper = HistoryKeeper(History(history_folder()), source, _warn)
     household = LiveHousehold(
         client,
@@ -50,7 +89,6 @@ def main(arguments: list[str] | None = None) -> int:
     client.start()
     household.start()
     try:
-        told = f"The robot lives in {wanted.home!r}. Its page:"
         serve_page(
             client,
             bound,
@@ -62,8 +100,6 @@ def main(arguments: list[str] | None = None) -> int:
         )
     finally:
         household.stop()
-        client.end()
-    return 0
 
 
 def _repeat(arguments: list[str] | None) -> str:
@@ -77,11 +113,13 @@ def _warn(text: str) -> None:
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog=PROGRAM,
-        description="A robot in a simulated home, without ROS: seen and commanded on a page, whose "
-        "address is printed. Its runs are kept (./roomba report).",
+        description="A robot in a simulated home, or one that you own on its line, without ROS: "
+        "seen and commanded on a page, whose address is printed. Its runs are kept (./roomba "
+        "report), and the map that a robot of yours made.",
         epilog="Exit status: 0 after Ctrl-C, 2 for wrong usage.",
     )
     add_robot_options(parser)
+    add_line_options(parser)
     add_page_options(parser)
     parser.add_argument(
         "--smart-home",

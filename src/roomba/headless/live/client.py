@@ -23,6 +23,7 @@ from roomba.headless.live.snapshots import ErrandsEnded, Snapshots
 from roomba.mission.cleaning.request import CleanRequest
 from roomba.mission.phases.machine import Event, Phase
 from roomba.perception.rooms.rooms import Rooms
+from roomba.perception.rooms.zones import Zones
 from roomba.vocabulary import CleanMode, FanLevel
 from roomba.world.simulator import Simulator
 
@@ -35,11 +36,17 @@ class LiveClient:
     """Observes and commands one live robot; its methods may be called from any thread."""
 
     def __init__(
-        self, live_home: LiveHome, robot: Embodied, rooms: Rooms | None, speed: float
+        self,
+        live_home: LiveHome,
+        robot: Embodied,
+        rooms: Rooms | None,
+        speed: float,
+        zones: Zones | None = None,
     ) -> None:
-        """Start nothing yet."""
+        """Start nothing yet; ``rooms`` and ``zones`` are those that the robot goes by."""
         self._live_home = live_home
-        self._snapshots = Snapshots(robot, FloorPlan(rooms), live_home)
+        plan = FloorPlan(rooms, Zones() if zones is None else zones)
+        self._snapshots = Snapshots(robot, plan, live_home)
         self._live = LiveRobot(robot, speed, self._observe)
         self._watchers: list[Watcher] = []
         body = robot.robot.body
@@ -61,6 +68,11 @@ class LiveClient:
         self._live.stop()
 
     # ---------------------------------------------------------------- what other clients need
+
+    @property
+    def plan(self) -> FloorPlan:
+        """The rooms and zones that the robot goes by."""
+        return self._snapshots.plan
 
     def watch(self, watcher: Watcher) -> None:
         """Let ``watcher`` be called in the robot's thread, after each frame and each command."""

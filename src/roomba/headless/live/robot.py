@@ -60,7 +60,8 @@ class LiveRobot:
     def stop(self) -> None:
         """End; returns when the last frame has passed."""
         self._ends.set()
-        self._thread.join(_ANSWER)
+        if self._thread.ident is not None:
+            self._thread.join(_ANSWER)
 
     def carry_out(
         self, command: Callable[[Embodied], _Answer], timeout: float = _ANSWER

@@ -64,7 +64,7 @@ def robot_view(
         doubt="" if estimate.knowledge is Knowledge.KNOWN else estimate.reason,
         speed=abs(now.twist.linear),
         dirt=now.in_bin,
-        held=robot.body.trouble or _held(mission),
+        held=_held(mission),
         vacuum=vacuum_snapshot(robot),
         scan=_NO_SCAN if scan is None else scan.lidar.view(scan.ranges).ends_at(pose),
         path=_path(robot),
@@ -77,7 +77,10 @@ def robot_view(
 
 
 def vacuum_snapshot(robot: Embodied) -> VacuumSnapshot:
-    """Return the state in the words of smart homes, and the progress of a clean."""
+    """Return the state in the words of smart homes, and the progress of a clean.
+
+    Its message is why the robot cannot be reached, or why it does not do what was asked.
+    """
     mission, cleaning = robot.mission, robot.mission.cleaning
     covered = wanted = fraction = 0.0
     if cleaning is not None:
@@ -89,7 +92,7 @@ def vacuum_snapshot(robot: Embodied) -> VacuumSnapshot:
     return VacuumSnapshot(
         VACUUM_STATES[phase],
         phase.value,
-        mission.message,
+        robot.body.trouble or mission.message,
         mission.context.room_at(pose.x, pose.y),
         covered,
         wanted,

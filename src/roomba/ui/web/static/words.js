@@ -4,6 +4,7 @@ const SOON = 90; // s
 const LATER = 7200; // s from which minutes do not matter
 const MOVES = 0.02; // m/s
 const FULL = 0.995; // of a battery
+const UNREACHED = /^the robot cannot be reached/; // a robot on a line
 
 /** Return the headline for a state. */
 export function headline(link, state) {
@@ -11,6 +12,7 @@ export function headline(link, state) {
   if (link === "gone") return "The robot does not answer";
   if (!state || link === "reconnecting") return "Connecting again …";
   if (state.replay) return `Recorded: ${headline(link, { ...state, replay: null })}`;
+  if (UNREACHED.test(state.vacuum.message)) return "Cannot reach the robot";
   const { vacuum } = state, room = vacuum.room ? ` · ${title(vacuum.room)}` : "";
   const togo = vacuum.seconds_to_go > 0 && vacuum.state === "cleaning" ? ` · ${duration(vacuum.seconds_to_go)} to go` : "";
   if (state.truth?.lifted) return "Lifted off the floor";

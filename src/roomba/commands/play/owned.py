@@ -1,0 +1,122 @@
+"""A robot that people own, on a line: its options, and its life from take-over to give-back."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable
+from typing import Final
+
+from roomba.commands.options import UsageError
+from roomba.commands.trials.runs import mission_config
+from roomba.configuration.docking import DockingConfig
+from roomba.configuration.frozen import load_config
+from roomba.configuration.mapping import MappingConfig
+from roomba.configuration.robot import RobotConfig
+from roomba.drivers.line_body import LineBody
+from roomba.drivers.robots.table import ROBOTS, OwnedRobot
+from roomba.files.shipped import CONFIGURATION
+from roomba.geometry import Pose
+from roomba.headless.embodied import Embodied
+from roomba.headless.live.client import LiveClient
+from roomba.headless.live.kept_home import KeptHome
+from roomba.headless.live.live_home import RealHome
+from roomba.robot.brain import Brain
+from roomba.storage.map_store import MapStore, StoredMap
+from roomba.storage.maps_folder import maps_folder
+
+_SIMULATED: Final = ("home", "seed", "speed", "bin", "wheels")
+"""Options of a robot in a simulated home alone."""
+NOT_DOCKED: Final = (
+    "it has no current from a station: where it stands now counts as its station's place"
+)
+ELSEWHERE: Final = "it did not begin on its station: it looks for its place when it is to drive"
+
+Tell = Callable[[str], object]
+
+
+def add_line_options(parser: argparse._ActionsContainer) -> None:
+    """Add which robot is at the end of which line."""
+    parser.add_argument(
+        "--robot",
+        choices=sorted(ROBOTS),
+        help="a robot that you own, in place of a simulated one (docs/real_robots.md): "
+        + ", ".join(robot.title for robot in ROBOTS.values()),
+    )
+    parser.add_argument(
+        "--line",
+        metavar="DEVICE",
+        help="the line that it is on, such as /dev/ttyACM0; --port is that of the page",
+    )
+
+
+def require_fitting(parser: argparse.ArgumentParser, wanted: argparse.Namespace) -> None:
+    """Leave with status 2 where options of an owned and of a simulated robot are mixed."""
+    if (wanted.robot is None) is not (wanted.line is None):
+        parser.error("expected --robot NAME and --line DEVICE together")
+    for name in _SIMULATED:
+        if wanted.robot is not None and getattr(wanted, name) != parser.get_default(name):
+            parser.error(f"--{name}: of a simulated robot, so not with --robot")
+
+
+class OwnedLife:
+    """A robot that people own, from taking it over to giving it back.
+
+    ``makes_map`` lets it forget the map that it made before. ``tell`` is told in sentences what a
+    person should know.
+    """
+
+    def __init__(self, kind: OwnedRobot, line: str, *, makes_map: bool, tell: Tell) -> None:
+        """Take the robot over; raises RoombaError with what to do, after giving it back."""
+        self._maps = KeptHome(MapStore(maps_folder(), tell), kind.name, tell)
+        config = kind.config()
+        stored = None if makes_map else self._maps.load()
+        self._body: LineBody = kind.body_on(line, config)
+        try:
+            self._body.start()
+            robot = Embodied(self._body, _brain(config, stored), config)
+            _tell_place(robot, tell)
+            home = RealHome(kind.name)
+            rooms, zones = (None, None) if stored is None else (stored.rooms, stored.zones)
+            self.client = LiveClient(home, robot, rooms, 1.0, zones)
+            self._maps.start(self.client)
+        except BaseException:
+            self._body.stop()
+            raise
+
+    def end(self) -> None:
+        """Let it stand, keep its map, and give it back."""
+        try:
+            self.client.end()
+            self._maps.stop()
+        finally:
+            self._body.stop()
+
+
+def _brain(config: RobotConfig, stored: StoredMap | None) -> Brain:
+    """Return the brain of a robot on the map that it made, or of one that makes it."""
+    mission = mission_config(config)
+    docking = load_config(DockingConfig, CONFIGURATION / "docking.yaml")
+    if stored is None:
+        mapping = load_config(MappingConfig, CONFIGURATION / "mapping.yaml")
+        return Brain(mapping, Pose(), config, mission, docking)
+    places = stored.occupancy, stored.station
+    return Brain(*places, config, mission, docking, rooms=stored.rooms, zones=stored.zones)
+
+
+def _tell_place(robot: Embodied, tell: Tell) -> None:
+    """Tell what follows where the robot does not begin on its station."""
+    if robot.now.battery.is_docked:
+        return
+    if robot.brain.localizer is None:
+        tell(NOT_DOCKED)
+    else:
+        robot.brain.localizer.forget("it did not begin on its station")
+        tell(ELSEWHERE)
+
+
+def owned_life(wanted: argparse.Namespace, tell: Tell) -> OwnedLife:
+    """Return the robot that :func:`add_line_options` asked for; raises RoombaError."""
+    if wanted.robot not in ROBOTS:
+        raise UsageError(f"--robot: expected one of {', '.join(sorted(ROBOTS))}")
+    kind = ROBOTS[wanted.robot]
+    return OwnedLife(kind, wanted.line, makes_map=wanted.map == "none", tell=tell)

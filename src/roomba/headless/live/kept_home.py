@@ -1,0 +1,86 @@
+"""The map that a live robot made, kept with its rooms and zones for the next time."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from typing import Final
+
+from roomba.headless.embodied import Embodied
+from roomba.headless.live.client import LiveClient
+from roomba.headless.live.floor_plan import FloorPlan
+from roomba.headless.live.snapshots import ErrandsEnded
+from roomba.storage.map_store import MapStore, MapStoreError, StoredMap
+
+_ENDING: Final = 10.0
+"""s of wall time for the last map to be written."""
+
+
+class KeptHome:
+    """A map by ``name`` in a store, with its rooms and zones.
+
+    ``tell`` is told in a sentence what the disk refuses. A thread of its own writes whenever the
+    whole map, its rooms or its zones changed.
+    """
+
+    def __init__(self, store: MapStore, name: str, tell: Callable[[str], object]) -> None:
+        """Touch nothing yet."""
+        self._store, self._name, self._tell = store, name, tell
+        self._kept: tuple[object, ...] = ()
+        self._changed = threading.Condition()
+        self._waiting: StoredMap | None = None
+        self._is_over = False
+        self._thread = threading.Thread(target=self._write, name="kept map", daemon=True)
+
+    def load(self) -> StoredMap | None:
+        """Return the map that was kept, None if there is none; raises MapStoreError."""
+        if self._name not in self._store.names():
+            return None
+        stored = self._store.load(self._name)
+        self._kept = stored.occupancy, stored.rooms, stored.zones
+        return stored
+
+    def start(self, client: LiveClient) -> None:
+        """Keep the map of a robot from now on."""
+        client.watch(lambda robot, ended: self._look(robot, client.plan, ended))
+        self._thread.start()
+
+    def stop(self) -> None:
+        """Return when what is to be kept is, or cannot be."""
+        with self._changed:
+            self._is_over = True
+            self._changed.notify_all()
+        if self._thread.ident is not None:
+            self._thread.join(_ENDING)
+
+    def _look(self, robot: Embodied, plan: FloorPlan, ended: ErrandsEnded) -> None:
+        """Let a map be written that is another one than before; in the robot's thread."""
+        context = robot.mission.context
+        if context.is_growing:
+            return
+        now = context.occupancy, plan.rooms, plan.zones
+        if len(self._kept) == len(now) and all(map(_is_same, self._kept, now)):
+            return
+        self._kept = now
+        rooms = plan.rooms
+        if rooms is not None and rooms.frame != context.occupancy.frame:
+            rooms = None
+        with self._changed:
+            self._waiting = StoredMap(context.occupancy, context.station, rooms, plan.zones)
+            self._changed.notify_all()
+
+    def _write(self) -> None:
+        while True:
+            with self._changed:
+                self._changed.wait_for(lambda: self._waiting is not None or self._is_over)
+                stored, self._waiting = self._waiting, None
+            if stored is None:
+                return
+            try:
+                self._store.save(self._name, stored)
+            except (MapStoreError, OSError) as error:
+                self._tell(f"the map is not kept: {error}")
+
+
+def _is_same(one: object, other: object) -> bool:
+    return one is other
