@@ -101,11 +101,9 @@ TIMED = (
     "system/faults/test_refused_messages.py",
     "system/faults/test_standstill.py",
     "system/faults/test_supervision.py",
+    "system/owned",
     "system/test_create2_line.py",
     "system/test_foreign_robot.py",
-    "system/test_line_faults.py",
-    "system/test_neato_line.py",
-    "system/test_owned_robot.py",
 )
 """Folders and files that assert promises of tenths of a second, or of a few seconds, of wall time,
 or play a bag faster than it was recorded: nothing computes beside them."""

@@ -28,6 +28,7 @@ NODE = "a part of a node, tested with the node in a graph"
 WARM = "compiles ahead of time what others test"
 
 TESTED_BY: dict[str, tuple[str, str]] = {
+    "roomba_ros/driver/told_topics": ("ros/test_roomba_driver_node.py", NODE),
     "roomba_ros/plain/details": ("ros/rosbridge/test_programs.py", NODE),
     "roomba_ros/rosbridge/": ("ros/rosbridge/test_bridge.py", NODE),
     "roomba/client/events": ("unit/ui/web/streams/test_events.py", "kept and streamed there"),
@@ -73,9 +74,12 @@ TESTED_BY: dict[str, tuple[str, str]] = {
     "roomba/configuration/": ("unit/configuration/test_robot.py", "numbers with their limits"),
     "roomba/control/tracking_kernels": ("unit/control/test_path_tracker.py", PART),
     "roomba/errors": ("unit/world/test_simulator.py", VALUES),
-    "roomba/drivers/driver": ("system/test_line_faults.py", "an interface"),
-    "roomba/drivers/line_body": ("system/test_line_faults.py", "in real time"),
-    "roomba/drivers/reopened_line": ("system/test_line_faults.py", "unplugged and plugged in"),
+    "roomba/drivers/driver": ("system/owned/test_line_faults.py", "an interface"),
+    "roomba/drivers/line_body": ("system/owned/test_line_faults.py", "in real time"),
+    "roomba/drivers/reopened_line": (
+        "system/owned/test_line_faults.py",
+        "unplugged, plugged in",
+    ),
     "roomba/drivers/line": ("unit/drivers/neato/test_body.py", "a line needs both of its ends"),
     "roomba/emulators/create2/sensing": ("unit/emulators/create2/test_robot.py", PART),
     "roomba/emulators/create2/server": ("unit/drivers/create2/test_body.py", "as the line"),
@@ -94,7 +98,7 @@ TESTED_BY: dict[str, tuple[str, str]] = {
     "roomba/headless/embodied": ("unit/headless/test_cleaner.py", "what a simulated robot is, too"),
     "roomba/headless/live/live_home": ("unit/headless/live/test_playing.py", LIVE),
     "roomba/headless/live/errands": ("unit/headless/live/test_robot_client.py", LIVE),
-    "roomba/headless/live/kept_home": ("system/test_owned_robot.py", LIVE),
+    "roomba/headless/live/kept_home": ("system/owned/test_owned_robot.py", LIVE),
     "roomba/headless/live/camera": ("unit/headless/live/test_client.py", LIVE),
     "roomba/headless/live/floor_plan": ("unit/headless/live/test_client.py", LIVE),
     "roomba/headless/live/snapshots": ("unit/headless/live/test_client.py", LIVE),
@@ -207,7 +211,7 @@ TESTED_BY: dict[str, tuple[str, str]] = {
     "roomba/plots/": ("unit/plots/test_home.py", "a drawing of a home is made of them"),
     "roomba/recordings/": ("unit/recordings/test_drive.py", "read with all others as one drive"),
     "roomba/robot/": ("unit/robot/test_parts.py", "the parts of one robot"),
-    "roomba/storage/maps_folder": ("system/test_owned_robot.py", VALUES),
+    "roomba/storage/maps_folder": ("system/owned/test_owned_robot.py", VALUES),
     "roomba/storage/map_bound": ("unit/storage/test_rooms.py", "a base of what it stores"),
     "roomba/ui/errand_progress": ("unit/ui/test_cleaning.py", "shown by the menu for cleaning"),
     "roomba/ui/state_words": ("unit/commands/status/test_command.py", "told by the command"),

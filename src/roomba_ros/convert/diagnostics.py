@@ -42,3 +42,14 @@ def processes_message(now: float, trouble: Mapping[str, str]) -> DiagnosticArray
             for name, said in sorted(trouble.items())
         ],
     )
+
+
+def line_message(now: float, trouble: str, robot: str) -> DiagnosticArray:
+    """Return how the line of a robot that people own is; ``trouble`` is empty while it is well."""
+    status = DiagnosticStatus(
+        level=DiagnosticStatus.ERROR if trouble else DiagnosticStatus.OK,
+        name=f"{robot}: line",
+        message=trouble or "the robot answers",
+        hardware_id=robot,
+    )
+    return DiagnosticArray(header(now, ""), [status])

@@ -186,6 +186,12 @@ def beams_of(code: int) -> StationBeams:
     return StationBeams(bool(code & _HALO), bool(code & _GREEN), bool(code & _RED))
 
 
+def code_of_beams(beams: StationBeams) -> int:
+    """Return the code that stands for beams, as Create 2 codes them; 0 for none."""
+    seen = beams.halo * _HALO + beams.green * _GREEN + beams.red * _RED
+    return _BEAMS + seen if seen else 0
+
+
 def outlines_of(message: RoomArray) -> RoomOutlines:
     """Return the names and outlines of rooms, m; raises MessageError for a broken outline."""
     return tuple((room.name, _outline_of(room)) for room in message.rooms)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import math
 from collections.abc import Iterable
 
 import numpy as np
@@ -35,11 +36,14 @@ from roomba.configuration.body import BatteryConfig
 from roomba.configuration.sensors import CameraConfig, LidarConfig
 from roomba.configuration.simulation import SimulatedGyro
 from roomba.grid import GridFrame, OccupancyMap
+from roomba.mission.inputs.senses import Battery
+from roomba.robot.readings import CliffReading, Readings
 from roomba.world.health import PartHealth
 from roomba.world.power import BatteryState
 from roomba.world.simulator import Bumper, Cliff, Observation, Wheels
 from roomba.world.truth import DoorNow, HomeNow
 from roomba_ros.convert.common import header, map_message
+from roomba_ros.convert.readings import Sides
 
 WHEEL_JOINTS = ("wheel_left_joint", "wheel_right_joint")
 _JPEG_QUALITY = 85
@@ -121,26 +125,59 @@ def battery_message(now: float, battery: BatteryState, config: BatteryConfig) ->
     )
 
 
-def bumper_message(now: float, bumper: Bumper, frame_id: str) -> BumperMessage:
+def told_battery_message(now: float, battery: Battery, config: BatteryConfig) -> BatteryMessage:
+    """Return a battery of which a robot tells its level, and whether current comes in, alone."""
+    whole = config.capacity / config.nominal_voltage
+    status = BatteryMessage.POWER_SUPPLY_STATUS_DISCHARGING
+    if battery.is_docked:
+        status = BatteryMessage.POWER_SUPPLY_STATUS_CHARGING
+        if battery.level >= 1.0:
+            status = BatteryMessage.POWER_SUPPLY_STATUS_FULL
+    return BatteryMessage(
+        header=header(now, ""),
+        voltage=math.nan,
+        temperature=math.nan,
+        current=math.nan,
+        charge=battery.level * whole,
+        capacity=whole,
+        design_capacity=whole,
+        percentage=battery.level,
+        power_supply_status=status,
+        power_supply_technology=BatteryMessage.POWER_SUPPLY_TECHNOLOGY_LION,
+        present=True,
+    )
+
+
+def bumper_message(now: float, bumper: Bumper | Sides, frame_id: str) -> BumperMessage:
     """Return the state of the bumper's halves."""
     return BumperMessage(header(now, frame_id), bumper.left, bumper.right)
 
 
-def cliff_message(now: float, cliff: Cliff, frame_id: str) -> CliffMessage:
+def cliff_message(now: float, cliff: Cliff | CliffReading, frame_id: str) -> CliffMessage:
     """Return which cliff sensors see no floor."""
     return CliffMessage(
         header(now, frame_id), cliff.left, cliff.front_left, cliff.front_right, cliff.right
     )
 
 
-def wheel_drop_message(now: float, wheels: Wheels, frame_id: str) -> WheelDrop:
+def wheel_drop_message(now: float, wheels: Wheels | Readings, frame_id: str) -> WheelDrop:
     """Return which wheels hang in the air."""
     return WheelDrop(header(now, frame_id), wheels.dropped_left, wheels.dropped_right)
 
 
-def dock_message(now: float, seen: Observation, frame_id: str) -> DockStatus:
+def dock_message(now: float, frame_id: str, *, is_seen: bool, is_docked: bool) -> DockStatus:
     """Return whether the station is seen, and whether the contacts touch."""
-    return DockStatus(header(now, frame_id), bool(seen.infrared), seen.battery.is_docked)
+    return DockStatus(header(now, frame_id), is_seen, is_docked)
+
+
+def told_hazards_of(told: Readings) -> tuple[int, ...]:
+    """Return the types of HazardDetection that hold by what a robot tells."""
+    found = (
+        (HazardDetection.BUMP, told.bumps),
+        (HazardDetection.CLIFF, told.cliff.any),
+        (HazardDetection.WHEEL_DROP, told.dropped_left or told.dropped_right),
+    )
+    return tuple(kind for kind, holds in found if holds)
 
 
 def hazards_of(seen: Observation) -> tuple[int, ...]:

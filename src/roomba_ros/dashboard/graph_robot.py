@@ -138,7 +138,7 @@ class GraphRobot(GraphMaps):
         return view.RobotView(
             time=rospy.get_time(),
             pose=(pose.x, pose.y, pose.theta),
-            doubt=self._topics.trouble or self._topics.doubt,
+            doubt=self._topics.unreached or self._topics.trouble or self._topics.doubt,
             speed=self._topics.speed,
             dirt=self._topics.in_bin,
             held=self._topics.held,

@@ -82,7 +82,7 @@ class PageTopics:
 
     Subscribes: ``pose``, ``localization``, ``speed``, ``bin_level``, ``battery_state``,
     ``emergency_stop``, ``scan``, ``plan``, ``map``, ``coverage_map``, ``dirt_map``, ``rooms``,
-    ``zones``, ``station_pose``, ``trouble``, ``map/update``, ``clean/result``,
+    ``zones``, ``station_pose``, ``trouble``, ``line_trouble``, ``map/update``, ``clean/result``,
     ``explore/result``, ``/tf_static``; of a simulation also ``sim/pose``, ``sim/home`` and
     ``sim/dirt``.
     """
@@ -102,7 +102,7 @@ class PageTopics:
             0, "home", (0.0, 0.0, 0.0), (), (), (), config.body.radius, config.brush.width
         )
         self._layers: dict[LayerName, GridLayer] = {}
-        self.doubt, self.held, self.trouble = "", "", ""
+        self.doubt, self.held, self.trouble, self.unreached = "", "", "", ""
         self.last: CleanReport | None = None
         self.speed, self.in_bin, self.battery_seconds = 0.0, 0.0, math.nan
         self.charges = False
@@ -122,6 +122,7 @@ class PageTopics:
         subscribe("battery_state", BatteryState, charges_of, charges, senders=_one())
         drive, supervisor = OnlyFrom(SPEED_NODE), OnlyFrom(SUPERVISOR)
         subscribe("trouble", String, data_of, partial(self._set, "trouble"), senders=supervisor)
+        subscribe("line_trouble", String, data_of, partial(self._set, "unreached"))
         subscribe("emergency_stop", String, data_of, partial(self._set, "held"), senders=drive)
         subscribe("scan", LaserScan, self._decoder.decode, self._on_scan)
         subscribe("plan", Path, shown_path_of, self._on_path)

@@ -29,7 +29,10 @@ class FloorSearch:
         """Begin at ``now``, s of the ROS clock; after ``longest`` s it is a new floor."""
         self.floors = floors
         self._place, self._since, self._longest = place, now, longest
-        known = {name: FloorRecord(each.occupancy, each.station) for name, each in floors.items()}
+        known = {
+            name: FloorRecord(each.occupancy, config.body.docked_at(each.station))
+            for name, each in floors.items()
+        }
         self._recognition = FloorRecognition(
             known, config.localization, expected, config.body.radius
         )

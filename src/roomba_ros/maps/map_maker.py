@@ -25,7 +25,8 @@ from roomba_ros.runtime.background import Background
 class MapMaker:
     """Begins a map where the robot stands, lets it grow, and makes it whole.
 
-    ``station`` is where the robot stood on its station, map frame, once it did; ``is_docked`` is
+    ``station`` is where the station is, looking into it, map frame, once the robot stood on it;
+    ``is_docked`` is
     whether it does now, as the last :meth:`note_station` said. ``has_dock`` is whether the robot
     ever told of a dock: the station of one that does not is where its map began.
     """
@@ -78,7 +79,7 @@ class MapMaker:
         config = self._config
         here = self._place.place_heard_from
         if kept.station is not None and self.is_docked:
-            here = kept.station
+            here = config.body.docked_at(kept.station)
         self._map_with(
             Mapper.taken_up(self._mapping, config.localization, config.gyro, kept.state, here)
         )
@@ -93,12 +94,11 @@ class MapMaker:
         if mapper is None or not (is_docked and mapper.version):
             return False
         if self.station is None:
-            self.station = mapper.pose
-            self._station_from_start = mapper.start.inverse().compose(mapper.pose)
+            self._remember_station(mapper, mapper.pose)
             return True
         if mapper.estimate.knowledge is Knowledge.LOST and not self._finishes:
             # It was carried home.
-            mapper.told(self.station)
+            mapper.told(self._config.body.docked_at(self.station))
         return False
 
     def keep(self, now: float) -> None:
@@ -126,7 +126,7 @@ class MapMaker:
             return
         self._finishes = True
         if self.station is None and not self.has_dock:
-            self.station, self._station_from_start = mapper.start, Pose()
+            self._remember_station(mapper, mapper.start)
         # Its place is told on, by the wheels, but nothing is added any more.
         self._place.is_mapping_held = True
         self._background.do("the map does not become whole", lambda: self._finish(mapper))
@@ -146,6 +146,11 @@ class MapMaker:
         self._mapper = self._drawing = None
         self._finishes = False
         return whole
+
+    def _remember_station(self, mapper: Mapper, docked: Pose) -> None:
+        """Remember the station of a robot that stands, or stood, docked at a pose, map frame."""
+        self.station = self._config.body.docked_at(docked)
+        self._station_from_start = mapper.start.inverse().compose(self.station)
 
     def _map_with(self, mapper: Mapper) -> None:
         self._mapper = mapper

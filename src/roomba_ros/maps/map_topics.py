@@ -35,7 +35,8 @@ class MapTopics:
     Publishes: what :class:`OwnMap` tells (the map 1 Hz while it grows), and :class:`ChangeTopics`.
     Subscribes: ``dock_status``, and what :class:`OwnMap` hears.
     Services: those of :class:`MapServices`.
-    Parameters: ``~map`` (given, none, own, or the name of a saved map), ``mapping_config``, and
+    Parameters: ``~map`` (given, none, own, or the name of a saved map), ``map_is_given``
+    (false: given means own, as in a real home), ``mapping_config``, and
     those of :class:`MapShelf`.
     """
 
@@ -71,6 +72,8 @@ class MapTopics:
             raise ConfigError(
                 f"parameter ~map: expected given, none, own or a name, got {self._wish!r}"
             )
+        if self._wish == GIVEN and not rospy.get_param("map_is_given", True):
+            self._wish = OWN
         self._shelf.start()
         self._changes.start()
         self._memory.start(self._shelf.folder)

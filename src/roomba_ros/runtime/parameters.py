@@ -38,7 +38,10 @@ def read_seed_parameters() -> SeedParameters:
 
 
 def read_robot_config() -> RobotConfig:
-    """Return the configuration named by the parameter ``robot_config``, or the shipped one."""
+    """Return the configuration named by the parameter ``robot_config``, or the shipped one.
+
+    It is a path, or the name of a robot in ``data/configuration/robots``.
+    """
     return load_robot_config(_configuration_file("robot"))
 
 
@@ -79,14 +82,22 @@ def read_thing_config() -> ThingConfig:
 def read_mission_config(robot: RobotConfig) -> MissionConfig:
     """Return the configuration named by the parameter ``mission_config``, or the shipped one.
 
-    Raises ConfigError, also for speeds that the robot cannot do.
+    The shipped one is slowed for a robot that is slower; with one that is named ConfigError is
+    raised for speeds that the robot cannot do.
     """
-    return load_mission_config(_configuration_file("mission"), robot.body)
+    if rospy.search_param("mission_config"):
+        return load_mission_config(_configuration_file("mission"), robot.body)
+    return load_config(MissionConfig, _configuration_file("mission")).slowed_for(robot.body)
 
 
 def _configuration_file(part: str) -> Path:
+    """Return the file of a part; its parameter may also be the name of a shipped robot."""
     key = rospy.search_param(f"{part}_config")
-    return Path(rospy.get_param(key)) if key else CONFIGURATION / f"{part}.yaml"
+    if not key:
+        return CONFIGURATION / f"{part}.yaml"
+    named = str(rospy.get_param(key))
+    shipped = CONFIGURATION / "robots" / f"{named}.yaml"
+    return shipped if named.isidentifier() and shipped.is_file() else Path(named)
 
 
 def folder_of(parameter: str, name: str) -> Path:

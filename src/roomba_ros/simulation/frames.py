@@ -7,7 +7,7 @@ from typing import Final
 
 from geometry_msgs.msg import TransformStamped
 
-from roomba.configuration.simulation import SimulatedRobotConfig
+from roomba.configuration.robot import RobotConfig
 from roomba_ros.convert.common import mount_message
 from roomba_ros.convert.sensors import WHEEL_JOINTS
 from roomba_ros.runtime.node import frame_id
@@ -23,7 +23,7 @@ _OPTICAL: Final = (-0.5 * math.pi, 0.0, -0.5 * math.pi)
 class BodyFrames:
     """The frames of the model (``data/model``) below ``base_link``, as transforms."""
 
-    def __init__(self, config: SimulatedRobotConfig) -> None:
+    def __init__(self, config: RobotConfig) -> None:
         """Take the numbers of a body."""
         self._config = config
         self._base = frame_id("base_link")

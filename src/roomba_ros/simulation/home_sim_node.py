@@ -15,6 +15,7 @@ from std_msgs.msg import Float32, Time
 from tf2_msgs.msg import TFMessage
 
 from roomba.clock import ClockJumps
+from roomba.configuration.body import BodyConfig
 from roomba.configuration.seed import SeedParameters
 from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.errors import ConfigError, RoombaError
@@ -191,7 +192,7 @@ class HomeSimNode:
                 f"parameter ~seed: expected a whole number of 0 or more, got {seed!r}"
             )
         parameters = self._parameters.values
-        start = _start_pose(home, parameters)
+        start = _start_pose(home, self._config.body, parameters)
         simulator = Simulator(
             home, self._config, seed=seed, max_speed=parameters.robot_max_speed, start=start
         )
@@ -290,11 +291,11 @@ def _speed_parameter() -> float:
     return float(speed)
 
 
-def _start_pose(home: Home, parameters: SeedParameters) -> Pose:
+def _start_pose(home: Home, body: BodyConfig, parameters: SeedParameters) -> Pose:
     """Return where the robot starts; (0, 0), the parameters' default, means at the station."""
     x, y = parameters.initial_post_x, parameters.initial_post_y
     if (x, y) == (0.0, 0.0):
-        return home.station
+        return body.docked_at(home.station)
     return Pose(x, y, parameters.initial_post_theta)
 
 

@@ -124,7 +124,9 @@ class SensorTopics:
                 "dock_status",
                 DockStatus,
                 20,
-                lambda now, seen: dock_message(now, seen, base),
+                lambda now, seen: dock_message(
+                    now, base, is_seen=bool(seen.infrared), is_docked=seen.battery.is_docked
+                ),
                 lambda seen: (bool(seen.infrared), seen.battery.is_docked),
             ),
             _topic(

@@ -69,9 +69,18 @@ def check_arguments(path: Path, arguments: Sequence[str]) -> None:
         name, sign, _ = argument.partition(":=")
         if not sign or not name:
             raise RoombaError(f"expected arguments like home:=flat, got {argument!r}")
+        if name == "robot":
+            _check_body(path, argument.partition(":=")[2])
         # Two underscores: a remapping of ROS, such as __name.
         if name not in known and not name.startswith("__"):
             raise RoombaError(f"expected a known argument, got {name!r}; {suggestion(name, known)}")
+
+
+def _check_body(path: Path, body: str) -> None:
+    """Raise RoombaError for a robot without a file in the folder ``bodies``."""
+    known = sorted(file.stem for file in (path.parent / "bodies").glob("*.launch"))
+    if body not in known:
+        raise RoombaError(f"robot: expected one of {', '.join(known)}, got {body!r}")
 
 
 def read_launch(path: Path, arguments: Sequence[str]) -> Launch:

@@ -23,6 +23,9 @@ def test_it_has_the_nodes_of_the_graph_and_the_body_is_required() -> None:
     assert launch.parameters["/robot_max_speed"] == 0.5
     assert launch.parameters["/use_sim_time"] is True
     assert environment_of(LAUNCH)["MALLOC_ARENA_MAX"] == "1"
+    assert launch.parameters["/position_pub_node/map"] == "given"
+    assert launch.parameters["/position_pub_node/calibration"] == "roomba_robot_0"
+    assert "/robot_config" not in launch.parameters
     json.dumps(launch.parameters)
 
 
@@ -31,6 +34,21 @@ def test_its_arguments_count() -> None:
     assert "dashboard_node" not in {entry.name for entry in launch.processes}
     assert launch.parameters["/home_sim_node/home"] == "studio"
     assert launch.parameters["/robot_max_speed"] == 0.25
+
+
+def test_a_robot_that_one_owns_takes_the_place_of_the_simulation() -> None:
+    launch = read_launch(LAUNCH, ["robot:=neato", "port:=/dev/ttyACM0"])
+    names = {entry.name for entry in launch.processes}
+    simulated = {"home_sim_node", "dirt_pub_node", "turn_camera_service_node"}
+    assert names == (set(WITH_PAGE) - simulated) | {"roomba_driver_node"}
+    assert [entry.name for entry in launch.processes if entry.is_required] == ["roomba_driver_node"]
+    assert launch.parameters["/use_sim_time"] is False
+    assert launch.parameters["/robot_config"] == "neato"
+    assert launch.parameters["/roomba_driver_node/port"] == "/dev/ttyACM0"
+    assert launch.parameters["/map_is_given"] is False
+    assert launch.parameters["/dashboard_node/home"] == "neato"
+    assert "/dashboard_node/seed" not in launch.parameters
+    assert launch.parameters["/position_pub_node/calibration"] == "roomba_robot_neato"
 
 
 def test_programs_of_other_packages_are_found_or_named(tmp_path: Path) -> None:
@@ -58,6 +76,7 @@ def test_its_arguments_are_described() -> None:
     [
         ("hme:=flat", "got 'hme'; did you mean 'home'"),
         ("nosucharg:=1", "got 'nosucharg'; known are: clock, home"),
+        ("robot:=toaster", "robot: expected one of neato, simulated, got 'toaster'"),
         ("flat", "expected arguments like home:=flat, got 'flat'"),
         (":=flat", "expected arguments like home:=flat, got ':=flat'"),
         ("--speed=5", "expected arguments like home:=flat"),

@@ -7,7 +7,7 @@ import pytest
 ROOT = Path(__file__).parents[3]
 
 
-@pytest.mark.parametrize("path", sorted((ROOT / "launch").glob("*.launch")), ids=lambda p: p.name)
+@pytest.mark.parametrize("path", sorted((ROOT / "launch").rglob("*.launch")), ids=lambda p: p.name)
 def test_it_evaluates_nothing(path: Path) -> None:
     text = path.read_text(encoding="utf-8")
     assert "<launch>" in text

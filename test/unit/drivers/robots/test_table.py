@@ -19,6 +19,11 @@ def test_each_has_numbers_that_the_mission_can_go_by(robot: OwnedRobot) -> None:
     assert config != type(config)()
 
 
+def test_each_has_a_launch_file_and_there_is_none_without_a_robot() -> None:
+    bodies = Path(__file__).parents[4] / "launch" / "bodies"
+    assert {file.stem for file in bodies.glob("*.launch")} == {"simulated", *ROBOTS}
+
+
 @pytest.mark.parametrize("robot", ROBOTS.values(), ids=ROBOTS)
 def test_a_silent_line_is_told_by_each_driver(robot: OwnedRobot) -> None:
     terminal = PseudoTerminal()

@@ -12,7 +12,7 @@ export function headline(link, state) {
   if (link === "gone") return "The robot does not answer";
   if (!state || link === "reconnecting") return "Connecting again …";
   if (state.replay) return `Recorded: ${headline(link, { ...state, replay: null })}`;
-  if (UNREACHED.test(state.vacuum.message)) return "Cannot reach the robot";
+  if (UNREACHED.test(state.vacuum.message) || UNREACHED.test(state.doubt)) return "Cannot reach the robot";
   const { vacuum } = state, room = vacuum.room ? ` · ${title(vacuum.room)}` : "";
   const togo = vacuum.seconds_to_go > 0 && vacuum.state === "cleaning" ? ` · ${duration(vacuum.seconds_to_go)} to go` : "";
   if (state.truth?.lifted) return "Lifted off the floor";
