@@ -98,7 +98,6 @@ TESTED_BY: dict[str, tuple[str, str]] = {
     "roomba/headless/embodied": ("unit/headless/test_cleaner.py", "what a simulated robot is, too"),
     "roomba/headless/live/live_home": ("unit/headless/live/test_playing.py", LIVE),
     "roomba/headless/live/errands": ("unit/headless/live/test_robot_client.py", LIVE),
-    "roomba/headless/live/kept_home": ("system/owned/test_owned_robot.py", LIVE),
     "roomba/headless/live/camera": ("unit/headless/live/test_client.py", LIVE),
     "roomba/headless/live/floor_plan": ("unit/headless/live/test_client.py", LIVE),
     "roomba/headless/live/snapshots": ("unit/headless/live/test_client.py", LIVE),

@@ -3,21 +3,28 @@
 from __future__ import annotations
 
 import math
+import os
+import signal
+import sys
 import threading
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 from fixtures.faulty_end import FaultyEnd
+from fixtures.processes import Program
 from fixtures.robots.neato_rig import NeatoEnd, neato_world
 from fixtures.waiting import wait_until
 
+from roomba.client.protocol import RequestRefusedError
 from roomba.client.view import CleanOrder, LayerName
 from roomba.commands.play.command import main
 from roomba.commands.play.owned import NOT_DOCKED, OwnedLife
+from roomba.commands.trials.homes import rooms_of
 from roomba.drivers.robots.table import ROBOTS
 from roomba.geometry import Pose
 from roomba.headless.live.client import LiveClient
+from roomba.storage.map_store import MapStore, StoredMap
 
 DEADLINE = 20.0
 """s of wall time."""
@@ -99,6 +106,41 @@ def test_off_its_station_it_says_what_follows(neato: NeatoEnd, tmp_path: Path) -
     life = OwnedLife(ROBOTS["neato"], str(tmp_path / "neato"), makes_map=False, tell=told.append)
     life.end()
     assert told == [NOT_DOCKED]
+
+
+def test_it_goes_by_the_map_that_it_kept(neato: NeatoEnd, tmp_path: Path) -> None:
+    home, kind = neato.simulator.home, ROBOTS["neato"]
+    MapStore(tmp_path / "maps").save(kind.name, StoredMap(home.map, home.station, rooms_of(home)))
+    line = str(tmp_path / "neato")
+    life = OwnedLife(kind, line, makes_map=False, tell=print)
+    life.client.start()
+    try:
+        assert life.client.home().rooms
+        true = neato.simulator.pose
+        assert life.client.robot().pose == pytest.approx((true.x, true.y, true.theta), abs=0.05)
+        with pytest.raises(RequestRefusedError, match="--map none"):
+            life.client.explore()
+    finally:
+        life.end()
+    other = OwnedLife(kind, line, makes_map=True, tell=print)
+    assert other.client.plan.rooms is None
+    other.end()
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_the_command_gives_it_back_however_it_is_ended(
+    neato: NeatoEnd, tmp_path: Path, number: signal.Signals
+) -> None:
+    arguments = ("--robot", "neato", "--line", str(tmp_path / "neato"))
+    command = (sys.executable, "-m", "roomba.commands.play", *arguments, "--port", "0", "--no-open")
+    program = Program(command, os.environ, tmp_path / "log")
+    wait_until(lambda: "Ctrl-C ends it" in program.output, 60.0, lambda: program.output)
+    assert neato.robot.is_testing
+    program.send(number)
+    assert program.ends(30.0) == 0
+    assert not neato.robot.is_testing
+    assert not neato.robot.is_turning
+    assert "Traceback" not in program.output
 
 
 def test_a_wrong_line_is_told_with_what_helps(
