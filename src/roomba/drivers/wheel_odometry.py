@@ -54,19 +54,14 @@ class WheelOdometry:
         while len(self._told) > 1:
             self._told.popleft()
 
-    def at(self, now: float, moves_until: float) -> tuple[Pose, Twist]:
-        """Return where the robot is ``now``, s, and how it moves, m/s and rad/s.
+    @property
+    def told_at(self) -> float:
+        """When the wheels were told last, s; NaN before that."""
+        return self._told[-1].at if self._told else math.nan
 
-        Since it was told it is taken to move on as before, but not after ``moves_until``, s.
-        """
-        if not self._told:
-            return self._pose, STANDSTILL
-        since = min(now, moves_until) - self._told[-1].at
-        if since <= 0.0:
-            return self._pose, self._twist
-        half = 0.5 * self._track * self._twist.angular
-        left, right = self._twist.linear - half, self._twist.linear + half
-        return self._pose.compose(self._arc(left * since, right * since)), self._twist
+    def after(self, left: float, right: float) -> Pose:
+        """Return where the robot is if its wheels rolled on so far since they were told, m."""
+        return self._pose.compose(self._arc(left, right))
 
     @property
     def twist(self) -> Twist:

@@ -32,30 +32,25 @@ def test_it_is_on_the_arc_between_the_times_that_wheels_are_told(
     linear: float, angular: float
 ) -> None:
     odometry, last = driven(linear, angular, 3.0)
+    half = 0.5 * TRACK * angular
     for later in (0.0, 0.05):
+        pose = odometry.after(later * (linear - half), later * (linear + half))
         now = last + later
-        pose, twist = odometry.at(now, math.inf)
         turn = angular * now
         along = linear * now * (math.sin(0.5 * turn) / (0.5 * turn) if abs(turn) > 1e-9 else 1.0)
         assert pose.x == pytest.approx(along * math.cos(0.5 * turn), abs=0.006)
         assert pose.y == pytest.approx(along * math.sin(0.5 * turn), abs=0.006)
-        assert twist.linear == pytest.approx(linear, abs=0.01)
-        assert twist.angular == pytest.approx(angular, abs=0.06)
-
-
-def test_it_moves_on_no_longer_than_its_wheels_do() -> None:
-    odometry, last = driven(0.2, 0.0, 1.0)
-    assert odometry.at(last + 9.0, last + 0.1)[0].x == pytest.approx(0.2 * (last + 0.1), abs=0.003)
-    assert odometry.at(last + 9.0, last - 9.0)[0].x == pytest.approx(0.2 * last, abs=0.003)
+    assert odometry.twist.linear == pytest.approx(linear, abs=0.01)
+    assert odometry.twist.angular == pytest.approx(angular, abs=0.06)
 
 
 def test_wheels_that_count_anew_are_no_way() -> None:
     odometry, last = driven(0.2, 0.0, 1.0)
-    before = odometry.at(last, last)[0]
+    before = odometry.after(0.0, 0.0)
     odometry.take(last + 0.1, 5.0, 5.0)
-    assert odometry.at(last + 0.1, last)[0] == before
+    assert odometry.after(0.0, 0.0) == before
     odometry.take(last + 0.2, 5.01, 5.01)
-    assert odometry.at(last + 0.2, last)[0].x == pytest.approx(before.x + 0.01)
+    assert odometry.after(0.0, 0.0).x == pytest.approx(before.x + 0.01)
 
 
 def test_what_it_rolled_while_nothing_was_told_counts() -> None:
@@ -63,8 +58,12 @@ def test_what_it_rolled_while_nothing_was_told_counts() -> None:
     odometry.stand()
     assert odometry.twist == STANDSTILL
     odometry.take(last + 30.0, 0.2 * last + 0.05, 0.2 * last + 0.05)
-    assert odometry.at(last + 30.0, 0.0)[0].x == pytest.approx(0.2 * last + 0.05, abs=0.003)
+    assert odometry.after(0.0, 0.0).x == pytest.approx(0.2 * last + 0.05, abs=0.003)
+    assert odometry.told_at == last + 30.0
 
 
 def test_nothing_told_is_standing_at_the_origin() -> None:
-    assert WheelOdometry(TRACK).at(5.0, math.inf) == (Pose(), STANDSTILL)
+    odometry = WheelOdometry(TRACK)
+    assert odometry.after(0.0, 0.0) == Pose()
+    assert odometry.twist == STANDSTILL
+    assert math.isnan(odometry.told_at)

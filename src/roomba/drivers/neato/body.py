@@ -19,8 +19,9 @@ from roomba.drivers.line import LineError
 from roomba.drivers.neato import answers
 from roomba.drivers.neato.answers import AnswerError
 from roomba.drivers.neato.conversation import Conversation, SilenceError
+from roomba.drivers.neato.planned import PlannedWheels
 from roomba.drivers.neato.sweeps import SweepClock
-from roomba.drivers.neato.wheels import ENABLE, STOP, wheel_command
+from roomba.drivers.neato.wheels import ENABLE, STOP, WheelCommand, wheel_command
 from roomba.drivers.wheel_odometry import WheelOdometry
 from roomba.geometry import STANDSTILL, Pose, Twist
 from roomba.mission.inputs.senses import Battery
@@ -45,6 +46,10 @@ _SCAN_PERIOD: Final = 0.1
 """s; more often than the lidar turns, so that it is seen when its sweeps end."""
 _SCAN_SHARE: Final = 0.5
 """Of the line's time for scans, at most, where they take long."""
+_CALM: Final = 0.3
+"""rad/s; a robot that turns faster waits for the next scan, where they take long,"""
+_LONGEST_WITHOUT_SCAN: Final = 2.0
+"""but no longer than that, s."""
 _NO_FLOOR: Final = 0.06
 """m; a floor so far below a drop sensor is none."""
 _SAME_TURN: Final = 0.05
@@ -78,10 +83,9 @@ class NeatoBody:
         self._power = (False, 0)
         self._beeps = False
         self._driven: tuple[bool, float] = (False, -math.inf)
-        self._moves_until = -math.inf
         self._is_enabled = False
         self._power_told = (False, 0)
-        self._odometry = WheelOdometry(self._track)
+        self._odometry, self._planned = WheelOdometry(self._track), PlannedWheels()
         self._touches = answers.Touches(False, False, False, False, True)
         self._drops = answers.Drops(0.0, 0.0)
         self._charge = answers.Charge(1.0, False, False)
@@ -108,11 +112,10 @@ class NeatoBody:
             scan, self._scan = self._scan, None
             touches, charge, drops = self._touches, self._charge, self._drops
             now = self._now()
-            pose, twist = self._odometry.at(now, self._moves_until)
             return Readings(
                 now,
-                pose,
-                twist,
+                self._pose_at(now),
+                self._odometry.twist,
                 None,
                 scan,
                 touches.bumper_left,
@@ -122,6 +125,14 @@ class NeatoBody:
                 touches.dropped_right,
                 battery=Battery(charge.level, self._config.battery.capacity, charge.has_power),
             )
+
+    def _pose_at(self, now: float) -> Pose:
+        """Return where the robot is by its wheels, which were told since what they are to do."""
+        told_at = self._odometry.told_at
+        if math.isnan(told_at):
+            return Pose()
+        before, after = self._planned.ways(told_at), self._planned.ways(now)
+        return self._odometry.after(after[0] - before[0], after[1] - before[1])
 
     def newest_scan(self) -> ScanReading | None:
         """Return the newest scan; None before the first one."""
@@ -151,6 +162,7 @@ class NeatoBody:
         self._power_told = (False, 0)
         with self._lock:
             self._odometry.stand()
+            self._planned.take(self._now(), None)
 
     def end(self) -> None:
         """Let the robot stand, and give it back."""
@@ -182,7 +194,7 @@ class NeatoBody:
         if self._takes_beep():
             self._line.ask(_BEEP, _ANSWER)
             return
-        question = max(self._due, key=lambda due: (self._now() - due.last) / due.period)
+        question = max(self._due, key=self._urgency)
         if question is self._scans:
             self._drive(_SCAN_HOLD)
         question.last = self._now()
@@ -190,6 +202,16 @@ class NeatoBody:
         if question is self._scans:
             took = self._now() - question.last
             question.period = max(_SCAN_PERIOD, took / _SCAN_SHARE)
+
+    def _urgency(self, due: _Due) -> float:
+        """Return how many of its periods ago a question was asked."""
+        since = self._now() - due.last
+        is_blind = due is self._scans and due.period > _SCAN_PERIOD / _SCAN_SHARE
+        turning = abs(self._odometry.twist.angular)
+        if is_blind and turning > _CALM and since < _LONGEST_WITHOUT_SCAN:
+            # While a scan is on a slow line it is not told how far the robot turned.
+            return 0.0
+        return since / due.period
 
     def _take(self, question: _Due) -> None:
         try:
@@ -226,16 +248,19 @@ class NeatoBody:
             if self._is_enabled:
                 self._line.ask(STOP, _ANSWER)
                 self._is_enabled = False
-            seconds = 0.0
+                self._plan(None)
         else:
             if not self._is_enabled:
                 self._line.ask(ENABLE, _ANSWER)
                 self._is_enabled = True
             self._line.ask(command.text, _ANSWER)
+            self._plan(command)
         self._driven = twist != STANDSTILL, self._now()
-        with self._lock:
-            self._moves_until = self._now() + seconds
         self._set_power(power)
+
+    def _plan(self, command: WheelCommand | None) -> None:
+        with self._lock:
+            self._planned.take(self._heard_at(), command)
 
     def _set_power(self, power: tuple[bool, int]) -> None:
         """Switch brush and fan, where they change: they rest while the robot stands."""

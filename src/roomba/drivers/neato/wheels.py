@@ -38,7 +38,7 @@ class WheelCommand:
 
 _ACCELERATION: Final = 300
 """mm/s2, the most that there is: the wheels then follow soonest."""
-_GAIN: Final = 1e-3 * _ACCELERATION
+GAIN: Final = 1e-3 * _ACCELERATION
 """m/s2."""
 
 
@@ -64,8 +64,8 @@ def wheel_command(
         return None
     # What it lacks while it gains speed it does not come in that time.
     lacking = max(0.0, fastest - moving)
-    gaining = min(seconds, lacking / _GAIN)
-    full = seconds - gaining * (lacking - 0.5 * _GAIN * gaining) / fastest
+    gaining = min(seconds, lacking / GAIN)
+    full = seconds - gaining * (lacking - 0.5 * GAIN * gaining) / fastest
     ways = round(1e3 * left * full), round(1e3 * right * full)
     if ways == (0, 0):
         return None

@@ -1,0 +1,56 @@
+"""How far the wheels should have come by what they were told, between two answers of theirs."""
+
+from __future__ import annotations
+
+import math
+
+from roomba.drivers.neato.wheels import GAIN, WheelCommand
+
+Ways = tuple[float, float]
+"""Of the left and the right wheel, m."""
+
+
+class PlannedWheels:
+    """The way of both wheels since it was made, by the commands that they got.
+
+    A command lets the wheel with the longer way gain speed up to what it is told, and both stand
+    when they have come as far as they are told. How they brake there is left out.
+    """
+
+    def __init__(self) -> None:
+        """Begin standing."""
+        self._at, self._base = -math.inf, (0.0, 0.0)
+        self._command: WheelCommand | None = None
+        self._began_with = 0.0
+
+    def take(self, at: float, command: WheelCommand | None) -> None:
+        """Take a command that the robot heard at a time, s; None: it stands at once."""
+        base, speed = self.ways(at), self._speed(at)
+        self._at, self._base, self._command = at, base, command
+        self._began_with = 0.0 if command is None else min(speed, 1e-3 * command.speed)
+
+    def ways(self, now: float) -> Ways:
+        """Return how far the wheels are to have come at a time, s."""
+        command = self._command
+        if command is None:
+            return self._base
+        longer = 1e-3 * max(abs(command.left), abs(command.right))
+        share = min(1.0, self._way(now, 1e-3 * command.speed) / longer)
+        left, right = 1e-3 * command.left * share, 1e-3 * command.right * share
+        return self._base[0] + left, self._base[1] + right
+
+    def _way(self, now: float, speed: float) -> float:
+        """Return the way of the faster wheel since the command, m, if it had no end."""
+        since = max(0.0, now - self._at)
+        gaining = min(since, (speed - self._began_with) / GAIN)
+        return self._began_with * gaining + 0.5 * GAIN * gaining**2 + speed * (since - gaining)
+
+    def _speed(self, now: float) -> float:
+        """Return how fast the faster wheel is to be, m/s."""
+        command = self._command
+        if command is None:
+            return 0.0
+        speed = 1e-3 * command.speed
+        if 1e3 * self._way(now, speed) >= max(abs(command.left), abs(command.right)):
+            return 0.0
+        return min(speed, self._began_with + GAIN * max(0.0, now - self._at))
