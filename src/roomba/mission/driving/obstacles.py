@@ -109,8 +109,11 @@ class Obstacles:
         return self._edges.at(0.0)
 
     def at_least(self, now: float) -> list[RoundObstacle]:
-        """Return the same, as small as it may be: where the bumper felt something is a guess."""
-        felt = [(x, y, _LEAST) for x, y, _ in self._all_felt(now)]
+        """Return the same, as small as it may be: where the bumper felt something is a guess.
+
+        What was felt again begins where the body touched it: else the way would lead there anew.
+        """
+        felt = [(x, y, _LEAST) for x, y, _ in self._felt.at(now)] + self._lasting.at(now, _LEAST)
         return self._edges.at(now) + felt + [(x, y, _LEAST) for x, y, _ in self._seen.obstacles()]
 
     def felt(self, now: float) -> list[RoundObstacle]:

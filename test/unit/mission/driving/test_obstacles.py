@@ -164,6 +164,20 @@ def test_what_is_felt_next_to_a_wall_counts_when_it_is_felt_again() -> None:
     assert known.standing(5.0) == []
 
 
+def test_the_least_of_what_is_felt_again_begins_where_the_body_touched_it() -> None:
+    known, _ = obstacles()
+    known.feel(bumped(0.0, Pose(3.0, 3.0, 0.0)))
+    once = known.at_least(0.0)
+    # As it may have been late, a way may lead by the same place once more.
+    assert all(math.dist((x, y), (3.0, 3.0)) > BODY + 0.04 for x, y, _ in once)
+    again = Pose(3.01, 3.0, 0.0)
+    known.feel(bumped(5.0, again))
+    lasting = [thing for thing in known.at_least(5.0) if thing not in once]
+    assert lasting
+    for x, y, radius in lasting:
+        assert math.dist((x, y), (again.x, again.y)) == pytest.approx(BODY + radius)
+
+
 def test_another_place_beside_a_wall_is_another_thing() -> None:
     known, _ = obstacles()
     known.feel(bumped(0.0, Pose(0.17, 3.0, math.pi)))

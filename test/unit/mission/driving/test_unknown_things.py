@@ -30,6 +30,15 @@ def test_what_is_felt_touches_the_body_on_the_side_that_felt_it(
     assert aside * side > 0.0 if side else aside == pytest.approx(0.0)
 
 
+def test_a_thing_of_another_size_touches_the_body_at_the_same_place() -> None:
+    felt = things()
+    felt.felt(10.0, Pose(1.0, 2.0, 0.3), True, True)
+    for usual, small in zip(felt.at(10.0), felt.at(10.0, 0.01), strict=True):
+        assert small[2] == 0.01
+        assert math.dist(small[:2], (1.0, 2.0)) == pytest.approx(CONFIG.body.radius + 0.01)
+        assert math.dist(small[:2], usual[:2]) == pytest.approx(usual[2] - 0.01)
+
+
 def test_things_are_forgotten_after_a_while_for_they_move() -> None:
     felt = things()
     felt.felt(10.0, Pose(), True, True)
