@@ -320,7 +320,7 @@ class Cleaning:
             # Wherever it is shut in, there it can clean, and from there it has to get out.
             reachable |= self._reachable((here.x, here.y), obstacles)
         self._note_out_of_reach(todo & ~reachable, obstacles)
-        todo &= reachable
+        todo &= reachable & ~self._rounded_off((here.x, here.y), obstacles)
         wanted = max(int(np.count_nonzero(stage.floor & reachable)), 1)
         share = 1.0 - np.count_nonzero(todo) / wanted
         config = self._config
@@ -336,6 +336,13 @@ class Cleaning:
     def _reachable(self, here: Point, obstacles: list[RoundObstacle]) -> Mask:
         """Return what can be cleaned from a place among what the map does not show."""
         return self._context.floor.with_obstacles(obstacles).coverable(here)
+
+    def _rounded_off(self, here: Point, obstacles: list[RoundObstacle]) -> Mask:
+        """Return the floor that another plan would leave as well."""
+        try:
+            return self._context.coverage.rounded_off(here, obstacles)
+        except NoPathError:
+            return np.zeros(self.coverage.frame.shape, np.bool_)
 
     def _dirty_again(self, stage: Stage) -> Mask:
         """Return what was so dirty that it gets another pass, once a stage."""

@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 
 from roomba.planning.coverage.floor.floor import CoverageFloor
 from roomba.planning.coverage.passes.edges import rings
+from roomba.planning.coverage.passes.stairs import Walls
+from roomba.planning.coverage.passes.sweep import unswept
 from roomba.planning.coverage.tour.net import Net, net_over
 from roomba.raster.regions import Mask
 
@@ -89,4 +91,16 @@ class Ground:
     @cached_property
     def rings(self) -> list[Line]:
         """The outlines of ``middles``, straightened."""
-        return rings(self.middles)
+        floor, size = self.floor, self.floor.frame.resolution
+        things = np.array(floor.obstacles, np.float64).reshape(-1, 3)
+        things = np.column_stack((self.places(things[:, :2]), things[:, 2] / size))
+        column, row = self.window[1].start, self.window[0].start
+        return rings(self.middles, Walls(floor.solid, column, row, floor.reach / size, things))
+
+    @cached_property
+    def rounded_off(self) -> Mask:
+        """What could be swept and is left beside smooth ways along slanted walls: bool, window."""
+        plain = rings(self.middles)
+        if all(np.array_equal(one, other) for one, other in zip(plain, self.rings, strict=True)):
+            return np.zeros_like(self.middles)
+        return unswept(self.coverable & ~self.middles, self.rings, self.radius)

@@ -81,7 +81,8 @@ class CoveragePlanner:
         last = None if end is None else _end_on(ground, end)
         need = ground.coverable if todo is None else ground.coverable & todo[ground.window]
         config, radius, stages = self._config, ground.radius, self._stages
-        edge_pieces = stages.edges(ground.rings, need, radius, config.piece * 2 * radius, config)
+        length = config.piece * 2 * radius
+        edge_pieces = stages.edges(ground.rings, need, ground.middles, radius, length, config)
         swath_pieces: list[Line] = []
         if not edges_only:
             left = unswept(need, edge_pieces, radius) & ground.middles
@@ -96,6 +97,17 @@ class CoveragePlanner:
             tuple(ground.metres(piece) for piece in swath_pieces),
             tuple(ground.metres(piece) for piece in edge_pieces),
         )
+
+    def rounded_off(self, start: Point, obstacles: Iterable[RoundObstacle] = ()) -> Mask:
+        """Return the floor that could be swept and that no plan from ``start`` does.
+
+        Bool on ``floor.frame``: in dips of slanted walls, past which plans go without a turn.
+        Raises :class:`~roomba.planning.path.planner.NoPathError` as :meth:`plan` does.
+        """
+        ground, _ = self._ground_from(start, obstacles)
+        left = np.zeros(self.floor.frame.shape, np.bool_)
+        left[ground.window] = ground.rounded_off
+        return left
 
     def _ground_from(self, start: Point, obstacles: Iterable[RoundObstacle]) -> tuple[Ground, Line]:
         """Return the ground around a start, and the place on it where the way begins.

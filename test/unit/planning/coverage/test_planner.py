@@ -233,3 +233,28 @@ def test_points_masks_and_obstacles_that_make_no_sense_are_refused() -> None:
         planner.plan(START, todo=np.ones((3, 3), np.bool_))
     with pytest.raises(ValueError, match="obstacle"):
         planner.plan(START, obstacles=[(1.0, 1.0, -0.1)])
+
+
+def slanted_room(degrees: float) -> OccupancyMap:
+    """A room of 3 m whose lower wall is straight, slanted, and drawn into all cells it touches."""
+    map = room(3.0, 3.0)
+    values = map.values.copy()
+    x, y = np.meshgrid(np.arange(values.shape[1] + 1) * 0.05, np.arange(values.shape[0] + 1) * 0.05)
+    above = y - 0.3 - math.tan(math.radians(degrees)) * x
+    values[np.minimum(above[:-1, :-1], above[:-1, 1:]) < 0.0] = OCCUPIED
+    return OccupancyMap(map.frame, values)
+
+
+def test_along_a_slanted_wall_the_plan_is_smooth_and_tells_what_it_leaves() -> None:
+    map, start = slanted_room(17.0), (1.5, 2.0)
+    planner = CoveragePlanner(map, REACH, TOOL, CONFIG)
+    plan = planner.plan(start)
+    assert least_room(plan, map) >= REACH - TOLERANCE
+    need, left = planner.floor.coverable(start), planner.rounded_off(start)
+    assert not (left & ~need).any()
+    assert 0.0 < left.sum() / need.sum() < 0.02
+    assert share_swept(plan, need & ~left, planner.floor.frame) >= 0.997
+    # It is in the dips: no other plan sweeps it either, and a wall along the grid has none.
+    assert swept(plan, planner.floor.frame)[left].mean() < 0.5
+    straight = CoveragePlanner(slanted_room(0.0), REACH, TOOL, CONFIG)
+    assert not straight.rounded_off(start).any()

@@ -82,6 +82,11 @@ class CoverageFloor:
         fits = clear_of(self._fits_walls, self.frame, checked, self.reach - _TOUCH)
         return replace(self, obstacles=checked, fits=fits)
 
+    @property
+    def solid(self) -> Mask:
+        """What the map does not show as free, bool [rows, columns] on ``frame``."""
+        return self._solid
+
     def middles(self, start: Point) -> Mask:
         """Return the fine cells where the middle may be and can get to from ``start``.
 

@@ -10,9 +10,12 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.angles import wrap_angles
 from roomba.compilation import allocating_entry
 from roomba.configuration.coverage import CoverageConfig
+from roomba.planning.coverage.floor.masks import way_fits
 from roomba.planning.coverage.passes.contours import outlines, straightened
+from roomba.planning.coverage.passes.stairs import Walls, smooth_ways
 from roomba.planning.coverage.passes.sweep import (
     Counts,
     left_without,
@@ -27,33 +30,62 @@ Line = NDArray[np.float64]
 
 _SIDEWAYS = 0.75
 """cells; how far an edge may be off the outline that it straightens."""
+_NEAR_CUT = 8
+"""Points of an edge; as near to where a piece would end another end is looked for."""
 _STRETCH = 10.0
 """cells; edges are kept or left out by stretches of this length."""
 
 
-def rings(middles: Mask) -> list[Line]:
-    """Return the outlines of ``middles``, bool [rows, columns], straightened; each is closed."""
+def rings(middles: Mask, walls: Walls | None = None) -> list[Line]:
+    """Return the outlines of ``middles``, bool [rows, columns], straightened; each is closed.
+
+    With ``walls`` they are smooth along those that are slanted.
+    """
     lines = []
     for chain in outlines(middles):
         ring = np.concatenate((chain, chain[:1])).astype(np.float64)
-        lines.append(ring[straightened(middles, ring, _SIDEWAYS)])
+        parts, at = [], 0
+        for way in [] if walls is None else smooth_ways(ring, walls):
+            straight = _straight(middles, ring[way.first : way.last + 1])
+            if turning_of(way.points) < turning_of(straight):
+                parts += [_straight(middles, ring[at : way.first + 1]), way.points]
+                at = way.last
+        lines.append(np.concatenate((*parts, _straight(middles, ring[at:]))))
     return lines
 
 
+def turning_of(line: Line) -> float:
+    """Return how much a line turns in all, rad."""
+    ways = np.diff(line, axis=0)
+    return float(np.abs(wrap_angles(np.diff(np.arctan2(ways[:, 1], ways[:, 0])))).sum())
+
+
+def _straight(middles: Mask, chain: Line) -> Line:
+    kept: Line = chain[straightened(middles, chain, _SIDEWAYS)]
+    return kept
+
+
 def edges(
-    rings: list[Line], need: Mask, radius: float, piece_length: float, config: CoverageConfig
+    rings: list[Line],
+    need: Mask,
+    middles: Mask,
+    radius: float,
+    piece_length: float,
+    config: CoverageConfig,
 ) -> list[Line]:
     """Return lines along the rings that together sweep the needed floor there.
 
-    ``need`` is bool [rows, columns]; ``radius`` is half the tool's width, cells. Lines are cut to
-    pieces of about ``piece_length`` cells, so that a path can branch off.
+    ``need`` and ``middles`` are bool [rows, columns]; ``radius`` is half the tool's width, cells.
+    Lines are cut to pieces of about ``piece_length`` cells, so that a path can branch off: from
+    their ends all around fits, or they are cells of ``middles``.
     """
     counts = np.zeros(need.shape, np.int16)
     pieces: list[Line] = []
     for ring in rings:
         stretches = cut(ring, _STRETCH)
         worth = _claim(need, counts, stretches, radius, config.edge_worth)
-        pieces.extend(_joined(stretches, _bridged(worth, config.edge_gap), piece_length))
+        kept = _bridged(worth, config.edge_gap)
+        pieces.extend(_joined(stretches, kept, piece_length, middles))
     return pieces
 
 
@@ -98,15 +130,49 @@ def _bridged(worth: NDArray[np.bool_], gap: int) -> NDArray[np.bool_]:
     return bridged
 
 
-def _joined(stretches: Line, kept: NDArray[np.bool_], piece_length: float) -> list[Line]:
+def _joined(
+    stretches: Line, kept: NDArray[np.bool_], piece_length: float, middles: Mask
+) -> list[Line]:
     """Return the kept legs joined to pieces of about a length."""
     pieces: list[Line] = []
     runs = np.flatnonzero(np.diff(np.concatenate(([False], kept, [False])).astype(np.int8)))
     for first, last in runs.reshape(-1, 2):
-        run = stretches[first : last + 1]
+        run = stretches[first : last + 1].copy()
         stations = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(run, axis=0).T))))
         count = max(1, round(stations[-1] / piece_length))
         cuts = np.searchsorted(stations, np.linspace(0.0, stations[-1], count + 1))
         cuts[-1] = len(run) - 1
+        cuts[1:-1] = [_roomy(run, int(at), middles) for at in cuts[1:-1]]
+        for at in cuts:
+            run[at] = _seat(run[at], middles)
         pieces.extend(run[begin : end + 1] for begin, end in pairwise(cuts) if end > begin)
     return pieces
+
+
+def _roomy(run: Line, at: int, middles: Mask) -> int:
+    """Return the index of the point nearest to one, of a line, around which all fits."""
+    for step in range(_NEAR_CUT):
+        for other in (at - step, at + step):
+            if 0 < other < len(run) - 1 and _has_room(run[other], middles):
+                return other
+    return at
+
+
+def _has_room(place: Line, middles: Mask) -> bool:
+    x, y = place.tolist()
+    has_room: bool = way_fits(middles, x, y, x, y)
+    return has_room
+
+
+def _seat(place: Line, middles: Mask) -> Line:
+    """Return a place around which all fits, or the cell nearest to it that does, float64 [2]."""
+    if _has_room(place, middles):
+        return place
+    cells = np.floor(place) + np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]])
+    column, row = cells.astype(np.int64).T
+    fitting = cells[middles[row, column]]
+    if len(fitting) == 0:
+        return place
+    nearest = int(np.argmin(np.hypot(*(fitting - place).T)))
+    seat: Line = fitting[nearest]
+    return seat

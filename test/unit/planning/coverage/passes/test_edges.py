@@ -72,7 +72,7 @@ def test_edges_lie_on_the_rings_and_sweep_all_that_is_worth_the_way(
     need = middles & (np.random.default_rng(seed).random(middles.shape) < 0.8)
     need[: len(need) // 3] = False
     ways = rings(middles)
-    pieces = edges(ways, need, RADIUS, piece_length, CONFIG)
+    pieces = edges(ways, need, middles, RADIUS, piece_length, CONFIG)
     whole = shapely.union_all([shapely.LineString(line) for line in ways])
     for piece in pieces:
         assert len(piece) >= 2
@@ -93,7 +93,7 @@ def test_edges_lie_on_the_rings_and_sweep_all_that_is_worth_the_way(
 
 def test_where_nothing_is_needed_no_edge_is_driven() -> None:
     middles = np.ones((30, 30), np.bool_)
-    assert edges(rings(middles), np.zeros_like(middles), RADIUS, 50.0, CONFIG) == []
+    assert edges(rings(middles), np.zeros_like(middles), middles, RADIUS, 50.0, CONFIG) == []
 
 
 def test_over_a_short_stretch_without_new_floor_an_edge_goes_on() -> None:
@@ -103,7 +103,7 @@ def test_over_a_short_stretch_without_new_floor_an_edge_goes_on() -> None:
         need = np.zeros((12, 131), np.bool_)
         need[2:9, 5:36] = True
         need[2:9, 36 + gap : 36 + gap + 25] = True
-        assert len(edges([line], need, RADIUS, 500.0, CONFIG)) == expected
+        assert len(edges([line], need, np.ones_like(need), RADIUS, 500.0, CONFIG)) == expected
 
 
 @given(
