@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from roomba.planning.coverage.floor.floor import CoverageFloor
 from roomba.planning.coverage.passes.edges import rings
-from roomba.planning.coverage.passes.stairs import Walls
+from roomba.planning.coverage.passes.stairs import SolidCells
 from roomba.planning.coverage.passes.sweep import unswept
 from roomba.planning.coverage.tour.net import Net, net_over
 from roomba.raster.regions import Mask
@@ -95,7 +95,7 @@ class Ground:
         things = np.array(floor.obstacles, np.float64).reshape(-1, 3)
         things = np.column_stack((self.places(things[:, :2]), things[:, 2] / size))
         column, row = self.window[1].start, self.window[0].start
-        return rings(self.middles, Walls(floor.solid, column, row, floor.reach / size, things))
+        return rings(self.middles, SolidCells(floor.solid, column, row, floor.reach / size, things))
 
     @cached_property
     def rounded_off(self) -> Mask:

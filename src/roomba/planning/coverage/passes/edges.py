@@ -15,7 +15,7 @@ from roomba.compilation import allocating_entry
 from roomba.configuration.coverage import CoverageConfig
 from roomba.planning.coverage.floor.masks import way_fits
 from roomba.planning.coverage.passes.contours import outlines, straightened
-from roomba.planning.coverage.passes.stairs import Walls, smooth_ways
+from roomba.planning.coverage.passes.stairs import SolidCells, smooth_ways
 from roomba.planning.coverage.passes.sweep import (
     Counts,
     left_without,
@@ -36,7 +36,7 @@ _STRETCH = 10.0
 """cells; edges are kept or left out by stretches of this length."""
 
 
-def rings(middles: Mask, walls: Walls | None = None) -> list[Line]:
+def rings(middles: Mask, walls: SolidCells | None = None) -> list[Line]:
     """Return the outlines of ``middles``, bool [rows, columns], straightened; each is closed.
 
     With ``walls`` they are smooth along those that are slanted.

@@ -46,7 +46,7 @@ _RADIUS = 16.0
 less floor: the tool is wider than a dip, and they are driven slowly."""
 
 
-class Walls(NamedTuple):
+class SolidCells(NamedTuple):
     """What is solid: bool [rows, columns], of which cell (0, 0) of the outlines is at ``column``
     and ``row``; ``reach`` is what the middle keeps from it, cells. ``things`` are round and not
     part of it, float64 [n, 3]: x, y and radius."""
@@ -66,7 +66,7 @@ class SmoothWay(NamedTuple):
     points: Line
 
 
-def smooth_ways(ring: Line, walls: Walls) -> list[SmoothWay]:
+def smooth_ways(ring: Line, walls: SolidCells) -> list[SmoothWay]:
     """Return smooth ways along all stairs of a closed outline, in its order.
 
     ``ring`` is float64 [n, 2], its last point the first one, what fits on its left. Ways beside
@@ -83,7 +83,9 @@ def smooth_ways(ring: Line, walls: Walls) -> list[SmoothWay]:
     return [way for way in ways if way is not None]
 
 
-def _smooth_way(ring: Line, nearest: Line, begin: int, end: int, walls: Walls) -> SmoothWay | None:
+def _smooth_way(
+    ring: Line, nearest: Line, begin: int, end: int, walls: SolidCells
+) -> SmoothWay | None:
     """Return a smooth way along what is nearest to the points before ``end``, or None."""
     is_corner = nearest[begin:end, 2] > 0.0
     is_corner[1:] &= (nearest[begin + 1 : end, :2] != nearest[begin : end - 1, :2]).any(axis=1)
@@ -151,7 +153,7 @@ def _is_slanted(ring: Line, first: int) -> bool:
 
 
 @inner_part
-def _nearest_solid(walls: Walls, x: float, y: float) -> tuple[float, float, float]:
+def _nearest_solid(walls: SolidCells, x: float, y: float) -> tuple[float, float, float]:
     """Return the nearest point of what is solid, x and y, and how far it is, cells."""
     rows, columns = walls.solid.shape
     span = math.ceil(walls.reach + _OFF) + 1
@@ -170,7 +172,7 @@ def _nearest_solid(walls: Walls, x: float, y: float) -> tuple[float, float, floa
 
 
 @allocating_entry
-def _nearest_corners(ring: Line, wanted: NDArray[np.bool_], walls: Walls) -> Line:
+def _nearest_corners(ring: Line, wanted: NDArray[np.bool_], walls: SolidCells) -> Line:
     """Return what of the walls is nearest to the wanted points, float64 [n, 3].
 
     x and y, and 1 for a corner, 0 for a side; NaN for other points, and those of no wall.
@@ -189,7 +191,7 @@ def _nearest_corners(ring: Line, wanted: NDArray[np.bool_], walls: Walls) -> Lin
 
 
 @allocating_entry
-def _met(way: Line, walls: Walls) -> Line:
+def _met(way: Line, walls: SolidCells) -> Line:
     """Return where legs of a way come too near to what is solid, float64 [n, 4].
 
     Each is x and y of the worst place of a leg, and of what is nearest to it there.
@@ -213,7 +215,7 @@ def _met(way: Line, walls: Walls) -> Line:
     return found[:size]
 
 
-def _is_beside_things(points: Line, walls: Walls) -> bool:
+def _is_beside_things(points: Line, walls: SolidCells) -> bool:
     """Whether a way comes near to something round."""
     x, y, radius = walls.things.T[:, :, None]
     away = np.hypot(points[:, 0] - x, points[:, 1] - y) - radius

@@ -13,7 +13,7 @@ from roomba.angles import wrap_angles
 from roomba.planning.coverage.floor.masks import grown, half_widths
 from roomba.planning.coverage.passes.contours import outlines
 from roomba.planning.coverage.passes.edges import rings, turning_of
-from roomba.planning.coverage.passes.stairs import Walls, along_stairs, smooth_ways
+from roomba.planning.coverage.passes.stairs import SolidCells, along_stairs, smooth_ways
 
 Mask = NDArray[np.bool_]
 Line = NDArray[np.float64]
@@ -44,8 +44,8 @@ def fitting(solid: Mask) -> Mask:
     return ~near[1:-1, 1:-1]
 
 
-def walls(solid: Mask, things: Line = NOTHING) -> Walls:
-    return Walls(solid, 0, 0, REACH, things)
+def walls(solid: Mask, things: Line = NOTHING) -> SolidCells:
+    return SolidCells(solid, 0, 0, REACH, things)
 
 
 def ring_of(fits: Mask) -> Line:
