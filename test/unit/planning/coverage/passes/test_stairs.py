@@ -40,8 +40,8 @@ def slanted(degrees: float, cells: int = 60) -> Mask:
 
 def fitting(solid: Mask) -> Mask:
     fenced = np.pad(solid, 1, constant_values=True)
-    near: Mask = grown(fenced, half_widths(REACH - 1e-7, to_squares=True))
-    return ~near[1:-1, 1:-1]
+    fits: Mask = ~grown(fenced, half_widths(REACH - 1e-7, to_squares=True))[1:-1, 1:-1]
+    return fits
 
 
 def walls(solid: Mask, things: Line = NOTHING) -> SolidCells:
