@@ -50,7 +50,8 @@ def walls(solid: Mask, things: Line = NOTHING) -> SolidCells:
 
 def ring_of(fits: Mask) -> Line:
     (chain,) = outlines(fits)
-    return np.concatenate((chain, chain[:1])).astype(np.float64)
+    ring: Line = np.concatenate((chain, chain[:1])).astype(np.float64)
+    return ring
 
 
 def room(solid: Mask, line: Line) -> float:
