@@ -104,3 +104,42 @@ def test_the_buttons_look_nearer_farther_and_at_all(opened: Opened) -> None:
     assert page.evaluate(SCALE) < before
     page.get_by_role("button", name="Show the whole home").click()
     assert page.evaluate(SCALE) == pytest.approx(before)
+
+
+def test_the_rooms_of_a_clean_under_way_are_changed(opened: Opened) -> None:
+    first, second, third = (room.name for room in opened.robot.home().rooms[:3])
+    opened.show("rooms")
+    queue = opened.page.locator("#queue")
+    for name in (first, second):
+        opened.page.locator(f"#rooms [data-room='{name}']").click()
+    assert not queue.is_visible()
+    opened.page.get_by_role("button", name="Clean 2 rooms").click()
+    opened.wait_for_phase("cleaning")
+    queue.get_by_text(f"{first}, now").wait_for()
+    # So it does not go on to the next room meanwhile.
+    opened.page.get_by_role("button", name="Pause").click()
+    opened.wait_for_phase("paused")
+
+    def are(*names: str) -> None:
+        wait_until(lambda: opened.robot.robot().vacuum.queue == names, DEADLINE, f"{names}")
+        # What is pressed next goes by what the page shows.
+        shown = queue.locator("li .name")
+        wait_until(lambda: shown.all_inner_texts()[-1].lower() == names[-1], DEADLINE, f"{names}")
+        wait_until(lambda: shown.count() == len(names), DEADLINE, f"{len(names)} rooms")
+
+    are(first, second)
+    queue.get_by_role("button", name=f"{second} earlier").click()
+    are(second, first)
+    queue.get_by_text(f"{second}, now").wait_for()
+    opened.page.locator(f"#rooms [data-room='{third}']").click()
+    opened.page.get_by_role("button", name="Add what is chosen").click()
+    are(second, first, third)
+    queue.get_by_role("button", name=f"Leave {first} out").click()
+    are(second, third)
+    opened.page.get_by_role("button", name="Undo").click()
+    are(second, first, third)
+    assert queue.get_by_role("button", name=f"{second} earlier").is_disabled()
+    opened.show("rooms")
+    opened.page.get_by_role("button", name="Stop", exact=True).click()
+    opened.wait_for_phase("idle")
+    assert not queue.is_visible()

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Final, Protocol, runtime_checkable
 
 from roomba.client import view
+from roomba.vocabulary import RoomWay
 
 HAND_SILENCE: Final = 0.5
 """s of wall time; a drive by hand without news for so long ends."""
@@ -36,6 +37,9 @@ class ObservedRobot(Protocol):
 
     def clean(self, order: view.CleanOrder) -> None:
         """Begin a clean."""
+
+    def change_rooms(self, rooms: tuple[str, ...], each: tuple[RoomWay, ...] = ()) -> None:
+        """Let the clean of rooms under way go on with these, as a client asks for it."""
 
     def explore(self) -> None:
         """Begin to look at what the map does not show yet."""

@@ -9,6 +9,7 @@ from typing import Any
 from roomba.client.observed import TimelineView
 from roomba.client.protocol import CleanReport
 from roomba.client.view import HomeView, Point, RobotView, RoomView, TruthView, ZoneView
+from roomba.time_spent import square_metres_a_minute
 
 Json = dict[str, Any]
 
@@ -37,6 +38,7 @@ def state_of(view: RobotView) -> Json:
             "battery": known(vacuum.battery),
             "battery_seconds": known(view.battery_seconds),
             "charges": view.charges,
+            "queue": vacuum.queue,
         },
         "top_speed": known(view.top_speed),
         "scan": (view.scan * 100.0).round().astype(int).ravel().tolist(),
@@ -76,6 +78,9 @@ def report_of(report: CleanReport) -> Json:
         "distance": known(report.distance),
         "duration": known(report.duration),
         "energy": known(report.energy),
+        "rate": square_metres_a_minute(report.covered, report.duration),
+        "times_least": report.times.times_least,
+        "times": [[name, round(seconds, 1)] for name, seconds in report.times.parts if seconds > 0],
         "missed": [
             {"area": miss.area, "x": miss.x, "y": miss.y, "room": miss.room, "reason": miss.reason}
             for miss in report.missed

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.errors import RoombaError
+from roomba.time_spent import NOT_COUNTED, TimeSpent
 from roomba.vocabulary import CleanMode, FanLevel, RoomWay
 
 
@@ -144,6 +145,7 @@ class CleanReport:
     """The end of a clean: areas in m2, dirt in g, m, s of the robot's clock, Wh.
 
     What is not known, as after DISCONNECTED, is NaN; ``missed`` has the largest area first.
+    ``times`` is what the duration went into; all 0 where that is not known.
     """
 
     outcome: ErrandOutcome
@@ -155,6 +157,7 @@ class CleanReport:
     duration: float
     energy: float
     missed: tuple[MissedFloor, ...] = ()
+    times: TimeSpent = NOT_COUNTED
 
 
 class CleanHandle(Protocol):
@@ -233,7 +236,8 @@ class VacuumSnapshot:
     """The robot's state, in the words of smart homes, and its progress.
 
     ``phase`` is ``state`` in more detail; ``message`` says why it does not do what was asked, and
-    what helps, empty when all is well. The rest is as in :class:`CleanProgress`; areas, share and
+    what helps, empty when all is well. ``queue`` are the rooms that a clean of rooms has still to
+    do, the present one first. The rest is as in :class:`CleanProgress`; areas, share and
     time are 0 without a clean, a battery not heard of is not a number.
     """
 
@@ -246,6 +250,7 @@ class VacuumSnapshot:
     fraction: float
     seconds_to_go: float
     battery: float
+    queue: tuple[str, ...] = ()
 
 
 class RobotClient(Protocol):
@@ -293,6 +298,14 @@ class RobotClient(Protocol):
         x and y, highest x and y, m; ``spot`` for SPOT, None for where the robot is; ``passes`` 1
         to 5. ``each`` is how each of the rooms is cleaned, else ``passes`` and ``fan`` hold for
         all. Raises RequestRefusedError for what cannot be asked at all, RobotUnavailableError.
+        """
+
+    def change_rooms(self, rooms: Sequence[str], each: Sequence[RoomWay] = ()) -> None:
+        """Let the clean of rooms under way go on with these, in this order, the first one at once.
+
+        ``rooms`` are all that are still to be cleaned. ``each`` is how each of them is cleaned;
+        without it those of before stay as they were, and new ones are cleaned as all are. Raises
+        RequestRefusedError with the reason, RobotUnavailableError.
         """
 
     def dock(self) -> DockingHandle:

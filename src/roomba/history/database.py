@@ -10,7 +10,7 @@ import os
 import sqlite3
 import time
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, Final
 
@@ -20,6 +20,7 @@ from roomba.errors import RoombaError
 from roomba.files.journal import append_line, read_lines, write_lines
 from roomba.history.run import RunFigures, RunRecording, RunSource
 from roomba.history.run_file import packed, unpacked
+from roomba.time_spent import TimeSpent
 
 LAST: Final = "last"
 """In place of a run's number: the newest one."""
@@ -54,13 +55,19 @@ MIGRATIONS: Final = (
         run INTEGER PRIMARY KEY REFERENCES runs (id) ON DELETE CASCADE, content BLOB NOT NULL
     );
     """,
+    """
+    ALTER TABLE runs ADD COLUMN times TEXT NOT NULL DEFAULT '{}';
+    """,
 )
 """What makes each version of the schema of the one before; the first one of nothing."""
 
 _COLUMNS: Final = (
     "program", "home", "seed", "repeat", "configuration", "kind", "began", "outcome", "message",
     "duration", "covered", "wanted", "distance", "turning", "dirt", "energy",
+    "times",
 )  # fmt: skip
+_ADDED: Final = {"times": "{}"}
+"""Columns that rows of older journals do not have, with what they are then."""
 _SUMS: Final = ("covered", "duration", "distance", "dirt", "energy")
 _NUMBERS: Final = ("duration", "covered", "wanted", "distance", "turning", "dirt", "energy")
 
@@ -249,7 +256,7 @@ class History:
     def _restore(self) -> None:
         """Fill a new database with the figures of the journal."""
         # Of a number that was given twice the first writer was killed before it was kept.
-        rows = {row.pop("number", None): row for row in read_lines(self._journal)}
+        rows = {row.pop("number", None): _ADDED | row for row in read_lines(self._journal)}
         with contextlib.closing(self._connect()) as database, _transaction(database):
             for number, row in rows.items():
                 if isinstance(number, int) and set(row) == {*_COLUMNS, "missed"}:
@@ -293,6 +300,7 @@ def _row(figures: RunFigures) -> dict[str, Any]:
         "began": figures.began,
         "outcome": figures.outcome,
         "message": figures.message,
+        "times": json.dumps(asdict(figures.times), sort_keys=True),
         **{name: _known(getattr(figures, name)) for name in _NUMBERS},
         "missed": [[miss.area, miss.x, miss.y, miss.room, miss.reason] for miss in figures.missed],
     }
@@ -346,4 +354,5 @@ def _figures_of(database: sqlite3.Connection, number: int, row: dict[str, Any]) 
         row["message"],
         **{name: math.nan if row[name] is None else row[name] for name in _NUMBERS},
         missed=tuple(MissedFloor(*miss) for miss in missed),
+        times=TimeSpent(**json.loads(row["times"])),
     )

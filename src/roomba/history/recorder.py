@@ -224,6 +224,7 @@ class _RunUnderWay:
             report.dirt,
             report.energy,
             report.missed,
+            report.times,
         )
 
     def recording(self, home: HomeView, layer: Layers) -> RunRecording:

@@ -181,6 +181,7 @@ class RecordedRobot:
             figures.duration,
             figures.energy,
             figures.missed,
+            figures.times,
         )
 
     # ---------------------------------------------------------------- commands
@@ -194,7 +195,7 @@ class RecordedRobot:
 
     clean = explore = go_to = dock = pause = resume = stop = locate = empty_bin = _refuse
     emergency_stop = release = drive = put_zone = remove_zone = rename_room = _refuse
-    join_rooms = split_room = undo_rooms = set_top_speed = _refuse
+    join_rooms = split_room = undo_rooms = set_top_speed = change_rooms = _refuse
 
 
 def _home_of(recording: RunRecording) -> view.HomeView:

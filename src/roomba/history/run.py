@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from roomba.client.protocol import MissedFloor
 from roomba.shares import share_of
+from roomba.time_spent import NOT_COUNTED, TimeSpent, square_metres_a_minute
 
 TRACE: Final = (
     "time", "x", "y", "theta", "speed", "battery", "dirt", "covered", "wanted", "to_go", "sweeps",
@@ -47,7 +48,7 @@ class RunFigures:
     """What a run achieved: areas in m2, dirt in g, m, rad, s of the robot's clock, Wh.
 
     ``kind`` is clean or explore, ``began`` s since 1970 of the wall clock; what is not known is
-    NaN. ``missed`` has the largest area first.
+    NaN. ``missed`` has the largest area first; ``times`` are all 0 where they were not counted.
     """
 
     source: RunSource
@@ -63,11 +64,17 @@ class RunFigures:
     dirt: float
     energy: float
     missed: tuple[MissedFloor, ...] = ()
+    times: TimeSpent = NOT_COUNTED
 
     @property
     def fraction(self) -> float:
         """Share of the wanted floor that is clean, 0..1; NaN where none was wanted."""
         return share_of(self.covered, self.wanted) if self.wanted > 0.0 else math.nan
+
+    @property
+    def rate(self) -> float | None:
+        """m2 that became clean in a minute; None where that is not known."""
+        return square_metres_a_minute(self.covered, self.duration)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -19,7 +19,10 @@ from roomba.mission.phases.machine import Errand, MissionState, Phase
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Remembered:
-    """A checkpoint's content; ``ledger`` is distance m, energy Wh and dirt g; ``duration`` s."""
+    """A checkpoint's content; ``ledger`` is distance m, energy Wh and dirt g; ``duration`` s.
+
+    ``times`` are those of a time ledger.
+    """
 
     state: MissionState
     message: str
@@ -29,6 +32,7 @@ class Remembered:
     ledger: tuple[float, float, float]
     duration: float
     is_bin_full: bool
+    times: dict[str, float]
 
 
 def checkpoint_of(state: MissionState, message: str, job: Job, now: float) -> Values | None:
@@ -46,6 +50,7 @@ def checkpoint_of(state: MissionState, message: str, job: Job, now: float) -> Va
         "exploration": None if job.exploration is None else job.exploration.values(),
         "ledger": [job.ledger.distance, job.ledger.energy, job.ledger.dirt],
         "duration": job.duration(now),
+        "times": job.times.values(),
         "bin_full": job.bin.is_full,
     }
 
@@ -85,7 +90,10 @@ def _remembered(
         raise CheckpointError("expected the exploration that it was on, got none")
     distance, energy, dirt = (float(value) for value in values["ledger"])
     duration = float(values["duration"])
-    if not all(math.isfinite(value) for value in (distance, energy, dirt, duration)):
+    # One that was made before times were counted has none.
+    times = {str(name): float(value) for name, value in values.get("times", {}).items()}
+    numbers = (distance, energy, dirt, duration, *times.values())
+    if not all(math.isfinite(value) for value in numbers):
         raise CheckpointError("expected finite numbers")
     return Remembered(
         state,
@@ -96,6 +104,7 @@ def _remembered(
         (distance, energy, dirt),
         duration,
         bool(values["bin_full"]),
+        times,
     )
 
 
@@ -103,6 +112,7 @@ def take_up(found: Remembered, job: Job, senses: Senses) -> None:
     """Let the job be the one that was remembered."""
     job.cleaning, job.exploration, job.outcome = found.cleaning, found.exploration, found.outcome
     job.goes_on_after(found.duration, senses)
+    job.times.restore(found.times)
     job.ledger.distance, job.ledger.energy, job.ledger.dirt = found.ledger
     if found.is_bin_full:
         job.bin.fill(senses.in_bin)

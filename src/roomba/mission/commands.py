@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from roomba.configuration.mission import MissionConfig
 from roomba.errors import RoombaError
 from roomba.mission.cleaning.request import CleanOutcome, CleanRequest
@@ -12,6 +14,7 @@ from roomba.mission.inputs.senses import Senses
 from roomba.mission.phases.job import Job
 from roomba.mission.phases.machine import Event, Phase, next_state
 from roomba.mission.transitions import BIN_FULL, Transitions
+from roomba.vocabulary import RoomWay
 
 
 class CommandRefusedError(RoombaError):
@@ -78,6 +81,19 @@ class Commands:
             )
         self._job.bin.emptied()
         self._transitions.go(Event.EMPTIED, senses)
+
+    def change_rooms(self, names: Sequence[str], each: Sequence[RoomWay]) -> None:
+        """Let the clean under way go on with these rooms, the first one at once.
+
+        Raises CommandRefusedError or CleanRefusedError with the reason.
+        """
+        cleaning, drives = self._job.cleaning, self._drives
+        if cleaning is None:
+            raise CommandRefusedError("expected a clean of rooms under way, got none: begin one")
+        if cleaning.change_rooms(names, each):
+            if drives.is_round:
+                self._transitions.drop_driver()
+            cleaning.begin_room()
 
     def _end(
         self, message: str, senses: Senses, outcome: CleanOutcome = CleanOutcome.STOPPED

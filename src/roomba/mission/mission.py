@@ -9,6 +9,7 @@ phase.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -45,6 +46,7 @@ from roomba.mission.transitions import Transitions
 from roomba.perception.localization.estimate import Knowledge
 from roomba.perception.swept.dirt_map import DirtMap
 from roomba.perception.things.layer import ThingLayer
+from roomba.vocabulary import RoomWay
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,6 +116,14 @@ class Mission:
     def clean(self, request: CleanRequest, senses: Senses) -> None:
         """Begin a clean; raises CleanRefusedError or CommandRefusedError with the reason."""
         self._commands.clean(request, senses)
+
+    def change_rooms(self, names: Sequence[str], each: Sequence[RoomWay] = ()) -> None:
+        """Let the clean of rooms under way go on with these, in this order, the first at once.
+
+        ``each`` is how each is cleaned; without it as before, and new ones as all are. Raises
+        CleanRefusedError or CommandRefusedError with the reason.
+        """
+        self._commands.change_rooms(names, each)
 
     def explore(self, senses: Senses) -> None:
         """Begin to look for what the map does not show yet; raises CommandRefusedError.
@@ -215,6 +225,11 @@ class Mission:
         return self._job.cleaning
 
     @property
+    def queue(self) -> tuple[str, ...]:
+        """The rooms that its clean has still to do, the present one first."""
+        return () if self.cleaning is None else self.cleaning.queue
+
+    @property
     def exploration(self) -> Exploration | None:
         """The exploration that it is on."""
         return self._job.exploration
@@ -276,6 +291,7 @@ class Mission:
     def tick(self, senses: Senses) -> MissionStep:
         """Return what is wanted now."""
         self._job.account(senses, self._last, sweeps=self.sweeps)
+        self._count_time(senses, np.array([[senses.pose.x, senses.pose.y]]))
         self._notice(senses)
         step = self._act(senses)
         self._last = senses
@@ -291,7 +307,27 @@ class Mission:
         if self.sweeps:
             self._job.bin.passed(places)
         self.ledger.note(senses, way)
+        self._count_time(senses, places)
         self._last = senses
+
+    def _count_time(self, senses: Senses, places: NDArray[np.float64]) -> None:
+        """Count what the time since the last tick went into; each tick ended at one of ``places``.
+
+        A clock that was set tells nothing.
+        """
+        each = (senses.now - self._last.now) / len(places)
+        if not 0.0 <= each <= LONGEST_TICK:
+            return
+        ways = np.diff(np.vstack((self.last_place, places)), axis=0)
+        waits = self.driver is None and self._retries.is_waiting(senses.now)
+        self._job.times.note(
+            self.state.phase,
+            np.hypot(ways[:, 0], ways[:, 1]),
+            each,
+            self.speed_limit(senses),
+            is_again=self.cleaning is not None and self.cleaning.is_again,
+            stands=self.state.drives and (waits or self._monitor.is_astray),
+        )
 
     def _notice(self, senses: Senses) -> None:
         """Find out what happened, and let the machine know."""

@@ -15,6 +15,7 @@ from roomba.client.protocol import (
     MissedFloor,
     VacuumSnapshot,
 )
+from roomba.time_spent import TimeSpent, square_metres_a_minute
 from roomba.ui.errand_progress import (
     area_text,
     clean_view,
@@ -186,7 +187,11 @@ def _tell_numbers(menu: Menu, report: CleanReport) -> None:
     menu.say(f"Cleaned: {area_text(report.covered, report.wanted)}")
     if math.isfinite(report.distance):
         menu.say(f"Distance travelled: {quantity(report.distance, 'm')}")
-    menu.say(f"Time taken: {time_text(report.duration)}")
+    rate = square_metres_a_minute(report.covered, report.duration)
+    at_rate = "" if rate is None else f", {rate:.2f} m2 a minute"
+    menu.say(f"Time taken: {time_text(report.duration)}{at_rate}")
+    if report.times.times_least is not None:
+        menu.say(f"Where it went: {_times_text(report.times)}")
     if math.isfinite(report.energy):
         menu.say(f"Energy used: {quantity(report.energy, 'Wh')}")
         menu.say(f"Dirt picked up: {quantity(report.dirt, 'g')}")
@@ -194,6 +199,10 @@ def _tell_numbers(menu: Menu, report: CleanReport) -> None:
         menu.say(f"Missed: {_missed_text(floor)}")
     if len(report.missed) > MOST_MISSED:
         menu.say(f"Missed: {len(report.missed) - MOST_MISSED} smaller areas more")
+
+
+def _times_text(times: TimeSpent) -> str:
+    return ", ".join(f"{name} {time_text(spent)}" for name, spent in times.parts if spent >= 0.5)
 
 
 def _missed_text(floor: MissedFloor) -> str:

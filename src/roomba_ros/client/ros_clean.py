@@ -23,6 +23,7 @@ from roomba_robot.msg import (
     UndockGoal,
     VacuumState,
 )
+from roomba_robot.srv import ChangeRooms
 from std_srvs.srv import Trigger
 
 from roomba.client.protocol import (
@@ -59,7 +60,8 @@ class RosVacuum:
     Subscribes: ``vacuum/state``, ``rooms``, ``clean/{feedback,result,status}``, ``dock/…``,
     ``undock/…``, ``explore/…``. Publishes: ``clean/{goal,cancel}``, ``dock/…``, ``undock/…``,
     ``explore/…``.
-    Calls: ``pause``, ``resume``, ``stop``, ``locate``, ``empty_bin``, ``sim/empty_bin``.
+    Calls: ``pause``, ``resume``, ``stop``, ``locate``, ``empty_bin``, ``sim/empty_bin``,
+    ``change_rooms``.
     """
 
     def __init__(self) -> None:
@@ -79,6 +81,7 @@ class RosVacuum:
             name: rospy.ServiceProxy(name, Trigger)
             for name in ("pause", "resume", "stop", "locate", "empty_bin", "sim/empty_bin")
         }
+        self._change_rooms = rospy.ServiceProxy("change_rooms", ChangeRooms)
         subscribe("vacuum/state", VacuumState, vacuum_of, self._on_vacuum_state)
         subscribe("rooms", RoomArray, room_names_of, self._on_rooms)
 
@@ -96,8 +99,7 @@ class RosVacuum:
     ) -> CleanHandle:
         """Send the goal; raises RobotUnavailableError when no action server answers in time."""
         for often in (passes, *(way.passes for way in each)):
-            if not 1 <= often <= 255:
-                raise RequestRefusedError(f"expected 1 to 5 passes, got {often}")
+            _require_passes(often)
         goal = CleanGoal(
             mode=getattr(CleanGoal, mode.name),
             rooms=list(rooms),
@@ -111,6 +113,14 @@ class RosVacuum:
             room_fans=[getattr(CleanGoal, way.fan.name) for way in each],
         )
         return RosClean(self._cleans, goal)
+
+    def change_rooms(self, rooms: Sequence[str], each: Sequence[RoomWay] = ()) -> None:
+        """Let the clean of rooms under way go on with these."""
+        passes = [_require_passes(way.passes) for way in each]
+        fans = [getattr(CleanGoal, way.fan.name) for way in each]
+        answer = call_service(self._change_rooms, list(rooms), passes, fans)
+        if not answer.success:
+            raise RequestRefusedError(answer.message)
 
     def dock(self) -> DockingHandle:
         """Send the goal; raises RobotUnavailableError when no action server answers in time."""
@@ -194,3 +204,10 @@ class RosVacuum:
         with self._told:
             self._rooms = names
             self._told.notify_all()
+
+
+def _require_passes(often: int) -> int:
+    """Return passes that fit into a message; raises RequestRefusedError for others."""
+    if not 1 <= often <= 255:
+        raise RequestRefusedError(f"expected 1 to 5 passes, got {often}")
+    return often

@@ -22,6 +22,7 @@ from roomba.client.protocol import (
     MissedFloor,
     RobotUnavailableError,
 )
+from roomba_ros.convert.mission import times_of
 from roomba_ros.convert.values import unchanged
 from roomba_ros.runtime.action_client import GoalClient, is_heard
 from roomba_ros.runtime.calls import SERVER_DEADLINE
@@ -213,6 +214,7 @@ class RosClean(_Errand[CleanProgress, CleanReport]):
                 MissedFloor(area.area, area.at.x, area.at.y, area.room, area.message)
                 for area in result.missed
             ),
+            times=times_of(result.times),
         )
 
 

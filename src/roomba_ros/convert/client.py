@@ -39,6 +39,7 @@ def vacuum_of(message: VacuumState) -> VacuumSnapshot:
         fraction=message.fraction,
         seconds_to_go=message.seconds_to_go,
         battery=math.nan if message.battery == BATTERY_NOT_HEARD else message.battery,
+        queue=tuple(message.queue),
     )
 
 

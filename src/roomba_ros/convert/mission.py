@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import asdict
 
 import numpy as np
 import shapely
@@ -21,7 +22,9 @@ from roomba_robot.msg import (
 )
 from roomba_robot.msg import CleanResult as CleanResultMessage
 from roomba_robot.msg import ExploreResult as ExploreResultMessage
+from roomba_robot.msg import TimeSpent as TimeSpentMessage
 from roomba_robot.msg import Zone as ZoneMessage
+from roomba_robot.srv import ChangeRoomsRequest
 from sensor_msgs.msg import BatteryState
 from std_msgs.msg import ColorRGBA
 from visualization_msgs.msg import Marker, MarkerArray
@@ -40,6 +43,7 @@ from roomba.mission.exploring.exploration import ExploreResult
 from roomba.mission.inputs.senses import Battery
 from roomba.perception.rooms.zones import WALL_WIDTH, Zone, ZoneKind, Zones, ZonesError
 from roomba.perception.swept.coverage_bits import SWEPT, WANTED
+from roomba.time_spent import NAMES, NOT_COUNTED, TimeSpent
 from roomba.vocabulary import CleanMode, FanLevel, RoomWay
 from roomba_ros.convert.common import header, map_message, quaternion_of
 from roomba_ros.convert.errors import MessageError, require_finite
@@ -91,7 +95,7 @@ def request_of(goal: CleanGoal) -> CleanRequest:
             goal.passes or 1,
             FANS[goal.fan],
             goal.in_order,
-            _ways_of(goal),
+            ways_of(goal),
         )
     except CleanRefusedError as error:
         raise CleanGoalError(str(error)) from error
@@ -100,9 +104,9 @@ def request_of(goal: CleanGoal) -> CleanRequest:
     return request
 
 
-def _ways_of(goal: CleanGoal) -> tuple[RoomWay, ...]:
-    """Return how each room is cleaned; arrays of uint8 come as bytes."""
-    passes, fans = list(goal.room_passes), list(goal.room_fans)
+def ways_of(asked: CleanGoal | ChangeRoomsRequest) -> tuple[RoomWay, ...]:
+    """Return how each room is cleaned; arrays of uint8 come as bytes. Raises CleanGoalError."""
+    passes, fans = list(asked.room_passes), list(asked.room_fans)
     if len(passes) != len(fans) or not set(fans) <= set(FANS):
         raise CleanGoalError(
             f"expected as many fan levels from 0 to {len(FANS) - 1} as passes of rooms, got "
@@ -127,7 +131,16 @@ def result_message(result: CleanResult) -> CleanResultMessage:
         duration=result.duration,
         energy=result.energy,
         missed=[_missed_message(missed) for missed in result.missed],
+        times=TimeSpentMessage(**asdict(result.times)),
     )
+
+
+def times_of(message: TimeSpentMessage) -> TimeSpent:
+    """Return where the time of a clean went; all 0 if the message has what is no time."""
+    times = {name: float(getattr(message, name)) for name in NAMES}
+    if not all(0.0 <= value < math.inf for value in times.values()):
+        return NOT_COUNTED
+    return TimeSpent(**times)
 
 
 def explored_message(result: ExploreResult) -> ExploreResultMessage:

@@ -39,7 +39,7 @@ from roomba.client.view import (
 from roomba.grid import GridFrame, OccupancyMap
 from roomba_ros.convert.common import map_of, path_of
 from roomba_ros.convert.errors import MessageError, require_finite
-from roomba_ros.convert.mission import KINDS, OUTCOMES, zones_of
+from roomba_ros.convert.mission import KINDS, OUTCOMES, times_of, zones_of
 
 
 def known_cells_of(message: OccupancyGrid) -> OccupancyMap:
@@ -127,6 +127,7 @@ def clean_report_of(message: CleanActionResult) -> CleanReport | None:
             MissedFloor(area.area, area.at.x, area.at.y, area.room, area.message)
             for area in result.missed
         ),
+        times_of(result.times),
     )
 
 

@@ -35,7 +35,7 @@ from roomba.client.protocol import (
 )
 from roomba.configuration.robot import RobotConfig
 from roomba.geometry import STANDSTILL, Pose, Twist
-from roomba.vocabulary import CleanMode, FanLevel
+from roomba.vocabulary import CleanMode, FanLevel, RoomWay
 from roomba_ros.client.ros_client import RosCamera, RosRobot
 from roomba_ros.convert.common import twist_message
 from roomba_ros.convert.page import zone_message_of
@@ -183,6 +183,10 @@ class GraphRobot(GraphMaps):
             each=order.each,
         )
         _require_taken(errand)
+
+    def change_rooms(self, rooms: tuple[str, ...], each: tuple[RoomWay, ...] = ()) -> None:
+        """Let the clean of rooms under way go on with these."""
+        self._vacuum.change_rooms(rooms, each)
 
     def explore(self) -> None:
         """Begin to look at what the map does not show yet."""

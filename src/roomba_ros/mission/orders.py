@@ -12,6 +12,7 @@ from typing import Final
 
 import rospy
 from roomba_robot.msg import VacuumState
+from roomba_robot.srv import ChangeRooms, ChangeRoomsRequest, ChangeRoomsResponse
 from std_msgs.msg import Empty, String
 from std_srvs.srv import Trigger, TriggerRequest, TriggerResponse
 
@@ -21,6 +22,8 @@ from roomba.mission.inputs.senses import Senses
 from roomba.mission.mission import Mission
 from roomba.mission.phases.machine import Event, Phase
 from roomba.storage.checkpoint import Goal
+from roomba.vocabulary import RoomWay, listed
+from roomba_ros.convert.mission import ways_of
 from roomba_ros.convert.values import data_of
 from roomba_ros.mission.goals import GOALS, Ended, MissionGoal
 from roomba_ros.runtime.action_goal import GoalIdentity, server_of
@@ -45,6 +48,15 @@ class Order:
 
 
 @dataclass(frozen=True, slots=True)
+class RoomsOrder:
+    """The rooms that the clean under way is to go on with; the caller waits for the answer."""
+
+    rooms: tuple[str, ...]
+    each: tuple[RoomWay, ...]
+    answer: queue.SimpleQueue[tuple[bool, str]] = field(default_factory=queue.SimpleQueue)
+
+
+@dataclass(frozen=True, slots=True)
 class Cancel:
     """A goal's client wants it to end."""
 
@@ -61,13 +73,14 @@ class MissionOrders:
     ``beep`` (Empty: here the robot is).
     Subscribes: ``clean/{goal,cancel}``, ``dock/…``, ``undock/…``, ``explore/…``,
     ``emergency_stop`` (String).
-    Services: ``pause``, ``resume``, ``stop``, ``empty_bin``, ``locate`` (Trigger).
+    Services: ``pause``, ``resume``, ``stop``, ``empty_bin``, ``locate`` (Trigger), ``change_rooms``
+    (ChangeRooms).
     """
 
     def __init__(self, takes_drive: Callable[[], None], deadlines: DeadlinesConfig) -> None:
         """Connect nothing yet; ``takes_drive`` is called when the mission is about to drive."""
         self._takes_drive, self._answer_within = takes_drive, deadlines.answer
-        self._asked: deque[MissionGoal | Order | Cancel] = deque()
+        self._asked: deque[MissionGoal | Order | RoomsOrder | Cancel] = deque()
         self._goal: MissionGoal | None = None
         self._answers: list[Callable[[], object]] = []
         self._emergency: str | None = None
@@ -90,8 +103,9 @@ class MissionOrders:
         ):
             rospy.Service(name, Trigger, lambda _, event=event: self._on_order(event))
         rospy.Service("locate", Trigger, self._on_locate)
+        rospy.Service("change_rooms", ChangeRooms, self._on_rooms)
 
-    def ask(self, asked: MissionGoal | Order | Cancel) -> None:
+    def ask(self, asked: MissionGoal | Order | RoomsOrder | Cancel) -> None:
         """Take what the next :meth:`obey` is to do."""
         self._asked.append(asked)
 
@@ -127,7 +141,7 @@ class MissionOrders:
             asked = self._asked.popleft()
             if isinstance(asked, MissionGoal):
                 _reject(asked, reason)
-            elif isinstance(asked, Order):
+            elif isinstance(asked, Order | RoomsOrder):
                 asked.answer.put((False, reason))
 
     def obey(self, mission: Mission, senses: Senses) -> None:
@@ -140,6 +154,8 @@ class MissionOrders:
             elif isinstance(asked, Order):
                 answer = self._command(asked.event, mission, senses)
                 self._answers.append(partial(asked.answer.put, answer))
+            elif isinstance(asked, RoomsOrder):
+                self._answers.append(partial(asked.answer.put, _changed(asked, mission)))
             elif self._goal is not None and self._goal.identity == asked.identity:
                 self._command(Event.STOP, mission, senses)
 
@@ -210,20 +226,36 @@ class MissionOrders:
             mission.command(Event.RELEASE, senses)
 
     def _on_order(self, event: Event) -> TriggerResponse:
-        order = Order(event)
+        return TriggerResponse(*self._answer_to(Order(event)))
+
+    def _on_rooms(self, request: ChangeRoomsRequest) -> ChangeRoomsResponse:
+        try:
+            each = ways_of(request)
+        except RoombaError as error:
+            return ChangeRoomsResponse(False, str(error))
+        return ChangeRoomsResponse(*self._answer_to(RoomsOrder(tuple(request.rooms), each)))
+
+    def _answer_to(self, order: Order | RoomsOrder) -> tuple[bool, str]:
         self.ask(order)
         try:
-            return TriggerResponse(*order.answer.get(timeout=self._answer_within))
+            return order.answer.get(timeout=self._answer_within)
         except queue.Empty:
-            return TriggerResponse(
-                False,
-                f"no answer within {self._answer_within:g} s; see vacuum/state, and try again",
-            )
+            late = f"no answer within {self._answer_within:g} s; see vacuum/state, and try again"
+            return False, late
 
     def _on_locate(self, _: TriggerRequest) -> TriggerResponse:
         rospy.loginfo("beep, beep: here is the robot")
         self._beep.publish()
         return TriggerResponse(True, "it beeped")
+
+
+def _changed(order: RoomsOrder, mission: Mission) -> tuple[bool, str]:
+    """Let the clean under way go on with other rooms, and return the answer."""
+    try:
+        mission.change_rooms(order.rooms, order.each)
+    except RoombaError as error:
+        return False, str(error)
+    return True, f"it goes on with {listed(order.rooms)}"
 
 
 def _take_ended(mission: Mission) -> Ended:

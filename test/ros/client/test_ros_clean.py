@@ -26,6 +26,7 @@ from roomba_robot.msg import (
     UndockAction,
     VacuumState,
 )
+from roomba_robot.srv import ChangeRooms, ChangeRoomsRequest, ChangeRoomsResponse
 from std_srvs.srv import Trigger, TriggerResponse
 
 from roomba.client.protocol import (
@@ -34,7 +35,7 @@ from roomba.client.protocol import (
     RequestRefusedError,
     RobotUnavailableError,
 )
-from roomba.vocabulary import CleanMode, FanLevel
+from roomba.vocabulary import CleanMode, FanLevel, RoomWay
 from roomba_ros.client.roomba_client import RoombaClient
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "clean_home.py"
@@ -73,8 +74,14 @@ class FakeMission:
         self.refusal = ""
         for name in ("pause", "resume", "stop", "locate", "empty_bin"):
             rospy.Service(name, Trigger, lambda _, name=name: self._on_order(name))
+        rospy.Service("change_rooms", ChangeRooms, self._on_rooms)
         self.state = rospy.Publisher("vacuum/state", VacuumState, queue_size=1, latch=True)
         self.rooms = rospy.Publisher("rooms", RoomArray, queue_size=1, latch=True)
+
+    def _on_rooms(self, request: ChangeRoomsRequest) -> ChangeRoomsResponse:
+        passes, fans = list(request.room_passes), list(request.room_fans)
+        self.orders.append(f"{request.rooms} {passes} {fans}")
+        return ChangeRoomsResponse(not self.refusal, self.refusal)
 
     def _on_order(self, name: str) -> TriggerResponse:
         self.orders.append(name)
@@ -142,7 +149,14 @@ def test_a_clean_from_its_goal_to_its_report(graph: RosGraph) -> None:
     for name in ("pause", "resume", "stop", "locate", "empty_bin"):
         getattr(roomba.robot, name)()
     assert mission.orders == ["pause", "resume", "stop", "locate", "empty_bin"]
+    roomba.robot.change_rooms(["Hall"])
+    roomba.robot.change_rooms(["Küche"], [RoomWay(2, FanLevel.STRONG)])
+    assert mission.orders[5:] == ["['Hall'] [] []", f"['Küche'] [2] [{CleanGoal.STRONG}]"]
+    with pytest.raises(RequestRefusedError, match="1 to 5 passes"):
+        roomba.robot.change_rooms(["Hall"], [RoomWay(0)])
     mission.refusal = "cannot pause now"
+    with pytest.raises(RequestRefusedError, match="cannot pause now"):
+        roomba.robot.change_rooms(["Hall"])
     with pytest.raises(RequestRefusedError, match="cannot pause now"):
         roomba.robot.pause()
     with pytest.raises(RequestRefusedError, match="1 to 5 passes"):

@@ -8,6 +8,7 @@ import pytest
 from fixtures.robots.missions import HOME
 from geometry_msgs.msg import Point, Point32, Polygon
 from roomba_robot.msg import CleanGoal, Rectangle, Room, RoomArray
+from roomba_robot.msg import TimeSpent as TimeSpentMessage
 from roomba_robot.msg import Zone as ZoneMessage
 from sensor_msgs.msg import BatteryState
 
@@ -30,6 +31,7 @@ from roomba.perception.matching.surface_field import SurfaceField
 from roomba.perception.rooms.rooms import Rooms
 from roomba.perception.rooms.zones import Zone, ZoneKind, Zones, ZonesError
 from roomba.perception.swept.coverage_bits import SWEPT, WANTED
+from roomba.time_spent import TimeSpent
 from roomba.vocabulary import CleanMode, FanLevel, RoomWay
 from roomba_ros.convert.mission import (
     battery_of,
@@ -40,6 +42,7 @@ from roomba_ros.convert.mission import (
     request_of,
     result_message,
     shown,
+    times_of,
     zone_of,
     zones_markers,
     zones_message,
@@ -102,11 +105,22 @@ def test_goals_that_make_no_sense_are_refused_with_the_reason(goal: CleanGoal, r
         request_of(goal)
 
 
+TIMES = TimeSpent(300.0, 320.0, 50.0, 120.0, 40.0, 30.0, 25.0, 15.0)
+
+
+@pytest.mark.parametrize("spoiled", [math.nan, math.inf, -1.0])
+def test_times_that_are_none_are_not_known(spoiled: float) -> None:
+    assert times_of(TimeSpentMessage(turning=spoiled, least=5.0)) == TimeSpent()
+
+
 def test_a_result_says_what_was_missed_and_why() -> None:
     missed = (Missed(0.5, 1.0, 2.0, "Hall", MissReason.SHUT),)
     message = result_message(
-        CleanResult(CleanOutcome.NOT_DOCKED, "no beams", 20.0, 19.5, 3.0, 99.0, 600.0, 4.5, missed)
+        CleanResult(
+            CleanOutcome.NOT_DOCKED, "no beams", 20.0, 19.5, 3.0, 99.0, 600.0, 4.5, missed, TIMES
+        )
     )
+    assert times_of(message.times) == TIMES
     assert message.outcome == message.NOT_DOCKED
     assert (message.wanted, message.covered, message.message) == (20.0, 19.5, "no beams")
     (area,) = message.missed

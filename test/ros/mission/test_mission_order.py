@@ -22,8 +22,9 @@ from roomba.mission.phases.machine import Event
 from roomba.perception.matching.surface_field import SurfaceField
 from roomba.perception.swept.dirt_map import DirtMap
 from roomba.perception.things.layer import ThingLayer
+from roomba.vocabulary import RoomWay
 from roomba_ros.mission.goals import CleaningGoal, DockingGoal, MissionGoal
-from roomba_ros.mission.orders import Cancel, MissionOrders, Order
+from roomba_ros.mission.orders import Cancel, MissionOrders, Order, RoomsOrder
 from roomba_ros.mission.round import MissionRound
 from roomba_ros.mission.topics import MissionTopics
 from roomba_ros.runtime.action_goal import GoalIdentity
@@ -117,6 +118,24 @@ def test_a_state_is_told_before_the_answer_to_the_order_that_led_to_it(
     assert rig.order(Event.STOP) == ["idle", "canceled", "answer"]
     assert rig.order(Event.PAUSE) == ["answer"]
     assert rig.world.answer.put.call_args.args == ((False, "cannot pause now: the robot is idle"),)
+
+
+def test_other_rooms_are_told_in_the_state_before_the_answer(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    rig = Rig(monkeypatch)
+    rig.orders.ask(RoomsOrder(("hall",), (), rig.world.answer))
+    assert rig.tick() == ["idle", "answer"]
+    is_obeyed, why = rig.world.answer.put.call_args.args[0]
+    assert (is_obeyed, "got none" in why) == (False, True)
+    changed = MagicMock()
+    monkeypatch.setattr(Mission, "change_rooms", changed)
+    monkeypatch.setattr(Mission, "queue", property(lambda _: ("hall",)))
+    rig.orders.ask(RoomsOrder(("hall",), (RoomWay(2),), rig.world.answer))
+    assert rig.tick() == ["idle", "answer"]
+    assert rig.world.state.publish.call_args.args[0].queue == ("hall",)
+    assert changed.call_args.args == (("hall",), (RoomWay(2),))
+    assert rig.world.answer.put.call_args.args == ((True, "it goes on with hall"),)
 
 
 def test_a_state_is_told_before_the_result_of_a_goal_that_was_cancelled(

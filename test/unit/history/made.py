@@ -13,6 +13,7 @@ from roomba.history.run import (
     RunSource,
     Word,
 )
+from roomba.time_spent import TimeSpent
 
 
 def made_figures() -> RunFigures:
@@ -31,6 +32,7 @@ def made_figures() -> RunFigures:
         3.25,
         float("nan"),
         (MissedFloor(1.0, 3.5, 2.5, "hall", "a thing <stood> in the way"),),
+        TimeSpent(least=18.5, straight=20.0, turning=12.0, station=20.0, waiting=8.0),
     )
 
 

@@ -13,8 +13,10 @@ import numpy as np
 import pytest
 
 from roomba.client.household import TotalsView
+from roomba.files.journal import read_lines, write_lines
 from roomba.history.database import MIGRATIONS, History, HistoryError
 from roomba.history.run import RunFigures, RunRecording
+from roomba.time_spent import TimeSpent
 
 WRITER = """
 import sys
@@ -135,6 +137,19 @@ def test_runs_of_an_older_program_come_back_from_a_damaged_database(
     history.path.write_bytes(b"no database")
     assert len(history.runs()) == 1
     assert history.set_aside is not None
+
+
+def test_rows_of_a_journal_from_before_times_were_counted_come_back(
+    tmp_path: Path, figures: RunFigures
+) -> None:
+    history = History(tmp_path)
+    history.add(figures)
+    (journal,) = tmp_path.glob("*.journal")
+    (row,) = read_lines(journal)
+    write_lines(journal, [{name: value for name, value in row.items() if name != "times"}])
+    history.path.write_bytes(b"no database")
+    (kept,) = history.runs()
+    assert repr(kept.figures) == repr(replace(figures, times=TimeSpent()))
 
 
 def test_a_damaged_journal_costs_nothing_while_the_database_is_whole(

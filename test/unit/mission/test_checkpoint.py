@@ -36,6 +36,7 @@ def job() -> Job:
     job = Job(DirtMap(HOME.map), MissionConfig(), 100.0, SENSES)
     job.begin_clean(begin(CleanRequest(passes=2)), Senses(40.0, SENSES.pose))
     job.ledger.distance, job.ledger.energy, job.ledger.dirt = 12.0, 0.5, 2.0
+    job.times.restore({"turning": 20.0, "fastest": 0.3})
     return job
 
 
@@ -55,6 +56,7 @@ def test_all_that_matters_comes_back() -> None:
     assert again.exploration is None
     assert again.outcome is CleanOutcome.COMPLETED
     assert (again.ledger.distance, again.ledger.energy, again.ledger.dirt) == (12.0, 0.5, 2.0)
+    assert again.times.values() == job().times.values()
     # By a clock that began anew.
     assert again.duration(now) == pytest.approx(60.0)
 
@@ -76,6 +78,9 @@ def test_without_an_errand_there_is_nothing_to_remember(errand: Errand) -> None:
         {"ledger": [1.0, 2.0]},
         {"ledger": [1.0, 2.0, float("nan")]},
         {"duration": "long"},
+        {"times": {"turning": float("inf")}},
+        {"times": {"turning": "long"}},
+        {"times": 3},
         {"outcome": "WONDERFUL"},
     ],
 )

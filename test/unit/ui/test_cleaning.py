@@ -99,13 +99,15 @@ def test_a_clean_is_told_during_and_after() -> None:
     assert answers.prompts[:2] == ["Select: ", WHAT]
     assert robot.asked == [(CleanMode.WHOLE, ())]
     begin = lines.index("Cleaned: 0.0 of 8.0 m2 (0%), cleaning, kitchen, battery 80%, 16 s to go")
-    assert lines[begin + 1 : begin + 13] == [
+    assert lines[begin + 1 : begin + 14] == [
         "Cleaned: 4.0 of 8.0 m2 (50%), cleaning, hall, battery 80%, 8 s to go",
         "Cleaned: 8.0 of 8.0 m2 (100%), returning, hall, battery 80%",
         "The clean is done, and the robot is back on its station.",
         "Cleaned: 8.0 of 8.0 m2 (100%)",
         "Distance travelled: 5.00 m",
-        "Time taken: 20 s",
+        "Time taken: 20 s, 24.00 m2 a minute",
+        "Where it went: sweeping at full speed 10 s, ways, and floor passed twice 5 s, turning on "
+        "the spot 5 s",
         "Energy used: 0.20 Wh",
         "Dirt picked up: 12.00 g",
         "Missed: 0.50 m2 in kitchen, at x = 1.25 m, y = -2.00 m: something stands there",

@@ -15,6 +15,7 @@ from roomba.client.protocol import (
     ExploreReport,
     MissedFloor,
 )
+from roomba.time_spent import NOT_COUNTED, TimeSpent
 
 if TYPE_CHECKING:
     from roomba.client.clock import Clock
@@ -203,12 +204,13 @@ class FakeClean(FakeErrand):
         battery: float,
     ) -> None:
         super().__init__(script, clock, wanted / CLEANING_RATE, HOMING_TIME, "returning")
-        self._wanted, self._rooms, self._battery = wanted, rooms, battery
+        self._wanted, self._rooms, self._battery = wanted, tuple(rooms), battery
+        self._of_room = wanted / max(len(self._rooms), 1)
 
     def progress(self) -> CleanProgress:
         """Return how far it is."""
         share = self.cleaned / self._cleans
-        index = min(int(share * len(self._rooms)), len(self._rooms) - 1)
+        index = self._index
         phase = self.phase
         return CleanProgress(
             state=phase,
@@ -219,6 +221,22 @@ class FakeClean(FakeErrand):
             seconds_to_go=self._cleans - self.cleaned,
             battery=self._battery,
         )
+
+    @property
+    def queue(self) -> tuple[str, ...]:
+        """The rooms that are still to be cleaned, the present one first."""
+        return self._rooms[self._index :] if self.cleaned < self._cleans else ()
+
+    def change_rooms(self, rooms: tuple[str, ...]) -> None:
+        """Clean these after those that are done; a present room that is left out was no work."""
+        self._rooms = (*self._rooms[: self._index], *rooms)
+        self._wanted = self._of_room * len(self._rooms)
+        self._cleans = self._wanted / CLEANING_RATE
+
+    @property
+    def _index(self) -> int:
+        """Of the room that it is in."""
+        return min(int(self.cleaned / self._cleans * len(self._rooms)), len(self._rooms) - 1)
 
     def next_feedback(self, timeout: float) -> CleanProgress | None:
         """Let time pass until the next feedback or the end, at most ``timeout`` s."""
@@ -240,7 +258,14 @@ class FakeClean(FakeErrand):
             duration=self.elapsed,
             energy=0.01 * self.worked if is_known else math.nan,
             missed=self._script.missed,
+            times=self._times() if is_known else NOT_COUNTED,
         )
+
+    def _times(self) -> TimeSpent:
+        """Return a time of which half the work is the least, and a quarter turning."""
+        half = 0.5 * self.worked
+        waited = max(self.elapsed - self.worked, 0.0)
+        return TimeSpent(half, 1.5 * half, turning=0.5 * half, waiting=waited)
 
 
 class FakeExploring(FakeErrand):

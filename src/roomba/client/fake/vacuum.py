@@ -12,6 +12,7 @@ from roomba.client.fake.errands import (
     ErrandScript,
     FakeClean,
     FakeDocking,
+    FakeErrand,
     FakeExploring,
 )
 from roomba.client.protocol import (
@@ -88,6 +89,18 @@ class FakeVacuum:
         self.cleans.append(clean)
         return self._begin(clean, script)
 
+    def change_rooms(self, rooms: Sequence[str], each: Sequence[RoomWay] = ()) -> None:
+        """Let the clean of rooms under way go on with these."""
+        unknown = [name for name in rooms if name not in self._room_names]
+        clean = self.cleans[-1] if self.cleans else None
+        if clean is None or clean.is_over or self.asked[-1][0] is not CleanMode.ROOMS:
+            raise RequestRefusedError("expected a clean of rooms under way, got none: begin one")
+        if unknown or not rooms:
+            raise RequestRefusedError(
+                f"expected rooms among {', '.join(self._room_names)}, got {unknown}"
+            )
+        clean.change_rooms(tuple(rooms))
+
     def dock(self) -> FakeDocking:
         """Start for the station."""
         return self._move("returning", HOMING_TIME, is_done=self._stands_docked)
@@ -148,7 +161,12 @@ class FakeVacuum:
             fraction=0.0 if progress is None else progress.fraction,
             seconds_to_go=0.0 if progress is None else progress.seconds_to_go,
             battery=self._battery,
+            queue=self._queue(errand),
         )
+
+    def _queue(self, errand: FakeErrand | None) -> tuple[str, ...]:
+        is_of_rooms = bool(self.asked) and self.asked[-1][0] is CleanMode.ROOMS
+        return errand.queue if isinstance(errand, FakeClean) and is_of_rooms else ()
 
     def rooms(self, timeout: float = 5.0) -> tuple[str, ...]:
         """Return the names it was made with."""

@@ -4,11 +4,13 @@ Version 1. SI units as the names say, map frame, angles counter-clockwise. ``cov
 floor that the tool, a disc of ``robot.tool_width_m``, passes over when the robot's middle goes to
 every place that it can reach from its station, keeping ``robot.reach_m`` from all that is solid in
 the true home; ``covered_m2`` what of it the tool passed over, by true poses. Both are counted on a
-grid of about 1 cm. ``path_ratio`` is ``distance_m * tool_width_m / coverable_m2``. ``missed`` is
-what the robot itself says that it left. ``trajectory`` has rows t, x, y, theta: true poses, ten a
-second, the first and the last one included. ``wall_s`` is what the clean took on the clock, and
-``planning_s`` what of it went into ``plans`` coverage plans; all else is the same for the same
-trial, bit for bit.
+grid of about 1 cm. ``path_ratio`` is ``distance_m * tool_width_m / coverable_m2``.
+``rate_m2_a_minute`` is ``covered_m2`` by ``duration_s``, and ``times_s`` where that time went: its
+``least`` is what no robot of that width can undercut at that speed, and ``times_least`` what it was
+under way, without charging and waiting, by that. ``missed`` is what the robot itself says that it
+left. ``trajectory`` has rows t, x, y, theta: true poses, ten a second, the first and the last one
+included. ``wall_s`` is what the clean took on the clock, and ``planning_s`` what of it went into
+``plans`` coverage plans; all else is the same for the same trial, bit for bit.
 """
 
 from __future__ import annotations

@@ -116,6 +116,7 @@ def figures_of(figures: Figures, source: RunSource) -> RunFigures:
             MissedFloor(each.area_m2, each.x, each.y, each.room, each.reason)
             for each in figures.missed
         ),
+        figures.times,
     )
 
 

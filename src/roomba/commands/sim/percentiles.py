@@ -17,6 +17,8 @@ ROWS: Final[dict[str, tuple[str, str]]] = {
     "distance_m": ("distance, m", ".1f"),
     "turning_rad": ("turning, rad", ".0f"),
     "duration_s": ("robot time, s", ".0f"),
+    "rate": ("m² a minute", ".2f"),
+    "times_least": ("times the least time", ".2f"),
     "energy_wh": ("energy, Wh", ".2f"),
     "dirt_g": ("dirt, g", ".1f"),
     "hits": ("hits", ".0f"),

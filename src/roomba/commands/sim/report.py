@@ -26,7 +26,8 @@ def lines_of(figures: Figures) -> list[tuple[str, str]]:
             + ("unknown" if ratio is None else f"{ratio:.3f}"),
         ),
         ("turning", f"{figures.turning_rad:.0f} rad"),
-        ("robot time", f"{clock(figures.duration_s)}"),
+        ("robot time", f"{clock(figures.duration_s)}{_rate(figures)}"),
+        *_times(figures),
         ("energy", f"{figures.energy_wh:.2f} Wh"),
         ("dirt", _dirt(figures)),
         ("hits", f"{figures.hits}"),
@@ -96,6 +97,19 @@ def _dirt(figures: Figures) -> str:
     if not figures.bins_emptied:
         return picked_up
     return f"{picked_up}, the full bin emptied {_count(figures.bins_emptied, 'time')}"
+
+
+def _rate(figures: Figures) -> str:
+    """Return what is told of how quick it was, behind its time."""
+    if figures.rate is None or figures.times_least is None:
+        return ""
+    return f", {figures.rate:.2f} m² a minute, {figures.times_least:.2f} times the least time"
+
+
+def _times(figures: Figures) -> list[tuple[str, str]]:
+    """Return where its time went, if that was counted."""
+    told = [f"{name} {clock(seconds)}" for name, seconds in figures.times.parts if seconds >= 0.5]
+    return [("of it", ", ".join(told))] if told else []
 
 
 def _off(before: float | None, after: float | None) -> str:

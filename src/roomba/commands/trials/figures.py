@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any
+
+from roomba.time_spent import NOT_COUNTED, TimeSpent, square_metres_a_minute
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,6 +46,7 @@ class Figures:
     tool_width_m: float
     hits: int
     missed: tuple[MissedShare, ...]
+    times: TimeSpent = NOT_COUNTED
     bins_emptied: int = 0
     calibration: str = ""
     wheels_error: float | None = None
@@ -68,6 +71,16 @@ class Figures:
         return self.distance_m / least if least > 0.0 else None
 
     @property
+    def rate(self) -> float | None:
+        """m2 that became clean in a minute of robot time; None where no time passed."""
+        return square_metres_a_minute(self.covered_m2, self.duration_s)
+
+    @property
+    def times_least(self) -> float | None:
+        """Time under way by the least time; charging and waiting are left out."""
+        return self.times.times_least
+
+    @property
     def times_real_time(self) -> float:
         """Robot time by wall time."""
         return self.duration_s / max(self.wall_s, 1e-9)
@@ -83,6 +96,9 @@ class Figures:
             "wall_s": round(self.wall_s, 4),
             "planning_s": round(self.planning_s, 4),
             "plans": self.plans,
+            "rate_m2_a_minute": _rounded(self.rate),
+            "times_least": _rounded(self.times_least),
+            "times_s": {name: round(value, 3) for name, value in asdict(self.times).items()},
             "distance_m": round(self.distance_m, 4),
             "turning_rad": round(self.turning_rad, 4),
             "energy_wh": round(self.energy_wh, 4),
@@ -111,6 +127,6 @@ class Figures:
         }
 
 
-def _rounded(error: float | None) -> float | None:
-    """Return an error for a file."""
-    return None if error is None else round(error, 6)
+def _rounded(number: float | None) -> float | None:
+    """Return a number for a file."""
+    return None if number is None else round(number, 6)

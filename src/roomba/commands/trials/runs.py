@@ -137,6 +137,7 @@ class TrialSetup:
             turning_rad=record.turning,
             energy_wh=result.energy,
             dirt_g=result.dirt,
+            times=result.times,
             bins_emptied=len(robot.emptied),
             coverable_m2=float(np.count_nonzero(self.coverable)) * cell,
             covered_m2=float(np.count_nonzero(covered)) * cell,

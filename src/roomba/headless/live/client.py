@@ -24,7 +24,7 @@ from roomba.mission.cleaning.request import CleanRequest
 from roomba.mission.phases.machine import Event, Phase
 from roomba.perception.rooms.rooms import Rooms
 from roomba.perception.rooms.zones import Zones
-from roomba.vocabulary import CleanMode, FanLevel
+from roomba.vocabulary import CleanMode, FanLevel, RoomWay
 from roomba.world.simulator import Simulator
 
 _Answer = TypeVar("_Answer")
@@ -163,6 +163,10 @@ class LiveClient:
             self._snapshots.begin_coverage()
 
         self.obey(begin)
+
+    def change_rooms(self, rooms: tuple[str, ...], each: tuple[RoomWay, ...] = ()) -> None:
+        """Let the clean of rooms under way go on with these."""
+        self.obey(lambda robot: robot.mission.change_rooms(rooms, each))
 
     def explore(self) -> None:
         """Begin to look at what the map does not show yet."""

@@ -89,6 +89,10 @@ class LiveRobotClient:
         wish = mode, tuple(rooms), tuple(zones), spot, passes, fan, in_order, tuple(each)
         return self._begin(LiveClean(*self._parts, made(lambda: CleanRequest(*wish))))
 
+    def change_rooms(self, rooms: Sequence[str], each: Sequence[RoomWay] = ()) -> None:
+        """Let the clean of rooms under way go on with these."""
+        self._client.change_rooms(tuple(rooms), tuple(each))
+
     def dock(self) -> DockingHandle:
         """Start for the charging station."""
         return self._begin(LiveDocking(*self._parts))

@@ -99,6 +99,7 @@ def vacuum_snapshot(robot: Embodied) -> VacuumSnapshot:
         fraction,
         mission.seconds_to_go(),
         robot.now.battery.level,
+        mission.queue,
     )
 
 
@@ -213,6 +214,7 @@ def clean_report(result: CleanResult) -> CleanReport:
             MissedFloor(missed.area, missed.x, missed.y, missed.room, missed.reason.value)
             for missed in result.missed
         ),
+        result.times,
     )
 
 

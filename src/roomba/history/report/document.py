@@ -27,6 +27,7 @@ _DIFFERENCES: Final = (
     ("Wanted, m²", "wanted", 2, 1.0),
     ("Share, %", "fraction", 2, 100.0),
     ("Time, min", "duration", 1, 1.0 / 60.0),
+    ("Rate, m² a minute", "rate", 2, 1.0),
     ("Way, m", "distance", 1, 1.0),
     ("Turning, rad", "turning", 1, 1.0),
     ("Dirt, g", "dirt", 2, 1.0),
@@ -43,6 +44,7 @@ def report_of(run: KeptRun, recording: RunRecording | None, others: Iterable[Kep
         title,
         _headline(figures)
         + _section("Figures", _pairs(words.figure_rows(figures)))
+        + _times(figures)
         + _floor(figures, recording)
         + _missed(figures.missed)
         + _charts(recording)
@@ -114,6 +116,13 @@ def _table(names: Sequence[str], rows: Iterable[Sequence[str]], kind: str = "fig
         f'<div class="wide {kind}" tabindex="0" role="group" aria-label="{escape(names[0])}">'
         f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table></div>"
     )
+
+
+def _times(run: RunFigures) -> str:
+    """Return where its time went."""
+    rows = words.time_rows(run)
+    table = _table(("What", "Time", "Share"), rows) if rows else ""
+    return _section("Where the time went", table)
 
 
 def _floor(run: RunFigures, recording: RunRecording | None) -> str:
@@ -210,7 +219,7 @@ def _again(run: RunFigures) -> str:
 def _differences(one: KeptRun, other: KeptRun) -> str:
     rows = []
     for name, attribute, digits, scale in _DIFFERENCES:
-        values = [scale * float(getattr(run.figures, attribute)) for run in (one, other)]
+        values = [scale * _known(getattr(run.figures, attribute)) for run in (one, other)]
         texts = [f"{value:.{digits}f}" if math.isfinite(value) else "–" for value in values]
         change = values[1] - values[0]
         told = _signed(f"{change:+.{digits}f}") if math.isfinite(change) else "–"
@@ -224,6 +233,10 @@ def _differences(one: KeptRun, other: KeptRun) -> str:
         )
     )
     return _table(("Figure", f"Run {one.number}", f"Run {other.number}", "Change"), rows)
+
+
+def _known(value: float | None) -> float:
+    return math.nan if value is None else value
 
 
 def _signed(number: str) -> str:

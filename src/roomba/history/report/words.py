@@ -46,6 +46,25 @@ def moment(began: float) -> str:
     return time.strftime("%Y-%m-%d %H:%M", time.localtime(began))
 
 
+def rate_of(run: RunFigures) -> str:
+    """Return how much floor became clean in a minute, beside the least time for it."""
+    if run.rate is None:
+        return "–"
+    told = f"{run.rate:.2f} m² a minute"
+    times = run.times.times_least
+    return told if times is None else f"{told}, {times:.2f} times the least time for that floor"
+
+
+def time_rows(run: RunFigures) -> list[tuple[str, str, str]]:
+    """Return where the time went: names, times, and shares; nothing where that was not counted."""
+    whole = sum(seconds for _, seconds in run.times.parts)
+    return [
+        (name[:1].upper() + name[1:], duration(seconds), share(seconds / whole))
+        for name, seconds in run.times.parts
+        if seconds > 0.0
+    ]
+
+
 def figure_rows(run: RunFigures) -> list[tuple[str, str]]:
     """Return what a run achieved: names, and numbers with units."""
     source = run.source
@@ -59,6 +78,7 @@ def figure_rows(run: RunFigures) -> list[tuple[str, str]]:
         ("Share", share(run.fraction)),
         ("Missed", f"{len(run.missed)} places"),
         ("Time", duration(run.duration)),
+        ("Rate", rate_of(run)),
         ("Way", number(run.distance, 1, "m")),
         ("Turning", number(run.turning, 1, "rad")),
         ("Dirt", number(run.dirt, 2, "g")),

@@ -28,14 +28,18 @@ from roomba.perception.swept.dirt_map import DirtMap
 from roomba.planning.path.costmap import Point, RoundObstacle
 from roomba.planning.path.planner import NoPathError
 from roomba.raster.regions import numbered_regions
-from roomba.vocabulary import CleanMode
+from roomba.vocabulary import CleanMode, RoomWay
 
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 
 class Cleaning:
-    """Plans piece by piece; ``coverage`` is what was swept of the present pass."""
+    """Plans piece by piece; ``coverage`` is what was swept of the present pass.
+
+    ``is_again``: the present path is one of a later round, over what the first one left.
+    ``mean_passes`` is how often the floor is asked for, in the mean.
+    """
 
     def __init__(
         self,
@@ -54,6 +58,8 @@ class Cleaning:
                 "expected floor that can be reached, got none: it is outside of the map, in "
                 "furniture, or in a no-go zone"
             )
+        self._count_passes()
+        self.is_again = False
         self._rounds = 0
         self._last_missed = np.inf
         self._looked_again = False
@@ -109,6 +115,25 @@ class Cleaning:
     def explores(self) -> bool:
         """Whether it goes to see, for more floor, what the map does not show yet."""
         return self._context.is_growing and self.request.mode in (CleanMode.WHOLE, CleanMode.EDGES)
+
+    @property
+    def queue(self) -> tuple[str, ...]:
+        """The rooms that are still to be cleaned, the present one first; none without rooms."""
+        return self._ledger.queue
+
+    def change_rooms(self, names: Sequence[str], each: Sequence[RoomWay] = ()) -> bool:
+        """Clean these rooms from now on, in this order; return whether another path is wanted.
+
+        ``each`` is how each of them is cleaned, else as before. Raises CleanRefusedError.
+        """
+        is_another = self._ledger.change_rooms(names, each)
+        self._count_passes()
+        return is_another
+
+    def begin_room(self) -> None:
+        """Plan over the present room from its beginning on."""
+        self._dirty.begin_pass()
+        self._begin_stage()
 
     def next_path(self, here: Pose, obstacles: list[RoundObstacle]) -> Floats | None:
         """Return the next points to drive, float64 [n, 2], m, or None when all is done.
@@ -275,6 +300,7 @@ class Cleaning:
         if is_anew and large.any():
             todo = large
         elif self._rounds > 0:
+            self.is_again = True
             todo = self._worth_it(stage, todo, here, obstacles)
             gained = self._last_missed - missed
             is_little = gained < config.little_gain * self._last_missed
@@ -355,11 +381,16 @@ class Cleaning:
 
     def _next_stage(self) -> None:
         self._ledger.next_stage()
-        self._dirty.begin_pass()
-        self._begin_stage()
+        self.begin_room()
+
+    def _count_passes(self) -> None:
+        wanted = self.coverage.wanted_cells
+        asked = sum(stage.cells for stage in self.stages)
+        self.mean_passes = asked / wanted if wanted and not self.explores else self.request.passes
 
     def _begin_stage(self) -> None:
         self._rounds, self._last_missed, self._scrubbed = 0, np.inf, False
+        self.is_again = False
 
 
 def _patches(floor: Mask, frame: GridFrame, least: float) -> Mask:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
@@ -16,7 +17,8 @@ from roomba.mission.cleaning.checkpoint import (
     request_values,
     unpacked,
 )
-from roomba.mission.cleaning.request import CleanRequest
+from roomba.mission.cleaning.request import CleanRefusedError, CleanRequest
+from roomba.mission.cleaning.room_queue import changed_request, changed_stages, queue_of
 from roomba.mission.cleaning.stages import Stage, stages_of
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.perception.swept.coverage_bits import SWEPT, TRIED, WANTED
@@ -24,6 +26,7 @@ from roomba.perception.swept.coverage_kernels import missed_of, swept_or
 from roomba.perception.swept.coverage_map import CoverageMap
 from roomba.perception.swept.dirt_map import DirtMap
 from roomba.raster.carried import carried
+from roomba.vocabulary import RoomWay, listed
 
 Mask = NDArray[np.bool_]
 
@@ -98,6 +101,38 @@ class CoverageLedger:
             self.sweep_anew(stage.floor)
             stage = self.stages[self.stage_number] = Stage(stage.name, stage.floor)
         return stage
+
+    @property
+    def queue(self) -> tuple[str, ...]:
+        """The rooms that are still to be cleaned, the present one first; none without rooms."""
+        return queue_of(self.request, self.stages[self.stage_number :])
+
+    def change_rooms(self, names: Sequence[str], each: Sequence[RoomWay]) -> bool:
+        """Clean these rooms from now on; return whether the present one is another one then.
+
+        Raises CleanRefusedError; then nothing is changed.
+        """
+        present = self.stage
+        if present is None:
+            raise CleanRefusedError("the floor is done, and it goes home: begin another clean")
+        finished = {stage.name for stage in self.stages[: self.stage_number]}
+        request = changed_request(self.request, finished, names, each)
+        stages, number = changed_stages(
+            self.request,
+            request,
+            names,
+            self.stages,
+            self.stage_number,
+            self.coverage.swept,
+            self._floor_of_room,
+        )
+        self.request, self.stages, self.stage_number = request, stages, number
+        self._want(self._union())
+        if self.stage is present:
+            return False
+        self.stage_number -= 1
+        self.next_stage()
+        return True
 
     def sweep_anew(self, floor: Mask) -> None:
         """Let floor be dirty again; that it was ever clean is not forgotten."""
@@ -208,6 +243,19 @@ class CoverageLedger:
         coverable = context.coverable()
         stages = stages_of(self.request, context, self._dirt, coverable, self._began_at)
         return stages[:1] if context.is_growing else stages
+
+    def _floor_of_room(self, name: str) -> Mask:
+        """Return what can be cleaned of a room; raises CleanRefusedError."""
+        rooms = self._context.rooms
+        known = () if rooms is None else rooms.names
+        if name not in known:
+            raise CleanRefusedError(
+                f"expected the name of a room, got {name!r}; there are: {listed(known)}"
+            )
+        floor = self._context.coverable() & self._context.in_room(name)
+        if not floor.any():
+            raise CleanRefusedError(f"expected floor that can be reached in {name!r}, got none")
+        return floor
 
     def _union(self) -> Mask:
         return self._floor_of(self.stages, self._context)

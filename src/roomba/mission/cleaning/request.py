@@ -8,6 +8,7 @@ from enum import Enum
 
 from roomba.errors import RoombaError
 from roomba.shares import share_of
+from roomba.time_spent import NOT_COUNTED, TimeSpent
 from roomba.vocabulary import MOST_PASSES, MOST_ZONES, CleanMode, FanLevel, RoomWay, fault_of_name
 
 
@@ -132,6 +133,7 @@ class CleanResult:
     duration: float
     energy: float
     missed: tuple[Missed, ...] = field(default=())
+    times: TimeSpent = NOT_COUNTED
 
     @property
     def fraction(self) -> float:

@@ -15,6 +15,7 @@ from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.mission.inputs.senses import Senses
 from roomba.mission.phases.dust_bin import DustBin
 from roomba.mission.phases.energy import EnergyLedger
+from roomba.mission.phases.time_ledger import TimeLedger
 from roomba.perception.swept.dirt_map import DirtMap
 
 
@@ -35,6 +36,7 @@ class Job:
         self.exploration: Exploration | None = None
         self.outcome: CleanOutcome | None = None
         self.ledger = EnergyLedger(config.energy, senses)
+        self.times = TimeLedger()
         self.bin = DustBin(config.bin, bin_capacity)
         self._started = senses.now
         self._is_told = False
@@ -61,6 +63,7 @@ class Job:
     def _begin(self, senses: Senses) -> None:
         self.outcome, self._is_told = None, False
         self.ledger.begin(senses)
+        self.times.begin()
         self._started = senses.now
 
     def look_no_more(self) -> None:
@@ -135,7 +138,9 @@ class Job:
         if self._is_told or (self.cleaning is None and self.exploration is None):
             return
         if self.cleaning is not None:
-            self._cleaned = self._clean_result(self.cleaning, outcome, message, obstacles, senses)
+            self._cleaned = self._clean_result(
+                self.cleaning, outcome, message, context, obstacles, senses
+            )
         elif self.exploration is not None:
             self._explored = ExploreResult(
                 outcome,
@@ -154,6 +159,7 @@ class Job:
         cleaning: Cleaning,
         outcome: CleanOutcome,
         message: str,
+        context: PlanningContext,
         obstacles: Obstacles,
         senses: Senses,
     ) -> CleanResult:
@@ -173,6 +179,7 @@ class Job:
             duration=self.duration(senses.now),
             energy=self.ledger.energy,
             missed=missed,
+            times=self.times.spent(cleaning.mean_passes * covered, context.tool_width),
         )
 
     def forget(self) -> None:

@@ -348,3 +348,21 @@ def test_a_silent_vacuum_uses_up_the_timeout() -> None:
         with pytest.raises(RobotUnavailableError):
             ask()
     assert robot.clock.monotonic() == pytest.approx(25.0)
+
+
+def test_the_rooms_of_a_clean_are_changed_while_it_is_under_way() -> None:
+    robot = FakeRobot()
+    robot.clean(CleanMode.ROOMS, rooms=("kitchen", "hall"))
+    assert robot.vacuum().queue == ("kitchen", "hall")
+    robot.clock.sleep(1.5 * ROOM_AREA / CLEANING_RATE)
+    assert robot.vacuum().queue == ("hall",)
+    robot.change_rooms(("study", "hall"))
+    assert (robot.vacuum().queue, robot.vacuum().room) == (("study", "hall"), "study")
+    assert robot.vacuum().wanted == pytest.approx(3.0 * ROOM_AREA)
+    for wrong in ((), ("attic",)):
+        with pytest.raises(RequestRefusedError, match="expected rooms among"):
+            robot.change_rooms(wrong)
+    robot.clean()
+    assert robot.vacuum().queue == ()
+    with pytest.raises(RequestRefusedError, match="under way, got none"):
+        robot.change_rooms(("hall",))

@@ -10,6 +10,7 @@ from rich.console import Console
 from roomba.commands.sim.percentiles import percentiles_of
 from roomba.commands.sim.report import failure_lines, lines_of, percentile_table, table_of
 from roomba.commands.trials.figures import Figures, MissedShare
+from roomba.time_spent import TimeSpent
 
 FIGURES = Figures(
     outcome="COMPLETED",
@@ -67,6 +68,16 @@ def test_the_table_tells_all_of_it() -> None:
         console.print(table_of(FIGURES))
     assert "1.500" in capture.get()
     assert "\x1b" not in capture.get()
+
+
+def test_the_time_is_told_beside_the_least_and_where_it_went() -> None:
+    times = TimeSpent(least=331.7, straight=400.0, slowed=100.0, turning=300.0, charging=224.35)
+    told = text_of(replace(FIGURES, times=times))
+    assert told["robot time"] == "17 min 04 s, 1.17 m² a minute, 2.41 times the least time"
+    assert told["of it"] == (
+        "sweeping at full speed 5 min 32 s, ways, and floor passed twice 1 min 08 s, slower for "
+        "corners 1 min 40 s, turning on the spot 5 min 00 s, charging 3 min 44 s"
+    )
 
 
 def test_a_clean_that_failed_says_why() -> None:

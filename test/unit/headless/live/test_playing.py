@@ -14,6 +14,7 @@ from roomba.client.protocol import RequestRefusedError
 from roomba.client.view import CleanOrder, LayerName, PlayAct, TruthView
 from roomba.commands.play.living import live_client
 from roomba.headless.live.client import LiveClient
+from roomba.headless.live.robot_client import LiveRobotClient
 from roomba.vocabulary import FanLevel, RoomWay
 
 DEADLINE = 20.0
@@ -141,3 +142,16 @@ def test_each_room_is_cleaned_its_own_way(client: LiveClient) -> None:
     assert client.robot().vacuum.wanted == wanted
     with pytest.raises(RequestRefusedError, match="each of the 2 rooms"):
         client.clean(CleanOrder(mode="rooms", rooms=rooms, each=ways[:1]))
+
+
+def test_the_rooms_of_a_clean_are_changed_while_it_is_under_way(client: LiveClient) -> None:
+    client.clean(CleanOrder(mode="rooms", rooms=("bathroom", "hallway")))
+    assert client.robot().vacuum.queue == ("bathroom", "hallway")
+    client.change_rooms(("hallway", "bathroom"))
+    assert client.robot().vacuum.queue == ("hallway", "bathroom")
+    with pytest.raises(RequestRefusedError, match="got 'attic'"):
+        client.change_rooms(("attic",))
+    LiveRobotClient(client).change_rooms(["bathroom"])
+    assert client.robot().vacuum.queue == ("bathroom",)
+    client.stop()
+    assert client.robot().vacuum.queue == ()

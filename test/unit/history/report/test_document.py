@@ -65,6 +65,9 @@ def test_the_figures_are_those_of_the_run(kept: KeptRun, recording: RunRecording
     assert told["Clean"] == "11.00 m² of 12.00 m²"
     assert told["Share"] == "91.7 %"
     assert told["Time"] == "1 min 00 s"
+    assert told["Rate"] == "11.00 m² a minute, 2.81 times the least time for that floor"
+    assert ["Turning on the spot", "0 min 12 s", "20.0 %"] in read.rows
+    assert not any("Charging" in row for row in read.rows)
     assert told["Way"] == "24.0 m"
     assert told["Turning"] == "6.5 rad"
     assert told["Dirt"] == "3.25 g"

@@ -68,8 +68,23 @@ def order_of(wish: CleanWish) -> CleanOrder:
         wish.spot,
         wish.passes,
         wish.fan,
-        tuple(RoomWay(way.passes, FanLevel(way.fan)) for way in wish.each),
+        _ways_of(wish.each),
     )
+
+
+def _ways_of(wishes: list[RoomWish]) -> tuple[RoomWay, ...]:
+    return tuple(RoomWay(way.passes, FanLevel(way.fan)) for way in wishes)
+
+
+class QueueWish(Wish):
+    """All rooms that the clean under way has still to do, in their order.
+
+    ``each`` is how each of them is cleaned; without it those of before stay as they were, and new
+    ones are cleaned as all are.
+    """
+
+    rooms: list[Name] = Field(min_length=1, max_length=100, examples=[["Hall", "Kitchen"]])
+    each: list[RoomWish] = Field(default=[], max_length=100)
 
 
 class DriveWish(Wish):
@@ -211,6 +226,10 @@ def _add_errands(api: APIRouter, robot: ObservedRobot, note: Note) -> None:
         except HTTPException:
             note(None)
             raise
+
+    @api.put("/queue", summary="Let the clean of rooms under way go on with other rooms")
+    def queue(wish: QueueWish) -> Answer:
+        return obeyed(lambda: robot.change_rooms(tuple(wish.rooms), _ways_of(wish.each)))
 
     plain: tuple[tuple[str, str, Callable[[], None]], ...] = (
         ("explore", "Look at what the map does not show yet", robot.explore),

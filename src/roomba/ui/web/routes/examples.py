@@ -10,6 +10,7 @@ from roomba.ui.web.bounded.limits import SERVER_LIMITS
 
 BODIES: Final[dict[str, dict[str, Any]]] = {
     "clean": {"mode": "rooms", "rooms": ["Kitchen", "Hall"], "passes": 2, "fan": "quiet"},
+    "queue": {"rooms": ["Hall", "Kitchen"]},
     "go": {"x": 2.5, "y": 1.0},
     "emergency_stop": {"reason": "the cat is in the way"},
     "drive": {"linear": 0.2, "angular": -0.5},
@@ -61,6 +62,7 @@ ANSWERS: Final[dict[str, dict[str, Any]]] = {
             "fraction": 0.109,
             "seconds_to_go": 1260.0,
             "battery": 0.93,
+            "queue": ["Kitchen", "Hall"],
         },
         "scan": [125, 210, 126, 211],
         "path": [125, 50, 160, 50],

@@ -70,6 +70,7 @@ def _run_values(run: KeptRun) -> dict[str, Any]:
         "outcome": figures.outcome,
         "message": figures.message,
         **{name: known(getattr(figures, name)) for name in numbers},
+        "rate": figures.rate,
         "missed": len(figures.missed),
         "is_recorded": bool(run.is_recorded),
     }

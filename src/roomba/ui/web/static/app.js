@@ -12,6 +12,7 @@ import * as maps from "./panels/maps.js";
 import { tapped } from "./panels/offer.js";
 import * as plans from "./panels/plans.js";
 import * as play from "./panels/play.js";
+import * as queue from "./panels/queue.js";
 import * as replay from "./panels/replay.js";
 import * as rooms from "./panels/rooms.js";
 import * as sheet from "./panels/sheet.js";
@@ -23,5 +24,5 @@ import { connect } from "./link.js";
 
 draw.begin();
 gestures.begin({ tapped, drawn: zones.drawn, changed: zones.change, mayCarry: play.mayCarry, carried: play.carried });
-for (const panel of [status, card, actions, rooms, zones, drive, play, tools, keys, replay, maps, plans, upkeep, camera, charts, history, sheet]) panel.begin();
+for (const panel of [status, card, actions, rooms, queue, zones, drive, play, tools, keys, replay, maps, plans, upkeep, camera, charts, history, sheet]) panel.begin();
 connect();

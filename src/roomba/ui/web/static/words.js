@@ -68,6 +68,7 @@ export function lastRun(report) {
   const parts = [title(report.outcome)];
   if (report.wanted) parts.push(`${report.covered.toFixed(1)} of ${report.wanted.toFixed(1)} m²`);
   if (report.duration) parts.push(duration(report.duration));
+  if (report.wanted && report.rate) parts.push(`${report.rate.toFixed(2)} m² a minute`);
   if (report.dirt) parts.push(`${report.dirt.toFixed(1)} g of dirt`);
   return parts.join(" · ") + (report.message ? `. ${sentence(report.message)}` : "");
 }

@@ -69,7 +69,8 @@ function row(run) {
   if (run.is_recorded) links.append(link("Again", `${BASE}replay/${run.number}/`, `Run ${run.number} again`, false));
   const share = run.fraction === null ? "–" : `${(100 * run.fraction).toFixed(1)} %`;
   const cells = [box, run.number, new Date(1000 * run.began).toLocaleString([], { dateStyle: "short", timeStyle: "short" }),
-    run.home, title(run.outcome), share, `${run.missed}`, known(run.duration, duration), known(run.dirt, (dirt) => `${dirt.toFixed(1)} g`), links];
+    run.home, title(run.outcome), share, `${run.missed}`, known(run.duration, duration),
+    known(run.kind === "clean" ? run.rate : null, (rate) => rate.toFixed(2)), known(run.dirt, (dirt) => `${dirt.toFixed(1)} g`), links];
   return filled(line, cells);
 }
 

@@ -1,7 +1,7 @@
 /** The state line: headline, explanation, figures, progress, and how the last run ended. */
 import { $, put, span } from "../dom.js";
 import { get, on } from "../store.js";
-import { duration, explanation, headline, lastRun } from "../words.js";
+import { duration, explanation, headline, lastRun, title } from "../words.js";
 
 const WORKS = ["cleaning", "undocking", "returning", "docking", "exploring"];
 
@@ -51,6 +51,13 @@ function showLast(report) {
   const text = lastRun(report);
   if ($("last-text").textContent === text) return;
   $("last-text").textContent = text;
+  $("last-times").hidden = !report.times.length || !report.times_least;
+  $("last-least").textContent = report.times_least ? `${report.times_least.toFixed(2)} times the least time for that floor` : "";
+  $("last-parts").replaceChildren(...report.times.map(([what, seconds]) => {
+    const item = document.createElement("li");
+    item.textContent = `${title(what)}: ${duration(seconds)}`;
+    return item;
+  }));
   $("last-missed").replaceChildren(...report.missed.map((miss) => {
     const item = document.createElement("li");
     item.textContent = `${miss.area.toFixed(2)} m² missed${miss.room ? ` in ${miss.room}` : ""}: ${miss.reason}`;

@@ -1,0 +1,59 @@
+/** The rooms that a clean under way has still to do: put in another order, left out, added. */
+import { $, button, span } from "../dom.js";
+import { note, wish } from "../link.js";
+import { get, on, set } from "../store.js";
+import { title } from "../words.js";
+
+let shown = "";
+
+/** Keep the list up to date. */
+export function begin() {
+  $("queue-add").onclick = add;
+  on("state chosen mayChange", show);
+}
+
+/** Return the rooms that are still to be cleaned, the present one first. */
+function rooms() { return get("state")?.vacuum.queue ?? []; }
+
+/** Let the robot go on with these; what was so before can be had back. */
+async function change(names, text) {
+  const before = rooms();
+  if (!await wish("queue", { rooms: names }, "PUT")) return false;
+  note(text, () => wish("queue", { rooms: before }, "PUT"));
+  return true;
+}
+
+async function add() {
+  const queue = rooms(), more = get("chosen").filter((name) => !queue.includes(name));
+  if (await change([...queue, ...more], `${more.map(title).join(", ")}: to be cleaned as well.`)) set("chosen", []);
+}
+
+function moved(names, from, to) {
+  const found = [...names];
+  found.splice(to, 0, ...found.splice(from, 1));
+  return found;
+}
+
+function show() {
+  const queue = rooms(), more = get("chosen").filter((name) => !queue.includes(name));
+  $("queue").hidden = queue.length === 0 || Boolean(get("state")?.replay);
+  $("queue-add").hidden = more.length === 0;
+  const key = queue.join("\n");
+  if (key === shown) return;
+  shown = key;
+  const focused = document.activeElement?.closest("#queue-list") ? document.activeElement.getAttribute("aria-label") : null;
+  $("queue-list").replaceChildren(...queue.map((name, index) => entry(queue, name, index)));
+  if (focused) [...$("queue-list").querySelectorAll("button")].find((one) => one.getAttribute("aria-label") === focused && !one.disabled)?.focus();
+}
+
+function entry(queue, name, index) {
+  const item = document.createElement("li"), last = queue.length - 1, called = title(name);
+  const earlier = button("▲", () => change(moved(queue, index, index - 1), `${called} comes earlier.`), `${called} earlier`);
+  const later = button("▼", () => change(moved(queue, index, index + 1), `${called} comes later.`), `${called} later`);
+  const out = button("✕", () => change(queue.filter((one) => one !== name), `${called} is left out.`), `Leave ${called} out`);
+  earlier.disabled = index === 0;
+  later.disabled = index === last;
+  out.disabled = last === 0;
+  item.append(span("name", index === 0 ? `${called}, now` : called), earlier, later, out);
+  return item;
+}

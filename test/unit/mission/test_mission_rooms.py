@@ -1,0 +1,118 @@
+"""Rooms that are changed while a clean is under way, in whole cleans."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from fixtures.robots.headless_cleans import assert_all_clean
+from fixtures.robots.missions import (
+    DEN,
+    FLOOR_TOO_LITTLE,
+    HALL,
+    TWO_ROOMS,
+    floor_clean,
+    in_phase,
+    two_rooms,
+    until,
+    wait,
+)
+
+from roomba.headless.cleaner import HeadlessMission
+from roomba.mission.cleaning.request import CleanOutcome, CleanRefusedError, CleanRequest
+from roomba.mission.commands import CommandRefusedError
+from roomba.mission.phases.machine import Event, Phase
+from roomba.vocabulary import CleanMode, RoomWay
+
+
+def begun(*rooms: str, passes: int = 1) -> HeadlessMission:
+    """A robot that has cleaned for twenty seconds."""
+    robot = HeadlessMission(TWO_ROOMS, rooms=two_rooms(), seed=2)
+    request = CleanRequest(CleanMode.ROOMS, rooms=rooms, in_order=True, passes=passes)
+    robot.mission.clean(request, robot.senses())
+    until(robot, in_phase(robot, Phase.CLEANING))
+    wait(robot, 20.0)
+    assert robot.mission.queue == rooms
+    return robot
+
+
+def test_a_room_is_added_while_it_cleans() -> None:
+    robot = begun(HALL)
+    driver = robot.mission.driver
+    robot.mission.change_rooms((HALL, DEN))
+    # The present room goes on as it was planned.
+    assert robot.mission.driver is driver
+    assert robot.mission.queue == (HALL, DEN)
+    assert_all_clean(robot, robot.run())
+    assert robot.mission.queue == ()
+
+
+def test_a_room_is_left_out() -> None:
+    robot = begun(HALL, DEN)
+    robot.mission.change_rooms((HALL,))
+    record = robot.run()
+    assert record.result.outcome is CleanOutcome.COMPLETED
+    assert record.result.fraction >= FLOOR_TOO_LITTLE
+    assert record.result.missed == ()
+    assert floor_clean(robot, robot.context.in_room(DEN)) < 0.5
+
+
+def test_the_present_room_may_come_later_and_nothing_of_it_is_swept_twice() -> None:
+    robot = begun(HALL, DEN)
+    swept = robot.truth.swept.copy()
+    robot.mission.change_rooms((DEN, HALL))
+    assert robot.mission.driver is None
+    until(robot, lambda: robot.mission.queue == (HALL,))
+    assert floor_clean(robot, robot.context.in_room(DEN)) >= FLOOR_TOO_LITTLE
+    cleaning = robot.mission.cleaning
+    assert cleaning is not None
+    hall = robot.context.in_room(HALL) & robot.context.coverable()
+    left = cleaning.left / cleaning.coverage.cell_area
+    assert left < np.count_nonzero(hall) - 0.8 * np.count_nonzero(hall & swept)
+    assert_all_clean(robot, robot.run())
+
+
+def test_the_present_room_may_be_left_out() -> None:
+    robot = begun(HALL, DEN)
+    robot.mission.change_rooms((DEN,))
+    record = robot.run()
+    assert record.result.outcome is CleanOutcome.COMPLETED
+    assert record.result.missed == ()
+    assert floor_clean(robot, robot.context.in_room(DEN)) >= FLOOR_TOO_LITTLE
+    assert floor_clean(robot, robot.context.in_room(HALL)) < 0.9
+
+
+def test_passes_of_a_room_that_is_added_are_its_own() -> None:
+    robot = begun(HALL)
+    robot.mission.change_rooms((HALL, DEN), (RoomWay(1), RoomWay(2)))
+    cleaning = robot.mission.cleaning
+    assert cleaning is not None
+    assert [stage.name for stage in cleaning.stages] == [HALL, DEN, DEN]
+    assert cleaning.request.way_of(DEN).passes == 2
+
+
+def test_a_killed_robot_goes_on_with_the_rooms_as_they_were_changed() -> None:
+    robot = begun(HALL, DEN)
+    robot.mission.change_rooms((DEN,))
+    kept = robot.mission.checkpoint(robot.senses())
+    assert kept is not None
+    again = HeadlessMission(TWO_ROOMS, rooms=two_rooms(), start=robot.seen.pose)
+    again.mission.restore(kept, again.senses())
+    assert again.mission.queue == (DEN,)
+    assert again.run().result.outcome is CleanOutcome.COMPLETED
+
+
+def test_what_cannot_be_is_refused_and_nothing_changes() -> None:
+    robot = begun(HALL)
+    for wrong in (("attic",), (), (HALL, HALL)):
+        with pytest.raises(CleanRefusedError):
+            robot.mission.change_rooms(wrong)
+    assert robot.mission.queue == (HALL,)
+    until(robot, in_phase(robot, Phase.RETURNING))
+    with pytest.raises(CleanRefusedError, match="goes home"):
+        robot.mission.change_rooms((DEN,))
+    robot.mission.command(Event.STOP, robot.senses())
+    with pytest.raises(CommandRefusedError, match="under way, got none"):
+        robot.mission.change_rooms((DEN,))
+    robot.mission.clean(CleanRequest(), robot.senses())
+    with pytest.raises(CleanRefusedError, match="mode whole"):
+        robot.mission.change_rooms((DEN,))
