@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from roomba.configuration.frozen import Acute, Count, Frozen, NotNegative, Positive
+from roomba.configuration.frozen import Acute, Count, Frozen, NotNegative, Positive, Ratio
 
 
 class ControlConfig(Frozen):
@@ -85,10 +85,12 @@ class TrackingConfig(Frozen):
 
     sharp_corner: Acute = 0.35
     off_corner: Positive = 0.0015
-    braking: Positive = 1.2
+    braking: Positive = 1.8
     reach: Positive = 0.12
     heading_gain: Positive = 5.0
-    turning_speed: Positive = 2.5
+    turning_speed: Positive = 4.0
+    turning_braking: Ratio = 0.85
+    """Share of the body's angular acceleration with which a turn on the spot ends."""
     corner_turning: Positive = 2.0
     corner_acceleration: Positive = 5.0
     slowest_corner: Positive = 0.06

@@ -36,7 +36,7 @@ class PathTracker:
         state.turning = 1.0
         state.braking, state.reach, state.gain = config.braking, config.reach, config.heading_gain
         state.turning_speed = min(config.turning_speed, body.max_angular_speed)
-        state.turning_braking = 0.6 * body.max_angular_acceleration
+        state.turning_braking = config.turning_braking * body.max_angular_acceleration
         state.aimed = config.aimed
         state.there, state.period = config.arrival_tolerance, period
         state.askew, state.slowest = config.turn_in_place_angle, config.slowest
