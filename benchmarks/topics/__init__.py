@@ -23,6 +23,7 @@ TOPICS: MappingProxyType[str, str] = MappingProxyType(
         "mapping": "homes explored without a map: how true the map becomes, and what that takes",
         "slam": "recorded drives of real robots, of --logs FOLDER: errors, speed, pictures",
         "runs": "whole commands, from Enter on: time, and time of all cores",
+        "dirt": "a month of a household: cleaning where the dirt is, beside a fixed plan",
         "ros": "round trips, and the speed of the whole graph",
         "page": "what the page costs with one viewer and with a hundred, and how old they see it",
     }

@@ -52,6 +52,18 @@ class RoomWay:
     fan: FanLevel = FanLevel.STANDARD
 
 
+@dataclass(frozen=True, slots=True)
+class RoomDirt:
+    """How dirty a room was that a clean swept: ``share`` of its floor that was swept, 0..1.
+
+    ``grains`` are those a m2 that the dirt sensor counted there.
+    """
+
+    room: str
+    share: float
+    grains: float
+
+
 def fault_of_name(name: str) -> str:
     """Return what is expected of a name in place of this one; empty if it is one."""
     if 0 < len(name) <= LONGEST_NAME and name.strip() and name.isprintable():

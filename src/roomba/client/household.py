@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from datetime import datetime, tzinfo
 from typing import Any, Protocol
 
+from roomba.plans.due import RoomNeed
 from roomba.plans.memory import Note
 from roomba.plans.plan import HouseholdPlans, Plan, Preset, QuietHours
 from roomba.upkeep.parts import Part, PartState
@@ -56,7 +57,7 @@ class PlansView:
 
     ``running`` is the plan whose clean is under way, ``is_held`` whether it is paused for a person
     at home; ``next`` is the plan that comes next, at ``next_at``. ``notes`` are what became of
-    plans, the newest last.
+    plans, the newest last. ``needs`` are how often rooms are to be cleaned, if a plan goes by that.
     """
 
     version: int = 0
@@ -67,6 +68,7 @@ class PlansView:
     next: str = ""
     next_at: datetime | None = None
     notes: tuple[Note, ...] = ()
+    needs: tuple[RoomNeed, ...] = ()
 
 
 class Household(Protocol):
@@ -176,7 +178,8 @@ def plans_of(view: PlansView) -> dict[str, Any]:
         {"at": _moment(note.at, zone), "plan": note.plan, "text": note.text}
         for note in reversed(view.notes)
     ]
-    return {**values, "version": view.version, "notes": notes}
+    needs = [{"room": need.room, "every": need.every, "reason": need.reason} for need in view.needs]
+    return {**values, "version": view.version, "notes": notes, "needs": needs}
 
 
 def _moment(moment: datetime | None, zone: tzinfo) -> str | None:

@@ -81,6 +81,10 @@ def report_of(report: CleanReport) -> Json:
         "rate": square_metres_a_minute(report.covered, report.duration),
         "times_least": report.times.times_least,
         "times": [[name, round(seconds, 1)] for name, seconds in report.times.parts if seconds > 0],
+        "rooms": [
+            {"room": each.room, "share": round(each.share, 4), "grains": round(each.grains, 1)}
+            for each in report.rooms
+        ],
         "missed": [
             {"area": miss.area, "x": miss.x, "y": miss.y, "room": miss.room, "reason": miss.reason}
             for miss in report.missed

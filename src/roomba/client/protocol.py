@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from roomba.errors import RoombaError
 from roomba.time_spent import NOT_COUNTED, TimeSpent
-from roomba.vocabulary import CleanMode, FanLevel, RoomWay
+from roomba.vocabulary import CleanMode, FanLevel, RoomDirt, RoomWay
 
 
 class RobotUnavailableError(RoombaError):
@@ -145,7 +145,8 @@ class CleanReport:
     """The end of a clean: areas in m2, dirt in g, m, s of the robot's clock, Wh.
 
     What is not known, as after DISCONNECTED, is NaN; ``missed`` has the largest area first.
-    ``times`` is what the duration went into; all 0 where that is not known.
+    ``times`` is what the duration went into; all 0 where that is not known. ``rooms`` are those
+    that were swept, with their dirt.
     """
 
     outcome: ErrandOutcome
@@ -158,6 +159,7 @@ class CleanReport:
     energy: float
     missed: tuple[MissedFloor, ...] = ()
     times: TimeSpent = NOT_COUNTED
+    rooms: tuple[RoomDirt, ...] = ()
 
 
 class CleanHandle(Protocol):

@@ -33,8 +33,24 @@ class PlansConfig(Frozen):
     """What begins later than this was missed."""
 
 
+class DueConfig(Frozen):
+    """Which rooms are due by their dirt: shares 0..1, days."""
+
+    least_share: Ratio = 0.8
+    """Of a room that was swept, with which it counts as cleaned."""
+    learning: Ratio = 0.4
+    """Weight of the newest clean in how fast a room becomes dirty."""
+    shortest: Positive = 0.2
+    """Between two cleans of a room of which the second tells how fast it becomes dirty."""
+    longest: Positive = 7.0
+    """Between two cleans of any room."""
+    spare: Ratio = 0.1
+    """By so much a room may become dirtier than the dirtiest one does between two times."""
+
+
 class HouseholdConfig(Frozen):
     """What an owner expects of a robot from day to day."""
 
     upkeep: UpkeepConfig = UpkeepConfig()
     plans: PlansConfig = PlansConfig()
+    due: DueConfig = DueConfig()

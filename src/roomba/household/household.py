@@ -15,6 +15,7 @@ from roomba.client.protocol import RequestRefusedError, RobotUnavailableError
 from roomba.client.told_once import ToldOnce
 from roomba.configuration.household import HouseholdConfig
 from roomba.errors import RoombaError
+from roomba.household.dirt_keeper import DirtKeeper
 from roomba.household.folder import KeptValues, Tell
 from roomba.household.local_zone import local_zone
 from roomba.household.plan_keeper import Change, PlanKeeper, removed, replaced
@@ -63,6 +64,7 @@ class LiveHousehold:
             config.plans,
             now,
             local_zone(),
+            DirtKeeper(KeptValues(folder / "dirt.json", tell), config.due),
         )
         self._ends = threading.Event()
         self._thread = threading.Thread(target=self._live, name="household", daemon=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import datetime as dt
 import threading
 from collections.abc import Callable
@@ -20,14 +21,19 @@ from roomba.client.protocol import (
 )
 from roomba.client.view import CleanOrder, RobotView
 from roomba.configuration.household import PlansConfig
+from roomba.household.dirt_keeper import DirtKeeper
 from roomba.household.folder import KeptValues
+from roomba.plans.due import DAY, RoomNeed
 from roomba.plans.memory import Memory, Note
 from roomba.plans.plan import HouseholdPlans, Plan, PlannedOrder, Preset
 from roomba.plans.scheduler import Act, Deed, PlanEnd, Scheduler, Situation, next_of
 from roomba.plans.times import quiet_until
-from roomba.vocabulary import listed
+from roomba.vocabulary import CleanMode, listed
 
 _DONE: Final = (ErrandOutcome.COMPLETED, ErrandOutcome.NOT_DOCKED)
+
+_SHORTEST: Final = 0.01
+"""Days; plans that follow on one another sooner are as if they did so after this."""
 
 Change = Callable[[HouseholdPlans], HouseholdPlans]
 
@@ -43,10 +49,11 @@ class PlanKeeper:
         config: PlansConfig,
         now: Callable[[], dt.datetime],
         zone: str,
+        dirt: DirtKeeper,
     ) -> None:
         """Read what was kept; ``now`` is the wall clock, ``zone`` that of a new household."""
         self._robot, self._kept, self._kept_memory = robot, plans, memory
-        self._config, self._now = config, now
+        self._config, self._now, self._dirt = config, now, dirt
         self._lock = threading.Lock()
         self._household = plans.read(HouseholdPlans(zone=zone))
         self._memory = self._written = memory.read(Memory())
@@ -71,10 +78,17 @@ class PlanKeeper:
         with self._lock:
             now = self._now()
             scheduler = Scheduler(self._household, self._config)
+            has_learned = self._learn(view, now)
             self._memory, act = scheduler.step(self._memory, now, self._situation(view))
             if act is not None:
                 self._memory = self._carried_out(scheduler, act, now)
-            self._keep_memory()
+            self._keep_memory(is_changed=has_learned)
+
+    def _learn(self, view: RobotView | None, now: dt.datetime) -> bool:
+        """Learn of the rooms' dirt from a clean that ended since the last look; raises OSError."""
+        last = None if view is None else view.last
+        is_news = last is not None and last is not self._last and not self._is_first
+        return last is not None and is_news and self._dirt.note(last, now)
 
     def _situation(self, view: RobotView | None) -> Situation:
         if view is None:
@@ -114,7 +128,10 @@ class PlanKeeper:
         """Let the robot do an act; return what is remembered then."""
         try:
             if act.deed is Deed.BEGIN and act.order is not None:
-                self._robot.clean(clean_order_of(act.order))
+                order = self._order_now(act.plan, act.order, now)
+                if order is None:
+                    return scheduler.not_due(self._memory, act.plan, now)
+                self._robot.clean(clean_order_of(order))
                 return scheduler.begun(self._memory, act.plan, now)
             deeds = {
                 Deed.PAUSE: self._robot.pause,
@@ -128,6 +145,33 @@ class PlanKeeper:
             text = f"the robot did not obey ({act.deed.value}): {refusal}"
             return self._memory.noting(Note(at=now, plan=act.plan, text=text))
         return self._memory
+
+    def _order_now(self, plan: str, order: PlannedOrder, now: dt.datetime) -> PlannedOrder | None:
+        """Return what is to be cleaned of an order; None if nothing of it is due."""
+        if not order.only_due:
+            return order
+        needs = self._needs(plan, order, now)
+        if not needs:
+            # Without rooms all floor is due.
+            return order
+        rooms = tuple(need.room for need in needs if need.is_due)
+        mode = {"mode": CleanMode.ROOMS, "rooms": rooms}
+        return order.model_copy(update=mode) if rooms else None
+
+    def _needs(self, plan: str, order: PlannedOrder, now: dt.datetime) -> tuple[RoomNeed, ...]:
+        """Return what the rooms of a plan need; raises RobotUnavailableError."""
+        rooms = order.rooms or tuple(room.name for room in self._robot.home().rooms)
+        following = self._memory.next_at.get(plan)
+        period = 1.0 if following is None else (following - now).total_seconds() / DAY
+        return self._dirt.needs(rooms, now, max(period, _SHORTEST))
+
+    def _shown_needs(self) -> tuple[RoomNeed, ...]:
+        """Return what rooms need by the first plan that goes by it."""
+        for plan in self._household.plans:
+            if plan.order.only_due and plan.is_on:
+                with contextlib.suppress(RobotUnavailableError):
+                    return self._needs(plan.name, plan.order, self._now())
+        return ()
 
     # ---------------------------------------------------------------- changes
 
@@ -189,6 +233,7 @@ class PlanKeeper:
             "" if following is None else following[0],
             None if following is None else following[1],
             memory.notes,
+            self._shown_needs(),
         )
 
     def _plan_view(self, name: str) -> PlanView:
@@ -203,7 +248,14 @@ class PlanKeeper:
 
 def clean_order_of(order: PlannedOrder) -> CleanOrder:
     """Return what is planned as an order to the robot."""
-    return CleanOrder(order.mode.value, order.rooms, passes=order.passes, fan=order.fan.value)
+    return CleanOrder(
+        order.mode.value,
+        order.rooms,
+        # What is due is cleaned by the shortest way.
+        in_order=not order.only_due,
+        passes=order.passes,
+        fan=order.fan.value,
+    )
 
 
 def replaced(

@@ -37,6 +37,8 @@ class PlannedOrder(Frozen):
     """In this order; for ROOMS alone."""
     passes: int = Field(default=1, ge=1, le=MOST_PASSES)
     fan: FanLevel = FanLevel.STANDARD
+    only_due: bool = False
+    """Of all rooms, or of these, those alone that are due by their dirt."""
 
     @model_validator(mode="after")
     def _rooms_for_rooms(self) -> PlannedOrder:
@@ -45,6 +47,8 @@ class PlannedOrder(Frozen):
             raise ValueError(f"expected one of {modes}, got {self.mode.value}")
         if bool(self.rooms) != (self.mode is CleanMode.ROOMS):
             raise ValueError("expected rooms for the mode rooms, and for no other")
+        if self.only_due and self.mode not in (CleanMode.WHOLE, CleanMode.ROOMS):
+            raise ValueError("expected all floor or rooms, of which those that are due are cleaned")
         return self
 
 

@@ -105,6 +105,11 @@ class Scheduler:
         waits = memory.waiting[plan]
         return self._again(memory.without_waiting(plan), plan, waits.due, waits.tries, now, reason)
 
+    def not_due(self, memory: Memory, plan: str, now: dt.datetime) -> Memory:
+        """Return what is remembered once no room of a plan was due by its dirt."""
+        told = Note(at=now, plan=plan, text="no room is due by its dirt")
+        return memory.without_waiting(plan).noting(told)
+
     def keep_to_plans(self, memory: Memory, now: dt.datetime) -> Memory:
         """Return the memory without what is no plan any more, and with those that are new."""
         seen = memory.seen

@@ -22,7 +22,7 @@ from roomba.client.protocol import (
     MissedFloor,
     RobotUnavailableError,
 )
-from roomba_ros.convert.mission import times_of
+from roomba_ros.convert.mission import room_dirt_of, times_of
 from roomba_ros.convert.values import unchanged
 from roomba_ros.runtime.action_client import GoalClient, is_heard
 from roomba_ros.runtime.calls import SERVER_DEADLINE
@@ -215,6 +215,7 @@ class RosClean(_Errand[CleanProgress, CleanReport]):
                 for area in result.missed
             ),
             times=times_of(result.times),
+            rooms=room_dirt_of(result.rooms),
         )
 
 

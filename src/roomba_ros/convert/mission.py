@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import asdict
 
 import numpy as np
@@ -22,6 +23,7 @@ from roomba_robot.msg import (
 )
 from roomba_robot.msg import CleanResult as CleanResultMessage
 from roomba_robot.msg import ExploreResult as ExploreResultMessage
+from roomba_robot.msg import RoomDirt as RoomDirtMessage
 from roomba_robot.msg import TimeSpent as TimeSpentMessage
 from roomba_robot.msg import Zone as ZoneMessage
 from roomba_robot.srv import ChangeRoomsRequest
@@ -44,7 +46,7 @@ from roomba.mission.inputs.senses import Battery
 from roomba.perception.rooms.zones import WALL_WIDTH, Zone, ZoneKind, Zones, ZonesError
 from roomba.perception.swept.coverage_bits import SWEPT, WANTED
 from roomba.time_spent import NAMES, NOT_COUNTED, TimeSpent
-from roomba.vocabulary import CleanMode, FanLevel, RoomWay
+from roomba.vocabulary import CleanMode, FanLevel, RoomDirt, RoomWay
 from roomba_ros.convert.common import header, map_message, quaternion_of
 from roomba_ros.convert.errors import MessageError, require_finite
 
@@ -132,6 +134,7 @@ def result_message(result: CleanResult) -> CleanResultMessage:
         energy=result.energy,
         missed=[_missed_message(missed) for missed in result.missed],
         times=TimeSpentMessage(**asdict(result.times)),
+        rooms=[RoomDirtMessage(each.room, each.share, each.grains) for each in result.rooms],
     )
 
 
@@ -141,6 +144,15 @@ def times_of(message: TimeSpentMessage) -> TimeSpent:
     if not all(0.0 <= value < math.inf for value in times.values()):
         return NOT_COUNTED
     return TimeSpent(**times)
+
+
+def room_dirt_of(messages: Sequence[RoomDirtMessage]) -> tuple[RoomDirt, ...]:
+    """Return how dirty rooms were; without those of which the message makes no sense."""
+    return tuple(
+        RoomDirt(each.room, each.share, each.grains)
+        for each in messages
+        if 0.0 <= each.share <= 1.0 and 0.0 <= each.grains < math.inf
+    )
 
 
 def explored_message(result: ExploreResult) -> ExploreResultMessage:

@@ -39,7 +39,7 @@ from roomba.client.view import (
 from roomba.grid import GridFrame, OccupancyMap
 from roomba_ros.convert.common import map_of, path_of
 from roomba_ros.convert.errors import MessageError, require_finite
-from roomba_ros.convert.mission import KINDS, OUTCOMES, times_of, zones_of
+from roomba_ros.convert.mission import KINDS, OUTCOMES, room_dirt_of, times_of, zones_of
 
 
 def known_cells_of(message: OccupancyGrid) -> OccupancyMap:
@@ -128,6 +128,7 @@ def clean_report_of(message: CleanActionResult) -> CleanReport | None:
             for area in result.missed
         ),
         times_of(result.times),
+        room_dirt_of(result.rooms),
     )
 
 

@@ -23,6 +23,8 @@ from roomba_robot.msg import (
     MissedArea,
     Room,
     RoomArray,
+    RoomDirt,
+    TimeSpent,
     UndockAction,
     VacuumState,
 )
@@ -126,11 +128,26 @@ def test_a_clean_from_its_goal_to_its_report(graph: RosGraph) -> None:
 
     area = MissedArea(0.5, Point(1.0, 2.0, 0.0), "Hall", MissedArea.THING, "a chair")
     handle.set_aborted(
-        CleanResult(CleanResult.LOST, "no place", 6.0, 8.0, 12.0, 40.0, 300.0, 2.5, [area]), "x"
+        CleanResult(
+            outcome=CleanResult.LOST,
+            message="no place",
+            covered=6.0,
+            wanted=8.0,
+            dirt=12.0,
+            distance=40.0,
+            duration=300.0,
+            energy=2.5,
+            missed=[area],
+            times=TimeSpent(least=125.0, straight=250.0),
+            rooms=[RoomDirt("Hall", 0.75, 900.0), RoomDirt("Den", math.nan, 5.0)],
+        ),
+        "x",
     )
     report = wait_until(clean.report, 30.0)
     assert (report.outcome, report.message) == (ErrandOutcome.LOST, "no place")
     assert (report.covered, report.wanted, report.dirt) == (6.0, 8.0, 12.0)
+    assert report.times.times_least == 2.0
+    assert [(each.room, each.share, each.grains) for each in report.rooms] == [("Hall", 0.75, 900)]
     assert (report.distance, report.duration, report.energy) == (40.0, 300.0, 2.5)
     assert report.missed == (MissedFloor(0.5, 1.0, 2.0, "Hall", "a chair"),)
 

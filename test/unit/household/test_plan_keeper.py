@@ -13,7 +13,8 @@ from fixtures.written_robot import VIEW, WrittenRobot
 
 from roomba.client.protocol import CleanReport, ErrandOutcome, RequestRefusedError
 from roomba.client.view import CleanOrder, RobotView
-from roomba.configuration.household import PlansConfig
+from roomba.configuration.household import DueConfig, PlansConfig
+from roomba.household.dirt_keeper import DirtKeeper
 from roomba.household.folder import KeptValues
 from roomba.household.plan_keeper import PlanKeeper, removed, replaced
 from roomba.plans.plan import HouseholdPlans, Plan, PlannedOrder, Preset
@@ -43,6 +44,7 @@ class Living:
             PlansConfig(),
             lambda: self.now,
             "UTC",
+            DirtKeeper(kept("dirt.json"), DueConfig()),
         )
 
     def put(self, plan: Plan) -> None:

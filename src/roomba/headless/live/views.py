@@ -215,6 +215,7 @@ def clean_report(result: CleanResult) -> CleanReport:
             for missed in result.missed
         ),
         result.times,
+        result.rooms,
     )
 
 

@@ -315,7 +315,11 @@ class Cleaning:
         edges_only = self.request.mode is CleanMode.EDGES
         try:
             plan = self._context.plan_coverage(
-                (here.x, here.y), todo, obstacles, edges_only=edges_only
+                (here.x, here.y),
+                todo,
+                obstacles,
+                edges_only=edges_only,
+                end=self._ledger.way_out_of(stage),
             )
         except NoPathError:
             self._unreachable = True

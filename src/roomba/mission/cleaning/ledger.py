@@ -26,6 +26,7 @@ from roomba.perception.swept.coverage_kernels import missed_of, swept_or
 from roomba.perception.swept.coverage_map import CoverageMap
 from roomba.perception.swept.dirt_map import DirtMap
 from roomba.raster.carried import carried
+from roomba.raster.distance import distance_to_nearest
 from roomba.vocabulary import RoomWay, listed
 
 Mask = NDArray[np.bool_]
@@ -133,6 +134,18 @@ class CoverageLedger:
         self.stage_number -= 1
         self.next_stage()
         return True
+
+    def way_out_of(self, stage: Stage) -> tuple[float, float] | None:
+        """Return where the next part begins, m, seen from this one; None if it is the last.
+
+        Of another pass over the same floor that is anywhere, and not told.
+        """
+        following = self.stages[self.stage_number + 1 : self.stage_number + 2]
+        if not following or (following[0].floor & stage.floor).any():
+            return None
+        off = np.where(following[0].floor, distance_to_nearest(stage.floor), np.inf)
+        row, column = np.unravel_index(int(np.argmin(off)), off.shape)
+        return self._context.frame.centre_of(int(row), int(column))
 
     def sweep_anew(self, floor: Mask) -> None:
         """Let floor be dirty again; that it was ever clean is not forgotten."""

@@ -9,7 +9,15 @@ from enum import Enum
 from roomba.errors import RoombaError
 from roomba.shares import share_of
 from roomba.time_spent import NOT_COUNTED, TimeSpent
-from roomba.vocabulary import MOST_PASSES, MOST_ZONES, CleanMode, FanLevel, RoomWay, fault_of_name
+from roomba.vocabulary import (
+    MOST_PASSES,
+    MOST_ZONES,
+    CleanMode,
+    FanLevel,
+    RoomDirt,
+    RoomWay,
+    fault_of_name,
+)
 
 
 class CleanRefusedError(RoombaError):
@@ -134,6 +142,7 @@ class CleanResult:
     energy: float
     missed: tuple[Missed, ...] = field(default=())
     times: TimeSpent = NOT_COUNTED
+    rooms: tuple[RoomDirt, ...] = ()
 
     @property
     def fraction(self) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -120,16 +121,26 @@ class PlanningContext:
         return self.coverage.floor
 
     def plan_coverage(
-        self, here: Point, todo: Mask, obstacles: Sequence[RoundObstacle], *, edges_only: bool
+        self,
+        here: Point,
+        todo: Mask,
+        obstacles: Sequence[RoundObstacle],
+        *,
+        edges_only: bool,
+        end: Point | None = None,
     ) -> CoveragePlan:
-        """Plan to sweep ``todo``, bool over ``frame``, from ``here`` and on to the staging place.
+        """Plan to sweep ``todo``, bool over ``frame``, from ``here``, and on to an ``end``.
 
-        Raises NoPathError when the robot cannot move.
+        That is the staging place where none is given, or no way leads there. Raises NoPathError
+        when the robot cannot move.
         """
         began = time.perf_counter()
-        end = (self.staging.x, self.staging.y)
+        home = (self.staging.x, self.staging.y)
         try:
-            return self.coverage.plan(here, end, todo, obstacles, edges_only=edges_only)
+            if end is not None:
+                with contextlib.suppress(NoPathError):
+                    return self.coverage.plan(here, end, todo, obstacles, edges_only=edges_only)
+            return self.coverage.plan(here, home, todo, obstacles, edges_only=edges_only)
         finally:
             self.plans += 1
             self.planning_time += time.perf_counter() - began

@@ -9,6 +9,7 @@ from roomba.configuration.mission import MissionConfig
 from roomba.mission.cleaning.cleaning import Cleaning
 from roomba.mission.cleaning.missed import what_is_not_clean
 from roomba.mission.cleaning.request import CleanOutcome, CleanRequest, CleanResult
+from roomba.mission.cleaning.room_dirt import dirt_of_rooms
 from roomba.mission.driving.obstacles import Obstacles
 from roomba.mission.exploring.exploration import Exploration, ExploreResult
 from roomba.mission.inputs.planning_context import PlanningContext
@@ -180,6 +181,7 @@ class Job:
             energy=self.ledger.energy,
             missed=missed,
             times=self.times.spent(cleaning.mean_passes * covered, context.tool_width),
+            rooms=dirt_of_rooms(cleaning.clean, context, self.dirt),
         )
 
     def forget(self) -> None:

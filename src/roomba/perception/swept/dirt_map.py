@@ -86,6 +86,21 @@ class DirtMap:
         values = self.over(np.nan_to_num(self.learned), frame)[mask]
         return float(values.mean()) if values.size else 0.0
 
+    def found(self, mask: Mask, frame: GridFrame) -> float:
+        """Return what the present run counted over a mask on another grid, grains/m2; 0 if none.
+
+        Floor that was swept twice counts with all that was found on it.
+        """
+        rows, columns = np.nonzero(self.way > 0.5 * CELL)
+        x, y = self.frame.centres(rows, columns)
+        row = ((y - frame.origin_y) / frame.resolution).astype(np.int64)
+        column = ((x - frame.origin_x) / frame.resolution).astype(np.int64)
+        inside = (row >= 0) & (row < frame.rows) & (column >= 0) & (column < frame.columns)
+        rows, columns = rows[inside], columns[inside]
+        here = mask[row[inside], column[inside]]
+        area = np.count_nonzero(here) * CELL**2
+        return float(self.grains[rows, columns][here].sum() / area) if area else 0.0
+
     def dirty_now(self, frame: GridFrame, times: float, least: float) -> Mask:
         """Return where the present run counted so many times the usual of it, on another grid.
 

@@ -52,6 +52,7 @@ function showOrder(order) {
   const limits = get("limits");
   offer($("plan-mode"), WHAT, order.mode);
   offer($("plan-passes"), numbers(limits?.most_passes ?? 1), order.passes);
+  $("plan-due").checked = Boolean(order.only_due);
   offer($("plan-fan"), (limits?.fans ?? [order.fan]).map((fan) => [fan, fan]), order.fan);
   // Rooms that there are not any more stay chosen until they are taken out here.
   const names = [...new Set([...(get("home")?.rooms ?? []).map((room) => room.name), ...order.rooms])];
@@ -59,11 +60,17 @@ function showOrder(order) {
   showRooms();
 }
 
-function showRooms() { $("plan-rooms-set").hidden = $("plan-mode").value !== "rooms"; }
+function showRooms() {
+  $("plan-rooms-set").hidden = $("plan-mode").value !== "rooms";
+  $("plan-due-label").hidden = $("plan-when").hidden || !canBeDue();
+}
+
+/** Whether of what is chosen those rooms alone can be cleaned that are due. */
+function canBeDue() { return ["whole", "rooms"].includes($("plan-mode").value); }
 
 function entered(given, isPlan) {
   const mode = $("plan-mode").value, rooms = mode === "rooms" ? checked("plan-rooms") : [];
-  const order = { mode, rooms, passes: Number($("plan-passes").value), fan: $("plan-fan").value };
+  const order = { mode, rooms, passes: Number($("plan-passes").value), fan: $("plan-fan").value, only_due: isPlan && canBeDue() && $("plan-due").checked };
   const name = $("plan-name").value.trim();
   if (!isPlan) return { name, order };
   const at = $("plan-at").value.split(/[\s,;]+/).filter(Boolean).map((time) => time.replace(/^\d:/, "0$&"));

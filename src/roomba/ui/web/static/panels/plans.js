@@ -52,11 +52,19 @@ async function showAll(version) {
   told = found;
   $("plan-list").replaceChildren(...told.plans.map(planLine));
   $("preset-list").replaceChildren(...told.presets.map(presetLine));
+  $("needs").hidden = told.needs.length === 0;
+  $("need-list").replaceChildren(...told.needs.map((need) => line(`${title(need.room)}: ${often(need.every)}; ${need.reason}.`)));
   $("quiet-list").replaceChildren(...told.quiet.map(quietLine));
   $("plan-waits").checked = told.waits_for_empty_home;
   $("plan-person").checked = told.is_person_home;
   $("plan-notes").replaceChildren(...told.notes.slice(0, MOST_NOTES).map((one) => line(`${day(one.at)} · ${one.plan}: ${one.text}`)));
   put($("plan-zone"), `Times are those of ${told.zone}.`);
+}
+
+/** Return how often a room is cleaned, of the times of its plan. */
+function often(every) {
+  if (every === null) return "each time";
+  return every === 1 ? "each time" : `every ${every} times`;
 }
 
 function planLine(plan) {
@@ -129,7 +137,7 @@ async function change(path, body) {
 
 function orderInWords(order) {
   const what = order.mode === "rooms" ? order.rooms.join(", ") : { whole: "all floor", edges: "edges", dirtiest: "dirtiest first" }[order.mode];
-  return `${what}, ${order.passes} ×, ${order.fan}`;
+  return `${what}${order.only_due ? ", only rooms that are due" : ""}, ${order.passes} ×, ${order.fan}`;
 }
 
 /** Return a moment as day and time of the home's zone, which its text has. */

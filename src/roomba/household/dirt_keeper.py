@@ -1,0 +1,33 @@
+"""What is learned of the rooms' dirt, live: each clean that ends tells how dirty they were."""
+
+from __future__ import annotations
+
+import datetime as dt
+from collections.abc import Sequence
+
+from roomba.client.protocol import CleanReport
+from roomba.configuration.household import DueConfig
+from roomba.household.folder import KeptValues
+from roomba.plans.due import DirtRecords, RoomNeed, learned, needs_of
+
+
+class DirtKeeper:
+    """Learns from reports, and keeps what it learned."""
+
+    def __init__(self, kept: KeptValues, config: DueConfig) -> None:
+        """Read what was kept."""
+        self._kept, self._config = kept, config
+        self._records = kept.read(DirtRecords())
+
+    def note(self, report: CleanReport, at: dt.datetime) -> bool:
+        """Learn from a clean that ended; return whether it told anything. Raises OSError."""
+        records = learned(self._records, report.rooms, at, self._config)
+        if records == self._records:
+            return False
+        self._records = records
+        self._kept.write(records)
+        return True
+
+    def needs(self, rooms: Sequence[str], now: dt.datetime, period: float) -> tuple[RoomNeed, ...]:
+        """Return what rooms need now, if the next time is ``period`` days later."""
+        return needs_of(self._records, rooms, now, period, self._config)

@@ -1,0 +1,123 @@
+"""Which rooms are due by their dirt: how fast each becomes dirty is learned from clean to clean.
+
+It has no clock and asks no robot. Grains are those that the robot's dirt sensor counts.
+"""
+
+from __future__ import annotations
+
+import datetime as dt
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
+
+from pydantic import AwareDatetime, Field
+
+from roomba.configuration.frozen import Frozen, NotNegative
+from roomba.configuration.household import DueConfig
+from roomba.vocabulary import RoomDirt
+
+DAY: Final = 86400.0
+"""s."""
+_MOST_ROOMS: Final = 1000
+
+
+class RoomRecord(Frozen):
+    """When a room was cleaned last, and how fast it becomes dirty, grains/m2 a day."""
+
+    cleaned: AwareDatetime
+    rate: NotNegative | None = None
+    """None until it was cleaned twice."""
+
+
+class DirtRecords(Frozen):
+    """All that is learned, by the rooms' names."""
+
+    rooms: dict[str, RoomRecord] = Field(default={}, max_length=_MOST_ROOMS)
+
+
+@dataclass(frozen=True, slots=True)
+class RoomNeed:
+    """How often a room needs to be cleaned: every so many times of a plan, None if not known yet.
+
+    ``reason`` says why, and ``is_due`` whether it is to be cleaned now.
+    """
+
+    room: str
+    every: int | None
+    is_due: bool
+    reason: str
+
+
+def learned(
+    records: DirtRecords, found: Sequence[RoomDirt], at: dt.datetime, config: DueConfig
+) -> DirtRecords:
+    """Return what is known after a clean that ended at a moment and found dirt in rooms.
+
+    A room of which too little was swept counts as not cleaned.
+    """
+    rooms = dict(records.rooms)
+    for each in found:
+        if each.share < config.least_share:
+            continue
+        before = rooms.get(each.room)
+        rate = None if before is None else before.rate
+        if before is not None:
+            days = (at - before.cleaned).total_seconds() / DAY
+            if days < config.shortest:
+                # Cleaned again at once: what lies there says nothing of a day.
+                rooms[each.room] = RoomRecord(cleaned=before.cleaned, rate=rate)
+                continue
+            now = each.grains / days
+            rate = now if rate is None else rate + config.learning * (now - rate)
+        rooms[each.room] = RoomRecord(cleaned=at, rate=rate)
+    return DirtRecords(rooms=rooms)
+
+
+def needs_of(
+    records: DirtRecords,
+    names: Sequence[str],
+    now: dt.datetime,
+    period: float,
+    config: DueConfig,
+) -> tuple[RoomNeed, ...]:
+    """Return what each of some rooms needs at a moment, if the next one is ``period`` days later.
+
+    The dirtiest is cleaned each time, and no other room may become dirtier than that does: it is
+    due when it would until the next time. One that is not known is due.
+    """
+    rates = {name: _rate(records, name) for name in names}
+    known = {name: rate for name, rate in rates.items() if rate is not None}
+    dirtiest = max(known, key=lambda name: known[name], default="")
+    most = known.get(dirtiest, 0.0)
+    return tuple(
+        _need(name, rates[name], records, now, period, (dirtiest, most), config) for name in names
+    )
+
+
+def _rate(records: DirtRecords, name: str) -> float | None:
+    record = records.rooms.get(name)
+    return None if record is None else record.rate
+
+
+def _need(
+    name: str,
+    rate: float | None,
+    records: DirtRecords,
+    now: dt.datetime,
+    period: float,
+    dirtiest: tuple[str, float],
+    config: DueConfig,
+) -> RoomNeed:
+    room, most = dirtiest
+    if rate is None:
+        return RoomNeed(name, None, True, "how fast it becomes dirty is not known yet")
+    longest = max(1, round(config.longest / period))
+    times = min(int(most / rate * (1.0 + config.spare)), longest) if rate > 0.0 else longest
+    times = max(times, 1)
+    since = (now - records.rooms[name].cleaned).total_seconds() / DAY
+    # Half a period: a clean ends some time after its plan's time.
+    is_due = since >= (times - 0.5) * period or since < 0.0
+    if name == room:
+        return RoomNeed(name, times, is_due, "it becomes dirty the fastest")
+    share = rate / most if most > 0.0 else 1.0
+    return RoomNeed(name, times, is_due, f"it becomes {share:.2f} times as dirty as {room}")

@@ -1,0 +1,117 @@
+"""What is learned of the rooms' dirt is kept, and plans go by it."""
+
+from __future__ import annotations
+
+import datetime as dt
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from fixtures.written_robot import HOME, VIEW, WrittenRobot
+
+from roomba.client.household import plans_of
+from roomba.client.protocol import CleanReport, ErrandOutcome
+from roomba.client.view import CleanOrder, HomeView, RobotView, RoomView
+from roomba.configuration.household import DueConfig, PlansConfig
+from roomba.household.dirt_keeper import DirtKeeper
+from roomba.household.folder import KeptValues
+from roomba.household.plan_keeper import PlanKeeper, replaced
+from roomba.plans.plan import Plan, PlannedOrder
+from roomba.vocabulary import CleanMode, RoomDirt
+
+DOCKED = replace(VIEW, vacuum=replace(VIEW.vacuum, state="docked", phase="docked"))
+DUE = Plan(name="daily", order=PlannedOrder(only_due=True), at=(dt.time(9, 0),))
+ROOMS = tuple(RoomView(name, 4.0, (0.0, 0.0), ()) for name in ("kitchen", "den"))
+
+
+class RoomyRobot(WrittenRobot):
+    def home(self) -> HomeView:
+        return replace(HOME, rooms=ROOMS)
+
+
+class Living:
+    """A keeper of plans over a robot with two rooms."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder, self.robot = folder, RoomyRobot()
+        self.now = dt.datetime(2026, 3, 2, 8, 0, tzinfo=dt.timezone.utc)
+        self.again()
+        self.keeper.change(lambda all_: replaced(all_, "plans", DUE.name, DUE))
+        self.keeper.look(DOCKED)
+
+    def again(self) -> None:
+        def kept(name: str) -> KeptValues:
+            return KeptValues(self.folder / name, lambda text: pytest.fail(text))
+
+        self.keeper = PlanKeeper(
+            self.robot,
+            kept("plans.json"),
+            kept("agenda.json"),
+            PlansConfig(),
+            lambda: self.now,
+            "UTC",
+            DirtKeeper(kept("dirt.json"), DueConfig()),
+        )
+
+    def day(self, view: RobotView = DOCKED, **grains: float) -> list[CleanOrder]:
+        """Let a day pass, at nine of which the plan is due; return what is begun.
+
+        What is begun ends an hour later, and finds such dirt.
+        """
+        self.now = self.now.replace(hour=9, minute=1)
+        self.robot.told.clear()
+        self.keeper.look(view)
+        begun = [arguments[0] for name, arguments in self.robot.told if name == "clean"]
+        self.keeper.look(VIEW)
+        self.now += dt.timedelta(hours=1)
+        rooms = tuple(RoomDirt(name, 1.0, value) for name, value in grains.items())
+        report = CleanReport(
+            ErrandOutcome.COMPLETED, "", 8.0, 8.0, 1.0, 30.0, 60.0, 1.0, rooms=rooms
+        )
+        self.last = replace(DOCKED, last=report) if begun else DOCKED
+        self.keeper.look(self.last)
+        self.now = self.now.replace(hour=8) + dt.timedelta(days=1)
+        self.keeper.look(DOCKED)
+        return begun
+
+
+def test_a_plan_cleans_what_is_due_and_says_why(tmp_path: Path) -> None:
+    living = Living(tmp_path)
+    both = CleanOrder("rooms", ("kitchen", "den"), in_order=False)
+    assert living.day(kitchen=5000.0, den=5000.0) == [both]
+    assert living.day(kitchen=1000.0, den=400.0) == [both]
+    living.again()
+    living.keeper.look(DOCKED)
+    assert living.day(kitchen=1000.0) == [CleanOrder("rooms", ("kitchen",), in_order=False)]
+    needs = plans_of(living.keeper.view())["needs"]
+    assert [need["every"] for need in needs] == [1, 2]
+    assert needs[1]["reason"] == "it becomes 0.40 times as dirty as kitchen"
+    assert living.day(kitchen=1000.0, den=800.0) == [both]
+
+
+def test_where_nothing_is_due_nothing_begins_and_that_is_noted(tmp_path: Path) -> None:
+    living = Living(tmp_path)
+    only_den = PlannedOrder(mode=CleanMode.ROOMS, rooms=("den",), only_due=True)
+    kitchen = PlannedOrder(mode=CleanMode.ROOMS, rooms=("kitchen", "den"), only_due=True)
+    plan = DUE.model_copy(update={"order": kitchen})
+    living.keeper.change(lambda all_: replaced(all_, "plans", DUE.name, plan))
+    living.keeper.look(DOCKED)
+    living.day(kitchen=5.0, den=5.0)
+    living.day(kitchen=1000.0, den=0.0)
+    living.keeper.change(
+        lambda all_: replaced(all_, "plans", DUE.name, plan.model_copy(update={"order": only_den}))
+    )
+    living.keeper.look(DOCKED)
+    assert living.day() == []
+    assert living.keeper.view().notes[-1].text == "no room is due by its dirt"
+
+
+def test_without_rooms_all_floor_is_cleaned(tmp_path: Path) -> None:
+    living = Living(tmp_path)
+    living.robot.home = lambda: HOME  # type: ignore[method-assign]
+    assert living.day() == [CleanOrder("whole", in_order=False)]
+
+
+def test_only_floor_and_rooms_can_be_due() -> None:
+    with pytest.raises(ValueError, match="those that are due"):
+        PlannedOrder(mode=CleanMode.EDGES, only_due=True)
