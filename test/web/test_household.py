@@ -87,13 +87,16 @@ def test_a_plan_is_made_changed_and_removed(opened: Opened, household: LiveHouse
     room = household.robot.home().rooms[0].name
     form.get_by_label(room, exact=True).check()
     form.get_by_label("Passes").select_option("2")
+    form.get_by_label("Only rooms that are due").check()
     form.get_by_role("button", name="Save").click()
     page.locator("#plan-list li").wait_for()
+    need = f"{room}: each time; how fast it becomes dirty is not known yet."
+    page.locator("#need-list").get_by_text(need).wait_for()
     (plan,) = household.plans().household.plans
     assert plan.rule == "FREQ=WEEKLY;BYDAY=MO,TH"
     assert [time.isoformat("minutes") for time in plan.at] == ["09:30", "18:00"]
-    assert (plan.order.rooms, plan.order.passes) == ((room,), 2)
-    about = f"Mon, Thu at 09:30, 18:00 · {room}, 2 ×, standard"
+    assert (plan.order.rooms, plan.order.passes, plan.order.only_due) == ((room,), 2, True)
+    about = f"Mon, Thu at 09:30, 18:00 · {room}, only rooms that are due, 2 ×, standard"
     assert page.inner_text("#plan-list .about") == about
     page.get_by_text("Next: Mornings").wait_for()
     page.get_by_role("button", name="Edit Mornings").click()
@@ -132,6 +135,7 @@ def test_a_preset_is_made_and_begun(opened: Opened, household: LiveHousehold) ->
     form.get_by_label("Name").fill("Edges")
     form.get_by_label("What").select_option("edges")
     assert not form.get_by_label("Times").is_visible()
+    assert not form.get_by_label("Only rooms that are due").is_visible()
     form.get_by_role("button", name="Save").click()
     page.get_by_role("button", name="Begin Edges").click()
     opened.wait_for_phase("cleaning")

@@ -116,3 +116,11 @@ def test_what_cannot_be_is_refused_and_nothing_changes() -> None:
     robot.mission.clean(CleanRequest(), robot.senses())
     with pytest.raises(CleanRefusedError, match="mode whole"):
         robot.mission.change_rooms((DEN,))
+
+
+@pytest.mark.parametrize("rooms", [(HALL, DEN), (DEN, HALL)])
+def test_from_room_to_room_it_goes_through_the_middle_of_the_door(rooms: tuple[str, str]) -> None:
+    robot = HeadlessMission(TWO_ROOMS, rooms=two_rooms(), seed=2)
+    record = robot.clean(CleanRequest(CleanMode.ROOMS, rooms=rooms, in_order=True))
+    assert_all_clean(robot, record)
+    assert record.hits == 0

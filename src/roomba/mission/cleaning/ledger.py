@@ -32,6 +32,8 @@ from roomba.vocabulary import RoomWay, listed
 Mask = NDArray[np.bool_]
 
 _ALL: Final = 0xFF
+_AS_NEAR: Final = 1.5
+"""Cells; what is farther by less is as near."""
 
 
 class CoverageLedger:
@@ -138,13 +140,15 @@ class CoverageLedger:
     def way_out_of(self, stage: Stage) -> tuple[float, float] | None:
         """Return where the next part begins, m, seen from this one; None if it is the last.
 
-        Of another pass over the same floor that is anywhere, and not told.
+        That is in the middle of where it is nearest: at the side of a door the robot would touch
+        the frame. Of another pass over the same floor it is anywhere, and not told.
         """
         following = self.stages[self.stage_number + 1 : self.stage_number + 2]
         if not following or (following[0].floor & stage.floor).any():
             return None
         off = np.where(following[0].floor, distance_to_nearest(stage.floor), np.inf)
-        row, column = np.unravel_index(int(np.argmin(off)), off.shape)
+        near = np.argwhere(off <= off.min() + _AS_NEAR)
+        row, column = near[np.argmin(((near - near.mean(axis=0)) ** 2).sum(axis=1))]
         return self._context.frame.centre_of(int(row), int(column))
 
     def sweep_anew(self, floor: Mask) -> None:
