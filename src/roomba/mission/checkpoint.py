@@ -90,8 +90,7 @@ def _remembered(
         raise CheckpointError("expected the exploration that it was on, got none")
     distance, energy, dirt = (float(value) for value in values["ledger"])
     duration = float(values["duration"])
-    # One that was made before times were counted has none.
-    times = {str(name): float(value) for name, value in values.get("times", {}).items()}
+    times = {str(name): float(value) for name, value in values["times"].items()}
     numbers = (distance, energy, dirt, duration, *times.values())
     if not all(math.isfinite(value) for value in numbers):
         raise CheckpointError("expected finite numbers")

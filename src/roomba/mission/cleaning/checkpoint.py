@@ -18,7 +18,7 @@ from roomba.errors import RoombaError
 from roomba.mission.cleaning.request import CleanRequest
 from roomba.vocabulary import CleanMode, FanLevel, RoomWay
 
-VERSION: Final = 3
+VERSION: Final = 4
 Mask = NDArray[np.bool_]
 Values = dict[str, Any]
 
