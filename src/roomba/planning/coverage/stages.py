@@ -25,7 +25,7 @@ from roomba.raster.regions import Mask
 Line = NDArray[np.float64]
 
 Edges = Callable[[list[Line], Mask, Mask, float, float, CoverageConfig], list[Line]]
-"""rings, need, middles, radius, length of a piece, configuration: lines along walls and furniture."""
+"""rings, need, middles, radius, length of a piece, configuration: lines along walls."""
 Swaths = Callable[[Mask, Mask, float, CoverageConfig], list[Line]]
 """left, middles, radius, configuration: straight lines that sweep what is left."""
 Order = Callable[[Net, list[Line], Line, Line | None, CoverageConfig], list[Line]]
