@@ -14,6 +14,7 @@ VENV=$REPOSITORY/.venv
 BENCH_VENV=$REPOSITORY/.venv-bench
 AUDIT_VENV=$REPOSITORY/.venv-audit
 HA_VENV=$REPOSITORY/.venv-ha
+DOCS_VENV=$REPOSITORY/.venv-docs
 CACHE=$REPOSITORY/.cache
 OS_RELEASE=/etc/os-release
 PYTHON=/usr/bin/python3 # the one that ROS is packaged for; a pyenv or conda python has no rospy
@@ -494,6 +495,11 @@ install_audit() {
 # The newest one that there is for this Python; it needs an older paho than the robot.
 install_ha() {
   install_tool "Installing Home Assistant into .venv-ha" "$HA_VENV" requirements-ha.txt
+}
+
+# What makes the site of the documents.
+install_docs() {
+  install_tool "Installing what makes the site into .venv-docs" "$DOCS_VENV" requirements-docs.txt
 }
 
 # ---------------------------------------------------------------- all of it

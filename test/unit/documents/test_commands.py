@@ -43,7 +43,7 @@ MENTIONED = {"import valetudo", "map --bag", "emulate"}
 """What the text names without the rest of the line."""
 SUITES = {
     *("lint", "unit", "conformance", "safety", "web", "contract", "ros", "system", "missions"),
-    *("install", "mutants", "ha", "campaigns", "realtime"),
+    *("teaching", "install", "mutants", "ha", "campaigns", "realtime", "docs"),
 }
 
 
@@ -131,6 +131,8 @@ def take(line: str, monkeypatch: pytest.MonkeyPatch) -> None:
         take_suites(words)
     elif command == "doctor":
         assert set(words) <= {"--json"}
+    elif command == "docs":
+        assert words in ([], ["--serve"])
     elif command in MODULES:
         if command in ("localize", "record"):
             pytest.importorskip("roomba_robot.msg", reason="needs ROS, as the command does")

@@ -1,0 +1,1 @@
+"""Pictures of the tutorials, and of the pages of the algorithms."""
