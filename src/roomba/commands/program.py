@@ -38,7 +38,7 @@ _OF_VALETUDO: Final = {"export": "roomba.commands.valetudo.export_command"}
 _DEMOS: Final = {"control": "roomba.commands.control.command"}
 """The same of a command that needs ROS, but not with ``--demo``."""
 _NEED_ROS: Final = ("run", "control", "camera", "exec", "record")
-_NEED_CHECKOUT: Final = ("test", "bench")
+_NEED_CHECKOUT: Final = ("test", "bench", "exercise", "docs")
 _USAGE: Final = """\
 usage: roomba COMMAND ...
 
@@ -76,8 +76,8 @@ usage: roomba COMMAND ...
   doctor [--json]  what is missing, and how to mend it
   help             this text
 
-The commands run, camera, exec, record, and control without --demo, need ROS, test and bench the
-checkout: there it is ./roomba COMMAND.
+The commands run, camera, exec, record, and control without --demo, need ROS; test, bench, exercise
+and docs need the checkout: there it is ./roomba COMMAND.
 """
 _MODULES: Final = (
     "cv2", "fastapi", "matplotlib", "numba", "numpy", "pebble", "PIL", "pydantic", "rich",

@@ -35,6 +35,7 @@ MODULES = {
     "fuzz": "fuzz.__main__",
     "emulate": "roomba.commands.emulate.command",
     "localize": "roomba.commands.localize.command",
+    "exercise": "roomba.commands.exercise.command",
 }
 """The module whose ``main`` parses what follows a command; the others are told below."""
 PROGRAMS = {"dask", "rostopic", "rosservice", "roscore", "rosparam", "rosbag", "bash"}

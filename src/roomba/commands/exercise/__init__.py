@@ -1,0 +1,1 @@
+"""``./roomba exercise``: tasks for learners, and checks that run what they wrote."""

@@ -1,0 +1,90 @@
+"""Checks ``coverage_path(free, start)``: whether the way stays on the floor, and what it swept."""
+
+from __future__ import annotations
+
+import itertools
+import sys
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.commands.exercise.verdict import expect, function_of, judged
+from roomba.raster.regions import dilated
+
+_WIDTH: Final = 5
+"""Cells of 5 cm that the tool sweeps: the one the middle is in, and two to each side."""
+_SHARE: Final = 0.98
+"""0..1; of the floor that the tool can reach."""
+_MOST: Final = 2.0
+"""So many times the least way is allowed: that of the floor's cells by the tool's width."""
+_STEPS: Final = 4
+"""Places a cell of way at which is looked."""
+
+Mask = NDArray[np.bool_]
+
+
+def floors() -> dict[str, Mask]:
+    """Return where the middle may be, by names, bool [rows, columns]."""
+    room = np.zeros((50, 60), np.bool_)
+    room[2:-2, 2:-2] = True
+    table = room.copy()
+    table[18:32, 20:40] = False
+    rooms = np.zeros((50, 110), np.bool_)
+    rooms[2:-2, 2:52] = True
+    rooms[2:30, 58:-2] = True
+    rooms[14:20, 52:58] = True
+    return {"an empty room": room, "a room with a table": table, "two rooms with a door": rooms}
+
+
+def check(file: Path) -> str:
+    """Return what is right; raises NotYetError."""
+    plan = function_of(file, "coverage_path")
+    told = []
+    for name, free in floors().items():
+        way = np.array([tuple(map(float, cell)) for cell in plan(free.copy(), (3, 3))])
+        expect(way.ndim == 2 and way.shape[1:] == (2,), f"{name}: expected (row, column) of cells")
+        expect(bool((way[0] == 3.0).all()), f"{name}: expected it to begin at (3, 3)")
+        passed = _cells_of(way)
+        for row, column in passed:
+            inside = 0 <= row < free.shape[0] and 0 <= column < free.shape[1]
+            expect(
+                inside and bool(free[row, column]),
+                f"{name}: the middle may not be at cell ({row}, {column}), which the way crosses",
+            )
+        share, length = _swept(free, passed), float(np.hypot(*np.diff(way, axis=0).T).sum())
+        expect(
+            share >= _SHARE, f"{name}: {share:.1%} of the floor are swept, expected {_SHARE:.0%}"
+        )
+        ratio = length * _WIDTH / int(dilated(free, _tool()).sum())
+        expect(ratio <= _MOST, f"{name}: {ratio:.2f} times the least way, {_MOST} are allowed")
+        told.append(f"{name}: {share:.1%} by {ratio:.2f} times the least way")
+    return "; ".join(told)
+
+
+def _tool() -> Mask:
+    away = np.arange(_WIDTH) - _WIDTH // 2
+    disc: Mask = away[:, None] ** 2 + away[None, :] ** 2 <= (_WIDTH / 2.0) ** 2
+    return disc
+
+
+def _cells_of(way: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Return the cells that a way goes through, int64 [n, 2]."""
+    parts = [way[:1]]
+    for one, other in itertools.pairwise(way):
+        count = max(1, int(np.ceil(np.abs(other - one).max() * _STEPS)))
+        parts.append(one + (other - one) * (np.arange(1, count + 1) / count)[:, None])
+    cells: NDArray[np.int64] = np.rint(np.concatenate(parts)).astype(np.int64)
+    return np.unique(cells, axis=0)
+
+
+def _swept(free: Mask, passed: NDArray[np.int64]) -> float:
+    """Return the share of what the tool can reach that it passed over."""
+    at = np.zeros_like(free)
+    at[passed[:, 0], passed[:, 1]] = True
+    return float(dilated(at, _tool()).sum() / dilated(free, _tool()).sum())
+
+
+if __name__ == "__main__":
+    sys.exit(judged(check))

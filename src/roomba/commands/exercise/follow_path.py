@@ -1,0 +1,72 @@
+"""Checks ``drive(pose, path, speed)``: a simulated robot is driven by it along paths."""
+
+from __future__ import annotations
+
+import math
+import sys
+from pathlib import Path
+from typing import Final
+
+import shapely
+
+from roomba.commands.exercise.verdict import expect, function_of, judged
+from roomba.files.shipped import HOMES
+from roomba.geometry import Pose, Twist
+from roomba.world.layers.layer import load_home
+from roomba.world.simulator import Simulator
+
+_DT: Final = 0.05
+"""s between two commands."""
+_SPEED: Final = 0.3
+"""m/s."""
+_ASIDE: Final = 0.10
+"""m; farther off its path the robot is not to be."""
+_NEAR: Final = 0.05
+"""m; from the end of the path."""
+_PATHS: Final = (
+    ("straight on", [(-2.0, -1.0), (1.5, -1.0)]),
+    ("around a corner", [(-2.0, -1.0), (0.0, -1.0), (0.0, 1.0)]),
+    ("a zigzag", [(-1.5, -1.0), (-0.5, 0.0), (0.5, -1.0), (1.5, 0.0)]),
+    ("back again", [(-1.0, 0.5), (1.0, 0.5), (1.0, 0.9), (-1.0, 0.9)]),
+)
+
+
+def check(file: Path) -> str:
+    """Return what is right; raises NotYetError."""
+    drive = function_of(file, "drive")
+    home = load_home("empty", HOMES)
+    x, y = home.frame.centre_of(home.frame.rows // 2, home.frame.columns // 2)
+    worst = 0.0
+    for name, corners in _PATHS:
+        path = [(x + right, y + up) for right, up in corners]
+        line, length = shapely.LineString(path), shapely.LineString(path).length
+        first = math.atan2(path[1][1] - path[0][1], path[1][0] - path[0][0])
+        robot = Simulator(home, seed=1, start=Pose(*path[0], first))
+        most = 10.0 + 3.0 * length / _SPEED
+        while robot.time < most:
+            pose = robot.pose
+            speed, turning = drive((pose.x, pose.y, pose.theta), list(path), _SPEED)
+            expect(
+                math.isfinite(speed) and math.isfinite(turning),
+                f"{name}: expected a finite speed and turning, got {speed}, {turning}",
+            )
+            expect(speed <= 1.01 * _SPEED, f"{name}: {speed:.2f} m/s is above {_SPEED} m/s")
+            if speed == 0.0 and turning == 0.0:
+                break
+            robot.step(Twist(float(speed), float(turning)), _DT)
+            aside = float(line.distance(shapely.Point(robot.pose.x, robot.pose.y)))
+            worst = max(worst, aside)
+            expect(
+                aside <= _ASIDE,
+                f"{name}: after {robot.time:.1f} s it is {aside:.2f} m off its path, at "
+                f"({robot.pose.x - x:.2f}, {robot.pose.y - y:.2f}); {_ASIDE} m are allowed",
+            )
+        else:
+            expect(False, f"{name}: it has not told the robot to stand after {most:.0f} s")
+        off = robot.pose.distance_to(*path[-1])
+        expect(off <= _NEAR, f"{name}: it stands {off:.2f} m from the end; {_NEAR} m are allowed")
+    return f"{len(_PATHS)} paths, at most {100.0 * worst:.1f} cm off them"
+
+
+if __name__ == "__main__":
+    sys.exit(judged(check))

@@ -1,0 +1,83 @@
+"""Each exercise without ROS: what it begins with does not pass, and a solution does."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from roomba.commands.exercise.command import main
+from roomba.commands.exercise.course import COURSE
+
+SOLUTIONS = Path(__file__).with_name("solutions")
+NUMBERS = {each.name: number for number, each in enumerate(COURSE, 1)}
+WITHOUT_ROS = [each.name for each in COURSE if each.check.startswith("roomba.")]
+
+
+@pytest.mark.parametrize("name", WITHOUT_ROS)
+def test_a_solution_passes(name: str, capfd: pytest.CaptureFixture[str]) -> None:
+    file = SOLUTIONS / f"{name}.py"
+    assert main([str(NUMBERS[name]), "--check", "--file", str(file)]) == 0, capfd.readouterr().out
+    assert capfd.readouterr().out.startswith("passed: ")
+
+
+@pytest.mark.parametrize("name", WITHOUT_ROS)
+def test_what_a_learner_begins_with_does_not_pass_yet(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main([str(NUMBERS[name])]) == 0
+    assert capfd.readouterr().out.startswith(f"# {NUMBERS[name]}. ")
+    assert main([str(NUMBERS[name]), "--check"]) == 1
+    assert capfd.readouterr().out.startswith("not yet: ")
+
+
+@pytest.mark.parametrize(
+    ("answer", "told"),
+    [
+        ("def shortest_path(free, start, goal):\n    return nothing\n", "line 2: return nothing"),
+        ("def shortest_path(:\n", "line 1"),
+        ("way = 1\n", "expected a function shortest_path()"),
+        ("import os\nos._exit(9)\n", "ended the check, with status 9"),
+        ("def shortest_path(free, start, goal):\n    return [start, goal]\n", "no neighbours"),
+    ],
+)
+def test_what_is_wrong_is_told(
+    answer: str, told: str, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "shortest_path.py"
+    file.write_text(answer, "utf-8")
+    assert main([str(NUMBERS["shortest_path"]), "--check", "--file", str(file)]) == 1
+    assert told in capfd.readouterr().out
+
+
+def test_an_answer_that_never_ends_is_ended(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    file = tmp_path / "shortest_path.py"
+    file.write_text("while True:\n    pass\n", "utf-8")
+    number = NUMBERS["shortest_path"]
+    short = [type(each)(each.name, each.about, each.check, 1.0) for each in COURSE]
+    monkeypatch.setattr("roomba.commands.exercise.command.COURSE", short)
+    assert main([str(number), "--check", "--file", str(file)]) == 1
+    assert "does a loop go on for ever?" in capfd.readouterr().out
+
+
+def test_all_are_listed_and_a_file_of_the_learner_is_kept(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main([]) == 0
+    told = capfd.readouterr().out
+    assert all(each.about in told for each in COURSE)
+    Path("follow_path.py").write_text("mine\n", "utf-8")
+    assert main(["5"]) == 0
+    assert Path("follow_path.py").read_text("utf-8") == "mine\n"
+
+
+@pytest.mark.parametrize("arguments", [["0"], ["99"], ["--check"], ["4", "--check"], ["x"]])
+def test_wrong_usage_is_refused(
+    arguments: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(arguments) == 2
