@@ -44,6 +44,13 @@ def test_the_api_is_told_by_docstrings(site: Path) -> None:
     assert ":class:" not in text
 
 
+def test_formulas_are_drawn_without_a_script(site: Path) -> None:
+    for page in ("matching", "belief", "things", "coverage", "docking", "loop_closing"):
+        text = (site / "algorithms" / f"{page}.html").read_text("utf-8")
+        assert text.count('<math xmlns="http://www.w3.org/1998/Math/MathML"') >= 3
+        assert "$" not in text
+
+
 def test_nothing_is_fetched_from_elsewhere(site: Path) -> None:
     page = (site / "index.html").read_text("utf-8")
     assert 'src="http' not in page

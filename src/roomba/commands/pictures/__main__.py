@@ -40,7 +40,12 @@ from roomba.commands.pictures.sensors.moving import picture_of_moving
 from roomba.commands.pictures.sensors.odometry import picture_of_odometry
 from roomba.commands.pictures.sensors.station import picture_of_station
 from roomba.commands.pictures.smart_home import picture_of_smart_home
+from roomba.commands.pictures.teaching.belief import picture_of_belief
 from roomba.commands.pictures.teaching.floor_plan import picture_of_floor_plan
+from roomba.commands.pictures.teaching.loop import picture_of_loop_closing
+from roomba.commands.pictures.teaching.matching import picture_of_matching
+from roomba.commands.pictures.teaching.stages import picture_of_stages
+from roomba.commands.pictures.teaching.things import picture_of_things
 from roomba.commands.pictures.terminal import picture_of_top
 from roomba.commands.pictures.tour import VIEWS, picture_of_home, picture_of_view, picture_of_walk
 from roomba.commands.spelling import spelled
@@ -79,6 +84,11 @@ PICTURES: dict[str, tuple[str, Callable[[Home], Picture]]] = {
     "map_errors": ("flat", picture_of_map_errors),
     "layers": ("empty", picture_of_layers),
     "floor_plan": ("flat", picture_of_floor_plan),
+    "matching": ("studio", picture_of_matching),
+    "belief": ("flat", picture_of_belief),
+    "things": ("studio", picture_of_things),
+    "stages": ("studio", picture_of_stages),
+    "loop_closing": ("empty", picture_of_loop_closing),
 }
 """Each picture by the name of its file: the home that it is of, and what makes it."""
 IN_BROWSER: dict[str, tuple[str, Callable[[Home], Picture]]] = {

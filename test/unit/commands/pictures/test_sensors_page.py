@@ -69,7 +69,8 @@ def test_every_number_of_the_robot_is_there_as_it_is(
 
 def test_every_picture_of_the_documents_exists_and_is_made_by_the_command() -> None:
     pages = [ROOT / "README.md", *(ROOT / "docs").glob("*.md")]
-    pages += (ROOT / "docs" / "tutorials").glob("*.md")
+    for folder in ("algorithms", "tutorials"):
+        pages += (ROOT / "docs" / folder).glob("*.md")
     linked = {
         (page.parent / link).resolve()
         for page in pages
