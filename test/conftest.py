@@ -35,6 +35,7 @@ def own_history(tmp_path_factory: pytest.TempPathFactory) -> None:
 TESTS = Path(__file__).resolve().parent
 LONGEST_FIRST = (
     "test_standstill.py",
+    "test_tutorials.py",
     "test_conformance.py",
     "test_faults.py",
     "test_supervision.py",

@@ -1,0 +1,50 @@
+"""Tutorials at a glance: all of their blocks can be typed; `test/teaching` types them."""
+
+from __future__ import annotations
+
+import importlib.util
+import re
+from pathlib import Path
+
+import pytest
+from fixtures.tutorial import Block, blocks_of
+
+ROOT = Path(__file__).parents[3]
+TUTORIALS = sorted((ROOT / "docs" / "tutorials").glob("*.md"))
+SUITE = ROOT / "test" / "teaching" / "test_tutorials.py"
+
+
+def of(page: Path) -> list[Block]:
+    return blocks_of(page.read_text("utf-8"))
+
+
+@pytest.mark.parametrize("page", TUTORIALS, ids=lambda page: page.stem)
+def test_every_block_is_a_file_or_typed_or_shown(page: Path) -> None:
+    blocks = of(page)
+    assert blocks or page.stem == "README"
+    assert page.read_text("utf-8").count("\n```") == 2 * len(blocks)
+
+
+@pytest.mark.parametrize("page", TUTORIALS, ids=lambda page: page.stem)
+def test_python_of_a_tutorial_is_python(page: Path) -> None:
+    for block in of(page):
+        if block.language == "python":
+            compile(block.text, block.title, "exec")
+
+
+@pytest.mark.parametrize("page", TUTORIALS, ids=lambda page: page.stem)
+def test_a_file_that_is_run_is_one_of_the_page_or_of_the_checkout(page: Path) -> None:
+    there = {block.title for block in of(page)}
+    for block in of(page):
+        for name in re.findall(r"python3? ([\w/]+\.py)", block.text if not block.title else ""):
+            assert name in there or (ROOT / name).is_file(), f"line {block.line}: {name}"
+
+
+def test_the_suite_types_all_of_them() -> None:
+    spec = importlib.util.spec_from_file_location("suite", SUITE)
+    assert spec is not None
+    assert spec.loader is not None
+    suite = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(suite)
+    typed = {*suite.ON_ONE_ROBOT, *suite.WITHOUT_ROS, "README"}
+    assert typed == {page.stem for page in TUTORIALS}
