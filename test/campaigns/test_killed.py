@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -72,17 +73,25 @@ def children_of(pid: int) -> list[int]:
     return found
 
 
+def has_stored(file: Path, least: int) -> bool:
+    return len(stored(file)) >= least
+
+
+def have_ended(processes: list[int]) -> bool:
+    return not any(map(is_running, processes))
+
+
 @pytest.mark.parametrize("where", [("--processes", "2"), ("--cluster", "local:2")])
 def test_a_command_that_is_killed_goes_on_and_leaves_no_process(
     file: Path, where: tuple[str, str]
 ) -> None:
     for least in (1, 4):
         command = started(file, *where)
-        wait_until(lambda least=least: len(stored(file)) >= least, STARTED, "runs are stored", 0.05)
+        wait_until(partial(has_stored, file, least), STARTED, "runs are stored", 0.05)
         below = children_of(command.pid)
         command.send_signal(signal.SIGKILL)
         command.wait()
-        wait_until(lambda below=below: not any(map(is_running, below)), 20.0, "workers ended")
+        wait_until(partial(have_ended, below), 20.0, "workers ended")
     before = stored(file)
     assert started(file, *where).wait() == 0
     rows = stored(file)

@@ -28,7 +28,7 @@ NODE = "a part of a node, tested with the node in a graph"
 WARM = "compiles ahead of time what others test"
 
 TESTED_BY: dict[str, tuple[str, str]] = {
-    "roomba_ros/driver/told_topics": ("ros/test_roomba_driver_node.py", NODE),
+    "roomba_ros/driver/told_topics": ("ros/driver/test_roomba_driver_node.py", NODE),
     "roomba_ros/plain/details": ("ros/rosbridge/test_programs.py", NODE),
     "roomba_ros/rosbridge/": ("ros/rosbridge/test_bridge.py", NODE),
     "roomba/client/events": ("unit/ui/web/streams/test_events.py", "kept and streamed there"),
