@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from fixtures.dask_processes import DaskProcesses
+from fixtures.campaigns.dask_processes import DaskProcesses
 from fixtures.homes.tiny_home import tiny_home
 from fixtures.processes import is_running
 from fixtures.waiting import wait_until

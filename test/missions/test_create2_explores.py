@@ -5,7 +5,7 @@ from __future__ import annotations
 import faulthandler
 from pathlib import Path
 
-from fixtures.create2_rig import Create2Rig
+from fixtures.robots.create2_rig import Create2Rig
 from fixtures.waiting import wait_until
 
 from roomba.configuration.docking import DockingConfig

@@ -6,7 +6,7 @@ import faulthandler
 from pathlib import Path
 
 import pytest
-from fixtures.faulty_end import FaultyEnd
+from fixtures.robots.faulty_end import FaultyEnd
 from fixtures.robots.neato_rig import NeatoEnd, neato_world
 from fixtures.waiting import wait_until
 

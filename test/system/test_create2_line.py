@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from fixtures.create2_rig import Create2Rig, create2_in_studio
+from fixtures.robots.create2_rig import Create2Rig, create2_in_studio
 from fixtures.waiting import wait_until
 
 from roomba.geometry import Pose, Twist

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from fixtures.faulty_end import FaultyEnd
+from fixtures.robots.faulty_end import FaultyEnd
 from fixtures.robots.neato_rig import NeatoEnd, neato_world
 from fixtures.waiting import wait_until
 

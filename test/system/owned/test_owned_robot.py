@@ -11,8 +11,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from fixtures.faulty_end import FaultyEnd
 from fixtures.processes import Program
+from fixtures.robots.faulty_end import FaultyEnd
 from fixtures.robots.neato_rig import NeatoEnd, neato_world
 from fixtures.waiting import wait_until
 

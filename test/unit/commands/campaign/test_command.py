@@ -9,7 +9,7 @@ from pathlib import Path
 
 import cv2
 import pytest
-from fixtures.campaign_work import FINE
+from fixtures.campaigns.campaign_work import FINE
 from pyarrow import parquet
 
 from roomba.commands.campaign import command

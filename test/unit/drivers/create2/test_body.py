@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from fixtures.create2_rig import Create2Rig, create2_config
+from fixtures.robots.create2_rig import Create2Rig, create2_config
 from fixtures.waiting import wait_until
 
 from roomba.drivers.create2.body import Create2Body
@@ -26,7 +26,7 @@ BEFORE = Pose(-0.6, 0.0, 0.0)
 
 
 def away() -> Pose:
-    from fixtures.create2_rig import create2_in_studio
+    from fixtures.robots.create2_rig import create2_in_studio
 
     return create2_in_studio().pose.compose(BEFORE)
 

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
-from fixtures.create2_rig import Create2Rig
+from fixtures.robots.create2_rig import Create2Rig
 from fixtures.robots.mapped import wrong_cells
 from fixtures.waiting import wait_until
 

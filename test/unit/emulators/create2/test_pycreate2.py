@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import pytest
-from fixtures.create2_rig import create2_in_studio
+from fixtures.robots.create2_rig import create2_in_studio
 from fixtures.waiting import wait_until
 from pycreate2 import Create2
 

@@ -6,7 +6,7 @@ import math
 import struct
 
 import pytest
-from fixtures.create2_rig import create2_in_studio
+from fixtures.robots.create2_rig import create2_in_studio
 
 from roomba.drivers.create2.open_interface import FORMATS, GROUPS, Opcode, OpenMode, Packet
 from roomba.emulators.create2.instructions import InstructionReader

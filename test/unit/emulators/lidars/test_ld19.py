@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from fixtures.create2_rig import create2_in_studio
+from fixtures.robots.create2_rig import create2_in_studio
 
 from roomba.drivers.lidars.ld19 import SIZE, LidarFrame, frame_of
 from roomba.emulators.lidars.ld19 import Ld19Emulator

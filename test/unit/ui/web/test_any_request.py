@@ -19,7 +19,7 @@ import pytest
 from fastapi import FastAPI
 from fastapi.routing import APIRoute
 from fastapi.testclient import TestClient
-from fixtures.able_robot import AbleRobot
+from fixtures.robots.able_robot import AbleRobot
 from fixtures.routes import all_routes
 from fixtures.spoiled import TOKENS, spoiled, spoiled_values
 from hypothesis import HealthCheck, given, settings

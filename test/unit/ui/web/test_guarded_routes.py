@@ -11,7 +11,7 @@ import pytest
 from fastapi import FastAPI
 from fastapi.routing import APIRoute, APIWebSocketRoute
 from fastapi.testclient import TestClient
-from fixtures.able_robot import AbleRobot
+from fixtures.robots.able_robot import AbleRobot
 from fixtures.routes import all_routes
 from hypothesis import given
 from hypothesis import strategies as st

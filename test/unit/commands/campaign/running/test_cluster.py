@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from fixtures.campaign_work import NOTES, made_run, noted, times_begun
-from fixtures.dask_processes import DaskProcesses
+from fixtures.campaigns.campaign_work import NOTES, made_run, noted, times_begun
+from fixtures.campaigns.dask_processes import DaskProcesses
 
 from roomba.commands.campaign.running.cluster import ClusterError, check_cluster, run_on_cluster
 from roomba.commands.campaign.running.work import RunEnd

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import pytest
-from fixtures.campaign_work import NOTES, made_run, noted, times_begun
+from fixtures.campaigns.campaign_work import NOTES, made_run, noted, times_begun
 
 from roomba.commands.campaign.running import machines
 from roomba.commands.campaign.running.machines import ATTEMPTS, Machines, Work, run_on

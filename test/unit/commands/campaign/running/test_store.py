@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from fixtures.campaign_work import FINE, made_run
+from fixtures.campaigns.campaign_work import FINE, made_run
 
 from roomba.commands.campaign.running.store import opened_store
 from roomba.commands.campaign.running.work import RunEnd
