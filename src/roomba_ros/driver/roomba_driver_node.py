@@ -34,8 +34,9 @@ class RoombaDriverNode:
     ``main_brush_motor``, ``vacuum_motor`` (Float32, duty 0..1, of brush and fan: they are off until
     something is told).
     Parameters: ``~robot`` (a name of the table of robots), ``~port`` (the device of its line),
-    ``~drive_owner`` (the node that may drive, or any), ``~frames`` (false: robot_state_publisher
-    tells those below base_link), ``robot_config``.
+    ``~lidar_port`` (that of a lidar which has a line of its own), ``~drive_owner`` (the node that
+    may drive, or any), ``~frames`` (false: robot_state_publisher tells those below base_link),
+    ``robot_config``.
     """
 
     period: float
@@ -55,7 +56,7 @@ class RoombaDriverNode:
         self._fan: float | None = None
         self._brush: float | None = None
         self._trouble, self._silent_ticks = "", _LINE_TICKS
-        self._body = kind.body_on(port, config)
+        self._body = kind.body_on(port, config, _lidar_port())
         self._body.start()
         rospy.loginfo("%s on %s is taken over", kind.title, port)
         self._topics = ToldTopics(config, parameters.robot_name)
@@ -109,6 +110,15 @@ def _port() -> str:
     if not isinstance(port, str) or not port:
         raise ConfigError(
             f"parameter ~port: expected a device such as /dev/ttyACM0, got {port!r}; say port:=…"
+        )
+    return port
+
+
+def _lidar_port() -> str:
+    port = rospy.get_param("~lidar_port", "")
+    if not isinstance(port, str):
+        raise ConfigError(
+            f"parameter ~lidar_port: expected a device such as /dev/ttyUSB1, got {port!r}"
         )
     return port
 

@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 from fixtures.graph import WITH_PAGE
 
+from roomba.drivers.robots.table import ROBOTS
 from roomba.errors import RoombaError
 from roomba_ros.supervision.launch_file import described, read_launch
 from roomba_ros.supervision.launch_xml import environment_of
@@ -36,19 +37,23 @@ def test_its_arguments_count() -> None:
     assert launch.parameters["/robot_max_speed"] == 0.25
 
 
-def test_a_robot_that_one_owns_takes_the_place_of_the_simulation() -> None:
-    launch = read_launch(LAUNCH, ["robot:=neato", "port:=/dev/ttyACM0"])
+@pytest.mark.parametrize("robot", ROBOTS)
+def test_a_robot_that_one_owns_takes_the_place_of_the_simulation(robot: str) -> None:
+    lines = ["port:=/dev/ttyACM0", "lidar_port:=/dev/ttyUSB1"]
+    launch = read_launch(LAUNCH, [f"robot:={robot}", *lines])
     names = {entry.name for entry in launch.processes}
     simulated = {"home_sim_node", "dirt_pub_node", "turn_camera_service_node"}
     assert names == (set(WITH_PAGE) - simulated) | {"roomba_driver_node"}
     assert [entry.name for entry in launch.processes if entry.is_required] == ["roomba_driver_node"]
     assert launch.parameters["/use_sim_time"] is False
-    assert launch.parameters["/robot_config"] == "neato"
+    assert launch.parameters["/robot_config"] == robot
+    assert launch.parameters["/roomba_driver_node/robot"] == robot
     assert launch.parameters["/roomba_driver_node/port"] == "/dev/ttyACM0"
+    assert launch.parameters["/roomba_driver_node/lidar_port"] == "/dev/ttyUSB1"
     assert launch.parameters["/map_is_given"] is False
-    assert launch.parameters["/dashboard_node/home"] == "neato"
+    assert launch.parameters["/dashboard_node/home"] == robot
     assert "/dashboard_node/seed" not in launch.parameters
-    assert launch.parameters["/position_pub_node/calibration"] == "roomba_robot_neato"
+    assert launch.parameters["/position_pub_node/calibration"] == f"roomba_robot_{robot}"
 
 
 def test_programs_of_other_packages_are_found_or_named(tmp_path: Path) -> None:
@@ -76,7 +81,7 @@ def test_its_arguments_are_described() -> None:
     [
         ("hme:=flat", "got 'hme'; did you mean 'home'"),
         ("nosucharg:=1", "got 'nosucharg'; known are: clock, home"),
-        ("robot:=toaster", "robot: expected one of neato, simulated, got 'toaster'"),
+        ("robot:=toaster", "robot: expected one of create2, neato, simulated, got 'toaster'"),
         ("flat", "expected arguments like home:=flat, got 'flat'"),
         (":=flat", "expected arguments like home:=flat, got ':=flat'"),
         ("--speed=5", "expected arguments like home:=flat"),

@@ -47,12 +47,23 @@ def add_line_options(parser: argparse._ActionsContainer) -> None:
         metavar="DEVICE",
         help="the line that it is on, such as /dev/ttyACM0; --port is that of the page",
     )
+    parser.add_argument(
+        "--lidar-line",
+        metavar="DEVICE",
+        default="",
+        help="the line of a lidar that stands on it, such as /dev/ttyUSB1: "
+        + ", ".join(
+            f"{robot.lidar} of a {robot.title}" for robot in ROBOTS.values() if robot.lidar
+        ),
+    )
 
 
 def require_fitting(parser: argparse.ArgumentParser, wanted: argparse.Namespace) -> None:
     """Leave with status 2 where options of an owned and of a simulated robot are mixed."""
     if (wanted.robot is None) is not (wanted.line is None):
         parser.error("expected --robot NAME and --line DEVICE together")
+    if wanted.robot is None and wanted.lidar_line:
+        parser.error("expected --lidar-line DEVICE with --robot NAME alone")
     for name in _SIMULATED:
         if wanted.robot is not None and getattr(wanted, name) != parser.get_default(name):
             parser.error(f"--{name}: of a simulated robot, so not with --robot")
@@ -62,15 +73,17 @@ class OwnedLife:
     """A robot that people own, from taking it over to giving it back.
 
     ``makes_map`` lets it forget the map that it made before. ``tell`` is told in sentences what a
-    person should know.
+    person should know. ``lidar_line`` is that of a lidar that has one of its own.
     """
 
-    def __init__(self, kind: OwnedRobot, line: str, *, makes_map: bool, tell: Tell) -> None:
+    def __init__(
+        self, kind: OwnedRobot, line: str, *, makes_map: bool, tell: Tell, lidar_line: str = ""
+    ) -> None:
         """Take the robot over; raises RoombaError with what to do, after giving it back."""
         self._maps = KeptHome(MapStore(maps_folder(), tell), kind.name, tell)
         config = kind.config()
         stored = None if makes_map else self._maps.load()
-        self._body: LineBody = kind.body_on(line, config)
+        self._body: LineBody = kind.body_on(line, config, lidar_line)
         try:
             self._body.start()
             robot = Embodied(self._body, _brain(config, stored), config)
@@ -119,4 +132,7 @@ def owned_life(wanted: argparse.Namespace, tell: Tell) -> OwnedLife:
     if wanted.robot not in ROBOTS:
         raise UsageError(f"--robot: expected one of {', '.join(sorted(ROBOTS))}")
     kind = ROBOTS[wanted.robot]
-    return OwnedLife(kind, wanted.line, makes_map=wanted.map == "none", tell=tell)
+    makes_map = wanted.map == "none"
+    return OwnedLife(
+        kind, wanted.line, makes_map=makes_map, tell=tell, lidar_line=wanted.lidar_line
+    )

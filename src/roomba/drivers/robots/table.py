@@ -13,29 +13,40 @@ from typing import Final
 
 from roomba.configuration.robot import RobotConfig, load_robot_config
 from roomba.drivers.body_clock import BodyClock
-from roomba.drivers.driver import Driver
-from roomba.drivers.line import Line, SerialLine
+from roomba.drivers.create2.body import Create2Body
+from roomba.drivers.lidars.ld19 import Ld19Frames
+from roomba.drivers.lidars.reader import LidarReader
+from roomba.drivers.line import SerialLine
 from roomba.drivers.line_body import LineBody
 from roomba.drivers.neato.body import NeatoBody
 from roomba.drivers.neato.conversation import Conversation
 from roomba.drivers.reopened_line import ReopenedLine
+from roomba.errors import RoombaError
 from roomba.files.shipped import CONFIGURATION
 
-MakeDriver = Callable[[Line, Callable[[], float], RobotConfig], Driver]
-"""Makes a driver on a line, with the robot's clock, s; connects nothing."""
+_NEATO_BAUD: Final = 115_200
+_LD19_BAUD: Final = 230_400
+
+MakeBody = Callable[[str, str, RobotConfig], LineBody]
+"""Makes the body of a robot on a line, whose lidar may be on another one; raises LineError."""
+
+
+class LidarLineError(RoombaError):
+    """A robot's lidar has a line of its own, or has none, unlike what was asked for."""
 
 
 @dataclass(frozen=True, slots=True)
 class OwnedRobot:
-    """A kind of robot: its ``name`` on the command line, its ``title`` for people, and its driver.
+    """A kind of robot: its ``name`` on the command line, its ``title`` for people, and its body.
 
-    ``baud`` is the speed of its line where that is a serial one.
+    ``lidar`` names the lidar that stands on it with a line of its own; empty: its own tells by the
+    robot's line.
     """
 
     name: str
     title: str
-    baud: int
-    make_driver: MakeDriver
+    make_body: MakeBody
+    lidar: str = ""
 
     @property
     def file(self) -> Path:
@@ -46,17 +57,51 @@ class OwnedRobot:
         """Return its numbers; raises ConfigError."""
         return load_robot_config(self.file)
 
-    def body_on(self, port: str, config: RobotConfig) -> LineBody:
-        """Return the body of the robot on a line, not started; raises LineError without a line."""
-        line = ReopenedLine(lambda: SerialLine(port, self.baud))
-        clock = BodyClock(time.monotonic)
-        return LineBody(self.make_driver(line, clock, config), line, clock, config.timing.tick)
+    def body_on(self, line: str, config: RobotConfig, lidar_line: str = "") -> LineBody:
+        """Return the body of the robot on a line, not started.
+
+        Raises LidarLineError where the lidar's line is missing or too much, and LineError without a
+        line; a body may also raise that when it is started.
+        """
+        if self.lidar and not lidar_line:
+            raise LidarLineError(
+                f"expected the line of the {self.lidar} on the {self.title}, such as /dev/ttyUSB1"
+            )
+        if lidar_line and not self.lidar:
+            raise LidarLineError(
+                f"the lidar of a {self.title} tells by the robot's line: expected no line for it, "
+                f"got {lidar_line}"
+            )
+        return self.make_body(line, lidar_line, config)
 
 
-def _neato(line: Line, now: Callable[[], float], config: RobotConfig) -> Driver:
-    return NeatoBody(Conversation(line, time.monotonic), now, config)
+def _neato(port: str, _: str, config: RobotConfig) -> LineBody:
+    line = ReopenedLine(lambda: SerialLine(port, _NEATO_BAUD))
+    clock = BodyClock(time.monotonic)
+    driver = NeatoBody(Conversation(line, time.monotonic), clock, config)
+    return LineBody(driver, line, clock, config.timing.tick)
 
 
-_ALL: Final = (OwnedRobot("neato", "Neato (XV, Botvac D3 to D7)", 115_200, _neato),)
+class _OpenedByDriver:
+    """A line that the driver opens, at the rate that the robot answers to."""
+
+    def reopen(self) -> None:
+        """Leave it to the driver's ``begin``."""
+
+    def close(self) -> None:
+        """Leave it to the driver's ``end``."""
+
+
+def _create2(port: str, lidar_port: str, config: RobotConfig) -> LineBody:
+    clock = BodyClock(time.monotonic)
+    lidar = LidarReader(lambda: SerialLine(lidar_port, _LD19_BAUD), Ld19Frames(config.lidar), clock)
+    driver = Create2Body(port, clock, config, lidar=lidar)
+    return LineBody(driver, _OpenedByDriver(), clock, config.timing.tick)
+
+
+_ALL: Final = (
+    OwnedRobot("neato", "Neato (XV, Botvac D3 to D7)", _neato),
+    OwnedRobot("create2", "Create 2 or Roomba 500 to 900", _create2, lidar="LD19"),
+)
 ROBOTS: Final[Mapping[str, OwnedRobot]] = {robot.name: robot for robot in _ALL}
 """All of them by name."""

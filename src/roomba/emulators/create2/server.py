@@ -36,6 +36,8 @@ class Create2Server:
     ) -> None:
         """Serve ``robot``, which lives in ``world``, on ``line``."""
         self.robot, self._line, self._world, self._speed = robot, line, world, speed
+        self.is_mute = False
+        """Whether the wire by which it tells is broken; it hears what it is told."""
         self._writing = threading.Lock()
         self._is_over = threading.Event()
         self._threads = [
@@ -76,7 +78,7 @@ class Create2Server:
             self._is_over.wait(max(0.0, following - time.monotonic()))
 
     def _say(self, data: bytes) -> None:
-        if not data:
+        if not data or self.is_mute:
             return
         with self._writing:
             if self._line.set_rate(self.robot.baud):

@@ -8,7 +8,7 @@ import pytest
 
 from roomba.commands.trials.runs import mission_config
 from roomba.drivers.line import LineError
-from roomba.drivers.robots.table import ROBOTS, OwnedRobot
+from roomba.drivers.robots.table import ROBOTS, LidarLineError, OwnedRobot
 from roomba.emulators.pseudo_terminal import PseudoTerminal
 
 
@@ -26,17 +26,28 @@ def test_each_has_a_launch_file_and_there_is_none_without_a_robot() -> None:
 
 @pytest.mark.parametrize("robot", ROBOTS.values(), ids=ROBOTS)
 def test_a_silent_line_is_told_by_each_driver(robot: OwnedRobot) -> None:
-    terminal = PseudoTerminal()
-    body = robot.body_on(terminal.name, robot.config())
+    terminal, lidar = PseudoTerminal(), PseudoTerminal()
+    body = robot.body_on(terminal.name, robot.config(), lidar.name if robot.lidar else "")
     with pytest.raises(LineError):
         body.start()
     body.stop()
     terminal.close()
+    lidar.close()
 
 
 @pytest.mark.parametrize("robot", ROBOTS.values(), ids=ROBOTS)
 def test_a_port_that_is_not_there_is_told_with_what_helps(
     robot: OwnedRobot, tmp_path: Path
 ) -> None:
+    none = str(tmp_path / "ttyNone")
     with pytest.raises(LineError, match="Is it plugged in"):
-        robot.body_on(str(tmp_path / "ttyNone"), robot.config())
+        robot.body_on(none, robot.config(), none if robot.lidar else "").start()
+
+
+@pytest.mark.parametrize("robot", ROBOTS.values(), ids=ROBOTS)
+def test_the_line_of_a_lidar_is_asked_for_where_it_has_one_and_refused_else(
+    robot: OwnedRobot,
+) -> None:
+    given, said = ("", "such as /dev/ttyUSB1") if robot.lidar else ("/dev/x", "got /dev/x")
+    with pytest.raises(LidarLineError, match=said):
+        robot.body_on("/dev/null", robot.config(), given)
