@@ -77,7 +77,6 @@ SLOW = (
     "unit/commands/localize",
     "unit/commands/map",
     "unit/commands/pictures/test_pictures.py",
-    "unit/drivers/create2/test_mapping.py",
     "unit/headless",
     "unit/mission/test_mission.py",
     "unit/mission/walking",
