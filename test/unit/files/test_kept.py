@@ -202,6 +202,7 @@ def test_a_file_is_forgotten_with_the_one_before(tmp_path: Path) -> None:
 
 
 WITHOUT_SEAL: dict[str, str] = {
+    "roomba/commands/campaign/parquet.py": "made for the user, by a command",
     "roomba/commands/map/drive/trajectory.py": "made for the user, by a command",
     "roomba/commands/report/command.py": "made for the user, by a command",
     "roomba/commands/service.py": "a unit of systemd",

@@ -80,7 +80,7 @@ def test_a_change_is_learned_within_some_cleans() -> None:
         records = learned(records, found({"den": 2000.0}), day(number), CONFIG)
     told = needs(records, 7)
     assert told["den"].every == 1
-    assert told["hall"].every == 3
+    assert told["hall"].every == 4
 
 
 def test_little_of_a_room_and_a_second_clean_at_once_tell_nothing() -> None:

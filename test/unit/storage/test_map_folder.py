@@ -134,7 +134,7 @@ def test_without_rooms_and_zones_it_has_none(folder: Path) -> None:
         ("map.yaml", "image:", "imago:", r"map\.yaml:\d+: expected 'image' here"),
         ("map.yaml", "resolution: 0.05", "resolution: 0", "resolution"),
         ("map.pgm", "P5\n", "P7\n", r"map\.pgm"),
-        ("map.pgm", "P5\n2", "P5\n92", "the file is cut short"),
+        ("map.pgm", "P5\n2", "P5\n92", "got one that is cut short"),
         ("home.yaml", "station:", "# station:", r"home\.yaml"),
         ("home.yaml", "facing: ", "facing: .nan, z: ", "station.facing|known key"),
         ("home.yaml", "station: {", "statoin: {", "did you mean 'station'"),

@@ -19,7 +19,13 @@ from roomba.ui.web.app import create_app
 from roomba.ui.web.guard import Guard
 
 AUTHORISED = {"Authorization": "Bearer token"}
-KITCHEN = {"mode": "rooms", "rooms": ["kitchen"], "passes": 2, "fan": "quiet"}
+KITCHEN = {
+    "mode": "rooms",
+    "rooms": ["kitchen"],
+    "passes": 2,
+    "fan": "quiet",
+    "only_due": False,
+}
 PLAN: dict[str, Any] = {
     "name": "kitchen",
     "rule": "FREQ=WEEKLY;BYDAY=MO,TH",
