@@ -44,8 +44,10 @@ await asked((ok, no) => new ROSLIB.Param({ ros, name: "/beside/told" }).set([1, 
 
 const client = new ROSLIB.ActionClient({ ros, serverName: "/walk", actionName: "roomba_robot/WalkToPointAction" });
 const goal = new ROSLIB.Goal({ actionClient: client, goalMessage: { destin: { dest_x: 1.25 } } });
-goal.on("feedback", (feedback) => { told.feedback = feedback.distance; });
+// Two topics: the result may come before the feedback that was published first.
+const feedback = asked((done) => { goal.on("feedback", done); });
 told.result = await asked((done) => { goal.on("result", done); goal.send(); });
+told.feedback = (await feedback).distance;
 
 console.log(JSON.stringify(told));
 process.exit(0);

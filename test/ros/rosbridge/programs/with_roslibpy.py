@@ -5,6 +5,8 @@ from __future__ import annotations
 import json
 import queue
 import sys
+import threading
+from collections.abc import Mapping
 from typing import Any
 
 import roslibpy
@@ -42,9 +44,17 @@ def main(address: str) -> None:
     ros.set_param("/beside/told", [1, "two"])
     client = actionlib.ActionClient(ros, "/walk", "roomba_robot/WalkToPointAction")
     goal = actionlib.Goal(client, roslibpy.Message({"destin": {"dest_x": 1.25}}))
-    goal.on("feedback", lambda feedback: told.update(feedback=feedback["distance"]))
+    has_come = threading.Event()
+
+    def hear(feedback: Mapping[str, Any]) -> None:
+        told["feedback"] = feedback["distance"]
+        has_come.set()
+
+    goal.on("feedback", hear)
     goal.send()
     told["result"] = dict(goal.wait(timeout=WITHIN))
+    # Two topics: the result may come before the feedback that was published first.
+    has_come.wait(WITHIN)
     print(json.dumps(told), flush=True)
     ros.terminate()
 
