@@ -15,8 +15,8 @@ class Driver(Protocol):
     """One robot on a line that others open.
 
     The first four methods are for the thread of the brain and return at once; the others are for
-    the one thread that serves the line, :class:`roomba.drivers.line_body.LineBody`. Whatever
-    happens to the program or the line, the robot stands within 0.5 s after the last command.
+    the one thread that serves the line, :class:`roomba.drivers.line_body.LineBody`. A program
+    that hangs or dies sends no more commands: the robot stands within 0.5 s after the last one.
     """
 
     def read(self) -> Readings:

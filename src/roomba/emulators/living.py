@@ -16,10 +16,12 @@ _LATE: Final = 0.1
 class LivingWorld:
     """Takes a step, and another; ``lock`` is held meanwhile, and by all who look at the world."""
 
-    def __init__(self, step: Callable[[], None], speed: float = 1.0) -> None:
-        """``step`` lets STEP s pass; ``speed`` of the world's seconds pass in one."""
+    def __init__(
+        self, step: Callable[[], object], speed: float = 1.0, period: float = STEP
+    ) -> None:
+        """``step`` lets ``period`` s pass; ``speed`` of the world's seconds pass in one."""
         self.lock = threading.Lock()
-        self._step, self._speed = step, speed
+        self._step, self._pause = step, period / speed
         self._is_over = threading.Event()
         self._thread = threading.Thread(target=self._live, name="made-up world", daemon=True)
 
@@ -37,7 +39,7 @@ class LivingWorld:
         while not self._is_over.is_set():
             with self.lock:
                 self._step()
-            following += STEP / self._speed
+            following += self._pause
             late = time.monotonic() - following
             if late > _LATE:
                 following += late

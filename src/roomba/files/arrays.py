@@ -1,7 +1,7 @@
 """Archives of numpy arrays, read within bounds: what a header claims is not believed.
 
 numpy itself makes room for an array before it looks whether the file has so much, and unpacks
-whatever an archive holds.
+all that an archive holds.
 """
 
 from __future__ import annotations

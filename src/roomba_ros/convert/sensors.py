@@ -103,45 +103,38 @@ def joints_message(now: float, seen: Observation, wheel_radius: float, track: fl
 
 def battery_message(now: float, battery: BatteryState, config: BatteryConfig) -> BatteryMessage:
     """Return the battery: charges in Ah at its nominal voltage, the percentage 0..1 as ROS says."""
-    whole = battery.capacity / config.nominal_voltage
-    status = BatteryMessage.POWER_SUPPLY_STATUS_DISCHARGING
-    if battery.is_docked:
-        status = BatteryMessage.POWER_SUPPLY_STATUS_CHARGING
-        if battery.is_full:
-            status = BatteryMessage.POWER_SUPPLY_STATUS_FULL
-    return BatteryMessage(
-        header=header(now, ""),
-        voltage=battery.voltage,
-        temperature=battery.temperature,
-        current=battery.current,
-        charge=battery.level * whole,
-        capacity=whole,
-        design_capacity=whole,
-        percentage=battery.level,
-        power_supply_status=status,
-        power_supply_health=BatteryMessage.POWER_SUPPLY_HEALTH_GOOD,
-        power_supply_technology=BatteryMessage.POWER_SUPPLY_TECHNOLOGY_LION,
-        present=True,
-    )
+    message = _battery(now, battery.level, battery.capacity, battery.is_docked, config)
+    message.voltage = battery.voltage
+    message.temperature = battery.temperature
+    message.current = battery.current
+    message.power_supply_health = BatteryMessage.POWER_SUPPLY_HEALTH_GOOD
+    return message
 
 
 def told_battery_message(now: float, battery: Battery, config: BatteryConfig) -> BatteryMessage:
     """Return a battery of which a robot tells its level, and whether current comes in, alone."""
-    whole = config.capacity / config.nominal_voltage
+    return _battery(now, battery.level, config.capacity, battery.is_docked, config)
+
+
+def _battery(
+    now: float, level: float, capacity: float, is_docked: bool, config: BatteryConfig
+) -> BatteryMessage:
+    """Return a battery of a ``level``, 0..1, of a ``capacity``, Wh; what is measured is NaN."""
+    whole = capacity / config.nominal_voltage
     status = BatteryMessage.POWER_SUPPLY_STATUS_DISCHARGING
-    if battery.is_docked:
+    if is_docked:
         status = BatteryMessage.POWER_SUPPLY_STATUS_CHARGING
-        if battery.level >= 1.0:
+        if level >= 1.0:
             status = BatteryMessage.POWER_SUPPLY_STATUS_FULL
     return BatteryMessage(
         header=header(now, ""),
         voltage=math.nan,
         temperature=math.nan,
         current=math.nan,
-        charge=battery.level * whole,
+        charge=level * whole,
         capacity=whole,
         design_capacity=whole,
-        percentage=battery.level,
+        percentage=level,
         power_supply_status=status,
         power_supply_technology=BatteryMessage.POWER_SUPPLY_TECHNOLOGY_LION,
         present=True,

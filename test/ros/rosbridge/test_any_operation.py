@@ -1,4 +1,4 @@
-"""Whatever a program says to the bridge, it is answered, and the bridge goes on for all others.
+"""Any operation of a program is answered by the bridge, which goes on for all others.
 
 ``ROOMBA_EXAMPLES=5000`` tries so many operations, others each time.
 """

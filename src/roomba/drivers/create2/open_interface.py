@@ -61,7 +61,7 @@ class OpenMode(IntEnum):
     SAFE = 2
     """Motors obey until a wheel drops, a cliff is ahead, or a charger has power."""
     FULL = 3
-    """Motors obey whatever happens."""
+    """Motors obey at cliffs, with dropped wheels and on a charger, too."""
 
 
 class Packet(IntEnum):

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import threading
-import time
 from typing import Final, Protocol
 
+from roomba.emulators.living import LivingWorld
 from roomba.emulators.neato.robot import STEP, NeatoRobot
 
 LATENCY: Final = 0.025
@@ -32,23 +32,20 @@ class NeatoServer:
     def __init__(self, robot: NeatoRobot, line: RobotEnd, speed: float = 1.0) -> None:
         """Serve ``robot`` on ``line``."""
         self.robot, self._line, self._speed = robot, line, speed
-        self._lock = threading.Lock()
+        self._world = LivingWorld(robot.advance, speed, STEP)
         self._is_over = threading.Event()
-        self._threads = [
-            threading.Thread(target=self._live, name="neato world", daemon=True),
-            threading.Thread(target=self._answer_all, name="neato line", daemon=True),
-        ]
+        self._thread = threading.Thread(target=self._answer_all, name="neato line", daemon=True)
 
     def start(self) -> None:
         """Let the world go on, and answer."""
-        for thread in self._threads:
-            thread.start()
+        self._world.start()
+        self._thread.start()
 
     def end(self) -> None:
         """Let the world stand, and answer no more."""
         self._is_over.set()
-        for thread in self._threads:
-            thread.join(2.0)
+        self._thread.join(2.0)
+        self._world.end()
 
     def __enter__(self) -> NeatoRobot:
         """Start; return the robot."""
@@ -58,17 +55,6 @@ class NeatoServer:
     def __exit__(self, *_: object) -> None:
         """End."""
         self.end()
-
-    def _live(self) -> None:
-        following = time.monotonic()
-        while not self._is_over.is_set():
-            with self._lock:
-                self.robot.advance()
-            following += STEP / self._speed
-            late = time.monotonic() - following
-            if late > _LOOK:
-                following += late  # a machine that cannot keep up has a slower world
-            self._is_over.wait(max(0.0, -late))
 
     def _answer_all(self) -> None:
         came = b""
@@ -83,6 +69,6 @@ class NeatoServer:
     def _answer(self, line: bytes) -> None:
         text = line[:_LONGEST_LINE].decode("ascii", "replace")
         self._is_over.wait(LATENCY / self._speed)
-        with self._lock:
+        with self._world.lock:
             answer = self.robot.answer(text)
         self._line.write(answer.encode("ascii", "replace"))

@@ -13,33 +13,17 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from fixtures.campaigns.campaign_work import FINE as WHOLE
 from fixtures.waiting import promised, wait_until
 
 from roomba.commands.sim import command
 from roomba.commands.trials import many
-from roomba.commands.trials.figures import Figures, MissedShare
+from roomba.commands.trials.figures import MissedShare
 from roomba.commands.trials.many import Outcome
 from roomba.commands.trials.trial import Trial
 
 REPOSITORY = Path(__file__).parents[4]
-FINE = Figures(
-    outcome="COMPLETED",
-    message="",
-    docked=True,
-    duration_s=100.0,
-    wall_s=0.1,
-    planning_s=0.01,
-    plans=1,
-    distance_m=30.0,
-    turning_rad=40.0,
-    energy_wh=0.5,
-    dirt_g=3.0,
-    coverable_m2=5.0,
-    covered_m2=4.9,
-    tool_width_m=0.2,
-    hits=0,
-    missed=(MissedShare(0.1, 1.0, 2.0, "", "a door is shut"),),
-)
+FINE = replace(WHOLE, missed=(MissedShare(0.1, 1.0, 2.0, "", "a door is shut"),))
 
 
 @pytest.fixture

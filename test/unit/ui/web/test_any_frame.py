@@ -1,4 +1,4 @@
-"""Whatever a page says over its WebSocket, it is answered, and the robot is driven within limits.
+"""Any frame of a page over its WebSocket is answered, and the robot is driven within limits.
 
 ``ROOMBA_EXAMPLES=5000`` tries so many frames, others each time.
 """

@@ -1,4 +1,4 @@
-"""Results on the disk: whole lines stay, whatever happened to the last one."""
+"""Results on the disk: whole lines stay, also where the last one is damaged."""
 
 from __future__ import annotations
 
