@@ -29,6 +29,7 @@ from roomba.grid import OCCUPIED
 HOME = "home"
 BEFORE_CHEST = Rectangle(2.8, 0.6, 4.4, 1.8)
 BY_STATION = Rectangle(0.4, 0.9, 0.9, 1.6)
+CELL = 0.05
 
 
 @pytest.fixture
@@ -156,8 +157,10 @@ def test_what_changed_is_offered_refused_and_accepted(graph: RosGraph) -> None:
     wait_until(lambda: robot.offers, 30.0, "the chest is offered")
     offer = robot.offers[0]
     assert (len(robot.offers), offer.appeared) == (1, True)
-    assert offer.middle.x == pytest.approx(0.5 * (CHEST[0] + CHEST[2]), abs=0.2)
-    assert offer.middle.y == pytest.approx(0.5 * (CHEST[1] + CHEST[3]), abs=0.2)
+    # It is the middle of what was seen of it, and one side may be all that was.
+    x_min, y_min, x_max, y_max = CHEST
+    assert x_min - CELL <= offer.middle.x <= x_max + CELL
+    assert y_min - CELL <= offer.middle.y <= y_max + CELL
     assert robot.trigger("/map/update/refuse").success
     wait_until(lambda: not robot.offers, 30.0, "it is offered no more")
     robot.cleans(BY_STATION)
