@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 from fixtures.forked import run_forked
 from fixtures.graph import START_DEADLINE, RosGraph
+from fixtures.thoroughness import is_thorough
 from fixtures.waiting import wait_until
 from hypothesis import HealthCheck, settings
 
@@ -109,8 +110,14 @@ TIMED = (
 or play a bag faster than it was recorded: nothing computes beside them."""
 
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Let the files that take longest come first, and mark what is slow, and what is timed."""
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Let the files that take longest come first, and mark what is slow, and what is timed.
+
+    What is marked ``thorough`` runs only when all is to be tried.
+    """
+    left_out = set() if is_thorough() else {item for item in items if "thorough" in item.keywords}
+    items[:] = [item for item in items if item not in left_out]
+    config.hook.pytest_deselected(items=list(left_out))
     for item in items:
         path = item.path.relative_to(TESTS).as_posix()
         if path.startswith(SLOW):

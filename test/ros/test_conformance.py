@@ -7,6 +7,7 @@ from fixtures.forked import run_forked
 from fixtures.nodes.node_compositions import in_lockstep
 from fixtures.robots.compositions import REFERENCE, Case, Outcome, assert_same, assert_same_end
 from fixtures.robots.missions import HOME, TWO_ROOMS
+from fixtures.thoroughness import core_first
 
 from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.files.shipped import HOMES
@@ -37,17 +38,19 @@ NOISY = {
     "clean slowly around a thing": Case(HOME, things=(THING,), seed=3, speed=0.2, begin=BEGIN),
     "walk around a thing": Case(HOME, goal=(1.4, 0.4), things=(THING,), seed=3, begin=BEGIN),
 }
+CORE = {"clean around a thing", "clean while mapping", "walk", "clean slowly around a thing"}
+"""The cases of both kinds that are always tried."""
 EDGE = 0.002
 """Share of the swept floor; noise amplifies the last bits of stamps to tenths of a millimetre."""
 
 
-@pytest.mark.parametrize("name", IDEAL)
+@pytest.mark.parametrize("name", core_first(IDEAL, CORE))
 def test_in_lockstep_the_nodes_drive_the_headless_path(name: str, tmp_path: Path) -> None:
     case = IDEAL[name]
     run_forked(lambda: assert_same(in_lockstep(case, tmp_path), REFERENCE(case), ticks=1))
 
 
-@pytest.mark.parametrize("name", NOISY)
+@pytest.mark.parametrize("name", core_first(NOISY, CORE))
 def test_with_noise_they_do_so_as_well(name: str, tmp_path: Path) -> None:
     case = NOISY[name]
 
@@ -57,6 +60,7 @@ def test_with_noise_they_do_so_as_well(name: str, tmp_path: Path) -> None:
     run_forked(compare)
 
 
+@pytest.mark.thorough
 def test_with_noise_a_clean_while_mapping_begins_and_ends_as_the_headless_one(
     tmp_path: Path,
 ) -> None:
@@ -72,7 +76,7 @@ def test_with_noise_a_clean_while_mapping_begins_and_ends_as_the_headless_one(
     run_forked(compare)
 
 
-@pytest.mark.parametrize("sensors", ["ideal", "noisy"])
+@pytest.mark.parametrize("sensors", core_first(["ideal", "noisy"], {"ideal"}))
 def test_they_explore_by_the_headless_path(sensors: str, tmp_path: Path) -> None:
     case = Case(TWO_ROOMS, sensors=sensors, is_mapped=False, explores=True, begin=BEGIN)
 

@@ -193,6 +193,7 @@ def wait_for_a_jump_back() -> None:
     wait_until(is_back, 40.0, "the clock jumps back")
 
 
+@pytest.mark.thorough
 def test_nodes_go_on_while_a_bag_is_played_in_a_loop(bag: Path, graph: RosGraph) -> None:
     """The recorded clock jumps back at the end of every round."""
     graph.set_param("/use_sim_time", True)

@@ -241,6 +241,7 @@ def test_a_clean_is_held_and_completed(shared_robot: RosGraph) -> None:
     vacuum.shows_all_clean()
 
 
+@pytest.mark.thorough
 def test_with_a_low_battery_it_charges_and_goes_on(shared_robot: RosGraph) -> None:
     vacuum = Vacuum(shared_robot)
     levels: list[float] = []
@@ -284,6 +285,7 @@ def test_a_shut_door_is_told(shared_robot: RosGraph) -> None:
     assert result.covered > 0.6
 
 
+@pytest.mark.thorough
 def test_a_blocked_station_is_told_and_found_when_it_is_free(shared_robot: RosGraph) -> None:
     vacuum = Vacuum(shared_robot)
     clean = vacuum.clean(SMALL)
@@ -302,6 +304,7 @@ def test_a_blocked_station_is_told_and_found_when_it_is_free(shared_robot: RosGr
     vacuum.does("docked")
 
 
+@pytest.mark.thorough
 def test_a_killed_mission_node_comes_back_and_ends_the_clean(shared_robot: RosGraph) -> None:
     vacuum = Vacuum(shared_robot)
     vacuum.probe.hear("/coverage_map", OccupancyGrid)

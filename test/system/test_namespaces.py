@@ -9,6 +9,7 @@ from fixtures.waiting import wait_until
 from roomba_robot.msg import RobotPosition
 
 
+@pytest.mark.thorough
 def test_a_second_robot_drives_while_the_first_stands(robot: RosGraph) -> None:
     robot.run(
         "roslaunch",

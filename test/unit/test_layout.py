@@ -7,11 +7,11 @@
 from __future__ import annotations
 
 import ast
-import re
 from functools import cache
 from pathlib import Path
 
 import pytest
+from running.suites import SUITES
 
 ROOT = Path(__file__).resolve().parents[2]
 SOURCE, TEST = ROOT / "src", ROOT / "test"
@@ -345,16 +345,7 @@ def test_tests_stand_in_the_folders_of_what_they_are_about() -> None:
 
 def test_every_folder_of_tests_is_a_suite_of_the_command() -> None:
     folders = {path.name for path in TEST.iterdir() if any(path.rglob("test_*.py"))}
-    command = (ROOT / "roomba").read_text(encoding="utf-8")
-    accepted = re.search(r"\^\(([a-z|]+)\)\$ \]\]", command)
-    by_default = re.search(r"suites=\(([a-z ]+)\)", command)
-    assert accepted is not None
-    assert by_default is not None
-    assert set(accepted[1].split("|")) == folders | {"lint"}
-    # Asked for by name: long errands, in real time as well, what is made from nothing, what needs
-    # an environment of its own, killed clusters, tutorials.
-    by_name = {"campaigns", "docs", "ha", "install", "missions", "realtime", "teaching"}
-    assert set(by_default[1].split()) == (folders | {"lint"}) - by_name
+    assert set(SUITES) == folders | {"lint"}
 
 
 def test_folders_can_be_looked_over() -> None:

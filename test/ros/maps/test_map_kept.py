@@ -171,6 +171,7 @@ def leave_behind(kept: KeptMap, path: Path) -> None:
     save_mapper(replace(kept, run="that of yesterday"), path)
 
 
+@pytest.mark.thorough
 def test_what_cannot_be_taken_up_is_said_and_a_new_map_begins(graph: RosGraph) -> None:
     launch = graph.launch(f"home:={mapping_home(graph.folder)}", "map:=none", SPEED)
     robot = Explorer(graph)

@@ -95,6 +95,7 @@ def test_a_floor_is_known_again(graph: RosGraph) -> None:
     assert "map:=none" in refused.message
 
 
+@pytest.mark.thorough
 def test_another_floor_is_mapped_and_then_cleaned(graph: RosGraph) -> None:
     graph.launch(f"home:={other_home(graph.folder)}", "map:=own", SPEED)
     robot = Explorer(graph)
@@ -144,6 +145,7 @@ def test_another_floor_is_mapped_and_then_cleaned(graph: RosGraph) -> None:
     assert robot.saved_maps() == (["hallway", HOME], HOME)
 
 
+@pytest.mark.thorough
 def test_what_changed_is_offered_refused_and_accepted(graph: RosGraph) -> None:
     home = mapping_home(graph.folder, "with_chest", has_chest=True)
     graph.launch(f"home:={home}", f"map:={HOME}", SPEED)

@@ -43,6 +43,7 @@ def test_it_stands_within_half_a_second(shared_robot: RosGraph, case: str) -> No
     assert max(took) <= PROMISE, took
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     "case",
     [

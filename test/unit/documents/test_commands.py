@@ -10,6 +10,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
+from running.suites import SUITES
 
 from roomba.errors import RoombaError
 
@@ -42,10 +43,6 @@ PROGRAMS = {"dask", "rostopic", "rosservice", "roscore", "rosparam", "rosbag", "
 """What ``./roomba exec`` runs of others, whose arguments are theirs."""
 MENTIONED = {"import valetudo", "map --bag", "emulate"}
 """What the text names without the rest of the line."""
-SUITES = {
-    *("lint", "unit", "conformance", "safety", "web", "contract", "ros", "system", "missions"),
-    *("teaching", "install", "mutants", "ha", "campaigns", "realtime", "docs"),
-}
 
 
 class Parsed(Exception):  # noqa: N818 - it is no error
@@ -198,7 +195,7 @@ def file_of_module(name: str) -> Path:
 
 def take_suites(words: list[str]) -> None:
     """Check that a line of ``./roomba test`` begins with suites or files, and then has options."""
-    rest = words[1:] if words[0] == "quick" else words
+    rest = words[1:] if words[0] in ("quick", "thorough", "mutants") else words
     while rest and rest[0] in SUITES:
         rest = rest[1:]
     if rest and not rest[0].startswith("-"):

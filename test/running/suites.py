@@ -1,0 +1,99 @@
+"""The suites of ``./roomba test``, and what a line of that command asks for."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from enum import Enum, auto
+from pathlib import Path
+from typing import Final
+
+ROOT: Final = Path(__file__).resolve().parents[2]
+
+
+class Kind(Enum):
+    """How the tests of a suite use the machine."""
+
+    CHECKS = auto()
+    """Programs that read the sources."""
+    COMPUTING = auto()
+    """They compute all the time."""
+    COVERAGE = auto()
+    """They compute, and must run every line of what they test."""
+    GRAPHS = auto()
+    """They start robots, and wait for them most of the time."""
+    PAGES = auto()
+    """They start browsers."""
+
+
+@dataclass(frozen=True)
+class Suite:
+    """A folder of tests, or the checks of the sources."""
+
+    kind: Kind
+    by_name_only: bool = False
+    """It takes long, or needs an environment of its own: it runs when it is named."""
+
+
+SUITES: Final = {
+    "lint": Suite(Kind.CHECKS),
+    "unit": Suite(Kind.COMPUTING),
+    "conformance": Suite(Kind.COMPUTING),
+    "safety": Suite(Kind.COVERAGE),
+    "web": Suite(Kind.PAGES),
+    "contract": Suite(Kind.GRAPHS),
+    "ros": Suite(Kind.GRAPHS),
+    "system": Suite(Kind.GRAPHS),
+    "campaigns": Suite(Kind.COMPUTING, by_name_only=True),
+    "docs": Suite(Kind.COMPUTING, by_name_only=True),
+    "ha": Suite(Kind.COMPUTING, by_name_only=True),
+    "install": Suite(Kind.GRAPHS, by_name_only=True),
+    "missions": Suite(Kind.GRAPHS, by_name_only=True),
+    "realtime": Suite(Kind.GRAPHS, by_name_only=True),
+    "teaching": Suite(Kind.GRAPHS, by_name_only=True),
+}
+BY_DEFAULT: Final = tuple(name for name, suite in SUITES.items() if not suite.by_name_only)
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What one line of ``./roomba test`` asks for."""
+
+    suites: tuple[str, ...]
+    """None of them: files are named among the arguments."""
+    arguments: tuple[str, ...] = field(default=())
+    """For pytest."""
+    thorough: bool = False
+    """Also the tests marked so, and all examples that a test makes up."""
+
+    def has(self, kind: Kind) -> bool:
+        """Whether a suite of that kind is asked for."""
+        return any(SUITES[name].kind is kind for name in self.suites)
+
+    def folders(self, kind: Kind) -> tuple[str, ...]:
+        """Return the folders of the suites of that kind."""
+        return tuple(str(ROOT / "test" / name) for name in self.suites if SUITES[name].kind is kind)
+
+
+def asked_for(words: list[str]) -> Asked:
+    """Read the words after ``./roomba test``.
+
+    >>> asked_for(["unit", "-k", "dock"]).suites
+    ('unit',)
+    """
+    if words[:1] == ["quick"]:
+        return Asked(("lint", "unit"), ("-m", "not slow", *words[1:]))
+    thorough = words[:1] == ["thorough"]
+    rest = words[1:] if thorough else words
+    suites: list[str] = []
+    while rest and rest[0] in SUITES:
+        suites.append(rest[0])
+        rest = rest[1:]
+    if suites:
+        return Asked(tuple(suites), tuple(rest), thorough)
+    if any(_is_path(word) for word in rest):
+        return Asked((), tuple(rest), thorough=True)
+    return Asked(BY_DEFAULT, tuple(rest), thorough)
+
+
+def _is_path(word: str) -> bool:
+    return not word.startswith("-") and Path(word.partition("::")[0]).exists()
