@@ -10,13 +10,17 @@ from pathlib import Path
 import pytest
 from fixtures.forked import run_forked
 from fixtures.graph import START_DEADLINE, RosGraph
-from fixtures.thoroughness import is_thorough
+from fixtures.thoroughness import examples, is_thorough
 from fixtures.waiting import wait_until
 from hypothesis import HealthCheck, settings
 
 # The same examples in every run, and no deadline on slow machines.
 settings.register_profile(
-    "project", deadline=None, suppress_health_check=[HealthCheck.too_slow], derandomize=True
+    "project",
+    max_examples=examples(100),
+    deadline=None,
+    suppress_health_check=[HealthCheck.too_slow],
+    derandomize=True,
 )
 settings.load_profile("project")
 

@@ -10,6 +10,7 @@ from fixtures.homes.rooms import room_home
 from fixtures.homes.worlds import NOISY
 from fixtures.robots.compositions import COMPOSITIONS, REFERENCE, Case, Outcome, assert_same
 from fixtures.robots.missions import HOME, TWO_ROOMS
+from fixtures.thoroughness import core_first
 from hypothesis import Phase as Stage
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -56,7 +57,7 @@ def references() -> dict[str, Outcome]:
 
 
 @pytest.mark.parametrize("name", CASES)
-@pytest.mark.parametrize("composition", COMPOSITIONS)
+@pytest.mark.parametrize("composition", core_first(COMPOSITIONS, {"bursts"}))
 def test_it_does_the_same(composition: str, name: str, references: dict[str, Outcome]) -> None:
     case = CASES[name]
     if name not in references:

@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 from fixtures.said import Said
 from fixtures.spoiled import spoiled
+from fixtures.thoroughness import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from rosgraph.network import ROSHandshakeException, encode_ros_handshake_header
@@ -43,7 +44,7 @@ def test_one_that_is_too_long_is_refused_before_it_is_read() -> None:
         header(struct.pack("<I", LONGEST_HEADER + 1))
 
 
-@settings(max_examples=500, derandomize=True, deadline=None)
+@settings(max_examples=examples(500), derandomize=True, deadline=None)
 @given(
     st.one_of(
         spoiled(encode_ros_handshake_header(WHOLE)),

@@ -13,6 +13,7 @@ def household() -> Household:
     return Household("bay", 1)
 
 
+@pytest.mark.thorough
 def test_dirt_falls_all_day_and_what_is_cleaned_has_less_of_it(household: Household) -> None:
     assert household.names == ("kitchen", "living room")
     before = household.robot.simulator.dirt.total

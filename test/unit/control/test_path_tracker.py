@@ -8,6 +8,7 @@ import math
 import numpy as np
 import pytest
 import shapely
+from fixtures.thoroughness import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
@@ -103,7 +104,7 @@ def check(drive: Drive, points: Points) -> None:
 
 
 @given(legs, st.floats(-math.pi, math.pi))
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 def test_any_polyline_is_driven_to_its_end(legs: list[tuple[float, float]], heading: float) -> None:
     points = polyline([leg[0] for leg in legs], [leg[1] for leg in legs])
     drive = Drive(points, Pose(0.0, 0.0, heading)).to_the_end()
@@ -111,7 +112,7 @@ def test_any_polyline_is_driven_to_its_end(legs: list[tuple[float, float]], head
 
 
 @given(soft_legs)
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 def test_soft_corners_are_taken_without_stopping(legs: list[tuple[float, float]]) -> None:
     headings = list(itertools.accumulate(turn for turn, _ in legs))
     points = polyline(headings, [way for _, way in legs])

@@ -4,6 +4,7 @@ import math
 import numpy as np
 import pytest
 from fixtures.homes.rooms import room_home
+from fixtures.thoroughness import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -33,7 +34,7 @@ def drive(start: Pose, target: tuple[float, float], seconds: float) -> list[Obse
     return seen
 
 
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 @given(st.floats(0.4, 4.6), st.floats(0.4, 3.6), st.floats(-3.1, 3.1))
 def test_it_arrives_and_stands(x: float, y: float, theta: float) -> None:
     seen = drive(Pose(2.5, 2.0, theta), (x, y), 14.0)

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from fixtures.thoroughness import examples
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays_of
@@ -107,7 +108,7 @@ def test_an_encrypted_archive_is_refused() -> None:
         read_arrays(bytes(content))
 
 
-@settings(max_examples=300, deadline=None, derandomize=True)
+@settings(max_examples=examples(300), deadline=None, derandomize=True)
 @given(content=st.binary(max_size=300), begin=st.sampled_from([b"", b"PK\x03\x04", b"\x93NUMPY"]))
 def test_any_bytes_are_refused(content: bytes, begin: bytes) -> None:
     with pytest.raises(UNREADABLE):

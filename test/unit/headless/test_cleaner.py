@@ -347,6 +347,7 @@ def test_shut_in_a_room_it_waits_for_the_door_and_goes_home() -> None:
     assert robot.mission.message == ""
 
 
+@pytest.mark.thorough
 def test_shut_in_for_good_it_says_so_in_the_end() -> None:
     robot = HeadlessMission(TWO_ROOMS, start=Pose(2.8, 1.2, 0.0))
     shut_door(robot)

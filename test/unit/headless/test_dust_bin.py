@@ -68,6 +68,7 @@ def test_what_is_told_as_clean_was_swept_with_room_in_the_bin() -> None:
     until(robot, in_phase(robot, Phase.CLEANING), 60.0)
 
 
+@pytest.mark.thorough
 def test_it_is_the_same_with_and_without_bursts() -> None:
     runs = []
     for longest in (0, 100):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from fixtures.thoroughness import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
@@ -43,7 +44,7 @@ def test_good_stamps_stay_as_they_are() -> None:
         unique_by=lambda jump: jump[0],
     )
 )
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=examples(60), deadline=None)
 def test_stamps_that_jump_ahead_come_back(jumps: list[tuple[int, float]]) -> None:
     stamps, arrivals = clean()
     wrong = stamps.copy()
@@ -55,7 +56,7 @@ def test_stamps_that_jump_ahead_come_back(jumps: list[tuple[int, float]]) -> Non
 
 
 @given(st.integers(0, 199), st.sampled_from((-0.6, -1.0, -3.0)))
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=examples(40), deadline=None)
 def test_a_stamp_that_jumps_back_comes_back(at: int, by: float) -> None:
     stamps, arrivals = clean()
     wrong = stamps.copy()
@@ -66,7 +67,7 @@ def test_a_stamp_that_jumps_back_comes_back(at: int, by: float) -> None:
 
 
 @given(st.integers(1, 150), st.integers(5, 40))
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=examples(40), deadline=None)
 def test_a_message_that_comes_late_keeps_its_stamp(at: int, later: int) -> None:
     stamps, arrivals = clean()
     order = [*range(at), *range(at + 1, at + later), at, *range(at + later, 200)]
@@ -76,7 +77,7 @@ def test_a_message_that_comes_late_keeps_its_stamp(at: int, later: int) -> None:
 
 
 @given(st.integers(5, 80), st.integers(5, 80), st.sampled_from((-2.0, 1.0, 3600.0)))
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=examples(40), deadline=None)
 def test_a_clock_that_is_set_on_the_way_comes_back(first: int, length: int, by: float) -> None:
     stamps, arrivals = clean()
     wrong = stamps.copy()
@@ -146,7 +147,7 @@ def test_a_clock_that_counts_whole_seconds_is_not_gone_by() -> None:
 
 
 @given(st.permutations(range(60)))
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=examples(40), deadline=None)
 def test_what_is_out_of_order_is_sorted_and_counted(order: list[int]) -> None:
     # Within a few messages, as packets overtake each other.
     stamps = BEGAN + PERIOD * np.array(sorted(range(60), key=lambda at: at + order[at] / 20.0))
@@ -162,7 +163,7 @@ def test_what_is_out_of_order_is_sorted_and_counted(order: list[int]) -> None:
 @given(
     st.lists(st.tuples(st.integers(0, 30), st.integers(0, 2)), min_size=1, max_size=80),
 )
-@settings(max_examples=80, deadline=None)
+@settings(max_examples=examples(80), deadline=None)
 def test_of_a_time_each_channel_counts_once_and_the_lowest_rank_first(
     messages: list[tuple[int, int]],
 ) -> None:

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import shapely
+from fixtures.thoroughness import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -58,7 +59,7 @@ def stored_maps(draw: st.DrawFn) -> StoredMap:
 
 
 @given(stored_maps())
-@settings(max_examples=80)
+@settings(max_examples=examples(80))
 def test_all_comes_back_to_the_last_bit(stored: StoredMap) -> None:
     with tempfile.TemporaryDirectory() as folder:
         write_map(stored, Path(folder))

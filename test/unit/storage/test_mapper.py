@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from fixtures.thoroughness import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
@@ -130,7 +131,7 @@ def kept_maps(draw: st.DrawFn) -> KeptMap:
 
 
 @given(kept_maps())
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=examples(60), deadline=None)
 def test_any_map_comes_back(tmp_path_factory: pytest.TempPathFactory, any_map: KeptMap) -> None:
     path = tmp_path_factory.mktemp("kept") / "robot.npz"
     save_mapper(any_map, path)

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from fixtures.homes.rooms import room_home
 from fixtures.references.slow_lidar import disagreeing, ranges_to_cells, within
+from fixtures.thoroughness import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
@@ -78,7 +79,7 @@ def maze(rows: int, columns: int, density: float, random: np.random.Generator) -
     return solid
 
 
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 @given(
     st.integers(0, 2**32 - 1),
     st.tuples(st.integers(1, 45), st.integers(1, 45)),

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from fixtures.homes.rooms import Block, room_home
 from fixtures.homes.worlds import DT, IDEAL, block_that_moves, drive
+from fixtures.thoroughness import examples
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
@@ -65,7 +66,7 @@ def independent_gap(
 twists = st.tuples(st.floats(-80.0, 80.0), st.floats(-8.0, 8.0))
 
 
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 @given(st.lists(twists, min_size=1, max_size=12), st.floats(0.001, 0.3), st.floats(-3.1, 3.1))
 def test_it_is_never_inside_anything_solid_whatever_is_commanded(
     commands: list[tuple[float, float]], dt: float, theta: float
@@ -78,7 +79,7 @@ def test_it_is_never_inside_anything_solid_whatever_is_commanded(
             assert independent_gap(world, blocks) >= -1e-6
 
 
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 @given(
     st.lists(st.tuples(st.floats(-0.7, 0.7), st.floats(-5.0, 5.0)), min_size=4, max_size=12),
     st.floats(0.01, 0.1),
@@ -103,7 +104,7 @@ def test_nor_in_round_things_and_things_that_move(
             assert independent_gap(world, (), size) >= -1e-6
 
 
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 @given(st.lists(st.tuples(st.floats(-80.0, 80.0), st.floats(-8.0, 8.0)), min_size=1, max_size=12))
 def test_speeds_and_accelerations_keep_their_limits(commands: list[tuple[float, float]]) -> None:
     world = robot(FREE, IDEAL)
@@ -163,7 +164,7 @@ def test_a_top_speed_that_makes_no_sense_is_refused(speed: float) -> None:
     assert world.max_speed == 0.5
 
 
-@settings(max_examples=30)
+@settings(max_examples=examples(30))
 @given(st.floats(-0.5, 0.5), st.floats(0.1, 4.0), st.sampled_from((1, -1)), st.floats(0.001, 0.2))
 def test_arcs_are_exact_whatever_the_step(
     linear: float, angular: float, sign: int, dt: float
@@ -289,7 +290,7 @@ def test_it_counts_its_way_and_its_turns() -> None:
     assert world.numbers["turned"] == pytest.approx(7.5, abs=0.6)
 
 
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 @given(st.floats(0.2, 4.8), st.floats(0.2, 3.8))
 def test_the_gap_is_the_rims_distance_to_the_nearest_thing(x: float, y: float) -> None:
     blocks = ((2.0, 1.5, 2.5, 2.0), (1.0, 2.5, 1.05, 3.9))

@@ -6,6 +6,7 @@ import sys
 import pytest
 from fixtures.homes.rooms import room_home
 from fixtures.homes.worlds import IDEAL, drive_around, simulator
+from fixtures.thoroughness import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -40,7 +41,7 @@ def test_another_seed_lets_dirt_fall_elsewhere() -> None:
     assert dirt[0] == dirt[1] != dirt[2]
 
 
-@settings(max_examples=25)
+@settings(max_examples=examples(25))
 @given(st.integers(0, 2**31), st.integers(20, 400))
 def test_dirt_is_conserved_exactly(seed: int, steps: int) -> None:
     world = simulator(seed)
@@ -88,7 +89,7 @@ def test_a_full_bin_takes_no_more() -> None:
     assert world.dirt.total + world.in_bin == world.brought_in
 
 
-@settings(max_examples=20)
+@settings(max_examples=examples(20))
 @given(st.floats(-3.0, 3.0), st.floats(-0.5, 0.5), st.floats(-2.0, 2.0))
 def test_ideal_odometry_begins_at_zero_and_tells_the_way_since(
     theta: float, linear: float, angular: float

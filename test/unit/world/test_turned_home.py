@@ -10,6 +10,7 @@ import pytest
 import shapely
 from fixtures.homes.rooms import room_home
 from fixtures.homes.worlds import DT, IDEAL, block_that_moves
+from fixtures.thoroughness import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely.affinity import rotate
@@ -56,7 +57,7 @@ def is_clear(solid: shapely.Geometry, x: float, y: float, direction: float, way:
     return all(abs(each - way) < 0.05 for each in beside)
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=examples(20), deadline=None)
 @given(angle=angles, x=st.floats(0.4, 1.2), y=st.floats(0.4, 2.4), theta=angles)
 def test_the_lidar_meets_slanted_walls_exactly(
     angle: float, x: float, y: float, theta: float

@@ -145,6 +145,7 @@ def test_the_way_along_the_ring_is_found_from_any_pose() -> None:
     assert looping.middle(WAY + 3.0) == pytest.approx(looping.middle(3.0))
 
 
+@pytest.mark.thorough
 def test_a_short_ring_closes(monkeypatch: pytest.MonkeyPatch) -> None:
     corners = np.array([[0.0, 0.0], [6.0, 0.0], [6.0, 5.0], [0.0, 5.0], [0.0, 0.0]])
     for name, value in {"LONG": 6.0, "SHORT": 5.0, "WAY": 22.0, "_CORNERS": corners}.items():

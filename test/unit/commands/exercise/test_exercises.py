@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from fixtures.thoroughness import core_first
 
 from roomba.commands.exercise.command import main
 from roomba.commands.exercise.course import COURSE
@@ -14,14 +15,14 @@ NUMBERS = {each.name: number for number, each in enumerate(COURSE, 1)}
 WITHOUT_ROS = [each.name for each in COURSE if each.check.startswith("roomba.")]
 
 
-@pytest.mark.parametrize("name", WITHOUT_ROS)
+@pytest.mark.parametrize("name", core_first(WITHOUT_ROS, {"shortest_path"}))
 def test_a_solution_passes(name: str, capfd: pytest.CaptureFixture[str]) -> None:
     file = SOLUTIONS / f"{name}.py"
     assert main([str(NUMBERS[name]), "--check", "--file", str(file)]) == 0, capfd.readouterr().out
     assert capfd.readouterr().out.startswith("passed: ")
 
 
-@pytest.mark.parametrize("name", WITHOUT_ROS)
+@pytest.mark.parametrize("name", core_first(WITHOUT_ROS, {"shortest_path"}))
 def test_what_a_learner_begins_with_does_not_pass_yet(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:

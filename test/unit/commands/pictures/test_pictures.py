@@ -10,6 +10,7 @@ from typing import Any
 import cv2
 import numpy as np
 import pytest
+from fixtures.thoroughness import core_first
 from numpy.typing import NDArray
 
 from roomba.commands.pictures.__main__ import PICTURES, main
@@ -54,7 +55,7 @@ def made(name: str) -> NDArray[np.uint8]:
     return partial(picture_of, **QUICK.get(name, {}))(home_of(name))
 
 
-@pytest.mark.parametrize("name", PLOTS)
+@pytest.mark.parametrize("name", core_first(PLOTS, {"floor_plan", "layers", "levels"}))
 def test_a_plot_is_a_picture_of_a_page_s_width_with_something_in_it(name: str) -> None:
     picture = made(name)
     height, width, channels = picture.shape

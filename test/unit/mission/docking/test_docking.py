@@ -6,6 +6,7 @@ import math
 
 import pytest
 from fixtures.robots.docking_rig import CONFIG, ROBOT, STATION, TICK, Rig
+from fixtures.thoroughness import examples
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
@@ -33,7 +34,7 @@ from roomba.world.engine.state.arrays import Fault
 )
 @example(0.05, -0.05, -0.14, 0.05, -1.12, 0.0523, 0, 336)
 @example(-0.05, 0.05, 0.35, 0.05, 1.57, -0.0523, 3, 1)
-@settings(max_examples=25)
+@settings(max_examples=examples(25))
 def test_it_docks_from_where_it_is_brought(
     x: float, y: float, theta: float, off: float, way: float, turn: float, delay: int, seed: int
 ) -> None:
@@ -61,7 +62,7 @@ def test_it_docks_from_where_it_is_brought(
 )
 @example(0.1, 0.0, 0.0, 0)
 @example(0.3, 1.2, 1.0, 0)
-@settings(max_examples=20)
+@settings(max_examples=examples(20))
 def test_it_docks_from_anywhere_near(away: float, way: float, theta: float, seed: int) -> None:
     start = Pose(-away * math.cos(way), away * math.sin(way), theta)
     step = Rig(start, seed=seed).run(60.0)
@@ -229,7 +230,7 @@ senses = st.builds(
 
 
 @given(st.lists(st.tuples(senses, st.integers(1, 40)), min_size=1, max_size=25))
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 def test_by_any_senses_it_keeps_to_its_speeds_and_ends(
     runs: list[tuple[DockSenses, int]],
 ) -> None:

@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterable
 import pytest
 from fixtures.homes.rooms import room_home
 from fixtures.homes.worlds import DT
+from fixtures.thoroughness import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -93,7 +94,7 @@ class Rig:
 
 
 @given(st.integers(0, 3), st.booleans(), st.floats(-0.01, 0.0349), st.floats(-0.1, 0.1))
-@settings(max_examples=30)
+@settings(max_examples=examples(30))
 def test_it_backs_straight_out(delay: int, is_known: bool, x: float, theta: float) -> None:
     rig = Rig(Pose(x, 0.0, theta), delay=delay, is_known=is_known)
     starts = rig.pose

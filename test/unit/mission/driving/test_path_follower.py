@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from fixtures.thoroughness import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -60,14 +61,14 @@ def walked(path: Path, follower: PathFollower, max_speed: float) -> list[tuple[f
 
 
 @given(paths(), st.sampled_from([0.1, FAST]))
-@settings(max_examples=30)
+@settings(max_examples=examples(30))
 def test_the_setpoint_runs_ahead_and_waits_at_sharp_corners(path: Path, fastest: float) -> None:
     speeds = walked(path, PathFollower(path, CONFIG), fastest)
     assert all(min(SLOWEST, fastest) <= speed <= fastest for _, speed in speeds)
 
 
 @given(paths())
-@settings(max_examples=30)
+@settings(max_examples=examples(30))
 def test_all_corners_ahead_can_be_braked_for(path: Path) -> None:
     """At a right angle it goes at the corner's speed, at less of one in between."""
     for gone, speed in walked(path, PathFollower(path, CONFIG), FAST):
@@ -81,7 +82,7 @@ def test_all_corners_ahead_can_be_braked_for(path: Path) -> None:
 
 
 @given(paths(), st.tuples(st.floats(-0.5, 2.0), st.floats(-0.5, 0.5)))
-@settings(max_examples=30)
+@settings(max_examples=examples(30))
 def test_how_far_off_the_path_it_is_and_how_much_is_left(
     path: Path, place: tuple[float, float]
 ) -> None:

@@ -9,6 +9,7 @@ import pytest
 from fixtures.homes.rooms import room_home
 from fixtures.homes.worlds import DT
 from fixtures.robots.located import CONFIG, FURNISHED, TWO_ROOMS, Located, steps
+from fixtures.thoroughness import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
@@ -37,7 +38,7 @@ def wall_ahead(distance: float, width: float = 1.0) -> NDArray[np.float64]:
     st.integers(0, 360),
     st.lists(st.tuples(st.booleans(), st.floats(-3.0, 3.0)), min_size=1, max_size=25),
 )
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 def test_it_never_wants_to_go_faster_than_it_says(
     seed: int, beams: int, ticks: list[tuple[bool, float]]
 ) -> None:

@@ -3,6 +3,7 @@ from dataclasses import replace
 
 import pytest
 from fixtures.homes.rooms import Block, room_home
+from fixtures.thoroughness import examples
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
@@ -36,7 +37,7 @@ def planner_of(robot: HeadlessMission) -> PathPlanner:
     return robot.brain.walking.planner(robot.mission.context.occupancy)
 
 
-@settings(max_examples=25)
+@settings(max_examples=examples(25))
 @given(st.floats(0.2, 4.8), st.floats(0.2, 3.8))
 def test_it_arrives_wherever_there_is_a_way_and_touches_nothing(x: float, y: float) -> None:
     robot = furnished()

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from fixtures.homes.rooms import Block, room_home
 from fixtures.homes.worlds import block_that_moves
+from fixtures.thoroughness import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -166,7 +167,7 @@ def has_way(home: Home, goal: tuple[float, float]) -> bool:
     return True
 
 
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 @given(
     st.lists(boxes(), min_size=1, max_size=4),
     st.floats(0.3, 4.7),

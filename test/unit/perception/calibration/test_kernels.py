@@ -18,6 +18,7 @@ from fixtures.robots.worn import (
     measure,
     rooms,
 )
+from fixtures.thoroughness import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
@@ -89,7 +90,7 @@ def test_they_are_those_that_solving_for_all_at_once_finds() -> None:
     assert np.all(np.abs(row["errors"] - solved) < 3.0 * FINE)
 
 
-@settings(max_examples=25, deadline=None, derandomize=True)
+@settings(max_examples=examples(25), deadline=None, derandomize=True)
 @given(
     st.tuples(*[st.floats(-0.02, 0.02)] * 4),
     st.tuples(st.floats(-0.015, 0.015), st.floats(-0.015, 0.015), st.floats(-0.0175, 0.0175)),

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from fixtures.thoroughness import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
@@ -169,7 +170,7 @@ def divisions(draw: st.DrawFn) -> Rooms:
 
 
 @given(divisions(), divisions())
-@settings(max_examples=150)
+@settings(max_examples=examples(150))
 def test_no_name_is_there_twice_and_none_is_lost_whose_room_is_there(
     old: Rooms, new: Rooms
 ) -> None:
@@ -186,7 +187,7 @@ def test_no_name_is_there_twice_and_none_is_lost_whose_room_is_there(
 
 
 @given(divisions(), divisions())
-@settings(max_examples=100)
+@settings(max_examples=examples(100))
 def test_names_share_as_much_floor_as_can_be(old: Rooms, new: Rooms) -> None:
     """Compared with all ways to pair them, tried one after the other."""
     carried = carry_over(new, old, ZONES, SHARE)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from fixtures.thoroughness import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
@@ -32,7 +33,7 @@ def bounds_of(counted: NDArray[np.bool_]) -> NDArray[np.int64]:
 
 
 @given(COUNTS, COUNTS, arrays(np.int8, (6, 7), elements=st.integers(-MOST, MOST)))
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 def test_a_look_moves_scores_by_one_for_what_most_of_its_beams_say(
     hits: NDArray[np.uint16], passes: NDArray[np.uint16], scores: NDArray[np.int8]
 ) -> None:
@@ -65,7 +66,7 @@ def scans(draw: st.DrawFn) -> tuple[NDArray[np.float32], list[float], list[float
 
 
 @given(scans())
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 def test_beams_within_their_range_end_in_a_cell_and_pass_those_before_it(
     scan: tuple[NDArray[np.float32], list[float], list[float]],
 ) -> None:

@@ -18,6 +18,7 @@ from fixtures.robots.located import (
     Ranges,
     free_poses,
 )
+from fixtures.thoroughness import core_first
 
 from roomba.configuration.mapping import FloorsConfig
 from roomba.files.shipped import HOMES
@@ -96,7 +97,7 @@ def test_it_wakes_on_the_station_of_one_of_several_floors(name: str) -> None:
     assert is_at(recognition.place, name, home.station)
 
 
-@pytest.mark.parametrize("name", STORED)
+@pytest.mark.parametrize("name", core_first(STORED, {"flat"}))
 def test_it_wakes_anywhere(name: str) -> None:
     home = shipped(name)
     found = 0
@@ -111,7 +112,7 @@ def test_it_wakes_anywhere(name: str) -> None:
     assert found >= 9
 
 
-@pytest.mark.parametrize("name", STORED)
+@pytest.mark.parametrize("name", core_first(STORED, {"flat"}))
 def test_a_home_that_is_not_stored_is_a_new_floor(name: str) -> None:
     home = shipped(name)
     others = stored(*(each for each in STORED if each != name))

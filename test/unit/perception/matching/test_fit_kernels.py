@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 from fixtures.robots.located import FURNISHED, LIDAR, TWO_ROOMS, Eye, free_poses
+from fixtures.thoroughness import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -125,7 +126,7 @@ def test_what_stands_in_the_way_is_short_and_not_through() -> None:
     st.integers(0, 360),
     st.integers(1, 9),
 )
-@settings(max_examples=100)
+@settings(max_examples=examples(100))
 def test_shares_add_to_1_and_evidence_is_never_for_what_is_not_there(
     pose: tuple[float, float, float], seed: int, beams: int, stride: int
 ) -> None:
@@ -175,7 +176,7 @@ def test_off_the_map_no_beam_agrees() -> None:
 
 
 @given(st.integers(0, 2**32 - 1))
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 def test_beams_go_through_what_a_ray_of_its_own_meets_before(seed: int) -> None:
     """All rays at once mark the same beams as each ray for itself."""
     random = np.random.default_rng(seed)

@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 from fixtures.robots.located import CORRIDOR, FURNISHED, LIDAR, TWO_ROOMS, Eye, free_poses
+from fixtures.thoroughness import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
@@ -138,7 +139,7 @@ def covariance_of(x: float, y: float, theta: float, xt: float, yt: float, turn: 
     st.integers(0, 2**32 - 1),
     st.integers(0, 360),
 )
-@settings(max_examples=150)
+@settings(max_examples=examples(150))
 def test_any_scan_anywhere_leaves_a_covariance_that_is_one_and_no_larger_than_before(
     prior: tuple[float, float, float], covariance: Floats, seed: int, beams: int
 ) -> None:
@@ -159,7 +160,7 @@ FINITE = st.floats(allow_nan=False, allow_infinity=False)
 
 
 @given(st.tuples(FINITE, FINITE, FINITE), st.lists(FINITE, max_size=12))
-@settings(max_examples=200)
+@settings(max_examples=examples(200))
 def test_no_finite_prior_and_no_scan_at_all_makes_nan(
     prior: tuple[float, float, float], few: list[float]
 ) -> None:

@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 import shapely
+from fixtures.thoroughness import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
@@ -49,7 +50,7 @@ SMALL_MAPS = st.tuples(st.integers(2, 12), st.integers(2, 12)).flatmap(
 
 
 @given(SMALL_MAPS, st.sampled_from((0.02, 0.05, 0.25)))
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 def test_no_middle_is_farther_off_than_half_the_diagonal_of_a_cell(
     solid: Mask, resolution: float
 ) -> None:
@@ -119,7 +120,7 @@ def test_kernels_are_told_where_the_first_middle_is() -> None:
 
 
 @given(st.floats(-math.pi, math.pi), st.floats(-0.3, 0.3))
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=examples(30), deadline=None)
 def test_a_slanted_wall_lies_where_the_shares_of_its_cells_say(angle: float, off: float) -> None:
     frame = GridFrame(0.05, -1.0, -1.0, 40, 40)
     normal = np.array([math.cos(angle), math.sin(angle)])

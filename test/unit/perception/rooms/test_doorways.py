@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 from fixtures.references.straight_ways import Mask, parts_of
+from fixtures.thoroughness import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
@@ -19,7 +20,7 @@ CONFIG = RoomsConfig()
 
 
 @given(arrays(np.bool_, st.tuples(st.integers(2, 10), st.integers(2, 10))))
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 def test_clearance_is_the_distance_from_a_cell_s_middle_to_the_side_of_what_is_solid(
     solid: Mask,
 ) -> None:
@@ -59,7 +60,7 @@ def cells_between(opening: Opening) -> list[tuple[int, int]]:
 
 
 @given(two_rooms(), st.booleans())
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 def test_a_door_between_two_rooms_is_the_one_opening(
     drawn: tuple[Mask, int, int, int, int], is_turned: bool
 ) -> None:
@@ -78,7 +79,7 @@ def test_a_door_between_two_rooms_is_the_one_opening(
 
 
 @given(two_rooms(), st.integers(0, 2**32 - 1))
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 def test_openings_end_at_what_is_solid_lead_over_floor_and_are_of_a_door_s_width_or_narrow(
     drawn: tuple[Mask, int, int, int, int], seed: int
 ) -> None:
@@ -99,7 +100,7 @@ def test_openings_end_at_what_is_solid_lead_over_floor_and_are_of_a_door_s_width
 
 
 @given(two_rooms())
-@settings(max_examples=30)
+@settings(max_examples=examples(30))
 def test_closing_the_door_parts_the_floor(drawn: tuple[Mask, int, int, int, int]) -> None:
     solid = drawn[0]
     assert len(parts_of(~solid)) == 1

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from fixtures.references.straight_ways import parts_of
+from fixtures.thoroughness import examples
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
@@ -24,7 +25,7 @@ def labelled(draw: st.DrawFn) -> Labels:
 
 
 @given(labelled(), st.sets(st.integers(1, 4), min_size=1, max_size=3))
-@settings(max_examples=80)
+@settings(max_examples=examples(80))
 def test_rooms_touch_when_their_cells_lead_from_one_to_the_next(
     labels: Labels, chosen: set[int]
 ) -> None:
@@ -43,7 +44,7 @@ def test_rooms_touch_when_their_cells_lead_from_one_to_the_next(
 
 
 @given(labelled(), st.lists(st.integers(1, 4), min_size=1, max_size=3, unique=True))
-@settings(max_examples=80)
+@settings(max_examples=examples(80))
 def test_joined_rooms_are_the_first_and_the_others_close_up(
     labels: Labels, chosen: list[int]
 ) -> None:
@@ -61,7 +62,7 @@ def test_joined_rooms_are_the_first_and_the_others_close_up(
     st.tuples(st.integers(0, 6), st.integers(0, 8), st.integers(0, 6), st.integers(0, 8)),
     st.integers(1, 6),
 )
-@settings(max_examples=150)
+@settings(max_examples=examples(150))
 def test_a_cut_room_falls_into_pieces_that_are_large_enough_and_loses_no_cell(
     labels: Labels, line: tuple[int, int, int, int], least: int
 ) -> None:

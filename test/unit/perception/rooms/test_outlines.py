@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import shapely
 from fixtures.references.straight_ways import Mask, parts_of
+from fixtures.thoroughness import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
@@ -24,7 +25,7 @@ def frame_of(mask: Mask) -> GridFrame:
 
 
 @given(MASKS)
-@settings(max_examples=80)
+@settings(max_examples=examples(80))
 def test_an_outline_has_the_area_the_borders_and_the_parts_of_its_cells(mask: Mask) -> None:
     outline = outline_of(mask, frame_of(mask))
     padded = np.pad(mask, 1)
@@ -43,13 +44,13 @@ def test_an_outline_has_the_area_the_borders_and_the_parts_of_its_cells(mask: Ma
 
 
 @given(MASKS)
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 def test_the_cells_inside_of_an_outline_are_those_that_it_was_made_of(mask: Mask) -> None:
     assert np.array_equal(cells_inside(outline_of(mask, frame_of(mask)), frame_of(mask)), mask)
 
 
 @given(st.lists(st.tuples(st.floats(-2.5, 0.5), st.floats(1.5, 3.5)), min_size=3, max_size=5))
-@settings(max_examples=80)
+@settings(max_examples=examples(80))
 def test_a_cell_is_inside_when_its_middle_is(corners: list[tuple[float, float]]) -> None:
     frame = GridFrame(0.1, -1.3, 2.0, 9, 7)
     shape = shapely.MultiPoint(corners).convex_hull
@@ -61,7 +62,7 @@ def test_a_cell_is_inside_when_its_middle_is(corners: list[tuple[float, float]])
 
 
 @given(*[st.tuples(st.floats(-3.0, 1.5), st.floats(1.0, 4.0))] * 2)
-@settings(max_examples=80)
+@settings(max_examples=examples(80))
 def test_a_line_is_told_as_far_as_it_is_on_the_grid(
     start: tuple[float, float], end: tuple[float, float]
 ) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import shapely
+from fixtures.thoroughness import examples
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
@@ -85,7 +86,7 @@ def test_an_outline_runs_along_the_sides_of_cells_around_holes() -> None:
 
 
 @given(any_rooms())
-@settings(max_examples=150)
+@settings(max_examples=examples(150))
 def test_rooms_come_back_from_their_outlines_exactly(rooms: Rooms) -> None:
     outlines = [(name, rooms.outline(rooms.label_of(name))) for name in rooms.names]
     for label, (_, outline) in enumerate(outlines, 1):
@@ -206,7 +207,7 @@ ENDS = st.tuples(st.floats(-3.0, 7.0), st.floats(-1.0, 5.0))
 
 
 @given(st.sampled_from(["Kitchen", "Hall", "Bath"]), ENDS, ENDS)
-@settings(max_examples=200)
+@settings(max_examples=examples(200))
 def test_what_was_split_is_whole_and_joined_again_it_is_as_before(
     name: str, start: tuple[float, float], end: tuple[float, float]
 ) -> None:
@@ -226,7 +227,7 @@ def test_what_was_split_is_whole_and_joined_again_it_is_as_before(
 
 
 @given(any_rooms(), st.data())
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 def test_joining_loses_no_cell(rooms: Rooms, data: st.DataObject) -> None:
     assume(len(rooms.names) > 1)
     names = data.draw(st.permutations(rooms.names).map(lambda names: names[:2]))

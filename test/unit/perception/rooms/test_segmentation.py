@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 import pytest
 import shapely
+from fixtures.thoroughness import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
@@ -242,7 +243,7 @@ RECTANGLES = st.lists(
 
 
 @given(RECTANGLES, RECTANGLES, st.sampled_from([OCCUPIED, UNKNOWN]))
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 def test_rooms_are_free_connected_and_without_gaps(
     floor: list[Area], things: list[Area], around: int
 ) -> None:

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import shapely
+from fixtures.thoroughness import examples
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
@@ -62,7 +63,7 @@ def test_an_area_along_the_axes_covers_the_cells_that_it_touches_exactly(
 
 
 @given(st.lists(numbers, min_size=3, max_size=3), st.booleans())
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 def test_slanted_ones_cover_what_they_touch_and_hardly_more(
     points: list[tuple[float, float, float]], is_wall: bool
 ) -> None:

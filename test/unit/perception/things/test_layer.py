@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from fixtures.homes.rooms import room_home
 from fixtures.robots.located import CONFIG, FURNISHED, LIDAR, TWO_ROOMS, Eye, Ranges, free_poses
+from fixtures.thoroughness import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
@@ -272,7 +273,7 @@ class Plain:
 
 
 @given(st.integers(0, 2**32 - 1))
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 def test_evidence_is_that_of_the_same_rules_in_plain_python(seed: int) -> None:
     random = np.random.default_rng(seed)
     config = ThingConfig(gain=int(random.integers(1, 4)), loss=int(random.integers(1, 4)))
@@ -351,7 +352,7 @@ def blocked_by_sampling(
 
 
 @given(st.integers(0, 2**32 - 1))
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=examples(40), deadline=None)
 def test_a_path_is_blocked_where_something_is_near_it(seed: int) -> None:
     random = np.random.default_rng(seed)
     layer = seen(ROOM, (3.0, 2.6, 0.1), (2.0, 3.3, 0.1))

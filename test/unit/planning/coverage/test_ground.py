@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from fixtures.references.straight_ways import Mask, connected_to, runs_between_centres_that_fit
+from fixtures.thoroughness import examples
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
@@ -40,7 +41,7 @@ def grounds(draw: st.DrawFn) -> tuple[Ground, tuple[int, int]]:
 
 
 @given(grounds())
-@settings(max_examples=30)
+@settings(max_examples=examples(30))
 def test_the_window_shows_all_that_can_be_got_to(found: tuple[Ground, tuple[int, int]]) -> None:
     ground, seed = found
     floor = ground.floor

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from fixtures.references.straight_ways import length_of, turning_of
+from fixtures.thoroughness import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -16,7 +17,7 @@ POINTS = st.lists(
 
 
 @given(POINTS)
-@settings(max_examples=100)
+@settings(max_examples=examples(100))
 def test_length_and_turning_are_sums_over_the_way(points: list[tuple[int, int]]) -> None:
     line = np.array(points, np.float64) / 10
     plan = CoveragePlan(line)

@@ -8,6 +8,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 import shapely
+from fixtures.thoroughness import examples
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
@@ -75,7 +76,7 @@ def cluttered_rooms(draw: st.DrawFn) -> OccupancyMap:
 
 
 @given(cluttered_rooms(), st.floats(0.1, 1.9), st.floats(0.1, 1.6), st.booleans())
-@settings(max_examples=50, derandomize=True, deadline=None)
+@settings(max_examples=examples(50), derandomize=True, deadline=None)
 def test_sweeps_all_that_can_be_reached_and_keeps_clear_of_walls(
     map: OccupancyMap, x: float, y: float, comes_back: bool
 ) -> None:

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from fixtures.thoroughness import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
@@ -74,7 +75,7 @@ def test_cells_that_touch_are_one_cluster(marked: NDArray[np.bool_]) -> None:
     st.integers(0, 1),
     st.integers(0, 1),
 )
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 def test_ways_are_the_shortest_ones(fitting: NDArray[np.bool_], row: int, column: int) -> None:
     ways = np.empty(fitting.shape)
     ways_from(fitting, row, column, ways)
@@ -160,7 +161,7 @@ RADIUS = 4
 
 
 @given(cells, st.data(), st.sampled_from([0.0, 0.5, 2.0]))
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 def test_the_viewpoint_is_the_best_of_all_cells(
     values: NDArray[np.int8], data: st.DataObject, aside: float
 ) -> None:
@@ -179,7 +180,7 @@ def test_the_viewpoint_is_the_best_of_all_cells(
 
 
 @given(cells, st.integers(0, 2**32 - 1))
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 def test_the_first_cell_that_is_not_left_out_and_can_be_looked_at_is_taken(
     values: NDArray[np.int8], seed: int
 ) -> None:

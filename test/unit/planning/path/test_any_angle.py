@@ -8,6 +8,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from fixtures.references.any_angle import Mask, Place, Sights, length_of, stays_on_floor
+from fixtures.thoroughness import examples
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
@@ -52,7 +53,7 @@ def searched(
 
 
 @given(FLOORS, st.data())
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 def test_between_centres_the_path_is_legal_and_the_shortest(
     fits: Mask, data: st.DataObject
 ) -> None:
@@ -72,7 +73,7 @@ def test_between_centres_the_path_is_legal_and_the_shortest(
 
 
 @given(FLOORS, st.data())
-@settings(max_examples=80)
+@settings(max_examples=examples(80))
 def test_ends_inside_open_squares_see_all_around(fits: Mask, data: st.DataObject) -> None:
     rows, columns = fits.shape
     squares = [

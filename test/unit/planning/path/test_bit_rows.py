@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from fixtures.thoroughness import examples
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
@@ -27,7 +28,7 @@ def cells(rows: st.SearchStrategy[int], closed: int) -> st.SearchStrategy[Cells]
 
 
 @given(cells(st.integers(1, 4), 2))
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 def test_bit_x_plus_1_of_row_y_plus_1_is_a_cell_and_the_border_is_closed(free: Cells) -> None:
     packed = bit_rows(free)
     words = packed.shape[1]
@@ -43,7 +44,7 @@ def test_bit_x_plus_1_of_row_y_plus_1_is_a_cell_and_the_border_is_closed(free: C
 
 
 @given(cells(st.just(3), 40), st.data())
-@settings(max_examples=300)
+@settings(max_examples=examples(300))
 def test_a_jump_ends_where_a_walk_cell_by_cell_does(free: Cells, data: st.DataObject) -> None:
     open_columns = np.flatnonzero(free[1]).tolist()
     assume(open_columns)

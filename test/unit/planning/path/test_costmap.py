@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 import shapely
+from fixtures.thoroughness import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
@@ -40,7 +41,7 @@ SMALL_MAPS = st.tuples(st.integers(1, 14), st.integers(1, 14)).flatmap(
 
 
 @given(SMALL_MAPS, st.floats(0.01, 0.25), st.floats(0.0, 0.1))
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=examples(150), deadline=None)
 def test_fits_exactly_where_the_disc_touches_nothing_solid(
     solid: Mask, radius: float, clearance: float
 ) -> None:
@@ -58,7 +59,7 @@ def test_fits_exactly_where_the_disc_touches_nothing_solid(
     st.lists(st.tuples(st.floats(-0.1, 0.8), st.floats(-0.1, 0.8), st.floats(0, 0.2)), max_size=3),
     st.tuples(*[st.floats(0.0, 0.7)] * 4),
 )
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=examples(150), deadline=None)
 def test_room_along_is_the_distance_of_the_way_from_all_that_is_solid(
     solid: Mask,
     obstacles: list[tuple[float, float, float]],
@@ -81,7 +82,7 @@ def test_room_along_is_the_distance_of_the_way_from_all_that_is_solid(
         max_size=4,
     )
 )
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=examples(100), deadline=None)
 def test_obstacles_are_added_to_the_walls_and_taken_away_again(
     obstacles: list[tuple[float, float, float]],
 ) -> None:

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from fixtures.thoroughness import examples
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
@@ -84,7 +85,7 @@ def fans(draw: st.DrawFn) -> tuple[Mask, int, int, float, float, float, float]:
 
 
 @given(fans())
-@settings(max_examples=200)
+@settings(max_examples=examples(200))
 def test_the_next_fans_are_what_segments_through_this_one_reach(
     fan: tuple[Mask, int, int, float, float, float, float],
 ) -> None:
@@ -104,7 +105,7 @@ def test_the_next_fans_are_what_segments_through_this_one_reach(
 
 
 @given(fans(), st.integers(0, 40), st.sampled_from([0.25, 0.5, 0.75]))
-@settings(max_examples=150)
+@settings(max_examples=examples(150))
 def test_a_goal_between_the_rows_is_offered_where_it_is_seen(
     fan: tuple[Mask, int, int, float, float, float, float], quarter: int, share: float
 ) -> None:
@@ -125,7 +126,7 @@ def test_a_goal_between_the_rows_is_offered_where_it_is_seen(
 
 
 @given(fans())
-@settings(max_examples=100)
+@settings(max_examples=examples(100))
 def test_centres_at_which_the_floor_is_thin_become_roots(
     fan: tuple[Mask, int, int, float, float, float, float],
 ) -> None:

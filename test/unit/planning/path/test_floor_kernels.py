@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import shapely
+from fixtures.thoroughness import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
@@ -39,7 +40,7 @@ def floor_around(fits: Mask, x: int, y: int) -> shapely.Geometry:
 
 
 @given(FLOORS)
-@settings(max_examples=100)
+@settings(max_examples=examples(100))
 def test_a_square_is_open_when_its_four_corners_fit(fits: Mask) -> None:
     padded = np.pad(fits, 1)
     squares, _ = surveyed(fits)
@@ -50,7 +51,7 @@ def test_a_square_is_open_when_its_four_corners_fit(fits: Mask) -> None:
 
 
 @given(FLOORS)
-@settings(max_examples=100)
+@settings(max_examples=examples(100))
 def test_flags_tell_corners_of_the_floor_and_where_it_is_thin(fits: Mask) -> None:
     padded = np.pad(fits, 1)
     squares, flags = surveyed(fits)

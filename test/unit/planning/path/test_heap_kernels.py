@@ -5,6 +5,7 @@ from __future__ import annotations
 import heapq
 
 import numpy as np
+from fixtures.thoroughness import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -15,7 +16,7 @@ STEPS = st.lists(st.one_of(st.none(), st.integers(-20, 20)), max_size=60)
 
 
 @given(STEPS)
-@settings(max_examples=150)
+@settings(max_examples=examples(150))
 def test_the_least_key_is_always_first_and_no_item_is_lost(steps: list[int | None]) -> None:
     keys, items = np.full(len(steps), np.nan), np.full(len(steps), -1, np.int32)
     expected: list[tuple[float, int]] = []
@@ -36,7 +37,7 @@ def test_the_least_key_is_always_first_and_no_item_is_lost(steps: list[int | Non
 
 
 @given(st.lists(st.floats(allow_nan=False), max_size=80))
-@settings(max_examples=100)
+@settings(max_examples=examples(100))
 def test_popping_all_sorts_the_keys(values: list[float]) -> None:
     keys, items = np.empty(len(values)), np.empty(len(values), np.int32)
     for size, value in enumerate(values):

@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 import shapely
+from fixtures.thoroughness import examples
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
@@ -85,7 +86,7 @@ def assert_nearest_first(room: Room, joints: Joints, point: Point) -> None:
 
 
 @given(FLOORS, OBSTACLES, SOMEWHERE)
-@settings(max_examples=120)
+@settings(max_examples=examples(120))
 def test_a_goal_is_joined_to_all_near_centres_to_which_the_body_can_go_straight(
     solid: Mask, obstacles: list[RoundObstacle], goal: Point
 ) -> None:
@@ -116,7 +117,7 @@ def test_a_goal_is_joined_to_all_near_centres_to_which_the_body_can_go_straight(
 
 
 @given(FLOORS, st.data())
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 def test_a_goal_on_a_centre_is_joined_to_it_alone(solid: Mask, data: st.DataObject) -> None:
     room = Room(solid, [])
     fitting = room.fitting()
@@ -129,7 +130,7 @@ def test_a_goal_on_a_centre_is_joined_to_it_alone(solid: Mask, data: st.DataObje
 
 
 @given(FLOORS, OBSTACLES, SOMEWHERE)
-@settings(max_examples=120)
+@settings(max_examples=examples(120))
 def test_a_start_that_does_not_fit_leaves_by_the_shortest_way_that_comes_no_nearer(
     solid: Mask, obstacles: list[RoundObstacle], start: Point
 ) -> None:

@@ -8,6 +8,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from fixtures.references.any_angle import Mask, Place, Sights, length_of, stays_on_floor
+from fixtures.thoroughness import examples
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
@@ -71,7 +72,7 @@ def roots_of(work: Work) -> list[Place]:
 
 
 @given(FLOORS, st.data())
-@settings(max_examples=80)
+@settings(max_examples=examples(80))
 def test_cost_and_roots_are_those_of_the_shortest_way(fits: Mask, data: st.DataObject) -> None:
     assume(fits.any())
     sights = Sights(fits)

@@ -18,6 +18,7 @@ from fixtures.homes.planned_rooms import (
     samples,
     two_rooms,
 )
+from fixtures.thoroughness import examples
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
@@ -39,7 +40,7 @@ POINTS = st.tuples(st.floats(-0.9, 2.9), st.floats(-1.9, 1.9))
 @given(
     BOXES, POINTS, POINTS, st.lists(st.tuples(*[st.floats(-1, 2)] * 2, st.just(0.06)), max_size=3)
 )
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=examples(200), deadline=None)
 def test_a_path_fits_everywhere_has_exact_ends_and_is_as_long_backwards(
     boxes: list[tuple[float, float, float, float]],
     start: Point,
@@ -277,7 +278,7 @@ def test_long_searches_make_their_arrays_larger() -> None:
 
 
 @given(st.tuples(st.floats(-0.7, 2.7), st.floats(-1.7, 1.7)))
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 def test_a_way_is_free_where_the_body_fits_all_along(bend: tuple[float, float]) -> None:
     """Tight clearance counts: nearer to a box the body stands nowhere, farther it may."""
     box = (0.5, -0.6, 1.1, 0.4)

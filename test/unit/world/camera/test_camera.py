@@ -21,6 +21,7 @@ from fixtures.homes.camera_rooms import (
     redness,
 )
 from fixtures.references.slow_camera import slow_depth
+from fixtures.thoroughness import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -36,7 +37,7 @@ FURNISHED_CAMERA = Camera(Scene.of(FURNISHED), CONFIG, supersampling=1)
 places = st.floats(-2.4, 2.4)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=examples(60), deadline=None)
 @given(
     x=places,
     y=places,

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from fixtures.homes.rooms import room_home
 from fixtures.homes.worlds import IDEAL, NOISY, drive
+from fixtures.thoroughness import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -60,7 +61,7 @@ drives = st.lists(
 )
 
 
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 @given(drives, st.sampled_from((0.01, 0.1, 60.0, 900.0)), st.booleans(), st.booleans())
 def test_energy_adds_up_and_the_charge_keeps_its_bounds_whatever_is_driven(
     parts: list[tuple[float, float, float, float]], dt: float, from_station: bool, noisy: bool

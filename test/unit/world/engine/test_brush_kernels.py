@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from fixtures.homes.rooms import Block, room_home
 from fixtures.homes.worlds import DT, IDEAL, NOISY, drive
+from fixtures.thoroughness import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -244,7 +245,7 @@ def test_the_brush_motors_current_tells_carpet_from_floor() -> None:
     assert float(np.std(seen)) == pytest.approx(brush.current_noise, rel=0.1)
 
 
-@settings(max_examples=20)
+@settings(max_examples=examples(20))
 @given(st.floats(0.0, 1.0), st.floats(0.0, 1.0))
 def test_duties_are_kept_and_one_may_be_left_as_it_is(brush: float, fan: float) -> None:
     world = Simulator(room_home())

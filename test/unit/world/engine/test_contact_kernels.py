@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from fixtures.thoroughness import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -62,7 +63,7 @@ def test_the_bumpers_halves_overlap_ahead_and_end_beside_the_body(
     assert halves(math.cos(direction), math.sin(direction), theta) == expected
 
 
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 @given(
     st.integers(0, 2**32 - 1),
     st.floats(0.0, 0.3),
@@ -95,7 +96,7 @@ def test_the_nearest_cell_is_found_and_the_rooms_bound_is_never_too_large(
     assert room_at(cells, home, x, y) <= nearest + 1e-7
 
 
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 @given(st.floats(-2.0, 2.0), st.floats(-2.0, 2.0), angles)
 def test_the_way_to_a_turned_box_ends_at_its_nearest_point(x: float, y: float, turn: float) -> None:
     box = np.zeros(1, BOX).view(np.recarray)[0]

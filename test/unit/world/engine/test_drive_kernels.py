@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from fixtures.homes.rooms import room_home
 from fixtures.homes.worlds import DT, IDEAL, NOISY, drive
+from fixtures.thoroughness import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -27,7 +28,7 @@ CARPETED = room_home(width=20.0, height=8.0, carpets=((0.0, 0.0, 20.0, 8.0),))
 commands = st.lists(st.tuples(st.floats(-0.7, 0.7), st.floats(-5.0, 5.0)), min_size=1, max_size=15)
 
 
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 @given(
     st.floats(-3.0, 3.0), st.floats(-3.0, 3.0), st.floats(0.0, 5.0), st.floats(0.0, 5.0),
     st.floats(1e-4, 0.5),
@@ -42,7 +43,7 @@ def test_a_ramp_keeps_its_limits_and_neither_passes_its_target_nor_zero(
     assert abs(after - value) <= limit * dt + 1e-12
 
 
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 @given(commands, st.floats(0.005, 0.1), st.floats(-3.1, 3.1))
 def test_ideal_odometry_is_the_way_from_the_start_whatever_is_driven_and_hit(
     twists: list[tuple[float, float]], dt: float, theta: float
@@ -57,7 +58,7 @@ def test_ideal_odometry_is_the_way_from_the_start_whatever_is_driven_and_hit(
         assert abs(wrap_angle(believed.theta - seen.pose.theta)) < 1e-9
 
 
-@settings(max_examples=30)
+@settings(max_examples=examples(30))
 @given(commands, st.floats(0.005, 0.1))
 def test_an_ideal_gyro_tells_the_true_turning_and_encoders_the_wheels_way(
     twists: list[tuple[float, float]], dt: float

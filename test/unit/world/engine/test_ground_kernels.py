@@ -7,6 +7,7 @@ import math
 import pytest
 from fixtures.homes.rooms import room_home
 from fixtures.homes.worlds import drive
+from fixtures.thoroughness import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -20,7 +21,7 @@ HOME = room_home(stairs=((EDGE, 0.0, 5.0, 4.0),))
 HALF_TRACK = 0.5 * CONFIG.body.wheel_separation
 
 
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 @given(st.floats(0.3, 4.7), st.floats(0.3, 3.7), st.floats(-3.1, 3.1))
 def test_each_sensor_tells_whether_floor_is_under_it(x: float, y: float, theta: float) -> None:
     world = Simulator(HOME, start=Pose(1.0, 2.0, 0.0))

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from fixtures.homes.rooms import room_home
 from fixtures.homes.worlds import block_that_moves
+from fixtures.thoroughness import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -20,7 +21,7 @@ FARTHEST = 10
 """Cells; so far room must be told at least."""
 
 
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 @given(st.integers(0, 2**32 - 1), st.floats(0.0, 0.2))
 def test_room_is_a_bound_and_a_close_one(seed: int, density: float) -> None:
     solid = np.random.default_rng(seed).random((24, 30)) < density

@@ -7,6 +7,7 @@ import math
 import pytest
 from fixtures.homes.rooms import room_home
 from fixtures.homes.worlds import drive
+from fixtures.thoroughness import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -100,7 +101,7 @@ def test_a_dead_station_sends_nothing_and_charges_no_robot() -> None:
     assert not seen.battery.is_charging
 
 
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 @given(st.floats(-0.02, 0.02), st.floats(-0.02, 0.02), st.floats(-12.0, 12.0))
 def test_contacts_touch_near_the_docked_pose_only(dx: float, dy: float, degrees: float) -> None:
     world = world_with_station()

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from fixtures.homes.rooms import room_home
 from fixtures.homes.worlds import DT, block_that_moves, drive
+from fixtures.thoroughness import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -40,7 +41,7 @@ def assert_is_at(
 poses = st.builds(Pose, st.floats(2.0, 4.5), st.floats(1.5, 3.5), st.floats(-3.1, 3.1))
 
 
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 @given(
     st.lists(st.tuples(st.floats(0.0, 3.0), st.floats(0.0, 3.0), poses, st.booleans()), max_size=5),
     st.booleans(),

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import shapely
 from fixtures.homes.free_walls import straight_wall
+from fixtures.thoroughness import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -28,7 +29,7 @@ FRAME = GridFrame(0.05, -0.4, -0.3, 30, 40)
 places = st.tuples(st.floats(-0.3, 1.5), st.floats(-0.2, 1.1))
 
 
-@settings(max_examples=50)
+@settings(max_examples=examples(50))
 @given(st.floats(0.1, 6.0), st.floats(-4.0, 4.0), st.floats(0.05, 6.2))
 def test_a_round_wall_is_off_the_circle_by_less_than_a_millimetre(
     radius: float, first: float, turn: float
@@ -65,7 +66,7 @@ def test_corners_go_round_counter_clockwise() -> None:
         assert shapely.LinearRing(corners).is_ccw
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=examples(30), deadline=None)
 @given(places, places, st.floats(0.01, 0.4))
 def test_cells_are_touched_filled_or_neither(
     start: tuple[float, float], end: tuple[float, float], thickness: float

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from fixtures.thoroughness import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -200,7 +201,7 @@ def test_of_rows_at_one_time_the_last_counts() -> None:
     assert pose_at(track, -1.0) == (1.0, 1.0, 0.0, True)
 
 
-@settings(max_examples=50)
+@settings(max_examples=examples(50))
 @given(scripts(least_takes=1.0, always_present=True), seeds, st.floats(0.0, 1.0))
 def test_what_is_present_jumps_nowhere(script: Script, seed: int, phase: float) -> None:
     track = track_of(script, seed)

@@ -47,6 +47,7 @@ def test_a_killed_worker_loses_nothing(dask: DaskProcesses, tmp_path: Path) -> N
     assert sum(begun.values()) - len(RUNS) <= AT_WORK
 
 
+@pytest.mark.thorough
 def test_a_killed_scheduler_loses_nothing_and_repeats_nothing_that_came_back(
     dask: DaskProcesses, tmp_path: Path
 ) -> None:

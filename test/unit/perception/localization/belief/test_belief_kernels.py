@@ -21,6 +21,7 @@ from fixtures.robots.located import (
     started,
     steps,
 )
+from fixtures.thoroughness import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
@@ -142,7 +143,7 @@ def drives(draw: st.DrawFn) -> list[tuple[float, Pose, float]]:
 
 
 @given(drives())
-@settings(max_examples=200)
+@settings(max_examples=examples(200))
 def test_reckoning_is_that_of_plain_python(told: list[tuple[float, Pose, float]]) -> None:
     spread = np.array([[0.01, 0.002, 0.001], [0.002, 0.02, -0.003], [0.001, -0.003, 0.04]])
     plain = Plain(Pose(0.3, 0.4, -3.0), spread)

@@ -9,6 +9,7 @@ import pytest
 from fixtures.homes.rooms import room_home
 from fixtures.robots.located import Eye
 from fixtures.robots.mapped import FURNISHED, START, points_of, row, wrong_cells
+from fixtures.thoroughness import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -34,7 +35,7 @@ def is_on_border(place: float, phase: float) -> bool:
 
 
 @given(places, st.floats(0.0, 0.049), st.floats(0.0, 0.049))
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 def test_it_grows_to_all_sides_and_keeps_all(
     at: list[tuple[float, float]], phase_x: float, phase_y: float
 ) -> None:

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from fixtures.thoroughness import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
@@ -41,7 +42,7 @@ def keyframe(pose: Pose, *points: tuple[float, float]) -> Keyframe:
 
 
 @given(POSES, st.lists(st.tuples(POSES, st.floats(0.0, 5.0)), min_size=1, max_size=4))
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 def test_each_submap_begins_where_the_one_before_says_and_is_tied_to_it(
     start: Pose, steps: list[tuple[Pose, float]]
 ) -> None:
@@ -65,7 +66,7 @@ def test_each_submap_begins_where_the_one_before_says_and_is_tied_to_it(
 
 
 @given(POSES, st.lists(POSES, min_size=1, max_size=4), POSES)
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 def test_a_place_that_was_told_is_tied_to_the_submap_nearest_to_it(
     start: Pose, steps: list[Pose], told: Pose
 ) -> None:
@@ -86,7 +87,7 @@ def test_a_place_that_was_told_is_tied_to_the_submap_nearest_to_it(
 
 
 @given(st.lists(POSES, min_size=1, max_size=4), POSES)
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 def test_near_submaps_are_those_within_the_radius_of_links(steps: list[Pose], at: Pose) -> None:
     graph = SubmapGraph(MAPPING, LOCALIZATION, np.zeros(3))
     for relative in steps:
@@ -100,7 +101,7 @@ def test_near_submaps_are_those_within_the_radius_of_links(steps: list[Pose], at
 
 
 @given(st.lists(POSES, min_size=2, max_size=4), POSES)
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 def test_keyframes_lie_where_their_submap_and_they_in_it_do(
     frames: list[Pose], second: Pose
 ) -> None:

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import shapely
 from fixtures.references.straight_ways import connected_to
+from fixtures.thoroughness import examples
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
@@ -64,7 +65,7 @@ def assert_fits(floor: CoverageFloor, made: OccupancyMap, obstacles: list[RoundO
 
 
 @given(MAPS, OBSTACLES)
-@settings(max_examples=20)
+@settings(max_examples=examples(20))
 def test_the_middle_fits_where_it_keeps_its_reach_from_all_that_is_solid(
     solid: Mask, obstacles: list[RoundObstacle]
 ) -> None:
@@ -79,7 +80,7 @@ def test_the_middle_fits_where_it_keeps_its_reach_from_all_that_is_solid(
 
 
 @given(MAPS, st.data())
-@settings(max_examples=25)
+@settings(max_examples=examples(25))
 def test_what_is_swept_is_free_floor_near_a_middle_that_can_be_got_to(
     solid: Mask, data: st.DataObject
 ) -> None:
@@ -101,7 +102,7 @@ def test_what_is_swept_is_free_floor_near_a_middle_that_can_be_got_to(
 
 
 @given(MAPS, st.integers(-15, 40), st.integers(-15, 40))
-@settings(max_examples=50)
+@settings(max_examples=examples(50))
 def test_a_robot_that_does_not_fit_counts_as_at_the_nearest_place_with_no_wall_between(
     solid: Mask, right: int, up: int
 ) -> None:

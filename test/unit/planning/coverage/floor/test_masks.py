@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import shapely
 from fixtures.references.straight_ways import Mask, connected_to, runs_between_centres_that_fit
+from fixtures.thoroughness import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
@@ -33,7 +34,7 @@ def distance(cell: tuple[int, ...], other: tuple[int, ...], to_square: bool) -> 
 
 
 @given(RADII, st.booleans())
-@settings(max_examples=50)
+@settings(max_examples=examples(50))
 def test_half_widths_are_those_of_a_disc(radius: float, to_squares: bool) -> None:
     widths = half_widths(radius, to_squares)
     reach = math.ceil(radius) + 2
@@ -45,7 +46,7 @@ def test_half_widths_are_those_of_a_disc(radius: float, to_squares: bool) -> Non
 
 
 @given(MASKS, RADII, st.booleans())
-@settings(max_examples=50)
+@settings(max_examples=examples(50))
 def test_a_mask_grows_by_a_disc_around_each_cell(
     mask: Mask, radius: float, to_squares: bool
 ) -> None:
@@ -66,7 +67,7 @@ def test_rows_become_columns(rows: int, columns: int, seed: int) -> None:
 
 
 @given(MASKS, st.data())
-@settings(max_examples=100)
+@settings(max_examples=examples(100))
 def test_filling_finds_what_is_connected_over_sides(mask: Mask, data: st.DataObject) -> None:
     row = data.draw(st.integers(0, mask.shape[0] - 1))
     column = data.draw(st.integers(0, mask.shape[1] - 1))
@@ -91,7 +92,7 @@ FLOORS = arrays(
 
 
 @given(FLOORS, PLACES, PLACES)
-@settings(max_examples=150)
+@settings(max_examples=examples(150))
 def test_a_straight_way_fits_when_all_centres_beside_it_do(
     fits: Mask, start: tuple[float, float], end: tuple[float, float]
 ) -> None:
@@ -108,7 +109,7 @@ CELLS = st.tuples(st.integers(0, 11), st.integers(0, 11))
     st.lists(PLACES, min_size=5, max_size=5),
     st.integers(8, 32).map(lambda tenths: tenths / 10),
 )
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 def test_a_way_that_fits_comes_hardly_nearer_to_what_is_solid_than_the_centres_do(
     solid: list[tuple[int, int]], places: list[tuple[float, float]], reach: float
 ) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from fixtures.references.straight_ways import connected_to
+from fixtures.thoroughness import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
@@ -16,7 +17,7 @@ CONFIG = CoverageConfig()
 
 
 @given(arrays(np.bool_, st.tuples(st.integers(1, 40), st.integers(1, 40))))
-@settings(max_examples=60, derandomize=True, deadline=None)
+@settings(max_examples=examples(60), derandomize=True, deadline=None)
 def test_small_floor_is_parted_where_it_does_not_hang_together(floor: Mask) -> None:
     found = regions(floor, CONFIG.narrow, CONFIG.least_part)
     labels = numbered_regions(floor)

@@ -8,6 +8,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from fixtures.references.straight_ways import Mask, parts_of, runs_between_centres_that_fit
+from fixtures.thoroughness import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
@@ -42,7 +43,7 @@ def border_cells(mask: Mask) -> set[tuple[int, int]]:
 
 
 @given(MASKS)
-@settings(max_examples=100)
+@settings(max_examples=examples(100))
 def test_chains_pass_all_cells_at_a_border_and_no_others_step_by_step(mask: Mask) -> None:
     chains = [[(x, y) for x, y in chain.tolist()] for chain in outlines(mask)]
     assert {cell for chain in chains for cell in chain} == border_cells(mask)
@@ -52,7 +53,7 @@ def test_chains_pass_all_cells_at_a_border_and_no_others_step_by_step(mask: Mask
 
 
 @given(MASKS)
-@settings(max_examples=100)
+@settings(max_examples=examples(100))
 def test_each_part_has_one_chain_around_it_and_one_around_each_of_its_holes(mask: Mask) -> None:
     expected = 0
     for part in parts_of(mask):
@@ -80,7 +81,7 @@ CHAINS = st.lists(
 
 
 @given(CHAINS, st.sampled_from([0.2, 0.45, 1.1]), st.integers(0, 2**32 - 1))
-@settings(max_examples=100)
+@settings(max_examples=examples(100))
 def test_a_straightened_chain_fits_and_passes_all_its_cells(
     steps: list[tuple[int, int]], tolerance: float, seed: int
 ) -> None:
@@ -105,7 +106,7 @@ def test_a_straightened_chain_fits_and_passes_all_its_cells(
 
 
 @given(CHAINS, st.sampled_from([0.2, 0.45, 1.1]))
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 def test_no_more_points_could_be_left_out(steps: list[tuple[int, int]], tolerance: float) -> None:
     chain = np.concatenate((np.zeros((1, 2)), np.cumsum(np.array(steps, np.float64), axis=0)))
     chain -= chain.min(axis=0)

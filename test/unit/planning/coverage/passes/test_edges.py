@@ -16,6 +16,7 @@ from fixtures.references.straight_ways import (
     runs_between_centres_that_fit,
     swept_cells,
 )
+from fixtures.thoroughness import examples
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
@@ -46,7 +47,7 @@ def floors(draw: st.DrawFn) -> Mask:
 
 
 @given(floors())
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 def test_rings_are_closed_run_over_cells_that_fit_and_keep_to_the_border(middles: Mask) -> None:
     padded = np.pad(middles, 1)
     border = [
@@ -65,7 +66,7 @@ def test_rings_are_closed_run_over_cells_that_fit_and_keep_to_the_border(middles
 
 
 @given(floors(), st.integers(0, 2**32 - 1), st.sampled_from([15.0, 60.0]))
-@settings(max_examples=30)
+@settings(max_examples=examples(30))
 def test_edges_lie_on_the_rings_and_sweep_all_that_is_worth_the_way(
     middles: Mask, seed: int, piece_length: float
 ) -> None:
@@ -112,7 +113,7 @@ def test_over_a_short_stretch_without_new_floor_an_edge_goes_on() -> None:
     ),
     st.sampled_from([1.0, 3.5, 10.0]),
 )
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 def test_a_cut_line_is_the_same_with_points_no_farther_apart(
     points: list[tuple[int, int]], spacing: float
 ) -> None:

@@ -14,6 +14,7 @@ from fixtures.references.straight_ways import (
     shrunk,
     swept_cells,
 )
+from fixtures.thoroughness import examples
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
@@ -40,7 +41,7 @@ def floors(draw: st.DrawFn) -> Mask:
 
 
 @given(floors(), st.sampled_from([2.0, 3.5]), st.integers(0, 2**32 - 1))
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 def test_all_but_specks_is_swept_without_leaving_the_floor(
     middles: Mask, radius: float, seed: int
 ) -> None:
@@ -96,7 +97,7 @@ def least_cost(left: Mask, middles: Mask, radius: int) -> float:
     st.integers(5, 15),
     st.lists(st.tuples(*[st.integers(0, 14)] * 2, *[st.integers(1, 9)] * 2), max_size=4),
 )
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 def test_no_set_of_rows_or_columns_sweeps_a_region_with_less_way(
     height: int, width: int, boxes: list[tuple[int, int, int, int]]
 ) -> None:

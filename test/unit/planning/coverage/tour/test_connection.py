@@ -17,6 +17,7 @@ from fixtures.references.straight_ways import (
     length_of,
     runs_between_centres_that_fit,
 )
+from fixtures.thoroughness import examples
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
@@ -69,7 +70,7 @@ def length_over_cells(fits: Mask, start: Line, goal: Line) -> float:
 
 
 @given(floors(), st.integers(0, 2**32 - 1), st.integers(0, 4), st.booleans())
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 def test_the_line_drives_all_pieces_in_order_and_only_over_floor(
     fits: Mask, seed: int, count: int, has_end: bool
 ) -> None:
@@ -118,7 +119,7 @@ def test_where_the_net_is_too_coarse_the_way_is_found_over_cells(is_reversed: bo
 
 
 @given(floors(), st.integers(0, 2**32 - 1), st.sampled_from([0.3, 1.0, 4.0]))
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 def test_a_tidy_line_has_the_same_ends_fits_and_is_no_longer(
     fits: Mask, seed: int, step: float
 ) -> None:

@@ -8,6 +8,7 @@ from random import Random
 
 import numpy as np
 import pytest
+from fixtures.thoroughness import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
@@ -63,7 +64,7 @@ def known_nothing(at: Floats, headings: Floats, turning: float, loose: bool) -> 
 
 
 @given(pieces(), st.sampled_from([0.0, 6.0]), st.booleans())
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 def test_in_sight_a_connection_costs_its_length_and_turns_and_behind_things_more(
     drawn: tuple[Floats, Floats], turning: float, loose: bool
 ) -> None:
@@ -84,7 +85,7 @@ def test_in_sight_a_connection_costs_its_length_and_turns_and_behind_things_more
 
 
 @given(pieces())
-@settings(max_examples=30)
+@settings(max_examples=examples(30))
 def test_what_is_hidden_and_what_is_in_sight_is_told_apart(drawn: tuple[Floats, Floats]) -> None:
     """Places well inside open floor, with a wall between the two halves of it."""
     at, headings = drawn
@@ -103,7 +104,7 @@ def test_what_is_hidden_and_what_is_in_sight_is_told_apart(drawn: tuple[Floats, 
 
 
 @given(pieces(), st.integers(0, 2**32 - 1), st.booleans())
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 def test_what_was_found_of_near_ends_counts_with_its_turns_the_cheapest_first(
     drawn: tuple[Floats, Floats], seed: int, loose: bool
 ) -> None:
@@ -133,7 +134,7 @@ def test_what_was_found_of_near_ends_counts_with_its_turns_the_cheapest_first(
 
 
 @given(pieces(), st.randoms(use_true_random=False))
-@settings(max_examples=30)
+@settings(max_examples=examples(30))
 def test_a_tour_costs_what_its_connections_do(drawn: tuple[Floats, Floats], random: Random) -> None:
     at, headings = drawn
     costs = known_nothing(at, headings, 6.0, False)

@@ -7,6 +7,7 @@ from itertools import permutations, product
 
 import numpy as np
 import pytest
+from fixtures.thoroughness import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
@@ -63,7 +64,7 @@ def connections(costs: Costs, tour: Ends) -> float:
 
 
 @given(tours(14))
-@settings(max_examples=150)
+@settings(max_examples=examples(150))
 def test_moves_keep_every_piece_and_gain_what_they_say(drawn: tuple[Costs, Ends]) -> None:
     costs, first = drawn
     trip, waiting = improved(costs, first)
@@ -83,7 +84,7 @@ def test_moves_keep_every_piece_and_gain_what_they_say(drawn: tuple[Costs, Ends]
 
 
 @given(tours(12))
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 def test_when_no_end_allows_a_move_no_run_turned_round_is_better(
     drawn: tuple[Costs, Ends],
 ) -> None:
@@ -125,7 +126,7 @@ def test_few_pieces_come_near_to_the_best_of_all_orders(seed: int) -> None:
 
 
 @given(st.lists(st.integers(1, 11), min_size=3, max_size=3, unique=True))
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 def test_two_runs_change_places(cuts: list[int]) -> None:
     first, middle, stop = (2 * cut for cut in sorted(cuts))
     costs, tour = costs_between(12, 3, 8), list(range(24))

@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 from fixtures.references.straight_ways import Mask, runs_between_centres_that_fit
+from fixtures.thoroughness import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -35,7 +36,7 @@ def floors(draw: st.DrawFn) -> Mask:
 
 
 @given(floors())
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 def test_the_knot_of_a_block_is_its_cell_nearest_to_the_middle(fits: Mask) -> None:
     knots = net_over(fits).knots
     for row, column in np.ndindex(*knots.shape[:2]):
@@ -55,7 +56,7 @@ def test_the_knot_of_a_block_is_its_cell_nearest_to_the_middle(fits: Mask) -> No
 
 
 @given(floors())
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 def test_knots_of_neighbouring_blocks_are_linked_where_the_straight_way_fits(fits: Mask) -> None:
     net = net_over(fits)
     rows, columns = net.links.shape[:2]
@@ -74,7 +75,7 @@ def test_knots_of_neighbouring_blocks_are_linked_where_the_straight_way_fits(fit
 
 
 @given(floors(), st.integers(0, 2**32 - 1))
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 def test_near_blocks_are_those_around_whose_knots_are_seen(fits: Mask, seed: int) -> None:
     net = net_over(fits)
     rows, columns = net.links.shape[:2]

@@ -8,6 +8,7 @@ from itertools import pairwise, permutations, product
 import numpy as np
 import pytest
 from fixtures.references.straight_ways import Line, Mask, connected_to, turning_of
+from fixtures.thoroughness import examples
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
@@ -39,7 +40,7 @@ def few_pieces(draw: st.DrawFn) -> tuple[list[Line], Line, Line | None]:
 
 
 @given(few_pieces())
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 def test_few_pieces_are_ordered_hardly_worse_than_in_the_best_of_all_orders(
     drawn: tuple[list[Line], Line, Line | None],
 ) -> None:
@@ -62,7 +63,7 @@ def names(pieces: list[Line]) -> list[list[list[float]]]:
 
 
 @given(st.integers(0, 2**32 - 1), st.integers(0, 40), st.booleans())
-@settings(max_examples=25)
+@settings(max_examples=examples(25))
 def test_each_piece_is_driven_once_on_floors_of_all_kinds(
     seed: int, count: int, has_end: bool
 ) -> None:

@@ -12,6 +12,7 @@ from fixtures.references.straight_ways import (
     swept_cells,
     turning_of,
 )
+from fixtures.thoroughness import examples
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
@@ -60,7 +61,7 @@ def ways(draw: st.DrawFn) -> tuple[Mask, Line, Mask]:
 
 
 @given(ways(), st.sampled_from([0.0, TURNING, 100.0]))
-@settings(max_examples=80)
+@settings(max_examples=examples(80))
 def test_a_polished_way_costs_no_more_is_no_longer_and_leaves_hardly_more_floor(
     drawn: tuple[Mask, Line, Mask], turning: float
 ) -> None:

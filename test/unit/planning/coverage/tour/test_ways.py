@@ -14,6 +14,7 @@ from fixtures.references.straight_ways import (
     length_of,
     runs_between_centres_that_fit,
 )
+from fixtures.thoroughness import examples
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
@@ -72,7 +73,7 @@ def length_over_net(net: Net, start: Point, end: Point) -> float:
 
 
 @given(floors())
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 def test_a_way_fits_and_is_no_longer_than_over_the_net(drawn: tuple[Mask, list[Point]]) -> None:
     fits, (start, end) = drawn
     net = net_over(fits)
@@ -110,7 +111,7 @@ def walk(fits: Mask, seed: int) -> Line:
 
 
 @given(floors(), st.integers(0, 2**32 - 1))
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 def test_pulled_straight_a_way_keeps_its_ends_fits_and_is_no_longer(
     drawn: tuple[Mask, list[Point]], seed: int
 ) -> None:

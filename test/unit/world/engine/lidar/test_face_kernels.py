@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 import shapely
+from fixtures.thoroughness import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -27,7 +28,7 @@ def faces_between(*ends: tuple[Point, Point]) -> Rows:
     return faces.view(np.recarray)
 
 
-@settings(max_examples=100)
+@settings(max_examples=examples(100))
 @given(place, place, place)
 def test_the_way_to_a_face_is_the_shortest(point: Point, right: Point, left: Point) -> None:
     if math.dist(right, left) < 1e-3:
@@ -41,7 +42,7 @@ def test_the_way_to_a_face_is_the_shortest(point: Point, right: Point, left: Poi
     assert shapely.distance(line, end) == pytest.approx(0.0, abs=1e-9)
 
 
-@settings(max_examples=200)
+@settings(max_examples=examples(200))
 @given(place, angles, st.lists(st.tuples(place, place), min_size=1, max_size=4))
 def test_a_ray_meets_the_nearest_face_that_looks_at_it(
     start: Point, angle: float, ends: list[tuple[Point, Point]]
@@ -78,7 +79,7 @@ def test_a_ray_meets_the_nearest_face_that_looks_at_it(
         assert again >= found
 
 
-@settings(max_examples=50)
+@settings(max_examples=examples(50))
 @given(angles, angles)
 def test_a_mirror_sends_a_ray_on_at_the_angle_at_which_it_came(turn: float, angle: float) -> None:
     face: Row = faces_between(((0.0, 0.0), (2.0 * math.cos(turn), 2.0 * math.sin(turn))))[0]

@@ -15,6 +15,7 @@ from fixtures.references.slow_lidar import (
     ranges_to_disc,
     within,
 )
+from fixtures.thoroughness import examples
 from hypothesis import given, reject, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
@@ -69,7 +70,7 @@ def test_before_the_first_step_nothing_was_seen_and_scans_are_of_where_it_was() 
 places = st.tuples(st.floats(0.3, 4.7), st.floats(0.3, 3.7))
 
 
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 @given(places, st.floats(-20.0, 20.0), places, st.floats(-20.0, 20.0), places, st.floats(0.02, 0.6))
 def test_boxes_and_discs_are_seen_as_plain_geometry_has_them(
     place: tuple[float, float],
