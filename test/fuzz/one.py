@@ -21,7 +21,14 @@ MOST_MEMORY: Final = 3000
 _LARGEST: Final = 200_000
 """Bytes of an input."""
 _LOOKED_INTO: Final = (
-    *("roomba.files", "roomba.history", "roomba.recordings", "roomba.storage", "roomba_ros"),
+    *(
+        "roomba.configuration",
+        "roomba.files",
+        "roomba.history",
+        "roomba.recordings",
+        "roomba.storage",
+        "roomba_ros",
+    ),
     *("rosbags", "zipfile", "rosgraph.network", "numpy.lib._format_impl", "numpy.lib.format"),
 )
 """Modules whose branches lead the search; not those that are compiled."""

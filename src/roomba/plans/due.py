@@ -10,10 +10,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
-from pydantic import AwareDatetime, Field
+from pydantic import Field
 
 from roomba.configuration.frozen import Frozen, NotNegative
 from roomba.configuration.household import DueConfig
+from roomba.plans.moment import Moment
 from roomba.vocabulary import RoomDirt
 
 DAY: Final = 86400.0
@@ -24,7 +25,7 @@ _MOST_ROOMS: Final = 1000
 class RoomRecord(Frozen):
     """When a room was cleaned last, and how fast it becomes dirty, grains/m2 a day."""
 
-    cleaned: AwareDatetime
+    cleaned: Moment
     rate: NotNegative | None = None
     """None until it was cleaned twice."""
 

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from typing import Annotated, Final
 
-from pydantic import AwareDatetime, Field
+from pydantic import Field
 
 from roomba.configuration.frozen import Count, Frozen
+from roomba.plans.moment import Moment
 
 MOST_NOTES: Final = 60
 """Notes that are kept, the newest."""
@@ -18,8 +19,8 @@ class Waiting(Frozen):
     ``reason`` says why, empty at first; it is not tried again before ``not_before``.
     """
 
-    due: AwareDatetime
-    not_before: AwareDatetime
+    due: Moment
+    not_before: Moment
     tries: Count = 0
     reason: str = ""
 
@@ -28,20 +29,20 @@ class Running(Frozen):
     """A clean that a plan began. ``held`` is since when it is paused for a person at home."""
 
     plan: str
-    due: AwareDatetime
-    began: AwareDatetime
+    due: Moment
+    began: Moment
     tries: Count = 0
-    held: AwareDatetime | None = None
+    held: Moment | None = None
     is_overruled: bool = False
     """A person let it go on: it is not paused again."""
-    rests_since: AwareDatetime | None = None
+    rests_since: Moment | None = None
     """Since when the robot stands without telling how the clean ended."""
 
 
 class Note(Frozen):
     """What became of a plan."""
 
-    at: AwareDatetime
+    at: Moment
     plan: str
     text: str
 
@@ -49,10 +50,10 @@ class Note(Frozen):
 class Memory(Frozen):
     """Up to when plans were looked at, what waits by the plan's name, what runs, what became."""
 
-    seen: AwareDatetime | None = None
-    since: dict[str, AwareDatetime] = Field(default={})
+    seen: Moment | None = None
+    since: dict[str, Moment] = Field(default={})
     """Of each plan: its times up to here were dealt with."""
-    next_at: dict[str, AwareDatetime] = Field(default={})
+    next_at: dict[str, Moment] = Field(default={})
     """Of each plan that has a further time: when that is."""
     waiting: dict[str, Waiting] = Field(default={})
     running: Running | None = None

@@ -1,9 +1,22 @@
-"""Where the household lives."""
+"""Where the household lives, and what its keepers make of any day in its files."""
 
 from __future__ import annotations
 
+import itertools
+import re
 from pathlib import Path
 
+import pytest
+from fixtures.kept_household import (
+    AGENDA,
+    DIRT,
+    FIRST_AND_LAST,
+    PLANS,
+    content_of,
+    read_household,
+)
+
+from roomba.configuration.frozen import Frozen
 from roomba.household.folder import household_folder
 
 
@@ -12,3 +25,20 @@ def test_the_folder_is_the_named_one_or_lies_in_the_state_folder() -> None:
     assert household_folder({"ROOMBA_HOUSEHOLD": "own", "ROS_HOME": "/ros"}) == Path(
         "/ros/roomba_robot/household"
     )
+
+
+@pytest.mark.parametrize(
+    ("name", "whole"), [("agenda.json", AGENDA), ("plans.json", PLANS), ("dirt.json", DIRT)]
+)
+def test_files_with_a_day_at_an_end_of_the_calendar_are_read_or_begun_anew(
+    name: str, whole: Frozen, tmp_path: Path
+) -> None:
+    text = content_of(whole).decode()
+    days = [found.span() for found in re.finditer(r'(?<=")\d{4}-\d\d-\d\d(T[^"]*)?(?=")', text)]
+    assert days
+    for number, ((begin, end), moment) in enumerate(itertools.product(days, FIRST_AND_LAST)):
+        path = tmp_path / str(number) / name
+        path.parent.mkdir()
+        said = moment if "T" in text[begin:end] else moment[:10]
+        path.write_text(text[:begin] + said + text[end:], "utf-8")
+        read_household(path)

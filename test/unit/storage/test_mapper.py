@@ -11,14 +11,15 @@ from typing import Any
 import numpy as np
 import pytest
 from fixtures.thoroughness import examples
+from fixtures.kept_map import LIDAR, STATION, kept_map, keyframe
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from roomba.geometry import Pose
-from roomba.perception.slam.mapper_state import LidarNumbers, MapperState
+from roomba.perception.slam.mapper_state import MapperState
 from roomba.perception.slam.submaps.pose_graph import Link
-from roomba.perception.slam.submaps.submap import KeptSubmap, Keyframe
+from roomba.perception.slam.submaps.submap import KeptSubmap
 from roomba.storage.mapper import (
     KeptMap,
     MapperFileError,
@@ -29,31 +30,7 @@ from roomba.storage.mapper import (
 
 Arrays = dict[str, NDArray[Any]]
 
-LIDAR = LidarNumbers(360, 0.0, 0.0175, 0.15, 12.0, Pose(0.1, 0.0, 3.0))
 NUMBERS = st.floats(-1e6, 1e6)
-
-
-def keyframe(points: int, seed: int) -> Keyframe:
-    random = np.random.default_rng(seed)
-    return Keyframe(random.normal(size=(points, 4)).astype(np.float32), random.normal(size=3))
-
-
-STATION = Pose(1.0, 2.0, 0.5)
-
-
-def kept(station: Pose | None = STATION) -> KeptMap:
-    submaps = (
-        KeptSubmap(0.0, (keyframe(5, 0), keyframe(0, 1), keyframe(3, 2))),
-        KeptSubmap(3.1, ()),
-        KeptSubmap(3.1, (keyframe(4, 3),)),
-    )
-    links = (
-        Link(0, 1, np.array([3.0, 0.1, 0.2]), np.eye(3), False),
-        Link(0, 2, np.array([2.0, 0.0, -0.2]), np.diag([1.0, 2.0, 3.0])),
-    )
-    poses = np.arange(9.0).reshape(3, 3)
-    state = MapperState(submaps, poses, links, 4.25, (0.01, -0.02), LIDAR, 17, True)
-    return KeptMap(state, "run 1", station, station, 2)
 
 
 def are_same(one: KeptMap, other: KeptMap) -> bool:
@@ -85,10 +62,10 @@ def are_same(one: KeptMap, other: KeptMap) -> bool:
 def test_it_comes_back_bit_for_bit(tmp_path: Path, station: Pose | None) -> None:
     path = tmp_path / "maps" / ".being_made" / "robot.npz"
     assert load_mapper(path, pytest.fail) is None
-    save_mapper(kept(station), path)
+    save_mapper(kept_map(station), path)
     read = load_mapper(path, pytest.fail)
     assert read is not None
-    assert are_same(read, kept(station))
+    assert are_same(read, kept_map(station))
     remove_mapper(path)
     remove_mapper(path)
     assert load_mapper(path, pytest.fail) is None
@@ -144,21 +121,21 @@ def test_who_is_killed_while_writing_finds_the_one_from_before(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     path = tmp_path / "robot.npz"
-    save_mapper(kept(), path)
+    save_mapper(kept_map(), path)
 
     def killed(_: int) -> None:
         raise KeyboardInterrupt
 
     monkeypatch.setattr(os, "fsync", killed)
     with pytest.raises(KeyboardInterrupt):
-        save_mapper(kept(None), path)
+        save_mapper(kept_map(None), path)
     read = load_mapper(path, pytest.fail)
     assert read is not None
-    assert are_same(read, kept())
+    assert are_same(read, kept_map())
 
 
 def written(path: Path) -> bytes:
-    save_mapper(kept(), path)
+    save_mapper(kept_map(), path)
     return path.read_bytes()
 
 
@@ -229,7 +206,7 @@ def test_what_does_not_fit_together_is_refused(
     tmp_path: Path, changes: dict[str, NDArray[Any] | None], message: str
 ) -> None:
     path = tmp_path / "robot.npz"
-    save_mapper(kept(), path)
+    save_mapper(kept_map(), path)
     rewritten(path)
     assert load_mapper(path, pytest.fail) is not None
     rewritten(path, **changes)

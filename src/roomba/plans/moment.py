@@ -1,0 +1,16 @@
+"""Moments that are kept: days before and after each can be reckoned, in any time zone."""
+
+from __future__ import annotations
+
+import datetime as dt
+from typing import Annotated, Final
+
+from pydantic import AwareDatetime, Field
+
+_UTC: Final = dt.timezone.utc
+
+Moment = Annotated[
+    AwareDatetime,
+    Field(ge=dt.datetime(1970, 1, 1, tzinfo=_UTC), lt=dt.datetime(9000, 1, 1, tzinfo=_UTC)),
+]
+"""A moment of the wall clock; a clock that was never set tells the first one."""
