@@ -25,20 +25,31 @@ UNREADABLE: Final = (
 """What reading arrays raises: the disk refuses, or the file is broken or no array."""
 
 _MODE: Final = 0o600
+_FOLDER_MODE: Final = 0o700
 """Read and written by the owner alone: maps and pictures show a home from inside."""
 _LEFT_BEHIND: Final = 3600.0
 """s; an unfinished file that is older belongs to a writer that was killed."""
 
 
+def make_private(folder: Path) -> None:
+    """Make a folder, and those above it, for their owner alone; what is there stays as it is.
+
+    Raises OSError when the disk refuses.
+    """
+    missing = [each for each in (folder, *folder.parents) if not each.exists()]
+    for each in reversed(missing):
+        each.mkdir(_FOLDER_MODE, exist_ok=True)
+
+
 def write_whole(path: Path, content: bytes) -> None:
-    """Write a file atomically, and make the folders that it is in.
+    """Write a file atomically, and make the folders that it is in, as :func:`make_private` does.
 
     The content goes to a new file of a random name in the same folder, which then takes the place
     of ``path``; a symbolic link there is replaced, not followed. Returns once file and folder are
     on the disk. Of several writers the last one wins. Raises OSError when the disk refuses; the
     file from before stays then, and nothing else.
     """
-    path.parent.mkdir(parents=True, exist_ok=True)
+    make_private(path.parent)
     folder = os.open(path.parent, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
     try:
         _remove_left_behind(folder, path.name)

@@ -17,6 +17,7 @@ from typing import Any, Final
 from roomba.client.household import TotalsView
 from roomba.client.protocol import MissedFloor
 from roomba.errors import RoombaError
+from roomba.files.atomic import make_private
 from roomba.files.journal import append_line, read_lines, write_lines
 from roomba.history.run import RunFigures, RunRecording, RunSource
 from roomba.history.run_file import packed, unpacked
@@ -214,7 +215,7 @@ class History:
 
     def _prepare(self) -> None:
         """Make the file, or bring it up to date; one process at a time."""
-        self.path.parent.mkdir(parents=True, exist_ok=True, mode=0o700)
+        make_private(self.path.parent)
         flags = os.O_RDWR | os.O_CREAT | os.O_CLOEXEC | os.O_NOFOLLOW
         with open(os.open(self.path.with_suffix(".lock"), flags, 0o600), "r+b") as lock:
             fcntl.flock(lock, fcntl.LOCK_EX)

@@ -21,6 +21,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from roomba.files.atomic import make_private
 from roomba.files.journal import append_line, read_lines
 from roomba.history.run import (
     CELL_LAYERS,
@@ -148,7 +149,7 @@ class UnfinishedFile:
         self._written = _Written()
 
     def _begin(self, run: RunSoFar) -> Path:
-        self._folder.mkdir(parents=True, exist_ok=True, mode=0o700)
+        make_private(self._folder)
         path = self._folder / f"unfinished-{secrets.token_hex(8)}.journal"
         flags = os.O_RDWR | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC | os.O_NOFOLLOW
         self._held = os.open(path, flags, 0o600)

@@ -55,6 +55,5 @@ class KeptValues:
 
     def write(self, values: Frozen) -> None:
         """Keep values; raises OSError when the disk refuses."""
-        self._path.parent.mkdir(parents=True, exist_ok=True, mode=0o700)
         text = json.dumps(values.model_dump(mode="json"), indent=1, allow_nan=False)
         write_kept(self._path, text.encode() + b"\n")

@@ -14,6 +14,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Final
 
+from roomba.files.atomic import make_private
 from roomba.storage.map_folder import MapStoreError, StoredMap, read_map, write_map
 
 __all__ = ["MapStore", "MapStoreError", "StoredMap"]
@@ -58,10 +59,10 @@ class MapStore:
         Raises MapStoreError for a map that files cannot hold; the old one stays then.
         """
         _check_name(name)
-        self.folder.mkdir(parents=True, exist_ok=True)
+        make_private(self.folder)
         self._tidy_up(name)
         unfinished, place = self._beside(name, _NEW), self.folder / name
-        unfinished.mkdir()
+        make_private(unfinished)
         try:
             write_map(stored, unfinished)
         except BaseException:

@@ -69,6 +69,18 @@ def test_only_the_owner_may_read_it(tmp_path: Path) -> None:
     assert path.stat().st_mode & 0o777 == 0o600
 
 
+def test_folders_that_it_makes_are_the_owner_s_alone_and_others_stay(tmp_path: Path) -> None:
+    shared = tmp_path / "shared"
+    shared.mkdir(0o755)
+    shared.chmod(0o755)
+    write_whole(shared / "home" / "maps" / "map.json", b"new")
+    modes = [
+        folder.stat().st_mode & 0o777
+        for folder in (shared, shared / "home", shared / "home" / "maps")
+    ]
+    assert modes == [0o755, 0o700, 0o700]
+
+
 def test_a_link_in_the_place_is_replaced_and_not_followed(tmp_path: Path) -> None:
     elsewhere = tmp_path / "elsewhere"
     elsewhere.write_bytes(b"not to be touched")

@@ -86,6 +86,13 @@ def test_a_damaged_map_does_not_become_the_one_before(store: MapStore) -> None:
     assert MapStore(store.folder, lambda _: None).load("home").is_same(floor(1.0))
 
 
+def test_a_map_is_its_owner_s_alone(store: MapStore) -> None:
+    store.save("home", floor())
+    inside = sorted((store.folder / "home").iterdir())
+    folders = {folder.stat().st_mode & 0o777 for folder in (store.folder, inside[0].parent)}
+    assert (folders, {file.stat().st_mode & 0o777 for file in inside}) == ({0o700}, {0o600})
+
+
 def test_the_one_before_goes_with_its_map(store: MapStore) -> None:
     store.save("home", floor(1.0))
     store.save("home", floor(1.2))

@@ -21,7 +21,6 @@ def kept_token(path: Path | None = None) -> str:
         return kept
     made = new_token()
     try:
-        file.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
         write_whole(file, made.encode() + b"\n")
     except OSError:
         return made
