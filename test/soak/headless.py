@@ -146,6 +146,7 @@ def faults(examples: int) -> list[str]:
 def main(hours: float) -> int:
     """Let a robot live, and everything happen to others; return the exit status."""
     table, broken = judged(*live(hours))
+    print(table, flush=True)
     broken += faults(max(1, round(EXAMPLES * hours)))
-    print("\n".join([table, *broken, f"{len(broken)} promises were broken in {hours:g} hours"]))
+    print("\n".join([*broken, f"{len(broken)} promises were broken in {hours:g} hours"]))
     return 1 if broken else 0

@@ -8,6 +8,7 @@ derived from here.
 from __future__ import annotations
 
 import asyncio
+import resource
 from typing import Any, Final
 
 import h11
@@ -19,12 +20,24 @@ from roomba.ui.web.bounded.limits import (
     BODY_WITHIN,
     MOST_CONNECTIONS,
     MOST_FRAGMENTS,
+    OWN_FILES,
     SENT_AHEAD,
     UNSENT,
 )
 
 _UNSENT_CALM: Final = SENT_AHEAD // 4
 """Bytes below which a sender that waited for its reader goes on."""
+
+
+def most_connections() -> int:
+    """Return how many connections there may be, after asking the system for as many files."""
+    allowed, most = resource.getrlimit(resource.RLIMIT_NOFILE)
+    wanted = MOST_CONNECTIONS + OWN_FILES
+    if most != resource.RLIM_INFINITY:
+        wanted = min(wanted, most)
+    if allowed != resource.RLIM_INFINITY and allowed < wanted:
+        resource.setrlimit(resource.RLIMIT_NOFILE, (wanted, most))
+    return max(1, min(MOST_CONNECTIONS, wanted - OWN_FILES))
 
 
 class GuardedConnection(H11Protocol):
@@ -36,7 +49,7 @@ class GuardedConnection(H11Protocol):
         """Take a connection, unless there are too many."""
         super().connection_made(transport)
         transport.set_write_buffer_limits(high=SENT_AHEAD, low=_UNSENT_CALM)
-        if len(self.connections) > MOST_CONNECTIONS:
+        if len(self.connections) > most_connections():
             transport.abort()
         else:
             self._set_deadline()

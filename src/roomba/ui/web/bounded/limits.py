@@ -8,9 +8,10 @@ MOST_BODY: Final = 65536
 """Bytes of a request's body, and of what comes over a WebSocket at once."""
 BODY_WITHIN: Final = 10.0
 """s of wall time until a request must have come whole."""
-MOST_CONNECTIONS: Final = 300
-"""At the same time; more are closed at once. A process may have 1024 files open, and the robot's
-own connections are some of them."""
+MOST_CONNECTIONS: Final = 1200
+"""At the same time; more are closed at once, and fewer stay where the system allows fewer files."""
+OWN_FILES: Final = 300
+"""Files and connections that a process needs for all else, such as those to other nodes."""
 BACKLOG: Final = 256
 """Connections that may wait to be taken, or to be closed because there are too many."""
 MOST_LISTENERS: Final = 50

@@ -22,7 +22,8 @@ from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import ClientConnection, connect
 
 from roomba.ui.web.app import create_app
-from roomba.ui.web.bounded.limits import BACKLOG, MOST_CONNECTIONS, PING
+from roomba.ui.web.bounded.connections import most_connections
+from roomba.ui.web.bounded.limits import BACKLOG, MOST_CONNECTIONS, OWN_FILES, PING
 from roomba.ui.web.guard import Guard
 from roomba.ui.web.server import PageServer, listen
 from roomba.ui.web.streams import told
@@ -31,7 +32,8 @@ TOKEN = "the-token"
 DEADLINE = 20.0
 GARBAGE = int(os.environ.get("ROOMBA_GARBAGE", "3000"))
 """Frames; ./roomba soak sends more."""
-CONNECTIONS = int(os.environ.get("ROOMBA_CONNECTIONS", "1000"))
+FEW, MANY = 50, 400
+"""Connections that are taken, and that come; ./roomba soak opens as many as it really takes."""
 UPGRADE = (
     "GET /live HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\nUpgrade: websocket\r\n"
     "Connection: Upgrade\r\nSec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\n"
@@ -214,23 +216,47 @@ def test_a_request_that_does_not_come_whole_is_closed(
     assert answers(server)
 
 
-def test_a_thousand_connections_are_bounded_and_a_viewer_sees_on(server: PageServer) -> None:
-    limits = resource.getrlimit(resource.RLIMIT_NOFILE)
-    most = min(limits[1], max(limits[0], CONNECTIONS + MOST_CONNECTIONS + 500))
-    resource.setrlimit(resource.RLIMIT_NOFILE, (most, limits[1]))
-    try:
-        with view(server) as viewer, contextlib.ExitStack() as stack:
-            for _ in range(CONNECTIONS):
-                with contextlib.suppress(OSError):
-                    stack.enter_context(plug(server))
-            assert server.connections <= MOST_CONNECTIONS + BACKLOG
-            wait_until(lambda: server.connections <= MOST_CONNECTIONS, DEADLINE)
-            while '"state"' not in str(viewer.recv(DEADLINE)):
-                pass
-        wait_until(lambda: server.connections == 0, DEADLINE, "all are gone")
-        assert answers(server)
-    finally:
-        resource.setrlimit(resource.RLIMIT_NOFILE, limits)
+def test_connections_are_bounded_and_a_viewer_sees_on(
+    server: PageServer, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("roomba.ui.web.bounded.connections.MOST_CONNECTIONS", FEW)
+    # None is closed because it says nothing.
+    monkeypatch.setattr("roomba.ui.web.bounded.connections.BODY_WITHIN", 10.0 * DEADLINE)
+    with view(server) as viewer, contextlib.ExitStack() as stack:
+        for _ in range(MANY):
+            with contextlib.suppress(OSError):
+                stack.enter_context(plug(server))
+        assert server.connections <= FEW + BACKLOG
+        wait_until(lambda: server.connections <= FEW, DEADLINE)
+        while '"state"' not in str(viewer.recv(DEADLINE)):
+            pass
+    wait_until(lambda: server.connections == 0, DEADLINE, "all are gone")
+    assert answers(server)
+
+
+@pytest.mark.parametrize(
+    ("allowed", "most", "asked_for", "connections"),
+    [
+        (1024, 524_288, MOST_CONNECTIONS + OWN_FILES, MOST_CONNECTIONS),
+        (1024, resource.RLIM_INFINITY, MOST_CONNECTIONS + OWN_FILES, MOST_CONNECTIONS),
+        (resource.RLIM_INFINITY, resource.RLIM_INFINITY, None, MOST_CONNECTIONS),
+        (524_288, 524_288, None, MOST_CONNECTIONS),
+        (256, OWN_FILES + 50, OWN_FILES + 50, 50),
+        (64, 64, None, 1),
+    ],
+)
+def test_as_many_stay_as_the_system_has_files_for(
+    allowed: int,
+    most: int,
+    asked_for: int | None,
+    connections: int,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    asked: list[tuple[int, tuple[int, int]]] = []
+    monkeypatch.setattr(resource, "getrlimit", lambda _: (allowed, most))
+    monkeypatch.setattr(resource, "setrlimit", lambda *request: asked.append(request))
+    assert most_connections() == connections
+    assert [limits for _, limits in asked] == ([] if asked_for is None else [(asked_for, most)])
 
 
 # ---------------------------------------------------------------- garbage
