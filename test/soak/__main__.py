@@ -19,6 +19,7 @@ from soak import headless
 from soak.arena import Arena
 from soak.attacks import connections, enough_descriptors, floods, viewers
 from soak.circumstances import clock, disk
+from soak.goals import goals
 from soak.growth import growth
 from soak.mixed import mixed
 from soak.processes import processes
@@ -32,6 +33,7 @@ PARTS: Final[dict[str, Callable[[Arena], list[Row]]]] = {
     "standstill": standstill,
     "clock": clock,
     "disk": disk,
+    "goals": goals,
     "floods": floods,
     "connections": connections,
     "viewers": viewers,

@@ -8,6 +8,7 @@ derived from here.
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import resource
 from typing import Any, Final
 
@@ -31,13 +32,16 @@ _UNSENT_CALM: Final = SENT_AHEAD // 4
 
 def most_connections() -> int:
     """Return how many connections there may be, after asking the system for as many files."""
-    allowed, most = resource.getrlimit(resource.RLIMIT_NOFILE)
     wanted = MOST_CONNECTIONS + OWN_FILES
-    if most != resource.RLIM_INFINITY:
-        wanted = min(wanted, most)
-    if allowed != resource.RLIM_INFINITY and allowed < wanted:
-        resource.setrlimit(resource.RLIMIT_NOFILE, (wanted, most))
-    return max(1, min(MOST_CONNECTIONS, wanted - OWN_FILES))
+    allowed, most = resource.getrlimit(resource.RLIMIT_NOFILE)
+    if allowed == resource.RLIM_INFINITY or allowed >= wanted:
+        return MOST_CONNECTIONS
+    asked_for = wanted if most == resource.RLIM_INFINITY else min(wanted, most)
+    # A service may be forbidden to ask.
+    with contextlib.suppress(OSError, ValueError):
+        resource.setrlimit(resource.RLIMIT_NOFILE, (asked_for, most))
+        allowed = asked_for
+    return max(1, allowed - OWN_FILES)
 
 
 class GuardedConnection(H11Protocol):

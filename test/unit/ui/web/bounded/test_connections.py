@@ -242,7 +242,7 @@ def test_connections_are_bounded_and_a_viewer_sees_on(
         (resource.RLIM_INFINITY, resource.RLIM_INFINITY, None, MOST_CONNECTIONS),
         (524_288, 524_288, None, MOST_CONNECTIONS),
         (256, OWN_FILES + 50, OWN_FILES + 50, 50),
-        (64, 64, None, 1),
+        (64, 64, 64, 1),
     ],
 )
 def test_as_many_stay_as_the_system_has_files_for(
@@ -257,6 +257,15 @@ def test_as_many_stay_as_the_system_has_files_for(
     monkeypatch.setattr(resource, "setrlimit", lambda *request: asked.append(request))
     assert most_connections() == connections
     assert [limits for _, limits in asked] == ([] if asked_for is None else [(asked_for, most)])
+
+
+def test_where_asking_is_forbidden_it_makes_do(monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(*_: object) -> None:
+        raise PermissionError
+
+    monkeypatch.setattr(resource, "getrlimit", lambda _: (OWN_FILES + 724, 524_288))
+    monkeypatch.setattr(resource, "setrlimit", refuse)
+    assert most_connections() == 724
 
 
 # ---------------------------------------------------------------- garbage
