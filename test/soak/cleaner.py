@@ -56,7 +56,8 @@ class Cleaner:
             self.may_be_told_otherwise = False
             self._client.send_goal(CleanGoal())
             self.row.times += 1
-            until(lambda: self.state.phase == "cleaning", READY)
+            if until(lambda: self.state.phase == "cleaning" or self.has_ended(), READY) is None:
+                self.row.broken.append(f"clean {self.row.times} does not begin: {self.state.phase}")
 
     def clean(self) -> None:
         """Let it be on its way over the floor: on its way home it has little to write."""

@@ -3,21 +3,27 @@
 from __future__ import annotations
 
 import threading
+import time
 import weakref
+from collections.abc import Callable
 from typing import Any
 
 import actionlib
+import rospy
 from actionlib import CommState, SimpleGoalState
 from actionlib.action_client import ClientGoalHandle, CommStateMachine, GoalManager
-from actionlib_msgs.msg import GoalStatusArray
+from actionlib_msgs.msg import GoalID, GoalStatusArray
+
+from roomba_ros.runtime.calls import SERVER_DEADLINE
 
 
 class GoalClient(actionlib.ActionClient):
     """The library's client of many goals, each of which ends once.
 
     The library's own takes a goal for lost that is cancelled before its server heard of it: states
-    that were told meanwhile do not name it. Then the true result comes, and is an error. And it
-    begins a goal anew that is cancelled after its end.
+    that were told meanwhile do not name it. Then the true result comes, and is an error. It begins
+    a goal anew that is cancelled after its end. And what is sent while a server is started anew
+    reaches none and never ends; here the new server gets it, for some seconds.
     """
 
     def __init__(self, name: str, action: type) -> None:
@@ -28,6 +34,8 @@ class GoalClient(actionlib.ActionClient):
         goals.register_cancel_fn(self.pub_cancel.publish)
         # Answers come by this client's own callbacks, which ask for it by that name.
         self.manager = goals
+        self.pub_goal.impl.add_subscriber_listener(_OnServer(goals.send_again))
+        self.pub_cancel.impl.add_subscriber_listener(_OnServer(goals.cancel_again))
 
 
 class ActionClient(actionlib.SimpleActionClient):
@@ -75,6 +83,7 @@ class GoalProgress(CommStateMachine):
         """Take what the library's own takes: the goal, callbacks, and how to send and cancel."""
         super().__init__(*arguments)
         self.is_heard = False
+        self._made = time.monotonic()
 
     def update_status(self, statuses: GoalStatusArray) -> None:
         """Hear the states of all goals of the server."""
@@ -84,12 +93,32 @@ class GoalProgress(CommStateMachine):
             # States from before the server had the goal say nothing about it.
             if self.is_heard:
                 super().update_status(statuses)
+            # It has ended, and its server with it before the result was told.
+            is_forgotten = self.action_goal.goal_id.id not in named
+            if is_forgotten and self.state == CommState.WAITING_FOR_RESULT:
+                self._mark_as_lost()
 
     def update_result(self, result: Any) -> None:
         """Hear the result of a goal, perhaps of another one."""
         with self.mutex:
             if self.state != CommState.DONE:
                 super().update_result(result)
+
+    def send_again(self) -> None:
+        """Send the goal to a new server if none has heard it; one that is old is lost."""
+        with self.mutex:
+            if self.is_heard or self.state != CommState.WAITING_FOR_GOAL_ACK:
+                return
+            if time.monotonic() - self._made <= SERVER_DEADLINE:
+                self.send_goal_fn(self.action_goal)
+            else:
+                self._mark_as_lost()
+
+    def cancel_again(self) -> None:
+        """Send the cancel to a new server if none has answered it."""
+        with self.mutex:
+            if self.state == CommState.WAITING_FOR_CANCEL_ACK:
+                self.send_cancel_fn(GoalID(id=self.action_goal.goal_id.id))
 
     def transition_to(self, state: int) -> None:
         """Change the state; what has ended stays so, also when it is cancelled."""
@@ -111,3 +140,24 @@ class _Goals(GoalManager):
             self.statuses.append(weakref.ref(progress))
         self.send_goal_fn(action_goal)
         return ClientGoalHandle(progress)
+
+    def send_again(self) -> None:
+        """Send a new server the goals that none has heard."""
+        for progress in self._get_live_statuses():
+            progress.send_again()
+
+    def cancel_again(self) -> None:
+        """Send a new server the cancels that none has answered."""
+        for progress in self._get_live_statuses():
+            progress.cancel_again()
+
+
+class _OnServer(rospy.SubscribeListener):
+    """Calls a function when a server begins to listen to a topic."""
+
+    def __init__(self, call: Callable[[], None]) -> None:
+        self._call = call
+
+    def peer_subscribe(self, *_: Any) -> None:
+        """Call it: one node more listens."""
+        self._call()

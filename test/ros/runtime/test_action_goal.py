@@ -4,21 +4,12 @@ import pytest
 import rospy
 from actionlib_msgs.msg import GoalID, GoalStatus, GoalStatusArray
 from fixtures.graph import RosGraph
+from fixtures.nodes.errand import Errand
 from fixtures.probe import Probe
 from fixtures.waiting import wait_until
-from roomba_robot.msg import DockAction, DockActionGoal, DockActionResult
+from roomba_robot.msg import DockActionGoal, DockActionResult
 
-from roomba_ros.runtime.action_goal import MOST_GOALS, ActionGoal, GoalIdentity, server_of
-
-
-class Errand(ActionGoal):
-    """A goal that is only taken."""
-
-    name, action = "errand", DockAction
-
-    def check(self) -> None: ...
-
-    def reject(self, reason: str) -> None: ...
+from roomba_ros.runtime.action_goal import MOST_GOALS, GoalIdentity, server_of
 
 
 def test_cancels_of_a_goal_to_come_are_no_errors_and_end_it(
