@@ -34,6 +34,8 @@ _MARGIN: Final = 2
 """Cells around what a map shows."""
 _MOST_LAYERS: Final = 100
 """Rooms, floor and walls; each takes a cell's byte of memory for all cells."""
+_FARTHEST: Final = 1_000_000
+"""cm, and pixels; no home has a place farther from its corner."""
 _NAMES: Final = uuid.UUID("6f1c1a3e-2f0a-4f57-9d52-6a1f5d0b7c11")
 
 
@@ -71,9 +73,13 @@ class _Part(BaseModel):
     model_config = ConfigDict(extra="ignore", frozen=True, strict=True)
 
 
+_Pixel = Annotated[int, Field(ge=-_FARTHEST, le=_FARTHEST)]
+_Place = Annotated[float, Field(ge=-_FARTHEST, le=_FARTHEST)]
+
+
 class _Size(_Part):
-    x: Annotated[int, Field(gt=0, le=1_000_000)]
-    y: Annotated[int, Field(gt=0, le=1_000_000)]
+    x: Annotated[int, Field(gt=0, le=_FARTHEST)]
+    y: Annotated[int, Field(gt=0, le=_FARTHEST)]
 
 
 class _LayerMeta(_Part):
@@ -83,8 +89,8 @@ class _LayerMeta(_Part):
 
 class _Layer(_Part):
     type: Literal["floor", "wall", "segment"]
-    pixels: list[int] = []
-    compressedPixels: list[int] = []  # noqa: N815
+    pixels: list[_Pixel] = []
+    compressedPixels: list[_Pixel] = []  # noqa: N815
     metaData: _LayerMeta = _LayerMeta()  # noqa: N815
 
 
@@ -94,13 +100,13 @@ class _EntityMeta(_Part):
 
 class _Entity(_Part):
     type: str
-    points: list[float] = []
+    points: list[_Place] = []
     metaData: _EntityMeta = _EntityMeta()  # noqa: N815
 
 
 class _Meta(_Part):
     version: int
-    origin: Annotated[list[float], Field(min_length=2, max_length=2)] | None = None
+    origin: Annotated[list[_Place], Field(min_length=2, max_length=2)] | None = None
 
 
 class _Map(_Part):
@@ -229,9 +235,9 @@ def _placed(found: _Map, values: NDArray[np.int8], rooms: list[tuple[str, Mask]]
 
     station = None
     if charger is not None:
-        ((x, y),) = points_of(charger)
+        x, y = _point(charger.points, rows, cell)
         angle = charger.metaData.angle or 0.0
-        station = Pose(x, y, _wrapped(math.radians(90.0 - angle)))
+        station = Pose(x + corner[0], y + corner[1], _wrapped(math.radians(90.0 - angle)))
     return ValetudoHome(
         OccupancyMap(frame, np.ascontiguousarray(values[cut])),
         tuple((name, np.ascontiguousarray(mask[cut])) for name, mask in rooms),

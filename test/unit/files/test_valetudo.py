@@ -187,7 +187,20 @@ def changed(**changes: Any) -> str:
         (changed(layers=[{"type": "floor", "compressedPixels": [-1, 2, 1]}]), "left of"),
         (changed(layers=[{"type": "floor", "pixels": [1, 2, 3]}]), "two numbers"),
         (changed(entities=[{"type": "charger_location", "points": [1]}]), "two numbers"),
+        *(
+            (
+                changed(
+                    entities=[{"type": "charger_location", "points": points}],
+                    metaData={"version": 2, "origin": [0.0, 0.0]},
+                ),
+                "two numbers",
+            )
+            for points in ([], [1, 2, 3, 4])
+        ),
         (changed(entities=[{"type": "virtual_wall", "points": [1, 2, 3]}]), "two numbers"),
+        (changed(entities=[{"type": "virtual_wall", "points": [1e308, 1]}]), "entities.0.points.0"),
+        (changed(layers=[{"type": "floor", "pixels": [10**30, 1]}]), "layers.0.pixels.0: .*less"),
+        (changed(metaData={"version": 2, "origin": [1e308, 0.0]}), "metaData.origin.0: .*less"),
     ],
 )
 def test_what_is_no_map_is_refused_with_the_reason(text: str, reason: str) -> None:
