@@ -48,7 +48,9 @@ _SCAN_SHARE: Final = 0.5
 """Of the line's time for scans, at most, where they take long."""
 _CALM: Final = 0.3
 """rad/s; a robot that turns faster waits for the next scan, where they take long,"""
-_LONGEST_WITHOUT_SCAN: Final = 2.0
+_SETTLED: Final = 0.4
+"""s; and for so long after that: it is asked for a sweep that was measured by then,"""
+_LONGEST_WITHOUT_SCAN: Final = 3.0
 """but no longer than that, s."""
 _NO_FLOOR: Final = 0.06
 """m; a floor so far below a drop sensor is none."""
@@ -86,6 +88,8 @@ class NeatoBody:
         self._is_enabled = False
         self._power_told = (False, 0)
         self._odometry, self._planned = WheelOdometry(self._track), PlannedWheels()
+        self._planned_when_told = self._planned.ways(0.0)
+        self._turned_at = -math.inf
         self._touches = answers.Touches(False, False, False, False, True)
         self._drops = answers.Drops(0.0, 0.0)
         self._charge = answers.Charge(1.0, False, False)
@@ -101,7 +105,7 @@ class NeatoBody:
             _Due("GetDigitalSensors", 0.1, self._take_touches),
             _Due("GetAnalogSensors", 0.2, self._take_drops),
             self._scans,
-            _Due("GetCharger", 0.5, self._take_charge),
+            _Due("GetCharger", 0.25, self._take_charge),
         ]
 
     # ---------------------------------------------------------------- the brain's side
@@ -128,10 +132,10 @@ class NeatoBody:
 
     def _pose_at(self, now: float) -> Pose:
         """Return where the robot is by its wheels, which were told since what they are to do."""
-        told_at = self._odometry.told_at
-        if math.isnan(told_at):
+        if math.isnan(self._odometry.told_at):
             return Pose()
-        before, after = self._planned.ways(told_at), self._planned.ways(now)
+        # Commands that came since then are other ways from where it was then.
+        before, after = self._planned_when_told, self._planned.ways(now)
         return self._odometry.after(after[0] - before[0], after[1] - before[1])
 
     def newest_scan(self) -> ScanReading | None:
@@ -207,11 +211,14 @@ class NeatoBody:
         """Return how many of its periods ago a question was asked."""
         since = self._now() - due.last
         is_blind = due is self._scans and due.period > _SCAN_PERIOD / _SCAN_SHARE
-        turning = abs(self._odometry.twist.angular)
-        if is_blind and turning > _CALM and since < _LONGEST_WITHOUT_SCAN:
+        is_blind = is_blind and since < _LONGEST_WITHOUT_SCAN
+        if is_blind and (self._is_to_turn() or self._now() - self._turned_at < _SETTLED):
             # While a scan is on a slow line it is not told how far the robot turned.
             return 0.0
         return since / due.period
+
+    def _is_to_turn(self) -> bool:
+        return abs(self._wanted_now()[0].angular) > _CALM
 
     def _take(self, question: _Due) -> None:
         try:
@@ -282,6 +289,9 @@ class NeatoBody:
         positions, at = answers.wheel_positions_of(lines), self._heard_at()
         with self._lock:
             self._odometry.take(at, positions.left, positions.right)
+            self._planned_when_told = self._planned.ways(at)
+        if abs(self._odometry.twist.angular) > _CALM:
+            self._turned_at = at
 
     def _take_touches(self, lines: list[str]) -> None:
         touches = answers.touches_of(lines)

@@ -2,7 +2,8 @@
 
 A robot tells its newest whole sweep, which may have ended just now or a turn ago. Asked more often
 than it turns, the sweep that is another one than before ended between the two questions; and sweeps
-end a turn apart, so what was learned of one narrows down the next.
+end a turn apart, so what was learned of one narrows down the next. Asked more seldom, nothing is
+learned: it ended some time within the last turn.
 """
 
 from __future__ import annotations
@@ -13,8 +14,10 @@ from typing import Final
 _DRIFT: Final = 0.005
 """Share of the time that passed by which the turns may be other than they are told."""
 
-_SAME: Final = 1.5
+_SAME: Final = 1.4
 """Turns since the end of a sweep until it cannot be the newest one any more."""
+
+_Bounds = tuple[float, float]
 
 
 class SweepClock:
@@ -23,7 +26,7 @@ class SweepClock:
     def __init__(self) -> None:
         """Know nothing."""
         self._asked = -math.inf
-        self._bounds = (-math.inf, math.inf)
+        self._bounds: _Bounds = (-math.inf, math.inf)
 
     def ended(self, asked: float, turn: float, *, is_other: bool) -> float | None:
         """Return when the sweep ended that was told when asked at a time, s; None: it was told.
@@ -34,25 +37,41 @@ class SweepClock:
         before, self._asked = self._asked, asked
         newest = asked - turn, asked
         if is_other:
-            self._bounds = self._narrowed((max(before, newest[0]), asked), turn)
-        elif asked - self._middle() > _SAME * turn:
-            self._bounds = self._narrowed(newest, turn)
-        else:
-            return None
-        return self._middle()
+            return self._taken((max(before, newest[0]), asked), turn)
+        if asked - _middle(self._bounds) > _SAME * turn:
+            return self._taken(newest, turn)
+        return None
 
-    def _narrowed(self, seen: tuple[float, float], turn: float) -> tuple[float, float]:
-        """Return when a sweep ended that did so within ``seen``, by those some turns before it."""
+    def _taken(self, seen: _Bounds, turn: float) -> float:
+        """Return when a sweep ended that did so within ``seen``; learn by it, if that tells."""
+        expected = self._expected(seen, turn)
+        both = [_common(seen, each) for each in expected] or [seen]
+        most = max(both, key=_width)
+        # Where two sweeps may be meant this tells nothing of when either of them ended.
+        self._bounds = expected[both.index(most)] if len(both) > 1 else most
+        return _middle(most)
+
+    def _expected(self, seen: _Bounds, turn: float) -> list[_Bounds]:
+        """Return within what sweeps ended that may have done so within ``seen``, by earlier ones.
+
+        Nothing where the earlier ones tell no more than ``seen`` does.
+        """
         low, high = self._bounds
-        if not math.isfinite(low):
-            return seen
-        turns = math.floor((seen[1] - self._middle()) / turn)
-        for later in (turns * turn, (turns + 1) * turn):
-            expected = low + later * (1.0 - _DRIFT), high + later * (1.0 + _DRIFT)
-            both = max(seen[0], expected[0]), min(seen[1], expected[1])
-            if both[0] <= both[1]:
-                return both
-        return seen
+        if not high - low < turn:
+            return []
+        turns = math.floor((seen[1] - _middle(self._bounds)) / turn)
+        later = [(turns + more) * turn for more in (-1, 0, 1)]
+        ends = [(low + each * (1.0 - _DRIFT), high + each * (1.0 + _DRIFT)) for each in later]
+        return [each for each in ends if _width(_common(seen, each)) >= 0.0]
 
-    def _middle(self) -> float:
-        return 0.5 * (self._bounds[0] + self._bounds[1])
+
+def _common(one: _Bounds, other: _Bounds) -> _Bounds:
+    return max(one[0], other[0]), min(one[1], other[1])
+
+
+def _width(bounds: _Bounds) -> float:
+    return bounds[1] - bounds[0]
+
+
+def _middle(bounds: _Bounds) -> float:
+    return 0.5 * (bounds[0] + bounds[1])

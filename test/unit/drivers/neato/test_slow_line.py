@@ -1,0 +1,39 @@
+"""What a driver tells of where it is, on a line on which a scan takes half a second."""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+
+from fixtures.robots.timed_neato import TimedNeato
+
+from roomba.geometry import Pose, Twist
+from roomba.robot.command import Command
+
+_TURNS = Twist(0.2, 0.2), Twist(0.0, -1.0), Twist(0.25, -0.1), Twist(0.0, 0.8), Twist(0.3, 0.0)
+"""Each is driven for two seconds."""
+
+
+def driven(seconds: float) -> list[tuple[Pose, Pose]]:
+    """Return where it was and where it was told to be, at each tick."""
+    neato = TimedNeato(115_200, is_ideal=True)
+    begin, found = neato.simulator.pose, list[tuple[Pose, Pose]]()
+
+    def tick() -> None:
+        found.append((begin.inverse().compose(neato.simulator.pose), neato.driver.read().odometry))
+        neato.driver.act(Command(_TURNS[int(neato.now / 2.0) % len(_TURNS)]))
+
+    neato.tick = tick
+    neato.pass_time(seconds)
+    return found
+
+
+def test_while_a_scan_is_on_the_line_and_after_it_is_told_where_it_should_be() -> None:
+    poses = driven(20.0)
+    assert poses[-1][0].distance_to(0.0, 0.0) > 0.3
+    for true, told in poses:
+        assert told.distance_to(true.x, true.y) < 0.05
+        assert abs(math.remainder(told.theta - true.theta, math.tau)) < 0.25
+    steps = [told.distance_to(before.x, before.y) for (_, before), (_, told) in pairwise(poses)]
+    # At 0.3 m/s a tick is 0.015 m; the rest is what the way to the next answer was guessed wrong.
+    assert max(steps) < 0.03
