@@ -128,8 +128,13 @@ class CoveragePlanner:
 
 
 def _off_middles(line: Line) -> Line:
-    """Return a swath shifted a little, so that no seam between two lies on centres of cells."""
+    """Return a swath shifted a little, so that no seam between two lies on centres of cells.
+
+    Slanted ones overlap instead.
+    """
     along = np.abs(line[-1] - line[0])
+    if along.all():
+        return line
     aside = np.array([0.0, _OFF_MIDDLES]) if along[0] >= along[1] else np.array([_OFF_MIDDLES, 0.0])
     moved: Line = line + aside
     return moved

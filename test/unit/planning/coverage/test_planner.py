@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
 import pytest
 import shapely
 from fixtures.thoroughness import examples
+from fixtures.turned_rooms import turned_room
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+from numpy.typing import NDArray
 
 from roomba.configuration.coverage import CoverageConfig
 from roomba.grid import FREE, OCCUPIED, UNKNOWN, GridFrame, OccupancyMap
 from roomba.planning.coverage.planner import CoverageFloor, CoveragePlan, CoveragePlanner
+from roomba.planning.coverage.stages import OUR_STAGES
 from roomba.planning.path.costmap import FitMap, Mask, Point, RoundObstacle
 from roomba.planning.path.planner import NoPathError, NoPathReason
 
@@ -259,3 +263,43 @@ def test_along_a_slanted_wall_the_plan_is_smooth_and_tells_what_it_leaves() -> N
     assert swept(plan, planner.floor.frame)[left].mean() < 0.5
     straight = CoveragePlanner(slanted_room(0.0), REACH, TOOL, CONFIG)
     assert not straight.rounded_off(start).any()
+
+
+@given(st.floats(0.0, 90.0))
+@settings(max_examples=6)
+def test_a_turned_room_is_swept_as_well_and_by_hardly_more_way(degrees: float) -> None:
+    things = ((0.6, 0.3, 0.9, 0.6), (-1.6, -1.0, 0.4, 0.4))
+    shares, ratios = [], []
+    for angle in (0.0, degrees):
+        map = turned_room(4.4, 3.0, angle, *things)
+        planner = CoveragePlanner(map, REACH, TOOL, CONFIG)
+        plan = planner.plan((0.0, 0.0), (0.0, 0.0))
+        need = planner.floor.coverable((0.0, 0.0))
+        shares.append(share_swept(plan, need, planner.floor.frame))
+        ratios.append(plan.length * TOOL / (need.sum() * planner.floor.frame.resolution**2))
+        assert least_room(plan, map) > -TOLERANCE
+    assert shares[1] > shares[0] - 0.01
+    assert ratios[1] < 1.2 * ratios[0]
+
+
+@pytest.mark.parametrize("angle", [0.0, 17.0])
+def test_swaths_along_the_axes_are_shifted_off_the_middles_of_cells_and_slanted_ones_are_not(
+    angle: float,
+) -> None:
+    laid: list[NDArray[np.float64]] = []
+
+    def noted(
+        left: Mask, middles: Mask, radius: float, config: CoverageConfig
+    ) -> list[NDArray[np.float64]]:
+        laid.extend(OUR_STAGES.swaths(left, middles, radius, config))
+        return laid
+
+    stages = replace(OUR_STAGES, swaths=noted)
+    map = turned_room(4.4, 3.0, angle)
+    swaths = CoveragePlanner(map, REACH, TOOL, CONFIG, stages).plan((0.0, 0.0)).swaths
+    is_slanted = [bool((line[0] != line[1]).all()) for line in laid]
+    assert sum(is_slanted) > 0.8 * len(laid) if angle else not any(is_slanted)
+    corner = np.array((map.frame.origin_x, map.frame.origin_y))
+    for line, in_cells, slanted in zip(swaths, laid, is_slanted, strict=True):
+        shift = np.round((line - corner) / 0.01 - 0.5 - in_cells, 6) % 1.0
+        assert sorted(shift[0]) == pytest.approx([0.0, 0.0] if slanted else [0.0, 0.2])

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.compilation import allocating_entry, inner_part
+from roomba.planning.coverage.passes.directions import line_along
 from roomba.raster.regions import Mask
 
 Line = NDArray[np.float64]
@@ -25,8 +26,6 @@ degrees."""
 _BAND = 3.75
 """cells; a dip between two corners of a wall that is slanted by 17 degrees is 2.6 deep, and corners
 of cells lie off their line by up to one more."""
-_ALONG = 0.75
-"""Of the points of a window: the least length, cells, of a way that leads along a wall."""
 _SLANT = math.radians(8.0)
 """A wall that is slanted by less has steps farther apart, and deeper dips."""
 _OFF = 1.6
@@ -128,28 +127,9 @@ def along_stairs(ring: Line) -> NDArray[np.bool_]:
 @inner_part
 def _is_slanted(ring: Line, first: int) -> bool:
     """Whether the window of points from ``first`` on lies along one slanted line."""
-    mean_x, mean_y = 0.0, 0.0
-    for at in range(first, first + _WINDOW):
-        mean_x += ring[at, 0] / _WINDOW
-        mean_y += ring[at, 1] / _WINDOW
-    xx, yy, xy = 0.0, 0.0, 0.0
-    for at in range(first, first + _WINDOW):
-        x, y = ring[at, 0] - mean_x, ring[at, 1] - mean_y
-        xx += x * x
-        yy += y * y
-        xy += x * y
-    angle = 0.5 * math.atan2(2.0 * xy, xx - yy)
+    is_straight, angle = line_along(ring, first, _WINDOW, _BAND)
     off_axis = abs(angle) % (0.5 * math.pi)
-    if min(off_axis, 0.5 * math.pi - off_axis) < _SLANT:
-        return False
-    cosine, sine = math.cos(angle), math.sin(angle)
-    nearest, farthest, begin, end = np.inf, -np.inf, np.inf, -np.inf
-    for at in range(first, first + _WINDOW):
-        x, y = ring[at, 0] - mean_x, ring[at, 1] - mean_y
-        along, aside = x * cosine + y * sine, y * cosine - x * sine
-        begin, end = min(begin, along), max(end, along)
-        nearest, farthest = min(nearest, aside), max(farthest, aside)
-    return end - begin >= _ALONG * _WINDOW and farthest - nearest <= _BAND
+    return is_straight and min(off_axis, 0.5 * math.pi - off_axis) >= _SLANT
 
 
 @inner_part

@@ -12,9 +12,14 @@ from roomba.compilation import allocating_entry, inner_part
 from roomba.configuration.coverage import CoverageConfig
 from roomba.planning.coverage.floor.masks import transposed
 from roomba.planning.coverage.floor.regions import mask_of, regions
+from roomba.planning.coverage.passes.directions import main_directions
+from roomba.planning.coverage.passes.turned_cells import TurnedCells, turned_mask
 from roomba.raster.regions import Mask
 
 Line = NDArray[np.float64]
+
+_OVERLAP = 0.4
+"""cells, of two slanted swaths beside each other."""
 
 
 def swaths(left: Mask, middles: Mask, radius: float, config: CoverageConfig) -> list[Line]:
@@ -22,24 +27,73 @@ def swaths(left: Mask, middles: Mask, radius: float, config: CoverageConfig) -> 
 
     The lines stay in ``middles``, bool of the same shape. Every cell of ``left`` must be so far
     from where the middle may not be that the middle may be anywhere within ``radius``, cells, of
-    it. Each region is swept along rows or along columns, whichever takes less way.
+    it. Each region is swept along rows, along columns, or along or across a main direction of
+    slanted walls, whichever takes the least way.
     """
     parts = regions(left, config.narrow, config.least_part)
     across = transposed(middles)
+    directions = main_directions(middles)
+    roomy = _roomy(middles) if directions else middles
     lines: list[Line] = []
     for region in np.flatnonzero(parts.sizes >= config.speck).tolist():
         mask = mask_of(parts, region)
         top, _, left_side, _ = parts.bounds[region].tolist()
         offset = np.array([left_side, top], np.float64)
-        flat, flat_cost = _along_rows(mask, middles, top, left_side, radius, config)
+        flat, cost = _along_rows(mask, middles, top, left_side, radius, config)
         upright, upright_cost = _along_rows(
             transposed(mask), across, left_side, top, radius, config
         )
-        if flat_cost <= upright_cost:
-            lines.extend(line + offset for line in flat)
-        else:
-            lines.extend(line[:, ::-1] + offset for line in upright)
+        best = flat
+        if upright_cost < cost:
+            best, cost = upright[:, :, ::-1], upright_cost
+        for angle in directions:
+            slanted, slanted_cost = _slanted(mask, roomy, top, left_side, radius, config, angle)
+            if slanted_cost < cost:
+                best, cost = slanted, slanted_cost
+        lines.extend(line + offset for line in best)
     return lines
+
+
+def _roomy(middles: Mask) -> Mask:
+    """Return the cells all around which the middle fits, bool of the same shape.
+
+    A way whose places are nearest to such cells fits wherever the cells are cut.
+    """
+    fenced = np.pad(middles, 1)
+    rows, columns = middles.shape
+    roomy = middles.copy()
+    for up in range(3):
+        for right in range(3):
+            roomy &= fenced[up : up + rows, right : right + columns]
+    return roomy
+
+
+def _slanted(
+    region: Mask,
+    roomy: Mask,
+    top: int,
+    left: int,
+    radius: float,
+    config: CoverageConfig,
+    angle: float,
+) -> tuple[Line, float]:
+    """Return swaths along or across a direction, rad, and what they cost, as :func:`_along_rows`.
+
+    The tool is a whole number of rows wide that are a little narrower than cells: seams cross
+    cells anyhow, and would leave some of them by the least error of the drive.
+    """
+    wide = int(2 * radius + 1e-6)
+    cell = (2 * radius - _OVERLAP) / wide
+    rows, columns = region.shape
+    cells = TurnedCells.over(rows, columns, angle, cell)
+    wanted, floor = turned_mask(region, cells, 0, 0), turned_mask(roomy, cells, left, top)
+    flat, flat_cost = _along_rows(wanted, floor, 0, 0, 0.5 * wide, config)
+    upright, upright_cost = _along_rows(
+        transposed(wanted), transposed(floor), 0, 0, 0.5 * wide, config
+    )
+    if upright_cost < flat_cost:
+        return cells.places(upright[:, :, ::-1]), cell * upright_cost
+    return cells.places(flat), cell * flat_cost
 
 
 def _along_rows(

@@ -11,14 +11,18 @@ from fixtures.references.straight_ways import (
     connected_to,
     length_of,
     parts_of,
+    runs_between_centres_that_fit,
     shrunk,
     swept_cells,
 )
 from fixtures.thoroughness import examples
+from fixtures.turned_rooms import turned_room
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from roomba.configuration.coverage import CoverageConfig
+from roomba.planning.coverage.floor.masks import grown, half_widths
+from roomba.planning.coverage.passes.directions import main_directions
 from roomba.planning.coverage.passes.swaths import swaths
 
 CONFIG = CoverageConfig()
@@ -167,3 +171,42 @@ def test_what_another_swath_costs_is_configured(cost: float, expected: int) -> N
     left[4, 5:29] = True
     config = CONFIG.model_copy(update={"swath_cost": cost})
     assert len(swaths(left, np.ones_like(left), 3.0, config)) == expected
+
+
+@given(st.floats(5.0, 85.0), st.integers(0, 2**32 - 1))
+@settings(max_examples=6)
+def test_beside_slanted_walls_swaths_keep_to_the_floor_and_sweep_it(
+    degrees: float, seed: int
+) -> None:
+    random = np.random.default_rng(seed)
+    thing = (*random.uniform(-1.5, 0.8, 2), *random.uniform(0.3, 0.8, 2))
+    map = turned_room(3.6, 2.4, degrees, thing)
+    solid = np.repeat(np.repeat(map.solid, 5, axis=0), 5, axis=1)
+    middles = ~grown(solid, half_widths(16.5, to_squares=True))
+    left = ~grown(~middles, half_widths(11.0))
+    lines = swaths(left, middles, 10.0, CONFIG)
+    (direction,) = main_directions(middles)
+    for line in lines:
+        (along, aside) = line[1] - line[0]
+        off = np.arctan2(aside, along) - direction
+        assert runs_between_centres_that_fit(middles, line)
+        assert along * aside == 0.0 or abs(np.sin(2.0 * off)) < 1e-6
+    # What is at the rim of turned cells may be half a cell off them.
+    assert np.count_nonzero(left & ~swept_cells(left.shape, lines, 10.0)) < SPECK
+
+
+def test_swaths_along_slanted_walls_are_fewer_than_along_the_axes(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    map = turned_room(5.0, 3.5, 20.0)
+    solid = np.repeat(np.repeat(map.solid, 5, axis=0), 5, axis=1)
+    middles = ~grown(solid, half_widths(16.5, to_squares=True))
+    left = ~grown(~middles, half_widths(11.0))
+    along_walls = swaths(left, middles, 10.0, CONFIG)
+    monkeypatch.setattr("roomba.planning.coverage.passes.swaths.main_directions", lambda _: [])
+    along_axes = swaths(left, middles, 10.0, CONFIG)
+    assert len(along_walls) < 0.9 * len(along_axes)
+    cost, axes_cost = (
+        sum(length_of(line) + NEW_SWATH for line in lines) for lines in (along_walls, along_axes)
+    )
+    assert cost < 0.98 * axes_cost
