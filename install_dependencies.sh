@@ -487,6 +487,12 @@ install_tool() { # TITLE VENV REQUIREMENTS
   tool_is_current "$2" "$3" || run_step "$1" make_tool_environment "$2" "$3"
 }
 
+# For one tool that runs in the robot's environment without being of it: .cache/NAME is put on PYTHONPATH for it.
+install_aside() { # NAME REQUIREMENT
+  [[ -d $CACHE/$1 ]] ||
+    run_step "Installing $1" "$VENV/bin/python3" -m pip install --quiet --target "$CACHE/$1" "$2"
+}
+
 # Its packages are none of the robot's, and would be in its bill.
 install_audit() {
   install_tool "Installing what makes the bill of materials into .venv-audit" "$AUDIT_VENV" requirements-audit.txt

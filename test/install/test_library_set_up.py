@@ -11,7 +11,7 @@ import pytest
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 FILES = (
-    "install_dependencies.sh", "roomba", "constraints.txt", "requirements.txt",
+    "install_dependencies.sh", "set_up.sh", "roomba", "constraints.txt", "requirements.txt",
     "requirements-library.txt", "requirements-dev.txt", "requirements-smart-home.txt",
     "requirements-campaign.txt",
 )  # fmt: skip

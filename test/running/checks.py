@@ -12,7 +12,7 @@ CHECKS: Final = {
     "ruff format": ("ruff", "format", "--check", "."),
     "mypy": ("mypy",),
     "import contracts": ("lint-imports", "--cache-dir", ".cache/import-linter"),
-    "shellcheck": ("shellcheck", "-x", "roomba", "install_dependencies.sh", ".ci/run"),
+    "shellcheck": ("shellcheck", "-x", "roomba", "set_up.sh", "install_dependencies.sh", ".ci/run"),
     "catkin_lint": ("catkin_lint", "-W2", "--strict", ".workspace/src/roomba_robot"),
 }
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import argparse
 import importlib
+import re
 import sys
 from pathlib import Path
 from typing import Final
@@ -39,43 +40,9 @@ _DEMOS: Final = {"control": "roomba.commands.control.command"}
 """The same of a command that needs ROS, but not with ``--demo``."""
 _NEED_ROS: Final = ("run", "control", "camera", "exec", "record")
 _NEED_CHECKOUT: Final = ("test", "bench", "exercise", "docs")
-_USAGE: Final = """\
-usage: roomba COMMAND ...
-
-  sim [ARGS]       clean a home with the whole robot: --home NAME --seed N, --map FILE.yaml,
-                   --homes N, --plot FILE.png, --json FILE (see --help)
-  campaign FILE.yaml [ARGS]
-                   homes, seeds and variants of the robot, on all cores or --cluster HOST:PORT,
-                   compared by pairs (see --help)
-  map [ARGS]       explore a home without a map, and tell how good the map becomes: --home NAME
-                   --seed N, --map FILE.yaml, --out FOLDER, --plot FILE.png; --bag FILE ...: map a
-                   recorded drive (see --help)
-  localize ARGS    localize a recorded drive on a map: --map FILE.yaml --bag FILE ... (see --help)
-  play [ARGS]      a robot that lives in a home, on a web page: --home NAME, --speed N,
-                   --map none, --smart-home FILE.yaml; one that you own: --robot neato
-                   --line /dev/ttyACM0 (see --help)
-  control --demo [ARGS]
-                   the menu in the terminal over a robot that lives in a home: --home NAME,
-                   --speed N, --map none (see --demo --help)
-  emulate neato|create2|ld19
-                   a made-up robot or lidar on a pseudo terminal: --link NAME, --home NAME
-  status [ARGS]    what a robot with a page does now: --json, --watch
-  top [ADDRESS]    the same on a whole terminal, with map, log, and keys that command it; --demo:
-                   of a robot that lives in a home meanwhile
-  report [RUN]     the runs that were kept: a list, or a report as HTML: --out FILE.html,
-                   --compare A B, --csv FILE (see --help)
-  replay [RUN|FILE.run]
-                   a recorded run on the page, with a time line (see --help)
-  import valetudo FILE.json [--out FOLDER]
-                   a home of a map of Valetudo: rooms, station, zones
-  export valetudo HOME [--out FILE.json]
-                   the other way round
-  export FILE.bag --to mcap|ros2 [--out PATH]
-                   a recording for other programs
-  pictures [ARGS]  make the pictures of the documents: [FOLDER] [--only NAME ...]
-  doctor [--json]  what is missing, and how to mend it
-  help             this text
-
+_USAGE: Final = Path(__file__).with_name("usage.txt")
+"""What ``./roomba help`` prints, of which this program has a part."""
+_ELSEWHERE: Final = """\
 The commands run, camera, exec, record, and control without --demo, need ROS; test, bench, exercise
 and docs need the checkout: there it is ./roomba COMMAND.
 """
@@ -96,7 +63,7 @@ def program() -> int:
     """Run the command of the command line; returns the exit status, 2 for one that is not here."""
     command, *arguments = sys.argv[1:] or ["help"]
     if command in ("help", "-h", "--help"):
-        print(_USAGE, end="")
+        print(_usage(), end="")
         return 0
     if command in _DEMOS and "--demo" in arguments:
         return int(importlib.import_module(_DEMOS[command]).main(arguments))
@@ -125,6 +92,15 @@ def main(arguments: list[str] | None = None) -> int:
     findings = [_imported(module) for module in (*_MODULES, *_EXTRAS)]
     print(as_json(findings) if wanted.json else as_table(findings))
     return 1 if any(finding.state is StepState.MISSING for finding in findings) else 0
+
+
+def _usage() -> str:
+    """Return the entries of the commands that are here."""
+    _, listed, _ = _USAGE.read_text(encoding="utf-8").split("\n\n", 2)
+    entries = re.split(r"\n(?=  \w)", listed)
+    here = {*_COMMANDS, *_DEMOS, "help"}
+    kept = "\n".join(entry for entry in entries if entry.split()[0] in here)
+    return f"usage: roomba COMMAND ...\n\n{kept.replace('./roomba', 'roomba')}\n\n{_ELSEWHERE}"
 
 
 def _imported(module: str) -> Finding:

@@ -11,6 +11,7 @@ from benchmarks.contestants import REPOSITORY
 from benchmarks.topics import TOPICS
 
 FOLDER = REPOSITORY / "benchmarks"
+USAGE = REPOSITORY / "src" / "roomba" / "commands" / "usage.txt"
 SHARED = {"__init__", "__main__", "arena", "boxes", "grids", "protocol", "views"}
 PEERS = sorted(path for path in (FOLDER / "peers").glob("*.py") if path.stem not in SHARED)
 
@@ -33,7 +34,7 @@ def test_the_table_of_topics_is_complete() -> None:
 @pytest.mark.parametrize("topic", TOPICS)
 def test_each_topic_can_be_measured_and_is_in_the_usage(topic: str) -> None:
     assert "measure" in names_in(FOLDER / "topics" / f"{topic}.py")
-    usage = (REPOSITORY / "roomba").read_text(encoding="utf-8")
+    usage = USAGE.read_text(encoding="utf-8")
     [line] = [line for line in usage.splitlines() if line.startswith("  bench [TOPIC")]
     assert topic in line.split("topics:")[1].split()
 

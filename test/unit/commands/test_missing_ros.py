@@ -11,7 +11,12 @@ from xml.etree import ElementTree
 import pytest
 
 ROOT = Path(__file__).resolve().parents[3]
-FILES = ("roomba", "install_dependencies.sh", *(path.name for path in ROOT.glob("*.txt")))
+FILES = (
+    "roomba",
+    "set_up.sh",
+    "install_dependencies.sh",
+    *(path.name for path in ROOT.glob("*.txt")),
+)
 NOBLE = 'PRETTY_NAME="Ubuntu 24.04.1 LTS"\nVERSION_CODENAME=noble\nUBUNTU_CODENAME=noble\n'
 FEDORA = 'PRETTY_NAME="Fedora Linux 41 (Workstation Edition)"\nVERSION_CODENAME=""\n'
 BOOKWORM = 'PRETTY_NAME="Debian GNU/Linux 12 (bookworm)"\nVERSION_CODENAME=bookworm\n'

@@ -72,8 +72,7 @@ def documented_lines() -> list[str]:
 
 def commands_of_help() -> set[str]:
     """Return the commands that ``./roomba help`` lists."""
-    script = (ROOT / "roomba").read_text(encoding="utf-8")
-    usage = script.split("<<'TEXT'")[1].split("\nTEXT")[0]
+    usage = (ROOT / "src" / "roomba" / "commands" / "usage.txt").read_text(encoding="utf-8")
     return set(re.findall(r"^  ([a-z]+)[ \[]", usage, re.MULTILINE))
 
 

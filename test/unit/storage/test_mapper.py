@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+from fixtures.homes.kept_map import LIDAR, STATION, kept_map, keyframe
 from fixtures.thoroughness import examples
-from fixtures.kept_map import LIDAR, STATION, kept_map, keyframe
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray

@@ -9,8 +9,8 @@ from itertools import pairwise
 import numpy as np
 import pytest
 import shapely
+from fixtures.homes.turned_rooms import turned_room
 from fixtures.thoroughness import examples
-from fixtures.turned_rooms import turned_room
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray

@@ -6,7 +6,8 @@ import math
 
 import numpy as np
 import pytest
-from fixtures.turned_rooms import turned_room
+from fixtures.homes.turned_rooms import turned_room
+from fixtures.thoroughness import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -22,7 +23,7 @@ def middles_of(map: OccupancyMap) -> Mask:
 
 
 @given(st.floats(3.0, 87.0))
-@settings(max_examples=25)
+@settings(max_examples=examples(25))
 def test_the_walls_of_a_turned_room_tell_by_how_much_it_is_turned(degrees: float) -> None:
     middles = middles_of(turned_room(4.5, 3.0, degrees, (1.2, 0.9, 1.0, 0.6)))
     (found,) = main_directions(middles)

@@ -6,6 +6,7 @@ from itertools import combinations, pairwise
 
 import numpy as np
 import pytest
+from fixtures.homes.turned_rooms import turned_room
 from fixtures.references.straight_ways import (
     Mask,
     connected_to,
@@ -16,7 +17,6 @@ from fixtures.references.straight_ways import (
     swept_cells,
 )
 from fixtures.thoroughness import examples
-from fixtures.turned_rooms import turned_room
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 

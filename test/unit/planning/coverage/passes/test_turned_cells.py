@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from fixtures.thoroughness import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -18,7 +19,7 @@ from roomba.planning.coverage.passes.turned_cells import TurnedCells, turned_mas
     st.floats(0.9, 1.0),
     st.integers(0, 2**32 - 1),
 )
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 def test_cells_cover_the_window_and_are_what_is_nearest_to_their_middles(
     rows: int, columns: int, angle: float, cell: float, seed: int
 ) -> None:

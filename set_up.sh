@@ -1,0 +1,224 @@
+# The steps of the set-up that are of a checkout: the catkin workspace, compiled loops, and all of them in order. ./roomba sources it.
+# shellcheck shell=bash
+
+# shellcheck source=install_dependencies.sh
+. "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/install_dependencies.sh"
+WORKSPACE=$REPOSITORY/.workspace
+
+# ---------------------------------------------------------------- step: catkin workspace
+
+source_folders() {
+  find "$REPOSITORY" -mindepth 1 -maxdepth 1 -type d -not -name '.*' -printf '%f\n' | sort
+}
+
+workspace_hash() {
+  local -a sources=(package.xml CMakeLists.txt setup.py)
+  (
+    cd "$REPOSITORY"
+    mapfile -t -O "${#sources[@]}" sources < <(find msg srv action env-hooks -type f | sort)
+    { find scripts -name '*.py' | sort; source_folders; environment_identity; } | hash_of "${sources[@]}"
+  )
+}
+
+workspace_is_current() {
+  [[ -f $WORKSPACE/devel/setup.bash ]] && stamp_is "$WORKSPACE/.stamp" "$(workspace_hash)"
+}
+
+# Only Python is generated here (a workspace of one's own also generates the other languages).
+run_catkin_make() {
+  env -u CMAKE_PREFIX_PATH -u ROS_PACKAGE_PATH -u PYTHONPATH -u ROS_DISTRO \
+    PATH="/usr/sbin:/usr/bin:/sbin:/bin" ROS_LANG_DISABLE=gencpp:genlisp \
+    catkin_make --directory "$WORKSPACE" --no-color -DPYTHON_EXECUTABLE="$PYTHON"
+}
+
+# The package in the workspace is a folder of links to the repository's visible folders: a link to the whole would
+# hold this workspace again, and rosrun, which follows links, would find every script more than once.
+link_sources() {
+  local package=$WORKSPACE/src/roomba_robot name
+  mkdir -p "$package"
+  find "$package" -type l -delete
+  while read -r name; do
+    ln -s "$REPOSITORY/$name" "$package/$name"
+  done < <(source_folders; printf '%s\n' package.xml CMakeLists.txt setup.py)
+}
+
+build_workspace() {
+  local hash
+  hash=$(workspace_hash)
+  rm -f "$WORKSPACE/.stamp"
+  link_sources
+  if ! run_catkin_make; then
+    printf 'The build failed; once more, from nothing, in case an older build is in the way.\n'
+    rm -rf "$WORKSPACE/build" "$WORKSPACE/devel"
+    run_catkin_make
+  fi
+  # catkin's intermediate copies are executable too: rosrun would take them for scripts of the package
+  chmod -f a-x "$WORKSPACE"/build/atomic_configure/*.py || true
+  printf '%s\n' "$hash" >"$WORKSPACE/.stamp"
+}
+
+# ---------------------------------------------------------------- step: compiled loops
+
+# What all files with compiled functions hold. Each state of them that was compiled has a stamp: to go back to a branch
+# compiles nothing. What other files hold in it is seen when it is loaded (src/roomba/compiled_sources.py).
+compiled_hash() {
+  (cd "$REPOSITORY" && { grep -rlE --include='*.py' 'compilation import' src/roomba | sort | xargs sha256sum; } |
+    hash_of "$(environment_stamp)")
+}
+
+# Prints the stamp of the environment that there is, with ROS or without.
+environment_stamp() {
+  local level
+  for level in runtime library; do
+    if [[ -r $VENV/.stamp-$level ]]; then
+      printf '%s\n' "$VENV/.stamp-$level"
+      return
+    fi
+  done
+}
+
+compiled_is_current() {
+  [[ -n $(environment_stamp) && -e $CACHE/compiled/$(compiled_hash) ]]
+}
+
+# What does not compile is for the tests to report; a set-up can do without, it only makes the first start slow.
+compile_loops() {
+  if [[ -r $VENV/.stamp-runtime ]]; then enter_environment; else enter_library; fi
+  local hash clean
+  hash=$(compiled_hash)
+  # Two halves at once, for two cores.
+  { python3 -m roomba.commands.trials.warm && python3 -m roomba.commands.map.warm; } &
+  clean=$!
+  if python3 -m roomba.commands.warm_up && wait "$clean"; then
+    mkdir -p "$CACHE/compiled"
+    touch "$CACHE/compiled/$hash"
+  fi
+  # numba touches the folders that it looks into: these are of sources that are no more.
+  mkdir -p "$CACHE/numba" # another one may be named by NUMBA_CACHE_DIR
+  find "$CACHE/numba" "$CACHE/compiled" -mindepth 1 -maxdepth 1 -mtime +30 -exec rm -r {} +
+}
+
+# ---------------------------------------------------------------- all steps
+
+set_up_is_complete() { # library|runtime|dev
+  if [[ $1 == library ]]; then
+    library_is_current && compiled_is_current
+    return
+  fi
+  system_is_current "$1" && python_is_current "$1" && workspace_is_current && compiled_is_current &&
+    { [[ $1 != dev ]] || npm_is_current; }
+}
+
+set_up_missing_steps() { # library|runtime|dev
+  install_dependencies "$1"
+  if [[ $1 != library ]] && ! workspace_is_current; then
+    run_step "Building the catkin workspace in .workspace" build_workspace
+  fi
+  if ! compiled_is_current; then
+    run_step "Compiling the hot loops" compile_loops
+    compiled_is_current || say "warning: not all could be compiled, the first start will be slow; see .cache/logs/compile_loops.log"
+  fi
+}
+
+# Whether nothing that the steps look at is newer than when all were found complete: one look instead of some forty. What
+# is taken away, or new, makes its folder newer.
+is_as_before() { # library|runtime|dev
+  local stamp=$CACHE/.complete-$1 folder
+  local -a sources=(roomba set_up.sh install_dependencies.sh constraints.txt requirements.txt requirements-*.txt src)
+  [[ -e $stamp ]] || return 1
+  for folder in "$REPOSITORY" "$VENV" "$CACHE/compiled" "$WORKSPACE" "$WORKSPACE/devel" /usr/bin /var/lib/dpkg; do
+    [[ ! $folder -nt $stamp ]] || return 1
+  done
+  [[ $1 == library ]] || sources+=(package.xml CMakeLists.txt setup.py msg srv action env-hooks scripts)
+  [[ -z $(cd "$REPOSITORY" && find "${sources[@]}" -name __pycache__ -prune -o -newer "$stamp" -print -quit 2>&1) ]]
+}
+
+set_up() { # library|runtime|dev
+  if is_as_before "$1"; then
+    return
+  fi
+  local began
+  mkdir -p "$CACHE"
+  began=$(mktemp "$CACHE/.began.XXXXXX")
+  if set_up_is_complete "$1"; then
+    mv -f "$began" "$CACHE/.complete-$1"
+    return
+  fi
+  rm -f "$began"
+  local started=$SECONDS
+  say "Setting up $REPOSITORY (if interrupted, the next command goes on where this one stopped)"
+  with_setup_lock set_up_missing_steps "$1"
+  say "Set up in $((SECONDS - started)) s"
+}
+
+# ---------------------------------------------------------------- what is there
+
+# One line per step of the set-up: name, state, what is missing.
+describe_steps() {
+  local missing
+  missing=$(system_words runtime)
+  describe_step "system packages" "$missing" test -z "$missing"
+  describe_step "Python packages" "" python_is_current runtime
+  describe_step "catkin workspace" "" workspace_is_current
+  describe_step "compiled loops" "" compiled_is_current
+  missing=$(system_words dev)
+  describe_step "system packages for tests" "$missing" test -z "$missing"
+  describe_step "Python packages for tests" "" python_is_current dev
+  describe_step "npm packages for tests" "" npm_is_current
+}
+
+describe_step() { # NAME DETAIL IS_CURRENT...
+  local name=$1 detail=$2 state=missing
+  shift 2
+  if "$@"; then
+    state=current
+  fi
+  printf '%s\t%s\t%s\n' "$name" "$state" "$detail"
+}
+
+# ---------------------------------------------------------------- environment
+
+# Prints the port of ROS_MASTER_URI, or nothing if that master is on another machine.
+local_master_port() {
+  local uri=${ROS_MASTER_URI:-http://localhost:11311} host port
+  [[ $uri =~ ^http://([^/:]+|\[[^]]+\]):([0-9]+)/?$ ]] ||
+    fail "ROS_MASTER_URI: expected http://HOST:PORT, came '$uri'. Set it so, or unset it."
+  host=${BASH_REMATCH[1]} port=${BASH_REMATCH[2]}
+  case $host in
+    localhost | 127.* | "[::1]" | "$HOSTNAME" | "${ROS_IP:-localhost}" | "${ROS_HOSTNAME:-localhost}") printf '%s\n' "$port" ;;
+  esac
+}
+
+# ROS, the virtual environment and the workspace, and nothing of what the calling shell had sourced before.
+enter_environment() {
+  local port
+  port=$(local_master_port)
+  if [[ -n $port && -z ${ROS_IP:-}${ROS_HOSTNAME:-} ]]; then
+    export ROS_IP=127.0.0.1 # nothing of this robot needs to be seen by other machines
+  fi
+  export PYTHONNOUSERSITE=1
+  # Its matrices are small: a second thread only waits for the first, and takes a core for that.
+  export OPENBLAS_NUM_THREADS=${OPENBLAS_NUM_THREADS:-1}
+  keep_bytecode
+  unset CMAKE_PREFIX_PATH ROS_PACKAGE_PATH ROS_DISTRO
+  set +u # the hooks of ROS read variables that are not set
+  # shellcheck source=/dev/null
+  . "$WORKSPACE/devel/setup.bash"
+  set -u
+  export PYTHONPATH=$REPOSITORY/src:$PYTHONPATH # the sources themselves, not by way of catkin's relays
+}
+
+# Without it each start of a program, and of each node, compiles some 300 modules anew: 0.2 s of a core.
+keep_bytecode() {
+  unset PYTHONDONTWRITEBYTECODE
+}
+
+# The library alone, from the sources: no ROS, no workspace, and nothing of what the calling shell had sourced before.
+enter_library() {
+  export PYTHONNOUSERSITE=1
+  export OPENBLAS_NUM_THREADS=${OPENBLAS_NUM_THREADS:-1}
+  keep_bytecode
+  unset CMAKE_PREFIX_PATH ROS_PACKAGE_PATH ROS_DISTRO
+  export NUMBA_CACHE_DIR=${NUMBA_CACHE_DIR:-$CACHE/numba}
+  export PATH=$VENV/bin:$PATH PYTHONPATH=$REPOSITORY/src
+}
