@@ -133,10 +133,16 @@ def send_goals(random: random.Random, number: int) -> list[Row]:
     until(lambda: not any(sender.left() for sender in senders), _ENDED)
     for sender in senders:
         _judge(sender, row)
-    cancels = [each for sender in senders for each in sender.cancels]
-    row.expect("cancel of 99 in 100, s of its clock", float(np.quantile(cancels, 0.99)), CANCELLED)
-    row.measured("cancel of all", max(cancels))
-    return [row]
+    return [row, *(_cancelled(sender) for sender in senders)]
+
+
+def _cancelled(sender: Sender) -> Row:
+    """Return how soon a client's cancels ended their goals."""
+    row = Row(f"cancels of {sender.name}", len(sender.cancels))
+    took = float(np.quantile(sender.cancels, 0.99))
+    row.expect("99 of 100, s of its clock", took, CANCELLED)
+    row.measured("all", max(sender.cancels))
+    return row
 
 
 def _judge(sender: Sender, row: Row) -> None:

@@ -21,7 +21,7 @@ _STATUS_PERIOD: Final = 0.2
 """s of wall time between two messages of the states of goals, as the library has it."""
 MOST_GOALS: Final = 200
 """Goals, and cancels of goals to come, that a server tells of at the same time. Each message of
-states has all of them, until 5 s after their end; more that come are refused."""
+states has all of them, until 5 s after their end; more that come are rejected."""
 
 
 class GoalIdentity(NamedTuple):
@@ -95,8 +95,7 @@ class SteadyActionServer(actionlib.ActionServer):
     def internal_cancel_callback(self, goal_id: GoalID) -> None:
         """Cancel goals, of which one may not have come yet."""
         with self.lock:
-            is_known = any(each.status.goal_id.id == goal_id.id for each in self.status_list)
-            if goal_id.id and not is_known and self._is_full("cancel"):
+            if goal_id.id and not self._knows(goal_id) and self._is_full("cancel"):
                 return
             super().internal_cancel_callback(goal_id)
             for tracker in self.status_list:
@@ -104,10 +103,18 @@ class SteadyActionServer(actionlib.ActionServer):
                     tracker.goal = self.ActionGoal(goal_id=tracker.status.goal_id)
 
     def internal_goal_callback(self, goal: Any) -> None:
-        """Take a goal, unless too many came."""
+        """Take a goal; if too many came it is rejected, so that its client does not wait for it."""
         with self.lock:
-            if not self._is_full("goal"):
+            if self._knows(goal.goal_id) or not self._is_full("goal"):
                 super().internal_goal_callback(goal)
+            elif goal.goal_id.id:
+                text = f"expected at most {MOST_GOALS} goals at the same time"
+                status = GoalStatus(goal.goal_id, GoalStatus.REJECTED, text)
+                # States of goals do not have it: they are to stay short.
+                self.result_pub.publish(self.ActionResult(status=status))
+
+    def _knows(self, goal_id: GoalID) -> bool:
+        return any(each.status.goal_id.id == goal_id.id for each in self.status_list)
 
     def _is_full(self, topic: str) -> bool:
         if len(self.status_list) < MOST_GOALS:

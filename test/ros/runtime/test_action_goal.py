@@ -45,6 +45,16 @@ def test_of_a_flood_of_goals_and_cancels_the_first_are_taken(master: RosGraph) -
     rospy.Subscriber(
         "/errand/status", GoalStatusArray, lambda told: longest.append(len(told.status_list))
     )
+    rejected: list[str] = []
+    rospy.Subscriber(
+        "/errand/result",
+        DockActionResult,
+        lambda told: (
+            rejected.append(told.status.goal_id.id)
+            if told.status.status == GoalStatus.REJECTED
+            else None
+        ),
+    )
     goals = probe.publisher("/errand/goal", DockActionGoal)
     cancels = probe.publisher("/errand/cancel", GoalID)
     wait_until(lambda: goals.get_num_connections() and cancels.get_num_connections(), 20.0)
@@ -52,6 +62,9 @@ def test_of_a_flood_of_goals_and_cancels_the_first_are_taken(master: RosGraph) -
         goals.publish(DockActionGoal(goal_id=GoalID(rospy.Time.now(), f"goal {number}")))
         cancels.publish(GoalID(id=f"cancel {number}"))
     wait_until(lambda: longest and longest[-1] == MOST_GOALS, 20.0, lambda: f"{longest[-3:]}")
+    # No client of what was not taken waits for ever.
+    goals.publish(DockActionGoal(goal_id=GoalID(rospy.Time.now(), "one more")))
+    wait_until(lambda: rejected and rejected[-1] == "one more", 20.0, lambda: f"{rejected[-3:]}")
     assert 0 < len(taken) <= MOST_GOALS
     assert max(longest) == MOST_GOALS
     # One that it knows can be cancelled all the same.
