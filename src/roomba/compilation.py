@@ -6,6 +6,9 @@ not has no runtime for references: numba refuses code that allocates, and counts
 the arrays that it is given, which takes most of the time of small functions. It must not be given
 a new array by a function that it calls either: nothing would free that.
 
+An entry that is called in compiled code with a number that stands there is compiled for that number
+alone, once more: ``int(NUMBER)`` is any number.
+
 Division by zero is not looked for: it gives what the processor makes of it.
 """
 
@@ -22,8 +25,10 @@ from roomba.compiled_sources import kept_by_sources
 
 _Function = TypeVar("_Function", bound=Callable[..., Any])
 
-_ALLOCATES: Final[dict[str, Any]] = {"error_model": "numpy", "_nrt": True}
-_ALLOCATES_NOT: Final[dict[str, Any]] = {"error_model": "numpy", "_nrt": False}
+_ALWAYS: Final[dict[str, Any]] = {"error_model": "numpy", "no_cfunc_wrapper": True}
+"""None is called by its address, from C: what would make that possible is not compiled."""
+_ALLOCATES: Final[dict[str, Any]] = {**_ALWAYS, "_nrt": True}
+_ALLOCATES_NOT: Final[dict[str, Any]] = {**_ALWAYS, "_nrt": False}
 _ANY_ORDER: Final = {"nsz", "arcp", "contract", "reassoc"}
 """Fast math, but for what is not finite: a beam that meets nothing is infinite."""
 

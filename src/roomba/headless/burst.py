@@ -43,7 +43,7 @@ class Burst:
     def __init__(self, body: SimulatedBody, brain: Brain, truth: CoverageMap, longest: int) -> None:
         """Take the robot's parts; the arrays that are never replaced are taken once."""
         self._body, self._brain, self._truth = body, brain, truth
-        self._world = World(*body.simulator.compiled)
+        self._world = World(*body.simulator.compiled, 0, 1)
         self._rows = np.empty((longest, PASSED))
         self._burst = np.zeros(1, BURST)
         timing, row = brain.robot.timing, self._burst[0]

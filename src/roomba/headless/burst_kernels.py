@@ -53,8 +53,8 @@ def run(
         account(burst, robot, floor, now, x, y)
         robot.wanted_linear, robot.wanted_angular = linear, angular
         advance(
-            world.state, 0, 1, world.numbers, world.quantiles, world.buffers, burst.step,
-            burst.steps,
+            world.state, world.first, world.last, world.numbers, world.quantiles, world.buffers,
+            burst.step, burst.steps,
         )  # fmt: skip
         now = world.state.worlds[0].time + burst.clock
         is_settled = follow(burst, world, place, sight, now)

@@ -83,7 +83,8 @@ def localize(
         )  # fmt: skip
     else:
         count = correct(belief, place.numbers, sight.field, sight.place, beams, ranges, stamp)
-        reckoned[:] = belief[0].reckoned
+        for axis in range(3):
+            reckoned[axis] = belief[0].reckoned[axis]
     calibrate(belief)
     if belief[0].calibration.is_lidar_due or not is_calm(belief, place.numbers, now):
         burst.is_left = True

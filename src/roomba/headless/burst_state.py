@@ -71,12 +71,14 @@ BURST: Final = np.dtype(
 
 
 class World(NamedTuple):
-    """The simulated one, of one robot."""
+    """The simulated one, of one robot: of those of ``state`` from ``first`` to before ``last``."""
 
     state: State
     numbers: Rows
     quantiles: NDArray[np.float32]
     buffers: ScanBuffers
+    first: int
+    last: int
 
 
 class PlaceParts(NamedTuple):

@@ -71,4 +71,5 @@ def score_look(
                 scores[row, column] = min(scores[row, column] + 1, MOST)
             elif ended < open_share * (ended + through):
                 scores[row, column] = max(scores[row, column] - 1, -MOST)
-    cells.bounds[:] = NO_BOUNDS
+    for side in range(4):
+        cells.bounds[side] = NO_BOUNDS[side]

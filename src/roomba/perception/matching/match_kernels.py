@@ -209,5 +209,7 @@ def match_in(
         for row in range(3):
             for column in range(3):
                 pose[row] -= solved[row, column] * gradient[column]
-    covariance[:] = solved
+    for row in range(3):
+        for column in range(3):
+            covariance[row, column] = solved[row, column]
     return rounds

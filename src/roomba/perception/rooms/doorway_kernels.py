@@ -225,7 +225,7 @@ def _corners(solid: Mask) -> NDArray[np.int32]:
                 is_side = not (solid[row, column - 1] and solid[row, column + 1])
                 if solid[row, column] and is_end and is_side:
                     if attempt == 1:
-                        corners[count] = row, column
+                        corners[count, 0], corners[count, 1] = row, column
                     count += 1
         if attempt == 0:
             corners = np.empty((count, 2), np.int32)

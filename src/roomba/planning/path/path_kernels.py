@@ -57,7 +57,9 @@ def _look(work: Work, x: int, y: int, direction: int, low: float, high: float) -
             offer_goal(work, root, cost + math.hypot(work.ends[2] - x, away))
     seen_left, seen_right = max(float(left), low), min(float(right), high)
     if seen_left <= seen_right + EPSILON:
-        add_fan(work, root, x, y, cost, y + direction, direction, seen_left, seen_right)
+        add_fan(
+            work, root, float(x), float(y), cost, y + direction, direction, seen_left, seen_right
+        )
 
 
 @inner_part
@@ -120,8 +122,8 @@ def _expand_start(work: Work) -> None:
         right += 1
     if work.state[GOAL_SQUARE] == strip and left <= work.ends[2] <= right:
         offer_goal(work, START, math.hypot(work.ends[2] - x, work.ends[3] - y))
-    add_fan(work, START, x, y, 0.0, strip, -1, left, right)
-    add_fan(work, START, x, y, 0.0, strip + 1, 1, left, right)
+    for up in range(2):
+        add_fan(work, int(START), x, y, 0.0, strip + up, 2 * up - 1, float(left), float(right))
 
 
 @entry
@@ -145,7 +147,7 @@ def search(
     if inside:
         _expand_start(work)
     for n in range(entries.size):
-        offer_root(work, entries[n] % columns, entries[n] // columns, START, entry_legs[n])
+        offer_root(work, entries[n] % columns, entries[n] // columns, int(START), entry_legs[n])
     outcome = NO_PATH
     # One expansion adds at most a fan and a few roots for each column.
     room = 3 * columns + 8

@@ -159,7 +159,9 @@ def match_ends(
     note_correction(belief, prior)
     _note_map_errors(belief, field, place, ends, count)
     pose[2] = wrapped(pose[2])
-    covariance[:] = after
+    for row in range(3):
+        for column in range(3):
+            covariance[row, column] = after[row, column]
 
 
 @allocating_part
@@ -214,7 +216,7 @@ def judge_ends(
     belief, known = beliefs[0], numbers[0]
     pose, fit = belief.pose, belief.fit
     counts = belief.counts
-    judge(field, place, ends, count, pose, mount, _STRIDE, counts, lanes)
+    judge(field, place, ends, count, pose, mount, int(_STRIDE), counts, lanes)
     looked_at = max(counts[LOOKED_AT], 1.0)
     fit[AGREE], fit[SHORT] = counts[AGREEING] / looked_at, counts[ALL_SHORT] / looked_at
     fit[THROUGH], fit[EVIDENCE] = counts[ALL_THROUGH] / looked_at, counts[ALL_EVIDENCE]

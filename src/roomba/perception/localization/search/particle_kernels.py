@@ -114,7 +114,8 @@ def resample(particles: Particles, weights: Floats, start: float, chosen: Partic
         while sum_of < wanted and at < weights.size - 1:
             at += 1
             sum_of += weights[at]
-        chosen[index, :3] = particles[at, :3]
+        for axis in range(3):
+            chosen[index, axis] = particles[at, axis]
         chosen[index, 3] = 0.0
 
 

@@ -36,6 +36,8 @@ _APART: Final = 25
 _BETWEEN: Final = 12
 """Keyframes; groups that are nearer to each other in time say the same."""
 _ROUNDS: Final = 5
+_REACH: Final = 1
+"""Cells of surfels."""
 _POINTS: Final = 120
 """Of a keyframe, about so many are matched: neighbouring beams err alike."""
 _LOOSE: Final = (0.2**2, 0.2**2, 0.1**2)
@@ -158,8 +160,8 @@ def _match(
         pose[axis] = thought[axis]
     stride = max(1, len(points) // _POINTS)
     is_solved = align(
-        surfels, points, len(points), stride, 1, thought, covariance, tolerances, _ROUNDS, pose,
-        gained, counts, work,
+        surfels, points, len(points), stride, int(_REACH), thought, covariance, tolerances,
+        int(_ROUNDS), pose, gained, counts, work,
     )  # fmt: skip
     if not (is_solved and math.isfinite(pose[0] + pose[1] + pose[2])):
         return False

@@ -218,7 +218,7 @@ def _match(
     tolerances = Tolerances(scales, follower.variance, in_plane(noise))
     stride = _STRIDE if count >= _MANY else 1
     is_solved = align(
-        surfels, points, count, stride, reach, prior, covariance, tolerances, _ROUNDS, pose,
+        surfels, points, count, stride, reach, prior, covariance, tolerances, int(_ROUNDS), pose,
         information, counts, work[15:],
     )  # fmt: skip
     is_solved = is_solved and math.isfinite(pose[0] + pose[1] + pose[2])

@@ -137,7 +137,9 @@ def align(
         for row in range(3):
             for column in range(3):
                 pose[row] -= solved[row, column] * gradient[column]
-    covariance[:] = solved
+    for row in range(3):
+        for column in range(3):
+            covariance[row, column] = solved[row, column]
     return True
 
 

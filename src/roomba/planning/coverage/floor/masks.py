@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.compilation import allocating_entry, entry
+from roomba.raster.growing import with_room
 from roomba.raster.regions import Mask
 
 _TILE = 32
@@ -110,9 +111,7 @@ def filled_from(mask: Mask, row: int, column: int) -> Mask:
         while last < columns - 1 and mask[row, last + 1] and not filled[row, last + 1]:
             last += 1
         if size + 2 * (last - first + 1) > len(stack):
-            larger = np.empty((2 * len(stack) + 2 * columns, 2), np.int32)
-            larger[:size] = stack[:size]
-            stack = larger
+            stack = with_room(stack, size, 2 * len(stack) + 2 * columns)
         for at in range(first, last + 1):
             filled[row, at] = True
         for beside in (row - 1, row + 1):

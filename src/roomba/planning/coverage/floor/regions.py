@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from roomba.compilation import allocating_entry, entry
 from roomba.raster.distance import distance_to_nearest
+from roomba.raster.growing import with_room
 from roomba.raster.regions import Labels, Mask, join, numbered_regions, root_of
 
 _BLOCK = 5
@@ -104,9 +105,7 @@ def _runs(floor: Mask, kinds: Labels) -> NDArray[np.int32]:
     size = 0
     for row in range(rows):
         if size + columns > len(runs):
-            larger = np.empty((2 * len(runs) + columns, 4), np.int32)
-            larger[:size] = runs[:size]
-            runs = larger
+            runs = with_room(runs, size, 2 * len(runs) + columns)
         kind = np.int32(-1)
         for at_column in range(kinds.shape[1]):
             here = kinds[row // _BLOCK, at_column]

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from roomba.compilation import allocating_entry, inner_part
 from roomba.planning.coverage.floor.masks import way_fits
+from roomba.raster.growing import with_room
 from roomba.raster.regions import Mask
 
 Chain = NDArray[np.int32]
@@ -54,9 +55,7 @@ def _trace(mask: Mask) -> tuple[Chain, NDArray[np.int64]]:
                     followed[left_y, left_x] = True
                 if size == begin or cells[size - 1, 0] != left_x or cells[size - 1, 1] != left_y:
                     if size == len(cells):
-                        larger = np.empty((2 * size, 2), np.int32)
-                        larger[:size] = cells
-                        cells = larger
+                        cells = with_room(cells, size, 2 * size)
                     cells[size, 0], cells[size, 1] = left_x, left_y
                     size += 1
                 x, y = x + _STEP_X[heading], y + _STEP_Y[heading]

@@ -14,6 +14,7 @@ from roomba.planning.coverage.floor.masks import transposed
 from roomba.planning.coverage.floor.regions import mask_of, regions
 from roomba.planning.coverage.passes.directions import main_directions
 from roomba.planning.coverage.passes.turned_cells import TurnedCells, turned_mask
+from roomba.raster.growing import with_room
 from roomba.raster.regions import Mask
 
 Line = NDArray[np.float64]
@@ -127,9 +128,7 @@ def _runs_by_row(
         if row + radius < rows:
             _look(seen, region[row + radius], row + radius)
         if size + columns > len(runs):
-            larger = np.empty((2 * len(runs) + columns, 3), np.int64)
-            larger[:size] = runs[:size]
-            runs = larger
+            runs = with_room(runs, size, 2 * len(runs) + columns)
         along = floor[top + row, left : left + columns]
         last = -gap - 2
         for column in range(columns):

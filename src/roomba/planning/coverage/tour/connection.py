@@ -79,17 +79,16 @@ def _without_short(fits: Mask, line: Line) -> Line:
     points = line.copy()
     size = 1
     for at in range(1, len(line)):
-        step = line[at] - points[size - 1]
-        short = math.hypot(step[0], step[1]) < _SHORT
-        if short and at < len(line) - 1:
-            x, y = points[size - 1]
-            if way_fits(fits, x, y, line[at + 1, 0], line[at + 1, 1]):
-                continue
+        x, y = points[size - 1, 0], points[size - 1, 1]
+        short = math.hypot(line[at, 0] - x, line[at, 1] - y) < _SHORT
+        is_last = at == len(line) - 1
+        if short and not is_last and way_fits(fits, x, y, line[at + 1, 0], line[at + 1, 1]):
+            continue
         if short and size > 1:
-            x, y = points[size - 2]
+            x, y = points[size - 2, 0], points[size - 2, 1]
             if way_fits(fits, x, y, line[at, 0], line[at, 1]):
                 size -= 1
-        points[size] = line[at]
+        points[size, 0], points[size, 1] = line[at, 0], line[at, 1]
         size += 1
     return points[:size].copy()
 
@@ -98,14 +97,15 @@ def _without_short(fits: Mask, line: Line) -> Line:
 def _without_needless(line: Line) -> Line:
     """Return the line without points that do not bend it."""
     points = np.empty_like(line)
-    points[0] = line[0]
+    points[0, 0], points[0, 1] = line[0, 0], line[0, 1]
     size = 1
     for at in range(1, len(line)):
-        x, y = line[at]
+        x, y = line[at, 0], line[at, 1]
         if math.hypot(x - points[size - 1, 0], y - points[size - 1, 1]) < _SAME:
             continue
         while size > 1:
-            one_x, one_y = points[size - 1] - points[size - 2]
+            one_x = points[size - 1, 0] - points[size - 2, 0]
+            one_y = points[size - 1, 1] - points[size - 2, 1]
             two_x, two_y = x - points[size - 2, 0], y - points[size - 2, 1]
             ahead = (x - points[size - 1, 0]) * one_x + (y - points[size - 1, 1]) * one_y > 0.0
             aside = abs(one_x * two_y - one_y * two_x)

@@ -173,8 +173,10 @@ def _add_turns(costs: Costs) -> None:
                 cost = costs.costs[one, k] + costs.turning * turns_between(costs, one, other)
                 costs.costs[one, k] = note_pair(costs, one, other, cost)
         order = np.argsort(costs.costs[one], kind="mergesort")
-        costs.nearest[one] = costs.nearest[one][order]
-        costs.costs[one] = costs.costs[one][order]
+        near, cost_of_near = costs.nearest[one].copy(), costs.costs[one].copy()
+        for k in range(most):
+            costs.nearest[one, k] = near[order[k]]
+            costs.costs[one, k] = cost_of_near[order[k]]
 
 
 @entry

@@ -9,8 +9,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
+from roomba.compilation import allocating_entry, inner_part
 from roomba.planning.coverage.tour.costs import Costs, Tour, cost_of, note_pair, turns_between
 from roomba.planning.coverage.tour.net import Net
 from roomba.planning.coverage.tour.ways import way_between
@@ -19,7 +19,7 @@ _OFF = 1.0
 """cells; a guess that is off by less stays."""
 
 
-@njit(cache=True, nogil=True)
+@allocating_entry
 def guesses_measured(net: Net, costs: Costs, tour: Tour) -> int:
     """Note in ``costs`` what the guessed connections of a tour truly cost.
 
@@ -48,7 +48,7 @@ def guesses_measured(net: Net, costs: Costs, tour: Tour) -> int:
     return more
 
 
-@njit(cache=True, nogil=True)
+@inner_part
 def _was_searched(costs: Costs, one: int, other: int) -> bool:
     """Whether one of two ends is among those near the other."""
     for k in range(costs.nearest.shape[1]):

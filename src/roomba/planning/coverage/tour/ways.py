@@ -101,9 +101,10 @@ def taut(fits: Mask, way: Line) -> Line:
         # New bends halfway along the legs next to each bend let it slide towards its obstacle.
         finer = np.empty((2 * len(line) - 1, 2))
         for at in range(len(line)):
-            finer[2 * at] = line[at]
-            if at > 0:
-                finer[2 * at - 1] = (line[at - 1] + line[at]) / 2
+            for axis in range(2):
+                finer[2 * at, axis] = line[at, axis]
+                if at > 0:
+                    finer[2 * at - 1, axis] = (line[at - 1, axis] + line[at, axis]) / 2
         for _ in range(3):
             for at in range(1, len(finer) - 1):
                 _pull(fits, finer, at)
@@ -147,14 +148,14 @@ def _pull(fits: Mask, line: Line, at: int) -> None:
 def _shortcut(fits: Mask, way: Line) -> Line:
     """Return the way without the bends that can be left out, farthest view first."""
     line = np.empty_like(way)
-    line[0] = way[0]
+    line[0, 0], line[0, 1] = way[0, 0], way[0, 1]
     size = 1
     at = 0
     while at < len(way) - 1:
         to = len(way) - 1
         while to > at + 1 and not way_fits(fits, way[at, 0], way[at, 1], way[to, 0], way[to, 1]):
             to -= 1
-        line[size] = way[to]
+        line[size, 0], line[size, 1] = way[to, 0], way[to, 1]
         size += 1
         at = to
     return line[:size].copy()
