@@ -44,6 +44,27 @@ class FanLevel(Enum):
     STRONG = "strong"
 
 
+class CarpetWay(Enum):
+    """What is done on carpets."""
+
+    BOOST = "boost"
+    """The fan at its strongest, unless it was asked to be quiet."""
+    SAME = "as elsewhere"
+    AVOID = "avoid"
+    """Those that are drawn on the map are not cleaned."""
+
+
+class EdgeOrder(Enum):
+    """When the strip along walls and furniture is cleaned."""
+
+    ANY = "any"
+    """Where that makes the way shortest."""
+    FIRST = "first"
+    """Before the rest of the floor, room by room."""
+    LAST = "last"
+    """After it."""
+
+
 @dataclass(frozen=True, slots=True)
 class RoomWay:
     """How one of the rooms of a clean is cleaned: how often, and how strongly it sucks."""

@@ -120,6 +120,7 @@ TESTED_BY: dict[str, tuple[str, str]] = {
     "roomba/mission/driving/progress_kernels": ("unit/mission/driving/test_path_driver.py", PART),
     "roomba/mission/inputs/senses": ("unit/mission/test_mission.py", VALUES),
     "roomba/mission/phases/cleaning": ("unit/mission/phases/test_phases.py", "one of the phases"),
+    "roomba/mission/phases/carpet_kernels": ("unit/mission/phases/test_carpet.py", PART),
     "roomba/mission/phases/dust_bin_kernels": ("unit/mission/phases/test_dust_bin.py", PART),
     "roomba/mission/phases/step": ("unit/mission/phases/test_phases.py", VALUES),
     "roomba/mission/steady": ("unit/headless/test_burst.py", MISSION),

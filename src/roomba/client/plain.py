@@ -39,6 +39,7 @@ def state_of(view: RobotView) -> Json:
             "battery_seconds": known(view.battery_seconds),
             "charges": view.charges,
             "queue": vacuum.queue,
+            "is_on_carpet": vacuum.is_on_carpet,
         },
         "top_speed": known(view.top_speed),
         "scan": (view.scan * 100.0).round().astype(int).ravel().tolist(),

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from roomba.errors import RoombaError
 from roomba.time_spent import NOT_COUNTED, TimeSpent
-from roomba.vocabulary import CleanMode, FanLevel, RoomDirt, RoomWay
+from roomba.vocabulary import CarpetWay, CleanMode, EdgeOrder, FanLevel, RoomDirt, RoomWay
 
 
 class RobotUnavailableError(RoombaError):
@@ -253,6 +253,7 @@ class VacuumSnapshot:
     seconds_to_go: float
     battery: float
     queue: tuple[str, ...] = ()
+    is_on_carpet: bool = False
 
 
 class RobotClient(Protocol):
@@ -293,6 +294,8 @@ class RobotClient(Protocol):
         passes: int = 1,
         fan: FanLevel = FanLevel.STANDARD,
         each: Sequence[RoomWay] = (),
+        carpets: CarpetWay = CarpetWay.BOOST,
+        edges: EdgeOrder = EdgeOrder.ANY,
     ) -> CleanHandle:
         """Start cleaning; another clean, or a way to the station, ends.
 

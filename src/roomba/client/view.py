@@ -18,7 +18,9 @@ from roomba.vocabulary import (
     MOST_CORNERS,
     MOST_PASSES,
     MOST_ZONES,
+    CarpetWay,
     CleanMode,
+    EdgeOrder,
     FanLevel,
     RoomWay,
 )
@@ -211,6 +213,8 @@ class PageLimits:
     each_room: bool = True
     modes: tuple[str, ...] = tuple(mode.value for mode in CleanMode)
     fans: tuple[str, ...] = tuple(level.value for level in FanLevel)
+    carpets: tuple[str, ...] = tuple(way.value for way in CarpetWay)
+    edges: tuple[str, ...] = tuple(order.value for order in EdgeOrder)
     camera_angles: tuple[float, ...] = ()
     play: tuple[str, ...] = ()
 
@@ -227,6 +231,8 @@ class CleanOrder:
     passes: int = 1
     fan: str = "standard"
     each: tuple[RoomWay, ...] = ()
+    carpets: str = CarpetWay.BOOST.value
+    edges: str = EdgeOrder.ANY.value
 
 
 def known_cells(occupancy: OccupancyMap) -> NDArray[np.uint8]:

@@ -77,11 +77,20 @@ class BodyConfig(Frozen):
 
 
 class BrushConfig(Frozen):
-    """Brushes and bin: the cleaned width, m, the duty at the start, 0..1, and the bin, g."""
+    """Brushes and bin: the cleaned width, m, the duty at the start, 0..1, and the bin, g.
+
+    The brush's motor takes ``carpet_current`` A and more on carpet, less than ``floor_current`` off
+    it, in a mean in which the newest current has ``current_share``.
+    """
 
     width: Positive = 0.20
     duty: Ratio = 1.0
     bin_capacity: Positive = 100.0
+    carpet_current: Positive = 0.33
+    floor_current: Positive = 0.29
+    current_share: Ratio = 0.3
+
+    in_order: ClassVar[tuple[str, ...]] = ("floor_current <= carpet_current",)
 
 
 class FanConfig(Frozen):

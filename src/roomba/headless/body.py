@@ -107,4 +107,5 @@ def readings_of(seen: Observation, scan: ScanReading | None) -> Readings:
         Battery(battery.level, battery.capacity, battery.is_docked),
         seen.grains,
         seen.in_bin,
+        seen.brush_current,
     )

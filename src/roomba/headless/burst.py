@@ -191,6 +191,7 @@ class Burst:
             dirt.way,
             dirt.place,
             mission.dust,
+            mission.carpet.rows,
         )
 
     # ---------------------------------------------------------------- handing back

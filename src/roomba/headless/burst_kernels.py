@@ -19,6 +19,7 @@ from roomba.headless.burst_place_kernels import believed, follow
 from roomba.headless.burst_state import Drive, Floats, Floor, PlaceParts, Rows, Sight, World
 from roomba.headless.rows import GYRO, TIME
 from roomba.mission.driving.progress_kernels import along_of, mark_progress, off_path
+from roomba.mission.phases.carpet_kernels import changes_floor, note_current
 from roomba.mission.phases.dust_bin_kernels import note_dust
 from roomba.perception.swept.coverage_kernels import sweep, swept_from
 from roomba.perception.swept.dirt_map import note_dirt
@@ -43,8 +44,10 @@ def run(
     ticks = 0
     while ticks < rows.shape[0]:
         now = world.state.worlds[0].time + burst.clock
-        if comes_up(burst, robot, drive, sight.things, x, y, now) or may_be_full(
-            burst, robot, floor
+        if (
+            comes_up(burst, robot, drive, sight.things, x, y, now)
+            or may_be_full(burst, robot, floor)
+            or changes_floor(floor.carpet, robot.brush_current)
         ):
             break
         linear, angular, is_done = wanted(burst, drive, x, y, theta)
@@ -134,6 +137,7 @@ def wanted(burst: Any, drive: Drive, x: float, y: float, theta: float) -> tuple[
 @inner_part
 def account(burst: Any, robot: Any, floor: Floor, now: float, x: float, y: float) -> None:
     """Note the way since the last tick began, and what floor was cleaned on it."""
+    note_current(floor.carpet, robot.brush_current)
     way = math.hypot(x - burst.last[1], y - burst.last[2])
     burst.way += way
     if burst.sweeps:

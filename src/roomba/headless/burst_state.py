@@ -125,3 +125,4 @@ class Floor(NamedTuple):
     way: NDArray[np.float32]
     dirt_place: Floats
     dust: Rows
+    carpet: Rows

@@ -255,6 +255,8 @@ def clean_order_of(order: PlannedOrder) -> CleanOrder:
         in_order=not order.only_due,
         passes=order.passes,
         fan=order.fan.value,
+        carpets=order.carpets.value,
+        edges=order.edges.value,
     )
 
 

@@ -36,6 +36,7 @@ from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.mission.inputs.senses import Senses
 from roomba.mission.phases import phases
 from roomba.mission.phases.at_station import AtStation
+from roomba.mission.phases.carpet import CarpetSense
 from roomba.mission.phases.cleaning import CleanPhase
 from roomba.mission.phases.job import Job
 from roomba.mission.phases.machine import Event, MissionState, Phase
@@ -88,6 +89,7 @@ class Mission:
         self.ledger = self._job.ledger
         self._drives = Drives(context, robot, config.driving, self.obstacles)
         self.trail = self._drives.trail
+        self.carpet = CarpetSense(robot.brush)
         self._retries = RetryPolicy(config.driving.waiting)
         self._at_station = AtStation(docking, robot)
         self._monitor = Monitor(robot.walk, self._drives, self.ledger, senses)
@@ -248,8 +250,16 @@ class Mission:
         if not 0.0 <= senses.now - self._last.now <= LONGEST_TICK:
             # A clock that was set changes when all this began.
             return None
+        if self.context.zones.has_carpets:
+            # Where a drawn carpet ends is looked at tick by tick.
+            return None
         limit = self.speed_limit(senses)
         return self._steady.after(senses, self.state.phase, limit, sweeps=self.sweeps)
+
+    @property
+    def is_on_carpet(self) -> bool:
+        """Whether it is on carpet, by the brush's motor or by what is drawn on the map."""
+        return self.carpet.is_on or self.context.is_on_carpet(*self.last_place)
 
     @property
     def last(self) -> Senses:
@@ -290,6 +300,7 @@ class Mission:
 
     def tick(self, senses: Senses) -> MissionStep:
         """Return what is wanted now."""
+        self.carpet.note(senses.brush_current)
         self._job.account(senses, self._last, sweeps=self.sweeps)
         self._count_time(senses, np.array([[senses.pose.x, senses.pose.y]]))
         self._notice(senses)

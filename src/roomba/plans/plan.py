@@ -10,7 +10,15 @@ from pydantic import Field, field_validator, model_validator
 
 from roomba.configuration.frozen import Frozen
 from roomba.plans.days import require_days
-from roomba.vocabulary import LONGEST_NAME, MOST_PASSES, CleanMode, FanLevel, fault_of_name
+from roomba.vocabulary import (
+    LONGEST_NAME,
+    MOST_PASSES,
+    CarpetWay,
+    CleanMode,
+    EdgeOrder,
+    FanLevel,
+    fault_of_name,
+)
 
 MOST_PLANS: Final = 50
 """Plans, and presets, of a household."""
@@ -37,6 +45,8 @@ class PlannedOrder(Frozen):
     """In this order; for ROOMS alone."""
     passes: int = Field(default=1, ge=1, le=MOST_PASSES)
     fan: FanLevel = FanLevel.STANDARD
+    carpets: CarpetWay = CarpetWay.BOOST
+    edges: EdgeOrder = EdgeOrder.ANY
     only_due: bool = False
     """Of all rooms, or of these, those alone that are due by their dirt."""
 

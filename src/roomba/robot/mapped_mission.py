@@ -13,7 +13,7 @@ from roomba.mission.phases.machine import Phase
 from roomba.perception.matching.surface_field import SurfaceField
 from roomba.perception.swept.dirt_map import DirtMap
 from roomba.robot.lookout import Lookout
-from roomba.vocabulary import FanLevel
+from roomba.vocabulary import CarpetWay, FanLevel
 
 
 class MappedMission:
@@ -54,9 +54,11 @@ class MappedMission:
 
 
 def fan_of(mission: Mission) -> FanLevel | None:
-    """Return the fan's level that a clean asks for; None without one."""
+    """Return the fan's level that a clean asks for where the robot is; None without one."""
     cleaning = mission.cleaning
     if cleaning is None or mission.state.phase is Phase.ERROR:
         return None
-    stage = cleaning.stage
-    return cleaning.request.way_of("" if stage is None else stage.name).fan
+    stage, request = cleaning.stage, cleaning.request
+    asked = request.way_of("" if stage is None else stage.name).fan
+    boosts = request.carpets is CarpetWay.BOOST and asked is not FanLevel.QUIET
+    return FanLevel.STRONG if boosts and mission.is_on_carpet else asked

@@ -54,7 +54,8 @@ class Readings:
 
     ``odometry`` and ``twist`` (m/s, rad/s) are by the wheels, ``turning`` (rad/s) by the gyro, None
     without one; ``scan`` is the newest one if it is new. ``grains`` is what the dirt sensor counts,
-    1/s, ``in_bin`` what was picked up, g.
+    1/s, ``in_bin`` what was picked up, g, ``brush_current`` what the brush's motor takes, A; 0
+    where it is not told.
     """
 
     time: float
@@ -71,6 +72,7 @@ class Readings:
     battery: Battery = _FULL
     grains: float = 0.0
     in_bin: float = 0.0
+    brush_current: float = 0.0
 
     @property
     def bumps(self) -> bool:
@@ -109,4 +111,5 @@ def senses_of(readings: Readings, pose: Pose, knowledge: Knowledge, trouble: str
         readings.battery,
         readings.grains,
         readings.in_bin,
+        readings.brush_current,
     )

@@ -17,6 +17,8 @@ def lines_of(state: dict[str, Any]) -> list[tuple[str, str]]:
         does.append(vacuum["phase"])
     if vacuum["room"]:
         does.append(f"in {vacuum['room']}")
+    if vacuum.get("is_on_carpet"):
+        does.append("on carpet")
     lines = [("state", ", ".join(does)), ("battery", percent(_number(vacuum["battery"])))]
     if vacuum["wanted"] > 0.0:
         cleaned = [area_text(vacuum["covered"], vacuum["wanted"])]

@@ -35,7 +35,7 @@ from roomba.client.protocol import (
     RobotUnavailableError,
     VacuumSnapshot,
 )
-from roomba.vocabulary import CleanMode, FanLevel, RoomWay
+from roomba.vocabulary import CarpetWay, CleanMode, EdgeOrder, FanLevel, RoomWay
 from roomba_ros.client.ros_errands import RosClean, RosDocking, RosExploring, Server
 from roomba_ros.convert.client import room_names_of, vacuum_of
 from roomba_ros.runtime.calls import call_service
@@ -96,6 +96,8 @@ class RosVacuum:
         passes: int = 1,
         fan: FanLevel = FanLevel.STANDARD,
         each: Sequence[RoomWay] = (),
+        carpets: CarpetWay = CarpetWay.BOOST,
+        edges: EdgeOrder = EdgeOrder.ANY,
     ) -> CleanHandle:
         """Send the goal; raises RobotUnavailableError when no action server answers in time."""
         for often in (passes, *(way.passes for way in each)):
@@ -111,6 +113,8 @@ class RosVacuum:
             fan=getattr(CleanGoal, fan.name),
             room_passes=[way.passes for way in each],
             room_fans=[getattr(CleanGoal, way.fan.name) for way in each],
+            carpets=getattr(CleanGoal, f"CARPETS_{carpets.name}"),
+            edges=getattr(CleanGoal, f"EDGES_{edges.name}"),
         )
         return RosClean(self._cleans, goal)
 

@@ -40,6 +40,7 @@ def vacuum_of(message: VacuumState) -> VacuumSnapshot:
         seconds_to_go=message.seconds_to_go,
         battery=math.nan if message.battery == BATTERY_NOT_HEARD else message.battery,
         queue=tuple(message.queue),
+        is_on_carpet=message.on_carpet,
     )
 
 

@@ -46,7 +46,7 @@ from roomba.mission.inputs.senses import Battery
 from roomba.perception.rooms.zones import WALL_WIDTH, Zone, ZoneKind, Zones, ZonesError
 from roomba.perception.swept.coverage_bits import SWEPT, WANTED
 from roomba.time_spent import NAMES, NOT_COUNTED, TimeSpent
-from roomba.vocabulary import CleanMode, FanLevel, RoomDirt, RoomWay
+from roomba.vocabulary import CarpetWay, CleanMode, EdgeOrder, FanLevel, RoomDirt, RoomWay
 from roomba_ros.convert.common import header, map_message, quaternion_of
 from roomba_ros.convert.errors import MessageError, require_finite
 
@@ -54,6 +54,8 @@ MODES = {getattr(CleanGoal, mode.name): mode for mode in CleanMode}
 FANS = {getattr(CleanGoal, level.name): level for level in FanLevel}
 OUTCOMES = {outcome: getattr(CleanResultMessage, outcome.name) for outcome in CleanOutcome}
 REASONS = {reason: getattr(MissedArea, reason.name) for reason in MissReason}
+CARPETS = {getattr(CleanGoal, f"CARPETS_{way.name}"): way for way in CarpetWay}
+EDGES = {getattr(CleanGoal, f"EDGES_{order.name}"): order for order in EdgeOrder}
 KINDS = {getattr(ZoneMessage, kind.name): kind for kind in ZoneKind}
 
 _RED = 8
@@ -66,6 +68,8 @@ _LEAST_CORNERS = 3
 """Of an outline that encloses something."""
 _DRAWN = 0.003
 """m; a path that is shown is as near to that which is driven."""
+_BARRED, _CARPET = (0.9, 0.1, 0.1, 0.9), (0.5, 0.45, 0.4, 0.9)
+"""Red, green, blue and opacity of zones."""
 _OUTLINE = 0.03
 """m; width of lines around zones."""
 
@@ -84,6 +88,9 @@ def request_of(goal: CleanGoal) -> CleanRequest:
         raise CleanGoalError(f"expected a mode from 0 to {len(MODES) - 1}, got {goal.mode}")
     if goal.fan not in FANS:
         raise CleanGoalError(f"expected a fan level from 0 to {len(FANS) - 1}, got {goal.fan}")
+    for what, code, known in (("carpets", goal.carpets, CARPETS), ("edges", goal.edges, EDGES)):
+        if code not in known:
+            raise CleanGoalError(f"expected {what} from 0 to {len(known) - 1}, got {code}")
     mode, zones = MODES[goal.mode], tuple(map(_corners, goal.zones))
     spot = None if goal.spot_is_here else (goal.spot.x, goal.spot.y)
     if not all(map(math.isfinite, spot or ())):
@@ -98,6 +105,8 @@ def request_of(goal: CleanGoal) -> CleanRequest:
             FANS[goal.fan],
             goal.in_order,
             ways_of(goal),
+            CARPETS[goal.carpets],
+            EDGES[goal.edges],
         )
     except CleanRefusedError as error:
         raise CleanGoalError(str(error)) from error
@@ -270,10 +279,11 @@ def zones_markers(now: float, zones: Zones, frame_id: str) -> MarkerArray:
     """Return zones to be drawn by RViz; what was drawn before is taken away."""
     markers = [Marker(header=header(now, frame_id), action=Marker.DELETEALL)]
     for number, zone in enumerate(zones.all):
-        is_area = zone.kind is ZoneKind.NO_GO
+        is_area = zone.kind.is_area
         marker = Marker(header=header(now, frame_id), ns="zones", id=number, type=Marker.LINE_STRIP)
         marker.pose.orientation = quaternion_of(0.0)
-        marker.color = ColorRGBA(0.9, 0.1, 0.1, 0.9)
+        is_carpet = zone.kind is ZoneKind.CARPET
+        marker.color = ColorRGBA(*(_CARPET if is_carpet else _BARRED))
         marker.scale = Vector3(_OUTLINE if is_area else WALL_WIDTH, 0.0, 0.0)
         closed = (*zone.points, zone.points[0]) if is_area else zone.points
         marker.points = [Point(x, y, 0.02) for x, y in closed]

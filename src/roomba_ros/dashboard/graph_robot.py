@@ -35,7 +35,7 @@ from roomba.client.protocol import (
 )
 from roomba.configuration.robot import RobotConfig
 from roomba.geometry import STANDSTILL, Pose, Twist
-from roomba.vocabulary import CleanMode, FanLevel, RoomWay
+from roomba.vocabulary import CarpetWay, CleanMode, EdgeOrder, FanLevel, RoomWay
 from roomba_ros.client.ros_client import RosCamera, RosRobot
 from roomba_ros.convert.common import twist_message
 from roomba_ros.convert.page import zone_message_of
@@ -181,6 +181,8 @@ class GraphRobot(GraphMaps):
             passes=order.passes,
             fan=FanLevel(order.fan),
             each=order.each,
+            carpets=CarpetWay(order.carpets),
+            edges=EdgeOrder(order.edges),
         )
         _require_taken(errand)
 

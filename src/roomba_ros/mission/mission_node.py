@@ -42,7 +42,17 @@ from roomba_ros.senses.senses import HeardSenses
 NAME = "mission_node"
 _NEEDED = ("odom", "battery_state", "dock_status")
 """The body's topics without which nothing can be begun."""
-_HEARD = (*_NEEDED, "scan", "bumper", "cliff", "wheel_drop", "ir_omni", "dirt_detect", "bin_level")
+_HEARD = (
+    *_NEEDED,
+    "scan",
+    "bumper",
+    "cliff",
+    "wheel_drop",
+    "ir_omni",
+    "dirt_detect",
+    "bin_level",
+    "brush_current",
+)
 _SILENT = "no message tells its place; is position_pub_node running?"
 
 
@@ -52,7 +62,7 @@ class MissionNode:
     Publishes, subscribes and serves what :class:`HeardSenses`, :class:`HomeTopics`,
     :class:`MissionOrders`, :class:`MissionDrive` and :class:`MissionTopics` say. Of the body it
     hears ``odom``, ``scan``, ``bumper``, ``cliff``, ``wheel_drop``, ``battery_state``,
-    ``dock_status``, ``ir_omni``, ``dirt_detect`` and ``bin_level``.
+    ``dock_status``, ``ir_omni``, ``dirt_detect``, ``bin_level`` and ``brush_current``.
     Parameters: ``robot_config``, ``mission_config``, ``docking_config``, ``things_config``,
     ``nodes_config`` (paths of configuration files; by default the shipped ones),
     ``~memory_folder`` (default: roomba_robot/mission in the ROS home folder, and in it a folder for

@@ -83,7 +83,9 @@ class MissionTopics:
         self._show_plan(now, mission)
         self._show_maps(now, mission)
         own = mission.message or self._background.trouble
-        if not self._is_due(now, (mission.state, mission.queue, self._trouble, own)):
+        if not self._is_due(
+            now, (mission.state, mission.queue, mission.is_on_carpet, self._trouble, own)
+        ):
             return None
         self._newest = (state_of(now, mission, senses), own)
         return self._tell_newest(*self._newest)
@@ -151,6 +153,7 @@ def state_of(now: float, mission: Mission, senses: Senses) -> VacuumState:
         message=mission.message,
         battery=senses.battery.level,
         queue=mission.queue,
+        on_carpet=mission.is_on_carpet,
     )
     if senses.knowledge.is_usable:
         state.room = mission.context.room_at(senses.pose.x, senses.pose.y)

@@ -60,8 +60,9 @@ class BodyTopics:
 
     Subscribes: those of ``topics``, out of ``odom``, ``imu``, ``bumper``, ``cliff``,
     ``wheel_drop``, ``battery_state``, ``dock_status``, ``ir_omni``, ``dirt_detect``, ``bin_level``,
-    and ``scan``, with ``/tf_static`` (where the lidar is mounted) and ``lidar_correction`` (by what
-    that is moved, as the node that finds the robot's place measured it).
+    ``brush_current`` and ``scan``, with ``/tf_static`` (where the lidar is mounted) and
+    ``lidar_correction`` (by what that is moved, as the node that finds the robot's place measured
+    it).
     """
 
     def __init__(self, config: RobotConfig, *topics: str) -> None:
@@ -92,6 +93,7 @@ class BodyTopics:
             "ir_omni": (UInt16, lambda told: beams_of(told.data), self._on_beams),
             "dirt_detect": (UInt16, data_of, lambda count: self._note(grains=float(count))),
             "bin_level": (Float32, number_of, self._on_bin),
+            "brush_current": (Float32, number_of, lambda told: self._note(brush_current=told)),
             "lidar_correction": (Pose2D, correction_of, self._on_correction),
         }
         if "scan" in self._topics:

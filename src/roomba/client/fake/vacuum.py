@@ -21,7 +21,7 @@ from roomba.client.protocol import (
     RobotUnavailableError,
     VacuumSnapshot,
 )
-from roomba.vocabulary import CleanMode, FanLevel, RoomWay
+from roomba.vocabulary import CarpetWay, CleanMode, EdgeOrder, FanLevel, RoomWay
 
 if TYPE_CHECKING:
     from roomba.client.clock import Clock
@@ -73,6 +73,8 @@ class FakeVacuum:
         passes: int = 1,
         fan: FanLevel = FanLevel.STANDARD,
         each: Sequence[RoomWay] = (),
+        carpets: CarpetWay = CarpetWay.BOOST,
+        edges: EdgeOrder = EdgeOrder.ANY,
     ) -> FakeClean:
         """Start the next scripted clean; what was under way ends."""
         script = self._next_script()

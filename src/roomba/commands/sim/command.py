@@ -201,6 +201,10 @@ def _again(trial: Trial) -> str:
         words += ["--passes", str(request.passes)]
     if request.fan is not usual.request.fan:
         words += ["--fan", request.fan.name.lower()]
+    if request.carpets is not usual.request.carpets:
+        words += ["--carpets", request.carpets.value.replace(" ", "-")]
+    if request.edges is not usual.request.edges:
+        words += ["--edges", request.edges.value]
     return " ".join(words)
 
 

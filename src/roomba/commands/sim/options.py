@@ -29,7 +29,7 @@ from roomba.commands.trials.options import (
 )
 from roomba.commands.trials.trial import MOST_THINGS, RANDOM, Trial
 from roomba.mission.cleaning.request import CleanRefusedError, CleanRequest
-from roomba.vocabulary import MOST_PASSES, CleanMode, FanLevel
+from roomba.vocabulary import MOST_PASSES, CarpetWay, CleanMode, EdgeOrder, FanLevel
 
 PROGRAM: Final = spelled("sim")
 MOST_HOMES: Final = 100_000
@@ -129,6 +129,10 @@ def _add_request(parser: argparse.ArgumentParser) -> None:
     what.add_argument("--passes", type=whole(1, MOST_PASSES), default=1, metavar="N")
     levels = tuple(level.name.lower() for level in FanLevel)
     what.add_argument("--fan", type=choice(*levels), default="standard", metavar="|".join(levels))
+    ways = tuple(way.value.replace(" ", "-") for way in CarpetWay)
+    what.add_argument("--carpets", type=choice(*ways), default="boost", metavar="|".join(ways))
+    orders = tuple(order.value for order in EdgeOrder)
+    what.add_argument("--edges", type=choice(*orders), default="any", metavar="|".join(orders))
     what.add_argument(
         "--no-go",
         action="append",
@@ -247,6 +251,8 @@ def _request_of(given: argparse.Namespace) -> CleanRequest:
             passes=given.passes,
             fan=FanLevel[given.fan.upper()],
             in_order=True,
+            carpets=CarpetWay(given.carpets.replace("-", " ")),
+            edges=EdgeOrder(given.edges),
         )
     except CleanRefusedError as error:
         raise UsageError(str(error)) from error

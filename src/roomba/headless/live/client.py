@@ -24,7 +24,7 @@ from roomba.mission.cleaning.request import CleanRequest
 from roomba.mission.phases.machine import Event, Phase
 from roomba.perception.rooms.rooms import Rooms
 from roomba.perception.rooms.zones import Zones
-from roomba.vocabulary import CleanMode, FanLevel, RoomWay
+from roomba.vocabulary import CarpetWay, CleanMode, EdgeOrder, FanLevel, RoomWay
 from roomba.world.simulator import Simulator
 
 _Answer = TypeVar("_Answer")
@@ -342,5 +342,7 @@ def _request_of(order: view.CleanOrder) -> CleanRequest:
             FanLevel[order.fan.upper()],
             order.in_order,
             order.each,
+            CarpetWay(order.carpets),
+            EdgeOrder(order.edges),
         )
     )

@@ -31,7 +31,7 @@ from roomba.headless.live.views import vacuum_snapshot
 from roomba.mission.cleaning.request import CleanRequest
 from roomba.mission.phases.machine import Event
 from roomba.perception.localization.estimate import Knowledge
-from roomba.vocabulary import CleanMode, FanLevel, RoomWay
+from roomba.vocabulary import CarpetWay, CleanMode, EdgeOrder, FanLevel, RoomWay
 
 _AnyErrand = LiveErrand[Any, Any]
 _Begun = TypeVar("_Begun", bound=_AnyErrand)
@@ -84,10 +84,13 @@ class LiveRobotClient:
         passes: int = 1,
         fan: FanLevel = FanLevel.STANDARD,
         each: Sequence[RoomWay] = (),
+        carpets: CarpetWay = CarpetWay.BOOST,
+        edges: EdgeOrder = EdgeOrder.ANY,
     ) -> CleanHandle:
         """Start cleaning."""
         wish = mode, tuple(rooms), tuple(zones), spot, passes, fan, in_order, tuple(each)
-        return self._begin(LiveClean(*self._parts, made(lambda: CleanRequest(*wish))))
+        request = made(lambda: CleanRequest(*wish, carpets, edges))
+        return self._begin(LiveClean(*self._parts, request))
 
     def change_rooms(self, rooms: Sequence[str], each: Sequence[RoomWay] = ()) -> None:
         """Let the clean of rooms under way go on with these."""

@@ -100,6 +100,7 @@ def vacuum_snapshot(robot: Embodied) -> VacuumSnapshot:
         mission.seconds_to_go(),
         robot.now.battery.level,
         mission.queue,
+        mission.is_on_carpet,
     )
 
 

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from roomba.errors import RoombaError
 from roomba.mission.cleaning.request import CleanRequest
-from roomba.vocabulary import CleanMode, FanLevel, RoomWay
+from roomba.vocabulary import CarpetWay, CleanMode, EdgeOrder, FanLevel, RoomWay
 
 VERSION: Final = 4
 Mask = NDArray[np.bool_]
@@ -57,6 +57,8 @@ def request_values(request: CleanRequest) -> Values:
         "fan": request.fan.name,
         "in_order": request.in_order,
         "each": [[way.passes, way.fan.name] for way in request.each],
+        "carpets": request.carpets.name,
+        "edges": request.edges.name,
     }
 
 
@@ -72,4 +74,6 @@ def request_of(values: Values) -> CleanRequest:
         FanLevel[values["fan"]],
         bool(values["in_order"]),
         tuple(RoomWay(int(passes), FanLevel[fan]) for passes, fan in values["each"]),
+        CarpetWay[values["carpets"]],
+        EdgeOrder[values["edges"]],
     )

@@ -12,7 +12,9 @@ from roomba.time_spent import NOT_COUNTED, TimeSpent
 from roomba.vocabulary import (
     MOST_PASSES,
     MOST_ZONES,
+    CarpetWay,
     CleanMode,
+    EdgeOrder,
     FanLevel,
     RoomDirt,
     RoomWay,
@@ -44,6 +46,8 @@ class CleanRequest:
     fan: FanLevel = FanLevel.STANDARD
     in_order: bool = False
     each: tuple[RoomWay, ...] = ()
+    carpets: CarpetWay = CarpetWay.BOOST
+    edges: EdgeOrder = EdgeOrder.ANY
 
     def __post_init__(self) -> None:
         """Check what can be checked without a map. Raises CleanRefusedError."""

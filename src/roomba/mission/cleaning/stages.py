@@ -14,7 +14,7 @@ from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.perception.swept.dirt_map import DirtMap
 from roomba.planning.path.planner import NoPathError
 from roomba.raster.distance import distance_to_nearest
-from roomba.vocabulary import CleanMode
+from roomba.vocabulary import CarpetWay, CleanMode, EdgeOrder
 
 Mask = NDArray[np.bool_]
 
@@ -37,13 +37,29 @@ def stages_of(
     request: CleanRequest, context: PlanningContext, dirt: DirtMap, coverable: Mask, here: Pose
 ) -> list[Stage]:
     """Return the parts of a clean in their order, all passes; raises CleanRefusedError."""
-    once = _parts(request, context, dirt, coverable, here)
+    if request.carpets is CarpetWay.AVOID:
+        coverable = coverable & ~context.carpets
+    once = [
+        part
+        for whole in _parts(request, context, dirt, coverable, here)
+        for part in _by_edges(whole, request.edges, context)
+    ]
     return [
         Stage(part.name, part.floor, again=number > 0)
         for number in range(request.most_passes)
         for part in once
         if number < request.way_of(part.name).passes
     ]
+
+
+def _by_edges(part: Stage, order: EdgeOrder, context: PlanningContext) -> list[Stage]:
+    """Return a part of a clean as one, or its edges and what is off them, in their order."""
+    if order is EdgeOrder.ANY:
+        return [part]
+    edges = edges_of(part.floor, context)
+    both = [Stage(part.name, edges), Stage(part.name, part.floor & ~edges)]
+    ordered = both if order is EdgeOrder.FIRST else both[::-1]
+    return [stage for stage in ordered if stage.floor.any()]
 
 
 def edges_of(floor: Mask, context: PlanningContext) -> Mask:

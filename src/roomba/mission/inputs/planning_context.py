@@ -191,6 +191,15 @@ class PlanningContext:
         nearest = int(np.argmin(np.hypot(x - here[0], y - here[1])))
         return planner.plan(here, (float(x[nearest]), float(y[nearest])), obstacles).points
 
+    @cached_property
+    def carpets(self) -> Mask:
+        """The floor below carpets that are drawn on the map, bool over ``frame``."""
+        return self.fine(self.zones.carpets(self.occupancy.frame))
+
+    def is_on_carpet(self, x: float, y: float) -> bool:
+        """Whether a carpet that is drawn on the map lies at a point, m."""
+        return self.zones.is_carpet_at(x, y)
+
     @property
     def frame(self) -> GridFrame:
         """The fine grid that coverage is counted on."""

@@ -35,7 +35,7 @@ class Senses:
     ``knowledge`` is how well the pose is known, ``trouble`` why not better; ``twist`` is by the
     wheels; ``cliff_left`` tells that the left cliff sensors see no floor; ``lifted`` that wheels
     hang in the air; ``grains`` is what the dirt sensor counts, 1/s; ``in_bin`` what was picked up,
-    g.
+    g; ``brush_current`` what the brush's motor takes, A.
     """
 
     now: float
@@ -52,6 +52,7 @@ class Senses:
     battery: Battery = _FULL
     grains: float = 0.0
     in_bin: float = 0.0
+    brush_current: float = 0.0
 
     @property
     def cliff(self) -> bool:

@@ -1,4 +1,4 @@
-"""Zones that the robot must not enter: no-go areas and virtual walls."""
+"""Zones of a map: no-go areas and virtual walls, which it must not enter, and carpets."""
 
 from __future__ import annotations
 
@@ -37,6 +37,13 @@ class ZoneKind(Enum):
     """An area, given by its corners."""
     WALL = "wall"
     """A virtual wall along a line of points."""
+    CARPET = "carpet"
+    """A carpet, given by its corners: it may be entered."""
+
+    @property
+    def is_area(self) -> bool:
+        """Whether its points are the corners of an area."""
+        return self is not ZoneKind.WALL
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,7 +56,7 @@ class Zone:
 
     def __post_init__(self) -> None:
         """Check the number of points, and that an area encloses floor. Raises ZonesError."""
-        least = 3 if self.kind is ZoneKind.NO_GO else 2
+        least = 3 if self.kind.is_area else 2
         if fault := fault_of_name(self.name):
             raise ZonesError(f"a zone: {fault}; name every zone")
         if not least <= len(self.points) <= MOST_CORNERS:
@@ -63,7 +70,7 @@ class Zone:
         if not shape.is_valid:
             reason = shapely.is_valid_reason(shape)
             raise ZonesError(f"zone {self.name!r}: expected a simple outline, got {reason}")
-        if self.kind is ZoneKind.NO_GO and shape.area < _LEAST_AREA:
+        if self.kind.is_area and shape.area < _LEAST_AREA:
             raise ZonesError(
                 f"zone {self.name!r}: expected {_LEAST_AREA} m2 or more, got {shape.area:.4f} m2"
             )
@@ -71,13 +78,13 @@ class Zone:
     @property
     def shape(self) -> shapely.Geometry:
         """What it covers, m: an area, or a wall with its width."""
-        if self.kind is ZoneKind.NO_GO:
+        if self.kind.is_area:
             return self._outline
         return self._outline.buffer(0.5 * WALL_WIDTH, cap_style="square")
 
     @property
     def _outline(self) -> shapely.Geometry:
-        if self.kind is ZoneKind.NO_GO:
+        if self.kind.is_area:
             return shapely.Polygon(self.points)
         return shapely.LineString(self.points)
 
@@ -147,10 +154,32 @@ class Zones:
 
     def kept_out(self, occupancy: OccupancyMap) -> OccupancyMap:
         """Return a map to plan on: what zones cover is occupied. The map itself stays as it is."""
-        if not self.all:
+        barred = [zone for zone in self.all if zone.kind is not ZoneKind.CARPET]
+        if not barred:
             return occupancy
         values = occupancy.values.copy()
-        for zone in self.all:
+        for zone in barred:
             rows, columns, cells = _touched(zone, occupancy.frame)
             values[rows, columns][cells] = OCCUPIED
         return OccupancyMap(occupancy.frame, values)
+
+    def carpets(self, frame: GridFrame) -> NDArray[np.bool_]:
+        """Return the cells that carpets touch, bool [rows, columns]."""
+        touched = np.zeros(frame.shape, np.bool_)
+        for carpet in self._carpets:
+            touched |= carpet.cells(frame)
+        return touched
+
+    def is_carpet_at(self, x: float, y: float) -> bool:
+        """Whether a carpet lies at a point, m."""
+        here = shapely.Point(x, y)
+        return any(carpet.shape.covers(here) for carpet in self._carpets)
+
+    @property
+    def has_carpets(self) -> bool:
+        """Whether there are carpets among them."""
+        return bool(self._carpets)
+
+    @property
+    def _carpets(self) -> tuple[Zone, ...]:
+        return tuple(zone for zone in self.all if zone.kind is ZoneKind.CARPET)

@@ -56,6 +56,8 @@ class CleanWish(Wish):
     passes: int = Field(default=1, ge=1, le=MOST_PASSES)
     fan: Literal["quiet", "standard", "strong"] = "standard"
     each: list[RoomWish] = Field(default=[], max_length=100)
+    carpets: Literal["boost", "as elsewhere", "avoid"] = "boost"
+    edges: Literal["any", "first", "last"] = "any"
 
 
 def order_of(wish: CleanWish) -> CleanOrder:
@@ -69,6 +71,8 @@ def order_of(wish: CleanWish) -> CleanOrder:
         wish.passes,
         wish.fan,
         _ways_of(wish.each),
+        wish.carpets,
+        wish.edges,
     )
 
 
@@ -101,10 +105,10 @@ class StopWish(Wish):
 
 
 class ZoneWish(Wish):
-    """A zone that the robot must not enter."""
+    """A zone that the robot must not enter, or a carpet."""
 
     name: Name
-    kind: Literal["no-go", "wall"]
+    kind: Literal["no-go", "wall", "carpet"]
     points: list[tuple[Coordinate, Coordinate]] = Field(min_length=2, max_length=MOST_CORNERS)
 
 

@@ -13,7 +13,7 @@ export function headline(link, state) {
   if (!state || link === "reconnecting") return "Connecting again …";
   if (state.replay) return `Recorded: ${headline(link, { ...state, replay: null })}`;
   if (UNREACHED.test(state.vacuum.message) || UNREACHED.test(state.doubt)) return "Cannot reach the robot";
-  const { vacuum } = state, room = vacuum.room ? ` · ${title(vacuum.room)}` : "";
+  const { vacuum } = state, room = (vacuum.room ? ` · ${title(vacuum.room)}` : "") + (vacuum.is_on_carpet ? " · on carpet" : "");
   const togo = vacuum.seconds_to_go > 0 && vacuum.state === "cleaning" ? ` · ${duration(vacuum.seconds_to_go)} to go` : "";
   if (state.truth?.lifted) return "Lifted off the floor";
   switch (vacuum.phase) {
@@ -75,3 +75,8 @@ export function lastRun(report) {
 
 /** What is said of ways to clean that need no more than their name. */
 export const MODES = { whole: "all floor", edges: "edges only", dirtiest: "dirtiest rooms first" };
+/** And of carpets, and of edges. */
+export const CARPETS = { boost: "stronger", "as elsewhere": "as elsewhere", avoid: "left out" };
+export const EDGES = { any: "on the way", first: "first", last: "last" };
+/** What zones are. */
+export const ZONES = { "no-go": "no-go", wall: "virtual wall", carpet: "carpet" };

@@ -24,6 +24,8 @@ KITCHEN = {
     "rooms": ["kitchen"],
     "passes": 2,
     "fan": "quiet",
+    "carpets": "boost",
+    "edges": "any",
     "only_due": False,
 }
 PLAN: dict[str, Any] = {

@@ -121,13 +121,14 @@ function drawName(context, room) {
 }
 
 function drawZone(context, zone) {
-  const colours = palette(), isArea = zone.kind === "no-go", isSelected = get("zone")?.name === zone.name;
+  const colours = palette(), isArea = zone.kind !== "wall", isSelected = get("zone")?.name === zone.name;
+  const isCarpet = zone.kind === "carpet", line = isCarpet ? colours.carpetEdge : colours.warn;
   trace(context, zone.points, isArea);
   if (isArea) {
-    context.fillStyle = colours.warnTint;
+    context.fillStyle = isCarpet ? colours.carpet : colours.warnTint;
     context.fill();
   }
-  dashed(context, colours.warn, isArea ? 2 : 4, isArea ? [6, 4] : []);
+  dashed(context, line, isArea ? 2 : 4, isArea ? [6, 4] : []);
   if (!isSelected) return;
   for (const [x, y] of zone.points) {
     const [px, py] = toScreen(x, y);

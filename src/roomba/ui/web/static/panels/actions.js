@@ -2,7 +2,7 @@
 import { $, offer, put } from "../dom.js";
 import { wish } from "../link.js";
 import { get, on, set } from "../store.js";
-import { MODES } from "../words.js";
+import { CARPETS, EDGES, MODES } from "../words.js";
 
 const STANDS = ["docked", "idle"];
 const STEP = 0.1; // m/s between two top speeds that can be chosen
@@ -33,14 +33,17 @@ export function pauseOrResume() {
 
 /** What of a clean is the same for all ways to begin one; before the limits came, what is usual. */
 export function how() {
-  return { passes: Number($("passes").value) || 1, fan: $("fan").value || "standard" };
+  return {
+    passes: Number($("passes").value) || 1, fan: $("fan").value || "standard",
+    carpets: $("carpets").value || "boost", edges: $("edges").value || "any",
+  };
 }
 
 async function clean() {
   const chosen = get("chosen"), hows = get("hows"), usual = how();
   const order = chosen.length ? { mode: "rooms", rooms: chosen, in_order: true } : { mode: $("mode").value || "whole" };
   if (chosen.some((name) => hows[name]))
-    order.each = chosen.map((name) => ({ ...usual, ...hows[name] }));
+    order.each = chosen.map((name) => ({ passes: usual.passes, fan: usual.fan, ...hows[name] }));
   if (await wish("clean", { ...order, ...usual })) set("chosen", []);
 }
 
@@ -50,6 +53,8 @@ function showLimits() {
   document.querySelector(".how").hidden = false;
   offer($("passes"), numbers(limits.most_passes), $("passes").value || 1);
   offer($("fan"), limits.fans.map((fan) => [fan, fan]), $("fan").value || "standard");
+  offer($("carpets"), limits.carpets.map((way) => [way, CARPETS[way] ?? way]), $("carpets").value || "boost");
+  offer($("edges"), limits.edges.map((order) => [order, EDGES[order] ?? order]), $("edges").value || "any");
   offer($("mode"), limits.modes.filter((mode) => mode in MODES).map((mode) => [mode, MODES[mode]]));
   const speeds = [];
   for (let speed = limits.min_speed; speed < limits.max_speed + 0.01; speed += STEP) speeds.push([speed.toFixed(1), speed.toFixed(1)]);

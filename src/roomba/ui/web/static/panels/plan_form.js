@@ -1,6 +1,7 @@
 /** The form of a plan or a preset: days, times, rooms, passes, fan. */
 import { $, offer } from "../dom.js";
 import { get } from "../store.js";
+import { CARPETS, EDGES } from "../words.js";
 import { numbers } from "./actions.js";
 
 const DAYS = { MO: "Mon", TU: "Tue", WE: "Wed", TH: "Thu", FR: "Fri", SA: "Sat", SU: "Sun" };
@@ -54,6 +55,8 @@ function showOrder(order) {
   offer($("plan-passes"), numbers(limits?.most_passes ?? 1), order.passes);
   $("plan-due").checked = Boolean(order.only_due);
   offer($("plan-fan"), (limits?.fans ?? [order.fan]).map((fan) => [fan, fan]), order.fan);
+  offer($("plan-carpets"), (limits?.carpets ?? [order.carpets]).map((way) => [way, CARPETS[way] ?? way]), order.carpets);
+  offer($("plan-edges"), (limits?.edges ?? [order.edges]).map((when) => [when, EDGES[when] ?? when]), order.edges);
   // Rooms that there are not any more stay chosen until they are taken out here.
   const names = [...new Set([...(get("home")?.rooms ?? []).map((room) => room.name), ...order.rooms])];
   $("plan-rooms").replaceChildren(...names.map((name) => box(name, name, order.rooms.includes(name))));
@@ -70,7 +73,7 @@ function canBeDue() { return ["whole", "rooms"].includes($("plan-mode").value); 
 
 function entered(given, isPlan) {
   const mode = $("plan-mode").value, rooms = mode === "rooms" ? checked("plan-rooms") : [];
-  const order = { mode, rooms, passes: Number($("plan-passes").value), fan: $("plan-fan").value, only_due: isPlan && canBeDue() && $("plan-due").checked };
+  const order = { mode, rooms, passes: Number($("plan-passes").value), fan: $("plan-fan").value, carpets: $("plan-carpets").value, edges: $("plan-edges").value, only_due: isPlan && canBeDue() && $("plan-due").checked };
   const name = $("plan-name").value.trim();
   if (!isPlan) return { name, order };
   const at = $("plan-at").value.split(/[\s,;]+/).filter(Boolean).map((time) => time.replace(/^\d:/, "0$&"));

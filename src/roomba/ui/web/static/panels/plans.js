@@ -7,7 +7,7 @@ import { askName, askYes } from "./ask.js";
 import { askPlan, daysInWords } from "./plan_form.js";
 
 const MOST_NOTES = 12;
-const EMPTY = { mode: "whole", rooms: [], passes: 1, fan: "standard" };
+const EMPTY = { mode: "whole", rooms: [], passes: 1, fan: "standard", carpets: "boost", edges: "any" };
 const QUIET_DAYS = { all: [0, 1, 2, 3, 4, 5, 6], work: [0, 1, 2, 3, 4], rest: [5, 6] };
 const WEEK = ["Mon", "Tue", "Wed", "Thu", "Fri", "Sat", "Sun"];
 

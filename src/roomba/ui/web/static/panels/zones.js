@@ -4,14 +4,14 @@ import { note, wish } from "../link.js";
 import { toFloor, view } from "../map/view.js";
 import { shifted, withCorner } from "../map/zones.js";
 import { get, on, set } from "../store.js";
-import { title } from "../words.js";
+import { title, ZONES } from "../words.js";
 import { how } from "./actions.js";
 import * as card from "./card.js";
 import { undo } from "./rooms.js";
 import * as sheet from "./sheet.js";
 
-const DRAWS = { "draw-clean": "clean", "draw-no-go": "no-go", "draw-wall": "wall" };
-const HINTS = { clean: "Drag over the floor to be cleaned.", "no-go": "Drag over the floor that it shall not enter.", wall: "Drag a line that it shall not cross.", split: "Drag a line through the room." };
+const DRAWS = { "draw-clean": "clean", "draw-no-go": "no-go", "draw-wall": "wall", "draw-carpet": "carpet" };
+const HINTS = { clean: "Drag over the floor to be cleaned.", "no-go": "Drag over the floor that it shall not enter.", wall: "Drag a line that it shall not cross.", carpet: "Drag over the carpet.", split: "Drag a line through the room." };
 const STEP = 0.1; // m that an arrow moves
 const FIRST = 0.5; // m; half the side of what is drawn with keys
 
@@ -38,7 +38,7 @@ export function drawn(draft) {
 function offerKinds(draft) {
   const as = (kind) => () => { set("drawing", null); make({ ...draft, kind }); };
   card.open("What shall this be?", [
-    ["Clean it now", as("clean")], ["No-go zone", as("no-go")], ["Virtual wall", as("wall")], ["Nothing", () => set("drawing", null)],
+    ["Clean it now", as("clean")], ["No-go zone", as("no-go")], ["Virtual wall", as("wall")], ["Carpet", as("carpet")], ["Nothing", () => set("drawing", null)],
   ], draft.to, () => set("drawing", null));
 }
 
@@ -113,7 +113,7 @@ function inTheMiddle(draft) {
 function path(name) { return `zones/${encodeURIComponent(name)}`; }
 
 function newName(kind) {
-  const names = (get("home")?.zones ?? []).map((zone) => zone.name), word = kind === "wall" ? "Wall" : "Zone";
+  const names = (get("home")?.zones ?? []).map((zone) => zone.name), word = { wall: "Wall", carpet: "Carpet" }[kind] ?? "Zone";
   let number = 1;
   while (names.includes(`${word} ${number}`)) number++;
   return `${word} ${number}`;
@@ -135,7 +135,7 @@ function showZones() {
   const focused = document.activeElement?.dataset?.zone;
   $("zones").replaceChildren(...zones.map((zone) => {
     const item = document.createElement("li");
-    const pick = button(`${zone.name} (${zone.kind === "wall" ? "virtual wall" : "no-go"})`, () => (selected?.name === zone.name ? set("zone", null) : select(zone)), `Move ${zone.name}`);
+    const pick = button(`${zone.name} (${ZONES[zone.kind] ?? zone.kind})`, () => (selected?.name === zone.name ? set("zone", null) : select(zone)), `Move ${zone.name}`);
     pick.className = "pick";
     pick.dataset.zone = zone.name;
     pick.setAttribute("aria-pressed", String(selected?.name === zone.name));
