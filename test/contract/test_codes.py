@@ -17,9 +17,9 @@ from roomba.mission.cleaning.request import CleanOutcome, MissReason
 from roomba.mission.phases.machine import VACUUM_STATES, Phase
 from roomba.perception.localization.estimate import Knowledge
 from roomba.perception.rooms.zones import ZoneKind
-from roomba.vocabulary import CleanMode, FanLevel
+from roomba.vocabulary import CarpetWay, CleanMode, EdgeOrder, FanLevel
 from roomba_ros.convert.localization import STATES
-from roomba_ros.convert.mission import FANS, KINDS, MODES, OUTCOMES, REASONS
+from roomba_ros.convert.mission import CARPETS, EDGES, FANS, KINDS, MODES, OUTCOMES, REASONS
 
 
 def constants(message: type, names: set[str]) -> dict[str, int]:
@@ -52,8 +52,22 @@ def test_every_member_has_its_code(
     assert sorted(used.values()) == list(range(len(names)))
 
 
+@pytest.mark.parametrize(
+    ("what", "members", "codes"), [("CARPETS_", CarpetWay, CARPETS), ("EDGES_", EdgeOrder, EDGES)]
+)
+def test_every_way_of_carpets_and_edges_has_its_code(
+    what: str, members: type[Enum], codes: dict[int, Enum]
+) -> None:
+    assert set(codes.values()) == set(members)
+    assert {what + way.name: code for code, way in codes.items()} == constants(
+        CleanGoal, {what + way.name for way in members}
+    )
+
+
 def test_the_constants_are_those_of_the_enums_and_no_others() -> None:
     of_goal = {member.name for members in (CleanMode, FanLevel) for member in members}
+    of_goal |= {f"CARPETS_{way.name}" for way in CarpetWay}
+    of_goal |= {f"EDGES_{order.name}" for order in EdgeOrder}
     for message, names in (
         (CleanGoal, of_goal),
         (CleanResult, {outcome.name for outcome in CleanOutcome}),

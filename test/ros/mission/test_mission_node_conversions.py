@@ -32,7 +32,7 @@ from roomba.perception.rooms.rooms import Rooms
 from roomba.perception.rooms.zones import Zone, ZoneKind, Zones, ZonesError
 from roomba.perception.swept.coverage_bits import SWEPT, WANTED
 from roomba.time_spent import TimeSpent
-from roomba.vocabulary import CleanMode, FanLevel, RoomWay
+from roomba.vocabulary import CarpetWay, CleanMode, EdgeOrder, FanLevel, RoomWay
 from roomba_ros.convert.mission import (
     battery_of,
     beams_of,
@@ -62,6 +62,12 @@ def test_goals_say_what_is_wanted() -> None:
         CleanGoal(mode=CleanGoal.ROOMS, rooms=["Kitchen"], in_order=True, passes=2, fan=2)
     )
     assert (rooms.rooms, rooms.in_order, rooms.passes) == (("Kitchen",), True, 2)
+    assert (rooms.carpets, rooms.edges) == (CarpetWay.BOOST, EdgeOrder.ANY)
+    special = request_of(CleanGoal(carpets=CleanGoal.CARPETS_AVOID, edges=CleanGoal.EDGES_LAST))
+    assert (special.carpets, special.edges) == (CarpetWay.AVOID, EdgeOrder.LAST)
+    for wrong in (CleanGoal(carpets=3), CleanGoal(edges=3)):
+        with pytest.raises(CleanRefusedError, match="from 0 to 2, got 3"):
+            request_of(wrong)
     assert rooms.fan is FanLevel.STRONG
     zones = request_of(CleanGoal(mode=CleanGoal.ZONES, zones=[Rectangle(-1.0, 0.0, 2.0, 3.0)]))
     assert zones.zones == ((-1.0, 0.0, 2.0, 3.0),)
@@ -159,14 +165,15 @@ def test_zones_come_back_as_they_went() -> None:
         (
             Zone("bowl", ZoneKind.NO_GO, ((0.0, 0.0), (1.0, 0.0), (1.0, 2.0))),
             Zone("stairs", ZoneKind.WALL, ((0.0, 0.0), (3.0, 0.5))),
+            Zone("rug", ZoneKind.CARPET, ((0.0, 0.0), (1.0, 0.0), (1.0, 2.0), (0.0, 2.0))),
         )
     )
     message = zones_message(3.0, zones, "map")
     assert Zones(tuple(zone_of(zone) for zone in message.zones)) == zones
     drawn = zones_markers(3.0, zones, "map").markers
-    assert [len(marker.points) for marker in drawn] == [0, 4, 2]
-    with pytest.raises(ZonesError, match="kind from 0 to 1, got 2"):
-        zone_of(ZoneMessage("bowl", 2, []))
+    assert [len(marker.points) for marker in drawn] == [0, 4, 2, 5]
+    with pytest.raises(ZonesError, match="kind from 0 to 2, got 3"):
+        zone_of(ZoneMessage("bowl", 3, []))
 
 
 def test_rooms_are_those_that_were_told() -> None:
