@@ -186,6 +186,17 @@ class MapKeeper(Protocol):
 
 
 @runtime_checkable
+class FeelsLowThings(Protocol):
+    """What a robot that offers no-go zones of its own can do beside.
+
+    They are in :attr:`roomba.client.view.HomeView.low_things`; each is taken as any zone.
+    """
+
+    def ignore_low_thing(self, x: float, y: float) -> None:
+        """Offer no zone any more of what was felt at a point, m."""
+
+
+@runtime_checkable
 class Playground(Protocol):
     """What can be done to a simulated home and robot, for teaching.
 

@@ -119,6 +119,7 @@ def home_of(view: HomeView) -> Json:
         "overhead": view.overhead,
         "carpets": view.carpets,
         "changes": [asdict(change) for change in view.changes],
+        "low_things": [asdict(thing) for thing in view.low_things],
     }
 
 

@@ -102,13 +102,25 @@ class ChangeView:
 
 
 @dataclass(frozen=True, slots=True)
+class LowThingView:
+    """What was felt ``times`` times where neither map nor lidar shows anything.
+
+    ``corners`` are those of the no-go zone that is offered, m.
+    """
+
+    times: int
+    corners: tuple[Point, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class HomeView:
     """What seldom changes; ``version`` grows by one when it does.
 
     ``station`` is x, y and heading of the docked robot. ``furniture`` are outlines of what stands
     on the floor, the lowest first, ``overhead`` of what the robot passes below, ``carpets`` of what
     lies; all three are empty where they are not known. ``radius`` is the robot's and ``tool`` the
-    width of its brush, m. ``changes`` are what the robot offers to change of its map.
+    width of its brush, m. ``changes`` are what the robot offers to change of its map,
+    ``low_things`` where it offers a no-go zone.
     """
 
     version: int
@@ -122,6 +134,7 @@ class HomeView:
     changes: tuple[ChangeView, ...] = ()
     overhead: tuple[tuple[Point, ...], ...] = ()
     carpets: tuple[tuple[Point, ...], ...] = ()
+    low_things: tuple[LowThingView, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

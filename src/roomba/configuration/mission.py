@@ -78,6 +78,21 @@ class WaitingConfig(Frozen):
     """After so many it gives up: twenty minutes in all."""
 
 
+class LowThingsConfig(Frozen):
+    """Things that are felt again and again and that neither map nor lidar shows."""
+
+    same: Positive = 0.25
+    """m; what is felt nearer to a low thing than this is that thing."""
+    longest: Positive = 1.5
+    """m; a cable may be longer: it is several things then."""
+    seen_near: Positive = 0.15
+    """m; what the lidar sees as near to where something was felt was seen, and is not low."""
+    offered: AtLeastOne = 3
+    """Times that a thing is felt before it is offered as a no-go zone."""
+    margin: Positive = 0.08
+    """m; such a zone is so much wider on each side: the bumper tells to 5 cm where a thing is."""
+
+
 class DrivingConfig(Frozen):
     """Driving a path, and around what the map does not show: m, m/s, s."""
 
@@ -114,6 +129,7 @@ class DrivingConfig(Frozen):
     """m; a path along a thing is moved aside by this at most; more is left to the planner."""
     out_of_pocket: Positive = 1.0
     """m of the way home, after which the robot is out of where it was shut in."""
+    low_things: LowThingsConfig = LowThingsConfig()
     recovery: RecoveryConfig = RecoveryConfig()
     giving_way: GivingWayConfig = GivingWayConfig()
     waiting: WaitingConfig = WaitingConfig()

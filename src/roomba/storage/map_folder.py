@@ -1,7 +1,8 @@
 """The files of one stored map: a folder that any map_server reads, and that is a home as well.
 
 ``map.yaml`` and ``map.pgm`` are the map, ``home.yaml`` is a home's layer with the station and the
-rooms for people to read, ``rooms.yaml`` and ``zones.yaml`` are the rooms and zones to the cell.
+rooms for people to read, ``rooms.yaml`` and ``zones.yaml`` are the rooms and zones to the cell,
+``low_things.yaml`` what the bumper felt and the lidar never saw.
 """
 
 from __future__ import annotations
@@ -19,14 +20,17 @@ from roomba.files.kept import write_kept
 from roomba.files.occupancy_map import load_map, save_map
 from roomba.geometry import Pose
 from roomba.grid import OccupancyMap
+from roomba.perception.rooms.low_things import LowThings
 from roomba.perception.rooms.rooms import Rooms
 from roomba.perception.rooms.zones import Zones, ZonesError
+from roomba.storage.low_things import LowThingsError, load_low_things, save_low_things
 from roomba.storage.map_bound import yaml_text
 from roomba.storage.rooms import load_rooms, save_rooms
 from roomba.storage.zones import load_zones, save_zones
 
 ROOMS_NAME: Final = "rooms.yaml"
 ZONES_NAME: Final = "zones.yaml"
+LOW_THINGS_NAME: Final = "low_things.yaml"
 
 _LAYER_COMMENT: Final = "# Station and rooms of a map that the robot made; m and rad.\n"
 
@@ -46,6 +50,7 @@ class StoredMap:
     station: Pose
     rooms: Rooms | None = None
     zones: Zones = field(default_factory=Zones)
+    low_things: LowThings = field(default_factory=LowThings)
 
     def __post_init__(self) -> None:
         """Check that the parts fit together. Raises MapStoreError."""
@@ -60,12 +65,13 @@ class StoredMap:
             )
 
     def is_same(self, other: StoredMap) -> bool:
-        """Whether another one has the same map, station, rooms and zones, to the last bit."""
+        """Whether another one has the same map, and all that goes with it, to the last bit."""
         return (
             self.occupancy.frame == other.occupancy.frame
             and np.array_equal(self.occupancy.values, other.occupancy.values)
             and self.station == other.station
             and self.zones == other.zones
+            and self.low_things == other.low_things
             and _are_same_rooms(self.rooms, other.rooms)
         )
 
@@ -79,6 +85,8 @@ def write_map(stored: StoredMap, folder: Path) -> None:
         save_map(stored.occupancy, folder / MAP_NAME)
         write_kept(folder / LAYER_NAME, _layer_text(stored).encode())
         save_zones(stored.zones, stored.occupancy, folder / ZONES_NAME)
+        if stored.low_things.all:
+            save_low_things(stored.low_things, stored.occupancy, folder / LOW_THINGS_NAME)
         if stored.rooms is not None:
             save_rooms(stored.rooms, stored.occupancy, folder / ROOMS_NAME)
     except (ValueError, RoomsError) as error:
@@ -103,11 +111,12 @@ def read_map(folder: Path) -> StoredMap:
         station = _station_of(folder / LAYER_NAME)
         rooms = load_rooms(folder / ROOMS_NAME, occupancy)
         zones = load_zones(folder / ZONES_NAME, occupancy)
-    except (HomeError, RoomsError, ZonesError, OSError) as error:
+        low_things = load_low_things(folder / LOW_THINGS_NAME, occupancy)
+    except (HomeError, RoomsError, ZonesError, LowThingsError, OSError) as error:
         raise MapStoreError(
             f"{error}; mend the file, or remove the map and let the robot map this floor again"
         ) from error
-    return StoredMap(occupancy, station, rooms, zones)
+    return StoredMap(occupancy, station, rooms, zones, low_things)
 
 
 def _station_of(path: Path) -> Pose:

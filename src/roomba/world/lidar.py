@@ -51,7 +51,7 @@ class Lidar:
         exact = home.exact
         lidar = Lidar.on_grid(seen_by_lidar(exact), exact.frame, config)
         faces = faces_of(exact)
-        lidar = replace(lidar, _faces=faces[faces["finish"] != Finish.GLASS])
+        lidar = replace(lidar, _faces=faces[~np.isin(faces["finish"], (Finish.GLASS, Finish.LOW))])
         lidar._home["clear_at"] = len(lidar._faces)
         return lidar if home.turned is None else replace(lidar, _axes=home.axes)
 

@@ -19,6 +19,7 @@ from roomba.files.occupancy_map import load_map
 from roomba.files.shipped import HOMES
 from roomba.geometry import Pose
 from roomba.grid import FREE, OCCUPIED, UNKNOWN, GridFrame, OccupancyMap
+from roomba.perception.rooms.low_things import LowThing, LowThings
 from roomba.perception.rooms.rooms import Rooms, segment
 from roomba.perception.rooms.zones import Zone, ZoneKind, Zones
 from roomba.raster.regions import numbered_regions
@@ -42,6 +43,9 @@ def occupancies(draw: st.DrawFn) -> OccupancyMap:
     return OccupancyMap(frame, values)
 
 
+LOW_THINGS = st.builds(LowThing, PLACES, PLACES, PLACES, PLACES, st.integers(1, 99), st.booleans())
+
+
 @st.composite
 def stored_maps(draw: st.DrawFn) -> StoredMap:
     occupancy = draw(occupancies())
@@ -55,7 +59,8 @@ def stored_maps(draw: st.DrawFn) -> StoredMap:
         for name in draw(st.lists(NAMES, max_size=3, unique=True))
     )
     station = Pose(draw(PLACES), draw(PLACES), draw(st.floats(-math.pi, math.pi)))
-    return StoredMap(occupancy, station, draw(st.sampled_from([rooms, None])), Zones(zones))
+    low = LowThings(tuple(draw(st.lists(LOW_THINGS, max_size=3))))
+    return StoredMap(occupancy, station, draw(st.sampled_from([rooms, None])), Zones(zones), low)
 
 
 @given(stored_maps())
@@ -67,6 +72,7 @@ def test_all_comes_back_to_the_last_bit(stored: StoredMap) -> None:
     assert read.occupancy.frame == stored.occupancy.frame
     np.testing.assert_array_equal(read.occupancy.values, stored.occupancy.values)
     assert (read.station, read.zones) == (stored.station, stored.zones)
+    assert read.low_things == stored.low_things
     assert (read.rooms is None) == (stored.rooms is None)
     if read.rooms is not None and stored.rooms is not None:
         assert read.rooms.names == stored.rooms.names

@@ -26,6 +26,7 @@ from roomba.world.camera.camera import Camera, Scene
 from roomba.world.engine.state.arrays import Infrared
 from roomba.world.home.free_wall import FreeWall, FreeWalls, arc_outline, counter_clockwise
 from roomba.world.home.home import Home
+from roomba.world.home.surface import LOW
 from roomba.world.home.turned import turned_home, with_steps
 from roomba.world.layers.layer import load_home
 from roomba.world.lidar import Lidar
@@ -155,9 +156,37 @@ def test_glass_and_mirrors_stop_the_body_as_any_wall(material: str | None) -> No
     assert world.observe().bumper.pressed
 
 
-@pytest.mark.parametrize(("material", "is_received"), [("glass", True), (None, False)])
+def test_lidars_look_over_what_is_low_and_the_bumper_feels_it() -> None:
+    sill = replace(straight_wall([(2.0, 0.5), (2.0, 3.5)], None, 0.04), surface=LOW)
+    bare, home = home_with([]), home_with([sill])
+    pose = Pose(1.0, 2.0, 0.0)
+    for config in (IDEAL, NEATO):
+        scans = []
+        for each in (bare, home):
+            world = Simulator(each, config, start=pose)
+            while not world.observe().scans:
+                world.step(Twist(), DT)
+            scans.append(np.array(world.ranges))
+        # A ray that goes on adds up two ways, in single precision.
+        assert np.allclose(scans[0], scans[1], rtol=0.0, atol=1e-5, equal_nan=True)
+    expected, seen = (
+        Lidar.of(each, IDEAL.lidar).scan(np.array([[pose.x, pose.y, pose.theta]]))
+        for each in (bare, home)
+    )
+    assert np.allclose(seen, expected, rtol=0.0, atol=1e-5)
+    world = Simulator(home, IDEAL, start=pose)
+    world.advance(Twist(0.3, 0.0), DT, 200)
+    assert world.pose.x == pytest.approx(2.0 - 0.02 - RADIUS, abs=1e-6)
+    assert world.observe().bumper.pressed
+
+
+@pytest.mark.parametrize(
+    ("material", "is_received"), [("glass", True), ("low", True), (None, False)]
+)
 def test_walls_but_not_glass_hide_the_station(material: str | None, is_received: bool) -> None:
-    pane = straight_wall([(2.0, 0.3), (2.4, 1.7)], material, 0.02)
+    pane = straight_wall([(2.0, 0.3), (2.4, 1.7)], None if material == "low" else material, 0.02)
+    if material == "low":
+        pane = replace(pane, surface=LOW)
     home = room_home(station=Pose(3.5, 1.0, 0.0))
     home = with_steps(replace(home, free_walls=FreeWalls.on(home.frame, [pane])))
     world = Simulator(home, IDEAL, start=Pose(3.0, 1.0, 0.0))

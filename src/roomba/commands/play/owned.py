@@ -90,6 +90,8 @@ class OwnedLife:
             _tell_place(robot, tell)
             home = RealHome(kind.name)
             rooms, zones = (None, None) if stored is None else (stored.rooms, stored.zones)
+            if stored is not None:
+                robot.mission.obstacles.low = stored.low_things
             self.client = LiveClient(home, robot, rooms, 1.0, zones)
             self._maps.start(self.client)
         except BaseException:

@@ -262,6 +262,15 @@ class LiveClient:
         """Remove a zone."""
         self._edit(lambda plan: plan.without_zone(name))
 
+    def ignore_low_thing(self, x: float, y: float) -> None:
+        """Offer no zone any more of what was felt there."""
+
+        def ignore(robot: Embodied) -> None:
+            obstacles = robot.mission.obstacles
+            obstacles.low = obstacles.low.ignoring(x, y)
+
+        self.obey(ignore)
+
     def rename_room(self, name: str, new_name: str) -> None:
         """Give a room another name."""
         self._edit(lambda plan: plan.with_name(name, new_name))

@@ -1,4 +1,4 @@
-"""The map that a live robot made, kept with its rooms and zones for the next time."""
+"""The map that a live robot made, kept with its rooms, zones and low things for the next time."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ _ENDING: Final = 10.0
 
 
 class KeptHome:
-    """A map by ``name`` in a store, with its rooms and zones.
+    """A map by ``name`` in a store, with its rooms, zones and low things.
 
     ``tell`` is told in a sentence what the disk refuses. A thread of its own writes whenever the
-    whole map, its rooms or its zones changed.
+    whole map, its rooms, zones or low things changed.
     """
 
     def __init__(self, store: MapStore, name: str, tell: Callable[[str], object]) -> None:
@@ -37,7 +37,7 @@ class KeptHome:
         if self._name not in self._store.names():
             return None
         stored = self._store.load(self._name)
-        self._kept = stored.occupancy, stored.rooms, stored.zones
+        self._kept = stored.occupancy, stored.rooms, stored.zones, stored.low_things
         return stored
 
     def start(self, client: LiveClient) -> None:
@@ -58,7 +58,8 @@ class KeptHome:
         context = robot.mission.context
         if context.is_growing:
             return
-        now = context.occupancy, plan.rooms, plan.zones
+        low = robot.mission.obstacles.low
+        now = context.occupancy, plan.rooms, plan.zones, low
         if len(self._kept) == len(now) and all(map(_is_same, self._kept, now)):
             return
         self._kept = now
@@ -66,7 +67,7 @@ class KeptHome:
         if rooms is not None and rooms.frame != context.occupancy.frame:
             rooms = None
         with self._changed:
-            self._waiting = StoredMap(context.occupancy, context.station, rooms, plan.zones)
+            self._waiting = StoredMap(context.occupancy, context.station, rooms, plan.zones, low)
             self._changed.notify_all()
 
     def _write(self) -> None:

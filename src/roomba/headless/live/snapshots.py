@@ -45,6 +45,7 @@ class Snapshots:
         self.ended = ErrandsEnded()
         self._map: GridLayer | None = None
         self._map_of: object = None
+        self._low_of: object = None
         self._visits = Visits(robot.mission.context.occupancy.frame, robot.robot.brush.width)
         self._shape = 0
 
@@ -86,7 +87,7 @@ class Snapshots:
     def look(self, robot: Embodied) -> None:
         """Take snapshots after a command."""
         self._take_results(robot)
-        if self._home_view is None:
+        if self._home_view is None or self._low_of is not robot.mission.obstacles.low:
             self._look_at_home(robot)
         self._follow_map(robot)
         self._view = robot_view(robot, self._last, self._live_home.truth())
@@ -103,6 +104,7 @@ class Snapshots:
         self._look_at_home(robot)
 
     def _look_at_home(self, robot: Embodied) -> None:
+        self._low_of = robot.mission.obstacles.low
         version = next(self._versions)
         parts = self._live_home, robot, self.plan.rooms, self.plan.zones
         self._home_view = home_view(version, *parts)

@@ -20,6 +20,7 @@ from roomba.client.view import (
     MOST_PATH,
     GridLayer,
     HomeView,
+    LowThingView,
     Point,
     RobotView,
     RoomView,
@@ -165,6 +166,10 @@ def home_view(
         tool=robot.robot.brush.width,
         overhead=() if plan is None else tuple(_outlines(plan, is_overhead=True)),
         carpets=() if plan is None else tuple(_carpets(plan)),
+        low_things=tuple(
+            LowThingView(offer.times, offer.corners)
+            for offer in robot.mission.obstacles.offered_zones(zones)
+        ),
     )
 
 

@@ -17,6 +17,9 @@ from roomba.configuration.loops import WalkConfig
 from roomba.configuration.mission import DrivingConfig
 from roomba.mission.driving.unknown_things import UnknownThings
 from roomba.mission.inputs.senses import Senses
+from roomba.perception.localization.estimate import Knowledge
+from roomba.perception.rooms.low_things import LowThings, OfferedZone
+from roomba.perception.rooms.zones import Zones
 from roomba.perception.things.layer import ThingLayer
 from roomba.planning.path.costmap import RoundObstacle
 
@@ -64,6 +67,9 @@ class Obstacles:
         self._same_place = config.lasting_radius
         self._felt_version = 0
         self._keep = body.radius - _SPARED
+        self._low_config = config.low_things
+        self.low = LowThings()
+        """What was felt, over all runs, where neither map nor lidar shows anything."""
 
     @property
     def version(self) -> int:
@@ -82,6 +88,8 @@ class Obstacles:
         self._touched.append((here.x, here.y))
         where = self._edges if senses.cliff else self._lasting if is_again else self._felt
         where.felt(senses.now, here, *senses.touches)
+        if not senses.cliff and senses.knowledge is Knowledge.KNOWN:
+            self._notice_low(self._felt.places(here, *senses.touches))
         # A wall that it drove against, being late, is on the map.
         self._felt.drop(self._seen.is_mapped)
         self._felt_version += 1
@@ -126,6 +134,21 @@ class Obstacles:
         It is looked at from station ``first`` to ``last``, m.
         """
         return self._seen.first_blocked(way.points, way.stations, first, last, self._keep)
+
+    def offered_zones(self, zones: Zones) -> tuple[OfferedZone, ...]:
+        """Return the no-go zones that are offered beside those that there are."""
+        return self.low.offers(zones, self._low_config)
+
+    def _notice_low(self, places: list[tuple[float, float]]) -> None:
+        """Count a touch, which was somewhere at these places, unless something is seen there."""
+        for x, y in places:
+            if self._seen.is_mapped(x, y) or any(
+                math.dist((x, y), (thing[0], thing[1])) < thing[2] + self._low_config.seen_near
+                for thing in self._seen.obstacles()
+            ):
+                return
+        x, y = np.mean(places, axis=0).tolist()
+        self.low = self.low.felt_at(x, y, self._low_config)
 
     def _all_felt(self, now: float) -> list[RoundObstacle]:
         return self._felt.at(now) + self._lasting.at(now)

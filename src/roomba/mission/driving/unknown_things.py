@@ -41,9 +41,18 @@ class UnknownThings:
 
     def felt(self, now: float, pose: Pose, left: bool, right: bool) -> None:
         """Remember what is in the way of the front's halves while the body stands at ``pose``."""
-        angles = self._both if left and right else self._left if left else self._right
-        for angle in angles:
+        for angle in self._angles(left, right):
             self._felt.append(_Touch(now, pose.x, pose.y, pose.theta + angle))
+
+    def places(self, pose: Pose, left: bool, right: bool) -> list[tuple[float, float]]:
+        """Return where along the halves of its front a body at ``pose`` feels something, m."""
+        return [
+            _Touch(0.0, pose.x, pose.y, pose.theta + angle).beyond(self._body_radius)
+            for angle in self._angles(left, right)
+        ]
+
+    def _angles(self, left: bool, right: bool) -> tuple[float, ...]:
+        return self._both if left and right else self._left if left else self._right
 
     def at(self, now: float, radius: float | None = None) -> list[Obstacle]:
         """Return what is still remembered; a clock set back forgets nothing.

@@ -9,9 +9,9 @@ from roomba.world.catalogue.cabinets import CABINETS
 from roomba.world.catalogue.kitchen import KITCHEN
 from roomba.world.catalogue.parts import FurnitureKind, Size
 from roomba.world.catalogue.seats import SEATS
-from roomba.world.catalogue.things import FIXTURES, THINGS
+from roomba.world.catalogue.things import FIXTURES, LOW_KINDS, THINGS
 
-__all__ = ["FIXTURES", "KINDS", "FurnitureKind", "Size"]
+__all__ = ["FIXTURES", "KINDS", "LOW_KINDS", "FurnitureKind", "Size"]
 
 KINDS: MappingProxyType[str, FurnitureKind] = MappingProxyType(
     {**SEATS, **CABINETS, **KITCHEN, **BATHROOM, **THINGS}

@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 
 from roomba.geometry import Pose, wrap_angle
-from roomba.world.catalogue import FIXTURES, KINDS, FurnitureKind, Size
+from roomba.world.catalogue import FIXTURES, KINDS, LOW_KINDS, FurnitureKind, Size
 from roomba.world.home.home import Box, Furniture
 from roomba.world.home.materials import MATERIALS, Material
 
 __all__ = [
     "FIXTURES",
     "KINDS",
+    "LOW_KINDS",
     "MATERIALS",
     "STATION_KIND",
     "FurnitureKind",

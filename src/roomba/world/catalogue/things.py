@@ -186,7 +186,14 @@ def _picture(size: Size, frame: str) -> list[Box]:
     ]
 
 
+def _low(size: Size, finish: str) -> list[Box]:
+    """A cable or a sill: what lies along the floor."""
+    return [block((-size.front, size.front), (-size.side, size.side), (0.0, size.height), finish)]
+
+
 THINGS = {
+    "cable": FurnitureKind(Size(0.6, 0.06, 0.05), "black", _low),
+    "sill": FurnitureKind(Size(0.8, 0.05, 0.05), "wood_dark", _low),
     "plant": FurnitureKind(Size(0.42, 0.42, 1.2), "pot", _plant),
     "lamp": FurnitureKind(Size(0.36, 0.36, 1.6), "metal_dark", _lamp),
     "box": FurnitureKind(Size(0.40, 0.30, 0.28), "cardboard", _box),
@@ -200,6 +207,9 @@ THINGS = {
     "picture": FurnitureKind(Size(0.7, 0.03, 0.5), "wood_light", _picture),
 }
 """Things and fixtures of walls by kind."""
+
+LOW_KINDS = frozenset({"cable", "sill"})
+"""Kinds that the lidar looks over and the body does not pass: what is only felt."""
 
 FIXTURES = frozenset({"window", "front_door", "picture"})
 """Kinds that are part of a wall: what stands there is a wall still."""

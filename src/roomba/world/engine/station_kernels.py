@@ -16,6 +16,7 @@ from roomba.world.engine.state.arrays import Infrared, Row, Solid
 from roomba.world.home.surface import Finish
 
 _GLASS: Final = int(Finish.GLASS)
+_LOW: Final = int(Finish.LOW)
 _HALO, _RED, _GREEN = int(Infrared.HALO), int(Infrared.RED), int(Infrared.GREEN)
 
 
@@ -64,7 +65,7 @@ def seen_beams(solid: Solid, home: Row, body: Row, numbers: Row) -> int:
 def is_in_sight(solid: Solid, home: Row, from_x: float, from_y: float, x: float, y: float) -> bool:
     """Tell whether nothing of the home stands between the station's front and a point.
 
-    Glass lets the light through, and what a mirror shows is too faint.
+    Glass lets the light through, it passes over what is low, and what a mirror shows is too faint.
     """
     steps = math.ceil(2.0 * math.hypot(x - from_x, y - from_y) / home.resolution)
     # The front itself may lie in a cell of the station.
@@ -79,7 +80,8 @@ def is_in_sight(solid: Solid, home: Row, from_x: float, from_y: float, x: float,
     if home.faces_end > home.faces_at and away > 0.0:
         cosine, sine = (x - from_x) / away, (y - from_y) / away
         for index in range(home.faces_at, home.faces_end):
-            if solid.faces[index].finish != _GLASS:
+            finish = solid.faces[index].finish
+            if finish not in (_GLASS, _LOW):
                 way, _, _ = ray_to_faces(
                     solid.faces, index, index + 1, from_x, from_y, cosine, sine, -1
                 )

@@ -24,6 +24,8 @@ class Finish(IntEnum):
     """Lets light pass; where it is met squarely a part of the beams comes back."""
     MIRROR = 3
     """Sends light on: what is told is the way to what the mirror shows."""
+    LOW = 4
+    """Lies below the light, which passes over it; a body does not."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,8 +37,8 @@ class Surface:
 
     @property
     def is_clear(self) -> bool:
-        """Whether a beam goes on from it: glass and mirrors."""
-        return self.finish in (Finish.GLASS, Finish.MIRROR)
+        """Whether a beam goes on from it: glass, mirrors, and what is low."""
+        return self.finish in (Finish.GLASS, Finish.MIRROR, Finish.LOW)
 
     @property
     def code(self) -> int:
@@ -57,6 +59,10 @@ OF_MATERIAL: Final[MappingProxyType[str, Surface]] = MappingProxyType(
     }
 )
 """Surfaces by the material that a layer names."""
+
+
+LOW: Final = Surface(Finish.LOW, 0.0)
+"""Of cables and sills."""
 
 
 def surface_of(material: str | None) -> Surface | None:

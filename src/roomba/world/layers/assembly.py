@@ -12,8 +12,14 @@ from numpy.typing import NDArray
 
 from roomba.geometry import Pose
 from roomba.grid import FREE, OCCUPIED, GridFrame, OccupancyMap
-from roomba.world.catalogue.furniture import FIXTURES, STATION_GAP, station_at
-from roomba.world.home.free_wall import FreeWall, FreeWalls, filled_cells, touched_cells
+from roomba.world.catalogue.furniture import FIXTURES, LOW_KINDS, STATION_GAP, station_at
+from roomba.world.home.free_wall import (
+    FreeWall,
+    FreeWalls,
+    counter_clockwise,
+    filled_cells,
+    touched_cells,
+)
 from roomba.world.home.home import Box, Door, Furniture, Rectangle, cells_in
 from roomba.world.home.raster import (
     Mask,
@@ -23,7 +29,7 @@ from roomba.world.home.raster import (
     footprint,
     outline,
 )
-from roomba.world.home.surface import surface_of
+from roomba.world.home.surface import LOW, surface_of
 from roomba.world.layers.parts import Parts
 from roomba.world.layers.walls import Walls, pane_of
 
@@ -106,17 +112,23 @@ def furnished_floor(occupancy: OccupancyMap, parts: Parts, body_height: float) -
 
 
 def _is_clear(parts: Parts, piece: Furniture) -> bool:
+    if piece.kind in LOW_KINDS:
+        return True
     surface = surface_of(parts.materials.get(piece.name))
     return surface is not None and surface.is_clear and piece.kind not in FIXTURES
 
 
 def _panes(pieces: Iterable[Furniture], parts: Parts, height: float) -> list[FreeWall]:
     return [
-        pane_of(footprint(box), parts.materials[piece.name], piece.on_map)
-        for piece in pieces
-        for box in piece.boxes
-        if box.bottom < height
+        _pane(piece, box, parts) for piece in pieces for box in piece.boxes if box.bottom < height
     ]
+
+
+def _pane(piece: Furniture, box: Box, parts: Parts) -> FreeWall:
+    if piece.kind in LOW_KINDS:
+        # No robot has it on its map: it was never seen.
+        return FreeWall(counter_clockwise(footprint(box)), surface=LOW, on_map=False)
+    return pane_of(footprint(box), parts.materials[piece.name], piece.on_map)
 
 
 def _without(open_map: OccupancyMap, free: Sequence[FreeWall], parts: Parts) -> OccupancyMap:

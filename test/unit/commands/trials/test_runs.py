@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import shutil
 from pathlib import Path
 from typing import Any
 
@@ -18,8 +19,10 @@ from roomba.commands.trials.runs import Run, TrialSetup, run_trial
 from roomba.commands.trials.trial import Trial
 from roomba.commands.trials.zones import zones_of
 from roomba.files.occupancy_map import load_map, save_map
+from roomba.files.shipped import HOMES
 from roomba.geometry import Pose
 from roomba.grid import FREE, OCCUPIED, GridFrame, OccupancyMap
+from roomba.headless.cleaner import HeadlessMission
 from roomba.mission.cleaning.request import CleanRequest
 from roomba.perception.rooms.zones import Zone, ZoneKind, Zones
 from roomba.perception.swept.coverage_map import GRANTED
@@ -241,3 +244,22 @@ def test_a_home_of_round_and_slanted_walls_is_cleaned_without_touching_them(turn
     assert run.figures.docked
     assert run.figures.fraction > (0.995 if turned == 0.0 else 0.99)
     assert run.figures.hits == 0
+
+
+@pytest.mark.slow
+def test_a_cable_is_felt_and_offered_as_a_zone_where_it_lies(tmp_path: Path) -> None:
+    home = tmp_path / "cable"
+    shutil.copytree(HOMES / "bay", home)
+    layer = home / "home.yaml"
+    cable = "furniture:\n  - {name: lead, kind: cable, x: 4.3, y: 1.2, facing: 0.4}\n"
+    layer.write_text(layer.read_text("utf-8").replace("furniture:\n", cable), "utf-8")
+    robots: list[HeadlessMission] = []
+    run = run_trial(Trial(home=str(home), seed=1), [robots.append])
+    assert run.figures.is_completed
+    assert run.figures.docked
+    things = robots[-1].mission.obstacles.low.all
+    assert sum(thing.times for thing in things) >= 3
+    for thing in things:
+        middle = 0.5 * (thing.x0 + thing.x1), 0.5 * (thing.y0 + thing.y1)
+        assert math.dist(middle, (4.3, 1.2)) < 0.5
+    assert robots[-1].mission.obstacles.offered_zones(Zones())

@@ -9,10 +9,12 @@ import numpy as np
 import pytest
 from fixtures.waiting import wait_until
 
+from roomba.client.plain import home_of
 from roomba.client.protocol import RequestRefusedError, RobotUnavailableError
 from roomba.client.view import CleanOrder, LayerName, ZoneView
 from roomba.commands.play.living import live_client
 from roomba.headless.live.client import LiveClient
+from roomba.perception.rooms.low_things import LowThing, LowThings
 
 DEADLINE = 20.0
 """s of wall time."""
@@ -146,6 +148,26 @@ def test_rooms_and_zones_are_edited(client: LiveClient) -> None:
     assert [zone.name for zone in client.home().zones] == ["rug"]
     client.remove_zone("rug")
     assert client.home().zones == ()
+
+
+def test_zones_are_offered_of_low_things_taken_or_ignored(client: LiveClient) -> None:
+    low = LowThings((LowThing(0.5, 0.5, 0.6, 0.5, 3), LowThing(0.5, -0.5, 0.5, -0.5, 9)))
+    first = client.home()
+    assert first.low_things == ()
+    client.ask(lambda robot: setattr(robot.mission.obstacles, "low", low))
+    wait_until(lambda: client.home().low_things, DEADLINE, "offers")
+    one, other = client.home().low_things
+    assert (one.times, other.times) == (3, 9)
+    assert client.home().version > first.version
+    assert home_of(client.home())["low_things"][0]["times"] == 3
+    client.put_zone(ZoneView("cable", "no-go", one.corners))
+    assert client.home().low_things == (other,)
+    with pytest.raises(RequestRefusedError, match="was felt"):
+        client.ignore_low_thing(2.0, 2.0)
+    client.ignore_low_thing(0.5, -0.5)
+    assert client.home().low_things == ()
+    client.remove_zone("cable")
+    assert client.home().low_things == (one,)
 
 
 def test_the_newest_edit_of_the_rooms_is_taken_back(client: LiveClient) -> None:

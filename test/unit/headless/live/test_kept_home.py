@@ -10,8 +10,10 @@ from fixtures.waiting import wait_until
 from roomba.client.view import ZoneView
 from roomba.commands.play.living import live_client
 from roomba.headless.live.kept_home import KeptHome
+from roomba.perception.rooms.low_things import LowThing, LowThings
 from roomba.storage.map_store import MapStore
 
+LOW = LowThings((LowThing(1.0, 1.0, 1.1, 1.0, 4),))
 DEADLINE = 20.0
 """s of wall time."""
 
@@ -30,6 +32,7 @@ def test_it_is_kept_once_it_is_whole_and_whenever_rooms_or_zones_change(tmp_path
         wait_until(lambda: client.home().rooms, DEADLINE, "rooms")
         name = client.home().rooms[0].name
         client.rename_room(name, "den")
+        client.ask(lambda robot: setattr(robot.mission.obstacles, "low", LOW))
         client.put_zone(ZoneView("vase", "no-go", ((1.0, 1.0), (1.5, 1.0), (1.5, 1.5))))
     finally:
         client.end()
@@ -40,6 +43,7 @@ def test_it_is_kept_once_it_is_whole_and_whenever_rooms_or_zones_change(tmp_path
     assert again.rooms is not None
     assert "den" in again.rooms.names
     assert again.zones.names == ("vase",)
+    assert again.low_things == LOW
     station = client.home().station
     assert (again.station.x, again.station.y) == pytest.approx(station[:2])
 

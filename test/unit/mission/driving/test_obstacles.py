@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -14,7 +15,9 @@ from roomba.control.path_tracker import PathTracker
 from roomba.geometry import Pose
 from roomba.mission.driving.obstacles import Obstacles
 from roomba.mission.inputs.senses import Senses
+from roomba.perception.localization.estimate import Knowledge
 from roomba.perception.matching.surface_field import SurfaceField
+from roomba.perception.rooms.zones import Zone, ZoneKind, Zones
 from roomba.perception.things.layer import ThingLayer
 
 CONFIG = RobotConfig()
@@ -197,3 +200,37 @@ def test_what_is_only_a_little_nearer_than_planned_is_not_in_the_way() -> None:
         tracker = PathTracker(points, CONFIG.tracking, CONFIG.body, 0.05)
         blocked.append(known.first_in_way(tracker.course, 0.0, 2.0) is not None)
     assert blocked == [False, True]
+
+
+def test_what_is_felt_where_nothing_is_seen_is_counted_as_low() -> None:
+    known, _ = obstacles()
+    for _ in range(2):
+        known.feel(bumped())
+    (thing,) = known.low.all
+    assert thing.times == 2
+    assert (thing.x0, thing.y0) == pytest.approx((HERE.x + 0.93 * BODY, HERE.y), abs=0.02)
+    known.forget()
+    assert known.low.all == (thing,)
+
+
+def test_what_the_lidar_sees_there_or_the_map_shows_is_not_low() -> None:
+    known, seen = obstacles()
+    see_a_thing(seen, HERE.x + BODY, HERE.y)
+    known.feel(bumped())
+    known.feel(cliff(pose=Pose(1.0, 2.0, 0.0)))
+    known.feel(replace(bumped(pose=Pose(1.0, 2.0, 0.0)), knowledge=Knowledge.LOST))
+    wall = Pose(FURNISHED.map.frame.origin_x + 0.05 + BODY, 1.0, math.pi)
+    for _ in range(3):
+        known.feel(bumped(pose=wall))
+    assert known.low.all == ()
+
+
+def test_zones_are_offered_of_what_was_felt_often() -> None:
+    known, _ = obstacles()
+    for _ in range(DRIVING.low_things.offered):
+        assert known.offered_zones(Zones()) == ()
+        known.feel(bumped())
+    (offer,) = known.offered_zones(Zones())
+    assert offer.times == DRIVING.low_things.offered
+    zone = Zone("cable", ZoneKind.NO_GO, offer.corners)
+    assert known.offered_zones(Zones((zone,))) == ()

@@ -213,3 +213,12 @@ def test_routes_are_described(page: TestClient) -> None:
     for route in described:
         assert route.summary, route.path
     assert (Path(STATIC) / "index.html").is_file()
+
+
+def test_zones_that_the_robot_offers_are_ignored_by_place(
+    page: TestClient, robot: WrittenRobot
+) -> None:
+    for body, status in (({"x": 1.0, "y": 2.0}, 200), ({"x": 1.0}, 422), ({"x": "a", "y": 2}, 422)):
+        answer = page.post("/api/v1/low_things/ignore", json=body, headers=AUTHORISED)
+        assert answer.status_code == status
+    assert robot.told == [("ignore_low_thing", (1.0, 2.0))]

@@ -5,7 +5,12 @@ from __future__ import annotations
 import pytest
 
 from roomba.world.home.materials import MATERIALS
-from roomba.world.home.surface import OF_MATERIAL, Finish, surface_of
+from roomba.world.home.surface import LOW, OF_MATERIAL, Finish, surface_of
+
+
+def test_what_is_low_lets_every_beam_pass_over() -> None:
+    assert LOW.is_clear
+    assert LOW not in OF_MATERIAL.values()
 
 
 def test_every_surface_is_that_of_a_material_that_has_a_look() -> None:

@@ -55,6 +55,16 @@ def test_what_the_map_does_not_show_is_solid_all_the_same(tmp_path: Path) -> Non
     assert value_at(home, 1.5, 1.1)[:2] == (FREE, True)
 
 
+def test_a_low_thing_stands_in_the_way_and_on_no_map(tmp_path: Path) -> None:
+    furniture = "furniture:\n  - {name: lead, kind: cable, x: 2.0, y: 1.5, facing: 0.3}\n"
+    home = home_of(tmp_path, furniture=furniture)
+    assert value_at(home, 2.0, 1.5)[:2] == (FREE, True)
+    assert home.exact.free_walls is not None
+    (wall,) = home.exact.free_walls.walls
+    assert wall.surface is not None
+    assert wall.surface.finish is Finish.LOW
+
+
 def test_materials_come_to_cells_and_faces(tmp_path: Path) -> None:
     furniture = (
         "furniture:\n"

@@ -12,7 +12,7 @@ from PIL import Image
 from pydantic import BaseModel, ConfigDict, Field
 
 from roomba.client.household import Household, told_of
-from roomba.client.observed import MapKeeper, ObservedRobot, Timeline
+from roomba.client.observed import FeelsLowThings, MapKeeper, ObservedRobot, Timeline
 from roomba.client.plain import home_of, replay_of, state_of
 from roomba.client.protocol import CameraClient, RequestRefusedError, RobotUnavailableError
 from roomba.client.view import CleanOrder, ZoneView
@@ -195,6 +195,7 @@ def api_of(
     _add_edits(api, robot)
     _add_replay(api, robot)
     _add_camera(api, robot)
+    _add_low_things(api, robot)
     _add_maps(api, robot)
     return api
 
@@ -291,6 +292,16 @@ def _add_edits(api: APIRouter, robot: ObservedRobot) -> None:
 
     undo = "Take back the newest edit of the rooms"
     api.add_api_route("/rooms/undo", obeying(robot.undo_rooms), methods=["POST"], summary=undo)
+
+
+def _add_low_things(api: APIRouter, robot: ObservedRobot) -> None:
+    """Add what an owner says of zones that the robot offers."""
+    if not isinstance(robot, FeelsLowThings):
+        return
+
+    @api.post("/low_things/ignore", summary="Offer no zone any more of what was felt there")
+    def ignore_low_thing(wish: PlaceWish) -> Answer:
+        return obeyed(lambda: robot.ignore_low_thing(wish.x, wish.y))
 
 
 def _add_maps(api: APIRouter, robot: ObservedRobot) -> None:

@@ -16,6 +16,7 @@ BODIES: Final[dict[str, dict[str, Any]]] = {
     "drive": {"linear": 0.2, "angular": -0.5},
     "speed": {"speed": 0.3},
     "zones": {"name": "Cables", "kind": "no-go", "points": [[1, 1], [2, 1], [2, 2], [1, 2]]},
+    "low_things/ignore": {"x": 1.2, "y": 2.8},
     "rooms/rename": {"name": "Room 1", "new_name": "Kitchen"},
     "rooms/join": {"names": ["Room 1", "Room 2"]},
     "rooms/split": {"name": "Room 1", "start": [0.0, 2.0], "end": [3.0, 2.0]},

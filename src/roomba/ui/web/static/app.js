@@ -8,6 +8,7 @@ import * as charts from "./panels/charts.js";
 import * as drive from "./panels/drive.js";
 import * as history from "./panels/history.js";
 import * as keys from "./panels/keys.js";
+import * as lowThings from "./panels/low_things.js";
 import * as maps from "./panels/maps.js";
 import { tapped } from "./panels/offer.js";
 import * as plans from "./panels/plans.js";
@@ -24,5 +25,5 @@ import { connect } from "./link.js";
 
 draw.begin();
 gestures.begin({ tapped, drawn: zones.drawn, changed: zones.change, mayCarry: play.mayCarry, carried: play.carried });
-for (const panel of [status, card, actions, rooms, queue, zones, drive, play, tools, keys, replay, maps, plans, upkeep, camera, charts, history, sheet]) panel.begin();
+for (const panel of [status, card, actions, rooms, queue, zones, drive, play, tools, keys, replay, maps, lowThings, plans, upkeep, camera, charts, history, sheet]) panel.begin();
 connect();

@@ -32,6 +32,7 @@ _UNIT_20: Final = 1.0 / (1 << 20)
 _NEVER: Final = -1e-12
 """Reflectivity of what is shiny and nothing else."""
 _SHINY, _GLASS, _MIRROR = float(Finish.SHINY), float(Finish.GLASS), float(Finish.MIRROR)
+_LOW = float(Finish.LOW)
 
 Eye = tuple[float, float, float]
 """Where a lidar is and looks, map frame: x, y, m, and theta, rad."""
@@ -163,7 +164,8 @@ def ray_among_faces(
             end_x, end_y = x + into * cosine, y + into * sine
             return Met(gone + found, facing, what, end_x, end_y, light)
         x, y, gone, left = x + found * cosine, y + found * sine, gone + found, what
-        light *= numbers.clear
+        if finish != _LOW:
+            light *= numbers.clear
         if finish == _MIRROR:
             cosine, sine = mirrored(solid.faces[what], cosine, sine)
             viewer = -1

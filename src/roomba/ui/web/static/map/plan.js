@@ -50,6 +50,7 @@ export function drawThings(context) {
   if (layers.rooms) drawRooms(context, home);
   if (layers.zones) home.zones.forEach((zone) => drawZone(context, get("zone")?.name === zone.name ? get("zone") : zone));
   (home.changes ?? []).forEach((change) => drawChange(context, change));
+  (home.low_things ?? []).forEach((thing) => drawLow(context, thing));
   drawStation(context, home);
   if (layers.rooms) home.rooms.forEach((room) => drawName(context, room));
 }
@@ -146,6 +147,17 @@ function drawChange(context, { appeared, x, y, length, width }) {
   trace(context, [[left, low], [right, low], [right, high], [left, high]], true);
   dashed(context, palette().warn);
   write(context, appeared ? "new" : "gone", ...toScreen(x, y), { colour: palette().warn, isBold: true });
+}
+
+function drawLow(context, { times, corners }) {
+  trace(context, corners, true);
+  dashed(context, palette().warn);
+  write(context, `felt ${times} times`, ...toScreen(...middleOf(corners)), { colour: palette().warn, isBold: true });
+}
+
+/** The middle of a zone around a low thing. */
+export function middleOf(corners) {
+  return [0, 1].map((axis) => corners.reduce((sum, corner) => sum + corner[axis], 0) / corners.length);
 }
 
 function drawStation(context, home) {

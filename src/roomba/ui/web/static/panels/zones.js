@@ -112,7 +112,8 @@ function inTheMiddle(draft) {
 
 function path(name) { return `zones/${encodeURIComponent(name)}`; }
 
-function newName(kind) {
+/** A name that no zone has yet. */
+export function newName(kind) {
   const names = (get("home")?.zones ?? []).map((zone) => zone.name), word = { wall: "Wall", carpet: "Carpet" }[kind] ?? "Zone";
   let number = 1;
   while (names.includes(`${word} ${number}`)) number++;

@@ -1,0 +1,119 @@
+"""Low things: what the bumper felt often where neither the map nor the lidar shows anything.
+
+Cables and sills lie below the lidar's light. They stay where they are for more than a clean, so
+that each is kept with the map, and offered as a no-go zone.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Final
+
+import shapely
+
+from roomba.configuration.mission import LowThingsConfig
+from roomba.perception.rooms.zones import Corners, Zones
+
+MOST_LOW_THINGS: Final = 100
+"""Of one map; of more those go that were felt the fewest times."""
+
+
+@dataclass(frozen=True, slots=True)
+class LowThing:
+    """Where something was felt ``times`` times: lowest x and y, highest x and y, m, map frame.
+
+    One that ``is_ignored`` is never offered.
+    """
+
+    x0: float
+    y0: float
+    x1: float
+    y1: float
+    times: int = 1
+    is_ignored: bool = False
+
+    def away(self, other: LowThing) -> float:
+        """Return how far another one is along the axis on which it is farther, m; 0 where they
+        overlap."""
+        return max(
+            self.x0 - other.x1, other.x0 - self.x1, self.y0 - other.y1, other.y0 - self.y1, 0.0
+        )
+
+    def joined(self, other: LowThing) -> LowThing:
+        """Return both as one, ignored if one of them is."""
+        return LowThing(
+            min(self.x0, other.x0),
+            min(self.y0, other.y0),
+            max(self.x1, other.x1),
+            max(self.y1, other.y1),
+            self.times + other.times,
+            self.is_ignored or other.is_ignored,
+        )
+
+    @property
+    def longest(self) -> float:
+        """Its longer side, m."""
+        return max(self.x1 - self.x0, self.y1 - self.y0)
+
+    def corners(self, margin: float) -> Corners:
+        """Return the corners of a zone around it that is ``margin`` m wider on each side."""
+        left, right = self.x0 - margin, self.x1 + margin
+        low, high = self.y0 - margin, self.y1 + margin
+        return ((left, low), (right, low), (right, high), (left, high))
+
+
+@dataclass(frozen=True, slots=True)
+class OfferedZone:
+    """A no-go zone around what was felt ``times`` times, by its corners, m, map frame."""
+
+    times: int
+    corners: Corners
+
+
+@dataclass(frozen=True, slots=True)
+class LowThings:
+    """All of a map; each change returns new ones."""
+
+    all: tuple[LowThing, ...] = ()
+
+    def felt_at(self, x: float, y: float, config: LowThingsConfig) -> LowThings:
+        """Return these after something was felt at a point, m.
+
+        It is a new thing, or of all that it is near to, which are one then.
+        """
+        thing, others = LowThing(x, y, x, y), list[LowThing]()
+        for each in sorted(self.all, key=thing.away):
+            both = thing.joined(each)
+            is_near = thing.away(each) <= config.same and both.longest <= config.longest
+            if is_near and (thing.times == 1 or thing.is_ignored == each.is_ignored):
+                thing = both
+            else:
+                others.append(each)
+        others.sort(key=lambda each: (each.is_ignored, each.times), reverse=True)
+        return LowThings((*others[: MOST_LOW_THINGS - 1], thing))
+
+    def ignoring(self, x: float, y: float) -> LowThings:
+        """Return these with the thing around a point, m, ignored; raises ValueError for none."""
+        here = LowThing(x, y, x, y)
+        nearest = min(self.all, key=here.away, default=None)
+        if nearest is None or nearest.away(here) > 0.0:
+            raise ValueError(
+                f"expected a place within something that was felt, got ({x:.2f}, {y:.2f}); "
+                "it may be in a zone by now"
+            )
+        ignored = replace(nearest, is_ignored=True)
+        return LowThings(tuple(ignored if each is nearest else each for each in self.all))
+
+    def offers(self, zones: Zones, config: LowThingsConfig) -> tuple[OfferedZone, ...]:
+        """Return the zones that are offered: of what was felt often, is not ignored, and is in no
+        zone yet."""
+        return tuple(
+            OfferedZone(thing.times, thing.corners(config.margin))
+            for thing in self.all
+            if thing.times >= config.offered and not thing.is_ignored and not _is_in(thing, zones)
+        )
+
+
+def _is_in(thing: LowThing, zones: Zones) -> bool:
+    x, y = 0.5 * (thing.x0 + thing.x1), 0.5 * (thing.y0 + thing.y1)
+    return any(zone.shape.covers(shapely.Point(x, y)) for zone in zones.all)
