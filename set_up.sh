@@ -86,8 +86,8 @@ compile_loops() {
   if [[ -r $VENV/.stamp-runtime ]]; then enter_environment; else enter_library; fi
   local hash clean
   hash=$(compiled_hash)
-  # Two halves at once, for two cores.
-  { python3 -m roomba.commands.trials.warm && python3 -m roomba.commands.map.warm; } &
+  # Two halves at once, for two cores, each in an order in which the other half finds much compiled.
+  { python3 -m roomba.commands.map.warm && python3 -m roomba.commands.trials.warm; } &
   clean=$!
   if python3 -m roomba.commands.warm_up && wait "$clean"; then
     mkdir -p "$CACHE/compiled"
