@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from datetime import datetime, tzinfo
-from typing import Any, Protocol
+from typing import Any, Final, Protocol
 
 from roomba.plans.due import RoomNeed
 from roomba.plans.memory import Note
-from roomba.plans.plan import HouseholdPlans, Plan, Preset, QuietHours
+from roomba.plans.plan import Emptying, HouseholdPlans, Plan, Preset, QuietHours
 from roomba.upkeep.parts import Part, PartState
+
+_BAG_DUE: Final = "put an empty bag into the station"
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,15 +30,21 @@ class TotalsView:
 
 @dataclass(frozen=True, slots=True)
 class UpkeepView:
-    """How the parts that wear are, and what the robot did in all."""
+    """How the parts that wear are, and what the robot did in all.
+
+    ``bag`` is how full that of its station is, 0..1; NaN without one.
+    """
 
     parts: tuple[PartState, ...]
     totals: TotalsView
+    bag: float = math.nan
+    is_bag_due: bool = False
 
     @property
     def reminders(self) -> tuple[str, ...]:
         """What is to be done now or soon, a few words each."""
-        return tuple(state.advice for state in self.parts if state.advice)
+        advice = tuple(state.advice for state in self.parts if state.advice)
+        return (*advice, _BAG_DUE) if self.is_bag_due else advice
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,6 +113,9 @@ class Household(Protocol):
     def set_quiet(self, quiet: Sequence[QuietHours]) -> None:
         """Replace all quiet hours."""
 
+    def set_emptying(self, when: Emptying) -> None:
+        """Set when a station that can empties the bin; in quiet hours it never does."""
+
     def set_zone(self, zone: str) -> None:
         """Set the time zone, by its name of the IANA."""
 
@@ -130,6 +142,7 @@ def upkeep_of(view: UpkeepView) -> dict[str, Any]:
             for state in view.parts
         ],
         "reminders": list(view.reminders),
+        "bag": None if math.isnan(view.bag) else round(view.bag, 4),
         "totals": {
             name: value if name == "runs" else round(value, 2)
             for name, value in ((name, getattr(totals, name)) for name in totals.__slots__)
@@ -147,6 +160,7 @@ def told_of(household: Household | None) -> dict[str, Any]:
         "upkeep": upkeep_of(household.upkeep()),
         "plans": {
             "version": plans.version,
+            "emptying": plans.household.emptying.value,
             "next": plans.next,
             "next_at": _moment(plans.next_at, zone),
             "running": plans.running,

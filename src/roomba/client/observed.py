@@ -65,6 +65,12 @@ class ObservedRobot(Protocol):
     def empty_bin(self) -> None:
         """Tell that the dust bin was emptied; a simulated one is emptied."""
 
+    def empty_at_station(self) -> None:
+        """Let its station empty its bin; refused where that does not."""
+
+    def replace_bag(self) -> None:
+        """Put an empty bag into its simulated station; refused where there is none."""
+
     def emergency_stop(self, reason: str) -> None:
         """Hold the drive until it is released."""
 

@@ -41,6 +41,7 @@ def state_of(view: RobotView) -> Json:
             "queue": vacuum.queue,
             "is_on_carpet": vacuum.is_on_carpet,
         },
+        "bag": known(view.bag),
         "top_speed": known(view.top_speed),
         "scan": (view.scan * 100.0).round().astype(int).ravel().tolist(),
         "path": (view.path * 100.0).round().astype(int).ravel().tolist(),

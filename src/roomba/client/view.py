@@ -186,7 +186,8 @@ class RobotView:
     something; ``path`` float32 [n, 2], what is left of its way. ``last`` is how the last errand
     ended. ``battery_seconds`` is when the battery is empty at the present current, or full while it
     charges, s, and ``top_speed`` how fast it may drive, m/s; NaN if not known. ``charges`` says
-    that its battery fills. ``truth`` is there for a simulated robot.
+    that its battery fills. ``truth`` is there for a simulated robot. ``bag`` is how full the bag of
+    its station is, 0..1; NaN of one that does not empty the bin.
     """
 
     time: float
@@ -203,6 +204,7 @@ class RobotView:
     top_speed: float = math.nan
     truth: TruthView | None = None
     charges: bool = False
+    bag: float = math.nan
 
 
 @dataclass(frozen=True, slots=True)

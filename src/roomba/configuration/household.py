@@ -48,9 +48,21 @@ class DueConfig(Frozen):
     """By so much a room may become dirtier than the dirtiest one does between two times."""
 
 
+class EmptyingConfig(Frozen):
+    """When a station that empties the bin is let do so on its own."""
+
+    least: Positive = 1.0
+    """g; with less it is not worth the noise."""
+    level: Ratio = 0.7
+    """Of what the bin takes, after a run, if it is emptied by level."""
+    nearly_full: Ratio = 0.9
+    """Of the station's bag, from which on it is told that an empty one is wanted."""
+
+
 class HouseholdConfig(Frozen):
     """What an owner expects of a robot from day to day."""
 
     upkeep: UpkeepConfig = UpkeepConfig()
     plans: PlansConfig = PlansConfig()
     due: DueConfig = DueConfig()
+    emptying: EmptyingConfig = EmptyingConfig()

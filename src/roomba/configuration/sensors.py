@@ -101,6 +101,8 @@ class StationConfig(Frozen):
     """
 
     has_beams: bool = True
+    empties: bool = False
+    """Whether it takes the dirt out of the robot's bin into a bag of its own."""
     halo: Positive = 0.6
     beam: Positive = 1.0
     beam_angle: Positive = 20.0

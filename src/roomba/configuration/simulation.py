@@ -169,6 +169,12 @@ class SimulatedStation(Frozen):
 
     position_tolerance: Positive = 0.015
     angle_tolerance: Positive = 8.0
+    emptying_time: Positive = 8.0
+    """s; that one which empties the bin takes."""
+    emptying_noise: NotNegative = 76.0
+    """dB(A), 1 m away, meanwhile."""
+    bag: Positive = 2500.0
+    """g; what its bag takes."""
 
 
 class SimulatedSurroundings(Frozen):

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from roomba.configuration.sensors import LidarConfig
 from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.geometry import Pose
 from roomba.mission.docking.beams import StationBeams
-from roomba.mission.inputs.senses import Battery
+from roomba.mission.inputs.senses import Battery, EmptyingTold
 from roomba.perception.matching.scan_view import LidarModel
 from roomba.robot.command import Command
 from roomba.robot.readings import CliffReading, Readings, ScanReading
@@ -52,7 +54,11 @@ class SimulatedBody:
         if seen.scans != self.scans:
             self.scans = seen.scans
             scan = self.newest_scan()
-        return readings_of(seen, scan)
+        return replace(readings_of(seen, scan), emptying=self._emptying())
+
+    def _emptying(self) -> EmptyingTold | None:
+        station = self.simulator.emptying
+        return None if station is None else EmptyingTold(station.is_at_work, station.bag)
 
     def newest_scan(self) -> ScanReading:
         """Return the newest scan; the stamp of one that takes time is that of its first beam."""
@@ -62,6 +68,9 @@ class SimulatedBody:
     def act(self, command: Command) -> None:
         """Carry out a command for one tick."""
         self._set_power(command.brush, command.fan)
+        station = self.simulator.emptying
+        if station is not None:
+            station.is_wanted = command.empties
         timing = self._timing
         self.simulator.advance(command.twist, timing.world_step, timing.steps_per_tick)
 

@@ -30,6 +30,7 @@ from roomba.headless.records import (
 )
 from roomba.headless.rows import BELIEVED, POSES, TIME
 from roomba.mission.cleaning.request import CleanRequest
+from roomba.mission.phases.at_station import why_not_emptied
 from roomba.mission.phases.machine import Phase
 from roomba.perception.localization.localizer import Localizer
 from roomba.perception.matching.scan_view import LidarModel
@@ -50,7 +51,8 @@ class HeadlessMission(Embodied):
 
     ``truth`` is the floor that its tool really passed over, with room in its bin; ``rows`` are the
     ticks that passed, as of :mod:`roomba.headless.rows`, in pieces; ``context`` is the home as it
-    planned in it at first; ``emptied`` is what was taken out of the dust bin each time, g.
+    planned in it at first; ``emptied`` is what was taken out of the dust bin by hand each time, g;
+    ``is_emptied_at_station``: its station does that at once when it is full.
     """
 
     body: SimulatedBody
@@ -101,6 +103,7 @@ class HeadlessMission(Embodied):
         self.emptied: list[float] = []
         self._empties_bin_after = empties_bin_after
         self._full_since: float | None = None
+        self.is_emptied_at_station = robot.station.empties
         self._longest = longest_errand(home)
         self.context = self.mission.context
         frame = home.map.frame if isinstance(known, MappingConfig) else known.frame
@@ -216,6 +219,9 @@ class HeadlessMission(Embodied):
         """Empty the dust bin, as a person does some time after the robot said that it is full."""
         if self.mission.state.phase is not Phase.BIN_FULL:
             self._full_since = None
+            return
+        if self.is_emptied_at_station and not why_not_emptied(self.now.emptying):
+            self.mission.empty_at_station(self.senses())
             return
         if self._full_since is None:
             self._full_since = self.seen.time

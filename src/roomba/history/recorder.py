@@ -33,7 +33,7 @@ BEGINS: Final = ("undocking", "cleaning", "exploring")
 """Phases in which a run has begun."""
 _SWEEPS: Final = ("undocking", "cleaning", "returning", "docking")
 """Phases of a clean in which what is driven over counts."""
-_UNDER_WAY: Final = (*BEGINS, "returning", "docking", "charging", "paused", "bin full")
+_UNDER_WAY: Final = (*BEGINS, "returning", "docking", "charging", "paused", "bin full", "emptying")
 """Phases in which a run may go on."""
 _GIVEN_UP: Final = 10.0
 """s of the robot's clock at rest without a report after which it was no run."""

@@ -194,6 +194,7 @@ class RecordedRobot:
         )
 
     clean = explore = go_to = dock = pause = resume = stop = locate = empty_bin = _refuse
+    empty_at_station = replace_bag = _refuse
     emergency_stop = release = drive = put_zone = remove_zone = rename_room = _refuse
     join_rooms = split_room = undo_rooms = set_top_speed = change_rooms = _refuse
 

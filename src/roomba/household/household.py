@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import datetime as dt
+import math
 import threading
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -13,14 +14,16 @@ from roomba.client.household import PlansView, TotalsView, UpkeepView
 from roomba.client.observed import ObservedRobot
 from roomba.client.protocol import RequestRefusedError, RobotUnavailableError
 from roomba.client.told_once import ToldOnce
+from roomba.client.view import RobotView
 from roomba.configuration.household import HouseholdConfig
 from roomba.errors import RoombaError
 from roomba.household.dirt_keeper import DirtKeeper
+from roomba.household.emptying import is_to_be_emptied
 from roomba.household.folder import KeptValues, Tell
 from roomba.household.local_zone import local_zone
 from roomba.household.plan_keeper import Change, PlanKeeper, removed, replaced
 from roomba.household.upkeep_keeper import UpkeepKeeper
-from roomba.plans.plan import Plan, Preset, QuietHours
+from roomba.plans.plan import Emptying, Plan, Preset, QuietHours
 from roomba.upkeep.parts import Part
 
 _PERIOD: Final = 1.0
@@ -54,6 +57,7 @@ class LiveHousehold:
         self.robot, self._totals, self._period = robot, totals, period
         self._tell = ToldOnce(tell)
         self._is_full_told = False
+        self._capacity, self._emptying, self._bag = bin_capacity, config.emptying, math.nan
         self._summed = TotalsView()
         kept = KeptValues(folder / "upkeep.json", tell)
         self._upkeep = UpkeepKeeper(robot, kept, config.upkeep, bin_capacity)
@@ -88,7 +92,8 @@ class LiveHousehold:
 
     def upkeep(self) -> UpkeepView:
         """Return how the parts are, and the totals of the last look, at once."""
-        return UpkeepView(self._upkeep.states(), self._summed)
+        nearly = self._bag >= self._emptying.nearly_full
+        return UpkeepView(self._upkeep.states(), self._summed, self._bag, is_bag_due=nearly)
 
     def reset_part(self, part: Part) -> None:
         """Let a part count as new, clean or empty."""
@@ -122,6 +127,10 @@ class LiveHousehold:
         """Replace all quiet hours."""
         self._change(lambda all_: all_.model_copy(update={"quiet": tuple(quiet)}))
 
+    def set_emptying(self, when: Emptying) -> None:
+        """Set when a station that can empties the bin."""
+        self._change(lambda all_: all_.model_copy(update={"emptying": when}))
+
     def set_zone(self, zone: str) -> None:
         """Set the time zone."""
         self._change(lambda all_: all_.model_copy(update={"zone": zone}))
@@ -153,6 +162,7 @@ class LiveHousehold:
         if view is not None:
             self._upkeep.look(view)
             self._tell_full_bin()
+            self._empty_at_station(view)
         self._plans.look(view)
 
     def _tell_full_bin(self) -> None:
@@ -163,6 +173,16 @@ class LiveHousehold:
                 self.robot.locate()
             self._is_full_told = True
         self._is_full_told = self._is_full_told and is_due
+
+    def _empty_at_station(self, view: RobotView) -> None:
+        """Let the station empty the bin, if it is time for that."""
+        self._bag = view.bag
+        wanted = self.plans().household.emptying
+        if is_to_be_emptied(
+            view, wanted, self._capacity, self._emptying, is_quiet=self._plans.is_quiet()
+        ):
+            with contextlib.suppress(RequestRefusedError, RobotUnavailableError):
+                self.robot.empty_at_station()
 
     def _change(self, change: Change) -> None:
         _kept(lambda: self._plans.change(change))

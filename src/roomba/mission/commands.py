@@ -11,6 +11,7 @@ from roomba.mission.driving.drives import Drives
 from roomba.mission.driving.obstacles import Obstacles
 from roomba.mission.driving.retry_policy import RetryPolicy
 from roomba.mission.inputs.senses import Senses
+from roomba.mission.phases.at_station import why_not_emptied
 from roomba.mission.phases.job import Job
 from roomba.mission.phases.machine import Event, Phase, next_state
 from roomba.mission.transitions import BIN_FULL, Transitions
@@ -81,6 +82,16 @@ class Commands:
             )
         self._job.bin.emptied()
         self._transitions.go(Event.EMPTIED, senses)
+
+    def empty_at_station(self, senses: Senses) -> None:
+        """Let the station empty the bin; raises CommandRefusedError with the reason."""
+        self._require_possible(Event.EMPTY)
+        reason = why_not_emptied(senses.emptying)
+        if not reason and not senses.battery.is_docked:
+            reason = "it does not stand on its station"
+        if reason:
+            raise CommandRefusedError(f"cannot {Event.EMPTY.value}: {reason}")
+        self._transitions.go(Event.EMPTY, senses)
 
     def change_rooms(self, names: Sequence[str], each: Sequence[RoomWay]) -> None:
         """Let the clean under way go on with these rooms, the first one at once.

@@ -55,12 +55,14 @@ class MissionStep:
     """What is wanted at a tick.
 
     ``looks_around``: the place must be found before it can go on. ``wants_whole_map``: all that can
-    be seen of a map in the making was seen; it goes on when it is told the whole one.
+    be seen of a map in the making was seen; it goes on when it is told the whole one. ``empties``:
+    its station is to empty its bin.
     """
 
     twist: Twist = STANDSTILL
     looks_around: bool = False
     wants_whole_map: bool = False
+    empties: bool = False
 
 
 class Mission:
@@ -141,6 +143,10 @@ class Mission:
     def empty_bin(self, senses: Senses) -> None:
         """Go by an emptied dust bin; raises CommandRefusedError if its level sensor says no."""
         self._commands.empty_bin(senses)
+
+    def empty_at_station(self, senses: Senses) -> None:
+        """Let its station empty its bin; raises CommandRefusedError with the reason."""
+        self._commands.empty_at_station(senses)
 
     def use_context(self, context: PlanningContext) -> None:
         """Go on with other zones or rooms, from the next tick on."""
@@ -363,7 +369,7 @@ class Mission:
             self._transitions.go(step.event, senses)
         if step.failure is not None:
             self._transitions.fail(step.failure.outcome, step.failure.reason, senses)
-        return MissionStep(step.twist, wants_whole_map=step.wants_whole_map)
+        return MissionStep(step.twist, wants_whole_map=step.wants_whole_map, empties=step.empties)
 
     def _step(self, senses: Senses) -> PhaseStep:
         """Let the present phase say what it wants."""
@@ -383,6 +389,8 @@ class Mission:
                 return self._at_station.dock(senses, self.context.station)
             case Phase.CHARGING:
                 return self._at_station.charge(senses, job, self.context.tool_width)
+            case Phase.EMPTYING:
+                return self._at_station.empty(senses, job)
             case Phase.BIN_FULL:
                 return PhaseStep(event=None if job.bin.is_full else Event.EMPTIED)
         return PhaseStep()

@@ -55,7 +55,7 @@ class Transitions:
             self._job.outcome = CleanOutcome.COMPLETED
         if after.phase is Phase.DOCKED:
             self._retries.renew()
-            if before.errand in (Errand.HOME, Errand.CLEAN):
+            if before.errand in (Errand.HOME, Errand.CLEAN) and before.phase is not Phase.EMPTYING:
                 self.end_job_at_station(senses)
 
     def fail(self, outcome: CleanOutcome, reason: str, senses: Senses) -> None:

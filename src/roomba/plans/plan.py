@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import datetime as dt
 import zoneinfo
+from enum import Enum
 from typing import Annotated, Final
 
 from pydantic import Field, field_validator, model_validator
@@ -122,6 +123,15 @@ class QuietHours(Frozen):
         return self
 
 
+class Emptying(Enum):
+    """When a station that can empties the robot's bin; in quiet hours never."""
+
+    EACH_RUN = "after each run"
+    FULL = "by level"
+    """When it is full, or nearly so after a run."""
+    NEVER = "never"
+
+
 class HouseholdPlans(Frozen):
     """All that is planned; ``zone`` is the time zone by its name of the IANA."""
 
@@ -131,6 +141,7 @@ class HouseholdPlans(Frozen):
     quiet: tuple[QuietHours, ...] = Field(default=(), max_length=MOST_QUIET)
     waits_for_empty_home: bool = True
     """Whether plans wait, and what they began pauses, while a person is at home."""
+    emptying: Emptying = Emptying.FULL
     is_person_home: bool = False
     """What was told last."""
 

@@ -134,7 +134,7 @@ class Brain:
             wanted = self.keeper.look_around(senses.now, touches=any(senses.touches)) or wanted
         level = fan_of(mission)
         fan = None if level is None else self.robot.fan.duty_at(level)
-        return Command(self._safely(wanted, cruise), fan)
+        return Command(self._safely(wanted, cruise), fan, empties=step.empties)
 
     def steer(self, twist: Twist) -> Command:
         """Return what is wanted when the robot is steered by hand, as far as that is safe."""

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from roomba.control.speed_loop import Hazards
 from roomba.geometry import STANDSTILL, Pose, Twist
 from roomba.mission.docking.beams import StationBeams
-from roomba.mission.inputs.senses import Battery, Senses
+from roomba.mission.inputs.senses import Battery, EmptyingTold, Senses
 from roomba.perception.localization.estimate import Knowledge
 
 if TYPE_CHECKING:
@@ -55,7 +55,7 @@ class Readings:
     ``odometry`` and ``twist`` (m/s, rad/s) are by the wheels, ``turning`` (rad/s) by the gyro, None
     without one; ``scan`` is the newest one if it is new. ``grains`` is what the dirt sensor counts,
     1/s, ``in_bin`` what was picked up, g, ``brush_current`` what the brush's motor takes, A; 0
-    where it is not told.
+    where it is not told; ``emptying`` is what a station tells that empties the bin.
     """
 
     time: float
@@ -73,6 +73,7 @@ class Readings:
     grains: float = 0.0
     in_bin: float = 0.0
     brush_current: float = 0.0
+    emptying: EmptyingTold | None = None
 
     @property
     def bumps(self) -> bool:
@@ -112,4 +113,5 @@ def senses_of(readings: Readings, pose: Pose, knowledge: Knowledge, trouble: str
         readings.grains,
         readings.in_bin,
         readings.brush_current,
+        readings.emptying,
     )

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.geometry import Pose, Twist
+from roomba.world.emptying import EmptyingStation
 from roomba.world.engine.brush_kernels import amount_under_disc
 from roomba.world.engine.lidar.projection import ScanBuffers
 from roomba.world.engine.state.arrays import Fault, Infrared, Rows, State
@@ -117,7 +118,10 @@ _LEG: Final = 0.02
 
 
 class Simulator:
-    """A robot in its home; :meth:`step` is the only thing that lets time pass."""
+    """A robot in its home; :meth:`step` is the only thing that lets time pass.
+
+    ``emptying`` is its station, if that empties the bin.
+    """
 
     def __init__(
         self,
@@ -146,6 +150,8 @@ class Simulator:
         self.config = self._fleet.config
         self.dirt: DirtField = self._fleet.dirt(0)
         self._wanted = np.zeros((1, 2), np.float64)
+        station = EmptyingStation(config.simulation.station)
+        self.emptying = station if config.station.empties else None
 
     @property
     def time(self) -> float:
@@ -223,6 +229,17 @@ class Simulator:
             raise ValueError(f"expected a finite twist and dt > 0 s, got {wanted}, dt={dt}")
         self._wanted[0] = wanted.linear, wanted.angular
         self._fleet.step(self._wanted, dt, steps)
+        if self.emptying is not None:
+            self._empty(self.emptying, dt * steps)
+
+    def _empty(self, station: EmptyingStation, seconds: float) -> None:
+        """Let the station take dirt out of the bin."""
+        now = self.numbers
+        in_bin = now["in_bin"] / MICROGRAMS_PER_GRAM
+        taken = station.pass_time(seconds, in_bin, is_docked=now["docked"] > 0.0)
+        if taken > 0.0:
+            left = round((in_bin - taken) * MICROGRAMS_PER_GRAM)
+            self._fleet.robots["in_bin"] = max(left, 0)
 
     def observe(self) -> Observation:
         """Return the present observation; no time passes."""
@@ -310,6 +327,8 @@ class Simulator:
     def noise_level(self) -> float:
         """How loud it is now, dB(A) at 1 m."""
         now = self.numbers
+        if self.emptying is not None and self.emptying.is_at_work:
+            return self.config.simulation.station.emptying_noise
         stands = now["linear"] == 0.0 and now["angular"] == 0.0
         if stands:
             return self.config.simulation.surroundings.quiet

@@ -49,6 +49,8 @@ _REFUSED_WITHIN: Final = 1.0
 _STOPS: Final = 3
 """Times that a stop is sent before the drive is left to others."""
 
+_BY_HAND: Final = "its station empties no bin: empty it by hand"
+
 
 class GraphRobot(GraphMaps):
     """Observes topics; commands by actions, services and ``cmd_vel``.
@@ -227,6 +229,14 @@ class GraphRobot(GraphMaps):
     def locate(self) -> None:
         """Beep."""
         self._vacuum.locate()
+
+    def empty_at_station(self) -> None:
+        """Refuse it: the station of the graph empties no bin."""
+        raise RequestRefusedError(_BY_HAND)
+
+    def replace_bag(self) -> None:
+        """Refuse it: the station of the graph has no bag."""
+        raise RequestRefusedError(_BY_HAND)
 
     def empty_bin(self) -> None:
         """Tell that the dust bin was emptied."""

@@ -13,6 +13,7 @@ from fixtures.robots.missions import FLOOR_TOO_LITTLE, STATION, TABLE, floor_cle
 from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.headless.cleaner import HeadlessMission
 from roomba.mission.cleaning.request import CleanOutcome, CleanRequest
+from roomba.mission.commands import CommandRefusedError
 from roomba.mission.phases.machine import Phase
 from roomba.robot.readings import Readings
 from roomba.world.home.home import DirtSource
@@ -88,3 +89,53 @@ def test_without_a_level_sensor_the_grains_tell_and_what_was_swept_in_vain_is_sw
     assert cleaning is not None
     told = cleaning.coverage.swept & cleaning.coverage.wanted
     assert np.count_nonzero(told & ~robot.truth.swept) < 0.02 * np.count_nonzero(told)
+
+
+def at_emptying_station(grams: float) -> HeadlessMission:
+    config = with_bin(grams)
+    station = config.station.model_copy(update={"empties": True})
+    return HeadlessMission(HOME, config.model_copy(update={"station": station}), seed=1)
+
+
+def test_a_station_empties_a_full_bin_and_the_clean_goes_on_by_itself() -> None:
+    robot = at_emptying_station(FEW_GRAMS)
+    robot.mission.clean(CleanRequest(), robot.senses())
+    told = NOISY.simulation.station
+    until(robot, in_phase(robot, Phase.EMPTYING), 1200.0)
+    began = robot.seen.time
+    until(robot, lambda: robot.simulator.noise_level == told.emptying_noise, 1.0)
+    until(robot, in_phase(robot, Phase.CHARGING), 60.0)
+    lasted = robot.seen.time - began
+    assert lasted == pytest.approx(told.emptying_time, abs=0.2)
+    assert robot.simulator.noise_level < told.emptying_noise
+    assert robot.seen.in_bin == 0.0
+    result = robot.run().result
+    assert (result.outcome, result.message) == (CleanOutcome.COMPLETED, "")
+    assert not robot.emptied
+    station = robot.simulator.emptying
+    assert station is not None
+    assert result.dirt == pytest.approx(station.in_bag + robot.seen.in_bin, rel=1e-6)
+
+
+def test_a_full_bag_is_told_and_an_empty_one_helps() -> None:
+    robot = at_emptying_station(FEW_GRAMS)
+    robot.is_emptied_at_station = False
+    station = robot.simulator.emptying
+    assert station is not None
+    station.in_bag = 1e6
+    robot.mission.clean(CleanRequest(), robot.senses())
+    until(robot, in_phase(robot, Phase.BIN_FULL), 1200.0)
+    with pytest.raises(CommandRefusedError, match="bag of its station is full"):
+        robot.mission.empty_at_station(robot.senses())
+    station.replace_bag()
+    robot.tick()
+    robot.mission.empty_at_station(robot.senses())
+    until(robot, in_phase(robot, Phase.CHARGING), 60.0)
+    assert station.in_bag == pytest.approx(FEW_GRAMS, rel=0.05)
+
+
+def test_a_station_without_that_empties_no_bin_and_says_so() -> None:
+    robot = HeadlessMission(HOME, NOISY, seed=1)
+    until(robot, in_phase(robot, Phase.DOCKED), 5.0)
+    with pytest.raises(CommandRefusedError, match="empty it by hand"):
+        robot.mission.empty_at_station(robot.senses())

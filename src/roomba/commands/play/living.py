@@ -19,7 +19,7 @@ from roomba.headless.live.client import LiveClient
 from roomba.headless.live.playing import Playing
 from roomba.headless.live.robot import SPEEDS
 
-_OPTIONS: Final = ("home", "seed", "speed", "map", "bin", "wheels")
+_OPTIONS: Final = ("home", "seed", "speed", "map", "bin", "station", "wheels")
 """What :func:`add_robot_options` adds."""
 
 
@@ -31,6 +31,7 @@ def wanted_robot(wanted: argparse.Namespace) -> LiveClient:
         wanted.speed,
         knows_map=wanted.map == "home",
         bin_grams=wanted.bin,
+        station_empties=wanted.station == "empties",
         wheels=wanted.wheels,
     )
 
@@ -42,11 +43,15 @@ def live_client(
     *,
     knows_map: bool,
     bin_grams: float | None = None,
+    station_empties: bool = False,
     wheels: Wheels | None = None,
 ) -> LiveClient:
     """Return a robot in a home; raises RoombaError."""
     trial = Trial(home=name, seed=seed, bin=bin_grams, wheels=wheels)
     robot = robot_config_of(trial)
+    if station_empties:
+        station = robot.station.model_copy(update={"empties": True})
+        robot = robot.model_copy(update={"station": station})
     home = playable_home_of(trial, robot.body)
     docking = load_config(DockingConfig, CONFIGURATION / "docking.yaml")
     rooms = rooms_of(home) if knows_map else None
@@ -61,6 +66,8 @@ def live_client(
         longest_burst=int(speed) if speed >= 2.0 else 0,
         empties_bin_after=math.inf,
     )
+    # When it is emptied the household says.
+    mission.is_emptied_at_station = False
     return LiveClient(Playing(home, mission), mission, rooms, speed)
 
 
@@ -102,6 +109,13 @@ def add_robot_options(parser: argparse._ActionsContainer) -> None:
         type=_positive,
         metavar="GRAMS",
         help="how much its dust bin takes (default: as the configuration says)",
+    )
+    parser.add_argument(
+        "--station",
+        choices=("plain", "empties"),
+        default="plain",
+        metavar="plain|empties",
+        help="whether its station empties its bin (default: plain)",
     )
     parser.add_argument(
         "--wheels",

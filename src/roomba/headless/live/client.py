@@ -214,6 +214,14 @@ class LiveClient:
 
         self.obey(empty)
 
+    def empty_at_station(self) -> None:
+        """Let its station empty its bin."""
+        self.obey(lambda robot: robot.mission.empty_at_station(robot.senses()))
+
+    def replace_bag(self) -> None:
+        """Put an empty bag into its simulated station."""
+        self._play(playing.replace_bag)
+
     def emergency_stop(self, reason: str) -> None:
         """Hold the drive until it is released; a walk ends, however soon that is."""
         self._live.drive(STANDSTILL)

@@ -7,6 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from roomba.client.observed import STATION_BOX
+from roomba.client.protocol import RequestRefusedError
 from roomba.client.view import DoorView, GridLayer, PlayAct, TruthView
 from roomba.geometry import Pose
 from roomba.headless.cleaner import HeadlessMission
@@ -69,6 +70,13 @@ class Playing:
             return None
         frame, share = told
         return GridLayer.over(frame, (255.0 * share).astype(np.uint8), 1)
+
+
+def replace_bag(simulator: Simulator) -> None:
+    """Put an empty bag into the station; raises RequestRefusedError where there is none."""
+    if simulator.emptying is None:
+        raise RequestRefusedError("its station has no bag: it empties no bin")
+    simulator.emptying.replace_bag()
 
 
 def block_station(simulator: Simulator) -> None:

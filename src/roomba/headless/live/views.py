@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from typing import Final
 
@@ -74,6 +75,7 @@ def robot_view(
         top_speed=robot.brain.max_speed,
         truth=truth,
         charges=robot.battery_change > 0.0,
+        bag=math.nan if now.emptying is None else now.emptying.bag,
     )
 
 

@@ -24,6 +24,14 @@ class Battery:
         return self.level * self.capacity
 
 
+@dataclass(frozen=True, slots=True)
+class EmptyingTold:
+    """What a station tells that empties the bin: whether it does so now, its bag's share, 0..1."""
+
+    is_at_work: bool
+    bag: float
+
+
 _FULL = Battery()
 _NO_BEAMS = StationBeams()
 
@@ -35,7 +43,8 @@ class Senses:
     ``knowledge`` is how well the pose is known, ``trouble`` why not better; ``twist`` is by the
     wheels; ``cliff_left`` tells that the left cliff sensors see no floor; ``lifted`` that wheels
     hang in the air; ``grains`` is what the dirt sensor counts, 1/s; ``in_bin`` what was picked up,
-    g; ``brush_current`` what the brush's motor takes, A.
+    g; ``brush_current`` what the brush's motor takes, A; ``emptying`` what the station tells that
+    empties the bin, None of one that does not.
     """
 
     now: float
@@ -53,6 +62,7 @@ class Senses:
     grains: float = 0.0
     in_bin: float = 0.0
     brush_current: float = 0.0
+    emptying: EmptyingTold | None = None
 
     @property
     def cliff(self) -> bool:

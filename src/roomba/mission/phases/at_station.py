@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Final
 
 from roomba.configuration.docking import DockingConfig
 from roomba.configuration.robot import RobotConfig
@@ -11,10 +12,12 @@ from roomba.mission.cleaning.request import CleanOutcome
 from roomba.mission.docking.docking import Docking, DockSenses, DockState
 from roomba.mission.docking.expected_time import RobotTime
 from roomba.mission.docking.undocking import Undocking, UndockState
-from roomba.mission.inputs.senses import Senses
+from roomba.mission.inputs.senses import EmptyingTold, Senses
 from roomba.mission.phases.job import Job
 from roomba.mission.phases.machine import Event
 from roomba.mission.phases.step import Failure, PhaseStep
+
+_NO_ANSWER: Final = "its station does not empty the bin: see whether its way in is free"
 
 
 class AtStation:
@@ -31,6 +34,7 @@ class AtStation:
         self._undocking: Undocking | None = None
         self._stood: RobotTime | None = None
         self._needed: float | None = None
+        self._is_emptied = False
 
     def undock(self, senses: Senses, station: Pose, stand_first: float = 0.0) -> PhaseStep:
         """Drive out of the station; if docked, after it stood there for ``stand_first`` s."""
@@ -96,6 +100,31 @@ class AtStation:
             self._needed = job.needed_energy(tool_width)
         is_charged = job.ledger.is_charged(senses, self._needed)
         return PhaseStep(event=Event.CHARGED if is_charged else None)
+
+    def empty(self, senses: Senses, job: Job) -> PhaseStep:
+        """Stand until the station has taken the dirt out of the bin."""
+        if not senses.battery.is_docked:
+            return PhaseStep(event=Event.CONTACT_LOST)
+        self._stood = self._stood or RobotTime(senses.now)
+        self._stood.tick(senses.now)
+        told = senses.emptying
+        if told is not None and told.is_at_work:
+            self._is_emptied = True
+        elif self._is_emptied:
+            job.bin.emptied()
+            return PhaseStep(event=Event.EMPTIED)
+        elif told is None or told.bag >= 1.0:
+            return PhaseStep(event=Event.FAILED, message=why_not_emptied(told))
+        elif self._stood.elapsed > self._config.emptying_timeout:
+            return PhaseStep(event=Event.FAILED, message=_NO_ANSWER)
+        return PhaseStep(empties=True)
+
+
+def why_not_emptied(told: EmptyingTold | None) -> str:
+    """Return why the station empties no bin; empty if it does."""
+    if told is None:
+        return "its station empties no bin: empty it by hand"
+    return "the bag of its station is full: put an empty one in" if told.bag >= 1.0 else ""
 
 
 def _dock_senses(senses: Senses) -> DockSenses:

@@ -31,6 +31,8 @@ class Phase(Enum):
     """On its station, to go on with its errand afterwards."""
     BIN_FULL = "bin full"
     """Stands, to go on with its errand when its dust bin was emptied."""
+    EMPTYING = "emptying"
+    """On its station, which takes the dirt out of its bin."""
     PAUSED = "paused"
     """Stands until it is told to go on."""
     ERROR = "error"
@@ -63,6 +65,7 @@ class Event(Enum):
     STOP = "stop"
     EMERGENCY = "emergency stop"
     RELEASE = "release the emergency stop"
+    EMPTY = "empty its bin at its station"
 
     OUT = "out of the station"
     FINISHED = "all is done: the floor, or the map"
@@ -92,6 +95,7 @@ _COMMANDS: Final = frozenset(
         Event.STOP,
         Event.EMERGENCY,
         Event.RELEASE,
+        Event.EMPTY,
     )
 )
 
@@ -112,7 +116,7 @@ class MissionState:
 
 _WORKING: Final = frozenset((Phase.CLEANING, Phase.EXPLORING))
 _DRIVING: Final = _WORKING | {Phase.UNDOCKING, Phase.RETURNING, Phase.DOCKING}
-_ON_STATION: Final = frozenset((Phase.DOCKED, Phase.CHARGING))
+_ON_STATION: Final = frozenset((Phase.DOCKED, Phase.CHARGING, Phase.EMPTYING))
 _HELD: Final = frozenset((Phase.PAUSED, Phase.ERROR))
 _GOES_ON: Final = frozenset((Errand.CLEAN, Errand.EXPLORE))
 """Errands that a charge on the station only interrupts."""
@@ -152,6 +156,10 @@ def _commanded(state: MissionState, event: Event) -> MissionState | None:
     if event is Event.RESUME:
         if state.phase in _HELD and state.resumes is not None:
             return MissionState(state.resumes, state.errand)
+        return None
+    if event is Event.EMPTY:
+        if on_station or state.phase is Phase.BIN_FULL:
+            return MissionState(Phase.EMPTYING, state.errand)
         return None
     if event is Event.STOP:
         return MissionState(Phase.DOCKED if on_station else Phase.IDLE)
@@ -194,6 +202,8 @@ def _standing(state: MissionState, event: Event) -> MissionState | None:
             return MissionState(Phase.IDLE)
         if phase is Phase.CHARGING:
             return replace(state, phase=Phase.RETURNING)
+    if phase is Phase.EMPTYING:
+        return _emptying(state, event)
     if event is Event.CHARGED and phase is Phase.CHARGING:
         return replace(state, phase=Phase.UNDOCKING)
     if event is Event.BIN_FULL and phase is Phase.CHARGING:
@@ -202,6 +212,16 @@ def _standing(state: MissionState, event: Event) -> MissionState | None:
         return replace(state, phase=Phase.CHARGING)
     if event is Event.FAILED and phase is Phase.CHARGING:
         return replace(state, phase=Phase.ERROR, resumes=Phase.UNDOCKING)
+    return None
+
+
+def _emptying(state: MissionState, event: Event) -> MissionState | None:
+    """Return what comes after an event while its station empties the bin."""
+    goes_on = state.errand in _GOES_ON
+    if event is Event.EMPTIED or event is Event.FAILED:
+        return replace(state, phase=Phase.CHARGING) if goes_on else MissionState(Phase.DOCKED)
+    if event is Event.CONTACT_LOST:
+        return replace(state, phase=Phase.RETURNING) if goes_on else MissionState(Phase.IDLE)
     return None
 
 
@@ -236,6 +256,7 @@ VACUUM_STATES: Final[dict[Phase, str]] = {
     Phase.DOCKING: "returning",
     Phase.CHARGING: "docked",
     Phase.BIN_FULL: "error",
+    Phase.EMPTYING: "docked",
     Phase.PAUSED: "paused",
     Phase.ERROR: "error",
     Phase.EMERGENCY: "error",

@@ -22,7 +22,8 @@ class PhaseStep:
     """The twist wanted, and what ends the phase: an ``event`` or a ``failure``.
 
     ``message`` is what is told from now on; None leaves that as it is. ``wants_whole_map``: all
-    that can be seen was seen, and it waits for the map to be finished.
+    that can be seen was seen, and it waits for the map to be finished. ``empties``: its
+    station is to empty its bin.
     """
 
     twist: Twist = STANDSTILL
@@ -30,3 +31,4 @@ class PhaseStep:
     failure: Failure | None = None
     message: str | None = None
     wants_whole_map: bool = False
+    empties: bool = False

@@ -19,6 +19,7 @@ _SENSORS: Final[dict[str, Json]] = {
     "time": {"name": "Time", "device_class": "duration", "unit_of_measurement": "s"},
     "to_go": {"name": "Time to go", "device_class": "duration", "unit_of_measurement": "s"},
     "bin": {"name": "Dust bin", "device_class": "weight", "unit_of_measurement": "g"},
+    "bag": {"name": "Bag of its station", "unit_of_measurement": "%"},
     "phase": {"name": "State", "icon": "mdi:robot-vacuum"},
     "room": {"name": "Room", "icon": "mdi:floor-plan"},
     "error": {"name": "Error", "icon": "mdi:alert-circle-outline"},

@@ -40,6 +40,7 @@ class SmartCommands:
             "resume": robot.resume,
             "explore": robot.explore,
             "empty_bin": robot.empty_bin,
+            "empty_at_station": robot.empty_at_station,
         }
         self._with_values: dict[str, Callable[[Any], None]] = {
             "clean": self._clean,

@@ -46,6 +46,7 @@ class StateTeller:
             "time": _in_steps(time),
             "to_go": _in_steps(vacuum.seconds_to_go),
             "bin": _rounded(view.dirt, 1),
+            "bag": _rounded(100.0 * view.bag, 0),
             "bin_full": vacuum.phase == _BIN_FULL,
             "room": vacuum.room[:_LONGEST] or "none",
             "error": shortened(vacuum.message or view.held or view.doubt) or "none",

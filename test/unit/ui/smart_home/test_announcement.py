@@ -19,7 +19,7 @@ TOLD = announcements(TOPICS, "robbie", "Robbie")
 
 
 def test_each_entity_is_announced_once_and_belongs_to_one_device() -> None:
-    assert len(TOLD) == 13
+    assert len(TOLD) == 14
     assert len({entity["unique_id"] for entity in TOLD.values()}) == len(TOLD)
     assert len({json.dumps(entity["device"]) for entity in TOLD.values()}) == 1
     for topic, entity in TOLD.items():

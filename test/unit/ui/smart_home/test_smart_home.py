@@ -103,7 +103,7 @@ def test_a_home_assistant_that_starts_anew_is_told_all_again(
     assert unchanged(lambda: home.newest.keys() - {"homeassistant/status"}, 0.3)
     home.say("homeassistant/status", "online")
     wait_until(lambda: told <= home.newest.keys() | {f"{BASE}/answer"}, 10.0)
-    assert len([topic for topic in told if topic.endswith("/config")]) == 13
+    assert len([topic for topic in told if topic.endswith("/config")]) == 14
     smart_home.stop()
 
 

@@ -40,6 +40,8 @@ def test_the_bin_and_what_is_wrong() -> None:
     teller = StateTeller()
     full = teller.state_of(seen("error", 1.0, "bin full"), "standard")
     assert (full["bin_full"], full["bin"], full["error"]) == (True, 3.0, "none")
+    assert full["bag"] is None
+    assert teller.state_of(replace(seen("docked", 1.0), bag=0.41), "standard")["bag"] == 41
     held = teller.state_of(seen("error", 2.0, held="the button"), "standard")
     assert (held["bin_full"], held["error"]) == (False, "the button")
     long = teller.state_of(seen("error", 3.0, doubt="?" * 900), "standard")

@@ -244,6 +244,8 @@ def _add_errands(api: APIRouter, robot: ObservedRobot, note: Note) -> None:
         ("stop", "End the errand, and stay", robot.stop),
         ("locate", "Beep", robot.locate),
         ("empty_bin", "The dust bin was emptied", robot.empty_bin),
+        ("empty_at_station", "Let its station empty its bin", robot.empty_at_station),
+        ("replace_bag", "Put an empty bag into its simulated station", robot.replace_bag),
         ("release", "Release the emergency stop", robot.release),
     )
     for name, summary, command in plain:

@@ -33,6 +33,7 @@ BODIES: Final[dict[str, dict[str, Any]]] = {
     "presets": {"name": "after dinner", "order": {"mode": "rooms", "rooms": ["Kitchen"]}},
     "household/quiet": {"quiet": [{"begins": "22:00", "ends": "07:00", "days": [0, 1, 2]}]},
     "household/zone": {"zone": "Europe/Berlin"},
+    "household/emptying": {"when": "after each run"},
     "household/waits": {"wanted": True},
     "household/presence": {"at_home": True},
     "camera": {"angle": 15.0},

@@ -8,7 +8,7 @@ from fastapi import APIRouter
 from pydantic import Field
 
 from roomba.client.household import Household, plans_of, upkeep_of
-from roomba.plans.plan import MOST_QUIET, Plan, Preset, QuietHours
+from roomba.plans.plan import MOST_QUIET, Emptying, Plan, Preset, QuietHours
 from roomba.ui.web.routes.api import Answer, Wish, obeyed
 from roomba.upkeep.parts import Part
 from roomba.vocabulary import LONGEST_NAME
@@ -42,6 +42,12 @@ class PresenceWish(Wish):
     """Whether a person is at home."""
 
     at_home: bool
+
+
+class EmptyingWish(Wish):
+    """When a station that can empties the bin."""
+
+    when: Emptying
 
 
 def household_api(household: Household) -> APIRouter:
@@ -92,6 +98,10 @@ def _add_plans(api: APIRouter, household: Household) -> None:
     @api.put("/household/zone", summary="Set the time zone")
     def set_zone(wish: ZoneNameWish) -> Answer:
         return obeyed(lambda: household.set_zone(wish.zone))
+
+    @api.put("/household/emptying", summary="When a station that can empties the bin")
+    def set_emptying(wish: EmptyingWish) -> Answer:
+        return obeyed(lambda: household.set_emptying(wish.when))
 
     @api.put("/household/waits", summary="Whether plans wait while a person is at home")
     def set_waits(wish: WaitsWish) -> Answer:

@@ -25,6 +25,7 @@ export function headline(link, state) {
     case "exploring": return "Looking at what it does not know yet";
     case "returning": return "On its way home";
     case "docking": return "Docking";
+    case "emptying": return "Its station empties its bin";
     case "bin full": return "Its dust bin is full";
     case "paused": return `Paused${room}`;
     case "error": return "It needs help";

@@ -9,13 +9,19 @@ const SOON = 0.1; // share left below which the bar warns
 let shown = "";
 
 /** Keep it up to date. */
-export function begin() { on("state", show); }
+export function begin() {
+  on("state", show);
+  $("empty-now").onclick = () => wish("empty_at_station");
+  $("bag-replaced").onclick = () => wish("replace_bag");
+  $("emptying-when").onchange = () => wish("household/emptying", { when: $("emptying-when").value }, "PUT");
+}
 
 function show() {
   const upkeep = get("state")?.upkeep;
   $("upkeep").hidden = !upkeep;
   $("upkeep-due").hidden = !upkeep?.parts.some((part) => part.is_due);
   if (!upkeep) return;
+  showBag(upkeep);
   // Ten looks a second come, of which hardly one tells something new.
   const told = JSON.stringify(upkeep);
   if (told === shown) return;
@@ -49,6 +55,14 @@ function made(part) {
   about.append(words, meter);
   line.append(about, button("Reset", () => reset(part.name), `Reset the ${part.name}`));
   return line;
+}
+
+function showBag(upkeep) {
+  $("emptying").hidden = upkeep.bag === null;
+  if (upkeep.bag === null) return;
+  put($("bag"), upkeep.bag < 1 ? `${Math.round(100 * upkeep.bag)} % full` : "full: put an empty one in");
+  const when = get("state").plans?.emptying;
+  if (when && document.activeElement !== $("emptying-when")) $("emptying-when").value = when;
 }
 
 async function reset(name) {
