@@ -66,8 +66,9 @@ class _Drawing:
                 self._line(pen, (*ring, ring[0]), _ROOM, 1)
         self._line(pen, self._floor.way, _WAY, 2)
         for zone in self._floor.home.zones:
-            closed = zone.kind != "wall"
-            self._line(pen, (*zone.points, *zone.points[: int(closed)]), _NO_GO, 3)
+            closed, is_carpet = zone.kind != "wall", zone.kind == "carpet"
+            line = (_ROOM, 1) if is_carpet else (_NO_GO, 3)
+            self._line(pen, (*zone.points, *zone.points[: int(closed)]), *line)
         for room in self._floor.home.rooms:
             place = self._pixels([room.anchor])[0]
             pen.text(place, room.name, _TEXT, font=_font(), anchor="mm")

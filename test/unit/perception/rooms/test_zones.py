@@ -181,3 +181,19 @@ def test_an_edit_reckons_the_cells_of_one_zone() -> None:
     kept_out = zones.with_zone(area(0.3, 0.3, 0.5, 0.8, "new")).kept_out(floor)
     assert _touched.cache_info().misses == before + 1
     assert kept_out.values[FRAME.cell_of(0.4, 0.5)] == OCCUPIED
+
+
+def test_a_carpet_may_be_entered_and_is_told() -> None:
+    corners: Corners = ((0.0, 0.5), (0.6, 0.5), (0.6, 1.0), (0.0, 1.0))
+    rug, wall = Zone("rug", ZoneKind.CARPET, corners), Zone("wall", WALL, ((1.0, 0.5), (1.0, 1.2)))
+    floor = OccupancyMap(FRAME, np.full(FRAME.shape, FREE, np.int8))
+    both = Zones((rug, wall))
+    assert Zones((rug,)).kept_out(floor) is floor
+    assert np.array_equal(both.kept_out(floor).values != FREE, wall.cells(FRAME))
+    assert np.array_equal(both.carpets(FRAME), Zone("rug", NO_GO, corners).cells(FRAME))
+    assert both.has_carpets
+    assert not Zones((wall,)).has_carpets
+    assert both.is_carpet_at(0.3, 0.7)
+    assert not both.is_carpet_at(0.7, 0.7)
+    with pytest.raises(ZonesError, match="3 to"):
+        Zone("rug", ZoneKind.CARPET, corners[:2])
