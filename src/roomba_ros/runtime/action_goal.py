@@ -95,7 +95,8 @@ class SteadyActionServer(actionlib.ActionServer):
     def internal_cancel_callback(self, goal_id: GoalID) -> None:
         """Cancel goals, of which one may not have come yet."""
         with self.lock:
-            if goal_id.id and not self._knows(goal_id) and self._is_full("cancel"):
+            if goal_id.id and not self._has_room_for(goal_id):
+                self._refuse("cancel")
                 return
             super().internal_cancel_callback(goal_id)
             for tracker in self.status_list:
@@ -105,23 +106,24 @@ class SteadyActionServer(actionlib.ActionServer):
     def internal_goal_callback(self, goal: Any) -> None:
         """Take a goal; if too many came it is rejected, so that its client does not wait for it."""
         with self.lock:
-            if self._knows(goal.goal_id) or not self._is_full("goal"):
+            if self._has_room_for(goal.goal_id):
                 super().internal_goal_callback(goal)
-            elif goal.goal_id.id:
+                return
+            self._refuse("goal")
+            if goal.goal_id.id:
                 text = f"expected at most {MOST_GOALS} goals at the same time"
                 status = GoalStatus(goal.goal_id, GoalStatus.REJECTED, text)
                 # States of goals do not have it: they are to stay short.
                 self.result_pub.publish(self.ActionResult(status=status))
 
-    def _knows(self, goal_id: GoalID) -> bool:
-        return any(each.status.goal_id.id == goal_id.id for each in self.status_list)
+    def _has_room_for(self, goal_id: GoalID) -> bool:
+        """Whether it tells of this goal already, or of so few that it may tell of one more."""
+        told = self.status_list
+        return len(told) < MOST_GOALS or any(each.status.goal_id.id == goal_id.id for each in told)
 
-    def _is_full(self, topic: str) -> bool:
-        if len(self.status_list) < MOST_GOALS:
-            return False
+    def _refuse(self, topic: str) -> None:
         fault = f"expected at most {MOST_GOALS} goals at the same time, got one more"
         refuse(f"{self.ns}/{topic}", MessageError(fault))
-        return True
 
     def adopt(self, identity: GoalIdentity) -> actionlib.ServerGoalHandle:
         """Return a handle of a goal that a server before this one had accepted.
