@@ -8,6 +8,7 @@ import time
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Final
 
+from roomba.commands.importing import nothing_thrown_away
 from roomba.commands.map.options import PROGRAM, MapOptions, Output, options_of
 from roomba.commands.options import UsageError
 from roomba.commands.progress import Show, progress
@@ -65,7 +66,8 @@ def _without_bag(arguments: list[str] | None) -> list[str] | None:
 
 def _explore(options: MapOptions) -> int:
     # Imported here: it takes a second, and a mistyped option should be reported at once.
-    from roomba.commands.map.runs import MapScene
+    with nothing_thrown_away():
+        from roomba.commands.map.runs import MapScene
 
     scene = MapScene(options.trial)
     with progress("Exploring", options.output.quiet) as show:

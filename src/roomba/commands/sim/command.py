@@ -12,6 +12,7 @@ from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
+from roomba.commands.importing import nothing_thrown_away
 from roomba.commands.options import UsageError
 from roomba.commands.progress import Show, progress
 from roomba.commands.sim.options import PROGRAM, SimOptions, options_of
@@ -64,9 +65,10 @@ def _complain(text: str, status: int) -> int:
 
 def _run_one(options: SimOptions, open_bag: BagOpener | None, words: list[str]) -> int:
     # Imported here: it takes a second, and a mistyped option should be reported at once.
-    from roomba.commands.sim.kept_run import StateSamples, keep_run
-    from roomba.commands.trials.runs import TrialSetup
-    from roomba.headless.burst import LONGEST_BURST
+    with nothing_thrown_away():
+        from roomba.commands.sim.kept_run import StateSamples, keep_run
+        from roomba.commands.trials.runs import TrialSetup
+        from roomba.headless.burst import LONGEST_BURST
 
     burst = LONGEST_BURST if options.bag is None else BAG_BURST
     setup, samples = TrialSetup(options.trial, burst), StateSamples()
