@@ -183,6 +183,8 @@ class ExploringConfig(Frozen):
     speed: Positive = 0.40
     stand_first: NotNegative = 8.0
     """s; on its station, before it leaves it: the gyro shows its bias."""
+    seeing_speed: Positive = 0.25
+    """rad/s; where the map shows no way, it turns once to see more: scans should be as sharp."""
     clearance: Positive = 0.12
     tight_clearance: Positive = 0.005
     cleaning_clearance: Positive = 0.015

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 
 import numpy as np
 import pytest
@@ -208,6 +209,11 @@ def test_shut_in_it_waits_and_does_not_take_the_map_for_whole() -> None:
     rig.mission.obstacles.standing = lambda now: around  # type: ignore[method-assign]
     rig.mission.obstacles.at_least = lambda now: around  # type: ignore[method-assign]
     steps = [rig.tick() for _ in range(20)]
+    # It turns to see more, but here it is held.
+    assert steps[-1].twist == Twist(0.0, CONFIG.exploring.seeing_speed)
+    assert rig.mission.message == ""
+    longest = 3.0 * math.tau / CONFIG.exploring.seeing_speed
+    steps += [rig.tick() for _ in range(round(longest / TICK) + 20)]
     assert not any(step.wants_whole_map for step in steps)
     assert "no way leads out of where it is; it waits" in rig.mission.message
     assert rig.phase is Phase.CLEANING

@@ -14,6 +14,7 @@ from roomba.mission.cleaning.request import CleanOutcome
 from roomba.mission.driving.drives import Drives
 from roomba.mission.driving.path_driver import DriveState
 from roomba.mission.driving.retry_policy import RetryPolicy
+from roomba.mission.exploring.turn_to_see import TurnToSee
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.mission.inputs.senses import Senses
 from roomba.mission.phases import phases
@@ -37,6 +38,7 @@ class CleanPhase:
     ) -> None:
         """Begin with no path."""
         self._job, self._drives, self._retries, self._config = job, drives, retries, config
+        self._turn = TurnToSee(config)
         self._seen_all_of: PlanningContext | None = None
         self._seen_all_at = 0.0
 
@@ -49,6 +51,8 @@ class CleanPhase:
             return PhaseStep(event=Event.LOW)
         if self._job.bin.is_full:
             return PhaseStep(event=Event.BIN_FULL)
+        if self._turn.is_under_way:
+            return PhaseStep(self._turn.tick(senses))
         waiting = phases.wait_on(drives, self._retries, senses, limit)
         if waiting is not None:
             return waiting
@@ -78,6 +82,8 @@ class CleanPhase:
                 points = cleaning.next_path(senses.pose, drives.obstacles.standing(senses.now))
         except NoPathError:
             points = drives.way_out(senses)
+            if points is None and self._turns_to_see(senses):
+                return PhaseStep()
             if points is None:
                 return phases.wait("no way leads out of where it is", drives, retries, senses)
         if points is not None:
@@ -116,10 +122,16 @@ class CleanPhase:
             return PhaseStep()
         if not drives.may_go_home(senses):
             # Shut in it has not seen all.
+            if self._turns_to_see(senses):
+                return PhaseStep()
             reason = "no way leads out of where it is"
             return phases.try_home_again(reason, drives, self._retries, senses)
         self._seen_all_of, self._seen_all_at = drives.context, senses.now
         return PhaseStep(message=_WAITS, wants_whole_map=True)
+
+    def _turns_to_see(self, senses: Senses) -> bool:
+        """Begin to turn where a map in the making shows no way; tell whether it does."""
+        return self._drives.context.is_growing and self._turn.begin(senses)
 
     def _wait_for_whole_map(self, senses: Senses) -> PhaseStep:
         if 0.0 <= senses.now - self._seen_all_at < self._config.map_wait:
