@@ -19,7 +19,7 @@ from roomba.headless.live.client import LiveClient
 from roomba.headless.live.playing import Playing
 from roomba.headless.live.robot import SPEEDS
 
-_OPTIONS: Final = ("home", "seed", "speed", "map", "bin", "station", "wheels")
+_OPTIONS: Final = ("home", "seed", "speed", "map", "bin", "empties", "wheels")
 """What :func:`add_robot_options` adds."""
 
 
@@ -31,7 +31,7 @@ def wanted_robot(wanted: argparse.Namespace) -> LiveClient:
         wanted.speed,
         knows_map=wanted.map == "home",
         bin_grams=wanted.bin,
-        station_empties=wanted.station == "empties",
+        station_empties=wanted.empties,
         wheels=wanted.wheels,
     )
 
@@ -111,11 +111,9 @@ def add_robot_options(parser: argparse._ActionsContainer) -> None:
         help="how much its dust bin takes (default: as the configuration says)",
     )
     parser.add_argument(
-        "--station",
-        choices=("plain", "empties"),
-        default="plain",
-        metavar="plain|empties",
-        help="whether its station empties its bin (default: plain)",
+        "--empties",
+        action="store_true",
+        help="its station empties its bin (docs/household.md)",
     )
     parser.add_argument(
         "--wheels",

@@ -24,7 +24,7 @@ from roomba.robot.brain import Brain
 from roomba.storage.map_store import MapStore, StoredMap
 from roomba.storage.maps_folder import maps_folder
 
-_SIMULATED: Final = ("home", "seed", "speed", "bin", "station", "wheels")
+_SIMULATED: Final = ("home", "seed", "speed", "bin", "empties", "wheels")
 """Options of a robot in a simulated home alone."""
 NOT_DOCKED: Final = (
     "it has no current from a station: where it stands now counts as its station's place"
