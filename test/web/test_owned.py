@@ -1,0 +1,67 @@
+"""The page over a robot that people own, made up at the end of a line, in real time."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from fixtures.robots.faulty_end import FaultyEnd
+from fixtures.robots.neato_rig import NeatoEnd, neato_world
+from fixtures.waiting import wait_until
+from playwright.sync_api import Browser
+from web.conftest import SIZES, Opened, page_at, serving
+
+from roomba.commands.play.owned import OwnedLife
+from roomba.drivers.robots.table import ROBOTS
+from roomba.ui.web.app import create_app
+from roomba.ui.web.guard import Guard, new_token
+
+DEADLINE = 20.0
+"""s of wall time."""
+
+
+@pytest.fixture
+def neato(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[NeatoEnd]:
+    monkeypatch.setenv("ROOMBA_MAPS", str(tmp_path / "maps"))
+    made = NeatoEnd(FaultyEnd(tmp_path / "neato"), neato_world())
+    yield made
+    made.close()
+
+
+@pytest.fixture
+def owned(browser: Browser, neato: NeatoEnd, tmp_path: Path) -> Iterator[Opened]:
+    told: list[str] = []
+    life = OwnedLife(ROBOTS["neato"], str(tmp_path / "neato"), makes_map=False, tell=told.append)
+    life.client.start()
+    guard = Guard(new_token())
+    with (
+        serving(create_app(life.client, guard)) as server,
+        page_at(browser, f"{server.address}#token={guard.token}", SIZES["desktop"]) as page,
+    ):
+        opened = Opened(page, life.client, server, guard)
+        opened.wait_for_phase("docked")
+        yield opened
+    life.end()
+    assert not told
+
+
+def test_it_is_commanded_and_what_is_wrong_with_its_line_is_told(
+    owned: Opened, neato: NeatoEnd
+) -> None:
+    page = owned.page
+    assert isinstance(neato.end, FaultyEnd)
+    page.get_by_role("button", name="Clean all").click()
+    owned.wait_for_phase("undocking")
+    neato.end.unplug()
+    page.get_by_text("Cannot reach the robot").first.wait_for(timeout=20_000)
+    page.get_by_text("it goes on by itself").first.wait_for(timeout=20_000)
+    neato.end.plug()
+    page.get_by_text("Leaving its station").first.wait_for(timeout=20_000)
+    page.get_by_role("button", name="Stop", exact=True).click()
+    owned.wait_for_phase("docked")
+    page.locator("#locate").evaluate("button => button.click()")
+    wait_until(lambda: neato.robot.sound == 3, DEADLINE, "a beep")
+    wait_until(lambda: not neato.moves, DEADLINE, "it stands")
+    # A real home has no hands that play, and no camera.
+    assert not page.get_by_text("Show the truth").is_visible()
