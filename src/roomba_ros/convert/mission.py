@@ -14,6 +14,8 @@ from numpy.typing import NDArray
 from roomba_robot.msg import (
     CleanFeedback,
     CleanGoal,
+    LowThing,
+    LowThingArray,
     MissedArea,
     Rectangle,
     Room,
@@ -43,6 +45,7 @@ from roomba.mission.cleaning.request import (
 from roomba.mission.docking.beams import StationBeams
 from roomba.mission.exploring.exploration import ExploreResult
 from roomba.mission.inputs.senses import Battery
+from roomba.perception.rooms.low_things import OfferedZone
 from roomba.perception.rooms.zones import WALL_WIDTH, Zone, ZoneKind, Zones, ZonesError
 from roomba.perception.swept.coverage_bits import SWEPT, WANTED
 from roomba.time_spent import NAMES, NOT_COUNTED, TimeSpent
@@ -272,6 +275,14 @@ def zones_message(now: float, zones: Zones, frame_id: str) -> ZoneArray:
             ZoneMessage(zone.name, codes[zone.kind], [Point(x, y, 0.0) for x, y in zone.points])
             for zone in zones.all
         ],
+    )
+
+
+def low_things_message(now: float, offers: Sequence[OfferedZone], frame_id: str) -> LowThingArray:
+    """Return the no-go zones that are offered as a message."""
+    return LowThingArray(
+        header(now, frame_id),
+        [LowThing(offer.times, [Point(x, y, 0.0) for x, y in offer.corners]) for offer in offers],
     )
 
 

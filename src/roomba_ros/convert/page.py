@@ -15,6 +15,7 @@ from roomba_robot.msg import (
     CleanActionResult,
     Door,
     ExploreActionResult,
+    LowThingArray,
     MapUpdate,
     Room,
     RoomArray,
@@ -29,6 +30,7 @@ from roomba.client.view import (
     MOST_PATH,
     ChangeView,
     DoorView,
+    LowThingView,
     Point,
     RoomView,
     ZoneView,
@@ -40,6 +42,9 @@ from roomba.grid import GridFrame, OccupancyMap
 from roomba_ros.convert.common import map_of, path_of
 from roomba_ros.convert.errors import MessageError, require_finite
 from roomba_ros.convert.mission import KINDS, OUTCOMES, room_dirt_of, times_of, zones_of
+
+_LEAST_CORNERS = 3
+"""Of an outline that encloses something."""
 
 
 def known_cells_of(message: OccupancyGrid) -> OccupancyMap:
@@ -172,6 +177,21 @@ def changes_of(message: MapUpdate) -> tuple[ChangeView, ...]:
             change.area,
         )
         for change in message.changes
+    )
+
+
+def low_things_of(message: LowThingArray) -> tuple[LowThingView, ...]:
+    """Return the no-go zones that the robot offers."""
+    for thing in message.things:
+        if len(thing.corners) < _LEAST_CORNERS:
+            raise MessageError(
+                f"expected {_LEAST_CORNERS} corners or more of a zone, got {len(thing.corners)}"
+            )
+        places = [value for corner in thing.corners for value in (corner.x, corner.y)]
+        require_finite("a zone that is offered", *places)
+    return tuple(
+        LowThingView(thing.times, tuple((corner.x, corner.y) for corner in thing.corners))
+        for thing in message.things
     )
 
 

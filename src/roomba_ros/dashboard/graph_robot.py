@@ -14,6 +14,7 @@ from geometry_msgs.msg import Twist as TwistMessage
 from numpy.typing import NDArray
 from roomba_robot.srv import (
     EmergencyStop,
+    IgnoreLowThing,
     InjectFault,
     JoinRooms,
     RemoveZone,
@@ -56,9 +57,10 @@ class GraphRobot(GraphMaps):
     """Observes topics; commands by actions, services and ``cmd_vel``.
 
     Publishes: ``cmd_vel`` (Twist, while it is driven by hand), and what :class:`RosRobot` does.
-    Calls: ``emergency_stop``, ``set_zone``, ``remove_zone``, ``rooms/rename``, ``rooms/join``,
-    ``rooms/split``, ``rooms/undo``, ``sim/spill``, ``sim/inject_fault``, ``sim/set_door``,
-    ``turn_camera``, and what :class:`RosRobot` and :class:`GraphMaps` do.
+    Calls: ``emergency_stop``, ``set_zone``, ``remove_zone``, ``ignore_low_thing``,
+    ``rooms/rename``, ``rooms/join``, ``rooms/split``, ``rooms/undo``, ``sim/spill``,
+    ``sim/inject_fault``, ``sim/set_door``, ``turn_camera``, and what :class:`RosRobot` and
+    :class:`GraphMaps` do.
     """
 
     def __init__(self, config: RobotConfig) -> None:
@@ -82,6 +84,7 @@ class GraphRobot(GraphMaps):
             "emergency_stop": EmergencyStop,
             "set_zone": SetZone,
             "remove_zone": RemoveZone,
+            "ignore_low_thing": IgnoreLowThing,
             "rooms/rename": RenameRoom,
             "rooms/join": JoinRooms,
             "rooms/split": SplitRoom,
@@ -278,6 +281,10 @@ class GraphRobot(GraphMaps):
     def remove_zone(self, name: str) -> None:
         """Remove a zone."""
         self._call("remove_zone", name)
+
+    def ignore_low_thing(self, x: float, y: float) -> None:
+        """Offer no zone any more of what was felt there."""
+        self._call("ignore_low_thing", x, y)
 
     def rename_room(self, name: str, new_name: str) -> None:
         """Give a room another name."""

@@ -18,6 +18,7 @@ from roomba_robot.msg import (
     CleanActionResult,
     ExploreActionResult,
     Localization,
+    LowThingArray,
     MapUpdate,
     RoomArray,
     SimHome,
@@ -33,6 +34,7 @@ from roomba.client.view import (
     GridLayer,
     HomeView,
     LayerName,
+    LowThingView,
     RoomView,
     TruthView,
     ZoneView,
@@ -54,6 +56,7 @@ from roomba_ros.convert.page import (
     dirt_cells_of,
     exploration_report_of,
     known_cells_of,
+    low_things_of,
     room_views_of,
     shown_path_of,
     sim_dirt_of,
@@ -129,6 +132,7 @@ class PageTopics:
         subscribe("station_pose", PoseStamped, pose_in_map, self._on_station)
         subscribe("rooms", RoomArray, room_views_of, self._on_rooms)
         subscribe("zones", ZoneArray, zone_views_of, self._on_zones)
+        subscribe("low_things", LowThingArray, low_things_of, self._on_low_things)
         subscribe("map/update", MapUpdate, changes_of, self._on_changes)
         subscribe("clean/result", CleanActionResult, clean_report_of, self._on_report)
         subscribe("explore/result", ExploreActionResult, exploration_report_of, self._on_report)
@@ -214,6 +218,9 @@ class PageTopics:
 
     def _on_zones(self, zones: tuple[ZoneView, ...]) -> None:
         self._change(zones=zones)
+
+    def _on_low_things(self, things: tuple[LowThingView, ...]) -> None:
+        self._change(low_things=things)
 
     def _on_changes(self, changes: tuple[ChangeView, ...]) -> None:
         self._change(changes=changes)

@@ -20,6 +20,7 @@ from roomba.vocabulary import listed
 from roomba_ros.mission.drive import MissionDrive
 from roomba_ros.mission.goals import Ended
 from roomba_ros.mission.home import GROWING, HomeTopics, KnownHome
+from roomba_ros.mission.low_things import LowThingTopics
 from roomba_ros.mission.memory import MissionMemory
 from roomba_ros.mission.orders import MissionOrders
 from roomba_ros.mission.round import MissionRound
@@ -60,7 +61,8 @@ class MissionNode:
     """Ticks one mission for each map; what it is on, it takes up again after it was killed.
 
     Publishes, subscribes and serves what :class:`HeardSenses`, :class:`HomeTopics`,
-    :class:`MissionOrders`, :class:`MissionDrive` and :class:`MissionTopics` say. Of the body it
+    :class:`LowThingTopics`, :class:`MissionOrders`, :class:`MissionDrive` and
+    :class:`MissionTopics` say. Of the body it
     hears ``odom``, ``scan``, ``bumper``, ``cliff``, ``wheel_drop``, ``battery_state``,
     ``dock_status``, ``ir_omni``, ``dirt_detect``, ``bin_level`` and ``brush_current``.
     Parameters: ``robot_config``, ``mission_config``, ``docking_config``, ``things_config``,
@@ -102,6 +104,7 @@ class MissionNode:
             self._background,
             folder_of("~zones_folder", "zones"),
         )
+        self._low_things = LowThingTopics(self._background, folder_of("~zones_folder", "zones"))
         self._drive = MissionDrive(self._config, self._nodes.deadlines.ending)
         self._orders = MissionOrders(self._drive.take, self._nodes.deadlines)
         self._topics = MissionTopics(self._mission_config, self._nodes.periods, self._background)
@@ -112,6 +115,7 @@ class MissionNode:
             self._drive,
             self._senses,
             self._context,
+            self._low_things,
             self._orders,
         ):
             part.start()
@@ -127,6 +131,8 @@ class MissionNode:
         if mission is None or senses is None:
             self._wait(now)
             return
+        if self._home is not None:
+            self._low_things.tick(now, mission, self._home)
         step, ended = self._round.tick(now, mission, senses)
         self._finish_map(ended, is_waited_for=step.wants_whole_map)
         self._remember(mission, senses, has_learned=ended.clean is not None)

@@ -13,6 +13,7 @@ TYPES = (
     "nav_msgs/OccupancyGrid",
     "nav_msgs/Odometry",
     "roomba_robot/CleanActionGoal",
+    "roomba_robot/LowThingArray",
     "roomba_robot/RoomArray",
     "roomba_robot/ZoneArray",
     "sensor_msgs/BatteryState",

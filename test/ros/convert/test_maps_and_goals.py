@@ -9,16 +9,17 @@ from geometry_msgs.msg import Point, PoseStamped, Quaternion
 from hypothesis import given
 from hypothesis import strategies as st
 from nav_msgs.msg import OccupancyGrid, Path
-from roomba_robot.msg import CleanGoal, Rectangle, RoomArray, ZoneArray
+from roomba_robot.msg import CleanGoal, LowThingArray, Rectangle, RoomArray, ZoneArray
 from rospy import Time
 from sensor_msgs.msg import BatteryState
 
 from roomba.grid import MOST_CELLS
 from roomba.mission.cleaning.request import CleanRefusedError
+from roomba.perception.rooms.low_things import OfferedZone
 from roomba_ros.convert.common import map_of, told_map_of
 from roomba_ros.convert.errors import MessageError
-from roomba_ros.convert.mission import outlines_of, request_of, zones_of
-from roomba_ros.convert.page import battery_seconds_of, shown_path_of
+from roomba_ros.convert.mission import low_things_message, outlines_of, request_of, zones_of
+from roomba_ros.convert.page import battery_seconds_of, low_things_of, shown_path_of
 
 BAD = (math.nan, math.inf, -math.inf)
 
@@ -125,6 +126,21 @@ def test_zones_are_those_that_were_told_or_refused_together() -> None:
     wrong.zones[0].kind = 7
     with pytest.raises(MessageError, match="a kind from 0 to 1, got 7"):
         zones_of(wrong)
+
+
+def test_zones_that_are_offered_come_as_they_were_told() -> None:
+    offer = OfferedZone(3, ((0.0, 0.0), (1.0, 0.0), (1.0, 2.0), (0.0, 2.0)))
+    message = low_things_message(5.0, [offer], "map")
+    (view,) = low_things_of(message)
+    assert (view.times, view.corners) == (offer.times, offer.corners)
+    assert low_things_of(LowThingArray()) == ()
+    for bad in BAD:
+        message.things[0].corners[2].y = bad
+        with pytest.raises(MessageError, match="finite"):
+            low_things_of(message)
+    message.things[0].corners = message.things[0].corners[:2]
+    with pytest.raises(MessageError, match="3 corners or more"):
+        low_things_of(message)
 
 
 @pytest.mark.parametrize("number", BAD)
