@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from fixtures.nodes.lockstep import Lockstep
-from roomba_robot.msg import Localization
+from geometry_msgs.msg import Point
+from roomba_robot.msg import Localization, LowThing, LowThingArray
 from sensor_msgs.msg import BatteryState
 from std_msgs.msg import Float32
 
@@ -29,3 +30,17 @@ def test_of_two_nodes_that_tell_of_the_body_the_page_shows_the_first() -> None:
         ):
             ros.publish(topic, message, "/other")
         assert (shown.doubt, shown.in_bin, shown.charges) == (doubt, in_bin, True)
+
+
+def test_the_page_shows_the_zones_that_are_offered_as_they_are_told_last() -> None:
+    corners = [Point(0.0, 0.0, 0.0), Point(1.0, 0.0, 0.0), Point(1.0, 2.0, 0.0)]
+    with Lockstep().installed() as ros:
+        shown = PageTopics(RobotConfig())
+        shown.start()
+        before = shown.home().version
+        ros.publish("/low_things", LowThingArray(things=[LowThing(3, corners)]))
+        (thing,) = shown.home().low_things
+        assert (thing.times, thing.corners) == (3, ((0.0, 0.0), (1.0, 0.0), (1.0, 2.0)))
+        assert shown.home().version > before
+        ros.publish("/low_things", LowThingArray())
+        assert shown.home().low_things == ()
