@@ -10,6 +10,7 @@ from web.conftest import SIZES, Opened
 from web.test_page import DEADLINE
 
 from roomba.client.view import ZoneView
+from roomba.perception.rooms.low_things import LowThing, LowThings
 
 DESKTOP = pytest.mark.parametrize("size", [SIZES["desktop"]])
 CORNERS = ((1.0, 1.6), (2.0, 1.6), (2.0, 2.4), (1.0, 2.4))
@@ -114,3 +115,17 @@ def test_two_fingers_zoom_and_the_map_stays_under_them(opened: Opened) -> None:
     wait_until(are_under_them, DEADLINE, "the same floor under the fingers")
     fingers("touchEnd")
     assert opened.page.inner_text("#clean") == "Clean all"
+
+
+@DESKTOP
+def test_a_zone_is_offered_where_something_was_felt_taken_or_ignored(opened: Opened) -> None:
+    low = LowThings((LowThing(1.0, 1.0, 1.2, 1.0, 3), LowThing(2.0, 2.0, 2.0, 2.0, 4)))
+    page, robot = opened.page, opened.robot
+    robot.ask(lambda alive: setattr(alive.mission.obstacles, "low", low))
+    page.get_by_text("Felt 3 times at 1.1, 1.0").wait_for()
+    page.get_by_role("button", name="Make a no-go zone at 1.1, 1.0").click()
+    wait_until(lambda: len(robot.home().zones) == 1, DEADLINE, "a zone")
+    assert robot.home().zones[0].name == "Zone 1"
+    page.get_by_role("button", name="Ignore what was felt at 2.0, 2.0").click()
+    wait_until(lambda: robot.home().low_things == (), DEADLINE, "no offer")
+    page.locator("#low-offer").wait_for(state="hidden")
