@@ -55,12 +55,16 @@ def end(run: Program, row: Row, which: str) -> None:
     started = _members(run.process.pid)
     run.send_to_leader(signal.SIGINT)
     row.expect_within("gone", GONE, lambda: run.status is not None)
-    left = [process for process in started if os.path.exists(f"/proc/{process}/exe")]
-    if left:
-        row.broken.append(f"{which}: processes {left} are left")
+    # One that reads the launch file ends with its parent, by a signal of the kernel: in a moment.
+    if until(lambda: not _there(started), GONE) is None:
+        row.broken.append(f"{which}: processes {_there(started)} are left")
     for bad in ("Traceback", "has not ended yet"):
         if bad in run.output:
             row.broken.append(f"{which}: {_beginning_with(bad, run.output)}")
+
+
+def _there(processes: list[int]) -> list[int]:
+    return [process for process in processes if os.path.exists(f"/proc/{process}/exe")]
 
 
 def _members(leader: int) -> list[int]:

@@ -12,6 +12,7 @@ from typing import Final
 
 _PR_SET_PDEATHSIG: Final = 1
 """Of prctl(2): the signal that a process gets when its parent ends."""
+_ENDING: Final = (signal.SIGINT, signal.SIGTERM)
 
 
 def fork(function: Callable[[], object]) -> int:
@@ -22,15 +23,19 @@ def fork(function: Callable[[], object]) -> int:
     sys.stdout.flush()
     sys.stderr.flush()
     parent = os.getpid()
+    # A signal waits until the child has handlers of its own: those of its parent would take it.
+    signal.pthread_sigmask(signal.SIG_BLOCK, _ENDING)
     child = os.fork()
     if child:
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, _ENDING)
         return child
     status = 1
     try:
         end_with(parent, signal.SIGKILL)
         os.setpgid(0, 0)
-        for number in (signal.SIGINT, signal.SIGTERM):
+        for number in _ENDING:
             signal.signal(number, signal.default_int_handler)
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, _ENDING)
         function()
         status = 0
     except SystemExit as left:

@@ -39,6 +39,18 @@ def test_a_forked_process_has_its_own_group_and_can_be_interrupted() -> None:
     assert told_end(os.waitpid(child, 0)[1]) == "ended with status 1"
 
 
+def test_one_that_is_interrupted_before_it_begins_ends() -> None:
+    """The handler of its parent, which only notes the signal, must not take it."""
+    before = signal.signal(signal.SIGINT, lambda *_: None)
+    try:
+        for _ in range(20):
+            child = fork(signal.pause)
+            os.kill(child, signal.SIGINT)
+            wait_until(lambda: os.waitpid(child, os.WNOHANG)[0] == child, 10.0, "it ended")  # noqa: B023
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
 def test_a_stopped_process_is_seen() -> None:
     with subprocess.Popen(["sleep", "100"]) as process:
         assert not is_stopped(process.pid)
