@@ -34,6 +34,7 @@ def shared_robot(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RosGraph]
         yield own
 
 
+@pytest.mark.thorough
 def test_an_exploration_is_held_ended_and_taken_up(shared_robot: RosGraph) -> None:
     robot = Explorer(shared_robot)
     told = robot.maps_with("explore")
@@ -78,6 +79,7 @@ def test_an_exploration_is_held_ended_and_taken_up(shared_robot: RosGraph) -> No
     assert sorted(robot.rooms) == ["Room 1", "Room 2"]
 
 
+@pytest.mark.thorough
 def test_it_goes_by_the_map_that_it_made(shared_robot: RosGraph) -> None:
     robot = Explorer(shared_robot)
     robot.has_whole_map()
@@ -96,6 +98,7 @@ def test_it_goes_by_the_map_that_it_made(shared_robot: RosGraph) -> None:
     robot.does("docked")
 
 
+@pytest.mark.thorough
 def test_it_keeps_its_map(shared_robot: RosGraph) -> None:
     robot = Explorer(shared_robot)
     robot.has_whole_map()

@@ -124,6 +124,7 @@ def test_another_robots_bag_is_mapped(graph: RosGraph, bag: Path) -> None:
     assert area == pytest.approx(room, rel=0.1)
 
 
+@pytest.mark.thorough
 def test_another_robots_bag_is_localized_on_a_map_of_it(graph: RosGraph, bag: Path) -> None:
     graph.set_param("/use_sim_time", True)
     made = mapped_drive([bag], Wanted(), lambda share, words: None)

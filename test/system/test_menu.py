@@ -75,6 +75,7 @@ def test_a_refused_destination_is_told_with_the_reason(shared_robot: RosGraph) -
     assert menu.ends(30.0) == 0
 
 
+@pytest.mark.thorough
 def test_a_clean_is_left_held_up_stopped_and_the_robot_docked(shared_robot: RosGraph) -> None:
     menu = menu_of(shared_robot)
     menu.type("5")

@@ -119,9 +119,9 @@ def test_broken_master_uri_is_refused_with_what_was_expected(uri: str) -> None:
     assert uri in done.stderr
 
 
-def test_missing_suite_is_an_error(tmp_path: Path) -> None:
-    for name in ("roomba", "install_dependencies.sh"):
+def test_without_the_tests_the_command_says_so(tmp_path: Path) -> None:
+    for name in ("roomba", "set_up.sh", "install_dependencies.sh"):
         shutil.copy2(REPOSITORY / name, tmp_path)
     done = run(["./roomba", "test", "contract"], tmp_path)
     assert done.returncode == 1
-    assert "test/contract" in done.stderr
+    assert "expected a whole checkout with the folder test/running" in done.stderr

@@ -40,7 +40,7 @@ def test_a_zone_is_drawn_and_cleaned(opened: Opened) -> None:
 
 def test_edges_alone_are_cleaned(opened: Opened) -> None:
     opened.show("rooms")
-    opened.page.get_by_label("Where").select_option("edges")
+    opened.page.locator("#mode").select_option("edges")
     opened.page.get_by_role("button", name="Clean all").click()
     opened.wait_for_phase("cleaning")
     assert opened.robot.ask(asked_for) is CleanMode.EDGES

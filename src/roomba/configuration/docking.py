@@ -54,9 +54,9 @@ class DockingConfig(Frozen):
     lost_timeout: Positive = 10.0
     """Not knowing where it is and seeing no beam, it waits so long."""
     stuck_timeout: Positive = 3.0
+    """So long it may drive without moving."""
     emptying_timeout: Positive = 5.0
     """For a station to begin to empty the bin."""
-    """So long it may drive without moving."""
     time_limit: Positive = 150.0
 
     undock_distance: Positive = 0.35

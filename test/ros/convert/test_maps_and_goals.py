@@ -124,7 +124,7 @@ def test_zones_are_those_that_were_told_or_refused_together() -> None:
             zones_of(ZoneArray(zones=[*zones(4).zones, *zones(corners).zones]))
     wrong = zones(4)
     wrong.zones[0].kind = 7
-    with pytest.raises(MessageError, match="a kind from 0 to 1, got 7"):
+    with pytest.raises(MessageError, match="a kind from 0 to 2, got 7"):
         zones_of(wrong)
 
 

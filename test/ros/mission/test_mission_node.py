@@ -5,6 +5,7 @@ import signal
 import threading
 import time
 
+import pytest
 import rospy
 from actionlib_msgs.msg import GoalID, GoalStatus, GoalStatusArray
 from fixtures.graph import RosGraph
@@ -205,6 +206,7 @@ def test_zones_beyond_the_limits_are_refused_and_many_are_quickly_there(graph: R
     assert "at most 1000 zones, got 1001" in clean.get_goal_status_text()
 
 
+@pytest.mark.thorough
 def test_a_disk_that_refuses_is_told_and_what_was_refused_is_kept_when_it_does_not(
     graph: RosGraph,
 ) -> None:

@@ -66,6 +66,7 @@ def stands(probe: Probe) -> None:
 # Those with a graph of their own come first: a robot that others share would work all the while.
 
 
+@pytest.mark.thorough
 def test_at_a_faster_clock_a_killed_server_walks_again_and_ctrl_c_ends_it_without_violence(
     tmp_path: Path,
 ) -> None:

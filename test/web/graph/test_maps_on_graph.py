@@ -36,6 +36,7 @@ def graph(tmp_path: Path) -> Iterator[RosGraph]:
         yield own
 
 
+@pytest.mark.thorough
 def test_maps_are_chosen_removed_and_saved(graph: RosGraph, tmp_path: Path) -> None:
     with open_page(graph) as page:
         page.set_default_timeout(WORKS_WITHIN)
