@@ -30,7 +30,9 @@ def main(words: list[str]) -> int:
 
 
 def _beside_robots(asked: Asked) -> bool:
-    """Run all at once: robots leave much of the cores to what computes."""
+    """Run all at once, but what is timed: robots leave much of the cores to what computes."""
+    robots = Robots(asked)
+    robots.run_timed()
     background = []
     if asked.has(Kind.CHECKS):
         background.append(Background("lint", CHECKS))
@@ -38,8 +40,7 @@ def _beside_robots(asked: Asked) -> bool:
         background.append(Background("computing", _computing(asked)))
     if asked.has(Kind.COVERAGE):
         background.append(Background("coverage", COVERAGE))
-    robots = Robots(asked)
-    robots.run()
+    robots.run_others()
     passed = [part.passed() for part in background]
     return robots.passed() and all(passed)
 

@@ -38,13 +38,15 @@ def suite(folder: Path, monkeypatch: pytest.MonkeyPatch, **files: str) -> Robots
 
 def test_all_that_passes_passes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     ran = suite(tmp_path, monkeypatch, it="def test_it(): pass")
-    ran.run()
+    ran.run_timed()
+    ran.run_others()
     assert ran.passed()
 
 
 def test_without_a_test_nothing_passed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     ran = suite(tmp_path, monkeypatch, it="")
-    ran.run()
+    ran.run_timed()
+    ran.run_others()
     assert not ran.passed()
 
 
@@ -52,7 +54,8 @@ def test_what_passes_alone_passes_and_is_named(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
     ran = suite(tmp_path, monkeypatch, it=ONCE.format(mark=str(tmp_path / "mark")))
-    ran.run()
+    ran.run_timed()
+    ran.run_others()
     assert ran.passed()
     assert "PASSED ONLY ALONE: test/ros/test_it.py::test_it" in capfd.readouterr().out
 
@@ -62,7 +65,8 @@ def test_what_fails_twice_fails(
 ) -> None:
     passes = ONCE.format(mark=str(tmp_path / "mark"))
     ran = suite(tmp_path, monkeypatch, it=passes, other="def test_it(): assert False")
-    ran.run()
+    ran.run_timed()
+    ran.run_others()
     assert not ran.passed()
     assert "FAILED TWICE: test/ros/test_other.py::test_it" in capfd.readouterr().out
 
@@ -72,12 +76,14 @@ def test_many_failures_are_no_matter_of_a_busy_machine(
 ) -> None:
     text = "\n".join(f"def test_{n}(): assert False" for n in range(FEW + 1))
     ran = suite(tmp_path, monkeypatch, it=text)
-    ran.run()
+    ran.run_timed()
+    ran.run_others()
     assert not ran.passed()
     assert "once more" not in capfd.readouterr().out
 
 
 def test_a_file_that_cannot_be_read_fails(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     ran = suite(tmp_path, monkeypatch, it="def test_it(: pass")
-    ran.run()
+    ran.run_timed()
+    ran.run_others()
     assert not ran.passed()
