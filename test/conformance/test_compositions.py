@@ -10,7 +10,7 @@ from fixtures.homes.rooms import room_home
 from fixtures.homes.worlds import NOISY
 from fixtures.robots.compositions import COMPOSITIONS, REFERENCE, Case, Outcome, assert_same
 from fixtures.robots.missions import HOME, TWO_ROOMS
-from fixtures.thoroughness import core_first
+from fixtures.thoroughness import core_first, examples
 from hypothesis import Phase as Stage
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -137,7 +137,7 @@ def cases(draw: st.DrawFn) -> Case:
 
 
 @settings(
-    max_examples=12,
+    max_examples=examples(12),
     deadline=None,
     derandomize=True,
     # Each example takes seconds: one that fails is not made smaller.

@@ -36,6 +36,7 @@ def suite(folder: Path, monkeypatch: pytest.MonkeyPatch, **files: str) -> Robots
     return Robots(Asked(("ros",)))
 
 
+@pytest.mark.thorough
 def test_all_that_passes_passes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     ran = suite(tmp_path, monkeypatch, it="def test_it(): pass")
     ran.run_timed()
@@ -71,6 +72,7 @@ def test_what_fails_twice_fails(
     assert "FAILED TWICE: test/ros/test_other.py::test_it" in capfd.readouterr().out
 
 
+@pytest.mark.thorough
 def test_many_failures_are_no_matter_of_a_busy_machine(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
@@ -82,6 +84,7 @@ def test_many_failures_are_no_matter_of_a_busy_machine(
     assert "once more" not in capfd.readouterr().out
 
 
+@pytest.mark.thorough
 def test_a_file_that_cannot_be_read_fails(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     ran = suite(tmp_path, monkeypatch, it="def test_it(: pass")
     ran.run_timed()

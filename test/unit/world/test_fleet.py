@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from fixtures.homes.rooms import room_home
 from fixtures.homes.worlds import DT, NOISY, SOURCES, block_that_moves
+from fixtures.thoroughness import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
@@ -124,7 +125,7 @@ def test_the_seed_decides() -> None:
     assert worlds.poses[0].tolist() != worlds.poses[1].tolist()
 
 
-@settings(max_examples=12)
+@settings(max_examples=examples(12))
 @given(st.integers(0, 2**31), st.integers(2, 5))
 def test_robots_of_one_home_never_overlap(seed: int, robots: int) -> None:
     fleet = Fleet([room_home(3.0, 2.0)], robots_per_home=robots, seeds=[seed])

@@ -14,6 +14,7 @@ import shapely
 from fixtures.homes.free_walls import home_with, room_outline, straight_wall, way_to
 from fixtures.homes.rooms import room_home
 from fixtures.homes.worlds import DT, IDEAL
+from fixtures.thoroughness import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -83,7 +84,7 @@ def expected_way(x: float, y: float, direction: float) -> float | None:
     return way if all(abs(each - way) < 0.02 for each in beside) else None
 
 
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=examples(12), deadline=None)
 @given(x=st.floats(1.5, 3.6), y=st.floats(1.2, 2.8), theta=angles, turn=st.sampled_from([0.0, 0.6]))
 def test_lidars_meet_round_and_slanted_walls_within_a_millimetre(
     x: float, y: float, theta: float, turn: float
@@ -107,7 +108,7 @@ def test_lidars_meet_round_and_slanted_walls_within_a_millimetre(
     assert compared > 40
 
 
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=examples(12), deadline=None)
 @given(theta=angles, turns=st.floats(-0.6, 0.6), turn=st.sampled_from([0.0, -0.8]))
 def test_the_round_body_comes_to_rest_at_round_and_slanted_walls(
     theta: float, turns: float, turn: float
@@ -126,7 +127,7 @@ def test_the_round_body_comes_to_rest_at_round_and_slanted_walls(
     assert world.numbers["hits"] > 0.0 or abs(turns) > 0.2
 
 
-@settings(max_examples=8, deadline=None)
+@settings(max_examples=examples(8), deadline=None)
 @given(x=st.floats(1.6, 3.2), y=st.floats(1.4, 2.6), theta=angles, turn=st.sampled_from([0.0, 1.0]))
 def test_the_camera_sees_round_and_slanted_walls(
     x: float, y: float, theta: float, turn: float

@@ -132,7 +132,7 @@ def test_it_sees_what_plain_geometry_sees_in_every_shipped_home(name: str) -> No
     assert count_grazing(home.solid, home.frame, poses, scans, config) <= 4
 
 
-@settings(max_examples=15)
+@settings(max_examples=examples(15))
 @given(st.integers(0, 2**32 - 1), st.floats(0.0, 0.3))
 def test_tiles_of_all_sizes_see_the_same(seed: int, density: float) -> None:
     random = np.random.default_rng(seed)

@@ -77,7 +77,7 @@ def test_the_lidar_meets_slanted_walls_exactly(
     assert compared > 30
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=examples(15), deadline=None)
 @given(angle=angles, theta=angles, turns=st.floats(-0.6, 0.6))
 def test_the_round_body_comes_to_rest_at_a_slanted_wall(
     angle: float, theta: float, turns: float
@@ -95,7 +95,7 @@ def test_the_round_body_comes_to_rest_at_a_slanted_wall(
     assert world.numbers["hits"] > 0.0 or abs(turns) > 0.2
 
 
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=examples(10), deadline=None)
 @given(angle=angles, x=st.floats(0.5, 1.1), y=st.floats(0.5, 2.3), theta=angles)
 def test_the_camera_sees_slanted_walls_exactly(
     angle: float, x: float, y: float, theta: float
@@ -114,7 +114,7 @@ def test_the_camera_sees_slanted_walls_exactly(
             assert level[column] == pytest.approx(way * math.cos(aside), abs=2e-3)
 
 
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=examples(10), deadline=None)
 @given(angle=angles)
 def test_the_map_shows_slanted_walls_as_steps(angle: float) -> None:
     turned = turned_home(HOME, angle)

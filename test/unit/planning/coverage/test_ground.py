@@ -63,7 +63,7 @@ def test_the_window_shows_all_that_can_be_got_to(found: tuple[Ground, tuple[int,
 
 
 @given(grounds())
-@settings(max_examples=15)
+@settings(max_examples=examples(15))
 def test_places_are_the_centres_of_cells_in_metres_and_back(
     found: tuple[Ground, tuple[int, int]],
 ) -> None:

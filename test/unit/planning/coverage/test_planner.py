@@ -266,7 +266,7 @@ def test_along_a_slanted_wall_the_plan_is_smooth_and_tells_what_it_leaves() -> N
 
 
 @given(st.floats(0.0, 90.0))
-@settings(max_examples=6)
+@settings(max_examples=examples(6))
 def test_a_turned_room_is_swept_as_well_and_by_hardly_more_way(degrees: float) -> None:
     things = ((0.6, 0.3, 0.9, 0.6), (-1.6, -1.0, 0.4, 0.4))
     shares, ratios = [], []

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from fixtures.robots.located import Eye
 from fixtures.robots.mapped import FURNISHED, Floats, points_of, row
+from fixtures.thoroughness import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -30,7 +31,7 @@ def likelihood(points: Floats, pose: Floats) -> float:
 
 
 @given(st.floats(0.6, 4.4), st.floats(0.6, 3.0), st.floats(-3.1, 3.1), st.integers(0, 9999))
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=examples(12), deadline=None)
 def test_a_scan_is_found_however_bad_the_guess(x: float, y: float, theta: float, seed: int) -> None:
     if FURNISHED.solid[FURNISHED.frame.cell_of(x, y)]:
         return

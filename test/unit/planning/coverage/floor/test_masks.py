@@ -58,7 +58,7 @@ def test_a_mask_grows_by_a_disc_around_each_cell(
 
 
 @given(st.integers(1, 70), st.integers(1, 70), st.integers(0, 2**32 - 1))
-@settings(max_examples=15)
+@settings(max_examples=examples(15))
 def test_rows_become_columns(rows: int, columns: int, seed: int) -> None:
     mask = np.random.default_rng(seed).random((rows, columns)) < 0.5
     turned = transposed(mask)

@@ -40,7 +40,7 @@ def test_two_wide_places_with_a_narrow_one_between_are_two_regions() -> None:
 
 
 @given(st.integers(0, 2**32 - 1), st.integers(60, 130), st.integers(60, 220))
-@settings(max_examples=15)
+@settings(max_examples=examples(15))
 def test_each_cell_is_of_one_region_and_each_region_is_connected(
     seed: int, rows: int, columns: int
 ) -> None:

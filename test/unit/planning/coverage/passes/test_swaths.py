@@ -174,7 +174,7 @@ def test_what_another_swath_costs_is_configured(cost: float, expected: int) -> N
 
 
 @given(st.floats(5.0, 85.0), st.integers(0, 2**32 - 1))
-@settings(max_examples=6)
+@settings(max_examples=examples(6))
 def test_beside_slanted_walls_swaths_keep_to_the_floor_and_sweep_it(
     degrees: float, seed: int
 ) -> None:

@@ -12,6 +12,7 @@ import shapely
 from fixtures.homes.free_walls import home_with, room_outline, straight_wall
 from fixtures.homes.rooms import room_home
 from fixtures.homes.worlds import DT, IDEAL
+from fixtures.thoroughness import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
@@ -101,7 +102,7 @@ def agreeing(seen: NDArray[np.float32], expected: list[float], limit: float) -> 
 
 
 @pytest.mark.parametrize("config", [IDEAL, NEATO_IDEAL], ids=["whole", "beam by beam"])
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=examples(10), deadline=None)
 @given(
     x=st.floats(0.4, 2.0), y=st.floats(1.6, 3.5), theta=st.floats(-3.0, 3.0), turn=st.floats(-1, 1)
 )
