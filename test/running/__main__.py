@@ -7,6 +7,7 @@ import subprocess
 import sys
 
 from fixtures.thoroughness import be_thorough
+from running.alone import listing
 from running.background import Background
 from running.checks import run_checks
 from running.pytests import pytest_command
@@ -14,6 +15,7 @@ from running.robots import Robots
 from running.suites import ROOT, Asked, Kind, asked_for
 
 CHECKS = (sys.executable, "-m", "running.checks")
+FAILED_COMPUTING = ROOT / ".cache" / "failed-computing"
 COVERAGE = (sys.executable, "-m", "safety")
 
 
@@ -37,7 +39,7 @@ def _beside_robots(asked: Asked) -> bool:
     if asked.has(Kind.CHECKS):
         background.append(Background("lint", CHECKS))
     if asked.has(Kind.COMPUTING):
-        background.append(Background("computing", _computing(asked)))
+        background.append(Background("computing", _computing(asked), FAILED_COMPUTING))
     if asked.has(Kind.COVERAGE):
         background.append(Background("coverage", COVERAGE))
     robots.run_others()
@@ -57,7 +59,8 @@ def _one_by_one(asked: Asked) -> bool:
 
 
 def _computing(asked: Asked) -> list[str]:
-    return pytest_command("-n", "2", *asked.folders(Kind.COMPUTING), *asked.arguments)
+    folders = asked.folders(Kind.COMPUTING)
+    return pytest_command("-n", "2", *listing(FAILED_COMPUTING), *folders, *asked.arguments)
 
 
 if __name__ == "__main__":

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Final
 
+from running.alone import FAILED, listed, pass_alone
 from running.suites import ROOT
 
 IDLE: Final = ("chrt", "--idle", "0")
@@ -15,7 +16,9 @@ IDLE: Final = ("chrt", "--idle", "0")
 class Background:
     """A command whose output is kept in a file until it is asked for."""
 
-    def __init__(self, name: str, command: Sequence[str]) -> None:
+    def __init__(self, name: str, command: Sequence[str], failed: Path | None = None) -> None:
+        """Start it; ``failed`` is the file in which it lists tests that failed."""
+        self._failed = failed
         self._log: Path = ROOT / ".cache" / f"{name}.log"
         self._log.parent.mkdir(exist_ok=True)
         print(f"{name}: beside the robots; its output comes after theirs: {self._log}", flush=True)
@@ -25,7 +28,12 @@ class Background:
             )
 
     def passed(self) -> bool:
-        """Wait for its end, print what it said, and return whether it was well."""
+        """Wait for its end, print what it said, and return whether it was well.
+
+        Call it when nothing runs beside: what failed may run once more.
+        """
         status = self._process.wait()
         print(self._log.read_text(encoding="utf-8", errors="replace"), flush=True)
+        if status == FAILED and self._failed is not None:
+            return pass_alone(listed(self._failed))
         return status == 0

@@ -6,7 +6,8 @@ from pathlib import Path
 
 import pytest
 from running import robots
-from running.robots import FEW, Robots
+from running.alone import FEW
+from running.robots import Robots
 from running.suites import Asked
 
 ONCE = """
@@ -28,7 +29,7 @@ def suite(folder: Path, monkeypatch: pytest.MonkeyPatch, **files: str) -> Robots
     (folder / "pyproject.toml").write_text(settings, encoding="utf-8")
     for name, text in files.items():
         (tests / f"test_{name}.py").write_text(text, encoding="utf-8")
-    for module in ("running.robots", "running.pytests", "running.suites"):
+    for module in ("running.alone", "running.robots", "running.pytests", "running.suites"):
         monkeypatch.setattr(f"{module}.ROOT", folder)
     for workers in ("TIMED_AT_ONCE", "OTHERS_AT_ONCE"):
         monkeypatch.setattr(f"running.robots.{workers}", 0)  # what starts none is quicker
