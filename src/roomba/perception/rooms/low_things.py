@@ -106,7 +106,7 @@ class LowThings:
 
     def offers(self, zones: Zones, config: LowThingsConfig) -> tuple[OfferedZone, ...]:
         """Return the zones that are offered: of what was felt often, is not ignored, and is in no
-        zone yet."""
+        zone yet that it must not enter."""
         return tuple(
             OfferedZone(thing.times, thing.corners(config.margin))
             for thing in self.all
@@ -116,4 +116,4 @@ class LowThings:
 
 def _is_in(thing: LowThing, zones: Zones) -> bool:
     x, y = 0.5 * (thing.x0 + thing.x1), 0.5 * (thing.y0 + thing.y1)
-    return any(zone.shape.covers(shapely.Point(x, y)) for zone in zones.all)
+    return any(zone.shape.covers(shapely.Point(x, y)) for zone in zones.barred)

@@ -152,13 +152,17 @@ class Zones:
         """Of all zones."""
         return tuple(zone.name for zone in self.all)
 
+    @property
+    def barred(self) -> tuple[Zone, ...]:
+        """Those that the robot must not enter."""
+        return tuple(zone for zone in self.all if zone.kind is not ZoneKind.CARPET)
+
     def kept_out(self, occupancy: OccupancyMap) -> OccupancyMap:
         """Return a map to plan on: what zones cover is occupied. The map itself stays as it is."""
-        barred = [zone for zone in self.all if zone.kind is not ZoneKind.CARPET]
-        if not barred:
+        if not self.barred:
             return occupancy
         values = occupancy.values.copy()
-        for zone in barred:
+        for zone in self.barred:
             rows, columns, cells = _touched(zone, occupancy.frame)
             values[rows, columns][cells] = OCCUPIED
         return OccupancyMap(occupancy.frame, values)

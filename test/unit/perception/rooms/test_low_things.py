@@ -61,6 +61,8 @@ def test_what_was_felt_often_is_offered_with_a_margin() -> None:
     assert offer.corners[2] == pytest.approx((1.28, 1.08))
     zone = Zone("cable", ZoneKind.NO_GO, offer.corners)
     assert twice.felt_at(1.1, 1.0, CONFIG).offers(Zones((zone,)), CONFIG) == ()
+    carpet = Zone("rug", ZoneKind.CARPET, offer.corners)
+    assert twice.felt_at(1.1, 1.0, CONFIG).offers(Zones((carpet,)), CONFIG) != ()
 
 
 def test_a_single_place_makes_a_zone_that_is_one() -> None:
