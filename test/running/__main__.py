@@ -5,16 +5,17 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+from collections.abc import Sequence
 
 from fixtures.thoroughness import be_thorough
 from running.alone import listing
 from running.background import Background
-from running.checks import run_checks
 from running.pytests import pytest_command
 from running.robots import Robots
 from running.suites import ROOT, Asked, Kind, asked_for
 
 CHECKS = (sys.executable, "-m", "running.checks")
+COMPUTING = "computing"
 FAILED_COMPUTING = ROOT / ".cache" / "failed-computing"
 COVERAGE = (sys.executable, "-m", "safety")
 
@@ -35,32 +36,30 @@ def _beside_robots(asked: Asked) -> bool:
     """Run all at once, but what is timed: robots leave much of the cores to what computes."""
     robots = Robots(asked)
     robots.run_timed()
-    background = []
-    if asked.has(Kind.CHECKS):
-        background.append(Background("lint", CHECKS))
-    if asked.has(Kind.COMPUTING):
-        background.append(Background("computing", _computing(asked), FAILED_COMPUTING))
-    if asked.has(Kind.COVERAGE):
-        background.append(Background("coverage", COVERAGE))
+    background = [
+        Background(name, command, FAILED_COMPUTING if name == COMPUTING else None)
+        for name, command in _commands(asked).items()
+    ]
     robots.run_others()
     passed = [part.passed() for part in background]
     return robots.passed() and all(passed)
 
 
 def _one_by_one(asked: Asked) -> bool:
-    passed = []
-    if asked.has(Kind.CHECKS):
-        passed.append(run_checks() == 0)
-    if asked.has(Kind.COVERAGE):
-        passed.append(subprocess.run(COVERAGE).returncode == 0)
-    if asked.has(Kind.COMPUTING):
-        passed.append(subprocess.run(_computing(asked)).returncode == 0)
-    return all(passed)
+    ran = [subprocess.run(command) for command in _commands(asked).values()]
+    return not any(each.returncode for each in ran)
 
 
-def _computing(asked: Asked) -> list[str]:
+def _commands(asked: Asked) -> dict[str, Sequence[str]]:
+    """Return what is to run without a robot: names and commands."""
     folders = asked.folders(Kind.COMPUTING)
-    return pytest_command("-n", "2", *listing(FAILED_COMPUTING), *folders, *asked.arguments)
+    computing = pytest_command("-n", "2", *listing(FAILED_COMPUTING), *folders, *asked.arguments)
+    all_of_them = {
+        "lint": (Kind.CHECKS, CHECKS),
+        COMPUTING: (Kind.COMPUTING, computing),
+        "coverage": (Kind.COVERAGE, COVERAGE),
+    }
+    return {name: command for name, (kind, command) in all_of_them.items() if asked.has(kind)}
 
 
 if __name__ == "__main__":

@@ -67,7 +67,7 @@ class Asked:
 
     def has(self, kind: Kind) -> bool:
         """Whether a suite of that kind is asked for."""
-        return any(SUITES[name].kind is kind for name in self.suites)
+        return bool(self.folders(kind))
 
     def folders(self, kind: Kind) -> tuple[str, ...]:
         """Return the folders of the suites of that kind."""

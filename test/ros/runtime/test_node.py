@@ -1,4 +1,4 @@
-"""The end of a node: at once, whatever else there is to wait for."""
+"""A node that is told to end does so in time, also when its shutdown hangs."""
 
 from __future__ import annotations
 

@@ -113,8 +113,8 @@ class AtStation:
         elif self._is_emptied:
             job.bin.emptied()
             return PhaseStep(event=Event.EMPTIED)
-        elif told is None or told.bag >= 1.0:
-            return PhaseStep(event=Event.FAILED, message=why_not_emptied(told))
+        elif reason := why_not_emptied(told):
+            return PhaseStep(event=Event.FAILED, message=reason)
         elif self._stood.elapsed > self._config.emptying_timeout:
             return PhaseStep(event=Event.FAILED, message=_NO_ANSWER)
         return PhaseStep(empties=True)
