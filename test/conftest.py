@@ -8,8 +8,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from fixtures.forked import run_forked
 from fixtures.graph import START_DEADLINE, RosGraph
+from fixtures.processes.forked import run_forked
 from fixtures.thoroughness import examples, is_thorough
 from fixtures.waiting import wait_until
 from hypothesis import HealthCheck, settings
@@ -23,6 +23,8 @@ settings.register_profile(
     derandomize=True,
 )
 settings.load_profile("project")
+
+RosGraph.forks = True
 
 # Tests that are started in the background inherit that Ctrl-C is ignored, and so would the
 # programs that they start: these would end after their deadlines only.

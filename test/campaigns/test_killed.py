@@ -15,7 +15,7 @@ from typing import Any
 import pytest
 from fixtures.campaigns.dask_processes import DaskProcesses
 from fixtures.homes.tiny_home import tiny_home
-from fixtures.processes import is_running
+from fixtures.processes.programs import is_running
 from fixtures.waiting import wait_until
 
 from roomba.commands.campaign.running.machines import Machines, run_on

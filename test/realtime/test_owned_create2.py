@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from fixtures.processes import Program
+from fixtures.processes.programs import Program
 from fixtures.waiting import wait_until
 
 from roomba.client.view import CleanOrder, LayerName

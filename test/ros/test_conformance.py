@@ -3,8 +3,8 @@
 from pathlib import Path
 
 import pytest
-from fixtures.forked import run_forked
 from fixtures.nodes.node_compositions import in_lockstep
+from fixtures.processes.forked import run_forked
 from fixtures.robots.compositions import REFERENCE, Case, Outcome, assert_same, assert_same_end
 from fixtures.robots.missions import HOME, TWO_ROOMS
 from fixtures.thoroughness import core_first

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
-from fixtures.forked import run_forked
+from fixtures.processes.forked import run_forked
 
 
 @dataclass

@@ -9,7 +9,7 @@ from typing import Final
 
 from fixtures.graph import RosGraph
 from fixtures.homes.tiny_home import tiny_home
-from fixtures.processes import Program
+from fixtures.processes.programs import Program
 from soak.arena import Arena
 from soak.rows import Row, tell, until
 

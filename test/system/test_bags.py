@@ -10,9 +10,9 @@ from pathlib import Path
 import pytest
 import rosbag
 import rospy
-from fixtures.forked import run_forked
 from fixtures.graph import RosGraph
 from fixtures.probe import Probe, Walker
+from fixtures.processes.forked import run_forked
 from fixtures.waiting import wait_until
 from geometry_msgs.msg import Pose as PoseMessage
 from geometry_msgs.msg import PoseStamped, PoseWithCovarianceStamped

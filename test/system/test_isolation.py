@@ -12,9 +12,9 @@ from collections.abc import Callable, Iterator
 from functools import partial
 
 import pytest
-from fixtures.forked import run_forked
 from fixtures.graph import START_DEADLINE, RosGraph
-from fixtures.processes import Program, listening, processes_of
+from fixtures.processes.forked import run_forked
+from fixtures.processes.programs import Program, listening, processes_of
 from fixtures.waiting import promised, wait_until
 
 from roomba_ros.supervision.isolation import FLAG

@@ -5,10 +5,10 @@ import signal
 from collections.abc import Iterator
 
 import pytest
-from fixtures.forked import run_forked
 from fixtures.graph import RosGraph
 from fixtures.probe import Probe
-from fixtures.processes import Program
+from fixtures.processes.forked import run_forked
+from fixtures.processes.programs import Program
 from fixtures.waiting import wait_until
 
 

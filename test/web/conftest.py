@@ -6,6 +6,7 @@ import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from typing import Literal
 
 import pytest
 from fastapi import FastAPI
@@ -121,11 +122,22 @@ def serving(app: FastAPI) -> Iterator[PageServer]:
 
 @contextmanager
 def page_at(
-    browser: Browser, address: str, size: tuple[int, int], *, has_touch: bool = False
+    browser: Browser,
+    address: str,
+    size: tuple[int, int],
+    *,
+    has_touch: bool = False,
+    motion: Literal["reduce", "no-preference"] = "reduce",
 ) -> Iterator[Page]:
-    """Open an address in a window, px; no script failed when that closes."""
+    """Open an address in a window, px; no script failed when that closes.
+
+    For a viewer who prefers less motion the robot does not glide from place to place: sixty
+    pictures a second, drawn without a graphics card, would take most of a test's time.
+    """
     context = browser.new_context(
-        viewport={"width": size[0], "height": size[1]}, has_touch=has_touch
+        viewport={"width": size[0], "height": size[1]},
+        has_touch=has_touch,
+        reduced_motion=motion,
     )
     page = context.new_page()
     errors: list[str] = []

@@ -1,22 +1,42 @@
-"""The page can be used: axe-core finds no serious fault, it is light, and nothing is outside."""
+"""The page can be used: axe-core finds no serious fault, it is light and calm when asked to be."""
 
 from __future__ import annotations
 
 import re
-from typing import Any
+from typing import Any, Literal
 
 import pytest
 from axe_playwright_python.sync_playwright import Axe
-from playwright.sync_api import Route
-from web.conftest import SIZES, Opened
+from fixtures.waiting import wait_until
+from playwright.sync_api import Browser, Page, Route
+from web.conftest import SIZES, Opened, page_at
 
+from roomba.headless.live.client import LiveClient
 from roomba.ui.web.app import STATIC
+from roomba.ui.web.guard import Guard
+from roomba.ui.web.server import PageServer
 
 MOST_BYTES = 300_000
 GRAVE = ("serious", "critical")
 OPEN_ALL = """() => {
     for (const part of document.querySelectorAll("details")) part.open = true;
 }"""
+
+DRAWN = """async () => {
+    const { get } = await import("/store.js");
+    const paper = document.getElementById("floor").getContext("2d"), clear = paper.clearRect;
+    const states = new Set();
+    let drawn = 0;
+    paper.clearRect = (...box) => {
+        drawn += 1;
+        states.add(get("state").at);
+        clear.apply(paper, box);
+    };
+    await new Promise((done) => setTimeout(done, 1000));
+    delete paper.clearRect;
+    return [drawn, states.size];
+}"""
+"""How often the map was drawn in a second, and how many states of the robot it showed."""
 
 
 def faults(opened: Opened) -> list[tuple[str, str, Any]]:
@@ -86,3 +106,30 @@ def test_nothing_comes_from_outside(opened: Opened) -> None:
     assert kept_back == []
     assert len(asked) > 20
     assert [url for url in asked if not url.startswith(opened.server.address)] == []
+
+
+def glides(page: Page) -> bool:
+    """Whether a state is drawn more than twice: once when it comes, once with the way so far."""
+    drawn, states = page.evaluate(DRAWN)
+    assert states > 0
+    return bool(drawn > 2 * states + 1)
+
+
+@pytest.mark.parametrize("speed", [1.0])
+@pytest.mark.parametrize("motion", ["reduce", "no-preference"])
+def test_the_robot_glides_unless_less_motion_is_preferred(
+    browser: Browser,
+    served: tuple[LiveClient, PageServer, Guard],
+    motion: Literal["reduce", "no-preference"],
+) -> None:
+    robot, server, guard = served
+    address = f"{server.address}#token={guard.token}"
+    with page_at(browser, address, SIZES["phone"], motion=motion) as page:
+        opened = Opened(page, robot, server, guard)
+        opened.wait_for_phase("docked")
+        page.click("#clean")
+        opened.wait_for_phase("cleaning")
+        if motion == "reduce":
+            assert not any(glides(page) for _ in range(3))
+        else:
+            wait_until(lambda: glides(page), 20.0, "it glides")

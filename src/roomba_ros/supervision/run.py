@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import ast
 import contextlib
-import importlib
 import os
-import runpy
 import sys
 import tempfile
 import uuid
@@ -16,21 +13,19 @@ from pathlib import Path
 from typing import Final, NoReturn
 from urllib.parse import urlparse
 
-import numpy as np
 import rosgraph
 import rospkg
-import rospy
 
 from roomba.configuration.frozen import load_config
 from roomba.configuration.nodes import NodesConfig
 from roomba.errors import RoombaError
 from roomba.files.shipped import CONFIGURATION
-from roomba.raster.distance import distance_to_nearest
 from roomba_ros.runtime.alone import living
 from roomba_ros.runtime.senders import SUPERVISOR
 from roomba_ros.supervision.kept_master import be_master, wait_for_master
 from roomba_ros.supervision.launch_file import Launch, ProcessEntry, described, read_launch
 from roomba_ros.supervision.launch_xml import launch_file, package_folder
+from roomba_ros.supervision.scripts import be_node, import_for
 from roomba_ros.supervision.supervisor import Supervisor
 from roomba_ros.supervision.supervisor_node import be_supervisor_node
 
@@ -73,7 +68,7 @@ def _run(launch: Launch, scripts: Path) -> int:
                 return 1
             if not supervisor.is_ending:
                 _set_parameters(launch, run_id)
-                _import_all(launch, scripts)
+                import_for(scripts / each.script for each in launch.processes if each.script)
             supervisor.add(SUPERVISOR, partial(be_supervisor_node, supervisor.tell_to()))
             for entry in launch.processes:
                 supervisor.add(
@@ -107,44 +102,20 @@ def _set_parameters(launch: Launch, run_id: str) -> None:
         master.setParam(name, value)
 
 
-def _import_all(launch: Launch, scripts: Path) -> None:
-    """Import what the processes need, once for all of them."""
-    for entry in launch.processes:
-        if not entry.command:
-            importlib.import_module(_module_of(scripts / entry.script))
-    # The first call of any compiled function makes numba import most of itself.
-    distance_to_nearest(np.ones((2, 2), np.bool_))
-
-
-def _module_of(script: Path) -> str:
-    """Return the module that a node's script takes its main function from."""
-    (module,) = (
-        line.module
-        for line in ast.parse(script.read_text(encoding="utf-8")).body
-        if isinstance(line, ast.ImportFrom) and line.module
-    )
-    return module
-
-
 def _be_node(entry: ProcessEntry, scripts: Path, logs: Path) -> None:
     """Run a node's script, as its own process would."""
-    script = str(scripts / entry.script)
-    sys.argv[:] = [
-        script,
-        f"__name:={entry.name}",
-        f"__ns:={entry.namespace}",
-        f"__log:={logs / entry.name}.log",
-    ]
     os.environ["ROS_NAMESPACE"] = entry.namespace
-    rospy.names.reload_mappings(sys.argv)
-    runpy.run_path(script, run_name="__main__")
+    be_node(scripts / entry.script, (f"__ns:={entry.namespace}", *_names_of(entry, logs)))
 
 
 def _be_program(entry: ProcessEntry, _: Path, logs: Path) -> NoReturn:
     """Become a program of another package."""
     os.environ["ROS_NAMESPACE"] = entry.namespace
-    names = (f"__name:={entry.name}", f"__log:={logs / entry.name}.log")
-    os.execv(entry.command[0], [*entry.command, *names])
+    os.execv(entry.command[0], [*entry.command, *_names_of(entry, logs)])
+
+
+def _names_of(entry: ProcessEntry, logs: Path) -> tuple[str, str]:
+    return f"__name:={entry.name}", f"__log:={logs / entry.name}.log"
 
 
 def run_and_leave() -> NoReturn:

@@ -13,7 +13,7 @@ import rosbag
 import rospy
 from fixtures.graph import RosGraph
 from fixtures.probe import Probe
-from fixtures.processes import Program
+from fixtures.processes.programs import Program
 from fixtures.waiting import unchanged, wait_until
 from roomba_robot.msg import VacuumState
 from rosgraph_msgs.msg import Clock

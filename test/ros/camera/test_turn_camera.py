@@ -7,7 +7,7 @@ import cv2
 import numpy as np
 import pytest
 import rospy
-from fixtures.graph import RosGraph, rosrun
+from fixtures.graph import RosGraph
 from fixtures.probe import Probe
 from fixtures.waiting import wait_until
 from geometry_msgs.msg import PoseStamped
@@ -177,11 +177,8 @@ def test_the_client_asks_again_for_what_is_no_number_and_ends(
     Probe(graph)
     offer_camera()
     start(graph, tmp_path / "Images")
-    client = graph.run(
-        *("env", "-C", str(tmp_path)),
-        *rosrun("turn_camera_client.py"),
-        environment={"DISPLAY": "", "WAYLAND_DISPLAY": ""},
-    )
+    no_screen = {"DISPLAY": "", "WAYLAND_DISPLAY": ""}
+    client = graph.rosrun("turn_camera_client.py", environment=no_screen, inside=tmp_path)
     client.says("Enter the angle: ", 30.0)
     client.type("abc")
     client.type("12")

@@ -1,6 +1,6 @@
 import signal
 
-from fixtures.graph import RosGraph, rosrun
+from fixtures.graph import RosGraph
 
 
 def test_end_of_input_ends_it(master: RosGraph) -> None:
@@ -40,9 +40,7 @@ def test_without_a_robot_it_says_so_and_goes_on(master: RosGraph) -> None:
 
 
 def test_without_a_master_it_says_so(master: RosGraph) -> None:
-    menu = master.run(
-        *rosrun("control_node.py"),
-        environment={"ROS_MASTER_URI": "http://127.0.0.1:9"},
-    )
+    elsewhere = {"ROS_MASTER_URI": "http://127.0.0.1:9"}
+    menu = master.rosrun("control_node.py", environment=elsewhere)
     assert menu.ends(20.0) == 1
     assert "no ROS master answers at http://127.0.0.1:9" in menu.output

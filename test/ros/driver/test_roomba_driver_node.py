@@ -11,7 +11,7 @@ import pytest
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from fixtures.graph import RosGraph
 from fixtures.probe import Probe
-from fixtures.processes import Program
+from fixtures.processes.programs import Program
 from fixtures.waiting import wait_until
 from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry

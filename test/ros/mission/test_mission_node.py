@@ -10,7 +10,7 @@ import rospy
 from actionlib_msgs.msg import GoalID, GoalStatus, GoalStatusArray
 from fixtures.graph import RosGraph
 from fixtures.probe import Probe
-from fixtures.processes import Program
+from fixtures.processes.programs import Program
 from fixtures.waiting import wait_until
 from geometry_msgs.msg import Point, PoseStamped, Twist
 from nav_msgs.msg import OccupancyGrid, Odometry

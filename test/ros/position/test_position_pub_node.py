@@ -8,7 +8,7 @@ import rospy
 from fixtures.graph import RosGraph
 from fixtures.nodes.refusal import refusal
 from fixtures.probe import Probe
-from fixtures.processes import Program
+from fixtures.processes.programs import Program
 from fixtures.waiting import wait_until
 from geometry_msgs.msg import PoseStamped, Twist
 from nav_msgs.msg import Odometry

@@ -10,7 +10,7 @@ import pytest
 import rospy
 from fixtures.graph import RosGraph
 from fixtures.probe import Probe
-from fixtures.processes import Program
+from fixtures.processes.programs import Program
 from fixtures.waiting import wait_until
 from std_msgs.msg import String
 from std_srvs.srv import Trigger, TriggerResponse

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from fixtures.processes import Program, is_running
+from fixtures.processes.programs import Program, is_running
 from fixtures.waiting import wait_until
 
 HEAD = """

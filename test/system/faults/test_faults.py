@@ -10,10 +10,10 @@ from pathlib import Path
 import pytest
 import rospy
 from actionlib_msgs.msg import GoalStatus
-from fixtures.forked import run_forked
 from fixtures.graph import LAUNCHED, RosGraph
 from fixtures.probe import Probe, Walker
-from fixtures.processes import is_running
+from fixtures.processes.forked import run_forked
+from fixtures.processes.programs import is_running
 from fixtures.waiting import promised, wait_until
 from nav_msgs.msg import Odometry
 from roomba_robot.msg import RobotPosition

@@ -9,12 +9,12 @@ from pathlib import Path
 import pytest
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
-from fixtures.forked import run_forked
 from fixtures.graph import LAUNCHED, RosGraph
 from fixtures.homes.tiny_home import tiny_home
 from fixtures.nodes.onlooker import Onlooker
 from fixtures.probe import Probe
-from fixtures.processes import listening, processes_of
+from fixtures.processes.forked import run_forked
+from fixtures.processes.programs import listening, processes_of
 from fixtures.waiting import promised, wait_until
 from nav_msgs.msg import Odometry
 from roomba_robot.srv import EmergencyStop

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from fixtures.processes import Program
+from fixtures.processes.programs import Program
 from fixtures.robots.faulty_end import FaultyEnd
 from fixtures.robots.neato_rig import NeatoEnd, neato_world
 from fixtures.waiting import wait_until

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 from fixtures.homes.tiny_home import tiny_home
-from fixtures.processes import Program
+from fixtures.processes.programs import Program
 from fixtures.waiting import wait_until
 
 from roomba.commands.control.command import main
