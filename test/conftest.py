@@ -101,23 +101,26 @@ SLOW = (
 
 
 TIMED = (
-    "ros/runtime",
-    "ros/supervision",
     "ros/speed/test_speed_pub_node.py",
     "system/faults/test_faults.py",
     "system/faults/test_refused_messages.py",
     "system/faults/test_standstill.py",
     "system/faults/test_supervision.py",
-    "system/owned",
-    "system/test_create2_line.py",
     "system/test_foreign_robot.py",
 )
 """Folders and files that assert promises of tenths of a second, or of a few seconds, of wall time,
 or play a bag faster than it was recorded: nothing computes beside them."""
+WAITING = (
+    "ros/runtime",
+    "ros/supervision",
+    "system/owned",
+    "system/test_create2_line.py",
+)
+"""Those of them that wait most of the time, for lines and deadlines: they run beside the others."""
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Let the files that take longest come first, and mark what is slow, and what is timed.
+    """Let the files that take longest come first; mark what is slow, timed, or waits.
 
     What is marked ``thorough`` runs only when all is to be tried.
     """
@@ -130,6 +133,8 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
             item.add_marker(pytest.mark.slow)
         if path.startswith(TIMED):
             item.add_marker(pytest.mark.timed)
+        if path.startswith(WAITING):
+            item.add_marker(pytest.mark.waiting)
     rank = {name: rank for rank, name in enumerate(LONGEST_FIRST)}
     items.sort(key=lambda item: rank.get(item.path.name, len(rank)))
 

@@ -1,9 +1,11 @@
-"""The tests that start robots and browsers, in two parts."""
+"""The tests that start robots and browsers, in three parts."""
 
 from __future__ import annotations
 
 import subprocess
 from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
 from typing import Final
 
 from running.alone import FAILED, listed, listing, pass_alone
@@ -15,11 +17,24 @@ BY_FILE: Final = ("--dist", "loadfile", "--no-loadscope-reorder")
 test/conftest.py."""
 TIMED_AT_ONCE: Final = 2
 """Robots whose promises in wall time are tested; a third would break some."""
+WAITING_AT_ONCE: Final = 1
+"""Beside those: what keeps promises in wall time as well, and takes little of a core."""
 OTHERS_AT_ONCE: Final = 3
 
 
+@dataclass(frozen=True)
+class _Part:
+    """Tests that run."""
+
+    process: subprocess.Popen[bytes]
+    failed: Path
+    """Lists the names of those that failed."""
+    log: Path | None
+    """What it says, if that is not shown at once."""
+
+
 class Robots:
-    """Both parts, and what failed in them."""
+    """All parts, and what failed in them."""
 
     def __init__(self, asked: Asked) -> None:
         self._asked = asked
@@ -27,25 +42,40 @@ class Robots:
         self._failed: list[str] = []
 
     def run_timed(self) -> None:
-        """Run what keeps promises in wall time, with nothing beside it."""
+        """Run what keeps promises in wall time, with nothing beside it but what mostly waits."""
         graphs = self._asked.folders(Kind.GRAPHS)
         if graphs:
-            self._run_part(TIMED_AT_ONCE, "timed", graphs)
+            log = ROOT / ".cache" / "waiting.log"
+            waiting = self._begin(WAITING_AT_ONCE, "waiting", graphs, log)
+            self._end(self._begin(TIMED_AT_ONCE, "timed", graphs))
+            self._end(waiting)
 
     def run_others(self) -> None:
         """Run all others, which may wait a little longer for what they wait for."""
         folders = (*self._asked.folders(Kind.GRAPHS), *self._asked.folders(Kind.PAGES))
-        self._run_part(OTHERS_AT_ONCE, "not timed", folders)
+        self._end(self._begin(OTHERS_AT_ONCE, "not timed and not waiting", folders))
 
-    def _run_part(self, workers: int, marked: str, folders: Sequence[str]) -> None:
-        names = ROOT / ".cache" / "failed"
+    def _begin(
+        self, workers: int, marked: str, folders: Sequence[str], log: Path | None = None
+    ) -> _Part:
+        names = ROOT / ".cache" / f"failed-{marked.replace(' ', '-')}"
+        names.parent.mkdir(exist_ok=True)
         chosen = ("-m", marked, *folders, *self._asked.arguments)
         command = pytest_command("-n", str(workers), *BY_FILE, *listing(names), *chosen)
-        self._statuses.append(subprocess.run(command, cwd=ROOT).returncode)
-        self._failed += listed(names)
+        if log is None:
+            return _Part(subprocess.Popen(command, cwd=ROOT), names, None)
+        with log.open("wb") as file:
+            process = subprocess.Popen(command, cwd=ROOT, stdout=file, stderr=subprocess.STDOUT)
+        return _Part(process, names, log)
+
+    def _end(self, part: _Part) -> None:
+        self._statuses.append(part.process.wait())
+        if part.log is not None:
+            print(part.log.read_text(encoding="utf-8", errors="replace"), flush=True)
+        self._failed += listed(part.failed)
 
     def passed(self) -> bool:
-        """Whether all passed; one part may have no test of what was asked for."""
+        """Whether all passed; a part may have no test of what was asked for."""
         wrong = set(self._statuses) - {0, NO_TESTS}
         if wrong == {FAILED}:
             return pass_alone(self._failed)

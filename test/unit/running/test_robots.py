@@ -11,13 +11,16 @@ from running.robots import Robots
 from running.suites import Asked
 
 ONCE = """
+import pytest
 from pathlib import Path
+@pytest.mark.timed
 def test_it():
     path = Path({mark!r})
     had, _ = path.exists(), path.touch()
     assert had
 """
 """A test that passes from the second time on."""
+WAITS_AND_FAILS = "import pytest\n@pytest.mark.waiting\ndef test_it(): assert False"
 
 
 def suite(folder: Path, monkeypatch: pytest.MonkeyPatch, **files: str) -> Robots:
@@ -25,13 +28,13 @@ def suite(folder: Path, monkeypatch: pytest.MonkeyPatch, **files: str) -> Robots
     tests = folder / "test" / "ros"
     tests.mkdir(parents=True)
     (folder / ".cache").mkdir()
-    settings = '[tool.pytest.ini_options]\nmarkers = ["timed"]\n'
+    settings = '[tool.pytest.ini_options]\nmarkers = ["timed", "waiting"]\n'
     (folder / "pyproject.toml").write_text(settings, encoding="utf-8")
     for name, text in files.items():
         (tests / f"test_{name}.py").write_text(text, encoding="utf-8")
     for module in ("running.alone", "running.robots", "running.pytests", "running.suites"):
         monkeypatch.setattr(f"{module}.ROOT", folder)
-    for workers in ("TIMED_AT_ONCE", "OTHERS_AT_ONCE"):
+    for workers in ("TIMED_AT_ONCE", "WAITING_AT_ONCE", "OTHERS_AT_ONCE"):
         monkeypatch.setattr(f"running.robots.{workers}", 0)  # what starts none is quicker
     monkeypatch.setenv("PYTHONPATH", str(Path(robots.__file__).parents[1]))
     return Robots(Asked(("ros",)))
@@ -66,7 +69,7 @@ def test_what_fails_twice_fails(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
     passes = ONCE.format(mark=str(tmp_path / "mark"))
-    ran = suite(tmp_path, monkeypatch, it=passes, other="def test_it(): assert False")
+    ran = suite(tmp_path, monkeypatch, it=passes, other=WAITS_AND_FAILS)
     ran.run_timed()
     ran.run_others()
     assert not ran.passed()
