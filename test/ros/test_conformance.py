@@ -38,8 +38,8 @@ NOISY = {
     "clean slowly around a thing": Case(HOME, things=(THING,), seed=3, speed=0.2, begin=BEGIN),
     "walk around a thing": Case(HOME, goal=(1.4, 0.4), things=(THING,), seed=3, begin=BEGIN),
 }
-CORE = {"clean while mapping", "walk", "clean slowly around a thing"}
-"""The cases of both kinds that are always tried."""
+CORE = {"clean while mapping", "walk"}
+"""The cases that are always tried; with noise the whole graph is, in test/system."""
 EDGE = 0.002
 """Share of the swept floor; noise amplifies the last bits of stamps to tenths of a millimetre."""
 
@@ -50,7 +50,7 @@ def test_in_lockstep_the_nodes_drive_the_headless_path(name: str, tmp_path: Path
     run_forked(lambda: assert_same(in_lockstep(case, tmp_path), REFERENCE(case), ticks=1))
 
 
-@pytest.mark.parametrize("name", core_first(NOISY, CORE))
+@pytest.mark.parametrize("name", core_first(NOISY, {"walk"}))
 def test_with_noise_they_do_so_as_well(name: str, tmp_path: Path) -> None:
     case = NOISY[name]
 

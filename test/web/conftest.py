@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -10,6 +11,7 @@ from typing import Literal
 
 import pytest
 from fastapi import FastAPI
+from fixtures.thoroughness import core_first
 from playwright.sync_api import Browser, Page, sync_playwright
 
 from roomba.commands.play.living import live_client
@@ -163,7 +165,17 @@ def served(
     robot.end()
 
 
-@pytest.fixture(params=list(SIZES))
+def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
+    """Let a test run in both windows: by turns in one of them, ``thorough`` in the other one."""
+    given = [mark.args[0] for mark in metafunc.definition.iter_markers("parametrize")]
+    if "size" not in metafunc.fixturenames or "size" in given:
+        return
+    turn = zlib.crc32(metafunc.function.__name__.encode()) % len(SIZES)
+    core = [list(SIZES)[turn]]
+    metafunc.parametrize("size", core_first(SIZES, core), indirect=True)
+
+
+@pytest.fixture
 def size(request: pytest.FixtureRequest) -> tuple[int, int]:
     """Width and height of the window, px."""
     return SIZES[request.param]

@@ -90,6 +90,7 @@ def knows_its_place(robot: Explorer) -> None:
     wait_until(lambda: STATION.distance_to(*robot.probe.position()) < 0.06, 30.0, "it is right")
 
 
+@pytest.mark.thorough
 def test_a_map_that_is_being_made_outlives_the_node(graph: RosGraph) -> None:
     # Left behind by a run of yesterday, or by an unknown one.
     file_of(graph).parent.mkdir(parents=True)
