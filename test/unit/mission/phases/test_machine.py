@@ -37,8 +37,12 @@ SMART_HOME = {"cleaning", "docked", "paused", "idle", "returning", "error"}
 
 
 @pytest.mark.parametrize("event", Event)
-@pytest.mark.parametrize("state", STATES, ids=str)
-def test_every_state_takes_every_event(state: MissionState, event: Event) -> None:
+def test_every_state_takes_every_event(event: Event) -> None:
+    for state in STATES:
+        _assert_sound(state, event)
+
+
+def _assert_sound(state: MissionState, event: Event) -> None:
     after = next_state(state, event)
     if event is Event.EMERGENCY:
         assert after == MissionState(Phase.EMERGENCY)
