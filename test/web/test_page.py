@@ -124,6 +124,8 @@ def test_a_zone_is_drawn_and_removed(opened: Opened, kind: str) -> None:
     opened.show("zones")
     page.get_by_role("button", name=f"Remove {zone.name}").click()
     wait_until(lambda: not opened.robot.home().zones, DEADLINE, "no zone")
+    # What was drawn could be undone as well, until the page has heard that it is gone.
+    page.get_by_text(f"{zone.name} is removed").wait_for()
     page.get_by_role("button", name="Undo").click()
     wait_until(lambda: opened.robot.home().zones == (zone,), DEADLINE, "the zone again")
 
