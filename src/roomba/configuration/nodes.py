@@ -38,6 +38,8 @@ class DeadlinesConfig(Frozen):
     """s of the robot's clock; a floor that was not recognised by then is a new one."""
     ending: Positive = 2.5
     """s of the robot's clock; so long a cancelled walk, or looking around, may still drive."""
+    emptying: Positive = 0.5
+    """s of the robot's clock; so long a simulated station empties the bin without being told to."""
 
 
 class WalkEndConfig(Frozen):

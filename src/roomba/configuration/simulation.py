@@ -250,6 +250,11 @@ class SimulatedRobotConfig(RobotConfig):
         simulation = self.simulation.model_copy(update={"condition": condition})
         return self.model_copy(update={SIMULATION: simulation})
 
+    def with_emptying_station(self) -> SimulatedRobotConfig:
+        """Return the same robot at a station that empties its bin."""
+        station = self.station.model_copy(update={"empties": True})
+        return self.model_copy(update={"station": station})
+
     def with_lidar(self, model: str) -> SimulatedRobotConfig:
         """Return the same robot with a lidar as sold, mounted as high; ConfigError for others."""
         found = lidar_file(model)

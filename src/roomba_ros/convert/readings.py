@@ -6,13 +6,21 @@ from typing import NamedTuple
 
 from geometry_msgs.msg import PoseStamped
 from nav_msgs.msg import Odometry
-from roomba_robot.msg import Bumper, Cliff, DockStatus, RobotPosition, WheelDrop
+from roomba_robot.msg import (
+    Bumper,
+    Cliff,
+    DockStatus,
+    EmptyingStation,
+    RobotPosition,
+    WheelDrop,
+)
 from sensor_msgs.msg import Imu
 
 from roomba.geometry import Pose, Twist
+from roomba.mission.inputs.senses import EmptyingTold
 from roomba.robot.readings import CliffReading
 from roomba_ros.convert.common import pose_of, pose_of_odometry, twist_of
-from roomba_ros.convert.errors import require_finite
+from roomba_ros.convert.errors import MessageError, require_finite
 
 
 class OdometryReading(NamedTuple):
@@ -90,6 +98,19 @@ def wheel_drop_of(message: WheelDrop) -> Sides:
 def is_docked_of(message: DockStatus) -> bool:
     """Return whether the contacts of the station touch."""
     return bool(message.is_docked)
+
+
+def emptying_of(message: EmptyingStation) -> EmptyingTold:
+    """Return what a station tells that empties the bin."""
+    return EmptyingTold(message.is_at_work, bag_of(message))
+
+
+def bag_of(message: EmptyingStation) -> float:
+    """Return how full the bag of a station is, 0..1."""
+    require_finite("a bag's share", message.bag)
+    if not 0.0 <= message.bag <= 1.0:
+        raise MessageError(f"expected a bag's share from 0 to 1, got {message.bag:g}")
+    return float(message.bag)
 
 
 def point_of(message: RobotPosition) -> tuple[float, float]:

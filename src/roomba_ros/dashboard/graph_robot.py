@@ -50,8 +50,6 @@ _REFUSED_WITHIN: Final = 1.0
 _STOPS: Final = 3
 """Times that a stop is sent before the drive is left to others."""
 
-_BY_HAND: Final = "its station empties no bin: empty it by hand"
-
 
 class GraphRobot(GraphMaps):
     """Observes topics; commands by actions, services and ``cmd_vel``.
@@ -59,7 +57,8 @@ class GraphRobot(GraphMaps):
     Publishes: ``cmd_vel`` (Twist, while it is driven by hand), and what :class:`RosRobot` does.
     Calls: ``emergency_stop``, ``set_zone``, ``remove_zone``, ``ignore_low_thing``,
     ``rooms/rename``, ``rooms/join``, ``rooms/split``, ``rooms/undo``, ``sim/spill``,
-    ``sim/inject_fault``, ``sim/set_door``, ``turn_camera``, and what :class:`RosRobot` and
+    ``sim/inject_fault``, ``sim/set_door``, ``sim/replace_bag``, ``empty_at_station``,
+    ``turn_camera``, and what :class:`RosRobot` and
     :class:`GraphMaps` do.
     """
 
@@ -92,6 +91,8 @@ class GraphRobot(GraphMaps):
             "sim/spill": SpillDirt,
             "sim/inject_fault": InjectFault,
             "sim/set_door": SetDoor,
+            "empty_at_station": Trigger,
+            "sim/replace_bag": Trigger,
         }
         self._services = {name: rospy.ServiceProxy(name, kind) for name, kind in kinds.items()}
 
@@ -155,6 +156,7 @@ class GraphRobot(GraphMaps):
             top_speed=self._top_speed,
             truth=self._topics.truth(),
             charges=self._topics.charges,
+            bag=self._topics.bag,
         )
 
     @property
@@ -234,12 +236,14 @@ class GraphRobot(GraphMaps):
         self._vacuum.locate()
 
     def empty_at_station(self) -> None:
-        """Refuse it: the station of the graph empties no bin."""
-        raise RequestRefusedError(_BY_HAND)
+        """Let its station empty its bin."""
+        self._call("empty_at_station")
 
     def replace_bag(self) -> None:
-        """Refuse it: the station of the graph has no bag."""
-        raise RequestRefusedError(_BY_HAND)
+        """Put an empty bag into its station; a simulated home only."""
+        if not is_offered("sim/replace_bag"):
+            raise RequestRefusedError("its station is no simulated one: put a bag in by hand")
+        self._call("sim/replace_bag")
 
     def empty_bin(self) -> None:
         """Tell that the dust bin was emptied."""

@@ -16,6 +16,7 @@ from nav_msgs.msg import OccupancyGrid, Path
 from numpy.typing import NDArray
 from roomba_robot.msg import (
     CleanActionResult,
+    EmptyingStation,
     ExploreActionResult,
     Localization,
     LowThingArray,
@@ -63,6 +64,7 @@ from roomba_ros.convert.page import (
     sim_home_of,
     zone_views_of,
 )
+from roomba_ros.convert.readings import bag_of
 from roomba_ros.convert.scan import ScanDecoder
 from roomba_ros.convert.values import data_of, number_of
 from roomba_ros.runtime.node import frame_id
@@ -83,11 +85,11 @@ _NO_POINTS: Final[NDArray[np.float32]] = np.empty((0, 2), np.float32)
 class PageTopics:
     """The newest of each topic.
 
-    Subscribes: ``pose``, ``localization``, ``speed``, ``bin_level``, ``battery_state``,
-    ``emergency_stop``, ``scan``, ``plan``, ``map``, ``coverage_map``, ``dirt_map``, ``rooms``,
-    ``zones``, ``station_pose``, ``trouble``, ``line_trouble``, ``map/update``, ``clean/result``,
-    ``explore/result``, ``/tf_static``; of a simulation also ``sim/pose``, ``sim/home`` and
-    ``sim/dirt``.
+    Subscribes: ``pose``, ``localization``, ``speed``, ``bin_level``, ``emptying_station``,
+    ``battery_state``, ``emergency_stop``, ``scan``, ``plan``, ``map``, ``coverage_map``,
+    ``dirt_map``, ``rooms``, ``zones``, ``station_pose``, ``trouble``, ``line_trouble``,
+    ``map/update``, ``clean/result``, ``explore/result``, ``/tf_static``; of a
+    simulation also ``sim/pose``, ``sim/home`` and ``sim/dirt``.
     """
 
     def __init__(self, config: RobotConfig) -> None:
@@ -109,6 +111,7 @@ class PageTopics:
         self.last: CleanReport | None = None
         self.speed, self.in_bin, self.battery_seconds = 0.0, 0.0, math.nan
         self.charges = False
+        self.bag = math.nan
         self._mounts = Mounts()
         self._decoder = ScanDecoder.on_robot(self._mounts, frame_id("base_link"))
 
@@ -120,6 +123,8 @@ class PageTopics:
         subscribe("localization", Localization, doubt_of, doubt, senders=_one())
         subscribe("speed", Float32, number_of, partial(self._set, "speed"))
         subscribe("bin_level", Float32, number_of, self._on_bin_level, senders=_one())
+        bag = partial(self._set, "bag")
+        subscribe("emptying_station", EmptyingStation, bag_of, bag, senders=_one())
         seconds, charges = partial(self._set, "battery_seconds"), partial(self._set, "charges")
         subscribe("battery_state", BatteryState, battery_seconds_of, seconds, senders=_one())
         subscribe("battery_state", BatteryState, charges_of, charges, senders=_one())

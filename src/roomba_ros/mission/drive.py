@@ -1,4 +1,4 @@
-"""The mission's access to drive and fan, and its priority over walks."""
+"""The mission's access to drive, fan and station, and its priority over walks."""
 
 from __future__ import annotations
 
@@ -30,7 +30,8 @@ class MissionDrive:
     """Drives while the mission wants to; notices when another program does.
 
     Publishes: ``cmd_vel_mission`` (Twist, 20 Hz while it drives), ``look_around`` (Bool, while the
-    place has to be found), ``vacuum_motor``, ``main_brush_motor`` (Float32, duty 0..1),
+    place has to be found), ``emptying_wanted`` (Bool, 20 Hz while the station is to empty the bin,
+    and false at the end), ``vacuum_motor``, ``main_brush_motor`` (Float32, duty 0..1),
     ``walk_to_point/cancel``, ``move_base/cancel`` (GoalID: all walks end when it begins to drive).
     Subscribes: ``cmd_vel`` (Twist: what others want, which counts above the mission's),
     ``change_speed`` (Float32, m/s: with 0 the robot stands).
@@ -40,7 +41,7 @@ class MissionDrive:
         """Connect nothing yet; a cancelled walk, or looking around, may drive ``ending`` s more."""
         self._config, self._ending = config, ending
         self._stops_left = 0
-        self._looks = False
+        self._looks = self._empties = False
         self._others_may_until = -math.inf
         self._others_drove = -math.inf
         self._cruise_speed = math.inf
@@ -54,6 +55,7 @@ class MissionDrive:
             "cmd_vel_mission", TwistMessage, queue_size=1, tcp_nodelay=True
         )
         self._look_around = rospy.Publisher("look_around", Bool, queue_size=1)
+        self._emptying = rospy.Publisher("emptying_wanted", Bool, queue_size=1)
         self._vacuum = rospy.Publisher("vacuum_motor", Float32, queue_size=1, latch=True)
         self._brush = rospy.Publisher("main_brush_motor", Float32, queue_size=1, latch=True)
         self._cancels = [
@@ -111,6 +113,12 @@ class MissionDrive:
         self._fan, fan = level, self._config.fan
         self._vacuum.publish(fan.duty if level is None else fan.duty_at(level))
         self._brush.publish(self._config.brush.duty)
+
+    def empty(self, *, is_wanted: bool) -> None:
+        """Let the station empty the bin as long as that is wanted."""
+        if is_wanted or self._empties:
+            self._emptying.publish(is_wanted)
+        self._empties = is_wanted
 
     def stop(self) -> None:
         """Stop what it drives."""

@@ -53,6 +53,7 @@ _HEARD = (
     "dirt_detect",
     "bin_level",
     "brush_current",
+    "emptying_station",
 )
 _SILENT = "no message tells its place; is position_pub_node running?"
 
@@ -64,7 +65,8 @@ class MissionNode:
     :class:`LowThingTopics`, :class:`MissionOrders`, :class:`MissionDrive` and
     :class:`MissionTopics` say. Of the body it
     hears ``odom``, ``scan``, ``bumper``, ``cliff``, ``wheel_drop``, ``battery_state``,
-    ``dock_status``, ``ir_omni``, ``dirt_detect``, ``bin_level`` and ``brush_current``.
+    ``dock_status``, ``ir_omni``, ``dirt_detect``, ``bin_level``, ``brush_current`` and
+    ``emptying_station``.
     Parameters: ``robot_config``, ``mission_config``, ``docking_config``, ``things_config``,
     ``nodes_config`` (paths of configuration files; by default the shipped ones),
     ``~memory_folder`` (default: roomba_robot/mission in the ROS home folder, and in it a folder for

@@ -36,6 +36,7 @@ _DONE: Final = {
     Event.RESUME: "going on",
     Event.STOP: "stopped",
     Event.EMPTIED: "it goes by an empty bin",
+    Event.EMPTY: "its station empties the bin",
 }
 
 
@@ -73,8 +74,8 @@ class MissionOrders:
     ``beep`` (Empty: here the robot is).
     Subscribes: ``clean/{goal,cancel}``, ``dock/…``, ``undock/…``, ``explore/…``,
     ``emergency_stop`` (String).
-    Services: ``pause``, ``resume``, ``stop``, ``empty_bin``, ``locate`` (Trigger), ``change_rooms``
-    (ChangeRooms).
+    Services: ``pause``, ``resume``, ``stop``, ``empty_bin``, ``empty_at_station``, ``locate``
+    (Trigger), ``change_rooms`` (ChangeRooms).
     """
 
     def __init__(self, takes_drive: Callable[[], None], deadlines: DeadlinesConfig) -> None:
@@ -100,6 +101,7 @@ class MissionOrders:
             ("resume", Event.RESUME),
             ("stop", Event.STOP),
             ("empty_bin", Event.EMPTIED),
+            ("empty_at_station", Event.EMPTY),
         ):
             rospy.Service(name, Trigger, lambda _, event=event: self._on_order(event))
         rospy.Service("locate", Trigger, self._on_locate)
@@ -204,6 +206,8 @@ class MissionOrders:
         try:
             if event is Event.EMPTIED:
                 mission.empty_bin(senses)
+            elif event is Event.EMPTY:
+                mission.empty_at_station(senses)
             else:
                 mission.command(event, senses)
         except RoombaError as error:

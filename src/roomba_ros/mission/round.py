@@ -54,6 +54,7 @@ class MissionRound:
         is_driving = mission.state.drives or step.twist != Twist()
         self._drive.drive(step.twist if is_driving else None, looks_around=step.looks_around)
         self._drive.set_fan(fan_of(mission))
+        self._drive.empty(is_wanted=step.empties)
 
     def _tell(self, now: float, mission: Mission, senses: Senses) -> None:
         """Publish the state if it is due, and the progress to the client of the errand."""

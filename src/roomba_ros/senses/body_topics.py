@@ -12,7 +12,7 @@ from typing import Any, Final
 import rospy
 from geometry_msgs.msg import Pose2D
 from nav_msgs.msg import Odometry
-from roomba_robot.msg import Bumper, Cliff, DockStatus, WheelDrop
+from roomba_robot.msg import Bumper, Cliff, DockStatus, EmptyingStation, WheelDrop
 from sensor_msgs.msg import BatteryState, Imu, LaserScan
 from std_msgs.msg import Float32, UInt16
 from tf2_msgs.msg import TFMessage
@@ -33,6 +33,7 @@ from roomba_ros.convert.readings import (
     Sides,
     bumper_of,
     cliff_of,
+    emptying_of,
     is_docked_of,
     odometry_of,
     turning_of,
@@ -60,9 +61,9 @@ class BodyTopics:
 
     Subscribes: those of ``topics``, out of ``odom``, ``imu``, ``bumper``, ``cliff``,
     ``wheel_drop``, ``battery_state``, ``dock_status``, ``ir_omni``, ``dirt_detect``, ``bin_level``,
-    ``brush_current`` and ``scan``, with ``/tf_static`` (where the lidar is mounted) and
-    ``lidar_correction`` (by what that is moved, as the node that finds the robot's place measured
-    it).
+    ``brush_current``, ``emptying_station`` and ``scan``, with ``/tf_static`` (where the lidar
+    is mounted) and ``lidar_correction`` (by what that is moved, as the node that finds the robot's
+    place measured it).
     """
 
     def __init__(self, config: RobotConfig, *topics: str) -> None:
@@ -94,6 +95,11 @@ class BodyTopics:
             "dirt_detect": (UInt16, data_of, lambda count: self._note(grains=float(count))),
             "bin_level": (Float32, number_of, self._on_bin),
             "brush_current": (Float32, number_of, lambda told: self._note(brush_current=told)),
+            "emptying_station": (
+                EmptyingStation,
+                emptying_of,
+                lambda told: self._note(emptying=told),
+            ),
             "lidar_correction": (Pose2D, correction_of, self._on_correction),
         }
         if "scan" in self._topics:

@@ -57,6 +57,7 @@ from roomba_ros.simulation.drive_link import DriveLink
 from roomba_ros.simulation.frames import BodyFrames
 from roomba_ros.simulation.sensor_topics import SensorTopics
 from roomba_ros.simulation.sim_services import SimServices
+from roomba_ros.simulation.station_link import StationLink
 from roomba_ros.simulation.truth_topics import TruthTopics
 
 _FASTEST = 100.0
@@ -72,9 +73,10 @@ class HomeSimNode:
     Publishes: ``/clock`` (20 Hz), ``map`` (latched), ``station_pose`` (PoseStamped, latched: where
     the docked robot stands on that map, its nose to the station), ``odom`` (20 Hz, by the wheel
     encoders), ``/tf`` (odom -> base_link, and of that the wheels), ``/tf_static`` (where the
-    sensors are on the body), and what :class:`SensorTopics`, :class:`CameraTopics` and
-    :class:`TruthTopics` tell.
-    Subscribes: what :class:`DriveLink` hears (``cmd_vel_out``, ``emergency_stop``); ``pose``
+    sensors are on the body), and what :class:`SensorTopics`, :class:`StationLink`,
+    :class:`CameraTopics` and :class:`TruthTopics` tell.
+    Subscribes: what :class:`DriveLink` hears (``cmd_vel_out``, ``emergency_stop``), and
+    :class:`StationLink` (``emptying_wanted``); ``pose``
     (PoseStamped) and the ``progress`` (Time) of :data:`progress.NODES`: a robot that is late, on a
     busy machine, is waited for; ``main_brush_motor``, ``vacuum_motor`` (Float32, duty 0..1, of
     brush and fan).
@@ -84,7 +86,8 @@ class HomeSimNode:
     one's clock and do not wait), ``~drive_owner`` (the node that may drive, or any),
     ``~frames`` (false: robot_state_publisher tells those below base_link),
     ``~sensors`` (ideal or noisy) and ``~wheels`` (factory or worn),
-    by default what ``robot_config`` says, ``robot_max_speed``, ``initial_post_x``,
+    by default what ``robot_config`` says, ``~empties`` (true: its station empties the bin, also
+    where ``robot_config`` does not say so), ``robot_max_speed``, ``initial_post_x``,
     ``initial_post_y``.
     """
 
@@ -94,7 +97,7 @@ class HomeSimNode:
     def start(self) -> None:
         """Load the home, put the robot in it, connect; raises RoombaError."""
         self._parameters = LiveSeedParameters()
-        self._config = _config_with_sensors(read_simulated_config())
+        self._config = _config_as_wanted(read_simulated_config())
         self._nodes = read_nodes_config()
         self._timing = self._config.timing
         self.period = self._timing.tick
@@ -106,6 +109,9 @@ class HomeSimNode:
         self._lock = threading.Lock()
         self._drive = DriveLink(self._config.body.command_timeout, self._lock)
         self._simulator = self._make_simulator()
+        self._station = StationLink(
+            self._simulator.emptying, self._nodes.deadlines.emptying, self._lock
+        )
         self._clock = self._first_clock()
         self._jumps = ClockJumps(last=self._now(), longest=_LONGEST_STEP)
         self._ticks = 0
@@ -146,6 +152,7 @@ class HomeSimNode:
         max_speed = self._parameters.refresh().robot_max_speed
         with self._lock:
             self._simulator.max_speed = max_speed
+            self._station.step(self._timing.tick)
             step = self._timing.world_step
             for _ in range(self._timing.steps_per_tick):
                 self._simulator.advance(self._drive.step(step), step, 1)
@@ -171,6 +178,7 @@ class HomeSimNode:
             transforms += self._frames.wheels(now, wheels.left, wheels.right)
         self._transforms.publish(transforms)
         self._sensors.tell(now, self._ticks, observation)
+        self._station.tell(self._ticks)
         self._truth.tell(now, self._ticks, observation)
 
     def _now(self) -> float:
@@ -223,6 +231,7 @@ class HomeSimNode:
         self._truth = TruthTopics(self._simulator)
         self._services = SimServices(self._simulator, self._lock)
         self._drive.start()
+        self._station.start()
         self._parts = {
             _POSE: subscribe("pose", PoseStamped, stamped_pose_of, self._on_pose, tcp_nodelay=True)
         }
@@ -242,8 +251,8 @@ class HomeSimNode:
         home = self._simulator.home
         self._map = rospy.Publisher("map", OccupancyGrid, queue_size=1, latch=True)
         self._map.publish(map_message(self._now(), home.map, "map"))
-        self._station = rospy.Publisher("station_pose", PoseStamped, queue_size=1, latch=True)
-        self._station.publish(pose_message(self._now(), home.station, "map"))
+        self._place = rospy.Publisher("station_pose", PoseStamped, queue_size=1, latch=True)
+        self._place.publish(pose_message(self._now(), home.station, "map"))
 
     def _is_there(self, part: str) -> bool:
         return bool(self._parts[part].get_num_connections() > 0)
@@ -256,14 +265,18 @@ class HomeSimNode:
             self._simulator.set_power(**{motor: duty})
 
 
-def _config_with_sensors(config: SimulatedRobotConfig) -> SimulatedRobotConfig:
+def _config_as_wanted(config: SimulatedRobotConfig) -> SimulatedRobotConfig:
     sensors = rospy.get_param("~sensors", "") or config.simulation.sensors
     if sensors not in ("ideal", "noisy"):
         raise ConfigError(f"parameter ~sensors: expected ideal or noisy, got {sensors!r}")
     wheels = rospy.get_param("~wheels", "") or config.simulation.condition
     if wheels not in ("factory", "worn"):
         raise ConfigError(f"parameter ~wheels: expected factory or worn, got {wheels!r}")
-    return config.with_sensors(sensors).with_wheels(wheels)
+    empties = rospy.get_param("~empties", False)
+    if not isinstance(empties, bool):
+        raise ConfigError(f"parameter ~empties: expected true or false, got {empties!r}")
+    config = config.with_sensors(sensors).with_wheels(wheels)
+    return config.with_emptying_station() if empties else config
 
 
 def _tells_map_parameter() -> bool:

@@ -35,8 +35,8 @@ robot elsewhere."""
 
 class SimServices:
     """Services: ``sim/spill`` (SpillDirt), ``sim/inject_fault`` (InjectFault: what goes wrong by
-    name; ``charge`` sets what is in the battery, ``value`` of 0..1), ``sim/empty_bin`` (Trigger),
-    ``sim/set_door`` (SetDoor).
+    name; ``charge`` sets what is in the battery, ``value`` of 0..1), ``sim/empty_bin``,
+    ``sim/replace_bag`` (Trigger), ``sim/set_door`` (SetDoor).
     """
 
     def __init__(self, simulator: Simulator, lock: threading.Lock) -> None:
@@ -45,6 +45,7 @@ class SimServices:
         rospy.Service("sim/spill", SpillDirt, self._on_spill)
         rospy.Service("sim/inject_fault", InjectFault, self._on_fault)
         rospy.Service("sim/empty_bin", Trigger, self._on_empty_bin)
+        rospy.Service("sim/replace_bag", Trigger, self._on_replace_bag)
         rospy.Service("sim/set_door", SetDoor, self._on_set_door)
 
     def _on_spill(self, request: SpillDirtRequest) -> SpillDirtResponse:
@@ -61,6 +62,14 @@ class SimServices:
         with self._lock:
             taken = self._simulator.empty_bin()
         return TriggerResponse(True, f"{taken:.1f} g were in the bin")
+
+    def _on_replace_bag(self, _: TriggerRequest) -> TriggerResponse:
+        station = self._simulator.emptying
+        if station is None:
+            return TriggerResponse(False, "its station has no bag: it empties no bin")
+        with self._lock:
+            station.replace_bag()
+        return TriggerResponse(True, "an empty bag is in the station")
 
     def _on_set_door(self, request: SetDoorRequest) -> SetDoorResponse:
         try:

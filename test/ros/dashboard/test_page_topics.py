@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from fixtures.nodes.lockstep import Lockstep
 from geometry_msgs.msg import Point
-from roomba_robot.msg import Localization, LowThing, LowThingArray
+from roomba_robot.msg import EmptyingStation, Localization, LowThing, LowThingArray
 from sensor_msgs.msg import BatteryState
 from std_msgs.msg import Float32
 
@@ -19,6 +19,7 @@ def test_of_two_nodes_that_tell_of_the_body_the_page_shows_the_first() -> None:
         ros.publish("/localization", Localization(state=Localization.LOST, message="up"), "/own")
         ros.publish("/battery_state", BatteryState(current=1.5), "/own")
         ros.publish("/bin_level", Float32(0.5), "/own")
+        ros.publish("/emptying_station", EmptyingStation(bag=0.25), "/own")
         doubt, in_bin = shown.doubt, shown.in_bin
         assert doubt
         assert in_bin > 0.0
@@ -27,8 +28,10 @@ def test_of_two_nodes_that_tell_of_the_body_the_page_shows_the_first() -> None:
             ("/localization", Localization()),
             ("/battery_state", BatteryState()),
             ("/bin_level", Float32(0.0)),
+            ("/emptying_station", EmptyingStation(bag=0.75)),
         ):
             ros.publish(topic, message, "/other")
+        assert shown.bag == 0.25
         assert (shown.doubt, shown.in_bin, shown.charges) == (doubt, in_bin, True)
 
 

@@ -18,6 +18,7 @@ from roomba_robot.msg import (
     CleanAction,
     CleanGoal,
     DockStatus,
+    EmptyingStation,
     Rectangle,
     UndockAction,
     UndockGoal,
@@ -27,7 +28,7 @@ from roomba_robot.msg import (
 )
 from roomba_robot.srv import EmergencyStop, SetZone
 from sensor_msgs.msg import BatteryState
-from std_msgs.msg import Float32, String
+from std_msgs.msg import Bool, Float32, String
 from std_srvs.srv import Trigger
 
 from roomba_ros.runtime.action_client import ActionClient
@@ -251,6 +252,30 @@ def test_a_full_bin_is_told_and_waited_for(graph: RosGraph) -> None:
     world.does("undocking", 30.0)
     assert world.state.message == ""
     assert order("empty_bin") == (True, "it goes by an empty bin")
+
+
+def test_its_station_empties_the_bin_as_long_as_it_is_told_to(graph: RosGraph) -> None:
+    world, _ = start(graph)
+    world.does("docked", 30.0)
+    by_hand = "cannot empty its bin at its station: its station empties no bin: empty it by hand"
+    assert order("empty_at_station") == (False, by_hand)
+    world.hear("/emptying_wanted", Bool)
+
+    def tell(is_at_work: bool, bag: float) -> None:
+        world.send("/emptying_station", EmptyingStation(is_at_work, bag))
+
+    tell(False, 1.0)
+    wait_until(lambda: "the bag of its station is full" in order("empty_at_station")[1], 10.0)
+    tell(False, 0.2)
+    wait_until(lambda: order("empty_at_station")[0], 10.0, "it is taken")
+    world.does("emptying", 10.0)
+    wait_until(lambda: world.counts["/emptying_wanted"] > 5, 10.0, "it is told again and again")
+    tell(True, 0.2)
+    before = world.counts["/emptying_wanted"]
+    wait_until(lambda: world.counts["/emptying_wanted"] > before + 5, 10.0, "it goes on")
+    tell(False, 0.3)
+    world.does("docked", 10.0)
+    wait_until(lambda: not world.newest["/emptying_wanted"].data, 10.0, "it is told to end")
 
 
 def test_a_killed_node_goes_on_with_its_clean_and_keeps_its_zones(graph: RosGraph) -> None:

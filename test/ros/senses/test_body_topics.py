@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import pytest
 from fixtures.nodes.lockstep import Lockstep
 from nav_msgs.msg import Odometry
-from roomba_robot.msg import Bumper, Cliff, DockStatus, WheelDrop
+from roomba_robot.msg import Bumper, Cliff, DockStatus, EmptyingStation, WheelDrop
 from rospy import Time
 from sensor_msgs.msg import BatteryState, Imu, LaserScan
 from std_msgs.msg import Float32, UInt16
@@ -16,6 +16,7 @@ from std_msgs.msg import Float32, UInt16
 from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose, Twist
 from roomba.mission.docking.beams import StationBeams
+from roomba.mission.inputs.senses import EmptyingTold
 from roomba.robot.readings import CliffReading
 from roomba_ros.convert.common import odometry_message
 from roomba_ros.senses.body_topics import BodyTopics
@@ -89,7 +90,15 @@ def test_a_scan_comes_once_with_the_first_odometry_that_is_not_older(ros: Lockst
 
 
 def test_each_has_the_newest_of_all_other_sensors(ros: Lockstep) -> None:
-    sensors = ("bumper", "cliff", "wheel_drop", "ir_omni", "dirt_detect", "bin_level")
+    sensors: tuple[str, ...] = (
+        "bumper",
+        "cliff",
+        "wheel_drop",
+        "ir_omni",
+        "dirt_detect",
+        "bin_level",
+    )
+    sensors = (*sensors, "emptying_station")
     heard = body("odom", *sensors)
     assert heard.missing("odom", *sensors) == ("odom", *sensors)
     ros.publish("/bumper", Bumper(is_left_pressed=True))
@@ -99,6 +108,7 @@ def test_each_has_the_newest_of_all_other_sensors(ros: Lockstep) -> None:
     ros.publish("/ir_omni", UInt16(160 + 8))
     ros.publish("/dirt_detect", UInt16(40))
     ros.publish("/bin_level", Float32(0.5))
+    ros.publish("/emptying_station", EmptyingStation(is_at_work=True, bag=0.25))
     assert heard.missing("odom", *sensors) == ("odom",)
     ros.publish("/odom", moved(1.0))
     (told,) = heard.take()
@@ -108,6 +118,7 @@ def test_each_has_the_newest_of_all_other_sensors(ros: Lockstep) -> None:
     assert told.beams == StationBeams(red=True)
     assert told.grains == 40.0
     assert told.in_bin == 0.5 * CONFIG.brush.bin_capacity
+    assert told.emptying == EmptyingTold(is_at_work=True, bag=0.25)
 
 
 @pytest.mark.parametrize("is_dock_first", [True, False])

@@ -50,6 +50,7 @@ def follower(tmp_path: Path) -> Iterator[RosGraph]:
         ("/home_sim_node/speed", 0, "speed"),
         ("/home_sim_node/seed", -3, "seed"),
         ("/home_sim_node/sensors", "broken", "ideal or noisy"),
+        ("/home_sim_node/empties", "often", "true or false"),
         ("/home_sim_node/drive_owner", 3, "a node's name"),
         ("/initial_post_x", 77.0, "does not fit"),
     ],

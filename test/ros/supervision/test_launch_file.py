@@ -80,7 +80,7 @@ def test_its_arguments_are_described() -> None:
     ("argument", "said"),
     [
         ("hme:=flat", "got 'hme'; did you mean 'home'"),
-        ("nosucharg:=1", "got 'nosucharg'; known are: clock, home"),
+        ("nosucharg:=1", "got 'nosucharg'; known are: clock, empties, home"),
         ("robot:=toaster", "robot: expected one of create2, neato, simulated, got 'toaster'"),
         ("flat", "expected arguments like home:=flat, got 'flat'"),
         (":=flat", "expected arguments like home:=flat, got ':=flat'"),

@@ -50,8 +50,7 @@ def live_client(
     trial = Trial(home=name, seed=seed, bin=bin_grams, wheels=wheels)
     robot = robot_config_of(trial)
     if station_empties:
-        station = robot.station.model_copy(update={"empties": True})
-        robot = robot.model_copy(update={"station": station})
+        robot = robot.with_emptying_station()
     home = playable_home_of(trial, robot.body)
     docking = load_config(DockingConfig, CONFIGURATION / "docking.yaml")
     rooms = rooms_of(home) if knows_map else None
