@@ -10,6 +10,7 @@ from web.conftest import SIZES, Opened
 from web.test_page import DEADLINE
 
 from roomba.client.view import ZoneView
+from roomba.perception.rooms.felt_carpets import FeltCarpets
 from roomba.perception.rooms.low_things import LowThing, LowThings
 
 DESKTOP = pytest.mark.parametrize("size", [SIZES["desktop"]])
@@ -17,6 +18,11 @@ CORNERS = ((1.0, 1.6), (2.0, 1.6), (2.0, 2.4), (1.0, 2.4))
 VIEW = """async () => {
     const { toFloor, view } = await import("/map/view.js");
     return { scale: view.scale, at: toFloor(200, 150) };
+}"""
+PIXEL = """async (place) => {
+    const { toScreen } = await import("/map/view.js"), canvas = document.getElementById("floor");
+    const [x, y] = toScreen(...place).map((at) => Math.round(at * devicePixelRatio));
+    return [...canvas.getContext("2d").getImageData(x, y, 1, 1).data];
 }"""
 PLACE = """async ([px, py]) => (await import("/map/view.js")).toFloor(px, py)"""
 
@@ -129,3 +135,15 @@ def test_a_zone_is_offered_where_something_was_felt_taken_or_ignored(opened: Ope
     page.get_by_role("button", name="Ignore what was felt at 2.0, 2.0").click()
     wait_until(lambda: robot.home().low_things == (), DEADLINE, "no offer")
     page.locator("#low-offer").wait_for(state="hidden")
+
+
+@DESKTOP
+def test_carpets_that_it_felt_are_a_layer_of_the_map(opened: Opened) -> None:
+    carpet = ((1.0, 1.0), (2.0, 1.0), (2.0, 2.0), (1.0, 2.0))
+    page, robot = opened.page, opened.robot
+    before = page.evaluate(PIXEL, [1.5, 1.5])
+    robot.ask(lambda alive: alive.mission.carpets.recall(FeltCarpets((carpet,))))
+    wait_until(lambda: page.evaluate(PIXEL, [1.5, 1.5]) != before, DEADLINE, "it is drawn")
+    page.locator(".layers summary").click()
+    page.get_by_label("Carpets it felt").uncheck()
+    wait_until(lambda: page.evaluate(PIXEL, [1.5, 1.5]) == before, DEADLINE, "it is hidden")

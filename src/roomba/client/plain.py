@@ -119,6 +119,7 @@ def home_of(view: HomeView) -> Json:
         "furniture": view.furniture,
         "overhead": view.overhead,
         "carpets": view.carpets,
+        "felt_carpets": view.felt_carpets,
         "changes": [asdict(change) for change in view.changes],
         "low_things": [asdict(thing) for thing in view.low_things],
     }
@@ -149,6 +150,7 @@ def home_from(plain: Json) -> HomeView:
         float(plain["tool"]),
         overhead=_outlines(plain.get("overhead", [])),
         carpets=_outlines(plain.get("carpets", [])),
+        felt_carpets=_outlines(plain.get("felt_carpets", [])),
     )
 
 

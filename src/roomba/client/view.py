@@ -118,9 +118,9 @@ class HomeView:
 
     ``station`` is x, y and heading of the docked robot. ``furniture`` are outlines of what stands
     on the floor, the lowest first, ``overhead`` of what the robot passes below, ``carpets`` of what
-    lies; all three are empty where they are not known. ``radius`` is the robot's and ``tool`` the
-    width of its brush, m. ``changes`` are what the robot offers to change of its map,
-    ``low_things`` where it offers a no-go zone.
+    lies; all three are empty where they are not known. ``felt_carpets`` are those that the robot
+    felt by itself. ``radius`` is the robot's and ``tool`` the width of its brush, m. ``changes``
+    are what the robot offers to change of its map, ``low_things`` where it offers a no-go zone.
     """
 
     version: int
@@ -135,6 +135,7 @@ class HomeView:
     overhead: tuple[tuple[Point, ...], ...] = ()
     carpets: tuple[tuple[Point, ...], ...] = ()
     low_things: tuple[LowThingView, ...] = ()
+    felt_carpets: tuple[tuple[Point, ...], ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -45,6 +45,7 @@ from roomba.mission.phases.step import PhaseStep
 from roomba.mission.steady import Steady, SteadyTicks
 from roomba.mission.transitions import Transitions
 from roomba.perception.localization.estimate import Knowledge
+from roomba.perception.rooms.felt_carpets import CarpetVotes
 from roomba.perception.swept.dirt_map import DirtMap
 from roomba.perception.things.layer import ThingLayer
 from roomba.vocabulary import RoomWay
@@ -92,6 +93,8 @@ class Mission:
         self._drives = Drives(context, robot, config.driving, self.obstacles)
         self.trail = self._drives.trail
         self.carpet = CarpetSense(robot.brush)
+        self.carpets = CarpetVotes(context.occupancy)
+        """Where it felt carpets, over all runs."""
         self._retries = RetryPolicy(config.driving.waiting)
         self._at_station = AtStation(docking, robot)
         self._monitor = Monitor(robot.walk, self._drives, self.ledger, senses)
@@ -157,6 +160,8 @@ class Mission:
 
         ``things`` and ``dirt`` are new ones of that map.
         """
+        moved = context.station.compose(self.context.station.inverse())
+        self.carpets = self.carpets.carried_to(context.occupancy, moved)
         self._home.use_map(context, things, dirt)
 
     def wants_map(self, occupancy: OccupancyMap) -> bool:
@@ -308,6 +313,7 @@ class Mission:
         """Return what is wanted now."""
         self.carpet.note(senses.brush_current)
         self._job.account(senses, self._last, sweeps=self.sweeps)
+        self._note_carpet(senses, np.array([self.last_place]))
         self._count_time(senses, np.array([[senses.pose.x, senses.pose.y]]))
         self._notice(senses)
         step = self._act(senses)
@@ -323,9 +329,16 @@ class Mission:
         self._drives.caught_up(senses, places)
         if self.sweeps:
             self._job.bin.passed(places)
+        self._note_carpet(senses, places)
         self.ledger.note(senses, way)
         self._count_time(senses, places)
         self._last = senses
+
+    def _note_carpet(self, senses: Senses, places: NDArray[np.float64]) -> None:
+        """Note what floor the brush feels at places, float64 [n, 2], m; one that is not told of
+        feels nothing."""
+        if self.sweeps and senses.brush_current > 0.0:
+            self.carpets.note(places, is_on=self.carpet.is_on)
 
     def _count_time(self, senses: Senses, places: NDArray[np.float64]) -> None:
         """Count what the time since the last tick went into; each tick ended at one of ``places``.

@@ -2,7 +2,8 @@
 
 ``map.yaml`` and ``map.pgm`` are the map, ``home.yaml`` is a home's layer with the station and the
 rooms for people to read, ``rooms.yaml`` and ``zones.yaml`` are the rooms and zones to the cell,
-``low_things.yaml`` what the bumper felt and the lidar never saw.
+``low_things.yaml`` what the bumper felt and the lidar never saw, ``carpets.yaml`` the carpets that
+the brush felt.
 """
 
 from __future__ import annotations
@@ -20,9 +21,11 @@ from roomba.files.kept import write_kept
 from roomba.files.occupancy_map import load_map, save_map
 from roomba.geometry import Pose
 from roomba.grid import OccupancyMap
+from roomba.perception.rooms.felt_carpets import FeltCarpets
 from roomba.perception.rooms.low_things import LowThings
 from roomba.perception.rooms.rooms import Rooms
 from roomba.perception.rooms.zones import Zones, ZonesError
+from roomba.storage.carpets import CarpetsError, load_carpets, save_carpets
 from roomba.storage.low_things import LowThingsError, load_low_things, save_low_things
 from roomba.storage.map_bound import yaml_text
 from roomba.storage.rooms import load_rooms, save_rooms
@@ -31,6 +34,7 @@ from roomba.storage.zones import load_zones, save_zones
 ROOMS_NAME: Final = "rooms.yaml"
 ZONES_NAME: Final = "zones.yaml"
 LOW_THINGS_NAME: Final = "low_things.yaml"
+CARPETS_NAME: Final = "carpets.yaml"
 
 _LAYER_COMMENT: Final = "# Station and rooms of a map that the robot made; m and rad.\n"
 
@@ -51,6 +55,7 @@ class StoredMap:
     rooms: Rooms | None = None
     zones: Zones = field(default_factory=Zones)
     low_things: LowThings = field(default_factory=LowThings)
+    carpets: FeltCarpets = field(default_factory=FeltCarpets)
 
     def __post_init__(self) -> None:
         """Check that the parts fit together. Raises MapStoreError."""
@@ -72,6 +77,7 @@ class StoredMap:
             and self.station == other.station
             and self.zones == other.zones
             and self.low_things == other.low_things
+            and self.carpets == other.carpets
             and _are_same_rooms(self.rooms, other.rooms)
         )
 
@@ -87,6 +93,8 @@ def write_map(stored: StoredMap, folder: Path) -> None:
         save_zones(stored.zones, stored.occupancy, folder / ZONES_NAME)
         if stored.low_things.all:
             save_low_things(stored.low_things, stored.occupancy, folder / LOW_THINGS_NAME)
+        if stored.carpets.all:
+            save_carpets(stored.carpets, stored.occupancy, folder / CARPETS_NAME)
         if stored.rooms is not None:
             save_rooms(stored.rooms, stored.occupancy, folder / ROOMS_NAME)
     except (ValueError, RoomsError) as error:
@@ -112,11 +120,12 @@ def read_map(folder: Path) -> StoredMap:
         rooms = load_rooms(folder / ROOMS_NAME, occupancy)
         zones = load_zones(folder / ZONES_NAME, occupancy)
         low_things = load_low_things(folder / LOW_THINGS_NAME, occupancy)
-    except (HomeError, RoomsError, ZonesError, LowThingsError, OSError) as error:
+        carpets = load_carpets(folder / CARPETS_NAME, occupancy)
+    except (HomeError, RoomsError, ZonesError, LowThingsError, CarpetsError, OSError) as error:
         raise MapStoreError(
             f"{error}; mend the file, or remove the map and let the robot map this floor again"
         ) from error
-    return StoredMap(occupancy, station, rooms, zones, low_things)
+    return StoredMap(occupancy, station, rooms, zones, low_things, carpets)
 
 
 def _station_of(path: Path) -> Pose:

@@ -12,6 +12,8 @@ from geometry_msgs.msg import Point, Vector3
 from nav_msgs.msg import OccupancyGrid
 from numpy.typing import NDArray
 from roomba_robot.msg import (
+    Carpet,
+    CarpetArray,
     CleanFeedback,
     CleanGoal,
     LowThing,
@@ -45,6 +47,7 @@ from roomba.mission.cleaning.request import (
 from roomba.mission.docking.beams import StationBeams
 from roomba.mission.exploring.exploration import ExploreResult
 from roomba.mission.inputs.senses import Battery
+from roomba.perception.rooms.felt_carpets import FeltCarpets
 from roomba.perception.rooms.low_things import OfferedZone
 from roomba.perception.rooms.zones import WALL_WIDTH, Zone, ZoneKind, Zones, ZonesError
 from roomba.perception.swept.coverage_bits import SWEPT, WANTED
@@ -283,6 +286,14 @@ def low_things_message(now: float, offers: Sequence[OfferedZone], frame_id: str)
     return LowThingArray(
         header(now, frame_id),
         [LowThing(offer.times, [Point(x, y, 0.0) for x, y in offer.corners]) for offer in offers],
+    )
+
+
+def carpets_message(now: float, carpets: FeltCarpets, frame_id: str) -> CarpetArray:
+    """Return the carpets that were felt as a message."""
+    return CarpetArray(
+        header(now, frame_id),
+        [Carpet([Point(x, y, 0.0) for x, y in corners]) for corners in carpets.all],
     )
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -12,6 +13,7 @@ from geometry_msgs.msg import Polygon
 from nav_msgs.msg import OccupancyGrid, Path
 from numpy.typing import NDArray
 from roomba_robot.msg import (
+    CarpetArray,
     CleanActionResult,
     Door,
     ExploreActionResult,
@@ -182,17 +184,24 @@ def changes_of(message: MapUpdate) -> tuple[ChangeView, ...]:
 
 def low_things_of(message: LowThingArray) -> tuple[LowThingView, ...]:
     """Return the no-go zones that the robot offers."""
-    for thing in message.things:
-        if len(thing.corners) < _LEAST_CORNERS:
-            raise MessageError(
-                f"expected {_LEAST_CORNERS} corners or more of a zone, got {len(thing.corners)}"
-            )
-        places = [value for corner in thing.corners for value in (corner.x, corner.y)]
-        require_finite("a zone that is offered", *places)
     return tuple(
-        LowThingView(thing.times, tuple((corner.x, corner.y) for corner in thing.corners))
+        LowThingView(thing.times, _enclosed(thing.corners, "a zone that is offered"))
         for thing in message.things
     )
+
+
+def carpets_of(message: CarpetArray) -> tuple[tuple[Point, ...], ...]:
+    """Return the outlines of the carpets that the robot felt."""
+    return tuple(_enclosed(carpet.corners, "a carpet") for carpet in message.carpets)
+
+
+def _enclosed(corners: Sequence[PointMessage], what: str) -> tuple[Point, ...]:
+    if len(corners) < _LEAST_CORNERS:
+        raise MessageError(
+            f"expected {_LEAST_CORNERS} corners or more of {what}, got {len(corners)}"
+        )
+    require_finite(what, *(value for corner in corners for value in (corner.x, corner.y)))
+    return tuple((corner.x, corner.y) for corner in corners)
 
 
 def zone_message_of(zone: ZoneView) -> ZoneMessage:

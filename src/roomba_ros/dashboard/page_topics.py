@@ -15,6 +15,7 @@ from geometry_msgs.msg import PoseStamped
 from nav_msgs.msg import OccupancyGrid, Path
 from numpy.typing import NDArray
 from roomba_robot.msg import (
+    CarpetArray,
     CleanActionResult,
     EmptyingStation,
     ExploreActionResult,
@@ -36,6 +37,7 @@ from roomba.client.view import (
     HomeView,
     LayerName,
     LowThingView,
+    Point,
     RoomView,
     TruthView,
     ZoneView,
@@ -50,6 +52,7 @@ from roomba_ros.convert.mounts import Mounts, transforms_of
 from roomba_ros.convert.page import (
     ToldHome,
     battery_seconds_of,
+    carpets_of,
     changes_of,
     charges_of,
     clean_report_of,
@@ -87,8 +90,8 @@ class PageTopics:
 
     Subscribes: ``pose``, ``localization``, ``speed``, ``bin_level``, ``emptying_station``,
     ``battery_state``, ``emergency_stop``, ``scan``, ``plan``, ``map``, ``coverage_map``,
-    ``dirt_map``, ``rooms``, ``zones``, ``station_pose``, ``trouble``, ``line_trouble``,
-    ``map/update``, ``clean/result``, ``explore/result``, ``/tf_static``; of a
+    ``dirt_map``, ``rooms``, ``zones``, ``carpets``, ``station_pose``, ``trouble``,
+    ``line_trouble``, ``map/update``, ``clean/result``, ``explore/result``, ``/tf_static``; of a
     simulation also ``sim/pose``, ``sim/home`` and ``sim/dirt``.
     """
 
@@ -138,6 +141,7 @@ class PageTopics:
         subscribe("rooms", RoomArray, room_views_of, self._on_rooms)
         subscribe("zones", ZoneArray, zone_views_of, self._on_zones)
         subscribe("low_things", LowThingArray, low_things_of, self._on_low_things)
+        subscribe("carpets", CarpetArray, carpets_of, self._on_carpets)
         subscribe("map/update", MapUpdate, changes_of, self._on_changes)
         subscribe("clean/result", CleanActionResult, clean_report_of, self._on_report)
         subscribe("explore/result", ExploreActionResult, exploration_report_of, self._on_report)
@@ -226,6 +230,9 @@ class PageTopics:
 
     def _on_low_things(self, things: tuple[LowThingView, ...]) -> None:
         self._change(low_things=things)
+
+    def _on_carpets(self, carpets: tuple[tuple[Point, ...], ...]) -> None:
+        self._change(felt_carpets=carpets)
 
     def _on_changes(self, changes: tuple[ChangeView, ...]) -> None:
         self._change(changes=changes)

@@ -17,6 +17,7 @@ from roomba.perception.localization.estimate import Knowledge
 from roomba.robot.mapped_mission import MappedMission
 from roomba.storage.checkpoint import Checkpoint
 from roomba.vocabulary import listed
+from roomba_ros.mission.carpets import CarpetTopics
 from roomba_ros.mission.drive import MissionDrive
 from roomba_ros.mission.goals import Ended
 from roomba_ros.mission.home import GROWING, HomeTopics, KnownHome
@@ -62,11 +63,10 @@ class MissionNode:
     """Ticks one mission for each map; what it is on, it takes up again after it was killed.
 
     Publishes, subscribes and serves what :class:`HeardSenses`, :class:`HomeTopics`,
-    :class:`LowThingTopics`, :class:`MissionOrders`, :class:`MissionDrive` and
-    :class:`MissionTopics` say. Of the body it
-    hears ``odom``, ``scan``, ``bumper``, ``cliff``, ``wheel_drop``, ``battery_state``,
-    ``dock_status``, ``ir_omni``, ``dirt_detect``, ``bin_level``, ``brush_current`` and
-    ``emptying_station``.
+    :class:`LowThingTopics`, :class:`CarpetTopics`, :class:`MissionOrders`, :class:`MissionDrive`
+    and :class:`MissionTopics` say. Of the body it hears ``odom``, ``scan``, ``bumper``,
+    ``cliff``, ``wheel_drop``, ``battery_state``, ``dock_status``, ``ir_omni``, ``dirt_detect``,
+    ``bin_level``, ``brush_current`` and ``emptying_station``.
     Parameters: ``robot_config``, ``mission_config``, ``docking_config``, ``things_config``,
     ``nodes_config`` (paths of configuration files; by default the shipped ones),
     ``~memory_folder`` (default: roomba_robot/mission in the ROS home folder, and in it a folder for
@@ -107,6 +107,7 @@ class MissionNode:
             folder_of("~zones_folder", "zones"),
         )
         self._low_things = LowThingTopics(self._background, folder_of("~zones_folder", "zones"))
+        self._carpets = CarpetTopics(self._background, folder_of("~zones_folder", "zones"))
         self._drive = MissionDrive(self._config, self._nodes.deadlines.ending)
         self._orders = MissionOrders(self._drive.take, self._nodes.deadlines)
         self._topics = MissionTopics(self._mission_config, self._nodes.periods, self._background)
@@ -118,6 +119,7 @@ class MissionNode:
             self._senses,
             self._context,
             self._low_things,
+            self._carpets,
             self._orders,
         ):
             part.start()
@@ -135,6 +137,7 @@ class MissionNode:
             return
         if self._home is not None:
             self._low_things.tick(now, mission, self._home)
+            self._carpets.tick(now, mission, self._home)
         step, ended = self._round.tick(now, mission, senses)
         self._finish_map(ended, is_waited_for=step.wants_whole_map)
         self._remember(mission, senses, has_learned=ended.clean is not None)

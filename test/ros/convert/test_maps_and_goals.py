@@ -9,17 +9,24 @@ from geometry_msgs.msg import Point, PoseStamped, Quaternion
 from hypothesis import given
 from hypothesis import strategies as st
 from nav_msgs.msg import OccupancyGrid, Path
-from roomba_robot.msg import CleanGoal, LowThingArray, Rectangle, RoomArray, ZoneArray
+from roomba_robot.msg import CarpetArray, CleanGoal, LowThingArray, Rectangle, RoomArray, ZoneArray
 from rospy import Time
 from sensor_msgs.msg import BatteryState
 
 from roomba.grid import MOST_CELLS
 from roomba.mission.cleaning.request import CleanRefusedError
+from roomba.perception.rooms.felt_carpets import FeltCarpets
 from roomba.perception.rooms.low_things import OfferedZone
 from roomba_ros.convert.common import map_of, told_map_of
 from roomba_ros.convert.errors import MessageError
-from roomba_ros.convert.mission import low_things_message, outlines_of, request_of, zones_of
-from roomba_ros.convert.page import battery_seconds_of, low_things_of, shown_path_of
+from roomba_ros.convert.mission import (
+    carpets_message,
+    low_things_message,
+    outlines_of,
+    request_of,
+    zones_of,
+)
+from roomba_ros.convert.page import battery_seconds_of, carpets_of, low_things_of, shown_path_of
 
 BAD = (math.nan, math.inf, -math.inf)
 
@@ -141,6 +148,21 @@ def test_zones_that_are_offered_come_as_they_were_told() -> None:
     message.things[0].corners = message.things[0].corners[:2]
     with pytest.raises(MessageError, match="3 corners or more"):
         low_things_of(message)
+
+
+def test_carpets_come_as_they_were_told() -> None:
+    outline = ((0.0, 0.0), (1.0, 0.0), (1.0, 2.0), (0.0, 2.0))
+    message = carpets_message(5.0, FeltCarpets((outline,)), "map")
+    assert message.header.frame_id == "map"
+    assert carpets_of(message) == (outline,)
+    assert carpets_of(CarpetArray()) == ()
+    for bad in BAD:
+        message.carpets[0].corners[2].x = bad
+        with pytest.raises(MessageError, match="finite"):
+            carpets_of(message)
+    message.carpets[0].corners = message.carpets[0].corners[:2]
+    with pytest.raises(MessageError, match="3 corners or more of a carpet"):
+        carpets_of(message)
 
 
 @pytest.mark.parametrize("number", BAD)

@@ -4,7 +4,14 @@ from __future__ import annotations
 
 from fixtures.nodes.lockstep import Lockstep
 from geometry_msgs.msg import Point
-from roomba_robot.msg import EmptyingStation, Localization, LowThing, LowThingArray
+from roomba_robot.msg import (
+    Carpet,
+    CarpetArray,
+    EmptyingStation,
+    Localization,
+    LowThing,
+    LowThingArray,
+)
 from sensor_msgs.msg import BatteryState
 from std_msgs.msg import Float32
 
@@ -45,5 +52,7 @@ def test_the_page_shows_the_zones_that_are_offered_as_they_are_told_last() -> No
         (thing,) = shown.home().low_things
         assert (thing.times, thing.corners) == (3, ((0.0, 0.0), (1.0, 0.0), (1.0, 2.0)))
         assert shown.home().version > before
+        ros.publish("/carpets", CarpetArray(carpets=[Carpet(corners)]))
+        assert shown.home().felt_carpets == (thing.corners,)
         ros.publish("/low_things", LowThingArray())
         assert shown.home().low_things == ()

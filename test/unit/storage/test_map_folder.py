@@ -19,6 +19,7 @@ from roomba.files.occupancy_map import load_map
 from roomba.files.shipped import HOMES
 from roomba.geometry import Pose
 from roomba.grid import FREE, OCCUPIED, UNKNOWN, GridFrame, OccupancyMap
+from roomba.perception.rooms.felt_carpets import FeltCarpets
 from roomba.perception.rooms.low_things import LowThing, LowThings
 from roomba.perception.rooms.rooms import Rooms, segment
 from roomba.perception.rooms.zones import Zone, ZoneKind, Zones
@@ -43,6 +44,12 @@ def occupancies(draw: st.DrawFn) -> OccupancyMap:
     return OccupancyMap(frame, values)
 
 
+CARPETS = st.builds(
+    lambda x, y, side: ((x, y), (x + side, y), (x + side, y + side), (x, y + side)),
+    PLACES,
+    PLACES,
+    st.floats(0.3, 3.0),
+)
 LOW_THINGS = st.builds(LowThing, PLACES, PLACES, PLACES, PLACES, st.integers(1, 99), st.booleans())
 
 
@@ -60,7 +67,9 @@ def stored_maps(draw: st.DrawFn) -> StoredMap:
     )
     station = Pose(draw(PLACES), draw(PLACES), draw(st.floats(-math.pi, math.pi)))
     low = LowThings(tuple(draw(st.lists(LOW_THINGS, max_size=3))))
-    return StoredMap(occupancy, station, draw(st.sampled_from([rooms, None])), Zones(zones), low)
+    carpets = FeltCarpets(tuple(draw(st.lists(CARPETS, max_size=3))))
+    some = draw(st.sampled_from([rooms, None]))
+    return StoredMap(occupancy, station, some, Zones(zones), low, carpets)
 
 
 @given(stored_maps())
@@ -72,7 +81,7 @@ def test_all_comes_back_to_the_last_bit(stored: StoredMap) -> None:
     assert read.occupancy.frame == stored.occupancy.frame
     np.testing.assert_array_equal(read.occupancy.values, stored.occupancy.values)
     assert (read.station, read.zones) == (stored.station, stored.zones)
-    assert read.low_things == stored.low_things
+    assert (read.low_things, read.carpets) == (stored.low_things, stored.carpets)
     assert (read.rooms is None) == (stored.rooms is None)
     if read.rooms is not None and stored.rooms is not None:
         assert read.rooms.names == stored.rooms.names

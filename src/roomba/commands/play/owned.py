@@ -92,6 +92,7 @@ class OwnedLife:
             rooms, zones = (None, None) if stored is None else (stored.rooms, stored.zones)
             if stored is not None:
                 robot.mission.obstacles.low = stored.low_things
+                robot.mission.carpets.recall(stored.carpets)
             self.client = LiveClient(home, robot, rooms, 1.0, zones)
             self._maps.start(self.client)
         except BaseException:

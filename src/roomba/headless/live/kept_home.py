@@ -1,4 +1,4 @@
-"""The map that a live robot made, kept with its rooms, zones and low things for the next time."""
+"""The map that a live robot made, kept for the next time, with all that goes with it."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from roomba.headless.embodied import Embodied
 from roomba.headless.live.client import LiveClient
 from roomba.headless.live.floor_plan import FloorPlan
 from roomba.headless.live.snapshots import ErrandsEnded
+from roomba.perception.rooms.felt_carpets import FeltCarpets
 from roomba.storage.map_store import MapStore, MapStoreError, StoredMap
 
 _ENDING: Final = 10.0
@@ -17,16 +18,17 @@ _ENDING: Final = 10.0
 
 
 class KeptHome:
-    """A map by ``name`` in a store, with its rooms, zones and low things.
+    """A map by ``name`` in a store, with its rooms, zones, low things and carpets.
 
     ``tell`` is told in a sentence what the disk refuses. A thread of its own writes whenever the
-    whole map, its rooms, zones or low things changed.
+    whole map, its rooms, zones or low things changed, and carpets when a clean is over.
     """
 
     def __init__(self, store: MapStore, name: str, tell: Callable[[str], object]) -> None:
         """Touch nothing yet."""
         self._store, self._name, self._tell = store, name, tell
         self._kept: tuple[object, ...] = ()
+        self._carpets = FeltCarpets()
         self._changed = threading.Condition()
         self._waiting: StoredMap | None = None
         self._is_over = False
@@ -38,6 +40,7 @@ class KeptHome:
             return None
         stored = self._store.load(self._name)
         self._kept = stored.occupancy, stored.rooms, stored.zones, stored.low_things
+        self._carpets = stored.carpets
         return stored
 
     def start(self, client: LiveClient) -> None:
@@ -60,14 +63,18 @@ class KeptHome:
             return
         low = robot.mission.obstacles.low
         now = context.occupancy, plan.rooms, plan.zones, low
-        if len(self._kept) == len(now) and all(map(_is_same, self._kept, now)):
+        carpets = self._carpets if robot.mission.sweeps else robot.mission.carpets.felt
+        is_same = len(self._kept) == len(now) and all(map(_is_same, self._kept, now))
+        if is_same and carpets is self._carpets:
             return
-        self._kept = now
+        self._kept, self._carpets = now, carpets
         rooms = plan.rooms
         if rooms is not None and rooms.frame != context.occupancy.frame:
             rooms = None
         with self._changed:
-            self._waiting = StoredMap(context.occupancy, context.station, rooms, plan.zones, low)
+            self._waiting = StoredMap(
+                context.occupancy, context.station, rooms, plan.zones, low, carpets
+            )
             self._changed.notify_all()
 
     def _write(self) -> None:

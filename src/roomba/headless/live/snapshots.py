@@ -45,7 +45,7 @@ class Snapshots:
         self.ended = ErrandsEnded()
         self._map: GridLayer | None = None
         self._map_of: object = None
-        self._low_of: object = None
+        self._felt_of: tuple[object, ...] = ()
         self._visits = Visits(robot.mission.context.occupancy.frame, robot.robot.brush.width)
         self._shape = 0
 
@@ -87,7 +87,7 @@ class Snapshots:
     def look(self, robot: Embodied) -> None:
         """Take snapshots after a command."""
         self._take_results(robot)
-        if self._home_view is None or self._low_of is not robot.mission.obstacles.low:
+        if self._home_view is None or self._felt_of != _felt_by(robot):
             self._look_at_home(robot)
         self._follow_map(robot)
         self._view = robot_view(robot, self._last, self._live_home.truth())
@@ -104,7 +104,7 @@ class Snapshots:
         self._look_at_home(robot)
 
     def _look_at_home(self, robot: Embodied) -> None:
-        self._low_of = robot.mission.obstacles.low
+        self._felt_of = _felt_by(robot)
         version = next(self._versions)
         parts = self._live_home, robot, self.plan.rooms, self.plan.zones
         self._home_view = home_view(version, *parts)
@@ -155,3 +155,8 @@ class Snapshots:
             rooms = segment(robot.mission.context.occupancy)
             if rooms.names:
                 self.use(robot, FloorPlan(rooms, self.plan.zones))
+
+
+def _felt_by(robot: Embodied) -> tuple[object, ...]:
+    """Return what was felt, all of it: low things and carpets."""
+    return robot.mission.obstacles.low, robot.mission.carpets.felt

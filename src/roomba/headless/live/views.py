@@ -168,6 +168,7 @@ def home_view(
         tool=robot.robot.brush.width,
         overhead=() if plan is None else tuple(_outlines(plan, is_overhead=True)),
         carpets=() if plan is None else tuple(_carpets(plan)),
+        felt_carpets=robot.mission.carpets.felt.all,
         low_things=tuple(
             LowThingView(offer.times, offer.corners)
             for offer in robot.mission.obstacles.offered_zones(zones)

@@ -65,6 +65,8 @@ class _Drawing:
             for ring in room.rings:
                 self._line(pen, (*ring, ring[0]), _ROOM, 1)
         self._line(pen, self._floor.way, _WAY, 2)
+        for carpet in self._floor.home.felt_carpets:
+            self._line(pen, (*carpet, carpet[0]), _ROOM, 1)
         for zone in self._floor.home.zones:
             closed, is_carpet = zone.kind != "wall", zone.kind == "carpet"
             line = (_ROOM, 1) if is_carpet else (_NO_GO, 3)

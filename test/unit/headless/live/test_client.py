@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from fixtures.waiting import wait_until
 
-from roomba.client.plain import home_of
+from roomba.client.plain import home_from, home_of
 from roomba.client.protocol import RequestRefusedError, RobotUnavailableError
 from roomba.client.view import CleanOrder, LayerName, ZoneView
 from roomba.commands.play.living import live_client
@@ -168,6 +168,16 @@ def test_zones_are_offered_of_low_things_taken_or_ignored(client: LiveClient) ->
     assert client.home().low_things == ()
     client.remove_zone("cable")
     assert client.home().low_things == (one,)
+
+
+def test_carpets_that_it_felt_are_told_with_the_home(client: LiveClient) -> None:
+    assert client.home().felt_carpets == ()
+    client.clean(CleanOrder())
+    wait_until(lambda: client.home().felt_carpets, 60.0, "a carpet")
+    first = client.home()
+    assert home_of(first)["felt_carpets"] == first.felt_carpets
+    wait_until(lambda: client.home().version > first.version, 60.0, "more of it")
+    assert home_from(home_of(client.home())).felt_carpets == client.home().felt_carpets
 
 
 def test_the_newest_edit_of_the_rooms_is_taken_back(client: LiveClient) -> None:

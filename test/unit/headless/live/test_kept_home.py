@@ -10,9 +10,11 @@ from fixtures.waiting import wait_until
 from roomba.client.view import ZoneView
 from roomba.commands.play.living import live_client
 from roomba.headless.live.kept_home import KeptHome
+from roomba.perception.rooms.felt_carpets import FeltCarpets
 from roomba.perception.rooms.low_things import LowThing, LowThings
 from roomba.storage.map_store import MapStore
 
+CARPETS = FeltCarpets((((1.0, 0.5), (2.0, 0.5), (2.0, 1.0), (1.0, 1.0)),))
 LOW = LowThings((LowThing(1.0, 1.0, 1.1, 1.0, 4),))
 DEADLINE = 20.0
 """s of wall time."""
@@ -33,6 +35,7 @@ def test_it_is_kept_once_it_is_whole_and_whenever_rooms_or_zones_change(tmp_path
         name = client.home().rooms[0].name
         client.rename_room(name, "den")
         client.ask(lambda robot: setattr(robot.mission.obstacles, "low", LOW))
+        client.ask(lambda robot: robot.mission.carpets.recall(CARPETS))
         client.put_zone(ZoneView("vase", "no-go", ((1.0, 1.0), (1.5, 1.0), (1.5, 1.5))))
     finally:
         client.end()
@@ -43,7 +46,7 @@ def test_it_is_kept_once_it_is_whole_and_whenever_rooms_or_zones_change(tmp_path
     assert again.rooms is not None
     assert "den" in again.rooms.names
     assert again.zones.names == ("vase",)
-    assert again.low_things == LOW
+    assert (again.low_things, again.carpets) == (LOW, CARPETS)
     station = client.home().station
     assert (again.station.x, again.station.y) == pytest.approx(station[:2])
 

@@ -81,6 +81,14 @@ def test_the_picture_shows_the_floor_with_the_highest_y_on_top() -> None:
     assert 200 < unknown[0] < 240
 
 
+def test_carpets_that_were_felt_are_drawn_as_those_that_a_person_drew() -> None:
+    corners = ((-0.5, -0.5), (0.2, -0.5), (0.2, 0.2), (-0.5, 0.2))
+    bare = replace(FLOOR, home=replace(LIVED, zones=()))
+    felt = replace(FLOOR, home=replace(LIVED, zones=(), felt_carpets=(corners,)))
+    drawn = replace(FLOOR, home=replace(LIVED, zones=(ZoneView("rug", "carpet", corners),)))
+    assert picture_of(felt) == picture_of(drawn) != picture_of(bare)
+
+
 def test_a_map_with_nothing_known_is_a_picture_too() -> None:
     empty = replace(FLOOR, cells=replace(FLOOR.cells, cells=np.zeros((3, 4), np.uint8)))
     assert Image.open(io.BytesIO(picture_of(empty))).size == (20, 15)

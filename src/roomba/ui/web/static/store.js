@@ -4,7 +4,7 @@
 const values = {
   link: "connecting", age: 0, state: null, home: null, limits: null, mayChange: null, hasHistory: false, hasCamera: false, hasMaps: false,
   trail: [], chosen: [], hows: {}, drawing: null, zone: null, carried: null,
-  layers: { coverage: true, trail: true, path: true, rooms: true, furniture: true, zones: true, scan: false, dirt: false, truth: false },
+  layers: { coverage: true, trail: true, path: true, rooms: true, furniture: true, zones: true, carpets: true, scan: false, dirt: false, truth: false },
 };
 const listeners = new Map();
 

@@ -46,6 +46,7 @@ export function drawGround(context) {
 export function drawThings(context) {
   const home = get("home"), layers = get("layers");
   if (!home) return;
+  if (layers.carpets) (home.felt_carpets ?? []).forEach((carpet) => drawCarpet(context, carpet));
   if (layers.furniture) drawFurniture(context, home);
   if (layers.rooms) drawRooms(context, home);
   if (layers.zones) home.zones.forEach((zone) => drawZone(context, get("zone")?.name === zone.name ? get("zone") : zone));
@@ -139,6 +140,14 @@ function drawZone(context, zone) {
     context.lineWidth = 2;
     context.strokeRect(px - CORNER, py - CORNER, 2 * CORNER, 2 * CORNER);
   }
+}
+
+/** Draw a carpet that was felt as one that is drawn, but without a name. */
+function drawCarpet(context, corners) {
+  trace(context, corners, true);
+  context.fillStyle = palette().carpet;
+  context.fill();
+  dashed(context, palette().carpetEdge);
 }
 
 /** Draw the outline of a thing that appeared, or is gone. */

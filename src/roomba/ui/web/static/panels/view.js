@@ -5,7 +5,7 @@ import { onColours, palette } from "../map/palette.js";
 import { view, zoom } from "../map/view.js";
 import { get, on, set } from "../store.js";
 
-const NAMES = { coverage: "Clean: once, twice, more", trail: "Way so far", path: "Way to go", rooms: "Rooms", furniture: "Furniture", zones: "Zones", dirt: "Dirt found", scan: "Lidar", truth: "The truth" };
+const NAMES = { coverage: "Clean: once, twice, more", trail: "Way so far", path: "Way to go", rooms: "Rooms", furniture: "Furniture", zones: "Zones", carpets: "Carpets it felt", dirt: "Dirt found", scan: "Lidar", truth: "The truth" };
 const STEP = 1.4;
 
 /** Connect the tools. */

@@ -1,0 +1,123 @@
+"""Carpets that the robot felt by its brush, place by place, over many cleans.
+
+Each tick of a clean is a vote of the floor below the tool, for carpet or against it. A carpet that
+was taken away is voted down again.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from roomba.geometry import Pose
+from roomba.grid import GridFrame, OccupancyMap
+from roomba.perception.rooms.outlines import cells_inside, outline_of
+from roomba.perception.rooms.zones import Corners
+from roomba.raster.carried import carried
+
+MOST_CARPETS: Final = 100
+"""Of one map; of more the largest count."""
+MOST_CORNERS: Final = 200
+"""Of a carpet, as of a zone; one with more is told by the shape around it."""
+CELL: Final = 0.10
+"""m; half of the tool's width, and about as far as its middle is driven while a floor is felt."""
+_BESIDE: Final = 0.05
+"""m; from the tool's middle to those of the cells that it covers."""
+_FELT: Final = 4
+"""Votes, more than against it, from which on a cell is carpet: half of a pass at 0.3 m/s."""
+_MOST: Final = 30
+"""Votes for or against that count: some passes, so that two or three cleans turn them."""
+_LEAST_AREA: Final = 0.10
+"""m2; what is smaller is a sill, or an error of the place."""
+_STAIR: Final = 0.06
+"""m; corners that are less aside are no corners: edges are stairs of cells."""
+
+
+@dataclass(frozen=True, slots=True)
+class FeltCarpets:
+    """Outlines of carpets, the largest first, m, map frame."""
+
+    all: tuple[Corners, ...] = ()
+
+
+class CarpetVotes:
+    """What the brush felt on the cells of a map."""
+
+    def __init__(self, occupancy: OccupancyMap) -> None:
+        """Begin with nothing felt."""
+        frame = occupancy.frame
+        self.frame = GridFrame(
+            CELL,
+            frame.origin_x,
+            frame.origin_y,
+            math.ceil(frame.rows * frame.resolution / CELL),
+            math.ceil(frame.columns * frame.resolution / CELL),
+        )
+        self.votes: NDArray[np.int16] = np.zeros(self.frame.shape, np.int16)
+        self._was_on = False
+        self._is_told = True
+        self._felt = FeltCarpets()
+
+    def note(self, places: NDArray[np.float64], *, is_on: bool) -> None:
+        """Take ticks at places of the tool, float64 [n, 2], m, all of them on carpet or off."""
+        frame, votes = self.frame, self.votes
+        for dx in (-_BESIDE, _BESIDE):
+            columns = np.floor((places[:, 0] + dx - frame.origin_x) / CELL).astype(np.int64)
+            for dy in (-_BESIDE, _BESIDE):
+                rows = np.floor((places[:, 1] + dy - frame.origin_y) / CELL).astype(np.int64)
+                inside = (rows >= 0) & (rows < frame.rows)
+                inside &= (columns >= 0) & (columns < frame.columns)
+                cells = rows[inside], columns[inside]
+                np.add.at(votes, cells, 1 if is_on else -1)
+                votes[cells] = np.clip(votes[cells], -_MOST, _MOST)
+        if self._was_on and not is_on:
+            # It left a carpet, which is larger now.
+            self._is_told = False
+        self._was_on = is_on
+
+    def recall(self, felt: FeltCarpets) -> None:
+        """Go on with what was felt in former lives."""
+        for corners in felt.all:
+            self.votes[cells_inside(shapely.Polygon(corners), self.frame)] = _MOST
+        self._felt, self._is_told = felt, True
+
+    def carried_to(self, occupancy: OccupancyMap, moved: Pose) -> CarpetVotes:
+        """Return the same over another map, in which the frame of this one lies at ``moved``."""
+        over = CarpetVotes(occupancy)
+        over.votes = carried(self.votes, self.frame, over.frame, moved)
+        over._is_told = False
+        return over
+
+    @property
+    def felt(self) -> FeltCarpets:
+        """The carpets that are known now: the same object as long as they are the same."""
+        if not self._is_told:
+            self._is_told = True
+            felt = FeltCarpets(self._outlines())
+            if felt != self._felt:
+                self._felt = felt
+        return self._felt
+
+    def _outlines(self) -> tuple[Corners, ...]:
+        mask = self.votes >= _FELT
+        if not mask.any():
+            return ()
+        outline = outline_of(mask, self.frame)
+        parts = outline.geoms if isinstance(outline, shapely.MultiPolygon) else (outline,)
+        whole = [shapely.Polygon(part.exterior).simplify(_STAIR) for part in parts]
+        large = [part for part in whole if part.area >= _LEAST_AREA]
+        large.sort(key=lambda part: part.area, reverse=True)
+        return tuple(_corners(part) for part in large[:MOST_CARPETS])
+
+
+def _corners(part: shapely.Polygon) -> Corners:
+    """Return the corners of a carpet, to the mm."""
+    corners = part.exterior.coords[:-1]
+    if len(corners) > MOST_CORNERS:
+        corners = part.envelope.exterior.coords[:-1]
+    return tuple((round(float(x), 3), round(float(y), 3)) for x, y in corners)
