@@ -117,7 +117,7 @@ def test_a_line_that_is_gone_is_told(graph: RosGraph, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (("_robot:=toaster", "_port:=/dev/null"), "expected one of create2, neato"),
+        (("_robot:=toaster", "_port:=/dev/null"), "expected one of create2, neato, openneato"),
         (("_robot:=neato", "_port:=''"), "expected a device such as /dev/ttyACM0"),
         (("_robot:=neato", "_port:=/dev/ttyNone"), "Is it plugged in and switched on"),
     ],

@@ -39,14 +39,14 @@ def test_its_arguments_count() -> None:
 
 @pytest.mark.parametrize("robot", ROBOTS)
 def test_a_robot_that_one_owns_takes_the_place_of_the_simulation(robot: str) -> None:
-    lines = ["port:=/dev/ttyACM0", "lidar_port:=/dev/ttyUSB1"]
+    lines = ["port:=/dev/ttyACM0", "lidar_port:=/dev/ttyUSB1", "address:=/dev/ttyACM0"]
     launch = read_launch(LAUNCH, [f"robot:={robot}", *lines])
     names = {entry.name for entry in launch.processes}
     simulated = {"home_sim_node", "dirt_pub_node", "turn_camera_service_node"}
     assert names == (set(WITH_PAGE) - simulated) | {"roomba_driver_node"}
     assert [entry.name for entry in launch.processes if entry.is_required] == ["roomba_driver_node"]
     assert launch.parameters["/use_sim_time"] is False
-    assert launch.parameters["/robot_config"] == robot
+    assert launch.parameters["/robot_config"] == ROBOTS[robot].file.stem
     assert launch.parameters["/roomba_driver_node/robot"] == robot
     assert launch.parameters["/roomba_driver_node/port"] == "/dev/ttyACM0"
     assert launch.parameters["/roomba_driver_node/lidar_port"] == "/dev/ttyUSB1"
@@ -80,8 +80,11 @@ def test_its_arguments_are_described() -> None:
     ("argument", "said"),
     [
         ("hme:=flat", "got 'hme'; did you mean 'home'"),
-        ("nosucharg:=1", "got 'nosucharg'; known are: clock, empties, home"),
-        ("robot:=toaster", "robot: expected one of create2, neato, simulated, got 'toaster'"),
+        ("nosucharg:=1", "got 'nosucharg'; known are: address, clock, empties"),
+        (
+            "robot:=toaster",
+            "robot: expected one of create2, neato, openneato, simulated, got 'toaster'",
+        ),
         ("flat", "expected arguments like home:=flat, got 'flat'"),
         (":=flat", "expected arguments like home:=flat, got ':=flat'"),
         ("--speed=5", "expected arguments like home:=flat"),

@@ -18,6 +18,7 @@ PROGRAM: Final = spelled("emulate")
 _DONE, _USAGE = 0, 2
 _SLOW_BAUD: Final = 19_200
 """At which a robot starts that was asked for it by its button."""
+_MOST_PORT: Final = 65_535
 _SPEEDS: Final = (0.1, 20.0)
 _speed = number(
     lambda value: _SPEEDS[0] <= value <= _SPEEDS[1],
@@ -81,6 +82,13 @@ def _parser() -> Parser:
         choices=(BAUD, _SLOW_BAUD),
         default=BAUD,
         help=f"create2: the rate at which it starts, with --serial (default: {BAUD})",
+    )
+    parser.add_argument(
+        "--port",
+        type=whole(0, _MOST_PORT),
+        default=0,
+        metavar="N",
+        help="openneato: of its HTTP server, on this machine alone (default: any that is free)",
     )
     parser.add_argument(
         "--serial",

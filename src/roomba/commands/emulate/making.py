@@ -39,6 +39,21 @@ def _neato(given: Given) -> Iterator[str]:
 
 
 @contextmanager
+def _openneato(given: Given) -> Iterator[str]:
+    from roomba.emulators.neato.bridge import NeatoBridge
+    from roomba.emulators.neato.robot import NeatoRobot, made_up
+    from roomba.errors import RoombaError
+
+    simulator = _in_home(given, made_up(_config("neato")))
+    try:
+        bridge = NeatoBridge(NeatoRobot(simulator), given.port, given.speed)
+    except OSError as error:
+        raise RoombaError(f"expected a free port, got {given.port}: {error}") from error
+    with bridge:
+        yield f"A Neato with OpenNeato's bridge is in the home {given.home}, at {bridge.address}."
+
+
+@contextmanager
 def _create2(given: Given) -> Iterator[str]:
     from roomba.emulators.create2.robot import Create2Robot
     from roomba.emulators.create2.server import Create2Server
@@ -126,6 +141,6 @@ def _in_home(given: Given, config: SimulatedRobotConfig) -> Simulator:
 
 
 MADE_UP: Final[Mapping[str, Callable[[Given], AbstractContextManager[str]]]] = MappingProxyType(
-    {"neato": _neato, "create2": _create2, "ld19": _ld19}
+    {"neato": _neato, "openneato": _openneato, "create2": _create2, "ld19": _ld19}
 )
 """By name: what lives while its context lasts, which is told what to print of it."""

@@ -45,7 +45,8 @@ def add_line_options(parser: argparse._ActionsContainer) -> None:
     parser.add_argument(
         "--line",
         metavar="DEVICE",
-        help="the line that it is on, such as /dev/ttyACM0; --port is that of the page",
+        help="the line that it is on, such as /dev/ttyACM0, or the address of OpenNeato's bridge; "
+        "--port is that of the page",
     )
     parser.add_argument(
         "--lidar-line",

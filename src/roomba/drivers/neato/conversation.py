@@ -21,9 +21,20 @@ class SilenceError(LineError):
 class Conversation:
     """Asks over a line. Not for several threads: an answer would be another one's."""
 
-    def __init__(self, line: Line, now: Callable[[], float]) -> None:
-        """Ask over ``line``; ``now`` is a clock that never goes back, s."""
+    def __init__(
+        self,
+        line: Line,
+        now: Callable[[], float],
+        patience: float = 0.0,
+        per_byte: float = 0.0,
+    ) -> None:
+        """Ask over ``line``; ``now`` is a clock that never goes back, s.
+
+        ``patience`` is how much longer answers may take than on a wire, s. On a line that tells
+        whole answers each of their bytes took ``per_byte`` s before the first one came.
+        """
         self._line, self._now = line, now
+        self._patience, self._per_byte = patience, per_byte
         self._heard_at = now()
 
     @property
@@ -38,7 +49,7 @@ class Conversation:
         command is passed over. Raises SilenceError when nothing whole came ``within`` s, and
         LineError when the line is gone.
         """
-        end = self._now() + within
+        end = self._now() + within + self._patience
         self._line.discard()
         self._line.write(command.encode("ascii") + b"\n")
         came, late = b"", 0
@@ -60,7 +71,7 @@ class Conversation:
                     f"{len(came)} bytes without an end"
                 )
             if not came:
-                self._heard_at = self._now()
+                self._heard_at = self._now() - self._per_byte * len(piece)
             came += piece
 
     def close(self) -> None:

@@ -19,6 +19,7 @@ from roomba.drivers.lidars.reader import LidarReader
 from roomba.drivers.line import SerialLine
 from roomba.drivers.line_body import LineBody
 from roomba.drivers.neato.body import NeatoBody
+from roomba.drivers.neato.bridge_line import PATIENCE, PER_BYTE, BridgeLine
 from roomba.drivers.neato.conversation import Conversation
 from roomba.drivers.reopened_line import ReopenedLine
 from roomba.errors import RoombaError
@@ -40,18 +41,19 @@ class OwnedRobot:
     """A kind of robot: its ``name`` on the command line, its ``title`` for people, and its body.
 
     ``lidar`` names the lidar that stands on it with a line of its own; empty: its own tells by the
-    robot's line.
+    robot's line. ``numbers`` is the name of the file of its numbers, where that is not its own.
     """
 
     name: str
     title: str
     make_body: MakeBody
     lidar: str = ""
+    numbers: str = ""
 
     @property
     def file(self) -> Path:
         """Its numbers, as for ``--config``."""
-        return CONFIGURATION / "robots" / f"{self.name}.yaml"
+        return CONFIGURATION / "robots" / f"{self.numbers or self.name}.yaml"
 
     def config(self) -> RobotConfig:
         """Return its numbers; raises ConfigError."""
@@ -82,6 +84,13 @@ def _neato(port: str, _: str, config: RobotConfig) -> LineBody:
     return LineBody(driver, line, clock, config.timing.tick)
 
 
+def _openneato(address: str, _: str, config: RobotConfig) -> LineBody:
+    line = ReopenedLine(lambda: BridgeLine(address))
+    clock = BodyClock(time.monotonic)
+    driver = NeatoBody(Conversation(line, time.monotonic, PATIENCE, PER_BYTE), clock, config)
+    return LineBody(driver, line, clock, config.timing.tick)
+
+
 class _OpenedByDriver:
     """A line that the driver opens, at the rate that the robot answers to."""
 
@@ -101,6 +110,7 @@ def _create2(port: str, lidar_port: str, config: RobotConfig) -> LineBody:
 
 _ALL: Final = (
     OwnedRobot("neato", "Neato (XV, Botvac D3 to D7)", _neato),
+    OwnedRobot("openneato", "Neato behind OpenNeato's bridge", _openneato, numbers="neato"),
     OwnedRobot("create2", "Create 2 or Roomba 500 to 900", _create2, lidar="LD19"),
 )
 ROBOTS: Final[Mapping[str, OwnedRobot]] = {robot.name: robot for robot in _ALL}

@@ -1,0 +1,81 @@
+"""The made-up bridge of OpenNeato, as a program in the home network finds it."""
+
+from __future__ import annotations
+
+import http.client
+import json
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+from fixtures.robots.neato_rig import neato_world
+
+from roomba.emulators.neato.bridge import NeatoBridge
+from roomba.emulators.neato.robot import NeatoRobot
+
+
+@pytest.fixture(scope="module")
+def bridge() -> Iterator[NeatoBridge]:
+    with NeatoBridge(NeatoRobot(neato_world()), speed=5.0) as made:
+        yield made
+
+
+def ask(bridge: NeatoBridge, method: str, path: str) -> tuple[int, str]:
+    connection = http.client.HTTPConnection(bridge.address, timeout=10.0)
+    connection.request(method, path)
+    response = connection.getresponse()
+    return response.status, response.read().decode()
+
+
+def told(bridge: NeatoBridge, what: str) -> Any:
+    status, text = ask(bridge, "GET", f"/api/{what}")
+    assert status == 200
+    return json.loads(text)
+
+
+def test_commands_are_handed_on_as_they_are(bridge: NeatoBridge) -> None:
+    status, text = ask(bridge, "POST", "/api/serial?cmd=GetVersion")
+    assert status == 200
+    assert text.startswith("GetVersion\r\nComponent,Major,Minor,Build\r\n")
+    assert "\x1a" not in text
+    assert ask(bridge, "POST", "/api/serial?cmd=Fly%20High")[1].startswith("Fly High\r\n")
+
+
+@pytest.mark.parametrize(
+    ("method", "path", "status"),
+    [
+        ("POST", "/api/serial", 400),
+        ("POST", "/api/serial?cmd=", 400),
+        ("POST", "/api/nothing", 404),
+        ("GET", "/api/nothing", 404),
+        ("GET", "/", 404),
+    ],
+)
+def test_what_it_does_not_know_is_refused(
+    bridge: NeatoBridge, method: str, path: str, status: int
+) -> None:
+    found, text = ask(bridge, method, path)
+    assert found == status
+    assert json.loads(text)["error"]
+
+
+def test_it_tells_what_the_robot_tells_as_json(bridge: NeatoBridge) -> None:
+    charger = told(bridge, "charger")
+    assert charger["fuelPercent"] == 100.0
+    assert charger["extPwrPresent"] is True
+    assert told(bridge, "motors")["leftWheelPositionMM"] == 0.0
+    assert told(bridge, "state")["uiState"].startswith("UIMGR_STATE_")
+    ask(bridge, "POST", "/api/serial?cmd=TestMode%20On")
+    ask(bridge, "POST", "/api/serial?cmd=SetLDSRotation%20On")
+    scan = told(bridge, "lidar")
+    assert [point["angle"] for point in scan["points"]] == list(range(360))
+    assert scan["validPoints"] == sum(point["error"] == 0 for point in scan["points"]) > 200
+    assert scan["rotationSpeed"] > 3.0
+
+
+def test_it_asks_the_robot_at_most_once_a_second(bridge: NeatoBridge) -> None:
+    first = told(bridge, "motors")
+    bridge.robot.simulator.set_charge(0.5)
+    before = told(bridge, "charger")
+    assert told(bridge, "charger") == before
+    assert told(bridge, "motors") == first
