@@ -95,7 +95,8 @@ class Ground:
         things = np.array(floor.obstacles, np.float64).reshape(-1, 3)
         things = np.column_stack((self.places(things[:, :2]), things[:, 2] / size))
         column, row = self.window[1].start, self.window[0].start
-        return rings(self.middles, SolidCells(floor.solid, column, row, floor.reach / size, things))
+        walls = SolidCells(floor.solid, column, row, floor.reach / size, things)
+        return rings(self.middles, walls, is_aslant=floor.is_aslant)
 
     @cached_property
     def rounded_off(self) -> Mask:

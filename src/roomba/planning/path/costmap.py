@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from roomba.compilation import entry, part
 from roomba.grid import GridFrame, OccupancyMap
+from roomba.planning.path.straight_walls import has_shares, solid_parts
 from roomba.raster.regions import dilated, numbered_regions
 
 Mask = NDArray[np.bool_]
@@ -22,6 +23,8 @@ Point = tuple[float, float]
 RoundObstacle = tuple[float, float, float]
 """x, y and radius of a round thing that the map does not show, m."""
 
+_PARTS = 5
+"""To a side of a cell that may be solid in part; odd: one of them is in the cell's middle."""
 _TOUCH = 1e-9
 """m; tolerance, so that a body at exactly the wanted distance fits despite rounding."""
 
@@ -33,7 +36,8 @@ class FitMap:
     ``fits``, bool [rows, columns], tells it exactly for the disc's middle on each cell's centre:
     the disc touches no square of a cell that is not free, no obstacle, and nothing outside the map.
     Between neighbouring centres that fit, a wall's corner can be nearer than ``reach`` by the
-    sagitta, ``resolution**2 / (8 * reach)``, at most: 1.7 mm for 5 cm cells and 0.18 m.
+    sagitta, ``resolution**2 / (8 * reach)``, at most: 1.7 mm for 5 cm cells and 0.18 m. Straight
+    walls that lie aslant are solid where they are within their cells.
     """
 
     map: OccupancyMap
@@ -41,6 +45,8 @@ class FitMap:
     obstacles: tuple[RoundObstacle, ...]
     fits: Mask
     _fits_walls: Mask
+    _solid: Mask
+    _cell: float
 
     @classmethod
     def build(
@@ -62,14 +68,16 @@ class FitMap:
             )
         # Dilating by the cells that a centred disc touches is exact; a distance transform measures
         # from the cells' centres, not from their squares.
-        span = math.ceil(reach / map.frame.resolution)
+        parts = _PARTS if has_shares(map) else 1
+        solid, cell = solid_parts(map, parts), map.frame.resolution / parts
+        span = math.ceil(reach / cell)
         outward = np.maximum(np.abs(np.arange(-span, span + 1)) - 0.5, 0.0)
-        nearest = np.hypot(outward[:, None], outward) * map.frame.resolution
-        fenced = np.ones((map.frame.rows + 2, map.frame.columns + 2), np.bool_)
-        fenced[1:-1, 1:-1] = map.solid
-        fits = ~dilated(fenced, nearest < reach - _TOUCH)[1:-1, 1:-1]
+        nearest = np.hypot(outward[:, None], outward) * cell
+        fenced = np.pad(solid, 1, constant_values=True)
+        middle = parts // 2
+        fits = ~dilated(fenced, nearest < reach - _TOUCH)[1:-1, 1:-1][middle::parts, middle::parts]
         fits.flags.writeable = False
-        return cls(map, reach, (), fits, fits).with_obstacles(obstacles)
+        return cls(map, reach, (), fits, fits, solid, cell).with_obstacles(obstacles)
 
     def with_obstacles(self, obstacles: Iterable[RoundObstacle]) -> FitMap:
         """Return the fit map of the same walls with these obstacles in place of the present ones.
@@ -92,26 +100,22 @@ class FitMap:
         labels.flags.writeable = False
         return labels
 
-    @cached_property
-    def _solid(self) -> Mask:
-        return self.map.solid
-
     def room_along(self, start: Point, end: Point) -> float:
         """Return how near anything solid is to the straight way between two points, m.
 
         Exact; 0 in solid things, below 0 inside a round obstacle, never more than ``reach`` plus
         one cell, where nothing that matters is near.
         """
-        frame = self.map.frame
+        frame, cell = self.map.frame, self._cell
         limit = self.reach + frame.resolution
         (x, y), (to_x, to_y) = start, end
-        room = frame.resolution * _room_among_cells(
+        room = cell * _room_among_cells(
             self._solid,
-            (x - frame.origin_x) / frame.resolution,
-            (y - frame.origin_y) / frame.resolution,
-            (to_x - frame.origin_x) / frame.resolution,
-            (to_y - frame.origin_y) / frame.resolution,
-            limit / frame.resolution,
+            (x - frame.origin_x) / cell,
+            (y - frame.origin_y) / cell,
+            (to_x - frame.origin_x) / cell,
+            (to_y - frame.origin_y) / cell,
+            limit / cell,
         )
         for at_x, at_y, radius in self.obstacles:
             room = min(room, _point_to_segment(at_x, at_y, x, y, to_x, to_y) - radius)

@@ -136,3 +136,39 @@ def test_a_body_that_cannot_be_is_refused(radius: float, clearance: float) -> No
 def test_an_obstacle_that_cannot_be_is_refused(obstacle: tuple[float, float, float]) -> None:
     with pytest.raises(ValueError, match="expected an obstacle as finite"):
         FitMap.build(occupancy(np.zeros((3, 3), np.bool_)), 0.1, 0.0, [obstacle])
+
+
+def slanted_wall(degrees: float, cells: int = 60) -> tuple[OccupancyMap, shapely.Geometry]:
+    """A map of a straight wall through its middle that tells of each cell how much is solid."""
+    middle = 0.5 * cells
+    half = shapely.box(-2 * cells, -2 * cells, 2 * cells, 0.0)
+    below = shapely.affinity.translate(
+        shapely.affinity.rotate(half, degrees, origin=(0.0, 0.0)), middle, middle
+    )
+    columns, rows = np.meshgrid(np.arange(cells), np.arange(cells))
+    squares = shapely.box(columns, rows, columns + 1, rows + 1)
+    shares = shapely.area(shapely.intersection(squares, below))
+    values = np.ceil(OCCUPIED * shares - 1e-6).astype(np.int8)
+    wall = shapely.affinity.scale(below, 0.05, 0.05, origin=(0.0, 0.0))
+    return OccupancyMap(GridFrame(0.05, 0.0, 0.0, cells, cells), values), wall
+
+
+@pytest.mark.parametrize("degrees", [8.0, 17.0, 30.0, 45.0, 100.0])
+def test_a_slanted_wall_is_where_its_cells_say(degrees: float) -> None:
+    """It keeps a margin of 1 cm more; the nearest middle of a cell may be a little farther off."""
+    map, wall = slanted_wall(degrees)
+    reach = 0.16 + 0.005
+    fit = FitMap.build(map, 0.16, 0.005)
+    rooms = []
+    for row, column in np.argwhere(fit.fits).tolist():
+        x, y = map.frame.centre_of(row, column)
+        if min(x, y, 3.0 - x, 3.0 - y) > 0.5:
+            rooms.append(wall.distance(shapely.Point(x, y)))
+    assert reach + 0.005 <= min(rooms) < reach + 0.05
+    across, along = (
+        np.array((-math.sin(math.radians(degrees)), math.cos(math.radians(degrees)))),
+        (np.array((math.cos(math.radians(degrees)), math.sin(math.radians(degrees))))),
+    )
+    for away, fits in ((reach + 0.035, True), (reach + 0.003, False)):
+        start, end = (1.5 + away * across + way * along for way in (-0.5, 0.5))
+        assert fit.fits_along((start[0], start[1]), (end[0], end[1])) == fits

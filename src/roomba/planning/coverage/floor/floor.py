@@ -16,6 +16,7 @@ from roomba.configuration.coverage import CoverageConfig
 from roomba.grid import GridFrame, OccupancyMap
 from roomba.planning.coverage.floor.masks import filled_from, grown, half_widths
 from roomba.planning.path.costmap import Mask, Point, RoundObstacle, checked_obstacles, clear_of
+from roomba.planning.path.straight_walls import has_shares, solid_parts
 
 _TOUCH = 1e-7
 
@@ -39,13 +40,15 @@ class CoverageFloor:
     ``frame`` is the fine grid, over the extent of the map. ``fits``, bool [rows, columns] on it,
     tells for the middle on each fine cell's centre whether it keeps ``reach``, m, from the squares
     of all solid cells, from the ``obstacles`` and from the outside of the map; exact. A
-    robot in its station is at most ``out_of_station``, m, from where it fits.
+    robot in its station is at most ``out_of_station``, m, from where it fits. ``is_aslant``:
+    the map tells of cells that are solid in part, where walls lie aslant.
     """
 
     frame: GridFrame
     reach: float
     tool_width: float
     out_of_station: float
+    is_aslant: bool
     obstacles: tuple[RoundObstacle, ...]
     fits: Mask
     _fits_walls: Mask
@@ -64,12 +67,13 @@ class CoverageFloor:
                 raise ValueError(f"expected a finite {name} above 0 m, got {length}")
         frame = fine_frame(map.frame, config.cell)
         parts = frame.rows // map.frame.rows
-        solid = np.repeat(np.repeat(map.solid, parts, axis=0), parts, axis=1)
+        solid = solid_parts(map, parts)
         fenced = np.pad(solid, 1, constant_values=True)
         near = half_widths((reach - _TOUCH) / frame.resolution, to_squares=True)
         fits = np.ascontiguousarray(~grown(fenced, near)[1:-1, 1:-1])
         fits.flags.writeable = False
-        return cls(frame, reach, tool_width, config.out_of_station, (), fits, fits, solid)
+        away, is_aslant = config.out_of_station, has_shares(map)
+        return cls(frame, reach, tool_width, away, is_aslant, (), fits, fits, solid)
 
     def with_obstacles(self, obstacles: Iterable[RoundObstacle]) -> CoverageFloor:
         """Return the same floor with these round things, (x, y, radius) in m, in place of others.
@@ -84,7 +88,10 @@ class CoverageFloor:
 
     @property
     def solid(self) -> Mask:
-        """What the map does not show as free, bool [rows, columns] on ``frame``."""
+        """What the map does not show as free, bool [rows, columns] on ``frame``.
+
+        Of straight walls that lie aslant: what lies behind them, or nearly before them.
+        """
         return self._solid
 
     def middles(self, start: Point) -> Mask:

@@ -30,27 +30,30 @@ Line = NDArray[np.float64]
 
 _SIDEWAYS = 0.75
 """cells; how far an edge may be off the outline that it straightens."""
+_ASLANT = 1.25
+"""cells; the same along walls that lie aslant: fine cells draw them with steps of one."""
 _NEAR_CUT = 8
 """Points of an edge; as near to where a piece would end another end is looked for."""
 _STRETCH = 10.0
 """cells; edges are kept or left out by stretches of this length."""
 
 
-def rings(middles: Mask, walls: SolidCells | None = None) -> list[Line]:
+def rings(middles: Mask, walls: SolidCells | None = None, *, is_aslant: bool = False) -> list[Line]:
     """Return the outlines of ``middles``, bool [rows, columns], straightened; each is closed.
 
-    With ``walls`` they are smooth along those that are slanted.
+    With ``walls`` they are smooth along those that are slanted. ``is_aslant``: it is known where
+    some of these are within their cells.
     """
-    lines = []
+    lines, sideways = [], _ASLANT if is_aslant else _SIDEWAYS
     for chain in outlines(middles):
         ring = np.concatenate((chain, chain[:1])).astype(np.float64)
         parts, at = [], 0
         for way in [] if walls is None else smooth_ways(ring, walls):
-            straight = _straight(middles, ring[way.first : way.last + 1])
+            straight = _straight(middles, ring[way.first : way.last + 1], sideways)
             if turning_of(way.points) < turning_of(straight):
-                parts += [_straight(middles, ring[at : way.first + 1]), way.points]
+                parts += [_straight(middles, ring[at : way.first + 1], sideways), way.points]
                 at = way.last
-        lines.append(np.concatenate((*parts, _straight(middles, ring[at:]))))
+        lines.append(np.concatenate((*parts, _straight(middles, ring[at:], sideways))))
     return lines
 
 
@@ -60,8 +63,8 @@ def turning_of(line: Line) -> float:
     return float(np.abs(wrap_angles(np.diff(np.arctan2(ways[:, 1], ways[:, 0])))).sum())
 
 
-def _straight(middles: Mask, chain: Line) -> Line:
-    kept: Line = chain[straightened(middles, chain, _SIDEWAYS)]
+def _straight(middles: Mask, chain: Line, sideways: float) -> Line:
+    kept: Line = chain[straightened(middles, chain, sideways)]
     return kept
 
 

@@ -21,7 +21,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from roomba.configuration.coverage import CoverageConfig
-from roomba.planning.coverage.passes.edges import cut, edges, rings
+from roomba.planning.coverage.passes.edges import cut, edges, rings, turning_of
 
 CONFIG = CoverageConfig()
 
@@ -63,6 +63,18 @@ def test_rings_are_closed_run_over_cells_that_fit_and_keep_to_the_border(middles
     whole = shapely.union_all([shapely.LineString(line) for line in lines])
     away = shapely.distance(whole, shapely.points(np.array(border, np.float64)))
     assert away.max() <= math.sqrt(2.0) * 0.75 + 1e-9
+
+
+@pytest.mark.parametrize("degrees", [5.0, 12.0, 17.0, 25.0])
+def test_along_a_line_that_lies_aslant_a_ring_is_straight(degrees: float) -> None:
+    row, column = np.mgrid[0:200, 0:300]
+    aslant = row > 20.3 + math.tan(math.radians(degrees)) * column
+    (plain,), (straight,) = rings(aslant), rings(aslant, is_aslant=True)
+    assert runs_between_centres_that_fit(aslant, straight)
+    away = shapely.distance(shapely.LineString(straight), shapely.points(plain))
+    assert away.max() < 1.5
+    assert turning_of(straight) < 10.0
+    assert turning_of(straight) < turning_of(plain)
 
 
 @given(floors(), st.integers(0, 2**32 - 1), st.sampled_from([15.0, 60.0]))
