@@ -155,9 +155,12 @@ def _area_up_to(height: float) -> float:
 def _free(
     floor: Mask, parts: int, column: int, tops: NDArray[np.int64], middle: float, slope: float
 ) -> None:
-    """Mark the parts of the top cells that lie clear above a line."""
+    """Mark the parts of the top cells that lie clear above a line, but for the outermost cells.
+
+    Of a corner that begins in these their shares may tell too little.
+    """
     clear = _MARGIN * math.sqrt(1.0 + slope * slope)
-    for step in range(_WINDOW):
+    for step in range(1, _WINDOW - 1):
         for part in range(parts):
             left = middle + (step + part / parts - 0.5 * _WINDOW) * slope
             highest = max(left, left + slope / parts) + clear

@@ -71,6 +71,17 @@ def test_no_thing_is_made_smaller(width: float, degrees: float) -> None:
         assert len(floor) == 0 or shapely.distance(floor, box).min() >= CLEAR
 
 
+@pytest.mark.parametrize("degrees", [8.0, 17.0, 30.0, 45.0, 58.0])
+def test_where_walls_meet_no_floor_is_in_the_other_one(degrees: float) -> None:
+    """At all places of the corner within a cell."""
+    for shift in np.linspace(0.0, 0.9, 7):
+        walls = shapely.union(shapely.box(-15, -3, 15, 0), shapely.box(-3, -3, 0, 12))
+        turned = shapely.affinity.rotate(walls, degrees, origin=(0.0, 0.0))
+        both = shapely.affinity.translate(turned, 20.0 + shift, 18.0 + 0.4 * shift)
+        floor = parts_of(floor_found(map_of(both)))
+        assert shapely.distance(floor, both).min() >= CLEAR
+
+
 def test_round_things_keep_their_distance() -> None:
     for radius in (1.0, 4.0, 8.0, 15.0):
         disc = shapely.Point(20.3, 19.8).buffer(radius, quad_segs=64)
