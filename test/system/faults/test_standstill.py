@@ -6,8 +6,9 @@ import pytest
 from fixtures.graph import RosGraph
 from fixtures.nodes.ended_drives import CASES, seconds_to_rest
 from fixtures.nodes.standstill import PROMISE
+from fixtures.thoroughness import examples
 
-TIMES = 2
+TIMES = examples(2)
 """How often each cause is tried that leaves all nodes as they were."""
 SPEED = 2.0
 FAST = 5.0
