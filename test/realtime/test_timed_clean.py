@@ -1,7 +1,8 @@
-"""A whole clean at 115200 baud, by a clock that the machine's speed does not matter to."""
+"""A whole clean at 115200 baud, and one through OpenNeato's bridge, by a clock of their own."""
 
 from __future__ import annotations
 
+import pytest
 from fixtures.robots.timed_neato import TimedNeato, brain_on
 
 from roomba.commands.trials.runs import mission_config
@@ -10,12 +11,13 @@ from roomba.drivers.robots.table import ROBOTS
 from roomba.mission.cleaning.request import CleanOutcome, CleanRequest
 from roomba.mission.phases.machine import Phase
 
-LONGEST = 2400.0
+LONGEST = 3000.0
 """s of the robot's clock."""
 
 
-def test_it_cleans_a_home_that_it_does_not_know_and_docks() -> None:
-    neato = TimedNeato(115_200, seed=2)
+@pytest.mark.parametrize("is_bridged", [False, True], ids=["line", "bridge"])
+def test_it_cleans_a_home_that_it_does_not_know_and_docks(is_bridged: bool) -> None:
+    neato = TimedNeato(115_200, seed=2, is_bridged=is_bridged)
     robot = brain_on(neato, mission_config(load_robot_config(ROBOTS["neato"].file)))
     robot.mission.clean(CleanRequest(), robot.senses())
     result = None
