@@ -127,7 +127,8 @@ class CalibrationConfig(Frozen):
     ``shift``, m, and ``turn``, degrees. What is off by less than ``least_...``, in the same units,
     is left alone. A correction is applied when it is ``sure`` times as large as its deviation.
     Measured is over ``window_way``, m, or ``window_turn``, rad, as soon as either is driven. After
-    ``forgetting_way``, m, what was measured counts no more than what was expected.
+    ``forgetting_way``, m, what was measured counts no more than what was expected. In
+    ``bias_time``, s, the gyro's bias may change by as much as it is unsure at the start.
     """
 
     scale: Positive = 0.02
@@ -135,14 +136,15 @@ class CalibrationConfig(Frozen):
     shift: Positive = 0.02
     turn: Positive = 1.5
     least_scale: Positive = 0.01
-    least_gyro: Positive = 0.005
-    least_drift: Positive = 0.03
+    least_gyro: Positive = 0.004
+    least_drift: Positive = 0.02
     least_shift: Positive = 0.004
     least_turn: Positive = 0.3
     sure: AtLeastOne = 4
     window_way: Positive = 1.0
     window_turn: Positive = 1.5
     forgetting_way: Positive = 20_000.0
+    bias_time: Positive = 600.0
 
 
 class LocalizationConfig(Frozen):

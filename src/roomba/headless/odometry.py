@@ -20,14 +20,20 @@ PIECE: Final = 5.0
 
 
 def odometry_error(
-    rows: Floats, robot: RobotConfig, calibration: Calibration | None, *, has_gyro: bool = True
+    rows: Floats,
+    robot: RobotConfig,
+    calibration: Calibration | None,
+    *,
+    has_gyro: bool = True,
+    biases: Floats | None = None,
 ) -> float | None:
     """Return by how much dead reckoning is off after each :data:`PIECE` of way, m per m.
 
     ``rows`` is float64 [n, PASSED], as of :mod:`roomba.headless.rows`. It is the mean of the
     distances between where the robot was and where wheels and gyro had it, from where both began a
     piece, by the way of a piece; None of a shorter way. ``calibration`` None: without any;
-    ``has_gyro`` False: by the wheels alone.
+    ``has_gyro`` False: by the wheels alone. ``biases``, float64 [k, 2], are times, s, and what was
+    known then of the gyro's bias, rad/s.
     """
     true = rows[:, TRUE]
     way = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(true[:, :2], axis=0).T))))
@@ -38,6 +44,8 @@ def odometry_error(
     told = rows.copy()
     if not has_gyro:
         told[:, GYRO] = np.nan
+    elif biases is not None:
+        told[:, GYRO] -= np.interp(rows[:, TIME], biases[:, 0], biases[:, 1])
     poses = reckoned(told, robot, calibration)
     off = _moved(poses[ends]) - _moved(true[ends])
     return float(np.hypot(off[:, 0], off[:, 1]).mean() / PIECE)

@@ -53,3 +53,16 @@ def test_what_is_applied_is_taken_out() -> None:
 def test_a_short_way_tells_nothing() -> None:
     rows = rows_of(Worn(), np.array([[0.9 * PIECE, 0.0]]))
     assert odometry_error(rows, ROBOT, None) is None
+
+
+def test_what_was_known_of_the_bias_is_taken_out() -> None:
+    rows = rows_of(Worn(), rooms(np.random.default_rng(3)))
+    exact = odometry_error(rows, ROBOT, None)
+    bias = np.linspace(0.002, -0.001, len(rows))
+    rows[:, GYRO] += bias
+    biases = np.column_stack((rows[:, TIME], bias))
+    off = odometry_error(rows, ROBOT, None)
+    assert exact is not None
+    assert off is not None
+    assert off > 1.5 * exact
+    assert odometry_error(rows, ROBOT, None, biases=biases) == pytest.approx(exact, abs=1e-6)

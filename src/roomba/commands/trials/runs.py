@@ -115,7 +115,8 @@ class TrialSetup:
     def run(self, observers: Iterable[RunObserver] = ()) -> Run:
         """Clean; raises CleanRefusedError and CommandRefusedError."""
         robot = self.robot
-        robot.observers = tuple(observers)
+        biases: list[tuple[float, float]] = []
+        robot.observers = (lambda _: biases.append(gyro_bias_of(robot)), *observers)
         seen = robot.seen
         first = np.array([[seen.time, seen.pose.x, seen.pose.y, seen.pose.theta]])
         began = time.perf_counter()
@@ -151,7 +152,9 @@ class TrialSetup:
             wheels_error=odometry_error(rows, self.config, None, has_gyro=False),
             calibrated_wheels_error=odometry_error(rows, self.config, measured, has_gyro=False),
             odometry_error=odometry_error(rows, self.config, None),
-            calibrated_error=odometry_error(rows, self.config, measured),
+            calibrated_error=odometry_error(
+                rows, self.config, measured, biases=np.array(biases) if biases else None
+            ),
         )
         return Run(
             self.trial,
@@ -169,6 +172,12 @@ class TrialSetup:
 def run_trial(trial: Trial, observers: Iterable[RunObserver] = ()) -> Run:
     """Return the run of a trial; raises RoombaError for what cannot be."""
     return TrialSetup(trial).run(observers)
+
+
+def gyro_bias_of(robot: HeadlessMission) -> tuple[float, float]:
+    """Return the time, s, and what is known then of the gyro's bias, rad/s."""
+    belief = robot.brain.keeper.place.belief[0]
+    return robot.seen.time, float(belief["bias"] + belief["calibration"]["gyro_bias"])
 
 
 def trajectory_of(record: CleanRecord, first: Floats) -> Floats:

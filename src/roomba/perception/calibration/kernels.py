@@ -38,6 +38,9 @@ _FITS: Final = 4.0
 """Squared residual, in variances, up to which a number counts in full; a larger one counts less."""
 _FITS_NOT: Final = 100.0
 """The same from which on it counts nothing."""
+_CALM: Final = 0.3
+"""rad/s; while the robot turns faster no window begins or ends: a scan and the wheels that are told
+some ms apart would be off by that, always the same way."""
 _FINER: Final = 0.25
 """Share of what is left alone, and of what must be sure, for an error that is corrected already."""
 
@@ -63,6 +66,7 @@ def corrected(row: Row, ahead: float, aside: float, turn: float) -> tuple[float,
 @entry
 def note_step(row: Row, ahead: float, aside: float, turn: float) -> None:
     """Add a step of odometry, as it tells it, to the window: m and rad."""
+    row.newest_turn = turn
     if not row.is_open:
         return
     errors, moved, slopes = row.errors, row.moved, row.slopes
@@ -94,6 +98,10 @@ def note_gyro(row: Row, turn: float, elapsed: float) -> None:
     else:
         row.gyro += turn
     row.time += elapsed
+    row.turning = abs(row.newest_turn) / elapsed if elapsed > 0.0 else 0.0
+    row.gyro_bias_variance = min(
+        row.gyro_bias_variance + row.bias_walk * elapsed, row.bias * row.bias
+    )
 
 
 @entry
@@ -101,6 +109,8 @@ def note_place(
     row: Row, pose: tuple[float, float, float], variance: float, turn_variance: float
 ) -> None:
     """Take where scans have the robot now, x, y, theta, unsure by variances, m2 and rad2."""
+    if row.turning > _CALM:
+        return
     applied = row.applied
     lidar = beyond(pose[0], pose[1], pose[2], applied[AHEAD], applied[LEFT], applied[TURNED])
     if row.is_open and row.time <= _LONGEST:
@@ -144,6 +154,8 @@ def _measure(
     _doubt(row, unsure, variance, turn_variance)
     _forget(row)
     row.windows += 1
+    if row.has_gyro:
+        _follow_bias(row, off, unsure)
     for number in range(4 if row.has_gyro else 3):
         _correct(row, slopes[number], off[number], unsure[number], step, work[7])
         for other in range(number + 1, 4):
@@ -196,8 +208,26 @@ def _doubt(row: Row, unsure: Floats, variance: float, turn_variance: float) -> N
     unsure[0] = of_place + (1.0 - bend) * along + bend * across
     unsure[1] = of_place + (1.0 - bend) * across + bend * along
     unsure[2] = of_heading + by_wheels
-    drift = row.bias * row.time
-    unsure[3] = of_heading + of_turn + drift * drift + row.drift_variance * row.time
+    of_bias = row.gyro_bias_variance * row.time * row.time
+    unsure[3] = of_heading + of_turn + of_bias + row.drift_variance * row.time
+
+
+@inner_part
+def _follow_bias(row: Row, off: Floats, unsure: Floats) -> None:
+    """Correct the gyro's bias by what the gyro was off; leave in ``off`` what that is not.
+
+    It wanders while the robot drives, and by this it is known without a stand.
+    """
+    of_bias = row.gyro_bias_variance * row.time * row.time
+    expected = unsure[3] + row.covariance[GYRO, GYRO] * row.gyro * row.gyro
+    square = off[3] * off[3] / expected
+    if not (square <= _FITS_NOT and row.time > 0.0):
+        return
+    share = of_bias / (expected * max(1.0, square / _FITS))
+    row.gyro_bias -= share * off[3] / row.time
+    row.gyro_bias_variance *= 1.0 - share
+    off[3] -= share * off[3]
+    unsure[3] -= share * of_bias
 
 
 @inner_part

@@ -45,6 +45,8 @@ CALIBRATION: Final = np.dtype(
         ("base", "f8"),  # m; between the wheels, 0: not known
         ("windows", "i8"),  # measured so far
         ("outliers", "i8"),  # numbers in these that fitted badly, of four each
+        ("gyro_bias", "f8"),  # rad/s; of the gyro, besides what it showed while the robot stood
+        ("gyro_bias_variance", "f8"),  # rad2/s2
         # the window under way
         ("is_open", "?"),
         ("begin", "f8", (3,)),  # where the lidar stood, and looked, if it sat in the middle
@@ -56,6 +58,8 @@ CALIBRATION: Final = np.dtype(
         ("way", "f8"),  # m
         ("turned", "f8"),  # rad, either way
         ("time", "f8"),  # s
+        ("newest_turn", "f8"),  # rad; of the newest step, by the wheels
+        ("turning", "f8"),  # rad/s; in that step, either way
         # what does not change
         ("prior", "f8", (ERRORS,)),  # variances
         ("least", "f8", (ERRORS,)),
@@ -68,7 +72,8 @@ CALIBRATION: Final = np.dtype(
         ("wheel_variance", "f8"),
         ("turn_variance", "f8"),
         ("drift_variance", "f8"),
-        ("bias", "f8"),  # rad/s; deviation of the gyro's
+        ("bias", "f8"),  # rad/s; deviation of the gyro's at the start
+        ("bias_walk", "f8"),  # rad2/s3; by which its variance grows
         ("work", "f8", (8, ERRORS)),  # what the kernel works in; means nothing between two calls
     ],
     align=True,
@@ -95,3 +100,5 @@ def begin_calibration(row: Row, localization: LocalizationConfig, gyro: GyroConf
     row["wheel_variance"] = localization.wheel_turn_noise**2
     row["turn_variance"] = localization.turn_noise**2
     row["drift_variance"], row["bias"] = localization.gyro_drift**2, gyro.bias
+    row["gyro_bias"], row["gyro_bias_variance"] = 0.0, gyro.bias**2
+    row["bias_walk"] = gyro.bias**2 / config.bias_time

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -24,6 +25,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
+from roomba.configuration.sensors import GyroConfig
 from roomba.perception.calibration.kernels import apply_lidar, drop_window, note_place, note_step
 from roomba.perception.calibration.state import (
     AHEAD,
@@ -123,12 +125,35 @@ def test_what_a_straight_drive_does_not_tell_stays_as_it_was() -> None:
 
 def test_turning_on_the_spot_tells_nothing_of_the_way() -> None:
     random = np.random.default_rng(1)
-    row, legs = fresh(), np.column_stack((np.zeros(40), np.tile([2.0, -2.0], 20)))
+    # It stands between two turns, by which they are measured.
+    row, turns = fresh(), np.zeros((20, 10))
+    turns[:, 0], turns[:, 5] = 2.0, -2.0
+    legs = np.column_stack((np.zeros(turns.size), turns.ravel()))
     measure(row, drive(Worn(0.02, 0.02, 0.0, 0.01), legs, random))
     assert abs(row["errors"][WAY]) < 0.001
     assert math.sqrt(row["covariance"][WAY, WAY]) > 0.019
     assert row["errors"][TURN] == pytest.approx(0.02, abs=0.002)
     assert row["errors"][GYRO] == pytest.approx(1.0 / 1.01 - 1.0, abs=0.002)
+
+
+def test_the_bias_of_a_gyro_is_followed_while_the_robot_drives() -> None:
+    """Without a change of its scale, by which turns would be off."""
+    random = np.random.default_rng(7)
+    told, row = drive(Worn(), rooms(random), random), fresh()
+    bias = 2.0 * GyroConfig().bias
+    measure(row, replace(told, gyro=told.gyro + bias * TICK))
+    assert row["gyro_bias"] == pytest.approx(bias, abs=0.25 * bias)
+    assert row["gyro_bias_variance"] < 0.2 * GyroConfig().bias ** 2
+    assert abs(row["errors"][GYRO]) < 0.002
+
+
+def test_a_scan_that_comes_late_while_it_turns_measures_no_scale() -> None:
+    """A window that began or ended in a turn would be off by the delay, always the same way."""
+    random = np.random.default_rng(8)
+    told, row = drive(Worn(), rooms(random), random), fresh()
+    measure(row, replace(told, lidar=np.roll(told.lidar, 1, axis=0)))
+    assert row["errors"][TURN] == pytest.approx(0.0, abs=0.002)
+    assert row["errors"][GYRO] == pytest.approx(0.0, abs=0.002)
 
 
 def test_odometry_goes_by_what_is_sure() -> None:

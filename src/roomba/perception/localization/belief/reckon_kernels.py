@@ -144,7 +144,8 @@ def _learn_bias(belief: Row, numbers: Row, way: float, turn: float, turning: flo
     if is_settling or abs(turning) > 5.0 * numbers.worst_bias:
         return
     belief.samples += 1
-    belief.bias += (turning - belief.bias) / (belief.samples + 20.0)
+    bias = belief.bias + belief.calibration.gyro_bias
+    belief.bias += (turning - bias) / (belief.samples + 20.0)
 
 
 @inner_part
@@ -159,7 +160,8 @@ def _turn(
         return wheels, by_wheels
     if math.isnan(before):
         before = turning
-    gyro = (0.5 * (before + turning) - belief.bias) * elapsed
+    bias = belief.bias + belief.calibration.gyro_bias
+    gyro = (0.5 * (before + turning) - bias) * elapsed
     note_gyro(belief.calibration, gyro, elapsed)
     gyro *= 1.0 + belief.calibration.applied[GYRO]
     noise = numbers.gyro_noise * elapsed

@@ -34,7 +34,12 @@ from roomba.perception.localization.belief.belief import (
     share_of,
     unknown_belief,
 )
-from roomba.perception.localization.belief.correct_kernels import correct, deviation, is_calm
+from roomba.perception.localization.belief.correct_kernels import (
+    calibrate,
+    correct,
+    deviation,
+    is_calm,
+)
 from roomba.perception.localization.belief.reckon_kernels import (
     LEFT_OUT,
     WAS_SET_BACK,
@@ -207,6 +212,7 @@ class Kernels:
             if self._scans % self.every == 0:
                 field, place = self.field.values, self.field.place
                 correct(self.belief, self.numbers, field, place, self.lidar, ranges, seen.time)
+                calibrate(self.belief)
             self._scans += 1
         return bool(is_calm(self.belief, self.numbers, seen.time))
 
