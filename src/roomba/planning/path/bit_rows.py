@@ -5,14 +5,10 @@ After the block search of Harabor & Grastien, "Improving jump point search", ICA
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
-from numba import types
-from numba.extending import intrinsic
 from numpy.typing import NDArray
 
-from roomba.compilation import entry
+from roomba.compilation import entry, inner_part
 
 Bits = NDArray[np.uint64]
 
@@ -30,23 +26,14 @@ def bit_rows(cells: NDArray[np.uint8]) -> Bits:
     return packed
 
 
-def _count_trailing(typingctx: Any, value: Any) -> Any:
-    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        return builder.cttz(arguments[0], context.get_constant(types.boolean, True))
-
-    return types.int64(types.uint64), generate
-
-
-def _count_leading(typingctx: Any, value: Any) -> Any:
-    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        return builder.ctlz(arguments[0], context.get_constant(types.boolean, True))
-
-    return types.int64(types.uint64), generate
-
-
-# The processor's own instructions, which numba has no name for; the word must not be 0.
-_trailing_zeros: Any = intrinsic(_count_trailing)
-_leading_zeros: Any = intrinsic(_count_leading)
+@inner_part
+def bit_length(word: np.uint64) -> int:
+    """Return how many bits a word has up to its highest 1: one instruction, LLVM sees to that."""
+    length = 0
+    while word != _ZERO:
+        word >>= _ONE
+        length += 1
+    return length
 
 
 @entry
@@ -76,7 +63,7 @@ def jump(bits: Bits, row: int, column: int, step: int, target: int) -> int:
             stops = (turns | ~here[word]) & wanted
             at = -1
             if stops != _ZERO:
-                at = (word << 6) + _trailing_zeros(stops)
+                at = (word << 6) + bit_length(stops & (~stops + _ONE)) - 1
             if target > column and target >> 6 == word and (at < 0 or target <= at):
                 return target
             if at >= 0:
@@ -93,7 +80,7 @@ def jump(bits: Bits, row: int, column: int, step: int, target: int) -> int:
         stops = (turns | ~here[word]) & wanted
         at = -1
         if stops != _ZERO:
-            at = (word << 6) + 63 - _leading_zeros(stops)
+            at = (word << 6) + bit_length(stops) - 1
         if 0 <= target < column and target >> 6 == word and target >= at:
             return target
         if at >= 0:
