@@ -20,6 +20,10 @@ _PER_ROW, _REST = 16, 150
 _COLOURS: Final = (BLUE, ORANGE, GREEN, RED, PINK, INK)
 _BETWEEN: Final = 1.2
 """Rows between two measures."""
+_WIDEST: Final = 100.0
+"""% of the baseline's mean; an interval that is wider than this does not set the scale."""
+_MARGIN: Final = 1.25
+"""Of the picture's reach to what it must show, so that names of homes have room."""
 
 
 def write_plot(path: Path, campaign: Campaign, comparisons: Sequence[Comparison]) -> None:
@@ -28,11 +32,25 @@ def write_plot(path: Path, campaign: Campaign, comparisons: Sequence[Comparison]
         raise OSError(f"{path}: cannot be written")
 
 
+def reach_of(comparisons: Sequence[Comparison]) -> float | None:
+    """Return how far to either side the picture must reach, %; None if nothing says so.
+
+    A rare thing, such as a hit, has intervals so wide that all others would be a point beside it.
+    Those are drawn up to the edge.
+    """
+    ends: list[float] = []
+    for each in comparisons:
+        values = [value for value in each.percent or () if value is not None]
+        if values and max(values) - min(values) <= _WIDEST and len(values) > 1:
+            ends += map(abs, values)
+    return _MARGIN * max(ends) if any(ends) else None
+
+
 @drawn
 def picture_of(campaign: Campaign, comparisons: Sequence[Comparison]) -> Figure:
     """Return the picture: a group for each measure, in it a mark for each variant and home.
 
-    Differences are in % of the baseline's mean; what has none is left out.
+    Differences are in % of the baseline's mean; what has none is left out. See :func:`reach_of`.
     """
     shown = [each for each in comparisons if each.percent is not None]
     measures = list(dict.fromkeys(each.measure for each in shown))
@@ -68,6 +86,9 @@ def picture_of(campaign: Campaign, comparisons: Sequence[Comparison]) -> Figure:
     axes.set_yticks(ticks, [MEASURES[measure].label.partition(",")[0] for measure in measures])
     axes.invert_yaxis()
     axes.grid(visible=False, axis="y")
+    reach = reach_of(shown)
+    if reach is not None:
+        axes.set_xlim(-reach, reach)
     axes.set_xlabel(f"difference from {campaign.baseline}, % of its mean")
     pairs = max((each.pairs for each in shown), default=0)
     axes.set_title(
