@@ -5,6 +5,7 @@ from __future__ import annotations
 import datetime as dt
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Final
 
 import numpy as np
@@ -42,6 +43,42 @@ class Day:
     seconds: float
     before: dict[str, float]
     after: dict[str, float]
+
+
+@dataclass(frozen=True)
+class Life:
+    """Days of a household whose rooms have these ``areas``, m2."""
+
+    areas: dict[str, float]
+    days: tuple[Day, ...]
+
+    @property
+    def way(self) -> float:
+        """The way of all days, m."""
+        return sum(day.way for day in self.days)
+
+    def times_cleaned(self, room: str) -> int:
+        """Return on how many days a room was cleaned."""
+        return sum(room in day.rooms for day in self.days)
+
+    def dirtiest(self, first: int) -> float:
+        """Return the dirt of the dirtiest room before a day's clean, g/m2.
+
+        That is the mean over the days from a ``first`` one on.
+        """
+        counted = self.days[first:]
+        return sum(max(day.before.values()) for day in counted) / len(counted)
+
+    def mean_dirt(self, first: int) -> float:
+        """Return the mean over all floor and the time from a ``first`` day on, g/m2."""
+        whole = sum(self.areas.values())
+        nights = list(pairwise(self.days[first:]))
+        total = sum(
+            0.5 * (day.after[name] + following.before[name]) * area
+            for day, following in nights
+            for name, area in self.areas.items()
+        )
+        return total / whole / max(len(nights), 1)
 
 
 class Household:
@@ -132,7 +169,15 @@ def what_is_due(number: int, household: Household) -> tuple[str, ...]:
     return tuple(need.room for need in needs if need.is_due)
 
 
-def live(home: str, seed: int, days: int, plan: Plan) -> tuple[Household, list[Day]]:
-    """Return a household after so many days by a plan, and the days."""
+PLANS: Final[dict[str, Plan]] = {
+    "due": what_is_due,
+    "all rooms daily": all_rooms,
+    "all rooms every other day": every_other_day,
+}
+
+
+def live(home: str, seed: int, days: int, plan: str) -> Life:
+    """Return a life of so many days by a plan of :data:`PLANS`."""
     household = Household(home, seed)
-    return household, [household.pass_day(number, plan) for number in range(days)]
+    passed = tuple(household.pass_day(number, PLANS[plan]) for number in range(days))
+    return Life(household.areas, passed)

@@ -44,8 +44,9 @@ class DueConfig(Frozen):
     """Between two cleans of a room of which the second tells how fast it becomes dirty."""
     longest: Positive = 7.0
     """Between two cleans of any room."""
-    spare: Ratio = 0.1
-    """By so much a room may become dirtier than the dirtiest one does between two times."""
+    spare: Ratio = 0.2
+    """By so much a room may be told to become dirtier than the dirtiest one does between two times:
+    of that the sensor counts too few grains."""
 
 
 class EmptyingConfig(Frozen):

@@ -79,14 +79,14 @@ def test_a_plan_cleans_what_is_due_and_says_why(tmp_path: Path) -> None:
     living = Living(tmp_path)
     both = CleanOrder("rooms", ("kitchen", "den"), in_order=False)
     assert living.day(kitchen=5000.0, den=5000.0) == [both]
-    assert living.day(kitchen=1000.0, den=400.0) == [both]
+    assert living.day(kitchen=1000.0, den=450.0) == [both]
     living.again()
     living.keeper.look(DOCKED)
     assert living.day(kitchen=1000.0) == [CleanOrder("rooms", ("kitchen",), in_order=False)]
     needs = plans_of(living.keeper.view())["needs"]
     assert [need["every"] for need in needs] == [1, 2]
-    assert needs[1]["reason"] == "it becomes 0.40 times as dirty as kitchen"
-    assert living.day(kitchen=1000.0, den=800.0) == [both]
+    assert needs[1]["reason"] == "it becomes 0.45 times as dirty as kitchen"
+    assert living.day(kitchen=1000.0, den=900.0) == [both]
 
 
 def test_where_nothing_is_due_nothing_begins_and_that_is_noted(tmp_path: Path) -> None:
