@@ -20,6 +20,7 @@ from roomba.files.home_layer import LAYER_NAME, MAP_NAME, WallEntry, read_layer
 from roomba.files.occupancy_map import save_map
 from roomba.files.shipped import HOMES
 from roomba.grid import FREE, OCCUPIED, UNKNOWN, GridFrame, OccupancyMap
+from roomba.world.catalogue.things import LOW_KINDS
 from roomba.world.home.free_wall import touched_cells
 from roomba.world.home.home import Rectangle
 from roomba.world.home.raster import covered_cells, outline
@@ -32,6 +33,7 @@ DRAWN = {
     "family": 0.05,
     "bay": 0.05,
     "loft": 0.05,
+    "cottage": 0.05,
     "hall": 0.2,
 }
 """Homes with the cell size of their map, m; the hall's is coarse since it is 200 m wide."""
@@ -57,7 +59,8 @@ def drawn_map(name: str, homes: Path) -> OccupancyMap:
     values[covered_cells(frame, (outline(wall) for wall in walls))] = OCCUPIED
     values[covered_cells(frame, (outline(door.opening) for door in parts.doors))] = FREE
     values[touched_cells(frame, free)] = OCCUPIED
-    mapped = (p for p in (*parts.furniture, *parts.moved) if p.on_map)
+    pieces = (*parts.furniture, *parts.moved)
+    mapped = (piece for piece in pieces if piece.on_map and piece.kind not in LOW_KINDS)
     values[standing_cells(frame, mapped, BodyConfig().height)] = OCCUPIED
     return OccupancyMap(frame, values)
 

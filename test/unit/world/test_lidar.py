@@ -21,7 +21,7 @@ from roomba.world.layers.layer import list_homes, load_home
 from roomba.world.lidar import Lidar
 
 FAR = LidarConfig(min_range=1e-6, max_range=1e3)
-OFF_GRID = {"bay", "loft"}
+OFF_GRID = {"bay", "cottage", "loft"}
 """Homes with walls off the grid, which test_free_walls.py looks at."""
 MOST_GRAZING = 1e-4
 """Share of the beams that may see past a corner which they just meet, or the other way round."""

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import shapely
 from numpy.typing import NDArray
 
 from roomba.commands.options import UsageError
@@ -18,6 +19,7 @@ from roomba.commands.sim.json_file import TIMES, run_as_json
 from roomba.commands.trials.runs import Run, TrialSetup, run_trial
 from roomba.commands.trials.trial import Trial
 from roomba.commands.trials.zones import zones_of
+from roomba.configuration.mission import LowThingsConfig
 from roomba.files.occupancy_map import load_map, save_map
 from roomba.files.shipped import HOMES
 from roomba.geometry import Pose
@@ -26,8 +28,10 @@ from roomba.headless.cleaner import HeadlessMission
 from roomba.mission.cleaning.request import CleanRequest
 from roomba.perception.rooms.zones import Zone, ZoneKind, Zones
 from roomba.perception.swept.coverage_map import GRANTED
+from roomba.storage.low_things import load_low_things, save_low_things
 from roomba.storage.zones import save_zones
 from roomba.vocabulary import CleanMode
+from roomba.world.catalogue.things import LOW_KINDS
 
 KEYS = {
     "outcome", "message", "duration_s", "wall_s", "planning_s", "distance_m", "turning_rad",
@@ -263,3 +267,37 @@ def test_a_cable_is_felt_and_offered_as_a_zone_where_it_lies(tmp_path: Path) -> 
         middle = 0.5 * (thing.x0 + thing.x1), 0.5 * (thing.y0 + thing.y1)
         assert math.dist(middle, (4.3, 1.2)) < 0.5
     assert robots[-1].mission.obstacles.offered_zones(Zones())
+
+
+@pytest.mark.slow
+def test_low_things_of_the_cottage_are_felt_kept_and_offered_and_zones_spare_them(
+    tmp_path: Path,
+) -> None:
+    robots: list[HeadlessMission] = []
+    first = run_trial(Trial(home="cottage", seed=1), [robots.append])
+    assert first.figures.is_completed
+    assert first.figures.fraction > 0.98
+    assert first.figures.hits > 5
+    felt = robots[-1].mission.obstacles.low
+    occupancy = first.home.map
+    low = [piece for piece in first.home.furniture if piece.kind in LOW_KINDS]
+    assert sorted(piece.kind for piece in low) == ["cable", "sill"]
+    for piece in low:
+        row, column = occupancy.frame.cell_of(piece.pose.x, piece.pose.y)
+        assert occupancy.values[row, column] == FREE
+    # Kept with the map, they are offered as before.
+    save_low_things(felt, occupancy, tmp_path / "low_things.yaml")
+    kept = load_low_things(tmp_path / "low_things.yaml", occupancy)
+    offers = kept.offers(Zones(), LowThingsConfig())
+    assert offers == robots[-1].mission.obstacles.offered_zones(Zones())
+    boxes = [shapely.MultiPoint(offer.corners).envelope for offer in offers]
+    lying = [shapely.Point(piece.pose.x, piece.pose.y).buffer(0.45) for piece in low]
+    for box in boxes:
+        assert any(shapely.intersects(box, place) for place in lying)
+    for place in lying:
+        assert any(shapely.intersects(box, place) for box in boxes)
+    # Taken as zones they spare the robot most of these touches.
+    zones = tuple(box.bounds for box in boxes)
+    second = run_trial(Trial(home="cottage", seed=1, no_go=zones))
+    assert second.figures.is_completed
+    assert second.figures.hits <= 0.3 * first.figures.hits

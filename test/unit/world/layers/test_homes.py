@@ -16,6 +16,7 @@ from roomba.files.occupancy_map import load_map
 from roomba.files.shipped import HOMES
 from roomba.grid import FREE, OCCUPIED
 from roomba.plots.home import draw_floor_plan
+from roomba.world.catalogue.things import LOW_KINDS
 from roomba.world.home.home import Home, MovingKind
 from roomba.world.home.raster import (
     covered_cells,
@@ -26,7 +27,18 @@ from roomba.world.home.raster import (
 )
 from roomba.world.layers.layer import list_homes, load_home
 
-NAMES = ["apartment", "bay", "empty", "family", "flat", "hall", "loft", "lshape", "studio"]
+NAMES = [
+    "apartment",
+    "bay",
+    "cottage",
+    "empty",
+    "family",
+    "flat",
+    "hall",
+    "loft",
+    "lshape",
+    "studio",
+]
 RADIUS = BodyConfig().radius
 COMFORT = 0.04
 """m; wanted between body and walls on the way into every room."""
@@ -82,11 +94,11 @@ def test_map_and_truth_differ_only_in_what_is_off_the_map(
     moving = covered_cells(home.frame, (footprint(box) for box in boxes))
     assert not (~home.solid & ~known_free & ~moving).any()
     surprises = home.solid & known_free
-    hidden = [piece for piece in home.furniture if not piece.on_map]
+    hidden = [p for p in home.furniture if not p.on_map or p.kind in LOW_KINDS]
     assert surprises.any() == bool(hidden)
     for row, column in np.argwhere(surprises):
         x, y = home.frame.centre_of(row, column)
-        assert min(math.hypot(piece.pose.x - x, piece.pose.y - y) for piece in hidden) < 0.25
+        assert min(math.hypot(piece.pose.x - x, piece.pose.y - y) for piece in hidden) < 0.45
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -205,7 +217,7 @@ def test_hall_lets_the_body_stand_at_the_limits(homes: dict[str, Home]) -> None:
     assert np.count_nonzero(hall.solid & ~hall.walls) <= 4, "nothing but walls and the station"
 
 
-@pytest.mark.parametrize("name", ["flat", "studio", "family", "bay", "loft", "hall"])
+@pytest.mark.parametrize("name", ["flat", "studio", "family", "bay", "loft", "cottage", "hall"])
 def test_map_is_what_the_layer_draws(name: str) -> None:
     drawn = drawn_map(name, HOMES)
     filed = load_map(HOMES / name / "map.yaml")
