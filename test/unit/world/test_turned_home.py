@@ -17,7 +17,7 @@ from shapely.affinity import rotate
 
 from roomba.configuration.sensors import CameraConfig, LidarConfig
 from roomba.geometry import Pose, Twist
-from roomba.grid import FREE, OCCUPIED
+from roomba.grid import FREE, OCCUPIED, UNKNOWN, OccupancyMap
 from roomba.world.camera.camera import Camera, Scene
 from roomba.world.home.home import Home, Move, Rectangle, Room
 from roomba.world.home.turned import turned_home
@@ -192,3 +192,20 @@ def test_rooms_and_stairs_lie_where_they_turned_to() -> None:
 def test_a_home_is_turned_once() -> None:
     with pytest.raises(ValueError, match="turned already"):
         turned_home(turned_home(HOME, 0.1), 0.1)
+
+
+def test_floor_that_is_not_known_is_free_in_no_cell_that_it_touches() -> None:
+    """The body does not pass it: if the map told such a cell to be free it would run into it."""
+    home = HOME
+    values, solid = home.map.values.copy(), home.solid.copy()
+    row, column = home.frame.cell_of(2.2, 2.2)
+    assert values[row, column] == FREE
+    values[row, column], solid[row, column] = UNKNOWN, True
+    bare = replace(home, map=OccupancyMap(home.frame, values), solid=solid)
+    turned = turned_home(bare, math.radians(17.0))
+    x, y = home.frame.centre_of(row, column)
+    place = turned.axes.compose(Pose(x, y, 0.0))
+    row, column = turned.frame.cell_of(place.x, place.y)
+    around = slice(row - 2, row + 3), slice(column - 2, column + 3)
+    assert np.count_nonzero(turned.solid[around]) >= 3
+    assert not (turned.map.values[around][turned.solid[around]] == FREE).any()

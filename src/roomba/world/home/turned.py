@@ -107,6 +107,9 @@ def _grids(home: Home, frame: GridFrame, angle: float) -> dict[str, Any]:
     values = _in_middles(home.map.values, UNKNOWN, own, frame, angle)
     share = _share(home.map.values == OCCUPIED, False, own, frame, angle, mapped)
     grades = np.ceil(OCCUPIED * share).astype(np.int8)
+    # The body does not pass what is not known: no cell that this touches is told to be free.
+    is_unknown = _share(home.map.values == UNKNOWN, True, own, frame, angle, ()) > 0.0
+    values = np.where(is_unknown, np.int8(UNKNOWN), values)
     return {
         "map": OccupancyMap(frame, np.where(share > 0.0, grades, values)),
         "solid": _share(home.solid, True, own, frame, angle, free) > 0.0,
