@@ -27,8 +27,8 @@ _OFF: Final = 0.1
 """By so much its heights may be off their line, and shares off what it makes them."""
 _MARGIN: Final = 0.2
 """So much before a wall counts as solid: more than shares and the robot's place are off."""
-_STEEPEST: Final = 1.05
-"""Steeper walls are straight seen from the side."""
+_FLATTEST, _STEEPEST = 0.03, 1.05
+"""Slopes: a flatter wall has no steps, and of a steeper one they are told from the side."""
 
 
 def has_shares(map: OccupancyMap) -> bool:
@@ -67,7 +67,8 @@ def _floor_above(shares: Floats, parts: int) -> Mask:
             if not _find_tops(shares, row, column, tops, heights):
                 continue
             middle, slope = _line(heights)
-            if abs(slope) <= _STEEPEST and _is_along(shares, column, tops, heights, middle, slope):
+            is_aslant = _FLATTEST <= abs(slope) <= _STEEPEST
+            if is_aslant and _is_along(shares, column, tops, heights, middle, slope):
                 _free(floor, parts, column, tops, middle, slope)
     return floor
 

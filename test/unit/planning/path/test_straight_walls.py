@@ -106,3 +106,8 @@ def test_a_map_without_shares_is_what_it_is() -> None:
     assert not has_shares(made)
     assert not floor_found(made).any()
     assert has_shares(map_of(shapely.box(5.0, 5.0, 30.0, 12.5)))
+
+
+def test_a_wall_along_the_axes_stays_as_it_is() -> None:
+    """It has no steps, and glass or a mirror that stands so is kept away from as before."""
+    assert not floor_found(map_of(shapely.box(5.0, 5.0, 30.0, 12.5))).any()

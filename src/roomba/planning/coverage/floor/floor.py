@@ -16,7 +16,7 @@ from roomba.configuration.coverage import CoverageConfig
 from roomba.grid import GridFrame, OccupancyMap
 from roomba.planning.coverage.floor.masks import filled_from, grown, half_widths
 from roomba.planning.path.costmap import Mask, Point, RoundObstacle, checked_obstacles, clear_of
-from roomba.planning.path.straight_walls import has_shares, solid_parts
+from roomba.planning.path.straight_walls import solid_parts
 
 _TOUCH = 1e-7
 
@@ -41,7 +41,7 @@ class CoverageFloor:
     tells for the middle on each fine cell's centre whether it keeps ``reach``, m, from the squares
     of all solid cells, from the ``obstacles`` and from the outside of the map; exact. A
     robot in its station is at most ``out_of_station``, m, from where it fits. ``is_aslant``:
-    the map tells of cells that are solid in part, where walls lie aslant.
+    the map tells where in its cells some walls are that lie aslant.
     """
 
     frame: GridFrame
@@ -72,7 +72,8 @@ class CoverageFloor:
         near = half_widths((reach - _TOUCH) / frame.resolution, to_squares=True)
         fits = np.ascontiguousarray(~grown(fenced, near)[1:-1, 1:-1])
         fits.flags.writeable = False
-        away, is_aslant = config.out_of_station, has_shares(map)
+        away = config.out_of_station
+        is_aslant = bool(solid.sum() < parts**2 * map.solid.sum())
         return cls(frame, reach, tool_width, away, is_aslant, (), fits, fits, solid)
 
     def with_obstacles(self, obstacles: Iterable[RoundObstacle]) -> CoverageFloor:
