@@ -70,9 +70,10 @@ def test_its_line_tells_what_is_sure_alone() -> None:
     assert "right wheel -0." in line
     healthy, random = belief(), np.random.default_rng(3)
     measure(healthy[0]["calibration"], drive(Worn(left=0.02), rooms(random), random))
-    line = str(Calibration.of(healthy))
-    assert "left wheel +2.0" in line
-    assert "lidar turned" not in line
+    known = Calibration.of(healthy)
+    name, value, unsure, _ = known.told()[0]
+    assert (name, value) == ("left wheel", pytest.approx(2.0, abs=unsure))
+    assert str(known) == f"left wheel {value:+.2f} ± {unsure:.2f} %"
 
 
 def test_another_belief_goes_on_with_it() -> None:

@@ -19,7 +19,7 @@ let changes = 0; // grows when a change begins, and when it is answered: what wa
 export function begin() {
   $("plan-new").onclick = () => edit("New plan", { name: "", is_on: true, begins: today(), rule: "FREQ=DAILY", at: ["09:00"], order: EMPTY }, true);
   $("preset-new").onclick = () => edit("New preset", { name: "", order: EMPTY }, false);
-  $("quiet-add").onclick = () => quiet([...told.quiet, { begins: $("quiet-begins").value, ends: $("quiet-ends").value, days: QUIET_DAYS[$("quiet-days").value] }]);
+  $("quiet-add").onclick = async () => await known() && quiet([...told.quiet, { begins: $("quiet-begins").value, ends: $("quiet-ends").value, days: QUIET_DAYS[$("quiet-days").value] }]);
   $("zone-change").onclick = changeZone;
   $("plan-waits").onchange = () => change("household/waits", { wanted: $("plan-waits").checked });
   $("plan-person").onchange = () => change("household/presence", { at_home: $("plan-person").checked });
@@ -42,6 +42,12 @@ function now(plans) {
   if (plans.running) lines.unshift(`${title(plans.running)} is under way${plans.is_held ? ", paused while a person is at home" : ""}.`);
   lines.push(plans.next_at ? `Next: ${plans.next}, ${day(plans.next_at)}.` : "Nothing is planned.");
   return lines.join(" ");
+}
+
+/** Return what the server told last, or, before it has told anything, what it tells now. */
+async function known() {
+  if (!told) await showAll(get("state")?.plans?.version ?? 0);
+  return told;
 }
 
 /** Ask for all plans, and show them. */
@@ -111,7 +117,7 @@ function remover(kind, name, values) {
 }
 
 async function edit(heading, given, isPlan) {
-  if (!told) return;
+  if (!await known()) return;
   const path = isPlan ? "plans" : "presets", isNew = given.name === "";
   // What is refused comes back into the form, with what was entered.
   let entered = await askPlan(heading, given, told.presets, isPlan, isNew, "");
@@ -121,7 +127,7 @@ async function edit(heading, given, isPlan) {
 }
 
 async function changeZone() {
-  const zone = told && await askName("Time zone, such as Europe/Berlin", told.zone);
+  const zone = await known() && await askName("Time zone, such as Europe/Berlin", told.zone);
   if (zone) await change("household/zone", { zone });
 }
 
