@@ -50,13 +50,22 @@ CASES = {
     "charge on the way": Case(HOME, charge=0.09, charge_at=60.0, seconds=300.0),
 }
 
+CORE = {
+    "clean",
+    "clean around a thing",
+    "explore",
+    "clean with worn wheels and a lidar that turns",
+    "clean while mapping",
+    "charge on the way",
+}
+
 
 @pytest.fixture(scope="module")
 def references() -> dict[str, Outcome]:
     return {}
 
 
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize("name", core_first(CASES, CORE))
 @pytest.mark.parametrize("composition", core_first(COMPOSITIONS, {"bursts"}))
 def test_it_does_the_same(composition: str, name: str, references: dict[str, Outcome]) -> None:
     case = CASES[name]

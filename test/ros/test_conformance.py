@@ -38,7 +38,7 @@ NOISY = {
     "clean slowly around a thing": Case(HOME, things=(THING,), seed=3, speed=0.2, begin=BEGIN),
     "walk around a thing": Case(HOME, goal=(1.4, 0.4), things=(THING,), seed=3, begin=BEGIN),
 }
-CORE = {"clean while mapping", "walk"}
+CORE = {"clean", "walk"}
 """The cases that are always tried; with noise the whole graph is, in test/system."""
 EDGE = 0.002
 """Share of the swept floor; noise amplifies the last bits of stamps to tenths of a millimetre."""

@@ -15,6 +15,7 @@ from running.robots import Robots
 from running.suites import ROOT, Asked, Kind, asked_for
 
 CHECKS = (sys.executable, "-m", "running.checks")
+LINT = "lint"
 COMPUTING = "computing"
 FAILED_COMPUTING = ROOT / ".cache" / "failed-computing"
 COVERAGE = (sys.executable, "-m", "safety")
@@ -33,12 +34,16 @@ def main(words: list[str]) -> int:
 
 
 def _beside_robots(asked: Asked) -> bool:
-    """Run all at once, but what is timed: robots leave much of the cores to what computes."""
-    robots = Robots(asked)
+    """Run all at once: robots leave much of the cores to what computes.
+
+    Beside those that are timed there are the checks alone, which take a core at most.
+    """
+    robots, commands = Robots(asked), _commands(asked)
+    background = [Background(LINT, commands.pop(LINT))] if LINT in commands else []
     robots.run_timed()
-    background = [
+    background += [
         Background(name, command, FAILED_COMPUTING if name == COMPUTING else None)
-        for name, command in _commands(asked).items()
+        for name, command in commands.items()
     ]
     robots.run_others()
     passed = [part.passed() for part in background]
@@ -55,7 +60,7 @@ def _commands(asked: Asked) -> dict[str, Sequence[str]]:
     folders = asked.folders(Kind.COMPUTING)
     computing = pytest_command("-n", "2", *listing(FAILED_COMPUTING), *folders, *asked.arguments)
     all_of_them = {
-        "lint": (Kind.CHECKS, CHECKS),
+        LINT: (Kind.CHECKS, CHECKS),
         COMPUTING: (Kind.COMPUTING, computing),
         "coverage": (Kind.COVERAGE, COVERAGE),
     }

@@ -42,7 +42,7 @@ class Robots:
         self._failed: list[str] = []
 
     def run_timed(self) -> None:
-        """Run what keeps promises in wall time, with nothing beside it but what mostly waits."""
+        """Run what keeps promises in wall time; beside it are checks, and what mostly waits."""
         graphs = self._asked.folders(Kind.GRAPHS)
         if graphs:
             log = ROOT / ".cache" / "waiting.log"

@@ -138,7 +138,7 @@ def test_what_goes_wrong_is_saved_with_what_was_before(graph: RosGraph, tmp_path
     assert trouble_is.startswith("speed_pub_node was ended")
     # Three seconds before, as asked for, and two after.
     assert 2.2 < at - told[0] < 3.2
-    assert 0.8 < told[-1] - at
+    assert told[-1] - at > 0.8
     recorder.send(signal.SIGINT)
     assert recorder.ends(20.0) == 0
     assert "1 mishaps saved" in recorder.output

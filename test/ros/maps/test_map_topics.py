@@ -192,6 +192,7 @@ def test_what_changed_is_offered_refused_and_accepted(graph: RosGraph) -> None:
     assert "to take back" in refused.message
 
 
+@pytest.mark.thorough
 def test_a_robot_that_was_given_its_map_makes_none(graph: RosGraph) -> None:
     graph.launch(f"home:={mapping_home(graph.folder)}", SPEED)
     robot = Explorer(graph)

@@ -8,6 +8,7 @@ import urllib.request
 from pathlib import Path
 from typing import Any
 
+import pytest
 from fixtures.graph import START_DEADLINE, RosGraph
 from fixtures.homes.tiny_home import tiny_home
 from fixtures.waiting import wait_until
@@ -65,6 +66,7 @@ class Api:
         self.reaches("docked")
 
 
+@pytest.mark.thorough
 def test_it_is_emptied_as_the_household_wants_it(tmp_path: Path) -> None:
     folder = tmp_path / "robot"
     folder.mkdir()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import pytest
 from fixtures.graph import RosGraph
 from fixtures.homes.tiny_home import tiny_home
 from fixtures.mosquitto import HomeSide, Mosquitto
@@ -13,6 +14,7 @@ from fixtures.waiting import wait_until
 BASE = "roomba/roomba"
 
 
+@pytest.mark.thorough
 def test_it_cleans_and_docks_by_mqtt(tmp_path: Path) -> None:
     broker = Mosquitto(tmp_path)
     broker.start()

@@ -25,6 +25,7 @@ from fixtures.robots.located import (
     steps,
 )
 from fixtures.robots.missions import HOME
+from fixtures.thoroughness import examples
 
 from roomba.geometry import Pose, Twist
 from roomba.perception.localization.estimate import Knowledge
@@ -40,7 +41,7 @@ ELSEWHERE = [
 ]
 
 
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", range(examples(3)))
 @pytest.mark.parametrize("to", ELSEWHERE)
 def test_carried_away_it_knows_nothing_until_it_is_found(to: Pose, seed: int) -> None:
     robot = started(seed=seed)
@@ -74,7 +75,7 @@ def test_in_the_air_it_says_so_whatever_it_sees() -> None:
     assert not robot.localizer.needs_to_look_around
 
 
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", range(examples(3)))
 @pytest.mark.parametrize("to", ELSEWHERE)
 def test_moved_without_a_wheel_drop_it_is_noticed_within_half_a_second(to: Pose, seed: int) -> None:
     robot = started(seed=seed)

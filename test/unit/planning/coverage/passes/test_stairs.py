@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 import shapely
+from fixtures.thoroughness import core_first
 from numpy.typing import NDArray
 
 from roomba.angles import wrap_angles
@@ -66,7 +67,9 @@ def largest_turn(line: Line) -> float:
     return float(np.abs(wrap_angles(np.diff(np.arctan2(ways[:, 1], ways[:, 0])))).max())
 
 
-@pytest.mark.parametrize("degrees", [12.0, 17.0, 30.0, 73.0, 107.0, 163.0, -17.0])
+@pytest.mark.parametrize(
+    "degrees", core_first([12.0, 17.0, 30.0, 73.0, 107.0, 163.0, -17.0], {12.0, 107.0})
+)
 def test_along_a_slanted_wall_the_way_is_smooth_and_keeps_its_distance(degrees: float) -> None:
     solid = slanted(degrees)
     ring = ring_of(fitting(solid))
