@@ -17,6 +17,8 @@ from running.suites import ROOT, Asked, Kind, asked_for
 CHECKS = (sys.executable, "-m", "running.checks")
 LINT = "lint"
 COMPUTING = "computing"
+COMPUTING_AT_ONCE = 3
+"""Some of what computes waits for programs that it starts: two would leave a third of the cores."""
 FAILED_COMPUTING = ROOT / ".cache" / "failed-computing"
 COVERAGE = (sys.executable, "-m", "safety")
 
@@ -58,7 +60,8 @@ def _one_by_one(asked: Asked) -> bool:
 def _commands(asked: Asked) -> dict[str, Sequence[str]]:
     """Return what is to run without a robot: names and commands."""
     folders = asked.folders(Kind.COMPUTING)
-    computing = pytest_command("-n", "2", *listing(FAILED_COMPUTING), *folders, *asked.arguments)
+    workers = ("-n", str(COMPUTING_AT_ONCE), "--dist", "worksteal")
+    computing = pytest_command(*workers, *listing(FAILED_COMPUTING), *folders, *asked.arguments)
     all_of_them = {
         LINT: (Kind.CHECKS, CHECKS),
         COMPUTING: (Kind.COMPUTING, computing),
