@@ -28,6 +28,7 @@ def test_dirt_falls_all_day_and_what_is_cleaned_has_less_of_it() -> None:
     assert set(household.records.rooms) == set(household.names)
 
 
+@pytest.mark.thorough
 def test_some_days_by_what_is_due_take_less_way_and_leave_no_room_much_dirtier() -> None:
     due, daily = (live("bay", 1, 6, plan) for plan in ("due", "all rooms daily"))
     assert due.times_cleaned("kitchen") == 6
