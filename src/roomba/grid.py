@@ -49,6 +49,16 @@ class GridFrame:
             self.origin_y + self.rows * self.resolution,
         )
 
+    def with_cells(self, size: float) -> GridFrame:
+        """Return a grid of cells of another ``size``, m, from the same corner over all of this."""
+        return GridFrame(
+            size,
+            self.origin_x,
+            self.origin_y,
+            math.ceil(self.rows * self.resolution / size),
+            math.ceil(self.columns * self.resolution / size),
+        )
+
     def cell_of(self, x: float, y: float) -> tuple[int, int]:
         """Return the (row, column) in which a point lies; may be outside the grid."""
         return (

@@ -26,6 +26,12 @@ def test_points_beside_the_grid_are_not_on_it() -> None:
     assert FRAME.extent == pytest.approx((-1.0, 2.0, 2.0, 4.0))
 
 
+def test_with_other_cells_it_begins_at_the_same_corner_and_covers_as_much() -> None:
+    coarse = FRAME.with_cells(0.3)
+    assert coarse == GridFrame(0.3, -1.0, 2.0, rows=7, columns=10)
+    assert FRAME.with_cells(FRAME.resolution) == FRAME
+
+
 def test_what_is_not_known_to_be_free_is_solid() -> None:
     values = np.array([[FREE, OCCUPIED, UNKNOWN]], np.int8)
     known = OccupancyMap(GridFrame(0.1, 0.0, 0.0, 1, 3), values)

@@ -78,17 +78,19 @@ class OwnedRobot:
 
 
 def _neato(port: str, _: str, config: RobotConfig) -> LineBody:
-    line = ReopenedLine(lambda: SerialLine(port, _NEATO_BAUD))
-    clock = BodyClock(time.monotonic)
-    driver = NeatoBody(Conversation(line, time.monotonic), clock, config)
-    return LineBody(driver, line, clock, config.timing.tick)
+    return _neato_on(ReopenedLine(lambda: SerialLine(port, _NEATO_BAUD)), config)
 
 
 def _openneato(address: str, _: str, config: RobotConfig) -> LineBody:
-    line = ReopenedLine(lambda: BridgeLine(address))
+    return _neato_on(ReopenedLine(lambda: BridgeLine(address)), config, PATIENCE, PER_BYTE)
+
+
+def _neato_on(
+    line: ReopenedLine, config: RobotConfig, patience: float = 0.0, per_byte: float = 0.0
+) -> LineBody:
     clock = BodyClock(time.monotonic)
-    driver = NeatoBody(Conversation(line, time.monotonic, PATIENCE, PER_BYTE), clock, config)
-    return LineBody(driver, line, clock, config.timing.tick)
+    conversation = Conversation(line, time.monotonic, patience, per_byte)
+    return LineBody(NeatoBody(conversation, clock, config), line, clock, config.timing.tick)
 
 
 class _OpenedByDriver:

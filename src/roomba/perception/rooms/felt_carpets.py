@@ -6,7 +6,6 @@ was taken away is voted down again.
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import Final
 
@@ -15,7 +14,7 @@ import shapely
 from numpy.typing import NDArray
 
 from roomba.geometry import Pose
-from roomba.grid import GridFrame, OccupancyMap
+from roomba.grid import OccupancyMap
 from roomba.perception.rooms.outlines import cells_inside, outline_of
 from roomba.perception.rooms.zones import Corners
 from roomba.raster.carried import carried
@@ -50,14 +49,7 @@ class CarpetVotes:
 
     def __init__(self, occupancy: OccupancyMap) -> None:
         """Begin with nothing felt."""
-        frame = occupancy.frame
-        self.frame = GridFrame(
-            CELL,
-            frame.origin_x,
-            frame.origin_y,
-            math.ceil(frame.rows * frame.resolution / CELL),
-            math.ceil(frame.columns * frame.resolution / CELL),
-        )
+        self.frame = occupancy.frame.with_cells(CELL)
         self.votes: NDArray[np.int16] = np.zeros(self.frame.shape, np.int16)
         self._was_on = False
         self._is_told = True

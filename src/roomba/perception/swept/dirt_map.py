@@ -39,14 +39,7 @@ class DirtMap:
 
     def __init__(self, occupancy: OccupancyMap) -> None:
         """Lay it over a map, with nothing known."""
-        frame = occupancy.frame
-        self.frame = GridFrame(
-            CELL,
-            frame.origin_x,
-            frame.origin_y,
-            math.ceil(frame.rows * frame.resolution / CELL),
-            math.ceil(frame.columns * frame.resolution / CELL),
-        )
+        self.frame = frame = occupancy.frame.with_cells(CELL)
         self.learned: Floats = np.full(self.frame.shape, np.nan, np.float32)
         self.grains: Floats = np.zeros(self.frame.shape, np.float32)
         self.way: Floats = np.zeros(self.frame.shape, np.float32)
