@@ -6,6 +6,7 @@ was taken away is voted down again.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Final
 
@@ -13,6 +14,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from roomba.compilation import entry
 from roomba.geometry import Pose
 from roomba.grid import OccupancyMap
 from roomba.perception.rooms.outlines import cells_inside, outline_of
@@ -57,16 +59,8 @@ class CarpetVotes:
 
     def note(self, places: NDArray[np.float64], *, is_on: bool) -> None:
         """Take ticks at places of the tool, float64 [n, 2], m, all of them on carpet or off."""
-        frame, votes = self.frame, self.votes
-        for dx in (-_BESIDE, _BESIDE):
-            columns = np.floor((places[:, 0] + dx - frame.origin_x) / CELL).astype(np.int64)
-            for dy in (-_BESIDE, _BESIDE):
-                rows = np.floor((places[:, 1] + dy - frame.origin_y) / CELL).astype(np.int64)
-                inside = (rows >= 0) & (rows < frame.rows)
-                inside &= (columns >= 0) & (columns < frame.columns)
-                cells = rows[inside], columns[inside]
-                np.add.at(votes, cells, 1 if is_on else -1)
-                votes[cells] = np.clip(votes[cells], -_MOST, _MOST)
+        frame = self.frame
+        _vote(self.votes, frame.origin_x, frame.origin_y, places, 1 if is_on else -1)
         if self._was_on and not is_on:
             # It left a carpet, which is larger now.
             self._is_told = False
@@ -105,6 +99,24 @@ class CarpetVotes:
         large = [part for part in whole if part.area >= _LEAST_AREA]
         large.sort(key=lambda part: part.area, reverse=True)
         return tuple(_corners(part) for part in large[:MOST_CARPETS])
+
+
+@entry
+def _vote(
+    votes: NDArray[np.int16],
+    origin_x: float,
+    origin_y: float,
+    places: NDArray[np.float64],
+    vote: int,
+) -> None:
+    """Add a vote to each cell below the tool at each place; no more count than :data:`_MOST`."""
+    for number in range(len(places)):
+        for dx in (-_BESIDE, _BESIDE):
+            column = math.floor((places[number, 0] + dx - origin_x) / CELL)
+            for dy in (-_BESIDE, _BESIDE):
+                row = math.floor((places[number, 1] + dy - origin_y) / CELL)
+                if 0 <= row < votes.shape[0] and 0 <= column < votes.shape[1]:
+                    votes[row, column] = min(max(votes[row, column] + vote, -_MOST), _MOST)
 
 
 def _corners(part: shapely.Polygon) -> Corners:
