@@ -100,27 +100,8 @@ SLOW = (
 """Folders and files whose tests take two thirds of the time of all unit tests."""
 
 
-TIMED = (
-    "ros/speed/test_speed_pub_node.py",
-    "system/faults/test_faults.py",
-    "system/faults/test_refused_messages.py",
-    "system/faults/test_standstill.py",
-    "system/faults/test_supervision.py",
-    "system/test_foreign_robot.py",
-)
-"""Folders and files that assert promises of tenths of a second, or of a few seconds, of wall time,
-or play a bag faster than it was recorded: nothing computes beside them."""
-WAITING = (
-    "ros/runtime",
-    "ros/supervision",
-    "system/owned",
-    "system/test_create2_line.py",
-)
-"""Those of them that wait most of the time, for lines and deadlines: they run beside the others."""
-
-
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Let the files that take longest come first; mark what is slow, timed, or waits.
+    """Let the files that take longest come first; mark what is slow.
 
     What is marked ``thorough`` runs only when all is to be tried.
     """
@@ -131,10 +112,6 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         path = item.path.relative_to(TESTS).as_posix()
         if path.startswith(SLOW):
             item.add_marker(pytest.mark.slow)
-        if path.startswith(TIMED):
-            item.add_marker(pytest.mark.timed)
-        if path.startswith(WAITING):
-            item.add_marker(pytest.mark.waiting)
     rank = {name: rank for rank, name in enumerate(LONGEST_FIRST)}
     items.sort(key=lambda item: rank.get(item.path.name, len(rank)))
 

@@ -20,7 +20,8 @@ COMPUTING = "computing"
 COMPUTING_AT_ONCE = 3
 """Some of what computes waits for programs that it starts: two would leave a third of the cores."""
 FAILED_COMPUTING = ROOT / ".cache" / "failed-computing"
-COVERAGE = (sys.executable, "-m", "safety")
+COVERAGE = "coverage"
+COVER = (sys.executable, "-m", "safety")
 
 
 def main(words: list[str]) -> int:
@@ -38,15 +39,14 @@ def main(words: list[str]) -> int:
 def _beside_robots(asked: Asked) -> bool:
     """Run all at once: robots leave much of the cores to what computes.
 
-    Beside those that are timed there are the checks alone, which take a core at most.
+    Beside those that are timed there is one program at a time, which takes a core at most.
     """
     robots, commands = Robots(asked), _commands(asked)
-    background = [Background(LINT, commands.pop(LINT))] if LINT in commands else []
+    one_by_one = [commands[name] for name in (LINT, COVERAGE) if name in commands]
+    background = [Background("checks", *one_by_one)] if one_by_one else []
     robots.run_timed()
-    background += [
-        Background(name, command, FAILED_COMPUTING if name == COMPUTING else None)
-        for name, command in commands.items()
-    ]
+    if COMPUTING in commands:
+        background.append(Background(COMPUTING, commands[COMPUTING], failed=FAILED_COMPUTING))
     robots.run_others()
     passed = [part.passed() for part in background]
     return robots.passed() and all(passed)
@@ -65,7 +65,7 @@ def _commands(asked: Asked) -> dict[str, Sequence[str]]:
     all_of_them = {
         LINT: (Kind.CHECKS, CHECKS),
         COMPUTING: (Kind.COMPUTING, computing),
-        "coverage": (Kind.COVERAGE, COVERAGE),
+        COVERAGE: (Kind.COVERAGE, COVER),
     }
     return {name: command for name, (kind, command) in all_of_them.items() if asked.has(kind)}
 

@@ -10,7 +10,7 @@ from typing import Final
 
 from running.alone import FAILED, listed, listing, pass_alone
 from running.pytests import NO_TESTS, pytest_command
-from running.suites import ROOT, Asked, Kind
+from running.suites import ROOT, TIMED, WAITING, Asked, Kind
 
 BY_FILE: Final = ("--dist", "loadfile", "--no-loadscope-reorder")
 """Each file keeps to one worker, as its tests share a graph; the order is that of
@@ -43,32 +43,41 @@ class Robots:
 
     def run_timed(self) -> None:
         """Run what keeps promises in wall time; beside it are checks, and what mostly waits."""
-        graphs = self._asked.folders(Kind.GRAPHS)
-        if graphs:
-            log = ROOT / ".cache" / "waiting.log"
-            waiting = self._begin(WAITING_AT_ONCE, "waiting", graphs, log)
-            self._end(self._begin(TIMED_AT_ONCE, "timed", graphs))
-            self._end(waiting)
+        waiting = self._begin(
+            "waiting", WAITING_AT_ONCE, self._asked.of(WAITING), log=ROOT / ".cache" / "waiting.log"
+        )
+        self._end(self._begin("timed", TIMED_AT_ONCE, self._asked.of(TIMED)))
+        self._end(waiting)
 
     def run_others(self) -> None:
         """Run all others, which may wait a little longer for what they wait for."""
         folders = (*self._asked.folders(Kind.GRAPHS), *self._asked.folders(Kind.PAGES))
-        self._end(self._begin(OTHERS_AT_ONCE, "not timed and not waiting", folders))
+        ran = [f"--ignore={path}" for path in self._asked.of((*TIMED, *WAITING))]
+        self._end(self._begin("others", OTHERS_AT_ONCE, folders, ran))
 
     def _begin(
-        self, workers: int, marked: str, folders: Sequence[str], log: Path | None = None
-    ) -> _Part:
-        names = ROOT / ".cache" / f"failed-{marked.replace(' ', '-')}"
+        self,
+        name: str,
+        workers: int,
+        paths: Sequence[str],
+        ignored: Sequence[str] = (),
+        log: Path | None = None,
+    ) -> _Part | None:
+        if not paths:
+            return None
+        names = ROOT / ".cache" / f"failed-{name}"
         names.parent.mkdir(exist_ok=True)
-        chosen = ("-m", marked, *folders, *self._asked.arguments)
-        command = pytest_command("-n", str(workers), *BY_FILE, *listing(names), *chosen)
+        which = (*ignored, *paths, *self._asked.arguments)
+        command = pytest_command("-n", str(workers), *BY_FILE, *listing(names), *which)
         if log is None:
             return _Part(subprocess.Popen(command, cwd=ROOT), names, None)
         with log.open("wb") as file:
             process = subprocess.Popen(command, cwd=ROOT, stdout=file, stderr=subprocess.STDOUT)
         return _Part(process, names, log)
 
-    def _end(self, part: _Part) -> None:
+    def _end(self, part: _Part | None) -> None:
+        if part is None:
+            return
         self._statuses.append(part.process.wait())
         if part.log is not None:
             print(part.log.read_text(encoding="utf-8", errors="replace"), flush=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from enum import Enum, auto
 from pathlib import Path
@@ -51,6 +52,23 @@ SUITES: Final = {
     "realtime": Suite(Kind.GRAPHS, by_name_only=True),
     "teaching": Suite(Kind.GRAPHS, by_name_only=True),
 }
+TIMED: Final = (
+    "ros/speed/test_speed_pub_node.py",
+    "system/faults/test_faults.py",
+    "system/faults/test_refused_messages.py",
+    "system/faults/test_standstill.py",
+    "system/faults/test_supervision.py",
+    "system/test_foreign_robot.py",
+)
+"""Folders and files that assert promises of tenths of a second, or of a few seconds, of wall time,
+or play a bag faster than it was recorded: nothing but what is idle computes beside them."""
+WAITING: Final = (
+    "ros/runtime",
+    "ros/supervision",
+    "system/owned",
+    "system/test_create2_line.py",
+)
+"""Those of them that wait most of the time, for lines and deadlines: they run beside the others."""
 BY_DEFAULT: Final = tuple(name for name, suite in SUITES.items() if not suite.by_name_only)
 
 
@@ -72,6 +90,11 @@ class Asked:
     def folders(self, kind: Kind) -> tuple[str, ...]:
         """Return the folders of the suites of that kind."""
         return tuple(str(ROOT / "test" / name) for name in self.suites if SUITES[name].kind is kind)
+
+    def of(self, paths: Sequence[str]) -> tuple[str, ...]:
+        """Return those of some folders and files, as seen from ``test``, that are asked for."""
+        chosen = (path for path in paths if path.partition("/")[0] in self.suites)
+        return tuple(str(ROOT / "test" / path) for path in chosen)
 
 
 def asked_for(words: list[str]) -> Asked:

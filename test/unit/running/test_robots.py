@@ -11,16 +11,14 @@ from running.robots import Robots
 from running.suites import Asked
 
 ONCE = """
-import pytest
 from pathlib import Path
-@pytest.mark.timed
 def test_it():
     path = Path({mark!r})
     had, _ = path.exists(), path.touch()
     assert had
 """
 """A test that passes from the second time on."""
-WAITS_AND_FAILS = "import pytest\n@pytest.mark.waiting\ndef test_it(): assert False"
+FAILS = "def test_it(): assert False"
 
 
 def suite(folder: Path, monkeypatch: pytest.MonkeyPatch, **files: str) -> Robots:
@@ -28,12 +26,15 @@ def suite(folder: Path, monkeypatch: pytest.MonkeyPatch, **files: str) -> Robots
     tests = folder / "test" / "ros"
     tests.mkdir(parents=True)
     (folder / ".cache").mkdir()
-    settings = '[tool.pytest.ini_options]\nmarkers = ["timed", "waiting"]\n'
-    (folder / "pyproject.toml").write_text(settings, encoding="utf-8")
+    (folder / "pyproject.toml").write_text("[tool.pytest.ini_options]", encoding="utf-8")
     for name, text in files.items():
         (tests / f"test_{name}.py").write_text(text, encoding="utf-8")
     for module in ("running.alone", "running.robots", "running.pytests", "running.suites"):
         monkeypatch.setattr(f"{module}.ROOT", folder)
+    for kind in ("timed", "waiting"):
+        name = f"ros/test_{kind}.py"
+        (tests / f"test_{kind}.py").touch()
+        monkeypatch.setattr(f"running.robots.{kind.upper()}", (name,))
     for workers in ("TIMED_AT_ONCE", "WAITING_AT_ONCE", "OTHERS_AT_ONCE"):
         monkeypatch.setattr(f"running.robots.{workers}", 0)  # what starts none is quicker
     monkeypatch.setenv("PYTHONPATH", str(Path(robots.__file__).parents[1]))
@@ -58,22 +59,22 @@ def test_without_a_test_nothing_passed(tmp_path: Path, monkeypatch: pytest.Monke
 def test_what_passes_alone_passes_and_is_named(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    ran = suite(tmp_path, monkeypatch, it=ONCE.format(mark=str(tmp_path / "mark")))
+    ran = suite(tmp_path, monkeypatch, timed=ONCE.format(mark=str(tmp_path / "mark")))
     ran.run_timed()
     ran.run_others()
     assert ran.passed()
-    assert "PASSED ONLY ALONE: test/ros/test_it.py::test_it" in capfd.readouterr().out
+    assert "PASSED ONLY ALONE: test/ros/test_timed.py::test_it" in capfd.readouterr().out
 
 
 def test_what_fails_twice_fails(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
     passes = ONCE.format(mark=str(tmp_path / "mark"))
-    ran = suite(tmp_path, monkeypatch, it=passes, other=WAITS_AND_FAILS)
+    ran = suite(tmp_path, monkeypatch, timed=passes, waiting=FAILS)
     ran.run_timed()
     ran.run_others()
     assert not ran.passed()
-    assert "FAILED TWICE: test/ros/test_other.py::test_it" in capfd.readouterr().out
+    assert "FAILED TWICE: test/ros/test_waiting.py::test_it" in capfd.readouterr().out
 
 
 @pytest.mark.thorough

@@ -59,16 +59,14 @@ class Confirmation:
         self._least, self._most = self._config.fit.fair_agree, self._config.fit.fair_through
 
     def compare_near(
-        self, now: float, pose: Pose, fit: Fit, view: ScanView, reckoned: Pose, field: SurfaceField
+        self, now: float, pose: Pose, view: ScanView, reckoned: Pose, field: SurfaceField
     ) -> Refuted | None:
-        """Begin to compare a pose that a scan fits best of all near by, unless it fits well.
+        """Begin to compare a pose that a scan fits best of all near by with all others.
 
-        As of :meth:`refuted`, which goes on with it.
+        However well it fits: in a symmetric room others fit as well. As of :meth:`refuted`, which
+        goes on with it.
         """
         self._doubt.drop()
-        good = self._config.fit
-        if fit.agree >= good.good_agree and fit.through <= good.good_through:
-            return None
         self.compared, self._is_near = where_found_near(pose, self._config), True
         return self._go_on_comparing(self.compared, now, view, reckoned, field)
 

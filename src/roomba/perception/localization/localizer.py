@@ -363,7 +363,7 @@ class Localizer:
             return False
         pose, fit = found
         self._go_on_at(FoundPlace(pose.compose(since), fit))
-        refuted = self._confirmation.compare_near(self._now, pose, fit, view, reckoned, self.field)
+        refuted = self._confirmation.compare_near(self._now, pose, view, reckoned, self.field)
         if refuted is not None:
             self._search_for(refuted.why, refuted.expectation)
         return True

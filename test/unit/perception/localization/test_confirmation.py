@@ -36,10 +36,10 @@ class Rig:
     def show(self, fit: Fit) -> Refuted | None:
         return self.confirmation.refuted(6.0, fit, self.view, RECKONED, FIELD)
 
-    def find_near(self, fit: Fit) -> Refuted | None:
+    def find_near(self) -> Refuted | None:
         """Let it be found near by, at HERE."""
         self.confirmation.drop()
-        return self.confirmation.compare_near(6.0, HERE, fit, self.view, RECKONED, FIELD)
+        return self.confirmation.compare_near(6.0, HERE, self.view, RECKONED, FIELD)
 
     def show_until_told(self, fit: Fit) -> Refuted | None:
         """Show the scan until the comparison is done."""
@@ -92,23 +92,15 @@ def test_what_has_more_evidence_needs_a_fair_fit_only_until_another_pose_is_told
     assert rig.confirmation.compared is not None
 
 
-def test_found_near_by_where_a_scan_fits_well_nothing_is_compared() -> None:
+def test_found_near_by_it_is_kept_if_no_other_place_is_as_likely() -> None:
     rig = Rig()
-    assert rig.find_near(GOOD) is None
-    assert not rig.confirmation.is_open
-
-
-def test_found_near_by_where_a_scan_fits_in_part_it_is_kept_if_no_other_place_is_as_likely() -> (
-    None
-):
-    rig = Rig()
-    assert rig.find_near(FAIR) is None
-    assert rig.show_until_told(FAIR) is None
+    assert rig.find_near() is None
+    assert rig.show_until_told(GOOD) is None
 
 
 def test_found_near_by_another_place_that_is_likelier_refutes_it_in_other_words() -> None:
     rig = Rig(ELSEWHERE)
-    refuted = rig.find_near(FAIR) or rig.show_until_told(FAIR)
+    refuted = rig.find_near() or rig.show_until_told(FAIR)
     assert refuted is not None
     assert refuted.expectation.is_met(HERE)
     assert "carried" in refuted.why
@@ -121,7 +113,7 @@ def found_near(home: Home, place: Pose, believed: Pose) -> Refuted | None:
     doubt = Doubt(CONFIG.localization, CONFIG.body.radius)
     confirmation = Confirmation(CONFIG.localization, doubt)
     view = LIDAR.view(Eye(home).scan(place))
-    refuted = confirmation.compare_near(6.0, believed, FAIR, view, RECKONED, field)
+    refuted = confirmation.compare_near(6.0, believed, view, RECKONED, field)
     for _ in range(1000):
         if refuted is not None or not confirmation.is_open:
             return refuted

@@ -27,10 +27,12 @@ from fixtures.robots.located import (
 from fixtures.robots.missions import HOME
 from fixtures.thoroughness import examples
 
+from roomba.files.shipped import HOMES
 from roomba.geometry import Pose, Twist
 from roomba.perception.localization.estimate import Knowledge
 from roomba.perception.localization.localizer import Localizer
 from roomba.world.home.home import Home
+from roomba.world.layers.layer import load_home
 
 ELSEWHERE = [
     Pose(6.0, 1.2, 2.0),
@@ -109,6 +111,24 @@ def test_carried_to_the_mirror_of_a_place_near_by_it_does_not_believe_itself_the
     for _ in steps(8.0):
         robot.look()
         assert not robot.is_wrong
+    assert robot.estimate.knowledge is Knowledge.KNOWN
+    assert robot.error < WORST_ERROR
+
+
+def test_carried_to_where_a_place_near_by_looks_just_the_same_it_does_not_believe_itself_there() -> (
+    None
+):
+    """From there a square room looks the same but for the station, which is hardly in sight."""
+    near = Pose(1.1, 6.0, 1.6)
+    turned = Pose(near.y, 10.0 - near.x, near.theta - 0.5 * math.pi)
+    robot = Located(load_home("empty", HOMES), Pose(0.8, 6.1, 1.7))
+    robot.stay(2.0)
+    robot.world.put(turned)
+    for _ in steps(1.0):
+        robot.look()
+    for _ in steps(8.0):
+        assert not robot.is_wrong
+        robot.look()
     assert robot.estimate.knowledge is Knowledge.KNOWN
     assert robot.error < WORST_ERROR
 
