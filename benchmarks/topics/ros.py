@@ -19,6 +19,8 @@ _MOST_ADDED = 20.0
 """% that a node may add to the bare round trip."""
 _SIZES = {"64 B": ("message of 64 B", 64), "scan": ("scan of 360 beams", 1516)}
 """What stands in the table, and the bytes on the wire, by the kind of message."""
+_APART = 0.06
+"""s between two commands: more than a tick, as what comes more often waits for the next one."""
 _FASTEST = 100
 """As fast as the simulation may be asked to run: what is measured is how far behind it falls."""
 _POINTS = ((2.5, 5.0), (8.5, 5.0))
@@ -49,8 +51,8 @@ def _round_trips(bench: Bench) -> list[Record]:
         graph.start("rosrun", "roomba_robot", "speed_pub_node.py")
         [node, bare] = bench.compete(
             [
-                _ping(graph, "through speed_pub_node", "twist", "/cmd_vel", "/cmd_vel_out"),
-                _bare(graph, "twist"),
+                _ping(graph, "through speed_pub_node", "twist", "/cmd_vel", "/cmd_vel_out", _APART),
+                _bare(graph, "twist", _APART),
             ]
         )
     return [*records, *_node_rows(node, bare)]
@@ -63,7 +65,7 @@ def _bare_row(bench: Bench, graph: Graph, kind: str) -> Record:
 
 
 def _node_rows(node: Outcome, bare: Outcome) -> list[Record]:
-    case = "command in, command for the drive out: speed_pub_node"
+    case = "a command every 60 ms in, a command for the drive out: speed_pub_node"
     row = _trip_row(case, node, (bare.figure(milliseconds),))
     added, reason = None, node.error or bare.error
     if node.rate is not None and bare.rate is not None:
@@ -79,16 +81,19 @@ def _trip_row(case: str, outcome: Outcome, peers: tuple[PeerFigure, ...]) -> Rec
     )
 
 
-def _bare(graph: Graph, kind: str) -> Program:
+def _bare(graph: Graph, kind: str, apart: float = 0.0) -> Program:
     """Start a node that echoes; return the client that calls it."""
     topics = [f"/{way}_{kind.replace(' ', '_')}" for way in ("ping", "pong")]
     names = [f"{name}:={topic}" for name, topic in zip(("ping", "pong"), topics, strict=True)]
     graph.start(sys.executable, "-m", "benchmarks.ros.echo", kind, *names)
-    return _ping(graph, "bare rospy", kind, *topics)
+    ping, pong = topics
+    return _ping(graph, "bare rospy", kind, ping, pong, apart)
 
 
-def _ping(graph: Graph, name: str, kind: str, ping: str, pong: str) -> Program:
-    parameters = {"kind": kind, "ping": ping, "pong": pong}
+def _ping(
+    graph: Graph, name: str, kind: str, ping: str, pong: str, apart: float = 0.0
+) -> Program:
+    parameters = {"kind": kind, "ping": ping, "pong": pong, "apart": apart}
     return _program(graph, name, "ping", parameters)
 
 
