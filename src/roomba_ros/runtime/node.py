@@ -19,6 +19,7 @@ from roomba.errors import RoombaError
 from roomba_ros.runtime.connections import guard_connections
 from roomba_ros.runtime.heart import HEART
 from roomba_ros.runtime.progress import Progress
+from roomba_ros.runtime.sending import send_at_once
 from roomba_ros.runtime.subscriptions import tell_refusals
 from roomba_ros.runtime.ticker import Ticker
 
@@ -99,6 +100,7 @@ def register(name: str) -> None:
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: _asked_to_end.set())
     guard_connections()
+    send_at_once()
     # A log that the disk refuses is no reason for a traceback with each line of it.
     logging.raiseExceptions = False
     rospy.init_node(name, disable_signals=True)

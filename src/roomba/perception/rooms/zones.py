@@ -176,8 +176,7 @@ class Zones:
 
     def is_carpet_at(self, x: float, y: float) -> bool:
         """Whether a carpet lies at a point, m."""
-        here = shapely.Point(x, y)
-        return any(carpet.shape.covers(here) for carpet in self._carpets)
+        return any(shapely.intersects_xy(carpet.shape, x, y) for carpet in self._carpets)
 
     @property
     def has_carpets(self) -> bool:

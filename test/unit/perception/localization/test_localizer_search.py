@@ -115,9 +115,7 @@ def test_carried_to_the_mirror_of_a_place_near_by_it_does_not_believe_itself_the
     assert robot.error < WORST_ERROR
 
 
-def test_carried_to_where_a_place_near_by_looks_just_the_same_it_does_not_believe_itself_there() -> (
-    None
-):
+def test_carried_to_where_a_place_near_by_looks_the_same_it_does_not_believe_itself_there() -> None:
     """From there a square room looks the same but for the station, which is hardly in sight."""
     near = Pose(1.1, 6.0, 1.6)
     turned = Pose(near.y, 10.0 - near.x, near.theta - 0.5 * math.pi)
