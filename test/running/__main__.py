@@ -6,6 +6,8 @@ import os
 import subprocess
 import sys
 from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
 
 from fixtures.thoroughness import be_thorough
 from running.alone import listing
@@ -15,13 +17,24 @@ from running.robots import Robots
 from running.suites import ROOT, Asked, Kind, asked_for
 
 CHECKS = (sys.executable, "-m", "running.checks")
-LINT = "lint"
-COMPUTING = "computing"
+SAFETY = (sys.executable, "-m", "safety")
 COMPUTING_AT_ONCE = 3
 """Some of what computes waits for programs that it starts: two would leave a third of the cores."""
-FAILED_COMPUTING = ROOT / ".cache" / "failed-computing"
-COVERAGE = "coverage"
-COVER = (sys.executable, "-m", "safety")
+
+
+@dataclass(frozen=True)
+class Computing:
+    """What runs without a robot."""
+
+    name: str
+    command: Sequence[str]
+    is_brief: bool
+    failed: Path | None = None
+    """Where it lists tests that failed."""
+
+    def begin(self, after: Background | None = None) -> Background:
+        """Let it run beside robots, at once or after another."""
+        return Background(self.name, self.command, self.failed, after)
 
 
 def main(words: list[str]) -> int:
@@ -41,33 +54,43 @@ def _beside_robots(asked: Asked) -> bool:
 
     Beside those that are timed there is one program at a time, which takes a core at most.
     """
-    robots, commands = Robots(asked), _commands(asked)
-    one_by_one = [commands[name] for name in (LINT, COVERAGE) if name in commands]
-    background = [Background("checks", *one_by_one)] if one_by_one else []
+    robots, computing = Robots(asked), _computing(asked)
+    background: list[Background] = []
+    for each in computing:
+        if each.is_brief:
+            background.append(each.begin(after=background[-1] if background else None))
     robots.run_timed()
-    if COMPUTING in commands:
-        background.append(Background(COMPUTING, commands[COMPUTING], failed=FAILED_COMPUTING))
+    background += [each.begin() for each in computing if not each.is_brief]
     robots.run_others()
     passed = [part.passed() for part in background]
     return robots.passed() and all(passed)
 
 
 def _one_by_one(asked: Asked) -> bool:
-    ran = [subprocess.run(command) for command in _commands(asked).values()]
+    ran = [subprocess.run(each.command) for each in _computing(asked)]
     return not any(each.returncode for each in ran)
 
 
-def _commands(asked: Asked) -> dict[str, Sequence[str]]:
-    """Return what is to run without a robot: names and commands."""
-    folders = asked.folders(Kind.COMPUTING)
-    workers = ("-n", str(COMPUTING_AT_ONCE), "--dist", "worksteal")
-    computing = pytest_command(*workers, *listing(FAILED_COMPUTING), *folders, *asked.arguments)
-    all_of_them = {
-        LINT: (Kind.CHECKS, CHECKS),
-        COMPUTING: (Kind.COMPUTING, computing),
-        COVERAGE: (Kind.COVERAGE, COVER),
-    }
-    return {name: command for name, (kind, command) in all_of_them.items() if asked.has(kind)}
+def _computing(asked: Asked) -> list[Computing]:
+    """Return what is to run without a robot."""
+    found = []
+    if asked.has(Kind.CHECKS):
+        found.append(Computing("lint", CHECKS, is_brief=True))
+    if asked.has(Kind.COVERAGE):
+        found.append(Computing("safety", SAFETY, is_brief=True))
+    if asked.has(Kind.COMPUTING_BRIEFLY):
+        found.append(_tests(asked, Kind.COMPUTING_BRIEFLY))
+    if asked.has(Kind.COMPUTING):
+        workers = ("-n", str(COMPUTING_AT_ONCE), "--dist", "worksteal")
+        found.append(_tests(asked, Kind.COMPUTING, workers))
+    return found
+
+
+def _tests(asked: Asked, kind: Kind, workers: Sequence[str] = ()) -> Computing:
+    name = kind.name.lower().replace("_", "-")
+    failed = ROOT / ".cache" / f"failed-{name}"
+    command = pytest_command(*workers, *listing(failed), *asked.folders(kind), *asked.arguments)
+    return Computing(name, command, kind is Kind.COMPUTING_BRIEFLY, failed)
 
 
 if __name__ == "__main__":

@@ -15,35 +15,46 @@ IDLE: Final = ("chrt", "--idle", "0")
 
 
 class Background:
-    """Commands, one after the other, whose output is kept in a file until it is asked for."""
+    """A command whose output is kept in a file until it is asked for."""
 
-    def __init__(self, name: str, *commands: Sequence[str], failed: Path | None = None) -> None:
-        """Start the first; ``failed`` is the file in which they list tests that failed."""
-        self._commands = commands
-        self._failed = failed
+    def __init__(
+        self,
+        name: str,
+        command: Sequence[str],
+        failed: Path | None = None,
+        after: Background | None = None,
+    ) -> None:
+        """Start it, at once or when another has ended.
+
+        ``failed`` is the file in which it lists tests that failed.
+        """
+        self._command, self._failed, self._after = command, failed, after
         self._log: Path = ROOT / ".cache" / f"{name}.log"
         self._log.parent.mkdir(exist_ok=True)
         print(f"{name}: beside the robots; its output comes after theirs: {self._log}", flush=True)
-        self._statuses: list[int] = []
+        self._status: int | None = None
         self._running = threading.Thread(target=self._run)
         self._running.start()
 
     def _run(self) -> None:
+        if self._after is not None:
+            self._after.wait()
         with self._log.open("wb") as file:
-            for command in self._commands:
-                ran = subprocess.run(
-                    [*IDLE, *command], cwd=ROOT, stdout=file, stderr=subprocess.STDOUT
-                )
-                self._statuses.append(ran.returncode)
+            command = [*IDLE, *self._command]
+            ran = subprocess.run(command, cwd=ROOT, stdout=file, stderr=subprocess.STDOUT)
+        self._status = ran.returncode
+
+    def wait(self) -> None:
+        """Wait for its end."""
+        self._running.join()
 
     def passed(self) -> bool:
-        """Wait for their end, print what they said, and return whether all was well.
+        """Wait for its end, print what it said, and return whether it was well.
 
         Call it when nothing runs beside: what failed may run once more.
         """
-        self._running.join()
+        self.wait()
         print(self._log.read_text(encoding="utf-8", errors="replace"), flush=True)
-        wrong = set(self._statuses) - {0}
-        if wrong == {FAILED} and self._failed is not None:
+        if self._status == FAILED and self._failed is not None:
             return pass_alone(listed(self._failed))
-        return not wrong
+        return self._status == 0

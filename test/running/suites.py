@@ -18,8 +18,10 @@ class Kind(Enum):
     """Programs that read the sources."""
     COMPUTING = auto()
     """They compute all the time."""
+    COMPUTING_BRIEFLY = auto()
+    """They compute for half a minute."""
     COVERAGE = auto()
-    """They compute, and must run every line of what they test."""
+    """They do so as well, and must run every line of what they test."""
     GRAPHS = auto()
     """They start robots, and wait for them most of the time."""
     PAGES = auto()
@@ -38,7 +40,7 @@ class Suite:
 SUITES: Final = {
     "lint": Suite(Kind.CHECKS),
     "unit": Suite(Kind.COMPUTING),
-    "conformance": Suite(Kind.COMPUTING),
+    "conformance": Suite(Kind.COMPUTING_BRIEFLY),
     "safety": Suite(Kind.COVERAGE),
     "web": Suite(Kind.PAGES),
     "contract": Suite(Kind.GRAPHS),

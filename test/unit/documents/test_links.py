@@ -3,16 +3,26 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
 ROOT = Path(__file__).parents[3]
-FILES = [
-    path.relative_to(ROOT)
-    for path in ROOT.rglob("*")
-    if path.is_file() and not any(part.startswith(".") for part in path.relative_to(ROOT).parts)
-]
+
+
+def files(folder: Path = ROOT) -> Iterator[Path]:
+    """Yield all files that are not hidden, as seen from the repository."""
+    for path in sorted(folder.iterdir()):
+        if path.name.startswith("."):
+            continue
+        if path.is_dir():
+            yield from files(path)
+        else:
+            yield path.relative_to(ROOT)
+
+
+FILES = list(files())
 PAGES = [path for path in FILES if path.suffix == ".md"]
 TEXTS = [
     path
