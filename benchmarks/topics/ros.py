@@ -90,9 +90,7 @@ def _bare(graph: Graph, kind: str, apart: float = 0.0) -> Program:
     return _ping(graph, "bare rospy", kind, ping, pong, apart)
 
 
-def _ping(
-    graph: Graph, name: str, kind: str, ping: str, pong: str, apart: float = 0.0
-) -> Program:
+def _ping(graph: Graph, name: str, kind: str, ping: str, pong: str, apart: float = 0.0) -> Program:
     parameters = {"kind": kind, "ping": ping, "pong": pong, "apart": apart}
     return _program(graph, name, "ping", parameters)
 

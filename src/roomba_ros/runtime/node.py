@@ -17,11 +17,11 @@ import rospy
 
 from roomba.errors import RoombaError
 from roomba_ros.runtime.connections import guard_connections
-from roomba_ros.runtime.heart import HEART
-from roomba_ros.runtime.progress import Progress
 from roomba_ros.runtime.sending import send_at_once
 from roomba_ros.runtime.subscriptions import tell_refusals
-from roomba_ros.runtime.ticker import Ticker
+from roomba_ros.runtime.timing.heart import HEART
+from roomba_ros.runtime.timing.progress import Progress
+from roomba_ros.runtime.timing.ticker import Ticker
 
 _asked_to_end = threading.Event()
 

@@ -34,7 +34,6 @@ from roomba_ros.convert.common import (
 from roomba_ros.convert.readings import StampedPose, stamped_pose_of
 from roomba_ros.convert.values import duty_of, time_of
 from roomba_ros.localization import kept_pose
-from roomba_ros.runtime import progress
 from roomba_ros.runtime.node import (
     frame_id,
     give_up,
@@ -44,14 +43,15 @@ from roomba_ros.runtime.node import (
     settle,
     told_to_end,
 )
-from roomba_ros.runtime.pace import Pace
 from roomba_ros.runtime.parameters import (
     LiveSeedParameters,
     read_nodes_config,
     read_simulated_config,
 )
 from roomba_ros.runtime.subscriptions import subscribe, tell_refusals
-from roomba_ros.runtime.ticker import Ticker
+from roomba_ros.runtime.timing import progress
+from roomba_ros.runtime.timing.pace import Pace
+from roomba_ros.runtime.timing.ticker import Ticker
 from roomba_ros.simulation.camera_topics import CameraTopics
 from roomba_ros.simulation.drive_link import DriveLink
 from roomba_ros.simulation.frames import BodyFrames

@@ -25,7 +25,7 @@ from rosgraph.xmlrpc import XmlRpcNode
 from rosmaster.master_api import ROSMasterHandler
 
 from roomba.files.kept import KeptFileError, read_kept, write_kept
-from roomba_ros.runtime.heart import HEART
+from roomba_ros.runtime.timing.heart import HEART
 
 WORKERS: Final = 8
 """Threads that tell nodes about others; of three, three frozen nodes hold up all."""

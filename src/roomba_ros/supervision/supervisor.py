@@ -18,7 +18,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from roomba.configuration.nodes import SupervisionConfig
-from roomba_ros.runtime.heart import HEART
+from roomba_ros.runtime.timing.heart import HEART
 from roomba_ros.supervision.fork import fork, is_stopped, told_end
 from roomba_ros.supervision.watch import Watch
 

@@ -1,4 +1,4 @@
-"""Messages leave at once; a receiver that is behind holds up nobody, and loses only old ones."""
+"""Messages leave at once; a receiver that is behind holds up no publisher and misses old ones."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ def test_a_message_is_on_its_way_when_it_was_published(rig: Rig) -> None:
     assert rig.connection.endpoint_id == "/listener"
 
 
-def test_a_receiver_that_is_behind_holds_up_nobody_and_gets_whole_messages_in_order() -> None:
+def test_a_receiver_that_is_behind_holds_up_no_publisher_and_gets_whole_messages_in_order() -> None:
     rig = Rig(queue_size=2)
     for number in range(MANY):
         assert rig.connection.write_data(bytes([number]) * LONG)

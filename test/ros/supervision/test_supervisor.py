@@ -14,7 +14,7 @@ from fixtures.waiting import wait_until
 HEAD = """
 import os, signal, sys, time
 from roomba.configuration.nodes import SupervisionConfig
-from roomba_ros.runtime.heart import HEART
+from roomba_ros.runtime.timing.heart import HEART
 from roomba_ros.supervision.supervisor import Supervisor
 
 def live():

@@ -4,7 +4,7 @@ import pytest
 import rospy
 from std_msgs.msg import Time
 
-from roomba_ros.runtime.progress import NODES, Progress
+from roomba_ros.runtime.timing.progress import NODES, Progress
 
 
 class Publisher:

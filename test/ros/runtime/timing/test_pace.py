@@ -3,7 +3,7 @@
 import pytest
 
 from roomba.configuration.nodes import PaceConfig
-from roomba_ros.runtime.pace import Pace
+from roomba_ros.runtime.timing.pace import Pace
 
 TICK, SPEED = 0.05, 5.0
 PERIOD = TICK / SPEED
