@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from fixtures.homes.rooms import room_home
 from fixtures.homes.worlds import DT, NOISY, SOURCES, block_that_moves
-from fixtures.thoroughness import examples
+from fixtures.thoroughness import core_first, examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
@@ -324,7 +324,7 @@ def test_what_was_saved_of_another_fleet_is_refused_and_changes_nothing(other: o
     assert fleet.digest() == before
 
 
-@pytest.mark.parametrize("name", list_homes(HOMES))
+@pytest.mark.parametrize("name", core_first(list_homes(HOMES), {"bay", "cottage", "family"}))
 def test_every_shipped_home_gives_the_same_twice_and_after_a_restore(name: str) -> None:
     home = load_home(name, HOMES)
     twists = random_twists(12, 2, 3)

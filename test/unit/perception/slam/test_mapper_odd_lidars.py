@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import pytest
 from fixtures.drives.made_lidars import Lidar, mapped, outlines
 from fixtures.robots.mapped import CUPBOARD, FURNISHED, SHELF, wrong_cells
+from fixtures.thoroughness import core_first
 
 from roomba.geometry import Pose
 from roomba.perception.localization.estimate import Knowledge
@@ -75,8 +76,26 @@ DRIVES = {
 }
 
 
-@pytest.mark.parametrize("drive", DRIVES.values(), ids=DRIVES.keys())
-def test_it_makes_a_map_and_knows_where_it_is(drive: Drive) -> None:
+CORE = {
+    "60 degrees, half a degree apart",
+    "90 degrees, two degrees apart",
+    "180 degrees",
+    "clockwise, or upside down",
+    "up to 4 m",
+    "once a second",
+    "no echo: nan",
+    "no echo: 0",
+    "no echo: below the nearest range",
+    "off the middle",
+    "15 cm from where it is told to be",
+    "odometry that is shaken",
+    "odometry off by a tenth, that leaps",
+}
+
+
+@pytest.mark.parametrize("name", core_first(DRIVES, CORE))
+def test_it_makes_a_map_and_knows_where_it_is(name: str) -> None:
+    drive = DRIVES[name]
     mapper, errors = mapped(
         drive.lidar, around, WALLS, 40.0, way_error=drive.way_error, leap=drive.leap,
         shaken=drive.shaken,
