@@ -210,6 +210,7 @@ TESTED_BY: dict[str, tuple[str, str]] = {
     ),
     "roomba/perception/slam/following/scan_kernels": ("unit/perception/slam/test_mapper.py", PART),
     "roomba/perception/things/kernels": ("unit/perception/things/test_layer.py", PART),
+    "roomba/perception/things/state": ("unit/perception/things/test_layer.py", VALUES),
     "roomba/plots/": ("unit/plots/test_home.py", "a drawing of a home is made of them"),
     "roomba/recordings/": ("unit/recordings/test_drive.py", "read with all others as one drive"),
     "roomba/robot/": ("unit/robot/test_parts.py", "the parts of one robot"),

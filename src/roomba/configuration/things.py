@@ -15,9 +15,12 @@ class ThingConfig(Frozen):
     """What is a thing and what is not; m, and evidence, of which a scan gives ``gain`` to a cell.
 
     ``margin``, ``margin_share``
-        A beam that ends nearer to a surface of the map saw that surface: noise of the range (3
-        times 0.005), the pose (0.01), half a cell that a surveyed map is off, and 2 degrees that
-        edges and the heading are off, which count by the range.
+        A beam that ends nearer to a surface of the map saw that surface: the pose (0.01), half a
+        cell that a surveyed map is off, and 2 degrees that edges and the heading are off, which
+        count by the range. Noise of the range comes beside that.
+    ``sure``
+        A range is off by no more than so many times the standard deviation of its noise, which is
+        measured from the scans.
     ``farthest``
         What is farther away is looked at when it is nearer: there beams are a cell apart.
     ``clearly``
@@ -25,6 +28,9 @@ class ThingConfig(Frozen):
     ``gain``, ``most_gain``
         What a scan in which a beam ends in a cell adds to it. One that stands for several scans
         adds as many times as much, up to ``most_gain``, so that one alone is never enough.
+    ``behind``
+        What a scan of which more beams end just behind the cell than in it takes: they met what
+        is there, and noise alone made some shorter.
     ``loss``
         What a scan that passes through the cell takes: more than ``gain``, for people walk on.
     ``most``
@@ -40,12 +46,14 @@ class ThingConfig(Frozen):
         As near to a surface of the map a point is mapped: about a cell.
     """
 
-    margin: Positive = 0.09
+    margin: Positive = 0.075
     margin_share: NotNegative = 0.012
+    sure: Positive = 3.0
     farthest: Positive = 4.0
     clearly: Positive = 0.10
     gain: Count = 2
     most_gain: Count = 4
+    behind: Count = 1
     loss: Count = 3
     most: Count = 24
     enough: Count = 6

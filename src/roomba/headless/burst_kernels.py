@@ -23,7 +23,7 @@ from roomba.mission.phases.carpet_kernels import changes_floor, note_current
 from roomba.mission.phases.dust_bin_kernels import note_dust
 from roomba.perception.swept.coverage_kernels import sweep, swept_from
 from roomba.perception.swept.dirt_map import note_dirt
-from roomba.perception.things.kernels import Things
+from roomba.perception.things.state import Things
 from roomba.world.engine.step_kernels import advance
 
 

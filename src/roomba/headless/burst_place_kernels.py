@@ -17,7 +17,6 @@ from roomba.perception.localization.belief.correct_kernels import (
 )
 from roomba.perception.localization.belief.reckon_kernels import reckon_on
 from roomba.perception.localization.recent_sight_kernels import note_sight
-from roomba.perception.matching.match_kernels import beam_ends
 from roomba.perception.matching.pose_kernels import beyond, pose_then
 from roomba.perception.matching.sweep import at_once
 from roomba.perception.slam.following.follow_kernels import moved_since
@@ -92,7 +91,7 @@ def localize(
     note_sight(place.sights, stamp, reckoned, beams.ends, count)
     still, at = place.still if burst.is_late else ranges, burst.seen_from
     at[0], at[1], at[2] = pose_then(belief[0].pose, belief[0].reckoned, reckoned)
-    note(sight.things, sight.field, sight.place, beams, still, count, at, burst.stride)
+    note(sight.things, sight.field, sight.place, beams, still, ranges, at, burst.stride)
     return True
 
 
@@ -110,8 +109,5 @@ def map_on(
     at[0], at[1], at[2] = beyond(submap[0], submap[1], submap[2], here[0], here[1], here[2])
     beams = place.beams
     still = ranges if beams.time_increment == 0.0 else following.still
-    count = beam_ends(
-        still, beams.directions, beams.mount, beams.nearest, beams.farthest, beams.ends
-    )
-    note(sight.things, sight.field, sight.place, beams, still, count, at, burst.stride)
+    note(sight.things, sight.field, sight.place, beams, still, ranges, at, burst.stride)
     return True

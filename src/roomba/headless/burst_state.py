@@ -12,7 +12,7 @@ from roomba.perception.localization.recent_sight_kernels import Sights
 from roomba.perception.matching.beams import LidarBeams
 from roomba.perception.matching.reckoned_path import ReckonedPath
 from roomba.perception.slam.following.scan_kernels import Following
-from roomba.perception.things.kernels import Things
+from roomba.perception.things.state import Things
 from roomba.world.engine.lidar.projection import ScanBuffers
 from roomba.world.engine.state.arrays import State
 

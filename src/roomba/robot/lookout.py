@@ -28,7 +28,8 @@ class Lookout:
     def look(self, scan: PlacedScan | None, knowledge: Knowledge) -> None:
         """Look in a scan, if there is one where it was taken; only if the place is known."""
         if scan is not None and self.things is not None and knowledge is Knowledge.KNOWN:
-            self.things.see(scan.ranges, self.beams_of(scan.lidar), scan.pose, self._stride)
+            beams = self.beams_of(scan.lidar)
+            self.things.see(scan.ranges, beams, scan.pose, self._stride, scan.measured)
 
     def beams_of(self, lidar: LidarModel) -> LidarBeams:
         """Return a lidar as kernels know it, made anew only when it is another one."""

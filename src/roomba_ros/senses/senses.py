@@ -8,7 +8,7 @@ from roomba.configuration.nodes import HearingConfig
 from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose
 from roomba.mission.inputs.senses import Senses
-from roomba.perception.matching.scan_view import PlacedScan
+from roomba.perception.matching.scan_view import PlacedScan, plain_ranges
 from roomba.robot.lookout import Lookout
 from roomba.robot.place import ScanSelection
 from roomba.robot.readings import Readings, ScanReading, senses_of
@@ -62,7 +62,8 @@ class HeardSenses:
         pose = None if scan is None else self.place.at(scan.stamp)
         if scan is not None and pose is not None:
             still = scan.lidar.at_once(scan.stamp, scan.ranges, self.place.path)
-            lookout.look(PlacedScan(pose, still, scan.lidar), self.place.knowledge[0])
+            placed = PlacedScan(pose, still, plain_ranges(scan.ranges), scan.lidar)
+            lookout.look(placed, self.place.knowledge[0])
 
     @property
     def pose(self) -> Pose | None:

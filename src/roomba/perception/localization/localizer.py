@@ -35,7 +35,7 @@ from roomba.perception.localization.relocation import Expectation
 from roomba.perception.localization.search.near_search import better_near
 from roomba.perception.localization.tracker import Tracker
 from roomba.perception.matching.pose_kernels import pose_then
-from roomba.perception.matching.scan_view import LidarModel, PlacedScan, ScanView
+from roomba.perception.matching.scan_view import LidarModel, PlacedScan, ScanView, plain_ranges
 from roomba.perception.matching.surface_field import SurfaceField
 
 _ANYWHERE: Final = np.diag([100.0**2, 100.0**2, math.pi**2])
@@ -125,7 +125,7 @@ class Localizer:
             found = self._search.see(self._now, view, reckoned, newest, believed)
             if found is not None:
                 self._go_on_at(found)
-        self.placed = PlacedScan(self._pose_then(reckoned), still, lidar)
+        self.placed = PlacedScan(self._pose_then(reckoned), still, plain_ranges(ranges), lidar)
 
     @property
     def is_calm(self) -> bool:
@@ -164,7 +164,7 @@ class Localizer:
         if len(view) >= self._config.least_beams and self._tracker.is_doubtful:
             self._reconsider(stamp, view, reckoned)
         self._doubt.note(stamp, reckoned, view)
-        self.placed = PlacedScan(self._pose_then(reckoned), still, lidar)
+        self.placed = PlacedScan(self._pose_then(reckoned), still, plain_ranges(ranges), lidar)
 
     def go_by_lidar(self) -> None:
         """Take the lidar for where it is, if that is known better by now; call it between scans.

@@ -138,11 +138,12 @@ class LidarModel:
 class PlacedScan(NamedTuple):
     """What a scan showed from ``pose``, map frame: ``ranges`` is float32 [beams], m.
 
-    They are as if all of them were measured at once, there.
+    They are as if all of them were measured at once, there; ``measured`` are as they were.
     """
 
     pose: Pose
     ranges: Ranges
+    measured: Ranges
     lidar: LidarModel
 
 

@@ -126,7 +126,7 @@ class Mapper:
         self.at_scan = self._place()
         if self._lidar is not None:
             still = follower.following.still if self._lidar.time_increment else ranges
-            self.placed = PlacedScan(self.at_scan, still, self._lidar)
+            self.placed = PlacedScan(self.at_scan, still, ranges, self._lidar)
 
     @property
     def version(self) -> int:

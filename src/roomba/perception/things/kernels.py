@@ -1,14 +1,14 @@
 """Compiled evidence, cell by cell, of what the lidar sees and the map does not show.
 
-A cell has *evidence*: beams that end in it add to it, beams that pass through it take from it, and
-what has enough of it is a *thing*. Cells with any are listed, so that looking at all of them costs
-by their number and not by the size of the home.
+A cell has *evidence*: a scan of which beams end in it adds to it, one whose beams pass through it
+or end just behind it takes from it, and what has enough of it is a *thing*. Cells with any are
+listed, so that looking at all of them costs by their number and not by the size of the home.
 """
 
 from __future__ import annotations
 
 import math
-from typing import Any, Final, NamedTuple, TypeAlias
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,46 +16,15 @@ from numpy.typing import NDArray
 from roomba.compilation import entry, inner_part
 from roomba.perception.matching.beams import LidarBeams
 from roomba.perception.matching.field_kernels import OFF_MAP, Field, Place, look
+from roomba.perception.things.range_kernels import is_mixed, measure_noises, noise_at
+from roomba.perception.things.state import Row, Things
 
 Floats = NDArray[np.float64]
-Row: TypeAlias = Any
-"""One row of an array of a dtype below, in a kernel."""
+Ranges = NDArray[np.float32]
 
-LAYER: Final = np.dtype(
-    [
-        ("margin", "f8"),  # m
-        ("margin_share", "f8"),  # of the range
-        ("farthest", "f8"),  # m
-        ("clearly", "f8"),  # m
-        ("gain", "i8"),  # evidence
-        ("most_gain", "i8"),
-        ("loss", "i8"),
-        ("most", "i8"),
-        ("enough", "i8"),
-        ("spot_radius", "f8"),  # m
-        ("newest", "f8"),
-        ("next_to", "f8"),  # m
-        ("count", "i8"),  # cells that are listed
-        ("scan", "i8"),  # number of the newest scan, from 1
-        ("version", "i8"),  # another one when a thing came or went
-    ]
-)
-"""The numbers of :class:`roomba.perception.things.layer.ThingConfig`, and what changes."""
-
-
-class Things(NamedTuple):
-    """A layer as kernels know it.
-
-    ``layer`` is LAYER [1]; ``evidence`` int16 and ``touched`` int64, the newest scan that ended in
-    a cell, are [cells], row by row as the map's; ``listed`` int64 [n] has the cells with evidence;
-    ``spots`` float32 [cells, 2] is where in its cell the beams end, m, map frame: their mean.
-    """
-
-    layer: NDArray[np.void]
-    evidence: NDArray[np.int16]
-    touched: NDArray[np.int64]
-    listed: NDArray[np.int64]
-    spots: NDArray[np.float32]
+IN: Final = 0
+BEHIND: Final = 1
+"""Columns of ``Things.beams``."""
 
 
 @entry
@@ -64,95 +33,145 @@ def note(
     field: Field,
     place: Place,
     lidar: LidarBeams,
-    ranges: NDArray[np.float32],
-    count: int,
+    ranges: Ranges,
+    measured: Ranges,
     pose: Floats,
     scans: int,
 ) -> None:
     """Take a scan, float32 [beams], m, that was taken at ``pose`` [3], map, which is known.
 
-    ``lidar.ends`` has its ``count`` ends; it stands for so many ``scans``, its own included.
+    ``ranges`` are as if all were measured there, ``measured`` as they were. The scan stands for so
+    many ``scans``, its own included. ``lidar.ends`` is a work array here.
     """
     layer = things.layer[0]
     layer.scan += 1
+    measure_noises(things.noise, layer.scan, measured, lidar.nearest)
     cosine, sine = math.cos(pose[2]), math.sin(pose[2])
     x = pose[0] + cosine * lidar.mount[0] - sine * lidar.mount[1]
     y = pose[1] + sine * lidar.mount[0] + cosine * lidar.mount[1]
-    has_changed = _add_ends(things, layer, field, place, lidar.ends, count, pose, x, y, scans)
-    heading = pose[2] + lidar.mount[2] + lidar.first_angle
-    if _take_seen_through(things, layer, field, place, ranges, x, y, heading, lidar.step, scans):
-        has_changed = True
-    if has_changed:
+    heading = pose[2] + lidar.mount[2]
+    count = _find_ends(things, layer, field, place, lidar, ranges, x, y, heading)
+    _count_in(things, layer, field, place, lidar.ends, count)
+    _count_behind(things, layer, field, place, lidar.ends, count)
+    first = heading + lidar.first_angle
+    if _weigh(things, layer, field, place, ranges, x, y, first, lidar.step, scans):
         layer.version += 1
 
 
 @inner_part
-def _add_ends(
+def _find_ends(
     things: Things,
     layer: Row,
     field: Field,
     place: Place,
-    ends: Floats,
-    count: int,
-    pose: Floats,
+    lidar: LidarBeams,
+    ranges: Ranges,
     x: float,
     y: float,
-    scans: int,
-) -> bool:
-    """Add evidence where beams end away from all surfaces; tell whether a thing came."""
+    heading: float,
+) -> int:
+    """Fill ``lidar.ends`` with those of beams that end away from all surfaces; return how many.
+
+    Of each it is x, y, m, map, and the way on which a beam is as likely to have ended by its noise
+    as there, along x and y, m.
+    """
     rows, columns = field.shape
-    cosine, sine = math.cos(pose[2]), math.sin(pose[2])
+    cosine, sine = math.cos(heading), math.sin(heading)
     inverse = 1.0 / place[2]
+    around = round(2.0 * math.pi / abs(lidar.step))
     # From nowhere in a cell a surface is farther than from its middle by more than half its size.
     near = layer.margin - 0.7072 * place[2]
-    gain = min(layer.gain * scans, layer.most_gain)
-    has_come = False
-    for index in range(count):
-        end_x = pose[0] + cosine * ends[index, 0] - sine * ends[index, 1]
-        end_y = pose[1] + sine * ends[index, 0] + cosine * ends[index, 1]
+    count = 0
+    for beam in range(ranges.size):
+        away = ranges[beam]
+        if not lidar.nearest <= away < min(lidar.farthest, layer.farthest):
+            continue
+        along = cosine * lidar.directions[beam, 0] - sine * lidar.directions[beam, 1]
+        across = sine * lidar.directions[beam, 0] + cosine * lidar.directions[beam, 1]
+        end_x, end_y = x + away * along, y + away * across
         u, v = (end_x - place[0]) * inverse + 0.5, (end_y - place[1]) * inverse + 0.5
-        if not (0.0 <= u < columns and 0.0 <= v < rows):
+        if not (0.0 <= u < columns and 0.0 <= v < rows) or field[int(v), int(u)] <= near:
             continue
-        column, row = int(u), int(v)
-        if field[row, column] <= near:
-            continue
-        away = math.sqrt((end_x - x) * (end_x - x) + (end_y - y) * (end_y - y))
         off, _, _ = look(field, place, end_x, end_y)
-        if off <= layer.margin + layer.margin_share * away or off >= OFF_MAP:
+        slack = layer.sure * noise_at(things.noise, away)
+        if off <= layer.margin + layer.margin_share * away + slack or off >= OFF_MAP:
             continue
-        cell = row * columns + column
-        if away > layer.farthest or things.touched[cell] == layer.scan:
+        if is_mixed(ranges, beam, lidar.step, around, slack):
             continue
-        things.touched[cell] = layer.scan
-        before = things.evidence[cell]
-        if before == 0:
+        ends = lidar.ends[count]
+        ends[0], ends[1], ends[2], ends[3] = end_x, end_y, slack * along, slack * across
+        count += 1
+    return count
+
+
+@inner_part
+def _count_in(
+    things: Things, layer: Row, field: Field, place: Place, ends: Floats, count: int
+) -> None:
+    """Count the beams that end in each cell, and list cells that are new."""
+    for index in range(count):
+        x, y = ends[index, 0], ends[index, 1]
+        cell = _cell_of(field, place, x, y)
+        if things.touched[cell] == layer.scan:
+            things.beams[cell, IN] += 1
+            continue
+        if things.evidence[cell] == 0:
             if layer.count == things.listed.size:
                 continue
             things.listed[layer.count] = cell
             layer.count += 1
-            things.spots[cell, 0], things.spots[cell, 1] = end_x, end_y
-        things.spots[cell, 0] += np.float32(layer.newest * (end_x - things.spots[cell, 0]))
-        things.spots[cell, 1] += np.float32(layer.newest * (end_y - things.spots[cell, 1]))
-        after = min(before + gain, layer.most)
-        things.evidence[cell] = after
-        has_come = has_come or before < layer.enough <= after
-    return has_come
+            things.spots[cell, 0], things.spots[cell, 1] = x, y
+        things.touched[cell] = layer.scan
+        things.beams[cell, IN], things.beams[cell, BEHIND] = 1, 0
+        things.spots[cell, 0] += np.float32(layer.newest * (x - things.spots[cell, 0]))
+        things.spots[cell, 1] += np.float32(layer.newest * (y - things.spots[cell, 1]))
 
 
 @inner_part
-def _take_seen_through(
+def _count_behind(
+    things: Things, layer: Row, field: Field, place: Place, ends: Floats, count: int
+) -> None:
+    """Count the beams that end so little behind each listed cell that noise may be why."""
+    for index in range(count):
+        x, y, off_x, off_y = ends[index, 0], ends[index, 1], ends[index, 2], ends[index, 3]
+        last = _cell_of(field, place, x, y)
+        steps = math.ceil(2.0 * math.sqrt(off_x * off_x + off_y * off_y) / place[2])
+        for step in range(1, steps + 1):
+            share = step / steps
+            cell = _cell_of(field, place, x - share * off_x, y - share * off_y)
+            if cell == last or cell < 0:
+                continue
+            last = cell
+            if things.touched[cell] != layer.scan:
+                if things.evidence[cell] == 0:
+                    continue
+                things.touched[cell] = layer.scan
+                things.beams[cell, IN], things.beams[cell, BEHIND] = 0, 0
+            things.beams[cell, BEHIND] += 1
+
+
+@inner_part
+def _cell_of(field: Field, place: Place, x: float, y: float) -> int:
+    """Return the number of the cell at a point, m; -1 off the map."""
+    rows, columns = field.shape
+    u, v = (x - place[0]) / place[2] + 0.5, (y - place[1]) / place[2] + 0.5
+    return int(v) * columns + int(u) if 0.0 <= u < columns and 0.0 <= v < rows else -1
+
+
+@inner_part
+def _weigh(
     things: Things,
     layer: Row,
     field: Field,
     place: Place,
-    ranges: NDArray[np.float32],
+    ranges: Ranges,
     x: float,
     y: float,
     heading: float,
     step: float,
     scans: int,
 ) -> bool:
-    """Take evidence from cells that all beams through them passed; tell whether a thing went.
+    """Add evidence to cells, and take it from them; tell whether a thing came or went.
 
     ``heading`` is that of beam 0, map; ``step`` the angle between beams, rad.
     """
@@ -160,34 +179,38 @@ def _take_seen_through(
     beams = ranges.size
     around = round(2.0 * math.pi / abs(step))
     half = 0.7072 * place[2]
-    has_gone = False
+    gain = min(layer.gain * scans, layer.most_gain)
+    is_other = False
     # From the last one, as the last one takes the place of one that is no longer listed.
     for number in range(layer.count - 1, -1, -1):
         cell = things.listed[number]
-        if things.touched[cell] == layer.scan:
-            continue
-        off_x = place[0] + (cell % columns) * place[2] - x
-        off_y = place[1] + (cell // columns) * place[2] - y
-        away = math.sqrt(off_x * off_x + off_y * off_y)
-        if away > layer.farthest or away < half:
-            continue
-        middle = round((math.atan2(off_y, off_x) - heading) / step)
-        aside = int(half / (away * abs(step))) + 1
-        if not _is_passed(ranges, beams, around, middle, aside, away + layer.clearly):
-            continue
         before = things.evidence[cell]
-        after = max(before - layer.loss * scans, 0)
+        if things.touched[cell] == layer.scan:
+            is_in = things.beams[cell, IN] >= things.beams[cell, BEHIND]
+            more = gain if is_in else -layer.behind * scans
+        else:
+            off_x = place[0] + (cell % columns) * place[2] - x
+            off_y = place[1] + (cell // columns) * place[2] - y
+            away = math.sqrt(off_x * off_x + off_y * off_y)
+            if away > layer.farthest or away < half:
+                continue
+            middle = round((math.atan2(off_y, off_x) - heading) / step)
+            aside = int(half / (away * abs(step))) + 1
+            if not _is_passed(ranges, beams, around, middle, aside, away + layer.clearly):
+                continue
+            more = -layer.loss * scans
+        after = min(max(before + more, 0), layer.most)
         things.evidence[cell] = after
-        has_gone = has_gone or after < layer.enough <= before
+        is_other = is_other or (before < layer.enough) != (after < layer.enough)
         if after == 0:
             layer.count -= 1
             things.listed[number] = things.listed[layer.count]
-    return has_gone
+    return is_other
 
 
 @inner_part
 def _is_passed(
-    ranges: NDArray[np.float32], beams: int, around: int, middle: int, aside: int, way: float
+    ranges: Ranges, beams: int, around: int, middle: int, aside: int, way: float
 ) -> bool:
     """Whether all beams around one went farther; those that met nothing do not tell."""
     does_tell = False

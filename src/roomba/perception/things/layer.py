@@ -12,16 +12,12 @@ from roomba.configuration.things import ThingConfig
 from roomba.geometry import Pose
 from roomba.perception.matching.beams import LidarBeams
 from roomba.perception.matching.field_kernels import look
-from roomba.perception.matching.match_kernels import beam_ends
 from roomba.perception.matching.surface_field import SurfaceField
-from roomba.perception.things.kernels import (
-    LAYER,
-    Things,
-    first_blocked,
-    forget_around,
-    note,
-)
+from roomba.perception.things.kernels import first_blocked, forget_around, note
+from roomba.perception.things.range_kernels import unknown_noises
+from roomba.perception.things.state import LAYER, Things
 
+Ranges = NDArray[np.float32]
 RoundObstacle = tuple[float, float, float]
 """x, y and radius of a round thing, m, map frame."""
 
@@ -47,8 +43,10 @@ class ThingLayer:
             np.zeros(1, LAYER),
             np.zeros(rows * columns, np.int16),
             np.zeros(rows * columns, np.int64),
+            np.zeros((rows * columns, 2), np.int16),
             np.zeros(_MOST_CELLS, np.int64),
             np.zeros((rows * columns, 2), np.float32),
+            unknown_noises(self.config.farthest),
         )
         for name, value in self.config.model_dump().items():
             self.arrays.layer[name] = value
@@ -59,17 +57,21 @@ class ThingLayer:
         return int(self.arrays.layer["version"][0])
 
     def see(
-        self, ranges: NDArray[np.float32], lidar: LidarBeams, pose: Pose, scans: int = 1
+        self,
+        ranges: Ranges,
+        lidar: LidarBeams,
+        pose: Pose,
+        scans: int = 1,
+        measured: Ranges | None = None,
     ) -> None:
         """Take a scan, float32 [beams], m, taken at a pose of the map that is known.
 
-        It stands for so many ``scans`` of the lidar, its own included.
+        It stands for so many ``scans`` of the lidar, its own included. ``measured`` are the ranges
+        as they were, if ``ranges`` were made of them for a robot that moved meanwhile.
         """
-        count = beam_ends(
-            ranges, lidar.directions, lidar.mount, lidar.nearest, lidar.farthest, lidar.ends
-        )
+        measured = ranges if measured is None else measured
         at = np.array([pose.x, pose.y, pose.theta])
-        note(self.arrays, self._field, self._place, lidar, ranges, count, at, scans)
+        note(self.arrays, self._field, self._place, lidar, ranges, measured, at, scans)
 
     def cells(self, least: int | None = None) -> NDArray[np.int64]:
         """Return the things' cells, int64 [n, 2], row and column: those with enough evidence."""

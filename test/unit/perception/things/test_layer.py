@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from dataclasses import replace
 
 import numpy as np
@@ -225,28 +226,45 @@ def test_it_can_be_told_to_forget() -> None:
 
 
 class Plain:
-    """The same rules, cell by cell and slowly."""
+    """The same rules, cell by cell and slowly; the noise is what the layer measured."""
 
-    def __init__(self, field: SurfaceField, config: ThingConfig) -> None:
-        self.evidence = np.zeros(field.values.shape, np.int64)
-        self._field, self._config = field, config
+    def __init__(self, layer: ThingLayer) -> None:
+        self.evidence = np.zeros(layer.field.values.shape, np.int64)
+        self._layer, self._field, self._config = layer, layer.field, layer.config
 
     def see(self, ranges: Ranges, pose: Pose) -> None:
         config, frame = self._config, self._field.frame
-        hit = set()
+        hit: Counter[tuple[int, int]] = Counter()
+        behind: Counter[tuple[int, int]] = Counter()
         for beam, length in enumerate(ranges.tolist()):
-            if not 0.15 <= length <= 12.0:
+            if not 0.15 <= length < config.farthest:
                 continue
             angle = pose.theta + beam * 2.0 * math.pi / len(ranges)
-            x, y = pose.x + length * math.cos(angle), pose.y + length * math.sin(angle)
-            off = self._off(x, y)
-            if off > config.margin + config.margin_share * length and length <= config.farthest:
-                hit.add(frame.cell_of(x, y))
+            way = np.array([math.cos(angle), math.sin(angle)])
+            x, y = pose.x + length * way[0], pose.y + length * way[1]
+            half_metre = min(int(length / 0.5), len(self._layer.arrays.noise) - 1)
+            slack = config.sure * self._layer.arrays.noise["deviation"][half_metre]
+            if self._off(x, y) <= config.margin + config.margin_share * length + slack:
+                continue
+            if is_mixed_by_itself(ranges, beam, slack):
+                continue
+            hit[frame.cell_of(x, y)] += 1
+            steps = math.ceil(2.0 * slack / frame.resolution)
+            cells = [
+                frame.cell_of(x - share * slack * way[0], y - share * slack * way[1])
+                for share in np.arange(1, steps + 1) / steps
+            ]
+            behind.update(set(cells) - {frame.cell_of(x, y)})
         for row, column in np.argwhere(self.evidence > 0).tolist():
-            if (row, column) not in hit and self._is_passed(ranges, pose, row, column):
-                self.evidence[row, column] = max(0, self.evidence[row, column] - config.loss)
-        for cell in hit:
-            self.evidence[cell] = min(self.evidence[cell] + config.gain, config.most)
+            cell = row, column
+            if hit[cell] + behind[cell]:
+                less = 0 if hit[cell] >= behind[cell] else config.behind
+            else:
+                less = config.loss if self._is_passed(ranges, pose, row, column) else 0
+            self.evidence[cell] = max(0, self.evidence[cell] - less)
+        for cell, beams in hit.items():
+            if beams >= behind[cell]:
+                self.evidence[cell] = min(self.evidence[cell] + config.gain, config.most)
 
     def _off(self, x: float, y: float) -> float:
         left, bottom, size = self._field.place.tolist()
@@ -272,13 +290,36 @@ class Plain:
         return len(beams) > 0 and bool((beams > away + self._config.clearly).all())
 
 
+def is_mixed_by_itself(ranges: Ranges, beam: int, slack: float) -> bool:
+    """Whether a range lies behind a neighbour's, and on no line with two of its neighbours."""
+    count, step = len(ranges), 2.0 * math.pi / len(ranges)
+    length = float(ranges[beam])
+    around = [float(ranges[(beam + k) % count]) for k in (-2, -1, 1, 2)]
+    _, right, left, _ = around
+    beside = math.sqrt(2.0) * slack
+    if any(abs(other - length) <= beside + step * length for other in (right, left)):
+        return False
+    if not (right <= length or left <= length):
+        return False
+    for (i, j), times, tolerance in (
+        ((1, 2), (0.5, 0.5), beside),
+        ((1, 0), (2.0, -1.0), math.sqrt(6.0) * slack),
+        ((2, 3), (2.0, -1.0), math.sqrt(6.0) * slack),
+    ):
+        is_steep = (i, j) == (1, 2) and not abs(left - right) <= 11.4 * step * length
+        expected = times[0] / around[i] + times[1] / around[j]
+        if not is_steep and abs(expected - 1.0 / length) * length**2 <= tolerance:
+            return False
+    return True
+
+
 @given(st.integers(0, 2**32 - 1))
 @settings(max_examples=examples(40))
 def test_evidence_is_that_of_the_same_rules_in_plain_python(seed: int) -> None:
     random = np.random.default_rng(seed)
     config = ThingConfig(gain=int(random.integers(1, 4)), loss=int(random.integers(1, 4)))
     layer, field = layer_of(FURNISHED, config), SurfaceField.of(FURNISHED.map)
-    plain, eye = Plain(field, config), Eye(FURNISHED)
+    plain, eye = Plain(layer), Eye(FURNISHED)
     discs = [(*random.uniform(0.5, 4.0, 2).tolist(), 0.1) for _ in range(4)]
     poses = free_poses(FURNISHED, 3, random)
     for step in range(12):
@@ -292,6 +333,37 @@ def test_evidence_is_that_of_the_same_rules_in_plain_python(seed: int) -> None:
         assert (found == layer.arrays.evidence.reshape(found.shape)).all()
         # A beam at the very edge of a cell or of the margin may count on either side.
         assert (found != plain.evidence).sum() <= 2
+
+
+@pytest.mark.parametrize("deviation", [0.005, 0.015, 0.03])
+def test_a_thing_is_no_thicker_for_the_noise_of_ranges(deviation: float) -> None:
+    """A round thing of 0.3 m is looked at from all sides, 1 to 3 m away."""
+    random, layer = np.random.default_rng(7), layer_of(ROOM)
+    eye, disc = Eye(ROOM), (3.0, 2.5, 0.15)
+    for _ in range(400):
+        way, angle = random.uniform(1.0, 2.2), random.uniform(-math.pi, math.pi)
+        pose = Pose(3.0 + way * math.cos(angle), 2.5 + way * math.sin(angle), angle)
+        ranges = with_discs(eye.scan(pose), pose, disc)
+        ranges += random.normal(0.0, deviation, len(ranges)).astype(np.float32)
+        layer.see(ranges, BEAMS, pose)
+    off = [math.hypot(x - 3.0, y - 2.5) - 0.15 for x, y, _ in layer.obstacles()]
+    assert len(off) >= 12
+    assert max(off) < 0.015 + deviation
+    assert abs(np.median(off)) < 0.01
+
+
+def test_between_an_edge_and_what_is_behind_it_nothing_stands() -> None:
+    """One beam of each scan lies on the edge of a thing, and is sent back from in between."""
+    random, layer = np.random.default_rng(3), layer_of(ROOM)
+    eye, disc = Eye(ROOM), (3.0, 2.6, 0.15)
+    for _ in range(200):
+        ranges = with_discs(eye.scan(HERE, random), HERE, disc)
+        last = int(np.flatnonzero(ranges < 1.2)[-1])
+        share = random.uniform(0.3, 0.7)
+        ranges[last + 1] = share * ranges[last] + (1.0 - share) * ranges[last + 2]
+        layer.see(ranges, BEAMS, HERE)
+    assert layer.obstacles()
+    assert all(math.hypot(x - 3.0, y - 2.6) < 0.2 for x, y, _ in layer.obstacles())
 
 
 def test_a_lidar_that_sees_ahead_alone_and_sits_at_the_front_marks_the_same_place() -> None:

@@ -1,0 +1,90 @@
+"""Compiled: how noisy ranges are, and which of them lie between two things.
+
+A beam is as wide as a finger. Where it meets the edge of something it is sent back by that and by
+what is behind, and its range lies between both, where there is nothing.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.compilation import inner_part, part
+from roomba.perception.matching.range_noise import measure_noise, unknown_noise
+
+Ranges = NDArray[np.float32]
+Rows = NDArray[np.void]
+
+_STEP: Final = 0.5
+"""m; the noise of ranges is measured for each such stretch of them by itself."""
+_EVERY: Final = 5
+"""Scans from one whose noise is measured to the next."""
+_STEEP: Final = 5.7
+"""Tangent of 80 degrees: what is met more aslant is hardly seen."""
+_OF_TWO: Final = math.sqrt(2.0)
+_OF_THREE: Final = math.sqrt(6.0)
+"""Times that of one range by which a difference of two is off, and what two say of a third."""
+
+
+def unknown_noises(farthest: float) -> Rows:
+    """Return what is taken for the noise of ranges up to ``farthest``, m, before a scan came."""
+    return np.concatenate([unknown_noise() for _ in range(math.ceil(farthest / _STEP))])
+
+
+@inner_part
+def measure_noises(noises: Rows, scan: int, ranges: Ranges, nearest: float) -> None:
+    """Take a scan, float32 [beams], m, as it was measured; ``scan`` is its number."""
+    if scan % _EVERY != 0:
+        return
+    for index in range(noises.size):
+        first = max(nearest, index * _STEP)
+        measure_noise(noises[index : index + 1], ranges, first, (index + 1) * _STEP)
+
+
+@part
+def noise_at(noises: Rows, away: float) -> float:
+    """Return the standard deviation of a range, m."""
+    return float(noises[min(int(away / _STEP), noises.size - 1)]["deviation"])
+
+
+@inner_part
+def is_mixed(ranges: Ranges, beam: int, step: float, around: int, slack: float) -> bool:
+    """Whether a range lies between what its neighbours met, and is of no surface with them.
+
+    ``step`` is the angle between beams, rad, of which ``around`` fill a turn; each range may be off
+    by ``slack``, m.
+    """
+    length = float(ranges[beam])
+    right, righter = _beside(ranges, beam, -1, around), _beside(ranges, beam, -2, around)
+    left, lefter = _beside(ranges, beam, 1, around), _beside(ranges, beam, 2, around)
+    wide = abs(step) * length
+    near = _OF_TWO * slack + wide
+    if abs(right - length) <= near or abs(left - length) <= near:
+        return False
+    if not (right <= length or left <= length):
+        # Something thin stands before what is behind it.
+        return False
+    is_between = abs(left - right) <= 2.0 * _STEEP * wide and _is_in_line(
+        length, 0.5 * (1.0 / right + 1.0 / left), _OF_TWO * slack
+    )
+    return not (
+        is_between
+        or _is_in_line(length, 2.0 / right - 1.0 / righter, _OF_THREE * slack)
+        or _is_in_line(length, 2.0 / left - 1.0 / lefter, _OF_THREE * slack)
+    )
+
+
+@part
+def _is_in_line(length: float, inverse: float, slack: float) -> bool:
+    """Whether a range is one of which neighbours say what 1/r is: it is even along a line."""
+    return abs(inverse * length - 1.0) * length <= slack
+
+
+@part
+def _beside(ranges: Ranges, beam: int, way: int, around: int) -> float:
+    """Return the range of the beam so many to one side, m; nan if there is none."""
+    other = (beam + way) % around
+    return float(ranges[other]) if other < ranges.size else math.nan
