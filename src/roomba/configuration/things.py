@@ -29,8 +29,8 @@ class ThingConfig(Frozen):
         What a scan in which a beam ends in a cell adds to it. One that stands for several scans
         adds as many times as much, up to ``most_gain``, so that one alone is never enough.
     ``behind``
-        What a scan of which more beams end just behind the cell than in it takes: they met what
-        is there, and noise alone made some shorter.
+        What a scan of which more beams end just behind the cell than in it takes, or which passed
+        it closely: they met what is there, and noise alone made some shorter.
     ``loss``
         What a scan that passes through the cell takes: more than ``gain``, for people walk on.
     ``most``

@@ -131,14 +131,19 @@ def _count_in(
 def _count_behind(
     things: Things, layer: Row, field: Field, place: Place, ends: Floats, count: int
 ) -> None:
-    """Count the beams that end so little behind each listed cell that noise may be why."""
+    """Note which listed cells beams passed closely, and count those that noise may have let pass.
+
+    These end no farther behind a cell than their noise reaches.
+    """
+    half = 0.5 * place[2]
     for index in range(count):
-        x, y, off_x, off_y = ends[index, 0], ends[index, 1], ends[index, 2], ends[index, 3]
+        x, y, slack_x, slack_y = ends[index, 0], ends[index, 1], ends[index, 2], ends[index, 3]
+        slack = math.sqrt(slack_x * slack_x + slack_y * slack_y)
         last = _cell_of(field, place, x, y)
-        steps = math.ceil(2.0 * math.sqrt(off_x * off_x + off_y * off_y) / place[2])
-        for step in range(1, steps + 1):
-            share = step / steps
-            cell = _cell_of(field, place, x - share * off_x, y - share * off_y)
+        for step in range(1, math.ceil(max(layer.clearly, slack) / half) + 1):
+            way = min(half * step, max(layer.clearly, slack))
+            share = way / slack
+            cell = _cell_of(field, place, x - share * slack_x, y - share * slack_y)
             if cell == last or cell < 0:
                 continue
             last = cell
@@ -147,7 +152,7 @@ def _count_behind(
                     continue
                 things.touched[cell] = layer.scan
                 things.beams[cell, IN], things.beams[cell, BEHIND] = 0, 0
-            things.beams[cell, BEHIND] += 1
+            things.beams[cell, BEHIND] += way < slack + half
 
 
 @inner_part
@@ -186,7 +191,7 @@ def _weigh(
         cell = things.listed[number]
         before = things.evidence[cell]
         if things.touched[cell] == layer.scan:
-            is_in = things.beams[cell, IN] >= things.beams[cell, BEHIND]
+            is_in = things.beams[cell, IN] >= max(things.beams[cell, BEHIND], 1)
             more = gain if is_in else -layer.behind * scans
         else:
             off_x = place[0] + (cell % columns) * place[2] - x

@@ -236,6 +236,7 @@ class Plain:
         config, frame = self._config, self._field.frame
         hit: Counter[tuple[int, int]] = Counter()
         behind: Counter[tuple[int, int]] = Counter()
+        passed: set[tuple[int, int]] = set()
         for beam, length in enumerate(ranges.tolist()):
             if not 0.15 <= length < config.farthest:
                 continue
@@ -249,16 +250,20 @@ class Plain:
             if is_mixed_by_itself(ranges, beam, slack):
                 continue
             hit[frame.cell_of(x, y)] += 1
-            steps = math.ceil(2.0 * slack / frame.resolution)
-            cells = [
-                frame.cell_of(x - share * slack * way[0], y - share * slack * way[1])
-                for share in np.arange(1, steps + 1) / steps
-            ]
-            behind.update(set(cells) - {frame.cell_of(x, y)})
+            half, most = 0.5 * frame.resolution, max(slack, config.clearly)
+            ways = np.minimum(half * np.arange(1, math.ceil(most / half) + 1), most)
+            cells = [frame.cell_of(x - back * way[0], y - back * way[1]) for back in ways]
+            is_far = [bool(back >= slack + half) for back in ways]
+            last = frame.cell_of(x, y)
+            for cell, far in zip(cells, is_far, strict=True):
+                if cell != last:
+                    passed.add(cell)
+                    behind[cell] += not far
+                last = cell
         for row, column in np.argwhere(self.evidence > 0).tolist():
             cell = row, column
-            if hit[cell] + behind[cell]:
-                less = 0 if hit[cell] >= behind[cell] else config.behind
+            if hit[cell] or cell in passed:
+                less = 0 if hit[cell] >= max(behind[cell], 1) else config.behind
             else:
                 less = config.loss if self._is_passed(ranges, pose, row, column) else 0
             self.evidence[cell] = max(0, self.evidence[cell] - less)
@@ -350,6 +355,25 @@ def test_a_thing_is_no_thicker_for_the_noise_of_ranges(deviation: float) -> None
     assert len(off) >= 12
     assert max(off) < 0.015 + deviation
     assert abs(np.median(off)) < 0.01
+
+
+def test_what_was_seen_too_near_from_afar_is_gone_when_it_is_seen_better() -> None:
+    """A box whose side at x = 3 was seen 4 cm before it comes to stand where it is."""
+    layer, angles = layer_of(ROOM), HERE.theta + np.arange(360) * (2.0 * np.pi / 360)
+    room = Eye(ROOM).scan(HERE)
+
+    def side(x: float) -> Ranges:
+        with np.errstate(divide="ignore"):
+            ways = (x - HERE.x) / np.cos(angles)
+        meets = (ways > 0.0) & (np.abs(ways * np.sin(angles)) < 0.25)
+        return np.where(meets, np.minimum(ways, room), room).astype(np.float32)
+
+    for _ in range(8):
+        layer.see(side(2.96), BEAMS, HERE)
+    assert min(x for x, _, _ in layer.obstacles()) < 2.97
+    for _ in range(30):
+        layer.see(side(3.01), BEAMS, HERE)
+    assert min(x for x, _, _ in layer.obstacles()) > 3.0
 
 
 def test_between_an_edge_and_what_is_behind_it_nothing_stands() -> None:
