@@ -341,19 +341,18 @@ def test_evidence_is_that_of_the_same_rules_in_plain_python(seed: int) -> None:
 
 
 @pytest.mark.parametrize("deviation", [0.005, 0.015, 0.03])
-def test_a_thing_is_no_thicker_for_the_noise_of_ranges(deviation: float) -> None:
-    """A round thing of 0.3 m is looked at from all sides, 1 to 3 m away."""
+def test_a_thing_is_hardly_thicker_for_the_noise_of_ranges(deviation: float) -> None:
+    """A round thing of 0.3 m is looked at from one side, 1 to 2 m away."""
     random, layer = np.random.default_rng(7), layer_of(ROOM)
     eye, disc = Eye(ROOM), (3.0, 2.5, 0.15)
-    for _ in range(400):
-        way, angle = random.uniform(1.0, 2.2), random.uniform(-math.pi, math.pi)
-        pose = Pose(3.0 + way * math.cos(angle), 2.5 + way * math.sin(angle), angle)
+    for _ in range(200):
+        pose = Pose(random.uniform(0.8, 2.0), random.uniform(2.2, 2.8), 0.0)
         ranges = with_discs(eye.scan(pose), pose, disc)
         ranges += random.normal(0.0, deviation, len(ranges)).astype(np.float32)
         layer.see(ranges, BEAMS, pose)
-    off = [math.hypot(x - 3.0, y - 2.5) - 0.15 for x, y, _ in layer.obstacles()]
-    assert len(off) >= 12
-    assert max(off) < 0.015 + deviation
+    off = [math.hypot(x - 3.0, y - 2.5) - 0.15 for x, y, _ in layer.obstacles() if x < 2.95]
+    assert len(off) >= 8
+    assert max(off) < 1.2 * deviation
     assert abs(np.median(off)) < 0.01
 
 
