@@ -55,7 +55,9 @@ class Readings:
     ``odometry`` and ``twist`` (m/s, rad/s) are by the wheels, ``turning`` (rad/s) by the gyro, None
     without one; ``scan`` is the newest one if it is new. ``grains`` is what the dirt sensor counts,
     1/s, ``in_bin`` what was picked up, g, ``brush_current`` what the brush's motor takes, A; 0
-    where it is not told; ``emptying`` is what a station tells that empties the bin.
+    where it is not told; ``emptying`` is what a station tells that empties the bin. ``wall`` is how
+    near the wall on its right is, from 0, out of the sensor's reach, to 1, at the body; 0 without
+    such a sensor.
     """
 
     time: float
@@ -74,6 +76,7 @@ class Readings:
     in_bin: float = 0.0
     brush_current: float = 0.0
     emptying: EmptyingTold | None = None
+    wall: float = 0.0
 
     @property
     def bumps(self) -> bool:

@@ -108,6 +108,7 @@ class Create2Body:
                 state.beams,
                 Battery(state.level, self._config.battery.capacity, state.has_power),
                 state.grains,
+                wall=state.wall,
             )
 
     def newest_scan(self) -> ScanReading | None:

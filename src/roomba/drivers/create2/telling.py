@@ -27,6 +27,7 @@ FAST: Final = (
 SLOW: Final = (
     Packet.BUMPS_AND_DROPS,
     Packet.DIRT,
+    Packet.WALL_SIGNAL,
     Packet.INFRARED_OMNI,
     Packet.CHARGING_STATE,
     Packet.CHARGE,
@@ -34,13 +35,14 @@ SLOW: Final = (
     Packet.INFRARED_LEFT,
     Packet.INFRARED_RIGHT,
 )
-"""21 bytes as a frame."""
+"""24 bytes as a frame."""
 ALL: Final = tuple(dict.fromkeys((*FAST, *SLOW)))
 _CHARGES: Final = frozenset({1, 2, 3, 4})
 """Charging states: reconditioning, full, trickle, waiting."""
 _MODES: Final = frozenset(int(mode) for mode in OpenMode)
 _DIRT_WINDOW: Final = 0.1
 """s; of which the dirt sensor tells what it counted (assumed)."""
+_MOST_WALL: Final = 1023
 _STATION_600: Final = {161: 1, 164: 4, 165: 5, 168: 8, 169: 9, 172: 12, 173: 13}
 _STATION_500: Final = {242: 1, 244: 4, 246: 5, 248: 8, 250: 9, 252: 12, 254: 13}
 _BEAMS: Final = _STATION_600 | _STATION_500
@@ -51,6 +53,7 @@ _BEAMS: Final = _STATION_600 | _STATION_500
 class Create2State:
     """What the robot told last; ``charge`` and ``capacity`` are in mAh, ``grains`` in 1/s.
 
+    ``wall`` is how near a wall on its right is, from 0, out of reach, to 1;
     ``has_power``: it stands on its station, or a cable is in it; ``has_cable``: the latter.
     """
 
@@ -66,6 +69,7 @@ class Create2State:
     charge: int = 0
     capacity: int = 0
     grains: float = 0.0
+    wall: float = 0.0
 
     @property
     def level(self) -> float:
@@ -91,6 +95,7 @@ def state_of(told: Told) -> Create2State:
         told.get(Packet.CHARGE, 0),
         told.get(Packet.CAPACITY, 0),
         told.get(Packet.DIRT, 0) / _DIRT_WINDOW,
+        min(1.0, told.get(Packet.WALL_SIGNAL, 0) / _MOST_WALL),
     )
 
 

@@ -65,6 +65,12 @@ def test_the_charge_is_a_share_and_dirt_a_rate() -> None:
     assert state_of({Packet.CAPACITY: 0}).level == 1.0
 
 
+def test_the_wall_sensor_tells_how_near_a_wall_is() -> None:
+    assert state_of({}).wall == 0.0
+    assert state_of({Packet.WALL_SIGNAL: 1023}).wall == 1.0
+    assert state_of({Packet.WALL_SIGNAL: 409}).wall == pytest.approx(0.4, abs=0.001)
+
+
 def test_a_mode_that_there_is_not_is_off() -> None:
     assert state_of({Packet.MODE: 9}).mode is OpenMode.OFF
 
