@@ -98,6 +98,8 @@ TESTED_BY: dict[str, tuple[str, str]] = {
     "roomba/headless/odometry_kernels": ("unit/headless/test_odometry.py", PART),
     "roomba/headless/burst_kernels": ("unit/headless/test_burst.py", PART),
     "roomba/headless/embodied": ("unit/headless/test_cleaner.py", "what a simulated robot is, too"),
+    "roomba/headless/live/bumping_robot": ("unit/headless/live/test_bumping_client.py", LIVE),
+    "roomba/headless/live/bumping_view": ("unit/headless/live/test_bumping_client.py", LIVE),
     "roomba/headless/live/live_home": ("unit/headless/live/test_playing.py", LIVE),
     "roomba/headless/live/errands": ("unit/headless/live/test_robot_client.py", LIVE),
     "roomba/headless/live/camera": ("unit/headless/live/test_client.py", LIVE),

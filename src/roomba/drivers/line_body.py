@@ -58,8 +58,8 @@ class LineBody:
 
     # ---------------------------------------------------------------- life
 
-    def start(self, first_scan: float = _FIRST_SCAN) -> None:
-        """Take the robot over, and return when its lidar told a scan.
+    def start(self, first_scan: float = _FIRST_SCAN, *, has_lidar: bool = True) -> None:
+        """Take the robot over, and return when its lidar told a scan, if it has one.
 
         Raises LineError when it does not answer, NoScanError when no scan comes within
         ``first_scan`` s; then it was given back.
@@ -68,6 +68,11 @@ class LineBody:
         self._trouble = ""
         self._clock.go_on()
         self._thread.start()
+        if has_lidar:
+            self._wait_for_scan(first_scan)
+        self._due = time.monotonic()
+
+    def _wait_for_scan(self, first_scan: float) -> None:
         end = time.monotonic() + first_scan
         while self._driver.newest_scan() is None:
             if time.monotonic() > end:
@@ -80,7 +85,6 @@ class LineBody:
                 )
             self._driver.act(Command())
             self._is_over.wait(_LOOK)
-        self._due = time.monotonic()
 
     def stop(self) -> None:
         """Let the robot stand, give it back, and let go of the line."""

@@ -66,6 +66,10 @@ class Embodied:
         """Let one tick pass, by what the brain wants."""
         self._pass(self.brain.decide())
 
+    def forget_rows(self) -> None:
+        """Forget the ticks that passed: a robot that lives on for days keeps none."""
+        self.rows.clear()
+
     def steer(self, twist: Twist) -> None:
         """Let one tick pass, driven by hand as far as that is safe; the mission stands."""
         if self._reaches_body():

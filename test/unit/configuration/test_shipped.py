@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 from pydantic import BaseModel
 
+from roomba.configuration.bumping import BumpingConfig
 from roomba.configuration.docking import DockingConfig
 from roomba.configuration.frozen import Frozen, load_config
 from roomba.configuration.household import HouseholdConfig
@@ -22,6 +23,7 @@ from roomba.errors import ConfigError
 from roomba.files.shipped import CONFIGURATION
 
 MODELS: dict[str, type[Frozen]] = {
+    "bumping": BumpingConfig,
     "docking": DockingConfig,
     "household": HouseholdConfig,
     "mapping": MappingConfig,

@@ -11,14 +11,21 @@ import sys
 from pathlib import Path
 from typing import Final
 
+from roomba.commands.play.bumping import bumping_life
 from roomba.commands.play.living import add_robot_options, wanted_robot
-from roomba.commands.play.owned import add_line_options, owned_life, require_fitting
+from roomba.commands.play.owned import (
+    add_lidar_option,
+    add_line_options,
+    owned_life,
+    require_fitting,
+)
 from roomba.commands.play.serving import add_page_options, listen_at, serve_page
 from roomba.commands.spelling import spelled
 from roomba.configuration.frozen import load_config
 from roomba.configuration.household import HouseholdConfig
 from roomba.errors import RoombaError
 from roomba.files.shipped import CONFIGURATION
+from roomba.headless.live.bumping_client import BumpingClient
 from roomba.headless.live.client import LiveClient
 from roomba.history.database import History
 from roomba.history.folder import history_folder
@@ -53,7 +60,7 @@ def main(arguments: list[str] | None = None) -> int:
 
 def _robot(
     wanted: argparse.Namespace, until_end: contextlib.ExitStack, repeat: str
-) -> tuple[LiveClient, RunSource, str]:
+) -> tuple[LiveClient | BumpingClient, RunSource, str]:
     """Return the robot, whose life it is, and what is told of it; raises RoombaError."""
     if wanted.robot is None:
         client = wanted_robot(wanted)
@@ -62,7 +69,7 @@ def _robot(
         return client, source, f"The robot lives in {wanted.home!r}. Its page:"
     # It is given back however the program is told to end.
     signal.signal(signal.SIGTERM, signal.default_int_handler)
-    life = owned_life(wanted, _warn)
+    life = bumping_life(wanted) if wanted.lidar == "none" else owned_life(wanted, _warn)
     until_end.callback(life.end)
     source = RunSource("play", wanted.robot, None, repeat)
     return life.client, source, f"Your {wanted.robot} on {wanted.line} is taken over. Its page:"
@@ -70,7 +77,7 @@ def _robot(
 
 def _live(
     wanted: argparse.Namespace,
-    client: LiveClient,
+    client: LiveClient | BumpingClient,
     bound: socket.socket,
     source: RunSource,
     told: str,
@@ -120,6 +127,7 @@ def _parser() -> argparse.ArgumentParser:
     )
     add_robot_options(parser)
     add_line_options(parser)
+    add_lidar_option(parser)
     add_page_options(parser)
     parser.add_argument(
         "--smart-home",

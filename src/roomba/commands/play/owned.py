@@ -59,10 +59,22 @@ def add_line_options(parser: argparse._ActionsContainer) -> None:
     )
 
 
+def add_lidar_option(parser: argparse.ArgumentParser) -> None:
+    """Add that there is no lidar."""
+    parser.add_argument(
+        "--lidar",
+        choices=("none",),
+        help="none: the robot has no lidar; it sweeps by bumps, and goes home by its station's "
+        "beams: " + ", ".join(robot.title for robot in ROBOTS.values() if robot.goes_without),
+    )
+
+
 def require_fitting(parser: argparse.ArgumentParser, wanted: argparse.Namespace) -> None:
     """Leave with status 2 where options of an owned and of a simulated robot are mixed."""
     if (wanted.robot is None) is not (wanted.line is None):
         parser.error("expected --robot NAME and --line DEVICE together")
+    if wanted.robot is None and wanted.lidar:
+        parser.error("expected --lidar none with --robot NAME alone")
     if wanted.robot is None and wanted.lidar_line:
         parser.error("expected --lidar-line DEVICE with --robot NAME alone")
     for name in _SIMULATED:

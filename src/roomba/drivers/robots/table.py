@@ -41,7 +41,8 @@ class OwnedRobot:
     """A kind of robot: its ``name`` on the command line, its ``title`` for people, and its body.
 
     ``lidar`` names the lidar that stands on it with a line of its own; empty: its own tells by the
-    robot's line. ``numbers`` is the name of the file of its numbers, where that is not its own.
+    robot's line. ``goes_without``: it can also do without a lidar, by bumps and beams. ``numbers``
+    is the name of the file of its numbers, where that is not its own.
     """
 
     name: str
@@ -49,6 +50,7 @@ class OwnedRobot:
     make_body: MakeBody
     lidar: str = ""
     numbers: str = ""
+    goes_without: bool = False
 
     @property
     def file(self) -> Path:
@@ -59,13 +61,21 @@ class OwnedRobot:
         """Return its numbers; raises ConfigError."""
         return load_robot_config(self.file)
 
-    def body_on(self, line: str, config: RobotConfig, lidar_line: str = "") -> LineBody:
+    def body_on(
+        self, line: str, config: RobotConfig, lidar_line: str = "", *, has_lidar: bool = True
+    ) -> LineBody:
         """Return the body of the robot on a line, not started.
 
         Raises LidarLineError where the lidar's line is missing or too much, and LineError without a
         line; a body may also raise that when it is started.
         """
-        if self.lidar and not lidar_line:
+        if not has_lidar and (lidar_line or not self.goes_without):
+            raise LidarLineError(
+                f"expected no line of a lidar, got {lidar_line}"
+                if lidar_line
+                else f"a {self.title} does not go without its lidar"
+            )
+        if has_lidar and self.lidar and not lidar_line:
             raise LidarLineError(
                 f"expected the line of the {self.lidar} on the {self.title}, such as /dev/ttyUSB1"
             )
@@ -105,7 +115,10 @@ class _OpenedByDriver:
 
 def _create2(port: str, lidar_port: str, config: RobotConfig) -> LineBody:
     clock = BodyClock(time.monotonic)
-    lidar = LidarReader(lambda: SerialLine(lidar_port, _LD19_BAUD), Ld19Frames(config.lidar), clock)
+    lidar = None
+    if lidar_port:
+        frames = Ld19Frames(config.lidar)
+        lidar = LidarReader(lambda: SerialLine(lidar_port, _LD19_BAUD), frames, clock)
     driver = Create2Body(port, clock, config, lidar=lidar)
     return LineBody(driver, _OpenedByDriver(), clock, config.timing.tick)
 
@@ -113,7 +126,9 @@ def _create2(port: str, lidar_port: str, config: RobotConfig) -> LineBody:
 _ALL: Final = (
     OwnedRobot("neato", "Neato (XV, Botvac D3 to D7)", _neato),
     OwnedRobot("openneato", "Neato behind OpenNeato's bridge", _openneato, numbers="neato"),
-    OwnedRobot("create2", "Create 2 or Roomba 500 to 900", _create2, lidar="LD19"),
+    OwnedRobot(
+        "create2", "Create 2 or Roomba 500 to 900", _create2, lidar="LD19", goes_without=True
+    ),
 )
 ROBOTS: Final[Mapping[str, OwnedRobot]] = {robot.name: robot for robot in _ALL}
 """All of them by name."""

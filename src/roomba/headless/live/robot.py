@@ -14,12 +14,13 @@ from collections.abc import Callable
 from concurrent.futures import Future
 from concurrent.futures import TimeoutError as FutureTimeoutError
 from queue import Empty, SimpleQueue
-from typing import Any, Final, TypeVar
+from typing import Any, Final, Generic, Protocol, TypeVar
 
 from roomba.client.observed import HAND_SILENCE, TickTimes
 from roomba.client.protocol import RobotUnavailableError
+from roomba.configuration.robot import RobotConfig
 from roomba.geometry import STANDSTILL, Twist
-from roomba.headless.embodied import Embodied
+from roomba.robot.readings import Readings
 
 _FRAME: Final = 0.05
 """s of wall time between two frames: at real time, a tick of the robot."""
@@ -31,19 +32,43 @@ SPEEDS: Final = (0.1, 100.0)
 TICK_BOUNDS: Final = (0.0001, 0.0003, 0.001, 0.003, 0.01, 0.03, 0.05, 0.1, 0.3, 1.0)
 """s by which ticks are counted."""
 
+
+class Ticked(Protocol):
+    """A robot whose time passes only while it is ticked."""
+
+    @property
+    def now(self) -> Readings:
+        """What its body told last."""
+
+    @property
+    def robot(self) -> RobotConfig:
+        """Its configuration."""
+
+    def forget_rows(self) -> None:
+        """Forget the ticks that passed, if it keeps them."""
+
+    def advance(self) -> None:
+        """Let some ticks pass."""
+
+    def steer(self, twist: Twist) -> None:
+        """Let one tick pass, driven by hand."""
+
+
 _Answer = TypeVar("_Answer")
-Observer = Callable[[Embodied], None]
-"""Is shown the robot after each frame in which its time passed, in the robot's thread."""
+_Robot = TypeVar("_Robot", bound=Ticked)
 
 
-class LiveRobot:
+class LiveRobot(Generic[_Robot]):
     """Lets a robot's time pass at ``speed`` times that of the wall clock, or as fast as it can."""
 
-    def __init__(self, robot: Embodied, speed: float, observe: Observer) -> None:
-        """Start nothing yet; ``observe`` is called after each frame."""
+    def __init__(self, robot: _Robot, speed: float, observe: Callable[[_Robot], None]) -> None:
+        """Start nothing yet.
+
+        ``observe`` is shown the robot after each frame in which its time passed, in its thread.
+        """
         self.speed = speed
         self._robot, self._observe = robot, observe
-        self._commands: SimpleQueue[tuple[Callable[[Embodied], Any], Future[Any]]]
+        self._commands: SimpleQueue[tuple[Callable[[_Robot], Any], Future[Any]]]
         self._commands = SimpleQueue()
         self._thread = threading.Thread(target=self._live, name="live robot", daemon=True)
         self._ends = threading.Event()
@@ -63,9 +88,7 @@ class LiveRobot:
         if self._thread.ident is not None:
             self._thread.join(_ANSWER)
 
-    def carry_out(
-        self, command: Callable[[Embodied], _Answer], timeout: float = _ANSWER
-    ) -> _Answer:
+    def carry_out(self, command: Callable[[_Robot], _Answer], timeout: float = _ANSWER) -> _Answer:
         """Let the robot's thread call ``command`` between two frames, and return its answer.
 
         Raises what it raises, and RobotUnavailableError when the robot ended or does not answer
@@ -134,7 +157,7 @@ class LiveRobot:
         """Let the time of a frame pass."""
         robot = self._robot
         # A robot that lives on for days keeps only the ticks of its last frame.
-        robot.rows.clear()
+        robot.forget_rows()
         before, began = robot.now.time, time.monotonic()
         until = before + _FRAME * self.speed
         if self._is_driven_by_hand:

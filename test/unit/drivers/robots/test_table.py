@@ -54,3 +54,15 @@ def test_the_line_of_a_lidar_is_asked_for_where_it_has_one_and_refused_else(
     given, said = ("", "such as /dev/ttyUSB1") if robot.lidar else ("/dev/x", "got /dev/x")
     with pytest.raises(LidarLineError, match=said):
         robot.body_on("/dev/null", robot.config(), given)
+
+
+@pytest.mark.parametrize("robot", ROBOTS.values(), ids=ROBOTS)
+def test_without_a_lidar_goes_what_can_and_others_say_that_they_do_not(robot: OwnedRobot) -> None:
+    if robot.goes_without:
+        body = robot.body_on("/dev/null", robot.config(), has_lidar=False)
+        assert body.newest_scan() is None
+        with pytest.raises(LidarLineError, match="got /dev/x"):
+            robot.body_on("/dev/null", robot.config(), "/dev/x", has_lidar=False)
+    else:
+        with pytest.raises(LidarLineError, match="does not go without"):
+            robot.body_on("/dev/null", robot.config(), has_lidar=False)

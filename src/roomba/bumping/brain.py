@@ -1,0 +1,255 @@
+"""The brain of a robot without a lidar, beside the mission: ticked with readings, it answers with
+commands. No clock, no files: it is given its random numbers."""
+
+from __future__ import annotations
+
+import math
+from enum import Enum
+from typing import Final
+
+import numpy as np
+
+from roomba.bumping.beam_approach import Approach, BeamApproach
+from roomba.bumping.felt_floor import FeltFloor
+from roomba.bumping.sweeping import BumpAndGo
+from roomba.configuration.bumping import BumpingConfig
+from roomba.configuration.docking import DockingConfig
+from roomba.configuration.robot import RobotConfig
+from roomba.control.speed_loop import SpeedLoop
+from roomba.geometry import STANDSTILL, Pose, Twist, wrap_angle
+from roomba.mission.inputs.senses import Battery
+from roomba.robot.command import Command
+from roomba.robot.readings import Readings
+
+
+class BumpingState(Enum):
+    """What the robot is at."""
+
+    DOCKED = "on its station"
+    LEAVING = "leaving its station"
+    SWEEPING = "sweeping"
+    HOMING = "looking for its station"
+    DOCKING = "driving onto its station"
+    STANDING = "standing"
+    PAUSED = "paused"
+    HELD = "held: it touches something wherever it turns; set it free"
+    EMERGENCY = "emergency stop"
+
+    @property
+    def drives(self) -> bool:
+        """Whether the robot moves by itself."""
+        return self in _DRIVES
+
+
+_DRIVES: Final = frozenset(
+    {
+        BumpingState.LEAVING,
+        BumpingState.SWEEPING,
+        BumpingState.HOMING,
+        BumpingState.DOCKING,
+    }
+)
+
+
+class BumpingBrain:
+    """Sweeps by bump and go until the battery is low or it is told to go home.
+
+    ``state`` is what it is at; ``floor`` what odometry says was swept; ``station`` where the docked
+    robot stands, in the frame of the odometry, or None if it never stood there.
+    """
+
+    def __init__(
+        self,
+        robot: RobotConfig,
+        config: BumpingConfig,
+        docking: DockingConfig,
+        max_speed: float,
+        rng: np.random.Generator,
+    ) -> None:
+        """Stand, until it is told to clean; ``max_speed``, m/s, is the fastest that it drives."""
+        self.robot, self._config, self._docking_config, self._rng = robot, config, docking, rng
+        self.state = BumpingState.STANDING
+        self.floor = FeltFloor(config, robot.brush.width)
+        self.station: Pose | None = None
+        self.readings: Readings | None = None
+        self._drive = SpeedLoop(robot.body, max_speed)
+        self._sweeping: BumpAndGo | None = None
+        self._approach: BeamApproach | None = None
+        self._paused = BumpingState.SWEEPING
+        self._blind_until = -math.inf
+        self._reach = config.near_home
+        self._homing_since: float | None = None
+        self._left: tuple[Pose, float] | None = None
+
+    # ---------------------------------------------------------------- what it is told to do
+
+    def clean(self) -> None:
+        """Sweep, from here or out of the station."""
+        self.floor.forget()
+        self._enter(BumpingState.LEAVING)
+
+    def dock(self) -> None:
+        """Go home; on its station it stays."""
+        if self.state is not BumpingState.DOCKED:
+            self._enter(BumpingState.HOMING)
+
+    def stop(self) -> None:
+        """Stand where it is."""
+        if self.state.drives:
+            self._enter(BumpingState.STANDING)
+
+    def pause(self) -> None:
+        """Stand until it is told to go on."""
+        if self.state.drives:
+            self._paused = self.state
+            self._enter(BumpingState.PAUSED)
+
+    def resume(self) -> None:
+        """Go on with what it was at; a robot that was set free goes on as well."""
+        if self.state in (BumpingState.PAUSED, BumpingState.HELD):
+            self._enter(self._paused)
+
+    def hold(self) -> None:
+        """Stand until the emergency stop is released."""
+        self._drive.emergency = True
+        self._enter(BumpingState.EMERGENCY)
+
+    def release(self) -> None:
+        """Release the emergency stop; it stands."""
+        self._drive.emergency = False
+        if self.state is BumpingState.EMERGENCY:
+            self._enter(BumpingState.STANDING)
+
+    def _enter(self, state: BumpingState) -> None:
+        self.state = state
+        self._sweeping = self._approach = self._left = None
+        if state not in (BumpingState.HOMING, BumpingState.DOCKING):
+            self._homing_since, self._reach = None, self._config.near_home
+        self.floor.coverage.lift()
+
+    def limit_speed(self, speed: float) -> None:
+        """Set the fastest that it drives, m/s."""
+        self._drive.set_max_speed(speed)
+
+    # ---------------------------------------------------------------- ticks
+
+    def tick(self, readings: Readings) -> Command:
+        """Take what the sensors tell, and return what is wanted, as far as that is safe."""
+        self.readings = readings
+        self._notice(readings)
+        wanted = self._act(readings)
+        sweeps = self.state in (BumpingState.SWEEPING, BumpingState.HOMING)
+        if sweeps:
+            self.floor.sweep(readings.odometry)
+        rests = None if sweeps else 0.0
+        return Command(self._safely(wanted, readings), rests, rests)
+
+    def steer(self, twist: Twist, readings: Readings) -> Command:
+        """Return what is wanted when the robot is steered by hand, as far as that is safe."""
+        self.readings = readings
+        return Command(self._safely(twist, readings), 0.0, 0.0)
+
+    def _safely(self, wanted: Twist, readings: Readings) -> Twist:
+        self._drive.set_hazards(readings.hazards)
+        self._drive.command(readings.time, wanted)
+        return self._drive.tick(readings.time)[0]
+
+    def _notice(self, readings: Readings) -> None:
+        """Notice what changes its state by itself."""
+        if readings.battery.is_docked:
+            self._remember_station(readings.odometry)
+            if self.state in (BumpingState.STANDING, BumpingState.HOMING):
+                self._enter(BumpingState.DOCKED)
+        elif self.state is BumpingState.DOCKED:
+            self._enter(BumpingState.STANDING)
+        if self.state is BumpingState.SWEEPING and self._is_low(readings.battery):
+            self._enter(BumpingState.HOMING)
+        if self._sweeping is not None and self._sweeping.is_held:
+            self._paused = self.state
+            self._enter(BumpingState.HELD)
+
+    def _remember_station(self, pose: Pose) -> None:
+        known = self.station
+        if known is None or known.distance_to(pose.x, pose.y) > self._config.cell:
+            self.station = pose
+
+    def _is_low(self, battery: Battery) -> bool:
+        return battery.level < self._config.home_level
+
+    def _act(self, readings: Readings) -> Twist:
+        match self.state:
+            case BumpingState.LEAVING:
+                return self._leave(readings)
+            case BumpingState.SWEEPING:
+                self._sweeping = self._sweeping or self._bump_and_go(None)
+                return self._sweeping.tick(readings)
+            case BumpingState.HOMING:
+                return self._go_home(readings)
+            case BumpingState.DOCKING:
+                return self._dock(readings)
+            case _:
+                return STANDSTILL
+
+    def _bump_and_go(
+        self, goal: tuple[float, float] | None, *, stays_at_walls: bool = False
+    ) -> BumpAndGo:
+        parts = self._config, self.robot.body.radius, self.floor, self._rng, goal
+        return BumpAndGo(*parts, stays_at_walls=stays_at_walls)
+
+    def _leave(self, readings: Readings) -> Twist:
+        """Back out of the station, and turn away from it."""
+        pose, config = readings.odometry, self._docking_config
+        if self._left is None:
+            if not readings.battery.is_docked:
+                self._enter(BumpingState.SWEEPING)
+                return STANDSTILL
+            turn = self._config.leaving_turn * float(self._rng.choice((-1.0, 1.0)))
+            self._left = pose, wrap_angle(pose.theta + turn)
+        began, heading = self._left
+        if began.distance_to(pose.x, pose.y) < config.undock_distance:
+            return Twist(-config.undock_speed, 0.0)
+        wrong = wrap_angle(heading - pose.theta)
+        if abs(wrong) <= self._config.aimed:
+            self._enter(BumpingState.SWEEPING)
+            return STANDSTILL
+        return Twist(0.0, math.copysign(self._config.turning_speed, wrong))
+
+    # ---------------------------------------------------------------- home
+
+    def _go_home(self, readings: Readings) -> Twist:
+        """Go to where odometry says that the station is; look for its beams around there."""
+        beams = readings.beams
+        if beams.leads and readings.time >= self._blind_until:
+            self._enter(BumpingState.DOCKING)
+            return STANDSTILL
+        self._homing_since = readings.time if self._homing_since is None else self._homing_since
+        # Where odometry is far off, walls lead by the station all the same.
+        looks = (readings.time - self._homing_since) % (2.0 * self._config.home_time)
+        is_at_walls = self.station is None or looks > self._config.home_time
+        if self._sweeping is None or is_at_walls is not (self._sweeping.goal is None):
+            goal = None if is_at_walls else self._place_to_look()
+            self._sweeping = self._bump_and_go(goal, stays_at_walls=is_at_walls)
+        pose, goal = readings.odometry, self._sweeping.goal
+        if goal is not None and pose.distance_to(*goal) < self._config.near_home:
+            self._reach += self._config.search_growth
+            self._sweeping.goal = self._place_to_look()
+        return self._sweeping.tick(readings)
+
+    def _place_to_look(self) -> tuple[float, float] | None:
+        """Return a place before the station, the farther from it the longer it was looked for."""
+        if self.station is None:
+            return None
+        before = self.station.compose(Pose(-self._config.before_home, 0.0, 0.0))
+        off_x, off_y = self._rng.normal(0.0, self._reach, 2).tolist()
+        return before.x + off_x, before.y + off_y
+
+    def _dock(self, readings: Readings) -> Twist:
+        if self._approach is None:
+            self._approach = BeamApproach(self._config)
+        twist = self._approach.tick(readings)
+        if self._approach.state is Approach.DOCKED:
+            self._enter(BumpingState.DOCKED)
+        elif self._approach.state is Approach.LOST:
+            self._blind_until = readings.time + self._config.blind_time
+            self._enter(BumpingState.HOMING)
+        return twist

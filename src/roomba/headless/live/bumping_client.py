@@ -1,0 +1,249 @@
+"""A page's view and commands of a robot without a lidar."""
+
+from __future__ import annotations
+
+import itertools
+import math
+import threading
+from collections.abc import Callable
+
+from roomba.bumping.brain import BumpingState
+from roomba.client import view
+from roomba.client.protocol import (
+    CleanReport,
+    ErrandOutcome,
+    RequestRefusedError,
+    RobotUnavailableError,
+)
+from roomba.geometry import STANDSTILL, Pose, Twist
+from roomba.headless.live.bumping_robot import BumpingRobot
+from roomba.headless.live.bumping_view import BY_WHEELS, FeltLayers, home_of_bumping, view_of
+from roomba.headless.live.robot import LiveRobot
+from roomba.vocabulary import CleanMode, RoomWay
+
+_NO_MAP = "it has no lidar, so it makes no map: it sweeps all that it bumps along"
+
+
+class BumpingClient:
+    """Observes and commands one robot; its methods may be called from any thread."""
+
+    def __init__(self, name: str, robot: BumpingRobot, speed: float = 1.0) -> None:
+        """Start nothing yet; ``name`` is that of the home, ``speed`` as of :class:`LiveRobot`."""
+        self._name, self._robot = name, robot
+        self._live = LiveRobot(robot, speed, self._observe)
+        self._lock = threading.Lock()
+        self._versions, self._layers = itertools.count(1), FeltLayers()
+        self._view: view.RobotView | None = None
+        self._home: view.HomeView | None = None
+        self._home_of: Pose | None = None
+        self._last: CleanReport | None = None
+        self._clean: _CleanUnderWay | None = None
+        body = robot.robot.body
+        self._top_speed = body.max_speed
+        self._limits = view.PageLimits(
+            body.max_speed,
+            body.max_angular_speed,
+            most_passes=1,
+            most_zones=0,
+            each_room=False,
+            modes=(CleanMode.WHOLE.value,),
+        )
+
+    def start(self) -> None:
+        """Let the robot live."""
+        self._live.start()
+
+    def end(self) -> None:
+        """Let its time stop."""
+        self._live.stop()
+
+    @property
+    def bin_capacity(self) -> float:
+        """What its dust bin takes, g."""
+        return self._robot.robot.brush.bin_capacity
+
+    @property
+    def ending(self) -> str:
+        """Why the robot's time does not pass any more; empty while it does."""
+        return self._live.ending
+
+    # ---------------------------------------------------------------- what a page reads
+
+    def limits(self) -> view.PageLimits:
+        """Return what may be asked for."""
+        return self._limits
+
+    def robot(self) -> view.RobotView:
+        """Return the newest state."""
+        if self.ending:
+            raise RobotUnavailableError(f"{self.ending}; start it again")
+        if self._view is None:
+            raise RobotUnavailableError("the robot has not begun to live yet")
+        return self._view
+
+    def home(self) -> view.HomeView:
+        """Return what seldom changes."""
+        if self._home is None:
+            raise RobotUnavailableError("the robot has not begun to live yet")
+        return self._home
+
+    def layer(self, name: view.LayerName) -> view.GridLayer | None:
+        """Return a layer as it is now."""
+        with self._lock:
+            return self._layers.layer(self._robot.brain.floor, name)
+
+    # ---------------------------------------------------------------- commands
+
+    def clean(self, order: view.CleanOrder) -> None:
+        """Begin to sweep; it ends when the battery is low, or when it is told to go home."""
+        if order.mode != CleanMode.WHOLE.value:
+            raise RequestRefusedError(_NO_MAP)
+
+        def begin(robot: BumpingRobot) -> None:
+            robot.brain.clean()
+            self._clean = _CleanUnderWay(robot)
+
+        self._obey(begin)
+
+    def dock(self) -> None:
+        """Go to the charging station."""
+        self._obey(lambda robot: robot.brain.dock())
+
+    def pause(self) -> None:
+        """Stand until told to go on."""
+        self._obey(lambda robot: robot.brain.pause())
+
+    def resume(self) -> None:
+        """Go on."""
+        self._obey(lambda robot: robot.brain.resume())
+
+    def stop(self) -> None:
+        """End what it does, and stay."""
+        self._obey(lambda robot: robot.brain.stop())
+
+    def locate(self) -> None:
+        """Beep."""
+        self._obey(lambda robot: robot.body.locate())
+
+    def empty_bin(self) -> None:
+        """Do nothing: it does not know how full its bin is, and the household counts."""
+
+    def emergency_stop(self, reason: str) -> None:
+        """Hold the drive until it is released."""
+        self._live.drive(STANDSTILL)
+        self._obey(lambda robot: robot.brain.hold())
+
+    def release(self) -> None:
+        """Release the emergency stop."""
+        self._obey(lambda robot: robot.brain.release())
+
+    def drive(self, linear: float, angular: float) -> None:
+        """Drive by hand; refused while the emergency stop holds, or it drives by itself."""
+        state = self._robot.brain.state
+        if state.drives or state is BumpingState.EMERGENCY:
+            raise RequestRefusedError(f"the robot is {state.value}; stop it to drive by hand")
+        most = self._limits.max_speed, self._limits.max_angular_speed
+        self._live.drive(
+            Twist(
+                min(max(linear, -most[0]), most[0]),
+                min(max(angular, -most[1]), most[1]),
+            )
+        )
+
+    def set_top_speed(self, speed: float) -> None:
+        """Set how fast it may drive, m/s."""
+        low, high = self._limits.min_speed, self._limits.max_speed
+        if not low <= speed <= high:
+            raise RequestRefusedError(
+                f"expected a speed from {low:g} to {high:g} m/s, got {speed:g}"
+            )
+        self._top_speed = speed
+        self._obey(lambda robot: robot.brain.limit_speed(speed))
+
+    # ---------------------------------------------------------------- what wants a map
+
+    def change_rooms(self, rooms: tuple[str, ...], each: tuple[RoomWay, ...] = ()) -> None:
+        """Refuse it: there are no rooms."""
+        raise RequestRefusedError(_NO_MAP)
+
+    def explore(self) -> None:
+        """Refuse it: it makes no map."""
+        raise RequestRefusedError(_NO_MAP)
+
+    def go_to(self, x: float, y: float) -> None:
+        """Refuse it: it does not know its place."""
+        raise RequestRefusedError(BY_WHEELS)
+
+    def empty_at_station(self) -> None:
+        """Refuse it: its station does not."""
+        raise RequestRefusedError("its station empties no bin: empty it by hand")
+
+    def replace_bag(self) -> None:
+        """Refuse it: there is none."""
+        raise RequestRefusedError("its station has no bag")
+
+    def put_zone(self, zone: view.ZoneView) -> None:
+        """Refuse it."""
+        raise RequestRefusedError(_NO_MAP)
+
+    def remove_zone(self, name: str) -> None:
+        """Refuse it."""
+        raise RequestRefusedError(_NO_MAP)
+
+    def rename_room(self, name: str, new_name: str) -> None:
+        """Refuse it."""
+        raise RequestRefusedError(_NO_MAP)
+
+    def join_rooms(self, names: tuple[str, ...]) -> None:
+        """Refuse it."""
+        raise RequestRefusedError(_NO_MAP)
+
+    def split_room(self, name: str, start: view.Point, end: view.Point) -> None:
+        """Refuse it."""
+        raise RequestRefusedError(_NO_MAP)
+
+    def undo_rooms(self) -> None:
+        """Refuse it."""
+        raise RequestRefusedError(_NO_MAP)
+
+    # ---------------------------------------------------------------- in the robot's thread
+
+    def _obey(self, command: Callable[[BumpingRobot], None]) -> None:
+        def obey(robot: BumpingRobot) -> None:
+            command(robot)
+            self._observe(robot)
+
+        self._live.carry_out(obey)
+
+    def _observe(self, robot: BumpingRobot) -> None:
+        """Take snapshots after a frame, or a command."""
+        if self._clean is not None:
+            self._last, self._clean = self._clean.look(robot, self._last)
+        self._view = view_of(robot, self._last, self._top_speed)
+        if self._home is None or self._home_of is not robot.brain.station:
+            self._home_of = robot.brain.station
+            self._home = home_of_bumping(next(self._versions), self._name, robot)
+
+
+class _CleanUnderWay:
+    """Counts one clean, which ends on the station or where the robot was stopped."""
+
+    def __init__(self, robot: BumpingRobot) -> None:
+        """Begin."""
+        self._began, self._way, self._at = robot.now.time, 0.0, robot.now.odometry
+
+    def look(
+        self, robot: BumpingRobot, last: CleanReport | None
+    ) -> tuple[CleanReport | None, _CleanUnderWay | None]:
+        """Follow it; return the last report, and itself unless it ended."""
+        now, state = robot.now, robot.brain.state
+        self._way += self._at.distance_to(now.odometry.x, now.odometry.y)
+        self._at = now.odometry
+        if state not in (BumpingState.DOCKED, BumpingState.STANDING):
+            return last, self
+        is_home = state is BumpingState.DOCKED
+        outcome = ErrandOutcome.COMPLETED if is_home else ErrandOutcome.STOPPED
+        swept = robot.brain.floor.coverage.swept_area
+        took = now.time - self._began
+        report = CleanReport(outcome, BY_WHEELS, swept, swept, math.nan, self._way, took, math.nan)
+        return report, None

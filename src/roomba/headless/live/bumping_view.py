@@ -1,0 +1,121 @@
+"""What a page shows of a robot without a lidar: by what its wheels say."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.bumping.brain import BumpingState
+from roomba.bumping.felt_floor import FeltFloor
+from roomba.client.protocol import CleanReport, VacuumSnapshot
+from roomba.client.view import GridLayer, HomeView, LayerName, RobotView
+from roomba.geometry import Pose
+from roomba.headless.live.bumping_robot import BumpingRobot
+from roomba.mission.phases.machine import VACUUM_STATES, Phase
+
+BY_WHEELS: Final = "it has no lidar: where it is, and what it swept, is by its wheels alone"
+_MARGIN: Final = 20
+"""Cells around what was swept that are shown; as often the grid is drawn elsewhere."""
+_PHASES: Final = {
+    BumpingState.DOCKED: Phase.DOCKED,
+    BumpingState.LEAVING: Phase.UNDOCKING,
+    BumpingState.SWEEPING: Phase.CLEANING,
+    BumpingState.HOMING: Phase.RETURNING,
+    BumpingState.DOCKING: Phase.DOCKING,
+    BumpingState.STANDING: Phase.IDLE,
+    BumpingState.PAUSED: Phase.PAUSED,
+    BumpingState.HELD: Phase.ERROR,
+    BumpingState.EMERGENCY: Phase.EMERGENCY,
+}
+_NO_SCAN: Final = np.empty((0, 2), np.float32)
+
+
+def phase_of(state: BumpingState) -> Phase:
+    """Return the word of a state that pages know."""
+    return _PHASES[state]
+
+
+def view_of(robot: BumpingRobot, last: CleanReport | None, top_speed: float) -> RobotView:
+    """Return the robot as it is now."""
+    now, brain = robot.now, robot.brain
+    pose, phase = now.odometry, phase_of(brain.state)
+    swept = brain.floor.coverage.swept_area
+    return RobotView(
+        time=now.time,
+        pose=(pose.x, pose.y, pose.theta),
+        doubt=robot.body.trouble or BY_WHEELS,
+        speed=abs(now.twist.linear),
+        dirt=math.nan,
+        held="emergency stop" if brain.state is BumpingState.EMERGENCY else "",
+        vacuum=VacuumSnapshot(
+            VACUUM_STATES[phase],
+            phase.value,
+            robot.body.trouble or (brain.state.value if phase is Phase.ERROR else ""),
+            "",
+            swept,
+            0.0,
+            0.0,
+            0.0,
+            now.battery.level,
+        ),
+        scan=_NO_SCAN,
+        path=_NO_SCAN,
+        last=last,
+        top_speed=top_speed,
+        charges=now.battery.is_docked,
+    )
+
+
+def home_of_bumping(version: int, name: str, robot: BumpingRobot) -> HomeView:
+    """Return what seldom changes: there are no rooms and no zones."""
+    station = robot.brain.station or Pose()
+    body, tool = robot.robot.body, robot.robot.brush.width
+    place = (station.x, station.y, station.theta)
+    return HomeView(version, name, place, (), (), (), body.radius, tool)
+
+
+class FeltLayers:
+    """The grids of a felt floor as a page draws them, cut to what is known."""
+
+    def __init__(self) -> None:
+        """Begin with none."""
+        self._shapes = itertools.count(1)
+        self._shape, self._window = 0, (0, 0, 0, 0)
+
+    def layer(self, floor: FeltFloor, name: LayerName) -> GridLayer | None:
+        """Return a layer as it is now; None of what such a robot does not know."""
+        if name not in (LayerName.MAP, LayerName.COVERAGE):
+            return None
+        swept, felt = floor.coverage.swept, floor.felt
+        first_row, end_row, first, end = self._look_for(swept | felt)
+        cells = swept.astype(np.uint8)
+        if name is LayerName.MAP:
+            cells[felt] = 2
+        frame = floor.coverage.frame
+        x, y = (
+            frame.origin_x + first * frame.resolution,
+            frame.origin_y + first_row * frame.resolution,
+        )
+        return GridLayer(
+            self._shape, frame.resolution, x, y, cells[first_row:end_row, first:end].copy()
+        )
+
+    def _look_for(self, known: NDArray[np.bool_]) -> tuple[int, int, int, int]:
+        """Return the rows and columns to be shown, of bool [rows, columns]."""
+        ends = []
+        for axis in (1, 0):
+            at = np.flatnonzero(known.any(axis=axis))
+            most = known.shape[1 - axis]
+            low, high = (int(at[0]), int(at[-1]) + 1) if len(at) else (most // 2, most // 2)
+            ends += [
+                max(low // _MARGIN * _MARGIN - _MARGIN, 0),
+                min(-(-high // _MARGIN) * _MARGIN + _MARGIN, most),
+            ]
+        window = (ends[0], ends[1], ends[2], ends[3])
+        if window != self._window:
+            self._window, self._shape = window, next(self._shapes)
+        return window

@@ -1,0 +1,109 @@
+"""Bump and go without a home: what it wants when it touches something."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from roomba.bumping.felt_floor import FeltFloor
+from roomba.bumping.sweeping import BumpAndGo, BumpMove
+from roomba.configuration.bumping import BumpingConfig
+from roomba.geometry import Pose, Twist, wrap_angle
+from roomba.robot.readings import Readings
+
+CONFIG, TICK = BumpingConfig(), 0.05
+
+
+class Driven:
+    """A body that does exactly what is wanted."""
+
+    def __init__(self, goal: tuple[float, float] | None = None, seed: int = 1) -> None:
+        self.floor = FeltFloor(CONFIG, 0.2)
+        rng = np.random.default_rng(seed)
+        self.sweeping = BumpAndGo(CONFIG, 0.17, self.floor, rng, goal)
+        self.pose, self.time = Pose(), 0.0
+
+    def tick(self, *, left: bool = False, right: bool = False, wall: float = 0.0) -> Twist:
+        readings = Readings(self.time, self.pose, bumper_left=left, bumper_right=right, wall=wall)
+        twist = self.sweeping.tick(readings)
+        turn, way = twist.angular * TICK, twist.linear * TICK
+        self.pose = self.pose.compose(
+            Pose(way * math.cos(turn / 2), way * math.sin(turn / 2), turn)
+        )
+        self.time += TICK
+        return twist
+
+    def until(self, move: BumpMove, seconds: float, wall: float = 0.0) -> None:
+        for _ in range(round(seconds / TICK)):
+            self.tick(wall=wall)
+            if self.sweeping.move is move:
+                return
+        raise AssertionError(f"not {move} within {seconds} s but {self.sweeping.move}")
+
+
+def test_it_begins_in_a_spiral_that_grows_and_ends() -> None:
+    driven = Driven()
+    driven.tick()
+    assert driven.sweeping.move is BumpMove.SPIRAL
+    farthest = 0.0
+    while driven.sweeping.move is BumpMove.SPIRAL and driven.time < 300.0:
+        driven.tick()
+        farthest = max(farthest, math.hypot(driven.pose.x, driven.pose.y))
+    assert driven.sweeping.move is BumpMove.STRAIGHT
+    assert farthest > CONFIG.spiral_end
+
+
+@pytest.mark.parametrize("is_left", [True, False])
+def test_after_a_touch_it_backs_off_and_turns_away_from_it(is_left: bool) -> None:
+    driven = Driven()
+    driven.until(BumpMove.STRAIGHT, 300.0)
+    before = driven.pose
+    driven.tick(left=is_left, right=not is_left)
+    assert driven.sweeping.move is BumpMove.BACK
+    assert driven.floor.felt.any()
+    driven.until(BumpMove.TURN, 5.0)
+    assert driven.pose.distance_to(before.x, before.y) == pytest.approx(
+        CONFIG.backing_way, abs=0.02
+    )
+    driven.until(BumpMove.STRAIGHT, 5.0)
+    turned = wrap_angle(driven.pose.theta - before.theta)
+    away = -turned if is_left else turned
+    assert CONFIG.least_turn - CONFIG.aimed - 0.1 < away or away < -math.pi + 0.2
+
+
+def test_along_a_wall_it_keeps_that_on_its_right_until_the_time_is_over() -> None:
+    driven = Driven()
+    driven.until(BumpMove.STRAIGHT, 300.0)
+    for _ in range(CONFIG.wall_every):
+        driven.tick(right=True)
+        driven.until(BumpMove.TURN, 5.0)
+        while driven.sweeping.move is BumpMove.TURN:
+            driven.tick()
+    assert driven.sweeping.move is BumpMove.WALL
+    assert driven.tick(wall=0.9).angular > 0.0
+    assert driven.tick(wall=0.2).angular == 0.0
+    assert driven.tick().angular < 0.0
+    driven.until(BumpMove.TURN, CONFIG.wall_time + 1.0, wall=0.2)
+    driven.until(BumpMove.STRAIGHT, 5.0)
+
+
+def test_a_wall_that_ended_is_looked_for_in_one_turn_and_then_it_goes_on() -> None:
+    driven = Driven()
+    driven.until(BumpMove.STRAIGHT, 300.0)
+    for _ in range(CONFIG.wall_every):
+        driven.tick(right=True)
+        driven.until(BumpMove.TURN, 5.0)
+        while driven.sweeping.move is BumpMove.TURN:
+            driven.tick()
+    driven.until(BumpMove.STRAIGHT, 2.0 * math.tau * CONFIG.wall_radius / CONFIG.wall_speed)
+
+
+def test_with_a_goal_it_comes_there() -> None:
+    driven = Driven(goal=(2.0, 1.0))
+    for _ in range(round(60.0 / TICK)):
+        driven.tick()
+        if driven.pose.distance_to(2.0, 1.0) < 0.3:
+            return
+    raise AssertionError(f"it is at {driven.pose}")

@@ -1,0 +1,86 @@
+"""A robot without a lidar, seen and commanded as a page does it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+
+import pytest
+from fixtures.bumping import BumpingHome
+from fixtures.waiting import wait_until
+
+from roomba.client.protocol import ErrandOutcome, RequestRefusedError
+from roomba.client.view import CleanOrder, LayerName
+from roomba.headless.live.bumping_client import BumpingClient
+from roomba.headless.live.bumping_robot import BumpingRobot
+
+
+@pytest.fixture
+def client() -> Iterator[BumpingClient]:
+    home = BumpingHome("studio", 1)
+    client = BumpingClient("studio", BumpingRobot(home.body, home.brain), speed=50.0)
+    client.start()
+    yield client
+    client.end()
+
+
+def phase(client: BumpingClient) -> str:
+    return client.robot().vacuum.phase
+
+
+def test_it_sweeps_is_paused_goes_on_and_comes_home(client: BumpingClient) -> None:
+    wait_until(lambda: phase(client) == "docked", 20.0, lambda: phase(client))
+    assert client.robot().charges
+    client.clean(CleanOrder())
+    wait_until(lambda: client.robot().vacuum.covered > 1.0, 60.0, lambda: phase(client))
+    assert phase(client) == "cleaning"
+    coverage, floor = client.layer(LayerName.COVERAGE), client.layer(LayerName.MAP)
+    assert coverage is not None
+    assert floor is not None
+    assert coverage.cells.sum() * coverage.resolution**2 > 1.0
+    assert coverage.cells.size < 200 * 200
+    assert client.layer(LayerName.DIRT) is None
+    client.pause()
+    assert phase(client) == "paused"
+    client.resume()
+    client.dock()
+    wait_until(lambda: phase(client) == "docked", 120.0, lambda: phase(client))
+    last = client.robot().last
+    assert last is not None
+    assert last.outcome is ErrandOutcome.COMPLETED
+    assert last.covered > 1.0
+    assert last.distance > 5.0
+
+
+def test_told_to_stop_it_stays_and_its_clean_is_told_as_stopped(client: BumpingClient) -> None:
+    client.clean(CleanOrder())
+    wait_until(lambda: phase(client) == "cleaning", 20.0, lambda: phase(client))
+    client.stop()
+    assert phase(client) == "idle"
+    last = client.robot().last
+    assert last is not None
+    assert last.outcome is ErrandOutcome.STOPPED
+    client.emergency_stop("test")
+    assert client.robot().held
+    with pytest.raises(RequestRefusedError):
+        client.drive(0.2, 0.0)
+    client.release()
+    before = client.robot().pose
+    client.drive(0.2, 0.0)
+    wait_until(lambda: math.dist(client.robot().pose[:2], before[:2]) > 0.02, 10.0, "it drives")
+
+
+def test_what_wants_a_map_is_refused_with_the_reason(client: BumpingClient) -> None:
+    rooms = CleanOrder(mode="rooms", rooms=("bath",))
+    asked: tuple[Callable[[], None], ...] = (
+        lambda: client.clean(rooms),
+        client.explore,
+        lambda: client.go_to(1.0, 1.0),
+        lambda: client.remove_zone("a"),
+    )
+    for ask in asked:
+        with pytest.raises(RequestRefusedError, match="lidar"):
+            ask()
+    assert client.limits().modes == ("whole",)
+    assert client.home().rooms == ()
+    assert "wheels" in client.robot().doubt
