@@ -62,8 +62,8 @@ build_workspace() {
 # What all files with compiled functions hold. Each state of them that was compiled has a stamp: to go back to a branch
 # compiles nothing. What other files hold in it is seen when it is loaded (src/roomba/compiled_sources.py).
 compiled_hash() {
-  (cd "$REPOSITORY" && { grep -rlE --include='*.py' 'compilation import' src/roomba | sort | xargs sha256sum; } |
-    hash_of "$(environment_stamp)")
+  (cd "$REPOSITORY" && { grep -rlE --include='*.py' 'compil(ation|ed_parts) import' src/roomba | sort | xargs sha256sum; } |
+    hash_of "$(environment_stamp)" src/roomba/compiled_parts.py)
 }
 
 # Prints the stamp of the environment that there is, with ROS or without.
@@ -77,25 +77,72 @@ environment_stamp() {
   done
 }
 
+# Whether a robot can clean with what is compiled; the rest is compiled beside it, or when it is needed.
 compiled_is_current() {
-  [[ -n $(environment_stamp) && -e $CACHE/compiled/$(compiled_hash) ]]
+  [[ -n $(environment_stamp) ]] && { compiled_is_complete || [[ -e $(compiled_stamp).left ]]; }
+}
+
+compiled_is_complete() {
+  [[ -e $(compiled_stamp) ]]
+}
+
+compiled_stamp() {
+  printf '%s\n' "$CACHE/compiled/$(compiled_hash)"
 }
 
 # What does not compile is for the tests to report; a set-up can do without, it only makes the first start slow.
-compile_loops() {
-  if [[ -r $VENV/.stamp-runtime ]]; then enter_environment; else enter_library; fi
-  local hash clean
-  hash=$(compiled_hash)
-  # Two halves at once, for two cores, each in an order in which the other half finds much compiled.
-  { python3 -m roomba.commands.map.warm && python3 -m roomba.commands.trials.warm; } &
+# First what the first clean needs, in two halves at once, for two cores, each in an order in which the other half finds
+# much compiled.
+compile_loops() { # library|runtime|dev
+  local clean ticks=bursts
+  enter_what_there_is
+  [[ $1 == library ]] || ticks=ticks # what ROS calls tick by tick needs no bursts yet
+  python3 -m roomba.commands.trials.warm "$ticks" &
   clean=$!
-  if python3 -m roomba.commands.warm_up && wait "$clean"; then
-    mkdir -p "$CACHE/compiled"
-    touch "$CACHE/compiled/$hash"
-  fi
-  # numba touches the folders that it looks into: these are of sources that are no more.
+  python3 -m roomba.commands.warm_up && wait "$clean" && count_loops_left
+}
+
+# One at a time. numba touches the folders that it looks into: the old ones are of sources that are no more.
+compile_other_loops() {
+  local module
+  enter_what_there_is
+  for module in trials.warm map.warm "warm_up others"; do
+    # shellcheck disable=SC2086 # a word of its own
+    python3 -m roomba.commands.$module || return 1
+    count_loops_left
+  done
+  mv -f "$(compiled_stamp).left" "$(compiled_stamp)"
   mkdir -p "$CACHE/numba" # another one may be named by NUMBA_CACHE_DIR
   find "$CACHE/numba" "$CACHE/compiled" -mindepth 1 -maxdepth 1 -mtime +30 -exec rm -r {} +
+}
+
+count_loops_left() {
+  mkdir -p "$CACHE/compiled"
+  python3 -m roomba.commands.compiling >"$(compiled_stamp).left"
+}
+
+# Begins to compile the rest, if that is not under way, and does not wait for it: it gives way to all others. Ctrl-C does not
+# end it; whatever else does, the next command goes on.
+compile_beside() {
+  say "It is usable; $(<"$(compiled_stamp).left") loops are still being compiled in the background, while the processor is free."
+  mkdir -p "$CACHE/logs"
+  (
+    flock --nonblock 8 || exit 0
+    renice -n 19 -p "$BASHPID"
+    compile_other_loops
+  ) 8>"$CACHE/compiling.lock" </dev/null &>"$CACHE/logs/compile_beside.log" &
+  disown
+}
+
+compile_all() {
+  (
+    flock --wait 1800 8
+    compiled_is_complete || compile_other_loops
+  ) 8>"$CACHE/compiling.lock"
+}
+
+enter_what_there_is() {
+  if [[ -r $VENV/.stamp-runtime ]]; then enter_environment; else enter_library; fi
 }
 
 # ---------------------------------------------------------------- all steps
@@ -106,7 +153,7 @@ set_up_is_complete() { # library|runtime|dev
     return
   fi
   system_is_current "$1" && python_is_current "$1" && workspace_is_current && compiled_is_current &&
-    { [[ $1 != dev ]] || npm_is_current; }
+    { [[ $1 != dev ]] || { npm_is_current && compiled_is_complete; }; }
 }
 
 set_up_missing_steps() { # library|runtime|dev
@@ -115,8 +162,11 @@ set_up_missing_steps() { # library|runtime|dev
     run_step "Building the catkin workspace in .workspace" build_workspace
   fi
   if ! compiled_is_current; then
-    run_step "Compiling the hot loops" compile_loops
+    run_step "Compiling the loops that a clean needs" compile_loops "$1"
     compiled_is_current || say "warning: not all could be compiled, the first start will be slow; see .cache/logs/compile_loops.log"
+  fi
+  if [[ $1 == dev ]] && ! compiled_is_complete; then
+    run_step "Compiling all other loops" compile_all
   fi
 }
 
@@ -141,7 +191,12 @@ set_up() { # library|runtime|dev
   mkdir -p "$CACHE"
   began=$(mktemp "$CACHE/.began.XXXXXX")
   if set_up_is_complete "$1"; then
-    mv -f "$began" "$CACHE/.complete-$1"
+    if compiled_is_complete; then
+      mv -f "$began" "$CACHE/.complete-$1"
+    else
+      rm -f "$began"
+      compile_beside
+    fi
     return
   fi
   rm -f "$began"
@@ -149,6 +204,7 @@ set_up() { # library|runtime|dev
   say "Setting up $REPOSITORY (if interrupted, the next command goes on where this one stopped)"
   with_setup_lock set_up_missing_steps "$1"
   say "Set up in $((SECONDS - started)) s"
+  compiled_is_complete || ! compiled_is_current || compile_beside
 }
 
 # ---------------------------------------------------------------- what is there

@@ -1,12 +1,20 @@
-"""Tells which function is being compiled, line by line: the first set-up compiles for minutes."""
+"""Tells which function is being compiled, line by line: the first set-up compiles for a minute.
+
+``python3 -m roomba.commands.compiling`` prints how many functions are not compiled yet.
+"""
 
 from __future__ import annotations
 
 import contextlib
+import importlib
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 from numba.core import event
+from numba.extending import is_jitted
+
+from roomba.compiled_sources import PACKAGE
 
 
 @contextlib.contextmanager
@@ -33,3 +41,27 @@ class _Teller(event.Listener):
 
     def on_end(self, event: Any) -> None:
         """Say nothing: the next function tells that this one is done."""
+
+
+def left_to_compile() -> list[str]:
+    """Return the functions of this package of whose sources, as they are, no code is kept."""
+    modules = [
+        ".".join(("roomba", *path.relative_to(PACKAGE).with_suffix("").parts))
+        for path in sorted(PACKAGE.rglob("*.py"))
+        if "compilation import" in path.read_text(encoding="utf-8")
+    ]
+    return [
+        f"{module}.{name}"
+        for module in modules
+        for name, value in vars(importlib.import_module(module)).items()
+        if is_jitted(value) and value.__module__ == module and not _is_kept(value)
+    ]
+
+
+def _is_kept(dispatcher: Any) -> bool:
+    folder = dispatcher.stats.cache_path
+    return folder is None or any(Path(folder).glob(f"*.{dispatcher.__qualname__}-*.nbi"))
+
+
+if __name__ == "__main__":
+    print(len(left_to_compile()))

@@ -1,5 +1,10 @@
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
+from pathlib import Path
+
 import numpy as np
 import pytest
 from numba import njit
@@ -29,3 +34,24 @@ def test_each_function_is_told_when_it_begins_to_be_compiled(
     told = capsys.readouterr().out.splitlines()
     assert [line.partition(": ")[0] for line in told] == ["1", "2"]
     assert [line.rpartition(".")[2] for line in told] == ["outer", "inner"]
+
+
+def test_what_is_not_compiled_is_found(tmp_path: Path) -> None:
+    """Of all, without a cache; one less, once that was called."""
+    program = (
+        "import sys; import numpy as np; from roomba.commands.compiling import left_to_compile; "
+        "from roomba.raster.distance import distance_to_nearest; "
+        "before = left_to_compile(); distance_to_nearest(np.eye(3, dtype=bool)); "
+        "print(len(before), *(set(before) - set(left_to_compile())))"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program],
+        env={**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)},
+        capture_output=True,
+        text=True,
+        check=True,
+        timeout=120.0,
+    )
+    count, *compiled = done.stdout.split()
+    assert int(count) > 100
+    assert compiled == ["roomba.raster.distance._transform"]

@@ -1,0 +1,139 @@
+"""What the set-up compiles before a robot is used, beside it, and not again."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+MAPPING = "-m roomba.commands.map.warm"
+DEADLINE = 30.0
+"""s that a script, or what it began in the background, may take."""
+PYTHON = """#!/bin/sh
+echo "$*" >>calls
+case "$*" in
+  *compiling) echo 7 ;;
+  *map.warm) while [ -e held ]; do sleep 0.01; done; [ ! -e broken ] ;;
+esac
+"""
+"""Stands for Python: notes what it is to run, and maps not before it may."""
+
+
+class Checkout:
+    """The scripts of the set-up, one file of a loop, and a Python that compiles nothing."""
+
+    def __init__(self, folder: Path) -> None:
+        """Make them as if all other steps were done, without ROS."""
+        self.folder = folder
+        for name in ("set_up.sh", "install_dependencies.sh"):
+            shutil.copy2(REPOSITORY / name, folder)
+        (folder / "src/roomba").mkdir(parents=True)
+        (folder / ".venv/bin").mkdir(parents=True)
+        (folder / ".venv/.stamp-library").write_text("made\n")
+        (folder / "src/roomba/compiled_parts.py").touch()
+        self.loop = folder / "src/roomba/loop.py"
+        self.loop.write_text("from roomba.compilation import entry\n")
+        program = folder / ".venv/bin/python3"
+        program.write_text(PYTHON)
+        program.chmod(0o755)
+
+    def does(self, script: str) -> tuple[bool, str]:
+        """Run commands of the set-up; return whether the last one did well, and what was told."""
+        steps = "library_is_current() { true; }; install_dependencies() { true; }"
+        done = subprocess.run(
+            ["bash", "-c", f"set -euo pipefail; . ./set_up.sh; {steps}; {script}"],
+            cwd=self.folder,
+            env={"PATH": os.environ["PATH"], "HOME": str(self.folder)},
+            capture_output=True,
+            text=True,
+            timeout=DEADLINE,
+            check=False,
+        )
+        return done.returncode == 0, done.stderr
+
+    @property
+    def calls(self) -> list[str]:
+        """What Python was called for since this was asked to forget."""
+        file = self.folder / "calls"
+        return file.read_text(encoding="utf-8").splitlines() if file.exists() else []
+
+    def forget(self) -> None:
+        """Begin to note calls anew."""
+        (self.folder / "calls").unlink(missing_ok=True)
+
+    def wait(self, condition: Callable[[], bool]) -> None:
+        """Wait until something is so."""
+        began = time.monotonic()
+        while not condition():
+            assert time.monotonic() - began < DEADLINE, self.calls
+            time.sleep(0.02)
+
+    def is_complete(self) -> bool:
+        """Whether all is compiled."""
+        return self.does("compiled_is_complete")[0]
+
+
+@pytest.fixture
+def checkout(tmp_path: Path) -> Checkout:
+    return Checkout(tmp_path)
+
+
+def test_a_command_goes_on_while_the_rest_is_compiled_and_says_so(checkout: Checkout) -> None:
+    held = checkout.folder / "held"
+    held.touch()
+    done, told = checkout.does("set_up library")
+    assert done
+    assert "It is usable; 7 loops are still being compiled in the background" in told
+    assert checkout.does("compiled_is_current")[0]
+    assert not checkout.is_complete()
+    assert "7 loops are still being compiled" in checkout.does("set_up library")[1]
+    held.unlink()
+    checkout.wait(checkout.is_complete)
+    # One process compiled the rest, though two commands wanted it.
+    assert checkout.calls.count(MAPPING) == 1
+    checkout.forget()
+    assert checkout.does("set_up library") == (True, "")
+    assert checkout.calls == []
+
+
+def test_to_go_back_to_a_branch_compiles_nothing(checkout: Checkout) -> None:
+    assert checkout.does("set_up library")[0]
+    checkout.wait(checkout.is_complete)
+    before = checkout.loop.read_text()
+    checkout.loop.write_text(f"{before}# of another branch\n")
+    assert not checkout.does("compiled_is_current")[0]
+    assert checkout.does("set_up library")[0]
+    checkout.wait(checkout.is_complete)
+    assert checkout.calls.count(MAPPING) == 2
+    checkout.forget()
+    checkout.loop.write_text(before)
+    assert checkout.does("set_up library") == (True, "")
+    assert checkout.calls == []
+
+
+def test_what_failed_in_the_background_is_tried_again_by_the_next_command(
+    checkout: Checkout,
+) -> None:
+    broken = checkout.folder / "broken"
+    broken.touch()
+    assert checkout.does("set_up library")[0]
+    checkout.wait(lambda: MAPPING in checkout.calls)
+    assert not checkout.is_complete()
+    broken.unlink()
+    assert checkout.does("set_up library")[0]
+    checkout.wait(checkout.is_complete)
+
+
+def test_tests_wait_for_all(checkout: Checkout) -> None:
+    done = ["npm_is_current", "system_is_current", "python_is_current", "workspace_is_current"]
+    steps = "; ".join(f"{step}() {{ true; }}" for step in done)
+    assert not checkout.does(f"{steps}; set_up_is_complete dev")[0]
+    has_ended, told = checkout.does(f"{steps}; set_up_missing_steps dev; set_up_is_complete dev")
+    assert has_ended, told
+    assert "Compiling all other loops" in told
