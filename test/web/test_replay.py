@@ -11,7 +11,8 @@ from playwright.sync_api import Browser, Page
 from web.conftest import page_at, serving
 from web.test_page import CONTRASTS, CONTROLS, DEADLINE
 
-from roomba.commands.sim.kept_run import StateSamples, figures_of, recording_of
+from roomba.commands.sim.kept_run import figures_of, recording_of
+from roomba.commands.sim.state_samples import StateSamples
 from roomba.commands.trials.runs import run_trial
 from roomba.commands.trials.trial import Trial
 from roomba.history.replay import RecordedRobot

@@ -15,7 +15,8 @@ import cv2
 import numpy as np
 
 from roomba.commands.play.living import live_client
-from roomba.commands.sim.kept_run import StateSamples, figures_of, recording_of
+from roomba.commands.sim.kept_run import figures_of, recording_of
+from roomba.commands.sim.state_samples import StateSamples
 from roomba.commands.trials.runs import run_trial
 from roomba.commands.trials.trial import Trial
 from roomba.errors import RoombaError

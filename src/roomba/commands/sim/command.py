@@ -66,7 +66,7 @@ def _complain(text: str, status: int) -> int:
 def _run_one(options: SimOptions, open_bag: BagOpener | None, words: list[str]) -> int:
     # Imported here: it takes a second, and a mistyped option should be reported at once.
     with nothing_thrown_away():
-        from roomba.commands.sim.kept_run import StateSamples, keep_run
+        from roomba.commands.sim.state_samples import StateSamples
         from roomba.commands.trials.runs import TrialSetup
         from roomba.headless.burst import LONGEST_BURST
 
@@ -83,6 +83,9 @@ def _run_one(options: SimOptions, open_bag: BagOpener | None, words: list[str]) 
         run = setup.run(observers)
     _tell_run(options, run)
     if options.keep:
+        # What keeps it is loaded once the table stands.
+        from roomba.commands.sim.kept_run import keep_run
+
         try:
             keep_run(run, samples, shlex.join([*PROGRAM.split(), *words]))
         except RoombaError as error:

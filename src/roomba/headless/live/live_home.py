@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 from roomba.client.protocol import RequestRefusedError
 from roomba.client.view import GridLayer, TruthView
-from roomba.headless.live.camera import LiveCamera
 from roomba.world.home.home import Home
 from roomba.world.simulator import Simulator
+
+if TYPE_CHECKING:
+    from roomba.headless.live.camera import LiveCamera
 
 
 class LiveHome(Protocol):
