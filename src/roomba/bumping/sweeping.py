@@ -27,7 +27,7 @@ class BumpMove(Enum):
 class BumpAndGo:
     """Drives by touch alone; ``goal``, m by odometry, is where it goes if it may.
 
-    ``stays_at_walls``: after each touch it goes along what it touched, as long as that lasts.
+    ``stays_at_walls``: after each touch it goes along what it touched, and longer.
 
     ``is_held``: it touched so often without coming away that it needs help.
     """
@@ -115,7 +115,8 @@ class BumpAndGo:
         else:
             self._next, self._along = BumpMove.STRAIGHT, None
             self._heading = self._away(pose, left=left, right=right)
-        self._detour = config.detour * float(self._rng.uniform(0.3, 2.0))
+        again = max(1.0, self._touches / config.wall_touches)
+        self._detour = config.detour * again * float(self._rng.uniform(0.3, 2.0))
         self._enter(BumpMove.BACK, readings)
 
     def _away(self, pose: Pose, *, left: bool, right: bool) -> float:
@@ -131,7 +132,8 @@ class BumpAndGo:
         for turn in turns.tolist():
             heading = wrap_angle(pose.theta + turn)
             worth = self._floor.new_ahead(pose, heading, config.look_ahead)
-            if self.goal is not None:
+            # Where it touches again and again, the way to the goal is shut.
+            if self.goal is not None and self._touches <= config.wall_touches:
                 bearing = math.atan2(self.goal[1] - pose.y, self.goal[0] - pose.x)
                 worth = -abs(wrap_angle(heading - bearing))
             worth += float(self._rng.uniform(0.0, 0.5))
@@ -199,7 +201,9 @@ class BumpAndGo:
         config = self._config
         speed = config.wall_speed
         self._along = readings.time if self._along is None else self._along
-        if readings.time - self._along > config.wall_time and not self._stays_at_walls:
+        # Around furniture in the middle of a room it would go for ever.
+        longest = config.home_wall_time if self._stays_at_walls else config.wall_time
+        if readings.time - self._along > longest:
             self._next, self._along = BumpMove.STRAIGHT, None
             self._heading = wrap_angle(readings.odometry.theta + 2.0 * config.least_turn)
             self._enter(BumpMove.TURN, readings)

@@ -38,6 +38,7 @@ class BumpingConfig(Frozen):
     floor_size: Positive = 40.0
     home_level: Ratio = 0.2
     home_time: Positive = 240.0
+    home_wall_time: Positive = 90.0
     near_home: Positive = 0.3
     before_home: Positive = 0.6
     detour: Positive = 0.8
