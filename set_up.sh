@@ -94,31 +94,36 @@ compiled_stamp() {
 # First what the first clean needs, in two halves at once, for two cores, each in an order in which the other half finds
 # much compiled.
 compile_loops() { # library|runtime|dev
-  local clean ticks=bursts
+  local clean ticks=bursts stamp
+  stamp=$(compiled_stamp)
   enter_what_there_is
   [[ $1 == library ]] || ticks=ticks # what ROS calls tick by tick needs no bursts yet
   python3 -m roomba.commands.trials.warm "$ticks" &
   clean=$!
-  python3 -m roomba.commands.warm_up && wait "$clean" && count_loops_left
+  if python3 -m roomba.commands.warm_up && wait "$clean"; then
+    count_loops_left "$stamp" || true
+  fi
 }
 
 # One at a time. numba touches the folders that it looks into: the old ones are of sources that are no more.
 compile_other_loops() {
-  local module
+  local module stamp
+  stamp=$(compiled_stamp)
   enter_what_there_is
   for module in trials.warm map.warm "warm_up others"; do
     # shellcheck disable=SC2086 # a word of its own
-    python3 -m roomba.commands.$module || return 1
-    count_loops_left
+    python3 -m roomba.commands.$module && count_loops_left "$stamp" || return 1
   done
-  mv -f "$(compiled_stamp).left" "$(compiled_stamp)"
+  mv -f "$stamp.left" "$stamp"
   mkdir -p "$CACHE/numba" # another one may be named by NUMBA_CACHE_DIR
   find "$CACHE/numba" "$CACHE/compiled" -mindepth 1 -maxdepth 1 -mtime +30 -exec rm -r {} +
 }
 
-count_loops_left() {
+# Nothing is said of sources that were changed meanwhile.
+count_loops_left() { # STAMP
+  [[ $(compiled_stamp) == "$1" ]] || return 1
   mkdir -p "$CACHE/compiled"
-  python3 -m roomba.commands.compiling >"$(compiled_stamp).left"
+  python3 -m roomba.commands.compiling >"$1.left"
 }
 
 # Begins to compile the rest, if that is not under way, and does not wait for it: it gives way to all others. Ctrl-C does not
@@ -137,7 +142,7 @@ compile_beside() {
 compile_all() {
   (
     flock --wait 1800 8
-    compiled_is_complete || compile_other_loops
+    compiled_is_complete || compile_other_loops || true
   ) 8>"$CACHE/compiling.lock"
 }
 

@@ -19,7 +19,8 @@ PYTHON = """#!/bin/sh
 echo "$*" >>calls
 case "$*" in
   *compiling) echo 7 ;;
-  *map.warm) while [ -e held ]; do sleep 0.01; done; [ ! -e broken ] ;;
+  *map.warm) while [ -e held ]; do sleep 0.01; done; [ ! -e broken_map ] ;;
+  *warm_up) [ ! -e broken ] ;;
 esac
 """
 """Stands for Python: notes what it is to run, and maps not before it may."""
@@ -117,10 +118,30 @@ def test_to_go_back_to_a_branch_compiles_nothing(checkout: Checkout) -> None:
     assert checkout.calls == []
 
 
+def test_of_sources_that_changed_meanwhile_nothing_is_said(checkout: Checkout) -> None:
+    held = checkout.folder / "held"
+    held.touch()
+    assert checkout.does("set_up library")[0]
+    checkout.wait(lambda: MAPPING in checkout.calls)
+    checkout.loop.write_text("from roomba.compilation import part\n")
+    held.unlink()
+    assert checkout.does("flock .cache/compiling.lock true")[0]
+    assert not checkout.does("compiled_is_current")[0]
+
+
+def test_what_does_not_compile_holds_up_no_command(checkout: Checkout) -> None:
+    (checkout.folder / "broken").touch()
+    done, told = checkout.does("set_up library && echo goes on >&2")
+    assert done, told
+    assert "warning: not all could be compiled" in told
+    assert told.endswith("goes on\n")
+    assert not checkout.does("compiled_is_current")[0]
+
+
 def test_what_failed_in_the_background_is_tried_again_by_the_next_command(
     checkout: Checkout,
 ) -> None:
-    broken = checkout.folder / "broken"
+    broken = checkout.folder / "broken_map"
     broken.touch()
     assert checkout.does("set_up library")[0]
     checkout.wait(lambda: MAPPING in checkout.calls)
