@@ -97,8 +97,6 @@ class TrackingConfig(Frozen):
     longest_blend: Positive = 0.10
     """m; so far before and after a soft corner the heading changes at most."""
     aimed: Positive = 0.01
-    leaving: Positive = 0.12
-    """rad; with a smaller error of the heading it drives on while a turn on the spot ends."""
     arrival_tolerance: Positive = 0.003
     turn_in_place_angle: Acute = 0.6
     """rad; with a larger error of the heading it turns on the spot first."""

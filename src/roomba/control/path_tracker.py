@@ -38,7 +38,6 @@ class PathTracker:
         state.turning_speed = min(config.turning_speed, body.max_angular_speed)
         state.turning_braking = config.turning_braking * body.max_angular_acceleration
         state.aimed = config.aimed
-        state.leaving, state.off_corner = config.leaving, config.off_corner
         state.there, state.period = config.arrival_tolerance, period
         state.askew, state.slowest = config.turn_in_place_angle, config.slowest
         state.turning_delay, state.late = config.turning_delay, config.late_ticks

@@ -31,8 +31,6 @@ TRACK: Final = np.dtype(
         ("turning_speed", "f8"),  # rad/s
         ("turning_braking", "f8"),  # rad/s2
         ("aimed", "f8"),  # rad; so well it aims before it drives
-        ("leaving", "f8"),  # rad; with a smaller error of the heading it leaves a corner
-        ("off_corner", "f8"),  # m; by so much it may be aside then
         ("there", "f8"),  # m; so near to a corner it is there
         ("period", "f8"),  # s; between two ticks
         ("askew", "f8"),  # rad; with a larger error of the heading it turns on the spot first
@@ -81,9 +79,9 @@ def track(
         left = course.stations[leg + 1] - course.stations[leg] - state.along
         error = wrapped(heading - theta)
         if state.turning > 0.0:
-            if abs(error) > state.leaving:
+            if abs(error) > state.aimed:
                 return 0.0, turn_speed(state, error)
-            state.turning = 1.0 if abs(error) > state.aimed else 0.0
+            state.turning = 0.0
         is_stop = course.through[leg + 1] == 0.0
         if left > (state.there if is_stop else 0.0):
             return drive(state, course, error, left, limit)
@@ -109,15 +107,8 @@ def turn_speed(state: Row, error: float) -> float:
 def drive(
     state: Row, course: Course, error: float, left: float, limit: float
 ) -> tuple[float, float]:
-    """Return the twist along the leg: as fast as the corners ahead allow, back to the line.
-
-    While a turn on the spot ends it drives on so slowly that it comes aside by ``off_corner``: the
-    error of the heading dies away within about 1.7 ticks.
-    """
+    """Return the twist along the leg: as fast as the corners ahead allow, back to the line."""
     speed = min(limit, corner_limit(state, course, left, limit))
-    if state.turning > 0.0:
-        leaving = state.off_corner / (1.7 * state.period * abs(error))
-        return min(speed, leaving), turn_speed(state, error)
     bend, _ = blended(state, course, left, 0.0)
     if abs(error + bend) > state.askew:
         # Pushed aside: it aims first.
