@@ -14,7 +14,7 @@ from running.alone import listing
 from running.background import Background
 from running.pytests import pytest_command
 from running.robots import Robots
-from running.suites import ROOT, Asked, Kind, asked_for
+from running.suites import FIRST, ROOT, Asked, Kind, asked_for
 
 CHECKS = (sys.executable, "-m", "running.checks")
 SAFETY = (sys.executable, "-m", "safety")
@@ -28,7 +28,8 @@ class Computing:
 
     name: str
     command: Sequence[str]
-    is_brief: bool
+    is_first: bool
+    """It begins beside robots that are timed, after those of its kind before it."""
     failed: Path | None = None
     """Where it lists tests that failed."""
 
@@ -54,13 +55,13 @@ def _beside_robots(asked: Asked) -> bool:
 
     Beside those that are timed there is one program at a time, which takes a core at most.
     """
-    robots, computing = Robots(asked), _computing(asked)
+    robots, computing = Robots(asked), _computing(asked, asked.of(FIRST))
     background: list[Background] = []
     for each in computing:
-        if each.is_brief:
+        if each.is_first:
             background.append(each.begin(after=background[-1] if background else None))
     robots.run_timed()
-    background += [each.begin() for each in computing if not each.is_brief]
+    background += [each.begin() for each in computing if not each.is_first]
     robots.run_others()
     passed = [part.passed() for part in background]
     return robots.passed() and all(passed)
@@ -71,26 +72,26 @@ def _one_by_one(asked: Asked) -> bool:
     return not any(each.returncode for each in ran)
 
 
-def _computing(asked: Asked) -> list[Computing]:
-    """Return what is to run without a robot."""
+def _computing(asked: Asked, first: Sequence[str] = ()) -> list[Computing]:
+    """Return what is to run without a robot, with folders of tests that are to begin ``first``."""
     found = []
     if asked.has(Kind.CHECKS):
-        found.append(Computing("lint", CHECKS, is_brief=True))
+        found.append(Computing("lint", CHECKS, is_first=True))
     if asked.has(Kind.COVERAGE):
-        found.append(Computing("safety", SAFETY, is_brief=True))
-    if asked.has(Kind.COMPUTING_BRIEFLY):
-        found.append(_tests(asked, Kind.COMPUTING_BRIEFLY))
+        found.append(Computing("safety", SAFETY, is_first=True))
+    if first:
+        found.append(_tests(asked, "first", first, is_first=True))
     if asked.has(Kind.COMPUTING):
         workers = ("-n", str(COMPUTING_AT_ONCE), "--dist", "worksteal")
-        found.append(_tests(asked, Kind.COMPUTING, workers))
+        rest = (*workers, *(f"--ignore={path}" for path in first), *asked.folders(Kind.COMPUTING))
+        found.append(_tests(asked, "computing", rest, is_first=False))
     return found
 
 
-def _tests(asked: Asked, kind: Kind, workers: Sequence[str] = ()) -> Computing:
-    name = kind.name.lower().replace("_", "-")
+def _tests(asked: Asked, name: str, chosen: Sequence[str], *, is_first: bool) -> Computing:
     failed = ROOT / ".cache" / f"failed-{name}"
-    command = pytest_command(*workers, *listing(failed), *asked.folders(kind), *asked.arguments)
-    return Computing(name, command, kind is Kind.COMPUTING_BRIEFLY, failed)
+    command = pytest_command(*listing(failed), *chosen, *asked.arguments)
+    return Computing(name, command, is_first, failed)
 
 
 if __name__ == "__main__":

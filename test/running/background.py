@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Final
 
 from running.alone import FAILED, listed, pass_alone
+from running.pytests import NO_TESTS
 from running.suites import ROOT
 
 IDLE: Final = ("chrt", "--idle", "0")
@@ -51,10 +52,11 @@ class Background:
     def passed(self) -> bool:
         """Wait for its end, print what it said, and return whether it was well.
 
-        Call it when nothing runs beside: what failed may run once more.
+        It may have no test of what was asked for. Call it when nothing runs beside: what failed
+        may run once more.
         """
         self.wait()
         print(self._log.read_text(encoding="utf-8", errors="replace"), flush=True)
         if self._status == FAILED and self._failed is not None:
             return pass_alone(listed(self._failed))
-        return self._status == 0
+        return self._status in (0, NO_TESTS)

@@ -18,10 +18,8 @@ class Kind(Enum):
     """Programs that read the sources."""
     COMPUTING = auto()
     """They compute all the time."""
-    COMPUTING_BRIEFLY = auto()
-    """They compute for half a minute."""
     COVERAGE = auto()
-    """They do so as well, and must run every line of what they test."""
+    """They compute, and must run every line of what they test."""
     GRAPHS = auto()
     """They start robots, and wait for them most of the time."""
     PAGES = auto()
@@ -40,7 +38,7 @@ class Suite:
 SUITES: Final = {
     "lint": Suite(Kind.CHECKS),
     "unit": Suite(Kind.COMPUTING),
-    "conformance": Suite(Kind.COMPUTING_BRIEFLY),
+    "conformance": Suite(Kind.COMPUTING),
     "safety": Suite(Kind.COVERAGE),
     "web": Suite(Kind.PAGES),
     "contract": Suite(Kind.GRAPHS),
@@ -71,6 +69,8 @@ WAITING: Final = (
     "system/test_create2_line.py",
 )
 """Those of them that wait most of the time, for lines and deadlines: they run beside the others."""
+FIRST: Final = ("conformance", "unit/perception")
+"""What computes, and begins beside those that are timed: one core is idle then for a while."""
 BY_DEFAULT: Final = tuple(name for name, suite in SUITES.items() if not suite.by_name_only)
 
 

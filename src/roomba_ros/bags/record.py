@@ -31,6 +31,8 @@ _FLUSH: Final = 0.4
 _LOOK: Final = 1.0
 """s of wall time between two looks for new topics."""
 _PAUSE: Final = 0.05
+_UNDER_WAY: Final = 0.2
+"""s that are still recorded when it was told to end: messages are on their way."""
 _AFTER: Final = 2.0
 """s of wall time that are recorded after something went wrong."""
 _REST: Final = 30.0
@@ -180,6 +182,7 @@ def _record(ear: GraphEar, kept: Recording | BlackBox) -> None:
             ear.look()
         kept.tick()
         time.sleep(_PAUSE)
+    time.sleep(_UNDER_WAY)
 
 
 def _wanted(arguments: Sequence[str] | None) -> argparse.Namespace:

@@ -19,6 +19,7 @@ ROS = {"record", "soak"}
 """What imports ROS as it starts."""
 DIFFER = {
     "--bag": "a bag that is written, or recorded drives that are read",
+    "--lidar": "the simulated one, or that a robot has none",
     "--map": "the map of a home, or whether a robot that lives in one knows it",
     "--out": "what is written: a folder, or a file of a kind",
     "--csv": "with a path there are several files, so none of them is standard output",
