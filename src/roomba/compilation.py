@@ -19,20 +19,14 @@ from pathlib import Path
 from typing import Any, Final, TypeVar
 
 from numba import njit
+from numba.extending import register_jitable
 
-from roomba.compiled_parts import register_part
 from roomba.compiled_sources import kept_by_sources
 
 _Function = TypeVar("_Function", bound=Callable[..., Any])
 
-_ALWAYS: Final[dict[str, Any]] = {
-    "error_model": "numpy",
-    "no_cfunc_wrapper": True,
-    "fastmath": False,
-    "forceinline": False,
-}
-"""None is called by its address, from C: what would make that possible is not compiled. What is not
-told here numba takes over from the caller that is compiled first."""
+_ALWAYS: Final[dict[str, Any]] = {"error_model": "numpy", "no_cfunc_wrapper": True}
+"""None is called by its address, from C: what would make that possible is not compiled."""
 _ALLOCATES: Final[dict[str, Any]] = {**_ALWAYS, "_nrt": True}
 _ALLOCATES_NOT: Final[dict[str, Any]] = {**_ALWAYS, "_nrt": False}
 _ANY_ORDER: Final = {"nsz", "arcp", "contract", "reassoc"}
@@ -99,5 +93,5 @@ def compiled(**options: Any) -> Callable[[Callable[..., Any]], Any]:
 
 
 def _part(function: _Function, options: dict[str, Any]) -> _Function:
-    register_part(function, options)
-    return function
+    registered: _Function = register_jitable(**options)(function)
+    return registered

@@ -4,13 +4,10 @@ from __future__ import annotations
 
 from typing import Any, Final
 
-from roomba.compiled_parts import PartCompiler
-
 KERNEL: Final[dict[str, Any]] = {
     "cache": True,
     "nogil": True,
     "error_model": "numpy",
-    "no_cfunc_wrapper": True,
     # No runtime for references: numba refuses code that allocates, and counts no references
     # to arrays that are passed on, which took a third of the time.
     "_nrt": False,
@@ -19,12 +16,7 @@ KERNEL: Final[dict[str, Any]] = {
 }
 """Options of ``numba.njit``: ``@compiled(**KERNEL)``."""
 
-INNER: Final[dict[str, Any]] = {
-    **KERNEL,
-    "cache": False,
-    "no_cpython_wrapper": True,
-    "pipeline_class": PartCompiler,
-}
+INNER: Final[dict[str, Any]] = {**KERNEL, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 """For a kernel that only other kernels call.
 
 What would take a scene's arrays over from Python takes longer to compile than most kernels.
