@@ -62,8 +62,8 @@ build_workspace() {
 # What all files with compiled functions hold. Each state of them that was compiled has a stamp: to go back to a branch
 # compiles nothing. What other files hold in it is seen when it is loaded (src/roomba/compiled_sources.py).
 compiled_hash() {
-  (cd "$REPOSITORY" && { grep -rlE --include='*.py' 'compil(ation|ed_parts) import' src/roomba | sort | xargs sha256sum; } |
-    hash_of "$(environment_stamp)" src/roomba/compiled_parts.py)
+  (cd "$REPOSITORY" && { grep -rlE --include='*.py' 'compilation import' src/roomba | sort | xargs sha256sum; } |
+    hash_of "$(environment_stamp)")
 }
 
 # Prints the stamp of the environment that there is, with ROS or without.

@@ -37,7 +37,6 @@ class Checkout:
         (folder / "src/roomba").mkdir(parents=True)
         (folder / ".venv/bin").mkdir(parents=True)
         (folder / ".venv/.stamp-library").write_text("made\n")
-        (folder / "src/roomba/compiled_parts.py").touch()
         self.loop = folder / "src/roomba/loop.py"
         self.loop.write_text("from roomba.compilation import entry\n")
         program = folder / ".venv/bin/python3"
