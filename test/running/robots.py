@@ -17,7 +17,7 @@ BY_FILE: Final = ("--dist", "loadfile", "--no-loadscope-reorder")
 test/conftest.py."""
 TIMED_AT_ONCE: Final = 2
 """Robots whose promises in wall time are tested; a third would break some."""
-WAITING_AT_ONCE: Final = 2
+WAITING_AT_ONCE: Final = 1
 """Beside those: what keeps promises in wall time as well, and takes little of a core."""
 OTHERS_AT_ONCE: Final = 3
 
