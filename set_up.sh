@@ -126,8 +126,8 @@ count_loops_left() { # STAMP
   python3 -m roomba.commands.compiling >"$1.left"
 }
 
-# Begins to compile the rest, if that is not under way, and does not wait for it: it gives way to all others. Ctrl-C does not
-# end it; whatever else does, the next command goes on.
+# Begins to compile the rest, if that is not under way, and does not wait for it: it gives way to all other processes. Ctrl-C
+# does not end it. If the process ends before all is compiled, the next command compiles what is left.
 compile_beside() {
   say "It is usable; $(<"$(compiled_stamp).left") loops are still being compiled in the background, while the processor is free."
   mkdir -p "$CACHE/logs"

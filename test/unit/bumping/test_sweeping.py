@@ -42,6 +42,15 @@ class Driven:
                 return
         raise AssertionError(f"not {move} within {seconds} s but {self.sweeping.move}")
 
+    def come_to_a_wall(self) -> None:
+        """Bump until it has turned to go along a wall."""
+        self.until(BumpMove.STRAIGHT, 300.0)
+        for _ in range(CONFIG.wall_every):
+            self.tick(right=True)
+            self.until(BumpMove.TURN, 5.0)
+            while self.sweeping.move is BumpMove.TURN:
+                self.tick()
+
 
 def test_it_begins_in_a_spiral_that_grows_and_ends() -> None:
     driven = Driven()
@@ -75,12 +84,7 @@ def test_after_a_touch_it_backs_off_and_turns_away_from_it(is_left: bool) -> Non
 
 def test_along_a_wall_it_keeps_that_on_its_right_until_the_time_is_over() -> None:
     driven = Driven()
-    driven.until(BumpMove.STRAIGHT, 300.0)
-    for _ in range(CONFIG.wall_every):
-        driven.tick(right=True)
-        driven.until(BumpMove.TURN, 5.0)
-        while driven.sweeping.move is BumpMove.TURN:
-            driven.tick()
+    driven.come_to_a_wall()
     assert driven.sweeping.move is BumpMove.WALL
     assert driven.tick(wall=0.9).angular > 0.0
     assert driven.tick(wall=0.2).angular == 0.0
@@ -91,12 +95,7 @@ def test_along_a_wall_it_keeps_that_on_its_right_until_the_time_is_over() -> Non
 
 def test_a_wall_that_ended_is_looked_for_in_one_turn_and_then_it_goes_on() -> None:
     driven = Driven()
-    driven.until(BumpMove.STRAIGHT, 300.0)
-    for _ in range(CONFIG.wall_every):
-        driven.tick(right=True)
-        driven.until(BumpMove.TURN, 5.0)
-        while driven.sweeping.move is BumpMove.TURN:
-            driven.tick()
+    driven.come_to_a_wall()
     driven.until(BumpMove.STRAIGHT, 2.0 * math.tau * CONFIG.wall_radius / CONFIG.wall_speed)
 
 

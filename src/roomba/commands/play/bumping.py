@@ -7,12 +7,12 @@ import argparse
 import numpy as np
 
 from roomba.bumping.brain import BumpingBrain
-from roomba.commands.options import UsageError
+from roomba.commands.play.owned import kind_of
 from roomba.configuration.bumping import BumpingConfig
 from roomba.configuration.docking import DockingConfig
 from roomba.configuration.frozen import load_config
 from roomba.drivers.line_body import LineBody
-from roomba.drivers.robots.table import ROBOTS, OwnedRobot
+from roomba.drivers.robots.table import OwnedRobot
 from roomba.files.shipped import CONFIGURATION
 from roomba.headless.live.bumping_client import BumpingClient
 from roomba.headless.live.bumping_robot import BumpingRobot
@@ -47,6 +47,4 @@ class BumpingLife:
 
 def bumping_life(wanted: argparse.Namespace) -> BumpingLife:
     """Return the robot that was asked for with ``--lidar none``; raises RoombaError."""
-    if wanted.robot not in ROBOTS:
-        raise UsageError(f"--robot: expected one of {', '.join(sorted(ROBOTS))}")
-    return BumpingLife(ROBOTS[wanted.robot], wanted.line, wanted.lidar_line)
+    return BumpingLife(kind_of(wanted), wanted.line, wanted.lidar_line)

@@ -145,10 +145,14 @@ def _tell_place(robot: Embodied, tell: Tell) -> None:
 
 def owned_life(wanted: argparse.Namespace, tell: Tell) -> OwnedLife:
     """Return the robot that :func:`add_line_options` asked for; raises RoombaError."""
-    if wanted.robot not in ROBOTS:
-        raise UsageError(f"--robot: expected one of {', '.join(sorted(ROBOTS))}")
-    kind = ROBOTS[wanted.robot]
-    makes_map = wanted.map == "none"
+    kind, makes_map = kind_of(wanted), wanted.map == "none"
     return OwnedLife(
         kind, wanted.line, makes_map=makes_map, tell=tell, lidar_line=wanted.lidar_line
     )
+
+
+def kind_of(wanted: argparse.Namespace) -> OwnedRobot:
+    """Return the kind of robot that was asked for; raises UsageError where there is none such."""
+    if wanted.robot not in ROBOTS:
+        raise UsageError(f"--robot: expected one of {', '.join(sorted(ROBOTS))}")
+    return ROBOTS[wanted.robot]
