@@ -47,7 +47,7 @@ CASES = {
         HOME, wheels="worn", lidar="neato", seed=3
     ),
     "explore with worn wheels": Case(TWO_ROOMS, wheels="worn", is_mapped=False, explores=True),
-    "charge on the way": Case(HOME, charge=0.09, charge_at=60.0, seconds=300.0),
+    "charge on the way": Case(HOME, charge=0.09, charge_at=30.0, seconds=300.0),
 }
 
 CORE = {

@@ -147,6 +147,8 @@ class CleaningConfig(Frozen):
     """Grains/m2; floor with fewer of them is not dirty."""
     dirty_near: Positive = 1.5
     """m; dirty floor as near as this is cleaned once more before the robot goes on."""
+    dirty_period: Positive = 5.0
+    """s; from one look for dirty floor close by to the next."""
     dirty_way: Positive = 3.0
     """m; more way than twice the shortest that could sweep it that such floor may cost."""
     least_dirty: Positive = 0.08
@@ -155,6 +157,8 @@ class CleaningConfig(Frozen):
     """m2; dirty patches as large as this are worth a way of their own at the end."""
     usual_floor: Positive = 4.0
     """m2; with less of it swept it is not known how dirty floor usually is."""
+    usual_period: Positive = 30.0
+    """s; so often that is measured for looks close by."""
     little_gain: Ratio = 0.05
     """Share of what was missed; a round that gains less of it ends the retries."""
     least_area_to_retry: Positive = 0.5
@@ -232,6 +236,8 @@ class EnergyConfig(Frozen):
     """With less than this share of the capacity the drive stops by itself."""
     check_period: Positive = 5.0
     """s; from one look at how far it is home to the next."""
+    ample: Ratio = 0.35
+    """With so much of the capacity besides the reserve no way home is too far."""
 
 
 class BinConfig(Frozen):

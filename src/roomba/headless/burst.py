@@ -16,7 +16,10 @@ from roomba.headless.body import SimulatedBody
 from roomba.headless.burst_kernels import run
 from roomba.headless.burst_state import BURST, Drive, Floor, PlaceParts, Sight, World
 from roomba.headless.rows import BELIEVED, PASSED
+from roomba.mission.cleaning.cleaning import Cleaning
+from roomba.mission.cleaning.dirty_kernels import WATCH
 from roomba.mission.driving.progress_kernels import PROGRESS
+from roomba.mission.driving.way_ahead_kernels import AHEAD
 from roomba.mission.steady import Steady
 from roomba.perception.localization.localizer import Localizer
 from roomba.perception.localization.recent_sight import RecentSight
@@ -29,8 +32,8 @@ from roomba.world.home.dirt import MICROGRAMS_PER_GRAM
 
 Floats = NDArray[np.float64]
 
-LONGEST_BURST: Final = 100
-"""Ticks, five seconds: about the period in which the mission checks its battery."""
+LONGEST_BURST: Final = 1200
+"""Ticks, a minute."""
 _EARLY: Final = 1e-6
 """s; a burst ends so much before a time that the classes decide by: rounding changes nothing."""
 _HARDLY_LESS: Final = 1.0 - 1e-9
@@ -124,6 +127,7 @@ class Burst:
         row["least_charge"] = steady.least_level * capacity / _HARDLY_LESS
         row["most_charge"] = steady.most_energy * _HARDLY_LESS
         row["goal"], row["near"] = steady.goal, steady.near
+        row["watches_dirt"] = steady.watches_dirt
         row["most_in_bin"] = steady.most_in_bin * MICROGRAMS_PER_GRAM * _HARDLY_LESS
         row["most_silent"] = steady.most_silent
         row["cell_area"] = (
@@ -132,10 +136,9 @@ class Burst:
             else (mission.cleaning.coverage.cell_area)
         )
         if steady.driver is not None:
-            row["clear_to"] = steady.driver.clear_to
             row["off_path"] = brain.config.driving.off_path
             row["progress_timeout"] = brain.config.driving.progress_timeout
-        row["things_version"] = brain.things.version
+        row["felt_version"] = mission.obstacles.felt_version
         row["clock"] = brain.readings.time - self._body.simulator.time
         row["scans"], row["seen_at"] = self._body.scans, brain.keeper.scans.seen_at
         mapper = self._mapper
@@ -174,7 +177,8 @@ class Burst:
         driver = steady.driver
         if driver is None:
             return self._nowhere
-        return Drive(driver.tracker.state, driver.tracker.course, driver.progress)
+        tracker = driver.tracker
+        return Drive(tracker.state, tracker.course, driver.progress, driver.ahead.rows)
 
     def _floor(self) -> Floor:
         """Return what is cleaned now; without a clean what is driven over does not count."""
@@ -192,6 +196,7 @@ class Burst:
             dirt.place,
             mission.dust,
             mission.carpet.rows,
+            *_watched(mission.cleaning),
         )
 
     # ---------------------------------------------------------------- handing back
@@ -256,13 +261,19 @@ def _place_of(place: tuple[float, float] | None) -> tuple[float, float]:
     return (np.nan, np.nan) if place is None else place
 
 
+def _watched(cleaning: Cleaning | None) -> tuple[NDArray[np.void], NDArray[np.bool_]]:
+    """Return what a clean remembers of its looks for dirty floor."""
+    return _UNWATCHED if cleaning is None else (cleaning.dirty.watch, cleaning.dirty.done)
+
+
 def _nowhere(brain: Brain) -> Drive:
     """Return the drive of a robot that stands."""
     robot = brain.robot
     points = np.array([[0.0, 0.0], [1.0, 0.0]])
     tracker = PathTracker(points, robot.tracking, robot.body, robot.timing.tick)
-    return Drive(tracker.state, tracker.course, np.zeros(1, PROGRESS))
+    return Drive(tracker.state, tracker.course, np.zeros(1, PROGRESS), np.zeros(1, AHEAD))
 
 
+_UNWATCHED: Final = np.zeros(1, WATCH), np.zeros((1, 1), np.bool_)
 _NO_SIGHTS: Final = RecentSight(RecentSightConfig()).arrays
 """A mapper doubts nothing."""

@@ -18,7 +18,9 @@ from roomba.control.tracking_kernels import track
 from roomba.headless.burst_place_kernels import believed, follow
 from roomba.headless.burst_state import Drive, Floats, Floor, PlaceParts, Rows, Sight, World
 from roomba.headless.rows import GYRO, TIME
+from roomba.mission.cleaning.dirty_kernels import may_be_dirty
 from roomba.mission.driving.progress_kernels import along_of, mark_progress, off_path
+from roomba.mission.driving.way_ahead_kernels import is_blocked
 from roomba.mission.phases.carpet_kernels import changes_floor, note_current
 from roomba.mission.phases.dust_bin_kernels import note_dust
 from roomba.perception.swept.coverage_kernels import sweep, swept_from
@@ -47,6 +49,7 @@ def run(
         if (
             comes_up(burst, robot, drive, sight.things, x, y, now)
             or may_be_full(burst, robot, floor)
+            or (burst.watches_dirt and is_dirty_near(floor, x, y, now))
             or changes_floor(floor.carpet, robot.brush_current)
         ):
             break
@@ -85,12 +88,12 @@ def comes_up(
         robot.bumper_left + robot.bumper_right + robot.docked > 0.0
         or robot.charge < burst.least_charge
         or math.hypot(x - burst.goal[0], y - burst.goal[1]) < burst.near
-        or things.layer[0].version != burst.things_version
         or off_path(tracker, drive.course, x, y) > burst.off_path
     ):
         return True
     along = along_of(tracker, drive.course)
-    if along >= burst.clear_to:
+    course, version = drive.course, things.layer[0].version + burst.felt_version
+    if is_blocked(drive.ahead, things, course.points, course.stations, version, along):
         return True
     return bool(mark_progress(drive.progress, along, tracker.leg, now) > burst.progress_timeout)
 
@@ -100,6 +103,14 @@ def may_be_full(burst: Any, robot: Any, floor: Floor) -> bool:
     """Tell whether the dust bin may have become full, by its level or as no grain comes in."""
     silent = floor.dust[0].silent_cells * burst.cell_area
     return bool(robot.in_bin >= burst.most_in_bin or silent >= burst.most_silent)
+
+
+@inner_part
+def is_dirty_near(floor: Floor, x: float, y: float, now: float) -> bool:
+    """Tell whether the mission is to look for dirty floor near a place, m."""
+    return may_be_dirty(
+        floor.watch, floor.grains, floor.way, floor.done, floor.dirt_place, x, y, now
+    )
 
 
 @inner_part

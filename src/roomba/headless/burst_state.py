@@ -40,13 +40,13 @@ BURST: Final = np.dtype(
         ("most_charge", "f8"),
         ("goal", "f8", (2,)),  # m
         ("near", "f8"),  # m
+        ("watches_dirt", "?"),  # whether dirty floor close by ends it
         ("most_in_bin", "f8"),  # micrograms
         ("most_silent", "f8"),  # m2 that became clean without a grain
         ("cell_area", "f8"),  # m2
-        ("clear_to", "f8"),  # m along the path
         ("off_path", "f8"),  # m
         ("progress_timeout", "f8"),  # s without progress
-        ("things_version", "i8"),  # of what is known to stand in the way
+        ("felt_version", "i8"),  # of what the bumper felt in the way
         # what goes on
         ("clock", "f8"),  # s; of the robot, beside the world's
         ("scans", "i8"),  # that came so far
@@ -106,11 +106,12 @@ class Sight(NamedTuple):
 
 
 class Drive(NamedTuple):
-    """The tracker, its path, and how it comes farther on it."""
+    """The tracker, its path, how it comes farther on it, and how far that is clear."""
 
     state: Rows
     course: Course
     progress: Rows
+    ahead: Rows
 
 
 class Floor(NamedTuple):
@@ -126,3 +127,5 @@ class Floor(NamedTuple):
     dirt_place: Floats
     dust: Rows
     carpet: Rows
+    watch: Rows
+    done: NDArray[np.bool_]

@@ -35,6 +35,8 @@ class Steady:
         g in the dust bin, and m2 of floor that became clean without a grain that came in.
     ``goal``, ``near``
         m; where it wants to get, and so near it is there.
+    ``watches_dirt``
+        Dirty floor close by is swept once more before it goes on.
     """
 
     driver: PathDriver | None
@@ -46,6 +48,7 @@ class Steady:
     most_silent: float = math.inf
     goal: tuple[float, float] = (0.0, 0.0)
     near: float = -1.0
+    watches_dirt: bool = False
 
 
 class SteadyTicks:
@@ -77,7 +80,8 @@ class SteadyTicks:
             steady = self._returning(driver, limit)
         else:
             ledger = self._job.ledger
-            steady = Steady(driver, limit, ledger.next_check, ledger.empty)
+            steady = Steady(driver, limit, ledger.next_check(senses), ledger.least_ample(senses))
+            steady = replace(steady, watches_dirt=self._watches_dirt(phase))
         return self._until_bin_full(steady, senses) if sweeps else steady
 
     def _charging(self, senses: Senses) -> Steady | None:
@@ -89,10 +93,15 @@ class SteadyTicks:
     def _driver_in(self, phase: Phase) -> PathDriver | None:
         """Return what drives along a path with nothing else to decide."""
         driver = self._drives.driver
-        if phase not in _ALONG_PATHS or driver is None or not driver.is_undisturbed:
+        if phase not in _ALONG_PATHS or driver is None or not driver.is_tracking:
             return None
         is_retrying = self._retries.is_pending and phase is not Phase.EXPLORING
         return None if is_retrying or self._monitor.is_astray else driver
+
+    def _watches_dirt(self, phase: Phase) -> bool:
+        cleaning = self._job.cleaning
+        is_round = phase is Phase.CLEANING and self._drives.is_round
+        return is_round and cleaning is not None and cleaning.watches_dirt
 
     def _returning(self, driver: PathDriver, limit: float) -> Steady:
         context, empty = self._drives.context, self._job.ledger.empty

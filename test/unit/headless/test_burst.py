@@ -52,8 +52,12 @@ def is_steady(robot: HeadlessMission) -> bool:
     steady = robot.mission.steady(robot.senses())
     if steady is None or steady.driver is None or steady.until < robot.seen.time + 1.0:
         return False
-    driver = steady.driver
-    return min(driver.left, driver.clear_to - driver.tracker.along) > 0.4
+    driver, cleaning = steady.driver, robot.mission.cleaning
+    if cleaning is not None:
+        watch = cleaning.dirty.watch[0]
+        if watch["looked_at"] + watch["look_period"] < robot.seen.time + 1.0:
+            return False
+    return min(driver.left, driver.ahead.clear_to - driver.tracker.along) > 0.4
 
 
 BOTH: Final = pytest.mark.parametrize("is_mapped", [True, False], ids=["known", "growing"])
@@ -116,11 +120,15 @@ def test_it_ends_when_nothing_is_seen(is_mapped: bool) -> None:
 def test_it_ends_where_something_comes_into_the_way(is_mapped: bool) -> None:
     robot = under_way(is_mapped=is_mapped)
     until(robot, lambda: is_steady(robot) and robot.mission.driver.left > 1.2)  # type: ignore[union-attr]
-    ahead = robot.simulator.pose.compose(Pose(0.5, 0.0, 0.0))
-    robot.simulator.place_obstacle(ahead.x, ahead.y, 0.05)
-    version, before = robot.mission.obstacles.version, robot.seen.time
-    until(robot, lambda: robot.mission.obstacles.version != version)
-    assert robot.seen.time - before < 1.5
+    driver = robot.mission.driver
+    assert driver is not None
+    course, station = driver.tracker.course, driver.tracker.along + 0.7
+    x, y = (float(np.interp(station, course.stations, each)) for each in course.points.T)
+    robot.simulator.place_obstacle(x, y, 0.05)
+    until(robot, lambda: driver.tracker.course is not course or robot.mission.driver is not driver)
+    # It left the path before it was there.
+    away = robot.seen.pose.distance_to(x, y) - 0.05 - robot.robot.body.radius
+    assert away > 0.5 * robot.config.driving.look_ahead
     assert not robot.seen.bumper.pressed
 
 

@@ -43,6 +43,8 @@ def inside_by(record: CleanRecord, since: float, area: tuple[float, ...]) -> flo
     return BODY - float(np.hypot(dx, dy).min())
 
 
+SPECK = 0.01
+"""m2."""
 AREA = (1.9, 1.5, 3.0, 2.5)
 
 
@@ -94,5 +96,6 @@ def test_a_virtual_wall_before_the_rest_leaves_it_out() -> None:
     assert record.result.outcome is CleanOutcome.COMPLETED
     assert robot.is_home
     assert record.poses[:, 1].max() < WALL_X
-    assert record.result.missed == ()
+    # What the wall shuts off is not missed; specks may be.
+    assert all(each.area < SPECK for each in record.result.missed)
     assert floor_clean(robot, context.coverable()) >= FLOOR_TOO_LITTLE

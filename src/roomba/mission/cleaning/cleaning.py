@@ -51,7 +51,8 @@ class Cleaning:
     ) -> None:
         """Find out what is wanted; raises CleanRefusedError when that is nothing."""
         self._context, self._config = context, config
-        self._dirty = DirtyFloor(dirt, config)
+        self.dirty = DirtyFloor(dirt, config)
+        """What is so dirty that it is swept once more."""
         self._ledger = CoverageLedger(request, context, dirt, here)
         if not (self.coverage.wanted_cells or self.explores):
             raise CleanRefusedError(
@@ -132,7 +133,7 @@ class Cleaning:
 
     def begin_room(self) -> None:
         """Plan over the present room from its beginning on."""
-        self._dirty.begin_pass()
+        self.dirty.begin_pass()
         self._begin_stage()
 
     def next_path(self, here: Pose, obstacles: list[RoundObstacle]) -> Floats | None:
@@ -150,15 +151,21 @@ class Cleaning:
             self._next_stage()
         return None
 
-    def dirty_at_hand(self, here: Pose, obstacles: list[RoundObstacle]) -> Floats | None:
+    @property
+    def watches_dirt(self) -> bool:
+        """Whether dirty floor close by gets its other pass before the robot goes on."""
+        return self.stage is not None and not self._context.is_growing
+
+    def dirty_at_hand(
+        self, here: Pose, obstacles: list[RoundObstacle], now: float
+    ) -> Floats | None:
         """Return the way over dirty floor close by and back here, float64 [n, 2], m, or None.
 
-        That is floor which was swept just now, and gets its other pass before the robot goes on.
+        That is floor which was swept just now, at ``now`` s.
         """
         stage, at = self.stage, (here.x, here.y)
-        if stage is None or self._context.is_growing:
-            return None
-        again = self._dirty.at_hand(self.coverage, stage.floor, at)
+        assert stage is not None
+        again = self.dirty.at_hand(self.coverage, stage.floor, at, now)
         if again is None:
             return None
         obstacles = obstacles + closed_gaps(obstacles, self._context.reach, self._context.gap_spare)
@@ -170,7 +177,7 @@ class Cleaning:
         area = float(np.count_nonzero(again)) * self.coverage.cell_area
         if plan.length > self._config.dirty_way + 2.0 * area / self._context.tool_width:
             return None
-        self._dirty.note_again()
+        self.dirty.note_again()
         self._ledger.sweep_anew(again)
         return plan.points
 
@@ -237,7 +244,7 @@ class Cleaning:
             # With the whole map the first way through is done.
             self._rounds = 0 if context.is_growing else 1
         self._context = context
-        self._dirty.begin(dirt)
+        self.dirty.begin(dirt)
         self._ledger.use_context(context, dirt)
 
     def values(self) -> Values:
@@ -377,7 +384,7 @@ class Cleaning:
     def _dirty_again(self, stage: Stage) -> Mask:
         """Return what was so dirty that it gets another pass, once a stage."""
         self._scrubbed = True
-        again = self._dirty.left(self.coverage, stage.floor)
+        again = self.dirty.left(self.coverage, stage.floor)
         if again.any():
             self._ledger.sweep_anew(again)
             self._last_missed = np.inf

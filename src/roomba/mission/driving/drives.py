@@ -71,8 +71,7 @@ class Drives:
     def caught_up(self, senses: Senses, places: Floats) -> None:
         """Go on after ticks that were the tracker's alone, begun at places, float64 [n, 2], m."""
         if self.driver is not None:
-            for x, y in places.tolist():
-                self.trail.add(x, y)
+            self.trail.add_all(places)
             self.driver.caught_up(senses)
 
     def leaves_zone(self, senses: Senses) -> bool:

@@ -57,7 +57,8 @@ class Obstacles:
         self, seen: ThingLayer, walk: WalkConfig, body: BodyConfig, config: DrivingConfig
     ) -> None:
         """Begin with what ``seen`` holds, and nothing felt."""
-        self._seen = seen
+        self.seen = seen
+        """What the lidar sees, of the present map."""
         self._felt = UnknownThings(walk, body, config.felt_memory)
         # What is felt at a place again and again is no wall that it met being late.
         self._lasting = UnknownThings(walk, body, config.lasting_memory)
@@ -65,8 +66,10 @@ class Obstacles:
         # Stairs do not go away.
         self._edges = UnknownThings(walk, body, _FOREVER)
         self._same_place = config.lasting_radius
-        self._felt_version = 0
-        self._keep = body.radius - _SPARED
+        self.felt_version = 0
+        """A number that changes when something that is felt comes or goes."""
+        self.keep = body.radius - _SPARED
+        """m; so near to a path something that is seen is in the way."""
         self._low_config = config.low_things
         self.low = LowThings()
         """What was felt, over all runs, where neither map nor lidar shows anything."""
@@ -74,12 +77,12 @@ class Obstacles:
     @property
     def version(self) -> int:
         """A number that changes when something comes or goes."""
-        return self._seen.version + self._felt_version
+        return self.seen.version + self.felt_version
 
     def use(self, seen: ThingLayer) -> None:
         """Go on with what is seen besides another map; what was felt stays."""
-        self._felt_version += self._seen.version + 1
-        self._seen = seen
+        self.felt_version += self.seen.version + 1
+        self.seen = seen
 
     def feel(self, senses: Senses) -> None:
         """Remember what bumper or cliff sensors found where the robot stands."""
@@ -91,26 +94,26 @@ class Obstacles:
         if not senses.cliff and senses.knowledge is Knowledge.KNOWN:
             self._notice_low(self._felt.places(here, *senses.touches))
         # A wall that it drove against, being late, is on the map.
-        self._felt.drop(self._seen.is_mapped)
-        self._felt_version += 1
+        self._felt.drop(self.seen.is_mapped)
+        self.felt_version += 1
 
     def forget_felt_at(self, senses: Senses) -> None:
         """Forget what was felt where the robot itself stands: it cannot be there."""
         for felt in (self._felt, self._lasting):
             felt.forget_around(senses.pose.x, senses.pose.y)
-        self._felt_version += 1
+        self.felt_version += 1
 
     def forget(self) -> None:
         """Forget all obstacles but edges, so that they are found anew."""
         self._felt.forget()
         self._lasting.forget()
         self._touched.clear()
-        self._seen.forget()
-        self._felt_version += 1
+        self.seen.forget()
+        self.felt_version += 1
 
     def standing(self, now: float) -> list[RoundObstacle]:
         """Return all that is in the way now, m, map frame."""
-        return self.felt(now) + self._seen.obstacles()
+        return self.felt(now) + self.seen.obstacles()
 
     def edges(self) -> list[RoundObstacle]:
         """Return where the floor ends, which is never forgotten, m, map frame."""
@@ -122,7 +125,7 @@ class Obstacles:
         What was felt again begins where the body touched it: else the way would lead there anew.
         """
         felt = [(x, y, _LEAST) for x, y, _ in self._felt.at(now)] + self._lasting.at(now, _LEAST)
-        return self._edges.at(now) + felt + [(x, y, _LEAST) for x, y, _ in self._seen.obstacles()]
+        return self._edges.at(now) + felt + [(x, y, _LEAST) for x, y, _ in self.seen.obstacles()]
 
     def felt(self, now: float) -> list[RoundObstacle]:
         """Return what bumper and cliff sensors found, m, map frame."""
@@ -133,7 +136,7 @@ class Obstacles:
 
         It is looked at from station ``first`` to ``last``, m.
         """
-        return self._seen.first_blocked(way.points, way.stations, first, last, self._keep)
+        return self.seen.first_blocked(way.points, way.stations, first, last, self.keep)
 
     def offered_zones(self, zones: Zones) -> tuple[OfferedZone, ...]:
         """Return the no-go zones that are offered beside those that there are."""
@@ -142,9 +145,9 @@ class Obstacles:
     def _notice_low(self, places: list[tuple[float, float]]) -> None:
         """Count a touch, which was somewhere at these places, unless something is seen there."""
         for x, y in places:
-            if self._seen.is_mapped(x, y) or any(
+            if self.seen.is_mapped(x, y) or any(
                 math.dist((x, y), (thing[0], thing[1])) < thing[2] + self._low_config.seen_near
-                for thing in self._seen.obstacles()
+                for thing in self.seen.obstacles()
             ):
                 return
         x, y = np.mean(places, axis=0).tolist()

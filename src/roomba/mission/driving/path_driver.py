@@ -72,8 +72,8 @@ class DriveStep:
 class PathDriver:
     """Drives along ``points``, float64 [n, 2], m, from wherever the robot stands.
 
-    How it comes farther is in ``progress``, PROGRESS [1], that kernels go on with while it
-    :attr:`is_undisturbed`.
+    How it comes farther is in ``progress``, PROGRESS [1], and what stands before it in ``ahead``;
+    kernels go on with both while it :attr:`is_tracking`.
 
     Each tick ends in bounded time, and so does the drive: what blocks it is remembered, and it
     gives up after so many recoveries without progress.
@@ -129,19 +129,9 @@ class PathDriver:
         return course.points[course.stations > self.tracker.along + _HERE]
 
     @property
-    def is_undisturbed(self) -> bool:
+    def is_tracking(self) -> bool:
         """Whether the next ticks are those of its tracker alone, while nothing comes up."""
-        return (
-            self._state is DriveState.DRIVING
-            and not self.tracker.is_done
-            and self._ahead.is_current
-            and self.tracker.along < self.clear_to
-        )
-
-    @property
-    def clear_to(self) -> float:
-        """Up to where on the path, m, nothing that is known is in the way."""
-        return self._ahead.clear_to
+        return self._state is DriveState.DRIVING and not self.tracker.is_done
 
     def tick(self, senses: Senses, limit: float) -> DriveStep:
         """Return what is wanted now; ``limit`` is the speed wanted, m/s."""
@@ -213,7 +203,7 @@ class PathDriver:
         """Whether it was moved, or something that was seen stands in its way."""
         if self.tracker.off_path(senses.pose) > self._config.off_path:
             return True
-        return self._ahead.is_blocked(self.tracker.along)
+        return self.ahead.is_blocked(self.tracker.along)
 
     def _leave_path(self, senses: Senses) -> None:
         """Go around what stands on the path, or have the rest of it planned anew."""
@@ -236,7 +226,7 @@ class PathDriver:
         """Drive another path; before ``leaves_until``, m along it, nothing seen is in its way."""
         robot = self._robot
         self.tracker = PathTracker(points, robot.tracking, robot.body, robot.timing.tick)
-        self._ahead = WayAhead(
+        self.ahead = WayAhead(
             self.tracker.course, self._obstacles, self._config.look_ahead, leaves_until
         )
         row = self.progress[0]

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Callable
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.compilation import entry
 from roomba.planning.path.costmap import Point
 
 Floats = NDArray[np.float64]
@@ -26,29 +26,48 @@ class Trail:
 
     def __init__(self) -> None:
         """Begin anywhere."""
-        self._places: deque[Point] = deque(maxlen=_LENGTH)
+        self._places = np.empty((_LENGTH, 2))
+        self._count = np.zeros(1, np.int64)
 
     def add(self, x: float, y: float) -> None:
         """The robot is here; what is near to the last place is left out."""
-        if self._places:
-            last_x, last_y = self._places[-1]
-            if abs(x - last_x) + abs(y - last_y) < _STEP:
-                return
-        self._places.append((x, y))
+        self.add_all(np.array([[x, y]]))
+
+    def add_all(self, places: Floats) -> None:
+        """Remember where the robot was, float64 [n, 2], m, one place after the other."""
+        remember(self._places, self._count, places)
 
     def forget(self) -> None:
         """The robot was carried: there is no way back."""
-        self._places.clear()
+        self._count[0] = 0
 
     def back_and_on(self, plan: Callable[[Point], Floats | None]) -> tuple[Floats | None, float]:
         """Return the way back to the nearest place from which ``plan`` finds one, and that one.
 
         Also how long the way back is, m. None where there is no such place.
         """
-        back = np.array(self._places, np.float64).reshape(-1, 2)[::-1]
+        count = int(self._count[0])
+        newest = np.arange(count - 1, max(count - _LENGTH, 0) - 1, -1)
+        back = self._places[newest % _LENGTH]
         for count in range(_EVERY, len(back) + 1, _EVERY):
             points = plan((float(back[count - 1, 0]), float(back[count - 1, 1])))
             if points is not None:
                 way = float(np.hypot(*np.diff(back[:count], axis=0).T).sum())
                 return np.concatenate((back[:count], points)), way
         return None, 0.0
+
+
+@entry
+def remember(kept: Floats, count: NDArray[np.int64], places: Floats) -> None:
+    """Keep those of some places, [n, 2], m, that are not near to the one kept before.
+
+    ``kept`` is a ring; ``count`` [1] tells how many were ever put there.
+    """
+    for number in range(places.shape[0]):
+        x, y = places[number, 0], places[number, 1]
+        last = (count[0] - 1) % kept.shape[0]
+        off = abs(x - kept[last, 0]) + abs(y - kept[last, 1])
+        if count[0] == 0 or off >= _STEP:
+            at = count[0] % kept.shape[0]
+            kept[at, 0], kept[at, 1] = x, y
+            count[0] += 1

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from typing import Final
 
-from roomba.mission.driving.obstacles import Obstacles, Way
+import numpy as np
 
-_HORIZON: Final = 2.0
-"""m; so far ahead a path is looked at."""
+from roomba.mission.driving.obstacles import Obstacles, Way
+from roomba.mission.driving.way_ahead_kernels import AHEAD, is_blocked
+
 LEAVING: Final = 0.25
 """m; on so much of a new path the robot may still be near to what the path goes around."""
 _NEVER: Final = -1
@@ -16,7 +18,7 @@ _NEVER: Final = -1
 class WayAhead:
     """Looks along a path, and again when other things stand there or the robot has come farther.
 
-    Up to ``clear_to``, m along the path, nothing that is known is in the way.
+    What it knows is in ``rows``, AHEAD [1], that kernels go on with.
     """
 
     def __init__(
@@ -28,28 +30,30 @@ class WayAhead:
         along the path, no thing counts.
         """
         self._way, self._obstacles = way, obstacles
-        self._look_ahead, self._leaves_until = look_ahead, leaves_until
-        self._checked = _NEVER
-        self.clear_to = 0.0
-        self.blocked_at: float | None = None
-        """Where the first thing stands in the way, m along the path, as of the last look."""
+        self.rows = np.zeros(1, AHEAD)
+        row = self.rows[0]
+        row["checked"], row["clear_to"], row["blocked_at"] = _NEVER, 0.0, math.nan
+        row["look_ahead"], row["leaves_until"] = look_ahead, leaves_until
+        row["keep"] = obstacles.keep
 
     @property
     def is_current(self) -> bool:
         """Whether nothing came or went since the last look."""
-        return self._checked == self._obstacles.version
+        return bool(self.rows[0]["checked"] == self._obstacles.version)
+
+    @property
+    def clear_to(self) -> float:
+        """Up to where on the path, m, nothing that is known is in the way."""
+        return float(self.rows[0]["clear_to"])
+
+    @property
+    def blocked_at(self) -> float | None:
+        """Where the first thing stands in the way, m along the path, as of the last look."""
+        at = float(self.rows[0]["blocked_at"])
+        return None if math.isnan(at) else at
 
     def is_blocked(self, along: float) -> bool:
         """Whether the path is not clear any more for a robot that is ``along``, m."""
-        if not self.is_current or along >= self.clear_to:
-            self._look(along)
-        return along >= self.clear_to
-
-    def _look(self, along: float) -> None:
-        self._checked = self._obstacles.version
-        # What the path was just planned to leave is not in the way.
-        first, last = max(along, self._leaves_until), along + _HORIZON
-        # A path that begins beside a thing is the way out of there: station 0 does not count.
-        self.blocked_at = self._obstacles.first_in_way(self._way, first, last) or None
-        clear = last if self.blocked_at is None else self.blocked_at
-        self.clear_to = clear - self._look_ahead
+        way, obstacles = self._way, self._obstacles
+        things, version = obstacles.seen.arrays, obstacles.version
+        return bool(is_blocked(self.rows, things, way.points, way.stations, version, along))

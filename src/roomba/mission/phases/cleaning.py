@@ -46,7 +46,6 @@ class CleanPhase:
         """Return what is wanted now; ``limit`` is the speed wanted, m/s."""
         cleaning, drives = self._job.cleaning, self._drives
         assert cleaning is not None
-        looks = self._job.ledger.is_check_due(senses)
         if self._job.ledger.must_go_home(senses, drives.distance_home):
             return PhaseStep(event=Event.LOW)
         if self._job.bin.is_full:
@@ -57,8 +56,7 @@ class CleanPhase:
         if waiting is not None:
             return waiting
         if drives.driver is not None:
-            if looks:
-                self._clean_dirty_at_hand(cleaning, senses)
+            self._clean_dirty_at_hand(cleaning, senses)
             return self._drive_on(cleaning, senses, limit)
         ended = None
         if not drives.leaves_zone(senses):
@@ -143,9 +141,13 @@ class CleanPhase:
         """Let the path lead over dirty floor close by once more before it goes on."""
         drives = self._drives
         assert drives.driver is not None
-        if not (drives.is_round and drives.driver.is_undisturbed):
+        if not (drives.is_round and drives.driver.is_tracking and cleaning.watches_dirt):
             return
-        points = cleaning.dirty_at_hand(senses.pose, drives.obstacles.standing(senses.now))
+        if not cleaning.dirty.may_be_at_hand((senses.pose.x, senses.pose.y), senses.now):
+            return
+        points = cleaning.dirty_at_hand(
+            senses.pose, drives.obstacles.standing(senses.now), senses.now
+        )
         if points is not None:
             rest = drives.driver.points_left
             drives.begin(np.concatenate((points, rest)), senses, cleaning.plans_anew)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
 from roomba.clock import is_recent
@@ -41,30 +42,37 @@ class EnergyLedger:
             return self._config.per_metre
         return max(self.energy / self.distance, 0.2 * self._config.per_metre)
 
-    @property
-    def next_check(self) -> float:
-        """When it is looked at again how far it is home, s."""
-        return self._checked + self._config.check_period
+    def next_check(self, senses: Senses) -> float:
+        """Return when it is looked at again how far it is home, s; inf while the charge is ample.
+
+        It is ample down to :meth:`least_ample`.
+        """
+        return self._checked + self._config.check_period if self._is_low(senses) else math.inf
+
+    def least_ample(self, senses: Senses) -> float:
+        """Return the level, 0..1, from which on down it may be time to go home, or all is used."""
+        return self.empty if self._is_low(senses) else self._config.reserve + self._config.ample
 
     @property
     def empty(self) -> float:
         """A level with less than which the battery gives nothing any more, 0..1."""
         return self._config.empty
 
-    def is_check_due(self, senses: Senses) -> bool:
-        """Whether it is time to look again how far it is home, or the clock was set back."""
-        return not is_recent(senses.now, self._checked, self._config.check_period)
+    def _is_low(self, senses: Senses) -> bool:
+        """Whether the way home may take what is left."""
+        battery = senses.battery
+        return battery.energy <= (self._config.reserve + self._config.ample) * battery.capacity
 
     def must_go_home(self, senses: Senses, way_home: Callable[[Senses], float]) -> bool:
         """Whether what is left just suffices for the way home; ``way_home`` tells that way, m."""
-        if not self.is_check_due(senses):
+        # Only when it may come to that is the way home worth planning.
+        if not self._is_low(senses):
+            return False
+        if is_recent(senses.now, self._checked, self._config.check_period):
             return False
         self._checked = senses.now
         battery = senses.battery
         spare = battery.energy - self._config.reserve * battery.capacity
-        # Only when it may come to that is the way home worth planning.
-        if spare > 0.35 * battery.capacity:
-            return False
         return spare < self._config.margin * self.per_metre * way_home(senses)
 
     def is_empty(self, senses: Senses) -> bool:

@@ -20,6 +20,8 @@ Window = tuple[slice, slice]
 
 CELL: Final = 0.20
 """m; about the width of the tool, which limits the sensor's resolution."""
+LEAST_WAY: Final = 0.5 * CELL
+"""m; with less of it in a cell it is not known how dirty that is."""
 _ALL_OF_IT: Final = (slice(None), slice(None))
 _LEARNING: Final = 0.4
 """Share of the newest run in what a cell is taken for."""
@@ -60,7 +62,7 @@ class DirtMap:
 
     def end_run(self) -> None:
         """Learn from the present run, and begin another."""
-        seen = self.way > 0.5 * CELL
+        seen = self.way > LEAST_WAY
         now = self._density_now()
         known = ~np.isnan(self.learned)
         both, first = seen & known, seen & ~known
@@ -71,7 +73,7 @@ class DirtMap:
 
     def usual(self) -> float:
         """Return the median of what the present run counted, grains/m2; 0 before it did."""
-        seen = self.way > 0.5 * CELL
+        seen = self.way > LEAST_WAY
         return float(np.median(self._density_now()[seen])) if seen.any() else 0.0
 
     def density(self, mask: Mask, frame: GridFrame) -> float:
@@ -84,7 +86,7 @@ class DirtMap:
 
         Floor that was swept twice counts with all that was found on it.
         """
-        rows, columns = np.nonzero(self.way > 0.5 * CELL)
+        rows, columns = np.nonzero(self.way > LEAST_WAY)
         x, y = self.frame.centres(rows, columns)
         row = ((y - frame.origin_y) / frame.resolution).astype(np.int64)
         column = ((x - frame.origin_x) / frame.resolution).astype(np.int64)
@@ -104,18 +106,25 @@ class DirtMap:
 
     def dirty_cells(self, times: float, least: float) -> Mask:
         """Return the same over ``frame``, the map's own cells."""
-        density, seen = self._density_now(), self.way > 0.5 * CELL
-        dirty: Mask = density >= _JUST_SO * dirty_from(density[seen], times, least)
+        return self.cells_from(self.dirty_from(times, least))
+
+    def cells_from(self, density: float) -> Mask:
+        """Return where the present run counted as many grains/m2, over ``frame``."""
+        dirty: Mask = self._density_now() >= density
         return dirty
+
+    def dirty_from(self, times: float, least: float) -> float:
+        """Return from how many grains/m2 on floor of the present run is dirty."""
+        return _JUST_SO * dirty_from(self._density_now()[self.way > LEAST_WAY], times, least)
 
     @property
     def seen_area(self) -> float:
         """Floor of which the present run counted what lies on it, m2."""
-        return float(np.count_nonzero(self.way > 0.5 * CELL)) * CELL**2
+        return float(np.count_nonzero(self.way > LEAST_WAY)) * CELL**2
 
     def known(self) -> Floats:
         """Return grains/m2 by cells: of this run where it was, else as learned, NaN elsewhere."""
-        known: Floats = np.where(self.way > 0.5 * CELL, self._density_now(), self.learned)
+        known: Floats = np.where(self.way > LEAST_WAY, self._density_now(), self.learned)
         return known
 
     def over(

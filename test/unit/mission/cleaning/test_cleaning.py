@@ -153,7 +153,7 @@ def test_dirty_floor_at_hand_is_cleaned_once_more_before_it_goes_on() -> None:
     assert points is not None
     drive(clean, points)
     swept, here = clean.coverage.fraction, Pose(1.0, 0.9, 0.0)
-    again = clean.dirty_at_hand(here, [])
+    again = clean.dirty_at_hand(here, [], 0.0)
     assert again is not None
     assert clean.coverage.fraction < swept
     assert again[0] == pytest.approx((here.x, here.y))
@@ -162,7 +162,7 @@ def test_dirty_floor_at_hand_is_cleaned_once_more_before_it_goes_on() -> None:
     drive(clean, again)
     assert clean.coverage.fraction == pytest.approx(swept, abs=0.001)
     # Neither again in passing nor at the end.
-    assert clean.dirty_at_hand(here, []) is None
+    assert clean.dirty_at_hand(here, [], 0.0) is None
     assert clean.next_path(HERE, []) is None
 
 

@@ -1,4 +1,5 @@
-"""Dirty floor: which of it is swept again in passing, and which at the end."""
+"""Dirty floor: which of it is swept again in passing, and which at the end, and when it is looked
+for."""
 
 from __future__ import annotations
 
@@ -16,6 +17,8 @@ COARSE = GridFrame(0.05, 0.0, 0.0, 80, 80)
 FINE = GridFrame(0.01, 0.0, 0.0, 400, 400)
 FLOOR = np.ones(FINE.shape, np.bool_)
 BY_IT, FAR = (2.0, 1.6), (0.3, 3.7)
+NOW = 100.0
+"""s."""
 USUAL, DIRTY = 40.0, 4000.0
 """Grains of a cell."""
 
@@ -44,13 +47,13 @@ TWO, SIX = patch(range(5, 6), range(9, 11)), patch(range(5, 7), range(9, 12))
 def test_a_dirty_patch_is_told_once_when_the_robot_is_by_it() -> None:
     dirt, coverage = swept_floor(TWO)
     dirty = DirtyFloor(dirt, CleaningConfig())
-    assert dirty.at_hand(coverage, FLOOR, FAR) is None
-    again = dirty.at_hand(coverage, FLOOR, BY_IT)
+    assert dirty.at_hand(coverage, FLOOR, FAR, NOW) is None
+    again = dirty.at_hand(coverage, FLOOR, BY_IT, NOW)
     assert again is not None
     rows, columns = np.nonzero(again)
     assert (rows.min(), rows.max(), columns.min(), columns.max()) == (100, 119, 180, 219)
     assert np.count_nonzero(again) == 800
-    assert dirty.at_hand(coverage, FLOOR, BY_IT) is None
+    assert dirty.at_hand(coverage, FLOOR, BY_IT, NOW) is None
 
 
 def test_it_waits_until_the_patch_and_the_floor_around_it_are_swept() -> None:
@@ -58,15 +61,15 @@ def test_it_waits_until_the_patch_and_the_floor_around_it_are_swept() -> None:
     # The next swath, beside the dirty cells.
     coverage.cells[120:140, 160:240] &= np.uint8(255 ^ SWEPT)
     dirty = DirtyFloor(dirt, CleaningConfig())
-    assert dirty.at_hand(coverage, FLOOR, BY_IT) is None
+    assert dirty.at_hand(coverage, FLOOR, BY_IT, NOW) is None
     coverage.cells |= np.uint8(SWEPT)
-    assert dirty.at_hand(coverage, FLOOR, BY_IT) is not None
+    assert dirty.at_hand(coverage, FLOOR, BY_IT, NOW) is not None
 
 
 def test_what_is_swept_again_in_passing_is_not_at_the_end() -> None:
     dirt, coverage = swept_floor(SIX)
     dirty = DirtyFloor(dirt, CleaningConfig())
-    again = dirty.at_hand(coverage, FLOOR, BY_IT)
+    again = dirty.at_hand(coverage, FLOOR, BY_IT, NOW)
     assert again is not None
     dirty.note_again()
     assert not dirty.left(coverage, FLOOR).any()
@@ -77,7 +80,7 @@ def test_what_is_swept_again_in_passing_is_not_at_the_end() -> None:
 def test_what_was_not_swept_again_in_passing_is_left_for_the_end() -> None:
     dirt, coverage = swept_floor(SIX)
     dirty = DirtyFloor(dirt, CleaningConfig())
-    assert dirty.at_hand(coverage, FLOOR, BY_IT) is not None
+    assert dirty.at_hand(coverage, FLOOR, BY_IT, NOW) is not None
     assert np.count_nonzero(dirty.left(coverage, FLOOR)) == 6 * 400
     assert not dirty.left(coverage, FLOOR).any()
 
@@ -86,7 +89,7 @@ def test_what_was_not_swept_again_in_passing_is_left_for_the_end() -> None:
 def test_small_patches_are_not_worth_a_way(cells: int, at_hand: bool, at_end: bool) -> None:
     dirt, coverage = swept_floor(patch(range(5, 6), range(9, 9 + cells)))
     dirty = DirtyFloor(dirt, CleaningConfig())
-    assert (dirty.at_hand(coverage, FLOOR, BY_IT) is not None) is at_hand
+    assert (dirty.at_hand(coverage, FLOOR, BY_IT, NOW) is not None) is at_hand
     assert dirty.left(coverage, FLOOR).any() is np.bool_(at_end)
 
 
@@ -94,4 +97,41 @@ def test_at_the_beginning_it_is_not_known_what_is_usual() -> None:
     dirt, coverage = swept_floor(TWO)
     assert dirt.seen_area == pytest.approx(16.0)
     config = CleaningConfig(usual_floor=17.0)
-    assert DirtyFloor(dirt, config).at_hand(coverage, FLOOR, BY_IT) is None
+    assert DirtyFloor(dirt, config).at_hand(coverage, FLOOR, BY_IT, NOW) is None
+
+
+def test_near_clean_floor_it_is_looked_for_once_a_period() -> None:
+    dirt, coverage = swept_floor(TWO)
+    config = CleaningConfig()
+    dirty = DirtyFloor(dirt, config)
+    # At first it is to be measured how dirty floor usually is.
+    assert dirty.may_be_at_hand(FAR, NOW)
+    assert dirty.at_hand(coverage, FLOOR, FAR, NOW) is None
+    later = NOW + config.dirty_period
+    assert not dirty.may_be_at_hand(FAR, later)
+    # That was a look, so that the next one has time, even by the patch.
+    assert not dirty.may_be_at_hand(BY_IT, later + 0.9 * config.dirty_period)
+    assert dirty.may_be_at_hand(BY_IT, later + config.dirty_period)
+    # Where it may be dirty it waits to be looked for.
+    assert dirty.may_be_at_hand(BY_IT, later + config.dirty_period)
+
+
+def test_what_was_told_is_not_looked_for_any_more() -> None:
+    dirt, coverage = swept_floor(TWO)
+    config = CleaningConfig()
+    dirty = DirtyFloor(dirt, config)
+    assert dirty.at_hand(coverage, FLOOR, BY_IT, NOW) is not None
+    assert not dirty.may_be_at_hand(BY_IT, NOW + config.dirty_period)
+
+
+def test_what_is_usual_is_measured_again_and_when_the_clock_was_set_back() -> None:
+    dirt, coverage = swept_floor(TWO)
+    config = CleaningConfig()
+    dirty = DirtyFloor(dirt, config)
+    assert dirty.at_hand(coverage, FLOOR, FAR, NOW) is None
+    dirt.grains[:] = DIRTY
+    assert not dirty.may_be_at_hand(FAR, NOW + 0.5 * config.dirty_period)
+    assert dirty.may_be_at_hand(FAR, NOW - 10.0)
+    # All is as dirty: none is dirtier than usual.
+    assert dirty.at_hand(coverage, FLOOR, FAR, NOW + config.usual_period) is None
+    assert not dirty.may_be_at_hand(BY_IT, NOW + config.usual_period + config.dirty_period)

@@ -113,7 +113,7 @@ def test_it_drives_a_path_to_its_end() -> None:
     assert set(rig.states[:-1]) == {DriveState.DRIVING}
     # Over is over.
     assert rig.tick().state is DriveState.DONE
-    assert not rig.driver.is_undisturbed
+    assert not rig.driver.is_tracking
 
 
 def test_from_anywhere_it_goes_to_the_path_first() -> None:
@@ -250,18 +250,14 @@ def test_an_edge_is_kept_away_from_as_from_a_thing() -> None:
     assert rig.obstacles.standing(1e9)
 
 
-def test_whether_it_is_disturbed_is_told() -> None:
+def test_whether_it_only_tracks_its_path_is_told() -> None:
     rig = Rig(discs=[(1.5, 0.5, 0.05)])
     for _ in range(10):
         rig.tick()
-    assert rig.driver.is_undisturbed
-    rig.obstacles.feel(Senses(rig.time, Pose(2.0, 2.0, 0.0), bumper_left=True))
-    assert not rig.driver.is_undisturbed
-    rig.tick()
-    assert rig.driver.is_undisturbed
+    assert rig.driver.is_tracking
     while rig.tick().state is DriveState.DRIVING:
         pass
-    assert not rig.driver.is_undisturbed
+    assert not rig.driver.is_tracking
 
 
 def see(rig: Rig, x: float, y: float) -> None:

@@ -100,6 +100,16 @@ def test_with_much_left_the_way_home_is_not_planned() -> None:
     assert not ledger.must_go_home(senses(10.0, level=0.8), no_way_home)
 
 
+def test_while_the_charge_is_ample_no_look_is_due() -> None:
+    ledger = EnergyLedger(CONFIG, senses())
+    least = CONFIG.reserve + CONFIG.ample
+    much, little = senses(level=least + 0.01), senses(level=least - 0.01)
+    assert ledger.next_check(much) == math.inf
+    assert ledger.least_ample(much) == pytest.approx(least)
+    assert ledger.next_check(little) == CONFIG.check_period
+    assert ledger.least_ample(little) == CONFIG.empty
+
+
 def test_it_looks_every_few_seconds_whatever_the_clock_does() -> None:
     ledger = EnergyLedger(CONFIG, senses(level=0.1))
     low = 0.081

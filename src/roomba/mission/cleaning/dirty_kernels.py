@@ -1,0 +1,66 @@
+"""Whether dirty floor may be close by, as compiled code tells it at each tick."""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.compilation import entry
+from roomba.perception.swept.dirt_map import CELL, LEAST_WAY
+
+Floats = NDArray[np.float32]
+Mask = NDArray[np.bool_]
+
+WATCH: Final = np.dtype(
+    [
+        ("looked_at", "f8"),  # s; when dirty floor close by was looked for last
+        ("measured_at", "f8"),  # s; when it was measured last how dirty floor usually is
+        ("dirty_from", "f8"),  # grains/m2; from there on floor is dirty, as measured then
+        # what does not change
+        ("look_period", "f8"),  # s; from one look to the next
+        ("measure_period", "f8"),  # s; from one measurement to the next
+        ("reach", "f8"),  # m; so far off it is looked for
+    ]
+)
+"""What a clean remembers of its looks for dirty floor, one row."""
+
+
+@entry
+def may_be_dirty(
+    rows: NDArray[np.void],
+    grains_of: Floats,
+    way_of: Floats,
+    done: Mask,
+    place: NDArray[np.float64],
+    x: float,
+    y: float,
+    now: float,
+) -> bool:
+    """Tell whether it is time to look closely for dirty floor near a place, m.
+
+    That is when a cell close by, not yet ``done`` [rows, columns], is dirty, or it is to be
+    measured anew how dirty floor usually is. Nothing close by is a look, too: the next one follows
+    after a period. ``place`` is the dirt map's corner and cell, m.
+    """
+    watch = rows[0]
+    if 0.0 <= now - watch.looked_at < watch.look_period:
+        return False
+    if not 0.0 <= now - watch.measured_at < watch.measure_period:
+        return True
+    cell, reach = place[2], watch.reach
+    first_row = max(math.floor((y - reach - place[1]) / cell), 0)
+    last_row = min(math.floor((y + reach - place[1]) / cell) + 1, grains_of.shape[0])
+    first_column = max(math.floor((x - reach - place[0]) / cell), 0)
+    last_column = min(math.floor((x + reach - place[0]) / cell) + 1, grains_of.shape[1])
+    for row in range(first_row, last_row):
+        for column in range(first_column, last_column):
+            way = way_of[row, column]
+            if done[row, column] or way <= LEAST_WAY:
+                continue
+            if grains_of[row, column] >= watch.dirty_from * way * CELL:
+                return True
+    watch.looked_at = now
+    return False
