@@ -62,6 +62,8 @@ class Exploration:
         self.unseen: list[Point] = []
         self._vanished: list[Point] = []
         self._sought: tuple[Point, float] | None = None
+        self.is_as_near_as_it_gets = False
+        """Whether it touched something by the viewpoint that it is on its way to."""
         self.times_stuck = 0
         self.looked_again = False
         """Whether what stands in the way was looked for anew before the end."""
@@ -163,12 +165,25 @@ class Exploration:
         allowed = self._config.patience + 2.0 * self.goal.way / self._config.speed
         return now - self._sought[1] > allowed
 
+    def note_touch(self, here: Pose) -> None:
+        """Note that it touched something; by its viewpoint it comes no nearer to the frontier.
+
+        A cell at the rim of the map is free though a wall is in its last centimetres.
+        """
+        self.is_as_near_as_it_gets = self.is_as_near_as_it_gets or self._is_at_viewpoint(here)
+
+    def _is_at_viewpoint(self, here: Pose) -> bool:
+        if self.goal is None:
+            return False
+        off = math.dist(self.goal.viewpoint, (here.x, here.y))
+        return off <= self._config.viewpoint_tolerance
+
     def cut_off(self, *, is_stuck: bool = False) -> None:
         """No way leads to the frontier it was on its way to: give that up."""
         self.times_stuck += is_stuck
         if self.goal is not None:
             self.unseen.append(self.goal.middle)
-        self.goal = None
+        self.goal, self.is_as_near_as_it_gets = None, False
 
     def _leave_behind(self, here: Pose, context: PlanningContext) -> None:
         """Give the last frontier up if it was looked at from its viewpoint, and is still one.
@@ -176,7 +191,9 @@ class Exploration:
         Or if others at the same place vanished often before: what is seen through glass and by
         mirrors comes and goes, and there is no end of it.
         """
+        is_there = self._is_at_viewpoint(here)
         goal, self.goal = self.goal, None
+        self.is_as_near_as_it_gets = False
         if goal is None:
             return
         if not self._is_left(context.known, goal.middle):
@@ -187,8 +204,7 @@ class Exploration:
             if len(near) > self._config.most_returns:
                 self.unseen.append(goal.middle)
             return
-        off = math.dist(goal.viewpoint, (here.x, here.y))
-        if off <= self._config.viewpoint_tolerance:
+        if is_there:
             self.unseen.append(goal.middle)
 
     def _is_left(self, occupancy: OccupancyMap, middle: Point) -> bool:

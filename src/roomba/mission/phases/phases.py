@@ -54,6 +54,12 @@ def look_on(
         drives.driver = None
         return PhaseStep()
     step = drives.driver.tick(senses, limit)
+    if step.state is DriveState.BACKING:
+        exploration.note_touch(senses.pose)
+    elif exploration.is_as_near_as_it_gets:
+        exploration.cut_off()
+        drives.driver = None
+        return PhaseStep()
     is_stuck = step.state is DriveState.STUCK
     if is_stuck and exploration.times_stuck >= most_stuck:
         return PhaseStep(step.twist, failure=Failure(CleanOutcome.STUCK, step.reason))

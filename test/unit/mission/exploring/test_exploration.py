@@ -133,6 +133,18 @@ def test_what_was_not_yet_reached_is_not() -> None:
     assert exploration.unseen == []
 
 
+def test_touching_something_by_its_viewpoint_it_is_as_near_as_it_gets() -> None:
+    exploration = begun()
+    exploration.note_touch(at_goal(exploration, 0.3))
+    assert not exploration.is_as_near_as_it_gets
+    exploration.note_touch(at_goal(exploration, 0.1))
+    # That stays while it backs off.
+    exploration.note_touch(at_goal(exploration, 0.3))
+    assert exploration.is_as_near_as_it_gets
+    exploration.cut_off()
+    assert not exploration.is_as_near_as_it_gets
+
+
 @pytest.mark.parametrize("is_stuck", [False, True])
 def test_cut_off_it_gives_up_where_it_was_going(is_stuck: bool) -> None:
     exploration = begun()

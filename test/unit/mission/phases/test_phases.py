@@ -17,15 +17,17 @@ from roomba.mission.cleaning.cleaning import Cleaning
 from roomba.mission.cleaning.request import CleanOutcome, CleanRequest
 from roomba.mission.driving.drives import Drives
 from roomba.mission.driving.retry_policy import RetryPolicy
+from roomba.mission.exploring.exploration import Exploration
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.mission.inputs.senses import Battery, Senses
 from roomba.mission.phases.cleaning import CleanPhase
 from roomba.mission.phases.job import Job
 from roomba.mission.phases.machine import Event
-from roomba.mission.phases.phases import go_home
+from roomba.mission.phases.phases import go_home, look_on
 from roomba.mission.phases.step import PhaseStep
 from roomba.perception.swept.coverage_bits import SWEPT
 from roomba.perception.swept.dirt_map import DirtMap
+from roomba.planning.frontiers.frontiers import Frontier
 from roomba.planning.path.costmap import RoundObstacle
 
 ROBOT, CONFIG = RobotConfig(), MissionConfig()
@@ -50,6 +52,25 @@ class Rig:
         """Whether it is on its way farther into the den, away from the door."""
         driver = self.drives.driver
         return driver is not None and driver.tracker.rest[-1, 0] > IN_THE_DEN.pose.x
+
+
+@pytest.mark.parametrize("way", [0.05, 0.5])
+def test_what_is_touched_by_a_viewpoint_ends_the_way_there_after_it_backed_off(way: float) -> None:
+    rig, exploration = Rig(), Exploration(CONFIG.exploring)
+    here = IN_THE_DEN.pose
+    there = (here.x + way, here.y)
+    exploration.goal = Frontier((there[0] + 0.2, here.y), there, way, 0.5)
+    rig.obstacles.things = []
+    rig.drives.begin(np.array([(here.x - 0.3, here.y), there]), IN_THE_DEN)
+    begun = rig.drives.driver
+    touching = replace(IN_THE_DEN, now=0.05, bumper_left=True)
+    assert look_on(exploration, rig.drives, touching, SPEED, 3).twist.linear <= 0.0
+    assert rig.drives.driver is begun
+    back = Pose(here.x - 2.0 * CONFIG.driving.backing_way, here.y, 0.0)
+    look_on(exploration, rig.drives, replace(IN_THE_DEN, now=1.0, pose=back), SPEED, 3)
+    is_near = way < CONFIG.exploring.viewpoint_tolerance
+    assert (rig.drives.driver is None) == is_near
+    assert (exploration.goal is None) == is_near
 
 
 def test_at_home_or_before_it_there_is_nothing_to_drive() -> None:
