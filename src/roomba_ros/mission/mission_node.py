@@ -29,6 +29,7 @@ from roomba_ros.mission.topics import MissionTopics
 from roomba_ros.runtime.alone import refuse_second
 from roomba_ros.runtime.background import Background
 from roomba_ros.runtime.calls import call_service
+from roomba_ros.runtime.heap import give_back
 from roomba_ros.runtime.node import require_master, run_node
 from roomba_ros.runtime.parameters import (
     LiveSeedParameters,
@@ -141,6 +142,9 @@ class MissionNode:
         step, ended = self._round.tick(now, mission, senses)
         self._finish_map(ended, is_waited_for=step.wants_whole_map)
         self._remember(mission, senses, has_learned=ended.clean is not None)
+        if ended.clean is not None or ended.exploration is not None:
+            # What planning left in pieces would stay for good.
+            give_back()
 
     def stop(self) -> None:
         """Stop the drive; what was ordered comes to no end."""
