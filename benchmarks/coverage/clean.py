@@ -27,6 +27,7 @@ from benchmarks.coverage.floor import (
 from benchmarks.localization.robot import WRONG
 from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.files.shipped import HOMES
+from roomba.headless.burst import LONGEST_BURST
 from roomba.headless.cleaner import HeadlessMission
 from roomba.mission.cleaning.request import CleanOutcome, MissReason
 from roomba.perception.localization.estimate import Knowledge
@@ -36,6 +37,8 @@ from roomba.world.layers.layer import load_home
 Sensors = Literal["ideal", "noisy"]
 Floats = NDArray[np.float64]
 
+_LOOKED_AT: Final = 20
+"""Ticks, a second; where something changed it is looked so often at what the robot believes."""
 LEAST_PATCH: Final = 0.004
 """m2; what is smaller is not listed."""
 
@@ -156,7 +159,12 @@ def clean(task: Task, keeps_poses: bool = False) -> Clean:
         there = changed(there.home, task.change, task.seed)
     home, things = there.home, there.things
     setup = time.process_time()
-    robot = _Observed(home, SimulatedRobotConfig().with_sensors(task.sensors), seed=task.seed)
+    robot = _Observed(
+        home,
+        SimulatedRobotConfig().with_sensors(task.sensors),
+        seed=task.seed,
+        longest_burst=LONGEST_BURST if task.change is None else _LOOKED_AT,
+    )
     setup = time.process_time() - setup
     for thing in things:
         robot.simulator.place_obstacle(*thing)

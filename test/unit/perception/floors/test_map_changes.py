@@ -32,6 +32,8 @@ Mask = NDArray[np.bool_]
 BEAMS = LIDAR.arrays()
 EVERY = 0.4
 """s; between scans that are shown."""
+APART = 0.7
+"""s; the same, over the flat."""
 ROOM = room_home(6.0, 5.0)
 SOFA: Block = (2.0, 2.0, 4.0, 2.9)
 
@@ -64,14 +66,14 @@ def changed_flat(added: Mask | None = None, removed: Mask | None = None) -> Home
     return replace(flat(), solid=solid)
 
 
-def to_and_fro(home: Home, step: float = 0.35) -> list[Pose]:
+def to_and_fro(home: Home, step: float = 0.5) -> list[Pose]:
     """Return poses on lanes over the floor where there is room for the body."""
     occupied = np.where(home.solid, OCCUPIED, home.map.values).astype(np.int8)
     fits = FitMap.build(OccupancyMap(home.frame, occupied), CONFIG.body.radius, 0.03)
     x_min, x_max, y_min, y_max = home.frame.extent
     poses = []
     for number, y in enumerate(np.arange(y_min, y_max, step).tolist()):
-        lane = [Pose(x, y, math.pi * (number % 2)) for x in np.arange(x_min, x_max, 0.15).tolist()]
+        lane = [Pose(x, y, math.pi * (number % 2)) for x in np.arange(x_min, x_max, 0.2).tolist()]
         poses += [pose for pose in lane[:: 1 - 2 * (number % 2)] if fits.fits_at(pose.x, pose.y)]
     return poses
 
@@ -94,7 +96,7 @@ def cleaned(
             meanwhile(world, number)
         now = world.step(Twist(), 0.12)
         off = Pose(*random.normal(0.0, (0.015, 0.015, math.radians(0.5))).tolist())
-        changes.see(EVERY * number, world.ranges, BEAMS, now.pose.compose(off))
+        changes.see(APART * number, world.ranges, BEAMS, now.pose.compose(off))
     assert changes.looks > 10
     return changes
 
@@ -172,7 +174,7 @@ def test_people_who_walk_about_are_no_change() -> None:
 
 def test_people_who_stand_about_for_a_minute_are_no_change() -> None:
     def stand(world: Simulator, number: int) -> None:
-        x, y = ((2.0, 0.4), (5.2, 3.0), (7.2, 3.2), (2.2, 5.6))[number // 150 % 4]
+        x, y = ((2.0, 0.4), (5.2, 3.0), (7.2, 3.2), (2.2, 5.6))[number // 80 % 4]
         for side in (-0.1, 0.1):
             put_foot(world, x + side, y)
 
