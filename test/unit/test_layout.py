@@ -58,6 +58,18 @@ TESTED_BY: dict[str, tuple[str, str]] = {
     "roomba/client/observed": ("unit/ui/web/test_app.py", "an interface"),
     "roomba/commands/campaign/": ("unit/commands/campaign/test_command.py", COMMAND),
     "roomba/ui/live_bar": ("unit/ui/test_progress.py", "drawn with what it shows"),
+    "roomba/commands/demonstration/command": (
+        "unit/commands/demonstration/test_course.py",
+        COMMAND,
+    ),
+    "roomba/commands/demonstration/listener": (
+        "unit/commands/demonstration/test_course.py",
+        COMMAND,
+    ),
+    "roomba/commands/demonstration/programs": (
+        "unit/commands/demonstration/test_course.py",
+        COMMAND,
+    ),
     "roomba/commands/draw_homes": ("unit/world/layers/test_homes.py", COMMAND),
     "roomba/commands/exercise/": ("unit/commands/exercise/test_exercises.py", COMMAND),
     "roomba/commands/localize/": ("unit/commands/localize/test_command.py", COMMAND),

@@ -1,0 +1,1 @@
+"""The demonstrations of the documents: robots that people own, made up, clean by their plans."""

@@ -1,0 +1,88 @@
+"""What the owner of the robot does on its page: a plan is made, and the page is looked at."""
+
+from __future__ import annotations
+
+import datetime as dt
+import json
+import urllib.request
+from typing import Any, Final
+from urllib.parse import urldefrag
+
+from roomba.commands.pictures.page import browser_page, decoded
+from roomba.plots.canvas import Picture
+
+_PATIENCE: Final = 20.0
+"""s."""
+_AHEAD: Final = 20.0
+"""s that a plan lies ahead at least."""
+_SETTLED: Final = 1500
+"""ms until what the page draws has come."""
+_WINDOW: Final = {"width": 960, "height": 640}
+_REPORT: Final = {"width": 1000, "height": 1250}
+"""px."""
+_OPENER: Final = urllib.request.build_opener(urllib.request.ProxyHandler({}))
+"""Goes past any proxy: the server is on this machine."""
+
+
+class Owner:
+    """Uses the page at an address with its token."""
+
+    def __init__(self, address: str) -> None:
+        """Open nothing."""
+        self._whole = address
+        page, fragment = urldefrag(address)
+        self._page = page.rstrip("/")
+        self._token = fragment.partition("token=")[2]
+
+    def plan_clean(self, now: dt.datetime) -> dt.datetime:
+        """Make a plan of all floor for the next minute; return when it is due, in UTC."""
+        due = next_minute(now)
+        self._ask("PUT", "household/zone", {"zone": "UTC"})
+        order = {"mode": "whole"}
+        plan = {"name": "Every day", "at": [f"{due:%H:%M}"], "order": order}
+        self._ask("PUT", "plans", plan)
+        return due
+
+    def runs(self) -> list[dict[str, Any]]:
+        """Return the runs that are kept, the newest first."""
+        found: list[dict[str, Any]] = self._ask("GET", "history")["runs"]
+        return found
+
+    def notes(self) -> list[dict[str, Any]]:
+        """Return what became of plans, the newest first."""
+        found: list[dict[str, Any]] = self._ask("GET", "plans")["notes"]
+        return found
+
+    def look(self) -> Picture:
+        """Return the page as it is now."""
+        with browser_page(_WINDOW, color_scheme="light") as page:
+            page.goto(self._whole)
+            page.wait_for_selector("body[data-phase]")
+            page.wait_for_timeout(_SETTLED)
+            return decoded(page.screenshot())
+
+    def look_at_report(self, number: int) -> Picture:
+        """Return the report of a run."""
+        with browser_page(_REPORT, color_scheme="light") as page:
+            page.goto(f"{self._page}/api/v1/history/{number}/report.html")
+            page.wait_for_timeout(_SETTLED)
+            return decoded(page.screenshot())
+
+    def _ask(self, method: str, path: str, values: dict[str, Any] | None = None) -> Any:
+        request = urllib.request.Request(
+            f"{self._page}/api/v1/{path}",
+            data=None if values is None else json.dumps(values).encode(),
+            method=method,
+            headers={
+                "Authorization": f"Bearer {self._token}",
+                "Content-Type": "application/json",
+            },
+        )
+        with _OPENER.open(request, timeout=_PATIENCE) as answer:
+            return json.load(answer)
+
+
+def next_minute(now: dt.datetime) -> dt.datetime:
+    """Return the next full minute that is far enough ahead for a plan to be made."""
+    ahead = now + dt.timedelta(seconds=_AHEAD)
+    return ahead.replace(second=0, microsecond=0) + dt.timedelta(minutes=1)
