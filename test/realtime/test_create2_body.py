@@ -182,6 +182,19 @@ def test_unplugged_and_plugged_it_stands_and_goes_on(quick: Create2Rig) -> None:
     )
 
 
+def test_asleep_on_its_station_it_is_woken_and_leaves(tmp_path: Path) -> None:
+    sleeper = Create2Rig(tmp_path, sleeps_after=2.0)
+    try:
+        wait_until(lambda: sleeper.robot.is_asleep, 10.0, "it falls asleep", pause=0.001)
+        wait_until(lambda: "none for 0.5 s" in sleeper.body.trouble, 5.0, "the driver notices")
+        wait_until(lambda: sleeper.body.trouble == "", 10.0, "it was woken")
+        sleeper.drive_until(
+            Twist(-0.15, 0.0), lambda: sleeper.body.read().odometry.x < -0.15, "it leaves"
+        )
+    finally:
+        sleeper.end()
+
+
 def test_a_robot_that_is_not_there_is_told_with_what_to_do(tmp_path: Path) -> None:
     config = create2_config()
     with pytest.raises(LineError, match="Is it plugged in"):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import termios
 from typing import Final, Protocol
 
@@ -11,6 +12,8 @@ from roomba.errors import RoombaError
 
 _GONE: Final = (serial.SerialException, OSError, termios.error, TypeError)
 """What pyserial raises when a device was unplugged; TypeError when another thread closed it."""
+_NO_PINS: Final = (errno.ENOTTY, errno.EINVAL)
+"""What a device without such pins answers."""
 _PIECE: Final = 4096
 """Bytes that are read at once at most."""
 
@@ -63,6 +66,19 @@ class SerialLine:
             return bytes(first + self._serial.read(min(self._serial.in_waiting, _PIECE)))
         except _GONE as error:
             raise LineError(f"the line is gone: {error}") from error
+
+    def pull(self, *, is_low: bool) -> bool:
+        """Pull the pins RTS and DTR low, or let them go; return whether it has any.
+
+        Low is what a TTL adapter makes of a line that is set. A pseudo terminal has none.
+        """
+        try:
+            self._serial.rts = self._serial.dtr = is_low
+        except _GONE as error:
+            if getattr(error, "errno", None) in _NO_PINS:
+                return False
+            raise LineError(f"the line is gone: {error}") from error
+        return True
 
     def discard(self) -> None:
         """Forget what came and was not read."""

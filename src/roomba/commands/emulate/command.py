@@ -84,6 +84,12 @@ def _parser() -> Parser:
         help=f"create2: the rate at which it starts, with --serial (default: {BAUD})",
     )
     parser.add_argument(
+        "--sleeps",
+        action="store_true",
+        help="create2: asleep after five minutes in passive mode, as a real one; a pseudo terminal "
+        "has no BRC, so the signal USR1 is its button, which wakes it",
+    )
+    parser.add_argument(
         "--port",
         type=whole(0, _MOST_PORT),
         default=0,

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import argparse
+import math
+import signal
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from types import MappingProxyType
@@ -55,7 +57,7 @@ def _openneato(given: Given) -> Iterator[str]:
 
 @contextmanager
 def _create2(given: Given) -> Iterator[str]:
-    from roomba.emulators.create2.robot import Create2Robot
+    from roomba.emulators.create2.robot import SLEEPS_AFTER, Create2Robot
     from roomba.emulators.create2.server import Create2Server
     from roomba.emulators.lidars.ld19 import Ld19Emulator, with_ld19
     from roomba.emulators.lidars.sender import LidarSender
@@ -63,7 +65,9 @@ def _create2(given: Given) -> Iterator[str]:
     from roomba.emulators.pseudo_terminal import PseudoTerminal
 
     simulator = _in_home(given, with_ld19(_config("create2")))
-    robot, lidar = Create2Robot(simulator, given.baud), Ld19Emulator(simulator)
+    sleeps_after = SLEEPS_AFTER if given.sleeps else math.inf
+    robot, lidar = Create2Robot(simulator, given.baud, sleeps_after), Ld19Emulator(simulator)
+    signal.signal(signal.SIGUSR1, lambda *_: robot.press_button())
     line = PseudoTerminal(given.link, given.baud if given.serial else None, given.speed)
     try:
         lidar_line = PseudoTerminal(given.lidar_link, _lidar_baud(given))

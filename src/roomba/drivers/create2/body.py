@@ -12,7 +12,7 @@ import math
 import threading
 import time
 from collections.abc import Callable, Sequence
-from typing import Final
+from typing import Final, Protocol
 
 from roomba.configuration.robot import RobotConfig
 from roomba.drivers.create2 import commands
@@ -22,6 +22,7 @@ from roomba.drivers.create2.frames import FrameReader
 from roomba.drivers.create2.odometry import EncoderOdometry
 from roomba.drivers.create2.open_interface import OpenMode, Packet
 from roomba.drivers.create2.telling import ALL, FAST, SLOW, Create2State, state_of
+from roomba.drivers.create2.waking import BrcPin, PinLine
 from roomba.drivers.lidars.reader import LidarReader
 from roomba.drivers.line import Line, LineError, SerialLine
 from roomba.geometry import STANDSTILL, Twist
@@ -45,6 +46,10 @@ _TURNS: Final = 5
 """Of as many commands on a slow line one is followed by the packets that may be old."""
 
 
+class RobotLine(Line, PinLine, Protocol):
+    """Its line: data, and the pin that wakes it."""
+
+
 class Create2Body:
     """One robot on a serial port. ``trouble`` says what is wrong with the line, "" if nothing."""
 
@@ -56,7 +61,7 @@ class Create2Body:
         *,
         lidar: LidarReader | None = None,
         bauds: Sequence[int] = BAUDS,
-        opened: Callable[[str, int], Line] = SerialLine,
+        opened: Callable[[str, int], RobotLine] = SerialLine,
         switch: Switch | None = None,
         wall: Callable[[], float] = time.monotonic,
     ) -> None:
@@ -71,7 +76,8 @@ class Create2Body:
         self._config, self._bauds = config, bauds
         self._lidar, self._opened = lidar, opened
         self._switch = switch or DeadManSwitch(port)
-        self._line: Line | None = None
+        self._line: RobotLine | None = None
+        self._pin = BrcPin(wall)
         self._lock = threading.Lock()
         self._wanted, self._wanted_at = Command(), -math.inf
         self._sings_until, self._is_to_sing = -math.inf, False
@@ -135,17 +141,28 @@ class Create2Body:
     def begin(self) -> None:
         """Open the line and take the robot over, which stands then; raises LineError."""
         self._let_go()
-        for baud in self._bauds:
-            if self._wakes(baud):
-                self._switch.start()
-                if self._lidar is not None:
-                    self._lidar.start()
-                self.trouble = ""
-                return
-        raise LineError(
-            f"expected a Create 2 on {self._port}, got no answer at "
-            f"{' or '.join(map(str, self._bauds))} baud. Is it switched on (CLEAN lights up)?"
-        )
+        if not (self._is_found() or (self._is_woken() and self._is_found())):
+            raise LineError(
+                f"expected a Create 2 on {self._port}, got no answer at "
+                f"{' or '.join(map(str, self._bauds))} baud. Is it switched on (CLEAN lights up)?"
+            )
+        self._pin.forget()
+        self._switch.start()
+        if self._lidar is not None:
+            self._lidar.start()
+        self.trouble = ""
+
+    def _is_found(self) -> bool:
+        """Whether it answers at one of the rates."""
+        return any(self._answers(baud) for baud in self._bauds)
+
+    def _is_woken(self) -> bool:
+        """Wake it, if the line has the pin for that; whether it has."""
+        line = self._opened(self._port, self._bauds[0])
+        try:
+            return self._pin.wake(line)
+        finally:
+            line.close()
 
     def serve(self) -> None:
         """Take what comes, and send what is due; raises LineError, after which begin() is due."""
@@ -159,6 +176,7 @@ class Create2Body:
             if now >= self._due:
                 self._due = now + _PERIOD
                 self._send(self._line, now)
+                self._pin.keep_awake(self._line, may_sleep=self._state.mode is OpenMode.PASSIVE)
         except LineError as error:
             with self._lock:
                 self._odometry.forget()
@@ -188,7 +206,7 @@ class Create2Body:
         if line is not None:
             line.close()
 
-    def _wakes(self, baud: int) -> bool:
+    def _answers(self, baud: int) -> bool:
         """Open the line at a rate, and ask for the stream; whether it comes."""
         self._lists = (ALL,) if baud >= _ROOMY else (FAST, SLOW)
         self._reader = FrameReader(self._lists)

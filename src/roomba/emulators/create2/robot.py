@@ -49,18 +49,29 @@ _MOTORS: Final = frozenset(
 """What passive mode does not do."""
 
 
+SLEEPS_AFTER: Final = 300.0
+"""s of passive mode after which a real one falls asleep."""
+
+
 class Create2Robot:
     """The robot: :meth:`do` what it is told, :meth:`advance` lets time pass.
 
     ``mode``, ``leds`` (the last command of each kind) and ``songs`` are as of now; ``baud`` is the
     rate of its line, ``streamed`` what it tells without being asked while ``is_streaming``.
+    ``is_asleep``: it hears nothing until :meth:`pull_brc` or :meth:`press_button` wakes it.
     """
 
-    def __init__(self, simulator: Simulator, baud: int = BAUDS[-1]) -> None:
-        """Live in the body of ``simulator``, which it drives; its line begins at ``baud``."""
+    def __init__(
+        self, simulator: Simulator, baud: int = BAUDS[-1], sleeps_after: float = math.inf
+    ) -> None:
+        """Live in the body of ``simulator``, which it drives; its line begins at ``baud``.
+
+        In passive mode it falls asleep after so many s; a real one after :data:`SLEEPS_AFTER`.
+        """
         self.simulator = simulator
         self.seen = simulator.observe()
-        self._first_baud = baud
+        self._first_baud, self._sleeps_after = baud, sleeps_after
+        self._passive_for, self._brc_is_low = 0.0, False
         self._actions: dict[Opcode, Callable[[bytes], bytes]] = {
             Opcode.RESET: self._reset,
             Opcode.START: lambda data: self._into(OpenMode.PASSIVE),
@@ -87,7 +98,7 @@ class Create2Robot:
         self._begin_anew()
 
     def _begin_anew(self) -> None:
-        self.mode, self.baud = OpenMode.OFF, self._first_baud
+        self.mode, self.baud, self.is_asleep = OpenMode.OFF, self._first_baud, False
         self.wheels = RequestedWheels(self.simulator.config.body.wheel_separation)
         self.leds: dict[Opcode, bytes] = {}
         self.songs = Songs()
@@ -112,6 +123,24 @@ class Create2Robot:
         self._turn = math.remainder(self._turn, 2.0 * math.pi)
         if self.mode is OpenMode.SAFE and self._is_unsafe():
             self._into(OpenMode.PASSIVE)
+        self._grow_tired()
+
+    def _grow_tired(self) -> None:
+        """Fall asleep after a while in passive mode, whatever it is told meanwhile."""
+        self._passive_for = self._passive_for + STEP if self.mode is OpenMode.PASSIVE else 0.0
+        if self._passive_for >= self._sleeps_after:
+            self._into(OpenMode.OFF)
+            self.is_asleep = True
+
+    def pull_brc(self, *, is_low: bool) -> None:
+        """Pull the pin BRC low, or let it go: a falling edge wakes it, or keeps it awake."""
+        if is_low and not self._brc_is_low:
+            self.press_button()
+        self._brc_is_low = is_low
+
+    def press_button(self) -> None:
+        """Press CLEAN for a moment: it is awake, and its while in passive mode begins anew."""
+        self.is_asleep, self._passive_for = False, 0.0
 
     def _is_unsafe(self) -> bool:
         """Whether safe mode ends: a drop, a charger, or a cliff towards which it can come.
@@ -129,6 +158,8 @@ class Create2Robot:
 
     def do(self, told: Instruction) -> bytes:
         """Do what it is told, if its mode allows; return the answer."""
+        if self.is_asleep:
+            return b""
         if self.mode is OpenMode.OFF and told.opcode not in (Opcode.START, Opcode.RESET):
             return b""
         if told.opcode in _MOTORS and self.mode not in _OBEYING:

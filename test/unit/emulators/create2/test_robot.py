@@ -252,3 +252,44 @@ def test_a_reset_begins_all_anew(robot: Create2Robot) -> None:
     assert ask(robot, Packet.LEFT_ENCODER) == 0
     live(robot, 1.0)
     assert robot.seen.twist.linear == 0.0
+
+
+def test_in_passive_mode_it_falls_asleep_and_brc_wakes_it() -> None:
+    robot = Create2Robot(create2_in_studio(), sleeps_after=2.0)
+    say(robot, Opcode.START, Opcode.STREAM, 1, Packet.MODE)
+    live(robot, 1.9)
+    assert not robot.is_asleep
+    live(robot, 0.2)
+    assert robot.is_asleep
+    assert not robot.is_streaming
+    say(robot, Opcode.START)
+    assert say(robot, Opcode.SENSORS, Packet.MODE) == b""
+    robot.pull_brc(is_low=False)
+    assert robot.is_asleep
+    robot.pull_brc(is_low=True)
+    assert not robot.is_asleep
+    say(robot, Opcode.START)
+    assert ask(robot, Packet.MODE) == OpenMode.PASSIVE
+
+
+def test_pulses_keep_it_awake_and_a_pin_that_stays_low_does_not() -> None:
+    robot = Create2Robot(create2_in_studio(), sleeps_after=2.0)
+    say(robot, Opcode.START)
+    for _ in range(3):
+        robot.pull_brc(is_low=True)
+        live(robot, 1.5)
+        robot.pull_brc(is_low=False)
+    assert not robot.is_asleep
+    robot.pull_brc(is_low=True)
+    for _ in range(3):
+        robot.pull_brc(is_low=True)
+        live(robot, 0.9)
+    assert robot.is_asleep
+
+
+def test_out_of_passive_mode_it_stays_awake(robot: Create2Robot) -> None:
+    sleeper = Create2Robot(robot.simulator, sleeps_after=1.0)
+    say(sleeper, Opcode.START, Opcode.SAFE)
+    live(sleeper, 3.0)
+    assert sleeper.mode is OpenMode.SAFE
+    assert not sleeper.is_asleep
