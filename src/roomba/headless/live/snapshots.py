@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from roomba.client.protocol import CleanReport, ExploreReport, RobotUnavailableError
 from roomba.client.view import GridLayer, HomeView, RobotView, exploration_as_clean
+from roomba.grid import GridFrame
 from roomba.headless.embodied import Embodied
 from roomba.headless.live.floor_plan import FloorPlan
 from roomba.headless.live.live_home import LiveHome
@@ -140,13 +141,23 @@ class Snapshots:
             return
         self._map_of = occupancy
         with self._lock:
-            if self._map is None or self._map.cells.shape != occupancy.frame.shape:
+            if not self._lies_alike(occupancy.frame):
                 self._shape += 1
-                self._visits = Visits(occupancy.frame, robot.robot.brush.width)
+                if robot.brain.growing is not None:
+                    self._visits.carry(occupancy.frame)
+                else:
+                    self._visits = Visits(occupancy.frame, robot.robot.brush.width)
             cells = map_cells(self._live_home.plan, occupancy)
             self._map = GridLayer.over(occupancy.frame, cells, self._shape)
         self._find_rooms(robot)
         self._look_at_home(robot)
+
+    def _lies_alike(self, frame: GridFrame) -> bool:
+        """Whether the newest map has the same cells."""
+        shown = self._map
+        if shown is None or shown.cells.shape != frame.shape:
+            return False
+        return (shown.origin_x, shown.origin_y) == (frame.origin_x, frame.origin_y)
 
     def _find_rooms(self, robot: Embodied) -> None:
         """As soon as a map that was made is whole, find its rooms."""

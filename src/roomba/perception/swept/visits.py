@@ -8,8 +8,10 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.geometry import Pose
 from roomba.grid import GridFrame
 from roomba.perception.swept.coverage_kernels import visit
+from roomba.raster.carried import carried
 
 CELL: Final = 0.05
 """m; side of a cell, as fine as can be seen on a page."""
@@ -23,12 +25,10 @@ class Visits:
 
     def __init__(self, frame: GridFrame, tool_width: float) -> None:
         """Lay cells over all of a frame, with nothing visited."""
-        rows = math.ceil(frame.rows * frame.resolution / CELL)
-        columns = math.ceil(frame.columns * frame.resolution / CELL)
-        self.frame = GridFrame(CELL, frame.origin_x, frame.origin_y, rows, columns)
+        self.frame = _over(frame)
         self.counts: NDArray[np.uint8] = np.zeros(self.frame.shape, np.uint8)
         self._swept_at = np.full(self.frame.shape, -np.inf)
-        self._place = np.array([*self.frame.centre_of(0, 0), CELL])
+        self._place = _place(self.frame)
         self._rule = (0.5 * tool_width, _ANOTHER_VISIT, _MOST)
         self._at: NDArray[np.float64] | None = None
 
@@ -37,6 +37,13 @@ class Visits:
         self.counts[:] = 0
         self._swept_at[:] = -np.inf
         self._at = None
+
+    def carry(self, frame: GridFrame) -> None:
+        """Go on over another frame of the same map, which has grown."""
+        before, self.frame = self.frame, _over(frame)
+        self.counts = carried(self.counts, before, self.frame, Pose())
+        self._swept_at = carried(self._swept_at, before, self.frame, Pose(), -np.inf)
+        self._place = _place(self.frame)
 
     def lift(self) -> None:
         """Interrupt the path: the next place does not continue the last one."""
@@ -53,3 +60,14 @@ class Visits:
         begin = poses[:1] if self._at is None else self._at
         visit(self.counts, self._swept_at, self._place, self._rule, np.vstack((begin, poses)))
         self._at = poses[-1:].copy()
+
+
+def _over(frame: GridFrame) -> GridFrame:
+    """Return the frame of cells that lie over all of another one."""
+    rows = math.ceil(frame.rows * frame.resolution / CELL)
+    columns = math.ceil(frame.columns * frame.resolution / CELL)
+    return GridFrame(CELL, frame.origin_x, frame.origin_y, rows, columns)
+
+
+def _place(frame: GridFrame) -> NDArray[np.float64]:
+    return np.array([*frame.centre_of(0, 0), CELL])

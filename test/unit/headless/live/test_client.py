@@ -226,6 +226,27 @@ def test_a_robot_that_ended_says_so() -> None:
         client.dock()
 
 
+def test_what_was_swept_stays_shown_while_the_map_grows() -> None:
+    client = live_client("flat", seed=1, speed=200.0, knows_map=False)
+    client.start()
+    try:
+        client.clean(CleanOrder())
+        shapes: list[tuple[int, ...]] = []
+
+        def has_grown() -> bool:
+            covered, layer = client.robot().vacuum.covered, client.layer(LayerName.COVERAGE)
+            assert layer is not None
+            shapes.append(layer.cells.shape)
+            if covered > 2.0:
+                shown = np.count_nonzero(layer.cells) * layer.resolution**2
+                assert shown > 0.9 * covered
+            return covered > 2.0 and shapes[-1] != shapes[-2]
+
+        wait_until(has_grown, DEADLINE, "a map that grows while it cleans", pause=0.02)
+    finally:
+        client.end()
+
+
 def test_without_a_map_it_explores_and_finds_rooms() -> None:
     client = live_client("studio", seed=1, speed=100.0, knows_map=False)
     client.start()

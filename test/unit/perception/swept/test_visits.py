@@ -71,3 +71,20 @@ def test_all_poses_at_once_count_as_one_by_one() -> None:
     at_once.sweep_all(poses)
     assert np.array_equal(at_once.counts, one_by_one.counts)
     assert set(np.unique(at_once.counts)) == {0, 1, 2, 3}
+
+
+def test_over_a_map_that_grew_the_same_floor_stays_visited() -> None:
+    visits = Visits(FRAME, 0.2)
+    visits.sweep(0.0, 0.3, 1.8)
+    before = visits.counts.sum()
+    grown = GridFrame(0.05, -1.0, 0.5, 60, 90)
+    visits.carry(grown)
+    assert visits.frame == grown
+    assert visits.counts.sum() == before
+    assert visits.counts[grown.cell_of(0.3, 1.8)] == 1
+    # A neighbouring swath at once is the same visit; the way goes on where it was.
+    visits.sweep(1.0, 0.6, 1.8)
+    assert visits.counts[grown.cell_of(0.3, 1.8)] == 1
+    assert visits.counts[grown.cell_of(0.45, 1.8)] == 1
+    visits.sweep(60.0, 0.3, 1.8)
+    assert visits.counts[grown.cell_of(0.3, 1.8)] == 2
