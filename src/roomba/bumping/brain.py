@@ -4,14 +4,17 @@ commands. No clock, no files: it is given its random numbers."""
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from enum import Enum
 from typing import Final
 
 import numpy as np
 
 from roomba.bumping.beam_approach import Approach, BeamApproach
+from roomba.bumping.driven_floor import DrivenFloor
 from roomba.bumping.felt_floor import FeltFloor
-from roomba.bumping.sweeping import BumpAndGo
+from roomba.bumping.sweeping import BumpAndGo, BumpMove
+from roomba.bumping.wall_compass import WallCompass
 from roomba.configuration.bumping import BumpingConfig
 from roomba.configuration.docking import DockingConfig
 from roomba.configuration.robot import RobotConfig
@@ -70,6 +73,8 @@ class BumpingBrain:
         self.robot, self._config, self._docking_config, self._rng = robot, config, docking, rng
         self.state = BumpingState.STANDING
         self.floor = FeltFloor(config, robot.brush.width)
+        self.compass = WallCompass(config)
+        self._driven, self._led_at = DrivenFloor(config), -math.inf
         self.station: Pose | None = None
         self.readings: Readings | None = None
         self._drive = SpeedLoop(robot.body, max_speed)
@@ -86,6 +91,7 @@ class BumpingBrain:
     def clean(self) -> None:
         """Sweep, from here or out of the station."""
         self.floor.forget()
+        self._driven.forget()
         self._enter(BumpingState.LEAVING)
 
     def dock(self) -> None:
@@ -127,6 +133,11 @@ class BumpingBrain:
             self._homing_since, self._reach = None, self._config.near_home
         self.floor.coverage.lift()
 
+    @property
+    def move(self) -> BumpMove | None:
+        """What it does while it sweeps or looks for its station; None while it does neither."""
+        return None if self._sweeping is None else self._sweeping.move
+
     def limit_speed(self, speed: float) -> None:
         """Set the fastest that it drives, m/s."""
         self._drive.set_max_speed(speed)
@@ -135,19 +146,28 @@ class BumpingBrain:
 
     def tick(self, readings: Readings) -> Command:
         """Take what the sensors tell, and return what is wanted, as far as that is safe."""
-        self.readings = readings
+        self.readings = readings = self._placed(readings)
         self._notice(readings)
         wanted = self._act(readings)
         sweeps = self.state in (BumpingState.SWEEPING, BumpingState.HOMING)
         if sweeps:
             self.floor.sweep(readings.odometry)
+        if self.state.drives:
+            self._driven.drive(readings.odometry)
         rests = None if sweeps else 0.0
         return Command(self._safely(wanted, readings), rests, rests)
 
     def steer(self, twist: Twist, readings: Readings) -> Command:
         """Return what is wanted when the robot is steered by hand, as far as that is safe."""
-        self.readings = readings
+        self.readings = readings = self._placed(readings)
         return Command(self._safely(twist, readings), 0.0, 0.0)
+
+    def _placed(self, readings: Readings) -> Readings:
+        """Return what the sensors tell, with the place that walls put right."""
+        sweeping = self._sweeping
+        is_along = sweeping is not None and sweeping.is_along(readings)
+        self.compass.take(readings.odometry, is_along=is_along)
+        return replace(readings, odometry=self.compass.pose)
 
     def _safely(self, wanted: Twist, readings: Readings) -> Twist:
         self._drive.set_hazards(readings.hazards)
@@ -169,9 +189,11 @@ class BumpingBrain:
             self._enter(BumpingState.HELD)
 
     def _remember_station(self, pose: Pose) -> None:
-        known = self.station
-        if known is None or known.distance_to(pose.x, pose.y) > self._config.cell:
+        if self.station is None:
             self.station = pose
+            self.compass.stand_square()
+        elif self.state is not BumpingState.LEAVING:
+            self.compass.stand_at(self.station)
 
     def _is_low(self, battery: Battery) -> bool:
         return battery.level < self._config.home_level
@@ -182,6 +204,7 @@ class BumpingBrain:
                 return self._leave(readings)
             case BumpingState.SWEEPING:
                 self._sweeping = self._sweeping or self._bump_and_go(None)
+                self._sweeping.wants_wall = self.compass.is_due
                 return self._sweeping.tick(readings)
             case BumpingState.HOMING:
                 return self._go_home(readings)
@@ -229,17 +252,36 @@ class BumpingBrain:
         if self._sweeping is None or is_at_walls is not (self._sweeping.goal is None):
             goal = None if is_at_walls else self._place_to_look()
             self._sweeping = self._bump_and_go(goal, stays_at_walls=is_at_walls)
-        pose, goal = readings.odometry, self._sweeping.goal
-        if goal is not None and pose.distance_to(*goal) < self._config.near_home:
-            self._reach += self._config.search_growth
-            self._sweeping.goal = self._place_to_look()
+        if not is_at_walls:
+            self._sweeping.goal = self._next_on_the_way(readings, self._sweeping.goal)
         return self._sweeping.tick(readings)
+
+    def _next_on_the_way(
+        self, readings: Readings, goal: tuple[float, float] | None
+    ) -> tuple[float, float] | None:
+        """Return where to go: back over driven floor, and from place to place where that ends."""
+        if self.station is None:
+            return None
+        pose, now = readings.odometry, readings.time
+        before = self._before_station(self.station)
+        if pose.distance_to(before.x, before.y) > self._config.driven_ahead + self._reach:
+            if now - self._led_at > self._config.driven_again:
+                self._driven.lead_to(before.x, before.y)
+                self._led_at = now
+            return self._driven.next_from(pose) or (before.x, before.y)
+        if goal is None or pose.distance_to(*goal) < self._config.near_home:
+            self._reach += self._config.search_growth
+            return self._place_to_look()
+        return goal
+
+    def _before_station(self, station: Pose) -> Pose:
+        return station.compose(Pose(-self._config.before_home, 0.0, 0.0))
 
     def _place_to_look(self) -> tuple[float, float] | None:
         """Return a place before the station, the farther from it the longer it was looked for."""
         if self.station is None:
             return None
-        before = self.station.compose(Pose(-self._config.before_home, 0.0, 0.0))
+        before = self._before_station(self.station)
         off_x, off_y = self._rng.normal(0.0, self._reach, 2).tolist()
         return before.x + off_x, before.y + off_y
 

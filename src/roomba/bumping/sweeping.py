@@ -29,6 +29,8 @@ class BumpAndGo:
 
     ``stays_at_walls``: after each touch it goes along what it touched, and longer.
 
+    ``wants_wall``: after the next touch it goes along what it touched.
+
     ``is_held``: it touched so often without coming away that it needs help.
     """
 
@@ -45,7 +47,7 @@ class BumpAndGo:
         """Begin with a spiral, or on the way to a goal; ``radius``, m, is the body's."""
         self._config, self._radius, self._floor, self._rng = config, radius, floor, rng
         self.goal, self._stays_at_walls = goal, stays_at_walls
-        self.is_held = False
+        self.is_held = self.wants_wall = False
         begins_straight = goal is not None or stays_at_walls
         self.move = BumpMove.STRAIGHT if begins_straight else BumpMove.SPIRAL
         self._next = BumpMove.STRAIGHT
@@ -58,6 +60,9 @@ class BumpAndGo:
         self._touches, self._bumps = 0, 0
         self._touched_at = (math.inf, math.inf)
         self._detour = 0.0
+        self._nearest, self._near = 0.0, 0.0
+        self._is_wedged = False
+        self._around = 1.0
         self._along: float | None = None
 
     def tick(self, readings: Readings) -> Twist:
@@ -67,7 +72,8 @@ class BumpAndGo:
         if self._began is None:
             self._enter(self.move, readings)
         is_touched = readings.bumps or readings.cliff.any
-        if is_touched and self.move is not BumpMove.BACK:
+        turns_free = self.move is BumpMove.TURN and self._is_wedged
+        if is_touched and self.move is not BumpMove.BACK and not turns_free:
             self._touch(readings)
         match self.move:
             case BumpMove.BACK:
@@ -77,7 +83,7 @@ class BumpAndGo:
             case BumpMove.SPIRAL:
                 return self._go_around(readings, dt)
             case BumpMove.WALL:
-                return self._go_along(readings)
+                return self._go_along(readings, dt)
             case _:
                 return self._go_on(readings, pose)
 
@@ -88,6 +94,11 @@ class BumpAndGo:
     def _way(self, pose: Pose) -> float:
         began = self._began or pose
         return pose.distance_to(began.x, began.y)
+
+    def is_along(self, readings: Readings) -> bool:
+        """Whether it goes along a wall, which it saw a moment ago."""
+        is_seen = readings.time - self._lost <= self._config.wall_gap
+        return self.move is BumpMove.WALL and is_seen and not readings.bumps
 
     # ---------------------------------------------------------------- after a touch
 
@@ -105,13 +116,13 @@ class BumpAndGo:
         self._bumps += 1
         turns_along = self.move is BumpMove.TURN and self._next is BumpMove.WALL
         goes_along = self._stays_at_walls or turns_along or self.move is BumpMove.WALL
-        goes_along |= self._bumps % config.wall_every == 0
+        goes_along |= self.wants_wall or self._bumps % config.wall_every == 0
         # Between legs of chairs walls lead nowhere.
         goes_along &= self._touches <= config.wall_touches and not readings.cliff.any
         if goes_along:
             self._next = BumpMove.WALL
             turn = config.corner_turn * (0.6 if right and not left else 1.4)
-            self._heading = wrap_angle(pose.theta + turn)
+            self._heading, self._nearest = wrap_angle(pose.theta + turn), 0.0
         else:
             self._next, self._along = BumpMove.STRAIGHT, None
             self._heading = self._away(pose, left=left, right=right)
@@ -144,18 +155,27 @@ class BumpAndGo:
     def _back(self, readings: Readings, *, is_touched: bool) -> Twist:
         config = self._config
         is_over = readings.time - self._since > config.backing_time
+        self._is_wedged = is_over and is_touched
         if is_over or (self._way(readings.odometry) >= config.backing_way and not is_touched):
             self._enter(BumpMove.TURN, readings)
             return STANDSTILL
         return Twist(-0.4 * config.speed, 0.0)
 
     def _turn(self, readings: Readings) -> Twist:
+        if self._next is BumpMove.WALL and self._has_turned_along(readings):
+            self._enter(self._next, readings)
+            return STANDSTILL
         wrong = wrap_angle(self._heading - readings.odometry.theta)
         took = readings.time - self._since
         if abs(wrong) <= self._config.aimed or took > TWO_PI / self._config.turning_speed:
             self._enter(self._next, readings)
             return STANDSTILL
         return Twist(0.0, math.copysign(self._config.turning_speed, wrong))
+
+    def _has_turned_along(self, readings: Readings) -> bool:
+        """Whether the wall on its right was nearest a moment ago: it stands along it."""
+        self._nearest, self._near = max(self._nearest, readings.wall), readings.wall
+        return self._nearest > 0.0 and readings.wall < self._nearest - self._config.wall_passed
 
     # ---------------------------------------------------------------- sweeping
 
@@ -165,10 +185,12 @@ class BumpAndGo:
         self._spiral += config.spiral_pitch / TWO_PI * turning * dt
         if self._spiral > config.spiral_end:
             self._end_spiral(readings)
-        return Twist(min(config.speed, turning * self._spiral), turning)
+        return Twist(min(config.speed, turning * self._spiral), self._around * turning)
 
     def _end_spiral(self, readings: Readings) -> None:
         self._spiral, self._spiralled = self._config.spiral_start, readings.time
+        # Carpets take some of each turn: those to the left and to the right make up for each other.
+        self._around = -self._around
         self._enter(BumpMove.STRAIGHT, readings)
 
     def _go_on(self, readings: Readings, pose: Pose) -> Twist:
@@ -196,7 +218,7 @@ class BumpAndGo:
         ]
         return float(np.mean(new)) > config.spiral_room * reach
 
-    def _go_along(self, readings: Readings) -> Twist:
+    def _go_along(self, readings: Readings, dt: float) -> Twist:
         """Keep the wall on its right as near as its sensor can tell; look for it in a bend."""
         config = self._config
         speed = config.wall_speed
@@ -210,8 +232,13 @@ class BumpAndGo:
             return STANDSTILL
         if readings.wall > 0.0:
             self._lost = readings.time
-            is_near = readings.wall > config.wall_signal
-            return Twist(speed, config.wall_turning if is_near else 0.0)
+            # Its sensor is coarse: a step of it is no turn of the wall.
+            share = dt / (dt + config.wall_smoothing)
+            before, self._near = self._near, self._near + share * (readings.wall - self._near)
+            rising = (self._near - before) / dt if dt > 0.0 else 0.0
+            turning = config.wall_gain * (self._near - config.wall_signal)
+            turning += config.wall_damping * rising
+            return Twist(speed, max(min(turning, config.wall_turning), -config.wall_turning))
         lost = readings.time - self._lost
         if lost > TWO_PI * config.wall_radius / speed:
             self._along = None

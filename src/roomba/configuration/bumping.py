@@ -28,10 +28,14 @@ class BumpingConfig(Frozen):
     wall_time: Positive = 40.0
     wall_speed: Positive = 0.2
     wall_signal: Ratio = 0.4
-    wall_turning: Positive = 0.4
+    wall_turning: Positive = 0.8
+    wall_gain: Positive = 0.4
+    wall_damping: Positive = 0.6
+    wall_smoothing: Positive = 0.15
+    wall_passed: Ratio = 0.1
     wall_gap: Positive = 0.6
     wall_radius: Positive = 0.24
-    corner_turn: Acute = 0.5
+    corner_turn: Acute = 1.2
     most_touches: AtLeastOne = 80
     free_way: Positive = 0.3
     cell: Positive = 0.05
@@ -54,5 +58,15 @@ class BumpingConfig(Frozen):
     beam_doubt: Acute = 0.8
     beam_aside: Acute = 0.3
     leaving_turn: Positive = 2.2
+    compass_way: Positive = 1.0
+    compass_aside: Positive = 0.05
+    compass_most: Acute = 0.5
+    compass_due: Positive = 12.0
+    compass_turns: Positive = 15.0
+    compass_learning: Ratio = 0.5
+    compass_far: Positive = 10.0
+    driven_cell: Positive = 0.1
+    driven_ahead: Positive = 0.6
+    driven_again: Positive = 20.0
 
     in_order: ClassVar[tuple[str, ...]] = ("spiral_start <= spiral_end",)

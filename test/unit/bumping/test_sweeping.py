@@ -24,11 +24,12 @@ class Driven:
         rng = np.random.default_rng(seed)
         self.sweeping = BumpAndGo(CONFIG, 0.17, self.floor, rng, goal)
         self.pose, self.time = Pose(), 0.0
+        self.is_blocked = False
 
     def tick(self, *, left: bool = False, right: bool = False, wall: float = 0.0) -> Twist:
         readings = Readings(self.time, self.pose, bumper_left=left, bumper_right=right, wall=wall)
         twist = self.sweeping.tick(readings)
-        turn, way = twist.angular * TICK, twist.linear * TICK
+        turn, way = twist.angular * TICK, 0.0 if self.is_blocked else twist.linear * TICK
         self.pose = self.pose.compose(
             Pose(way * math.cos(turn / 2), way * math.sin(turn / 2), turn)
         )
@@ -86,8 +87,13 @@ def test_along_a_wall_it_keeps_that_on_its_right_until_the_time_is_over() -> Non
     driven = Driven()
     driven.come_to_a_wall()
     assert driven.sweeping.move is BumpMove.WALL
-    assert driven.tick(wall=0.9).angular > 0.0
-    assert driven.tick(wall=0.2).angular == 0.0
+    for wall in (0.2, CONFIG.wall_signal, 0.9):
+        for _ in range(40):
+            twist = driven.tick(wall=wall)
+        # By how far the wall is from where it should be; a wall that stays there turns nothing.
+        expected = CONFIG.wall_gain * (wall - CONFIG.wall_signal)
+        assert twist.angular == pytest.approx(expected, abs=1e-3)
+    assert driven.tick(wall=0.2).angular < 0.0
     assert driven.tick().angular < 0.0
     driven.until(BumpMove.TURN, CONFIG.wall_time + 1.0, wall=0.2)
     driven.until(BumpMove.STRAIGHT, 5.0)
@@ -106,3 +112,33 @@ def test_with_a_goal_it_comes_there() -> None:
         if driven.pose.distance_to(2.0, 1.0) < 0.3:
             return
     raise AssertionError(f"it is at {driven.pose}")
+
+
+def test_spirals_go_left_and_right_by_turns() -> None:
+    driven = Driven()
+    turned = []
+    for _ in range(2):
+        driven.until(BumpMove.SPIRAL, 30.0)
+        turned.append(driven.tick().angular)
+        driven.until(BumpMove.STRAIGHT, 300.0)
+        driven.time += CONFIG.spiral_pause
+    assert turned[0] > 0.0 > turned[1]
+
+
+def test_wedged_between_things_it_turns_although_it_touches_one() -> None:
+    driven = Driven()
+    driven.until(BumpMove.STRAIGHT, 300.0)
+    driven.is_blocked = True
+    turning = 0.0
+    for _ in range(round(10.0 / TICK)):
+        turning += abs(driven.tick(left=True, right=True).angular) * TICK
+    assert turning > CONFIG.least_turn
+
+
+@pytest.mark.parametrize("wants", [True, False])
+def test_where_a_wall_is_wanted_it_goes_along_what_it_touches_next(wants: bool) -> None:
+    driven = Driven()
+    driven.until(BumpMove.STRAIGHT, 300.0)
+    driven.sweeping.wants_wall = wants
+    driven.tick(right=True)
+    driven.until(BumpMove.WALL if wants else BumpMove.STRAIGHT, 5.0)

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import Any, Final
 
 from roomba.commands.demonstration.listener import HeardMessage
 
 _HEAD: Final = "| min:s | told | battery | area |\n|---|---|---|---|"
+_NOTHING: Final = "none"
+"""Where nothing is wrong."""
 _EACH: Final = 5.0
 """m2 after which a row is due while nothing else changes."""
 
@@ -40,8 +44,26 @@ def _changes(states: Sequence[HeardMessage]) -> list[tuple[HeardMessage, dict[st
     return found
 
 
-def _does(told: dict[str, Any]) -> tuple[str, str, str]:
-    return told["state"], told["phase"], told["error"]
+def troubles_of(states: Sequence[HeardMessage]) -> str:
+    """Return Markdown of what was told to be wrong: how often, and for how many s in all."""
+    times: Counter[str] = Counter()
+    seconds: Counter[str] = Counter()
+    before = _NOTHING
+    for message, following in pairwise(states):
+        error = message.values()["error"]
+        times[error] += error != before
+        seconds[error] += round(following.time - message.time)
+        before = error
+    rows = [
+        f"- “{error}”: {times[error]} times, {seconds[error]} s in all"
+        for error in times
+        if error != _NOTHING
+    ]
+    return "".join(f"{row}\n" for row in rows)
+
+
+def _does(told: dict[str, Any]) -> tuple[str, str]:
+    return told["state"], told["phase"]
 
 
 def _grew(told: dict[str, Any], before: dict[str, Any]) -> bool:
@@ -49,10 +71,8 @@ def _grew(told: dict[str, Any], before: dict[str, Any]) -> bool:
 
 
 def _row(message: HeardMessage, told: dict[str, Any], due: float) -> str:
-    state, phase, error = _does(told)
+    state, phase = _does(told)
     words = state if phase == state else f"{state} ({phase})"
-    if error != "none":
-        words = f"{words}: {error}"
     area = "" if told["area"] is None else f"{told['area']:.1f} m²"
     return f"| {_clock(message.time - due)} | {words} | {told['battery']:.0f} % | {area} |"
 

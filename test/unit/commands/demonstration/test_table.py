@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 
 from roomba.commands.demonstration.listener import HeardMessage
-from roomba.commands.demonstration.table import table_of
+from roomba.commands.demonstration.table import table_of, troubles_of
 
 DUE = 1000.0
 
@@ -26,6 +26,7 @@ def test_a_row_tells_each_change_and_each_five_square_metres() -> None:
         told(100.0, "cleaning", "cleaning", 4.9),
         told(101.0, "cleaning", "cleaning", 5.2),
         told(131.0, "error", "stuck", 5.2, "it is stuck"),
+        told(133.0, "error", "stuck", 5.2, "it is stuck"),
         told(170.0, "docked", "docked", 5.2),
         told(175.0, "docked", "docked", 5.3),
     ]
@@ -36,7 +37,9 @@ def test_a_row_tells_each_change_and_each_five_square_metres() -> None:
         "| 0:09 | cleaning | 97 % | 0.1 m² |",
         "| 1:41 | cleaning | 97 % | 5.2 m² |",
         "| 2:10 | → `command`: `pause` | | |",
-        "| 2:11 | error (stuck): it is stuck | 97 % | 5.2 m² |",
+        "| 2:11 | error (stuck) | 97 % | 5.2 m² |",
         "| 2:50 | docked | 97 % | 5.2 m² |",
         "| 2:55 | docked | 97 % | 5.3 m² |",
     ]
+    assert troubles_of(states) == "- “it is stuck”: 1 times, 39 s in all\n"
+    assert troubles_of(states[:3]) == ""
