@@ -17,7 +17,7 @@ from roomba.geometry import Pose
 from roomba.headless.live.bumping_robot import BumpingRobot
 from roomba.mission.phases.machine import VACUUM_STATES, Phase
 
-BY_WHEELS: Final = "it has no lidar: where it is, and what it swept, is by its wheels alone"
+BY_WHEELS: Final = "it has no lidar: where it is, and what it swept, is by wheels and walls"
 _MARGIN: Final = 20
 """Cells around what was swept that are shown; as often the grid is drawn elsewhere."""
 _PHASES: Final = {
@@ -42,7 +42,7 @@ def phase_of(state: BumpingState) -> Phase:
 def view_of(robot: BumpingRobot, last: CleanReport | None, top_speed: float) -> RobotView:
     """Return the robot as it is now."""
     now, brain = robot.now, robot.brain
-    pose, phase = now.odometry, phase_of(brain.state)
+    pose, phase = brain.compass.pose, phase_of(brain.state)
     swept = brain.floor.coverage.swept_area
     return RobotView(
         time=now.time,

@@ -11,8 +11,10 @@ from fixtures.waiting import wait_until
 
 from roomba.client.protocol import ErrandOutcome, RequestRefusedError
 from roomba.client.view import CleanOrder, LayerName
+from roomba.geometry import Pose
 from roomba.headless.live.bumping_client import BumpingClient
 from roomba.headless.live.bumping_robot import BumpingRobot
+from roomba.headless.live.bumping_view import view_of
 
 
 @pytest.fixture
@@ -50,6 +52,13 @@ def test_it_sweeps_is_paused_goes_on_and_comes_home(client: BumpingClient) -> No
     assert last.outcome is ErrandOutcome.COMPLETED
     assert last.covered > 1.0
     assert last.distance > 5.0
+
+
+def test_it_is_shown_where_walls_and_its_station_say_that_it_is() -> None:
+    home = BumpingHome("studio", 1)
+    home.brain.compass.stand_at(Pose(1.0, 2.0, 0.5))
+    robot = BumpingRobot(home.body, home.brain)
+    assert view_of(robot, None, 0.3).pose == (1.0, 2.0, 0.5)
 
 
 def test_told_to_stop_it_stays_and_its_clean_is_told_as_stopped(client: BumpingClient) -> None:
