@@ -179,7 +179,7 @@ class Create2Body:
                 self._pin.keep_awake(self._line, may_sleep=self._state.mode is OpenMode.PASSIVE)
         except LineError as error:
             with self._lock:
-                self._odometry.forget()
+                self._odometry.pause()
                 self.trouble = str(error)
             self._let_go()
             raise
@@ -200,7 +200,7 @@ class Create2Body:
     def _let_go(self) -> None:
         """Let go of the line; the dead man's switch stops the robot once more, if it can."""
         with self._lock:
-            self._odometry.forget()
+            self._odometry.pause()
         self._switch.end()
         line, self._line = self._line, None
         if line is not None:

@@ -35,9 +35,15 @@ class EncoderOdometry:
         self._last, self.twist = None, STANDSTILL
         self._steps.clear()
 
+    def pause(self) -> None:
+        """Stand until the next counts: what was rolled meanwhile counts, if it is plausible."""
+        self.twist = STANDSTILL
+        self._steps.clear()
+
     def take(self, now: float, left: int, right: int) -> None:
         """Take the counts of both encoders, 0 to 65,535, at ``now``, s."""
         before, self._last = self._last, (now, left, right)
+        is_resumed = not self._steps
         if before is None:
             self._steps.append((now, 0.0, 0.0))
             return
@@ -52,7 +58,8 @@ class EncoderOdometry:
         half = 0.5 * turn
         chord = way * (math.sin(half) / half if half else 1.0)
         self.pose = self.pose.compose(Pose(chord * math.cos(half), chord * math.sin(half), turn))
-        self._steps.append((now, way, turn))
+        # Of what was rolled in a pause it is not known when: no speed is measured by that.
+        self._steps.append((now, 0.0, 0.0) if is_resumed else (now, way, turn))
         self._measure(now)
 
     def _rolled(self, before: int, now: int) -> float:

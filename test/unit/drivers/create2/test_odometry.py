@@ -59,3 +59,23 @@ def test_what_was_forgotten_is_not_counted() -> None:
     odometry.take(3.0, 900, 900)
     assert odometry.pose == before
     assert odometry.twist.linear == 0.0
+
+
+def test_what_was_rolled_in_a_pause_counts_and_makes_no_speed() -> None:
+    odometry = driven(0.3, 0.3, 1.0)
+    odometry.pause()
+    assert odometry.twist.linear == 0.0
+    # The robot's clock stood meanwhile, and the wheels did not.
+    for step, way in enumerate((0.34, 0.3415, 0.343)):
+        counts = round(way * PER_METRE)
+        odometry.take(1.1 + 0.015 * step, counts, counts)
+    assert odometry.pose.x == pytest.approx(0.343, abs=0.002)
+    assert odometry.twist.linear == pytest.approx(0.1, abs=0.02)
+
+
+def test_more_than_it_can_have_rolled_in_a_pause_is_no_way() -> None:
+    odometry = driven(0.3, 0.3, 1.0)
+    before = odometry.pose
+    odometry.pause()
+    odometry.take(1.1, round(3.0 * PER_METRE), round(3.0 * PER_METRE))
+    assert odometry.pose == before
