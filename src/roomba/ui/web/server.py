@@ -26,7 +26,7 @@ class ServerError(RoombaError):
 
 
 def listen(host: str, port: int, *, is_fixed: bool) -> socket.socket:
-    """Return a bound socket: of ``port``, or of one of the next that is free.
+    """Return a socket that listens at ``port``, or at one of the next that is free.
 
     Raises ServerError when there is none.
     """
@@ -38,6 +38,8 @@ def listen(host: str, port: int, *, is_fixed: bool) -> socket.socket:
         bound.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, SENT_AHEAD)
         try:
             bound.bind((host, tried))
+            # Who opens the address as soon as it is printed waits, and is not refused.
+            bound.listen()
         except OSError as error:
             bound.close()
             if error.errno == errno.EADDRNOTAVAIL:

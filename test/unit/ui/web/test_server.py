@@ -30,6 +30,23 @@ def test_a_port_that_was_asked_for_and_is_not_free_is_refused() -> None:
         listen("127.0.0.1", port, is_fixed=True)
 
 
+def test_who_comes_before_it_serves_waits_and_is_answered() -> None:
+    app = FastAPI()
+
+    @app.get("/")
+    def hello() -> str:
+        return "hello"
+
+    with listen("127.0.0.1", 0, is_fixed=True) as bound:
+        early = socket.create_connection(bound.getsockname(), timeout=5.0)
+        server = PageServer(app, bound)
+        server.start()
+        with early:
+            early.sendall(b"GET / HTTP/1.0\r\nHost: localhost\r\n\r\n")
+            assert early.recv(100).startswith(b"HTTP/1.1 200")
+        server.stop()
+
+
 def test_it_answers_at_its_address_until_it_is_stopped() -> None:
     app = FastAPI()
 
