@@ -123,7 +123,8 @@ compile_other_loops() {
 count_loops_left() { # STAMP
   [[ $(compiled_stamp) == "$1" ]] || return 1
   mkdir -p "$CACHE/compiled"
-  python3 -m roomba.commands.compiling >"$1.left"
+  python3 -m roomba.commands.compiling >"$1.counted"
+  mv "$1.counted" "$1.left" # another command may be reading it
 }
 
 # Begins to compile the rest, if that is not under way, and does not wait for it: it gives way to all other processes. Ctrl-C
