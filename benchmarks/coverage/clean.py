@@ -25,7 +25,7 @@ from benchmarks.coverage.floor import (
     turning,
 )
 from benchmarks.localization.robot import WRONG
-from roomba.configuration.simulation import SimulatedRobotConfig
+from benchmarks.ours_sim import ROBOT
 from roomba.files.shipped import HOMES
 from roomba.headless.burst import LONGEST_BURST
 from roomba.headless.cleaner import HeadlessMission
@@ -161,7 +161,7 @@ def clean(task: Task, keeps_poses: bool = False) -> Clean:
     setup = time.process_time()
     robot = _Observed(
         home,
-        SimulatedRobotConfig().with_sensors(task.sensors),
+        ROBOT.with_sensors(task.sensors),
         seed=task.seed,
         longest_burst=LONGEST_BURST if task.change is None else _LOOKED_AT,
     )

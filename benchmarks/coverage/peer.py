@@ -11,8 +11,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from benchmarks.ours_sim import ROBOT
 from roomba.configuration.mission import MissionConfig
-from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.geometry import Pose, Twist, wrap_angle
 from roomba.world.home.home import Home
 from roomba.world.simulator import Simulator
@@ -52,9 +52,7 @@ class PeerRobot:
 
     def __init__(self, home: Home, start: Pose, seed: int = 0) -> None:
         """Put it at a place where it fits, off the station."""
-        self._simulator = Simulator(
-            home, SimulatedRobotConfig().with_sensors("ideal"), seed=seed, start=start
-        )
+        self._simulator = Simulator(home, ROBOT.with_sensors("ideal"), seed=seed, start=start)
         self.speed = MissionConfig().driving.speed
         self._rows = [self._row()]
         self._charged = 0.0

@@ -21,10 +21,10 @@ from benchmarks.coverage.floor import (
 )
 from benchmarks.coverage.lanes import Order, boustrophedon
 from benchmarks.coverage.peer import PeerRobot
+from benchmarks.ours_sim import ROBOT
 from roomba.configuration.coverage import CoverageConfig
 from roomba.configuration.docking import DockingConfig
 from roomba.configuration.mission import MissionConfig
-from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.planning.coverage.plan import CoveragePlan
@@ -66,7 +66,7 @@ class Driven:
 def context_of(home: Home) -> PlanningContext:
     """Return the home as the robot plans in it."""
     return PlanningContext(
-        home.map, home.station, RobotConfig(), MissionConfig(coverage=CONFIG), DockingConfig()
+        home.map, home.station, ROBOT, MissionConfig(coverage=CONFIG), DockingConfig()
     )
 
 

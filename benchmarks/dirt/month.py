@@ -11,9 +11,9 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from benchmarks.ours_sim import ROBOT
 from roomba.commands.trials.homes import rooms_of
 from roomba.configuration.household import DueConfig
-from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.files.shipped import HOMES
 from roomba.headless.cleaner import HeadlessMission
 from roomba.mission.cleaning.request import CleanRequest
@@ -86,9 +86,9 @@ class Household:
 
     def __init__(self, home: str, seed: int) -> None:
         """Put the robot on its station, and the home's dirt down."""
-        self.home = load_home(home, HOMES, SimulatedRobotConfig().body)
+        self.home = load_home(home, HOMES, ROBOT.body)
         self.rooms: Rooms = rooms_of(self.home)
-        self.robot = HeadlessMission(self.home, seed=seed, rooms=self.rooms)
+        self.robot = HeadlessMission(self.home, ROBOT, seed=seed, rooms=self.rooms)
         self._floors = self._floor_of_rooms()
         self.records = DirtRecords()
         self.names = tuple(name for name in self.rooms.names if self._floors[name].any())

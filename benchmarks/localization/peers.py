@@ -21,6 +21,7 @@ from benchmarks.localization.rows import (
     error_rows,
     figures,
 )
+from benchmarks.ours_sim import ROBOT
 from benchmarks.peers.protocol import Work
 from benchmarks.record import Better, PeerFigure, Record
 from benchmarks.rounds import milliseconds
@@ -120,7 +121,7 @@ def surfaces(occupancy: OccupancyMap) -> Floats:
 def _peers(bench: Bench, drive: ScannedDrive) -> list[tuple[Peer, Path]]:
     """Return the peers for a drive, and the file that each writes its poses to."""
     home = home_named(drive.home, drive.folder)
-    lidar = RobotConfig().lidar
+    lidar = ROBOT.lidar
     case = {
         "scans": str(drive.scans),
         "surfaces": bench.save("surfaces", surfaces(home.map)),
@@ -166,7 +167,7 @@ def _followed(drive: ScannedDrive, answers: Sequence[tuple[Floats, str] | str]) 
 
 def _matching(drive: ScannedDrive) -> Work:
     """Return the work of following a drive by our tracker, scan by scan, over and over."""
-    home, config = home_named(drive.home, drive.folder), RobotConfig()
+    home, config = home_named(drive.home, drive.folder), ROBOT
     lidar = config.lidar
     model = LidarModel.all_around(lidar.beams, lidar.min_range, lidar.max_range)
     field = SurfaceField.of(home.map)

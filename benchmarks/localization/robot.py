@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.floors import Floor, room_for
-from roomba.configuration.simulation import SimulatedRobotConfig
+from benchmarks.ours_sim import ROBOT
 from roomba.errors import HomeError
 from roomba.files.shipped import HOMES
 from roomba.geometry import Pose, Twist, wrap_angle
@@ -39,7 +39,7 @@ class LocalizedRobot:
     def __init__(self, home: Home, seed: int) -> None:
         """Stand at the station, and know it."""
         self.home = home
-        self.config = SimulatedRobotConfig()
+        self.config = ROBOT
         self.simulator = Simulator(home, self.config, seed=seed)
         self.localizer = Localizer(
             home.map,

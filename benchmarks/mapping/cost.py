@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.coverage.clean import home_named
+from benchmarks.ours_sim import ROBOT
 from roomba.configuration.mapping import MappingConfig
-from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.geometry import Pose
 from roomba.headless.cleaner import HeadlessMission
 from roomba.perception.matching.scan_view import LidarModel
@@ -60,7 +60,7 @@ def speed(home: str, seed: int, folder: str = "") -> float:
 
     ``folder`` is of map_server maps, or "" for a shipped home.
     """
-    robot = HeadlessMission(home_named(home, folder), seed=seed, known=MappingConfig())
+    robot = HeadlessMission(home_named(home, folder), ROBOT, seed=seed, known=MappingConfig())
     began = time.process_time()
     record = robot.explore()
     return record.result.duration / (time.process_time() - began)
@@ -68,7 +68,7 @@ def speed(home: str, seed: int, folder: str = "") -> float:
 
 def recorded(home: str, seed: int) -> Recorded:
     """Explore a home, and keep what was heard."""
-    robot = _Listener(home_named(home), seed=seed, known=MappingConfig(), longest_burst=0)
+    robot = _Listener(home_named(home), ROBOT, seed=seed, known=MappingConfig(), longest_burst=0)
     robot.begin()
     robot.explore()
     return Recorded(robot.heard, robot.lidar, robot.simulator.start)
@@ -76,14 +76,13 @@ def recorded(home: str, seed: int) -> Recorded:
 
 def share_of_core(drive: Recorded) -> float:
     """Return the share of a core that mapping took while it drove, all drawing included, 0..1."""
-    config = SimulatedRobotConfig()
-    mapper = Mapper(MappingConfig(), config.localization, config.gyro, drive.start)
+    mapper = Mapper(MappingConfig(), ROBOT.localization, ROBOT.gyro, drive.start)
     shown, began = drive.heard[0].stamp, time.process_time()
     for each in drive.heard:
         mapper.move(each.stamp, each.odometry, each.turning)
         if each.ranges is not None:
             mapper.see(each.stamp, each.ranges, drive.lidar)
-        if mapper.version and each.stamp - shown >= config.timing.map_period:
+        if mapper.version and each.stamp - shown >= ROBOT.timing.map_period:
             shown = each.stamp
             mapper.occupancy()
     spent = time.process_time() - began

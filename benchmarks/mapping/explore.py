@@ -10,11 +10,11 @@ from numpy.typing import NDArray
 
 from benchmarks.coverage.clean import home_named, true_floor
 from benchmarks.coverage.floor import drawn
+from benchmarks.ours_sim import ROBOT
 from roomba.commands.map.runs import Drawn, run_trial
 from roomba.commands.trials.trial import Trial
 from roomba.configuration.docking import DockingConfig
 from roomba.configuration.mapping import MappingConfig
-from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.geometry import Pose
 from roomba.grid import OccupancyMap
 from roomba.headless.cleaner import HeadlessMission
@@ -79,7 +79,7 @@ def explore(task: Task) -> Explored:
 def clean(task: Task, known: OccupancyMap | None) -> Cleaned:
     """Clean a home by a map of it, its own true one by default, counted by true poses."""
     home = home_named(task.home, task.folder)
-    robot = HeadlessMission(home, SimulatedRobotConfig(), seed=task.seed, known=known)
+    robot = HeadlessMission(home, ROBOT, seed=task.seed, known=known)
     staging = robot.context.staging
     record = robot.clean()
     is_home = robot.seen.battery.is_docked
@@ -89,7 +89,7 @@ def clean(task: Task, known: OccupancyMap | None) -> Cleaned:
 def clean_unknown(task: Task) -> Cleaned:
     """Clean a home that the robot has never seen, counted alike."""
     home = home_named(task.home, task.folder)
-    robot = HeadlessMission(home, seed=task.seed, known=MappingConfig())
+    robot = HeadlessMission(home, ROBOT, seed=task.seed, known=MappingConfig())
     staging = staging_pose(home.station, DockingConfig())
     record = robot.clean()
     is_home = robot.seen.battery.is_docked

@@ -13,11 +13,11 @@ from typing import Final
 
 import numpy as np
 
+from benchmarks.ours_sim import ROBOT
 from roomba.commands.map.blind_map import BlindMap
 from roomba.commands.map.map_error import MapError, map_error
 from roomba.commands.map.seen_floor import seen_floor
 from roomba.configuration.mapping import MappingConfig
-from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.geometry import Pose, Twist, wrap_angle
 from roomba.grid import FREE, OCCUPIED, GridFrame, OccupancyMap
 from roomba.perception.matching.scan_view import LidarModel
@@ -93,7 +93,7 @@ def ring(seed: int) -> Home:
 
 def loop(seed: int) -> Looped:
     """Drive around it once, with the shipped noise."""
-    home, config, mapping = ring(seed), SimulatedRobotConfig(), MappingConfig()
+    home, config, mapping = ring(seed), ROBOT, MappingConfig()
     simulator = Simulator(home, config, seed=seed)
     numbers = config.localization, config.gyro, simulator.start
     mapper, blind = Mapper(mapping, *numbers), BlindMap(mapping, *numbers)

@@ -11,11 +11,11 @@ from benchmarks.bench import Bench
 from benchmarks.checks import agreed
 from benchmarks.contestants import Contestant, Local, Peer, Unavailable
 from benchmarks.floors import Floor, building, floors_of_folder, free_poses
+from benchmarks.ours_sim import ROBOT
 from benchmarks.peers.protocol import Work
 from benchmarks.ray_marching import RayMarching
 from benchmarks.record import Better, Record, gain
 from benchmarks.rounds import Outcome
-from roomba.configuration.robot import RobotConfig
 from roomba.files.shipped import HOMES
 from roomba.grid import GridFrame
 from roomba.world.layers.layer import load_home
@@ -69,15 +69,14 @@ def peers_of(case: dict[str, object]) -> list[Contestant]:
 
 def case_of(bench: Bench, floor: Floor, poses: Poses) -> dict[str, object]:
     """Return a floor as peers are told of it; their robot starts at the first of the poses."""
-    robot = RobotConfig()
     return {
         "solid": bench.save("solid", floor.solid),
         "poses": bench.save("poses", poses),
         "resolution": floor.frame.resolution,
         "origin": [floor.frame.origin_x, floor.frame.origin_y],
-        "radius": robot.body.radius,
-        "beams": robot.lidar.beams,
-        "reach": robot.lidar.max_range,
+        "radius": ROBOT.body.radius,
+        "beams": ROBOT.lidar.beams,
+        "reach": ROBOT.lidar.max_range,
         "dt": ours_sim.DT,
         "start": poses[0].tolist(),
     }
@@ -85,8 +84,7 @@ def case_of(bench: Bench, floor: Floor, poses: Poses) -> dict[str, object]:
 
 def marching(floor: Floor) -> RayMarching:
     """Return the plain reference for a floor."""
-    robot = RobotConfig()
-    return RayMarching(floor, robot.lidar.beams, robot.lidar.max_range, robot.body.radius)
+    return RayMarching(floor, ROBOT.lidar.beams, ROBOT.lidar.max_range, ROBOT.body.radius)
 
 
 def _contestants(floor: Floor, poses: Poses) -> list[Contestant]:
@@ -109,7 +107,7 @@ def _marching_work(floor: Floor, poses: Poses) -> Work:
 def _apartment_rows(bench: Bench, floor: Floor) -> list[Record]:
     poses = free_poses(floor, _POSES)
     case = {**case_of(bench, floor, poses), "case": "scan"}
-    beams = RobotConfig().lidar.beams
+    beams = ROBOT.lidar.beams
     floor_of_arithmetic = Local(_ARITHMETIC, lambda: arithmetic(poses, beams))
     contestants = [*_contestants(floor, poses), *peers_of(case), floor_of_arithmetic]
     record = _record(floor, bench.compete(contestants), _AIM)

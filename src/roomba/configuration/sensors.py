@@ -18,6 +18,8 @@ from roomba.errors import ConfigError
 
 LIDARS: Final = Path(__file__).resolve().parent.parent / "data" / "configuration" / "lidars"
 """A YAML file for each."""
+EXACT_LIDAR: Final = "ideal_12m"
+"""The one for figures that must not stand on a lidar: exact but for some mm, all beams at once."""
 LIDAR: Final = "lidar"
 """The part of a robot's file, of a lidar's file and of the simulation that is the lidar's."""
 SIMULATION: Final = "simulation"

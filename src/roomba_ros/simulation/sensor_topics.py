@@ -58,13 +58,13 @@ class _Topic:
 class SensorTopics:
     """Tells what the sensors sense.
 
-    Publishes: ``scan``, ``dirt_raw`` (Float32, g under the body), ``brush_current`` (Float32, A),
-    all 10 Hz; ``imu``, ``joint_states`` and ``dirt_detect`` (UInt16, grains per second), 20 Hz;
-    ``bin_level`` (Float32, 0..1), 1 Hz and when it is emptied; and at each change, but also 5 times
-    a second, ``bumper``, ``cliff``, ``wheel_drop`` and ``ir_omni`` (UInt16, the station's beams as
-    Create 2 codes them), or once a second ``hazard_detection``, ``battery_state`` and
-    ``dock_status``. ``/diagnostics`` (health of the parts) and ``noise_level`` (Float32, dB(A) at
-    1 m), 1 Hz.
+    Publishes: ``scan`` as often as the lidar has one; ``dirt_raw`` (Float32, g under the body) and
+    ``brush_current`` (Float32, A), 10 Hz; ``imu``, ``joint_states`` and ``dirt_detect`` (UInt16,
+    grains per second), 20 Hz; ``bin_level`` (Float32, 0..1), 1 Hz and when it is emptied; and at
+    each change, but also 5 times a second, ``bumper``, ``cliff``, ``wheel_drop`` and ``ir_omni``
+    (UInt16, the station's beams as Create 2 codes them), or once a second ``hazard_detection``,
+    ``battery_state`` and ``dock_status``. ``/diagnostics`` (health of the parts) and
+    ``noise_level`` (Float32, dB(A) at 1 m), 1 Hz.
     """
 
     def __init__(self, config: SimulatedRobotConfig, simulator: Simulator, robot: str) -> None:

@@ -8,7 +8,7 @@ import pytest
 
 from roomba.configuration.frozen import load_config
 from roomba.configuration.robot import load_robot_config
-from roomba.configuration.sensors import LIDARS, LidarConfig, lidar_file, lidar_models
+from roomba.configuration.sensors import EXACT_LIDAR, LIDARS, LidarConfig, lidar_file, lidar_models
 from roomba.configuration.simulation import (
     SimulatedLidar,
     SimulatedRobotConfig,
@@ -52,11 +52,11 @@ def test_a_robot_takes_any_of_them_by_name_or_by_its_file(model: str, tmp_path: 
     assert load_simulated_config(path, SHIPPED) == config
     assert load_robot_config(path).lidar == config.lidar
     assert config.lidar.model == model
-    assert config.is_swept == (model != "ideal_12m")
+    assert config.is_swept == (model != EXACT_LIDAR)
 
 
-def test_the_default_is_the_ideal_one() -> None:
-    assert SimulatedRobotConfig().with_lidar("ideal_12m") == SimulatedRobotConfig()
+def test_the_default_is_the_exact_one() -> None:
+    assert SimulatedRobotConfig().with_lidar(EXACT_LIDAR) == SimulatedRobotConfig()
 
 
 def test_single_numbers_replace_those_of_the_model(tmp_path: Path) -> None:
@@ -73,7 +73,7 @@ def test_single_numbers_replace_those_of_the_model(tmp_path: Path) -> None:
     [
         ("lidar: {model: sonar}\n", "lidar.model: expected one of ideal_12m, .* got 'sonar'"),
         ("lidar: {rate: 5.0, sweep_time: 0.3}\n", "sweep_time of at most 1 / rate"),
-        ("simulation: {lidar: {delay: 0.2}}\n", "delay of at most 1 / rate"),
+        ("simulation: {lidar: {delay: 0.3}}\n", "delay of at most 1 / rate"),
     ],
 )
 def test_what_cannot_be_is_refused(text: str, said: str, tmp_path: Path) -> None:

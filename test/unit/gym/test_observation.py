@@ -42,7 +42,7 @@ def test_the_lidars_sectors_look_ahead_left_back_and_right() -> None:
 
 
 def test_a_sector_tells_its_nearest_beam_and_numbers_for_what_has_none() -> None:
-    fleet = Fleet([room_home()], SimulatedRobotConfig())
+    fleet = Fleet([room_home()])
     senses = Observer(fleet, max_speed=0.5)
     fleet.ranges[:] = 3.0
     fleet.ranges[0, [355, 84, 95]] = 1.0, 2.0, 0.5
@@ -50,7 +50,7 @@ def test_a_sector_tells_its_nearest_beam_and_numbers_for_what_has_none() -> None
     fleet.ranges[0, 200] = -np.inf
     lidar = senses.read()[0, LIDAR]
     expected = np.full(36, 3.0)
-    expected[[0, 8, 10, 18, 20]] = 1.0, 2.0, 0.5, 12.0, 0.0
+    expected[[0, 8, 10, 18, 20]] = 1.0, 2.0, 0.5, fleet.config.lidar.max_range, 0.0
     assert lidar == pytest.approx(expected)
 
 

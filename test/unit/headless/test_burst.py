@@ -35,7 +35,7 @@ def burst_of(robot: HeadlessMission, longest: int = 100) -> Burst:
 def under_way(*, is_mapped: bool) -> HeadlessMission:
     """A robot on a long way, that nothing disturbs."""
     if is_mapped:
-        robot = HeadlessMission(HOME, seed=1)
+        robot = HeadlessMission(HOME, NOISY, seed=1)
         robot.mission.clean(CleanRequest(), robot.senses())
         until(robot, in_phase(robot, Phase.CLEANING))
         until(robot, lambda: robot.seen.time > 30.0)

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 from fixtures.homes.rooms import room_home
-from fixtures.homes.worlds import DT, IDEAL, drive
+from fixtures.homes.worlds import DT, EXACT, IDEAL, drive
 
 from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.errors import HomeError
@@ -15,7 +15,7 @@ from roomba.geometry import Pose, Twist
 from roomba.world.engine.state.arrays import ROBOT, Fault, Infrared
 from roomba.world.simulator import Simulator
 
-CONFIG = SimulatedRobotConfig()
+CONFIG = EXACT
 TRACK = CONFIG.body.wheel_separation
 WHEEL = 0.5 * CONFIG.body.wheel_diameter
 

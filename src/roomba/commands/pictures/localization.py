@@ -9,6 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from roomba.commands.pictures.tours import tour_of
+from roomba.configuration.sensors import EXACT_LIDAR
 from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.geometry import Pose, Twist
 from roomba.mission.exploring.look_around import LookAround
@@ -60,7 +61,7 @@ def picture_of_localization(home: Home, minutes: float = 10.0) -> Figure:
 @drawn
 def picture_of_relocation(home: Home, set_down: Pose = _SET_DOWN) -> Figure:
     """Draw the places that fit what is in sight, at once and after looking around a little."""
-    config = SimulatedRobotConfig()
+    config = SimulatedRobotConfig().with_lidar(EXACT_LIDAR)
     world = Simulator(home, config, seed=2, start=set_down)
     lidar = LidarModel.all_around(
         config.lidar.beams, config.lidar.min_range, config.lidar.max_range

@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from roomba.configuration.sensors import EXACT_LIDAR
 from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.geometry import Pose, Twist
 from roomba.perception.matching.match_kernels import match
@@ -44,7 +45,7 @@ _STAND: Final = 0.3
 
 def ends_at(home: Home, at: Pose, seed: int = 1) -> Floats:
     """Return where the beams of a scan end, float64 [n, 4], in the frame of the robot there."""
-    config = SimulatedRobotConfig()
+    config = SimulatedRobotConfig().with_lidar(EXACT_LIDAR)
     robot = Simulator(home, config, seed=seed, start=at)
     robot.step(Twist(), _STAND)
     lidar = config.lidar

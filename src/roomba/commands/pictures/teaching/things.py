@@ -7,6 +7,7 @@ from typing import Final
 import numpy as np
 from matplotlib.figure import Figure
 
+from roomba.configuration.sensors import EXACT_LIDAR
 from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.geometry import Pose, Twist
 from roomba.perception.matching.scan_view import LidarModel
@@ -38,7 +39,7 @@ _TICK: Final = 0.1
 @drawn
 def picture_of_things(home: Home) -> Figure:
     """Draw what a thing in the way makes of evidence, while it is there and after it has gone."""
-    config = SimulatedRobotConfig()
+    config = SimulatedRobotConfig().with_lidar(EXACT_LIDAR)
     robot = Simulator(home, config, seed=1, start=_AT)
     lidar = config.lidar
     beams = LidarModel.all_around(lidar.beams, lidar.min_range, lidar.max_range).arrays()

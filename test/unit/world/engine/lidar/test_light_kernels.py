@@ -11,7 +11,7 @@ import pytest
 import shapely
 from fixtures.homes.free_walls import home_with, room_outline, straight_wall
 from fixtures.homes.rooms import room_home
-from fixtures.homes.worlds import DT, IDEAL
+from fixtures.homes.worlds import DT, EXACT, IDEAL
 from fixtures.thoroughness import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -225,6 +225,6 @@ def test_light_is_lost_in_a_pane_so_that_less_is_seen_behind_it() -> None:
 
 def test_a_lidar_that_knows_no_reach_sees_dark_and_shiny_walls() -> None:
     home = cells_of("dark")
-    seen = scans(home, quiet(SimulatedRobotConfig()), Pose(1.0, 1.0, 0.2))
-    plain = scans(room_home(), quiet(SimulatedRobotConfig()), Pose(1.0, 1.0, 0.2))
+    seen = scans(home, quiet(EXACT), Pose(1.0, 1.0, 0.2))
+    plain = scans(room_home(), quiet(EXACT), Pose(1.0, 1.0, 0.2))
     assert (seen == plain).all()

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 from fixtures.homes.rooms import room_home
-from fixtures.homes.worlds import DT, IDEAL, NOISY, block_that_moves, drive
+from fixtures.homes.worlds import DT, EXACT, IDEAL, NOISY, block_that_moves, drive
 from fixtures.references.slow_lidar import (
     disagreeing,
     ranges_to_box,
@@ -20,17 +20,20 @@ from hypothesis import given, reject, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from roomba.configuration.sensors import LidarConfig
 from roomba.configuration.simulation import SimulatedLidar, SimulatedRobotConfig, SimulationConfig
 from roomba.errors import HomeError
 from roomba.geometry import Pose, Twist
 from roomba.world.fleet import Fleet
 from roomba.world.simulator import Simulator
 
-CONFIG = SimulatedRobotConfig()
+CONFIG = EXACT
 LIDAR, TRUTH = CONFIG.lidar, CONFIG.simulation.lidar
 BLOCKS = ((1.0, 1.0, 1.3, 1.2),)
 BEAMS = LIDAR.beams
+
+
+def errors(**given: float) -> SimulatedLidar:
+    return TRUTH.model_copy(update=given)
 
 
 def slow_walls(pose: Pose) -> NDArray[np.float64]:
@@ -44,12 +47,12 @@ def cut(ranges: NDArray[np.float64]) -> NDArray[np.float64]:
 
 @pytest.mark.parametrize(("dt", "seconds"), [(0.025, 20.0), (0.01, 5.0), (0.1, 30.0), (0.03, 30.0)])
 def test_it_scans_at_its_rate_whatever_the_step(dt: float, seconds: float) -> None:
-    seen = drive(Simulator(room_home()), 0.0, 0.0, seconds, dt)
+    seen = drive(Simulator(room_home(), NOISY), 0.0, 0.0, seconds, dt)
     assert seen.scans == pytest.approx(seconds * LIDAR.rate, abs=1)
 
 
 def test_what_is_missed_in_a_long_step_is_not_made_up_for() -> None:
-    world = Simulator(room_home())
+    world = Simulator(room_home(), NOISY)
     assert drive(world, 0.0, 0.0, 10.0, 1.0).scans == 10
     assert drive(world, 0.0, 0.0, 1.0, 0.025).scans == pytest.approx(20, abs=1)
 
@@ -159,8 +162,8 @@ def test_noise_has_its_mean_its_deviation_and_its_misses_and_each_beam_its_own()
 
 def test_what_is_out_of_reach_stays_so_with_noise() -> None:
     config = SimulatedRobotConfig(
-        lidar=LidarConfig(min_range=1.0, max_range=2.5),
-        simulation=SimulationConfig(lidar=SimulatedLidar(misses=0.0)),
+        lidar=LIDAR.model_copy(update={"min_range": 1.0, "max_range": 2.5}),
+        simulation=SimulationConfig(lidar=errors(misses=0.0)),
     )
     world = Simulator(room_home(), config, start=Pose(0.9, 2.0, math.pi))
     world.step(Twist(), 0.1)
@@ -170,8 +173,8 @@ def test_what_is_out_of_reach_stays_so_with_noise() -> None:
 
 
 def test_all_may_be_missed() -> None:
-    blind = SimulationConfig(lidar=SimulatedLidar(misses=1.0))
-    config = SimulatedRobotConfig(simulation=blind)
+    blind = SimulationConfig(lidar=errors(misses=1.0))
+    config = SimulatedRobotConfig(lidar=LIDAR, simulation=blind)
     world = Simulator(room_home(), config)
     world.step(Twist(), 0.1)
     assert (world.ranges == np.inf).all()

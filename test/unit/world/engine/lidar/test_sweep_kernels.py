@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 from fixtures.homes.rooms import room_home
-from fixtures.homes.worlds import DT, block_that_moves
+from fixtures.homes.worlds import DT, EXACT, block_that_moves
 from fixtures.references.slow_lidar import ranges_to_box, ranges_to_cells, ranges_to_disc
 from numpy.typing import NDArray
 
@@ -34,7 +34,7 @@ def robot(
 
 
 def errors(**given: float) -> SimulatedLidar:
-    return SimulatedLidar.model_validate({"noise": 0.0, "misses": 0.0, **given})
+    return EXACT.simulation.lidar.model_copy(update={"noise": 0.0, "misses": 0.0, **given})
 
 
 def next_scan(world: Simulator, twist: Twist | None = None) -> NDArray[np.float32]:
