@@ -24,9 +24,9 @@ def wild(*arguments): return np.array([(0.0, np.nan)])
 """
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def code(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """One folder for all, as a module is imported once."""
+    """One folder for all, as a process imports a module once."""
     folder = tmp_path_factory.mktemp("code")
     (folder / "made_stages.py").write_text(MODULE, encoding="utf-8")
     return folder
