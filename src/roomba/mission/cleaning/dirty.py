@@ -8,6 +8,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.clock import is_recent
 from roomba.configuration.mission import CleaningConfig
 from roomba.mission.cleaning.dirty_kernels import WATCH, may_be_dirty
 from roomba.perception.swept.coverage_map import CoverageMap
@@ -101,7 +102,7 @@ class DirtyFloor:
         """
         row, config = self.watch[0], self._config
         row["looked_at"] = now
-        if 0.0 <= now - row["measured_at"] < row["measure_period"]:
+        if is_recent(now, row["measured_at"], row["measure_period"]):
             return
         row["dirty_from"] = math.inf
         if self.dirt.seen_area >= config.usual_floor:

@@ -26,6 +26,8 @@ WATCH: Final = np.dtype(
     ]
 )
 """What a clean remembers of its looks for dirty floor, one row."""
+_ROUNDING: Final = 1e-6
+"""s; clocks of different robots tell the same time but for their last bits."""
 
 
 @entry
@@ -46,9 +48,9 @@ def may_be_dirty(
     after a period. ``place`` is the dirt map's corner and cell, m.
     """
     watch = rows[0]
-    if 0.0 <= now - watch.looked_at < watch.look_period:
+    if 0.0 <= now - watch.looked_at < watch.look_period - _ROUNDING:
         return False
-    if not 0.0 <= now - watch.measured_at < watch.measure_period:
+    if not 0.0 <= now - watch.measured_at < watch.measure_period - _ROUNDING:
         return True
     cell, reach = place[2], watch.reach
     first_row = max(math.floor((y - reach - place[1]) / cell), 0)
