@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.compilation import compiled
-from roomba.world.camera.kernels.compilation import INLINE
+from roomba.world.camera.lanes.compilation import INLINE
 
 
 @compiled(**INLINE)
@@ -23,15 +23,6 @@ def scaled(colour: int, shade: int) -> int:
 def blended(colour: int, other: int, share: int) -> int:
     """Return a packed colour mixed with ``share`` / 256 of another, share 0..256."""
     return int(scaled(colour, 256 - share) + scaled(other, share))
-
-
-@compiled(**INLINE)
-def mixed(colour: int, other: int, share: int) -> int:
-    """Return the same, rounded once instead of twice."""
-    left = 256 - share
-    red_blue = (((colour & 0xFF00FF) * left + (other & 0xFF00FF) * share) >> 8) & 0xFF00FF
-    green = (((colour & 0x00FF00) * left + (other & 0x00FF00) * share) >> 8) & 0x00FF00
-    return int(red_blue | green)
 
 
 @compiled(**INLINE)

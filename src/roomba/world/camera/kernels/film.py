@@ -6,19 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.compilation import compiled
-from roomba.world.camera.kernels.compilation import INLINE, INNER, KERNEL
+from roomba.world.camera.lanes.compilation import INNER, KERNEL
 
 BLOCK = 16
 """Columns that are turned into rows together: what fits the nearest cache."""
 RED_BLUE, GREEN, TWO = np.uint32(0xFF00FF), np.uint32(0x00FF00), np.uint32(2)
-
-
-@compiled(**INLINE)
-def put_pixel(line: NDArray[np.uint8], column: np.uint64, colour: int) -> None:
-    """Write a packed colour as red, green and blue into a line of pixels, [width, 3]."""
-    line[column, np.uint64(0)] = colour & 255
-    line[column, np.uint64(1)] = (colour >> 8) & 255
-    line[column, np.uint64(2)] = (colour >> 16) & 255
 
 
 @compiled(**KERNEL)

@@ -1,7 +1,7 @@
 """Compiled pictures of one sample per pixel, made for speed.
 
-A picture is painted in tiles of some columns, so that what is worked on stays in the nearest
-caches: upright things column by column, the floor row by row.
+A picture is painted in tiles of as many columns as there are lanes, so that what is worked on stays
+in the nearest caches: upright things column by column, the floor row by row.
 """
 
 from __future__ import annotations
@@ -10,38 +10,40 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.compilation import compiled
-from roomba.world.camera.kernels.compilation import INLINE, INNER, KERNEL
 from roomba.world.camera.kernels.dirt import feel_knots
 from roomba.world.camera.kernels.face import row_of
-from roomba.world.camera.kernels.film import put_pixel
 from roomba.world.camera.kernels.quick_floor import paint_floor
 from roomba.world.camera.kernels.quick_upright import LIGHT, paint_columns
 from roomba.world.camera.kernels.ray import cast_walls, find_boxes
-from roomba.world.camera.scene.arrays import TILE, SceneArrays, ViewTables, Workspace
+from roomba.world.camera.lanes.compilation import INLINE, INNER, KERNEL
+from roomba.world.camera.lanes.lane_memory import load, store, store_pixels, turn
+from roomba.world.camera.lanes.lanes import LANES, all_real
+from roomba.world.camera.scene.arrays import SceneArrays, ViewTables, Workspace
 
 
 @compiled(**INNER)
-def turn_upright(
+def finish_upright(
     work: Workspace,
     view: ViewTables,
     begin: int,
+    first_row: int,
     lowest: int,
     picture: NDArray[np.uint8],
     depths: NDArray[np.float32],
 ) -> None:
-    """Turn a tile's columns into rows of the picture and of depths.
+    """Turn a tile's columns into rows: all depths, and the picture above ``first_row``.
 
-    From ``lowest`` down is only floor.
+    Below that, colours are left in ``work.tile``; from ``lowest`` down is only floor.
     """
-    for row in range(lowest):
-        line_depths, line_pixels = depths[row], picture[row]
-        for i in range(TILE):
-            place = np.uint64(begin + i)
-            line_depths[place] = work.depths[np.uint64(i), np.uint64(row)]
-            colour = np.int64(work.colours[np.uint64(i), np.uint64(row)])
-            put_pixel(line_pixels, place, colour)
+    height = work.colours.shape[1]
+    for row in range(0, lowest, LANES):
+        turn(work.colours, row, height, work.tile, row * LANES, LANES)
+        turn(work.depths, row, height, depths, row * view.columns + begin, view.columns)
     for row in range(lowest, view.rows):
-        depths[row, begin : begin + TILE] = view.floor_depth[row]
+        store(depths, row * view.columns + begin, all_real(view.floor_depth[row]))
+    for row in range(first_row):
+        colours = load(work.tile, row * LANES)
+        store_pixels(picture, 3 * (row * view.columns + begin), colours)
 
 
 @compiled(**INLINE)
@@ -70,26 +72,26 @@ def render_quick(
     """Paint ``picture`` [rows, columns, 3], red, green, blue, and ``depths`` [rows, columns].
 
     The camera is at (x, y) and looks along (cosine, sine). ``dirt_place`` is cell, origin x and
-    origin y of ``dirt``.
+    origin y of ``dirt``. ``depths`` has rows to spare, for a whole number of lanes.
     """
     farthest = cast_walls(scene.walls, view, x, y, cosine, sine, work.hits)
     boxes = find_boxes(scene.boxes.shapes, view, x, y, cosine, sine, farthest, work.seen)
-    for begin in range(-TILE, view.columns, TILE):
-        end = begin + TILE
+    for begin in range(-LANES, view.columns, LANES):
+        end = begin + LANES
         # Its right edge is the next tile's left one.
         k = (view.middle - end) / view.focal
         feel_knots(
             scene.lighting, view, x, y, cosine - k * sine, sine + k * cosine,
-            first_floor_row(work.hits, view, max(begin, 0), end + TILE),
-            dirt, dirt_place, scene.floor.cover, LIGHT, work.knots[(end // TILE) & 1],
+            first_floor_row(work.hits, view, max(begin, 0), end + LANES),
+            dirt, dirt_place, scene.floor.cover, LIGHT, work.knots[(end // LANES) & 1],
         )  # fmt: skip
         if begin < 0:
             continue
         first_row = first_floor_row(work.hits, view, begin, end)
-        lowest = paint_columns(scene, view, x, y, cosine, sine, begin, boxes, work)
-        turn_upright(work, view, begin, lowest, picture, depths)
+        lowest = paint_columns(
+            scene, view, x, y, cosine, sine, begin, boxes, first_row, work, depths
+        )
+        finish_upright(work, view, begin, first_row, lowest, picture, depths)
         paint_floor(
-            scene, view, x, y, cosine, sine, begin, first_row,
-            work.knots[(begin // TILE) & 1], work.knots[(begin // TILE + 1) & 1],
-            work.ways, picture, depths,
-        )  # fmt: skip
+            scene, view, x, y, cosine, sine, begin, first_row, lowest, work, picture, depths
+        )

@@ -10,8 +10,6 @@ from numpy.typing import NDArray
 SHADES = 128
 GREYS = 64
 """How many lights and greys a surface's toned colours are kept in."""
-TILE = 16
-"""Columns of a picture that are painted together."""
 
 
 class Surfaces(NamedTuple):
@@ -141,13 +139,13 @@ class Workspace(NamedTuple):
     """[boxes, 4]: distance, index, first and last column of a box in view."""
     spans: Spans
     colours: NDArray[np.uint32]
-    """[TILE, rows]."""
+    """[columns that are painted together, rows]; with rows to spare for all lanes from the last."""
     depths: NDArray[np.float32]
     """The same."""
+    tile: NDArray[np.uint32]
+    """[rows, columns that are painted together]: ``colours`` turned."""
     knots: NDArray[np.float32]
     """[2, knots, 3]: light, level of dirt and veil of dust, beside the columns."""
-    ways: NDArray[np.float32]
-    """[2, TILE]: x and y of the directions of a tile's columns, per metre of depth."""
 
 
 class ViewTables(NamedTuple):
@@ -163,7 +161,10 @@ class ViewTables(NamedTuple):
     eye: float
     """Height of the camera above the floor, m."""
     reach: NDArray[np.float32]
-    """[rows]: depth at which a row meets a level plane 1 m above or below the camera, m."""
+    """[rows]: depth at which a row meets a level plane 1 m above or below the camera, m.
+
+    Some values to spare for all lanes from the last row, as in ``floor_depth``.
+    """
     spread: NDArray[np.float32]
     """[rows]: size, m, of what a sample stands for on that plane."""
     floor_depth: NDArray[np.float32]

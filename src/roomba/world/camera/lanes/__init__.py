@@ -1,0 +1,1 @@
+"""Compiled code that handles several pixels at once."""
