@@ -7,7 +7,7 @@ from typing import Final
 
 LONGEST_TICK: Final = 2.0
 """s; a clock that shows more between two ticks of the robot was set."""
-_ROUNDING: Final = 1e-6
+ROUNDING: Final = 1e-6
 """s; two times since 1970, as floating-point numbers, differ by as much from what they should."""
 
 
@@ -40,4 +40,4 @@ def is_recent(now: float, heard: float, longest: float) -> bool:
 
     What comes from the future, by a clock that was set back, is not recent.
     """
-    return 0.0 <= now - heard < longest - _ROUNDING
+    return 0.0 <= now - heard < longest - ROUNDING

@@ -13,7 +13,7 @@ from collections.abc import Callable
 from typing import Final, Protocol
 
 HIGH: Final = 0.1
-"""s before a pulse in which the pin is high, whatever it was: a falling edge follows."""
+"""s for which the pin is held high before a pulse, so that the pulse begins with a falling edge."""
 LOW: Final = 1.0
 """s of a pulse: longer than those that change the rate."""
 EACH: Final = 60.0

@@ -126,7 +126,7 @@ class Create2Robot:
         self._grow_tired()
 
     def _grow_tired(self) -> None:
-        """Fall asleep after a while in passive mode, whatever it is told meanwhile."""
+        """Fall asleep after a while in passive mode, also when it is told something meanwhile."""
         self._passive_for = self._passive_for + STEP if self.mode is OpenMode.PASSIVE else 0.0
         if self._passive_for >= self._sleeps_after:
             self._into(OpenMode.OFF)

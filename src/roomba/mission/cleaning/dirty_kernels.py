@@ -8,7 +8,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.compilation import entry
+from roomba.clock import ROUNDING
+from roomba.compilation import entry, part
 from roomba.perception.swept.dirt_map import CELL, LEAST_WAY
 
 Floats = NDArray[np.float32]
@@ -26,8 +27,6 @@ WATCH: Final = np.dtype(
     ]
 )
 """What a clean remembers of its looks for dirty floor, one row."""
-_ROUNDING: Final = 1e-6
-"""s; clocks of different robots tell the same time but for their last bits."""
 
 
 @entry
@@ -48,9 +47,9 @@ def may_be_dirty(
     after a period. ``place`` is the dirt map's corner and cell, m.
     """
     watch = rows[0]
-    if 0.0 <= now - watch.looked_at < watch.look_period - _ROUNDING:
+    if _is_recent(now, watch.looked_at, watch.look_period):
         return False
-    if not 0.0 <= now - watch.measured_at < watch.measure_period - _ROUNDING:
+    if not _is_recent(now, watch.measured_at, watch.measure_period):
         return True
     cell, reach = place[2], watch.reach
     first_row = max(math.floor((y - reach - place[1]) / cell), 0)
@@ -66,3 +65,9 @@ def may_be_dirty(
                 return True
     watch.looked_at = now
     return False
+
+
+@part
+def _is_recent(now: float, heard: float, longest: float) -> bool:
+    """Tell the same as :func:`roomba.clock.is_recent`."""
+    return 0.0 <= now - heard < longest - ROUNDING

@@ -51,7 +51,7 @@ class EnergyLedger:
 
     def least_ample(self, senses: Senses) -> float:
         """Return the level, 0..1, from which on down it may be time to go home, or all is used."""
-        return self.empty if self._is_low(senses) else self._config.reserve + self._config.ample
+        return self.empty if self._is_low(senses) else self._ample
 
     @property
     def empty(self) -> float:
@@ -61,7 +61,12 @@ class EnergyLedger:
     def _is_low(self, senses: Senses) -> bool:
         """Whether the way home may take what is left."""
         battery = senses.battery
-        return battery.energy <= (self._config.reserve + self._config.ample) * battery.capacity
+        return battery.energy <= self._ample * battery.capacity
+
+    @property
+    def _ample(self) -> float:
+        """A level with more than which no way home is too far, 0..1."""
+        return self._config.reserve + self._config.ample
 
     def must_go_home(self, senses: Senses, way_home: Callable[[Senses], float]) -> bool:
         """Whether what is left just suffices for the way home; ``way_home`` tells that way, m."""

@@ -62,7 +62,7 @@ def test_it_is_clear_until_before_the_first_thing(
 ) -> None:
     layer, rows = layer_with(x, y), row_of(leaves_until)
     told = is_blocked(rows, layer.arrays, POINTS, STATIONS, 0, along)
-    # The look ends so far before the robot, whatever it leaves.
+    # A look ends HORIZON before the robot, also where it begins later, at ``leaves_until``.
     at = first_near(x, y, max(along, leaves_until), KEEP + layer.config.spot_radius)
     if at >= along + HORIZON - 0.002 or at <= 0.002:
         return
