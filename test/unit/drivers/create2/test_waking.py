@@ -15,17 +15,18 @@ from roomba.emulators.pseudo_terminal import PseudoTerminal
 
 
 class PinnedLine:
-    """A line whose pin leads to a robot; to wait on it lets the robot's time pass."""
+    """A line whose pin leads to a robot; to wait on it lets time pass for the robot, too."""
 
-    def __init__(self, robot: Create2Robot, has_pin: bool = True) -> None:
-        self.robot, self.has_pin = robot, has_pin
+    def __init__(self, robot: Create2Robot, slower: int = 1) -> None:
+        self.robot, self.has_pin = robot, True
+        self._step = STEP * slower
         self.now = 0.0
         self.levels: list[tuple[float, bool]] = []
 
     def read(self, seconds: float) -> bytes:
-        for _ in range(max(1, round(seconds / STEP))):
+        for _ in range(max(1, round(seconds / self._step))):
             self.robot.advance()
-            self.now += STEP
+            self.now += self._step
         return b""
 
     def pull(self, *, is_low: bool) -> bool:
@@ -66,13 +67,14 @@ def test_a_line_without_pins_is_left_at_once(line: PinnedLine) -> None:
 
 @pytest.mark.parametrize("may_sleep", [True, False])
 def test_it_is_kept_awake_while_it_may_fall_asleep(may_sleep: bool) -> None:
-    robot = Create2Robot(create2_in_studio(), sleeps_after=SLEEPS_AFTER)
+    slower = 16
+    robot = Create2Robot(create2_in_studio(), sleeps_after=SLEEPS_AFTER / slower)
     robot.do(Instruction(Opcode.START))
-    line = PinnedLine(robot)
+    line = PinnedLine(robot, slower)
     pin = BrcPin(lambda: line.now)
     while line.now < SLEEPS_AFTER + 2.0 * EACH:
         pin.keep_awake(line, may_sleep=may_sleep)
-        line.read(0.05)
+        line.read(0.2)
     assert robot.is_asleep is not may_sleep
     lows = [time for time, is_low in line.levels if is_low]
     assert len(lows) == (7 if may_sleep else 0)
