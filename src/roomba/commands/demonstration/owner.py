@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import datetime as dt
-import json
-import urllib.request
 from typing import Any, Final
 from urllib.parse import urldefrag
 
+from roomba.client.page_api import PageApi
 from roomba.commands.pictures.page import browser_page, decoded
 from roomba.plots.canvas import Picture
 
@@ -20,8 +19,6 @@ _SETTLED: Final = 1500
 _WINDOW: Final = {"width": 960, "height": 640}
 _REPORT: Final = {"width": 1000, "height": 1250}
 """px."""
-_OPENER: Final = urllib.request.build_opener(urllib.request.ProxyHandler({}))
-"""Goes past any proxy: the server is on this machine."""
 
 
 class Owner:
@@ -32,25 +29,25 @@ class Owner:
         self._whole = address
         page, fragment = urldefrag(address)
         self._page = page.rstrip("/")
-        self._token = fragment.partition("token=")[2]
+        self._api = PageApi(self._page, fragment.partition("token=")[2], _PATIENCE)
 
     def plan_clean(self, now: dt.datetime) -> dt.datetime:
         """Make a plan of all floor for the next minute; return when it is due, in UTC."""
         due = next_minute(now)
-        self._ask("PUT", "household/zone", {"zone": "UTC"})
+        self._api.send("household/zone", {"zone": "UTC"}, "PUT")
         order = {"mode": "whole"}
         plan = {"name": "Every day", "at": [f"{due:%H:%M}"], "order": order}
-        self._ask("PUT", "plans", plan)
+        self._api.send("plans", plan, "PUT")
         return due
 
     def runs(self) -> list[dict[str, Any]]:
         """Return the runs that are kept, the newest first."""
-        found: list[dict[str, Any]] = self._ask("GET", "history")["runs"]
+        found: list[dict[str, Any]] = self._api.get("api/v1/history")["runs"]
         return found
 
     def notes(self) -> list[dict[str, Any]]:
         """Return what became of plans, the newest first."""
-        found: list[dict[str, Any]] = self._ask("GET", "plans")["notes"]
+        found: list[dict[str, Any]] = self._api.get("api/v1/plans")["notes"]
         return found
 
     def look(self) -> Picture:
@@ -67,19 +64,6 @@ class Owner:
             page.goto(f"{self._page}/api/v1/history/{number}/report.html")
             page.wait_for_timeout(_SETTLED)
             return decoded(page.screenshot())
-
-    def _ask(self, method: str, path: str, values: dict[str, Any] | None = None) -> Any:
-        request = urllib.request.Request(
-            f"{self._page}/api/v1/{path}",
-            data=None if values is None else json.dumps(values).encode(),
-            method=method,
-            headers={
-                "Authorization": f"Bearer {self._token}",
-                "Content-Type": "application/json",
-            },
-        )
-        with _OPENER.open(request, timeout=_PATIENCE) as answer:
-            return json.load(answer)
 
 
 def next_minute(now: dt.datetime) -> dt.datetime:

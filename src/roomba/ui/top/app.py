@@ -14,8 +14,9 @@ from textual.binding import Binding, BindingType
 from textual.containers import Horizontal, Vertical
 from textual.widgets import DataTable, Footer, RichLog, Static
 
+from roomba.client.protocol import RequestRefusedError, RobotUnavailableError
 from roomba.ui.state_words import lines_of
-from roomba.ui.top.link import PageLink, RefusedError
+from roomba.ui.top.link import PageLink
 from roomba.ui.top.map_text import LEGEND, map_text
 from roomba.ui.top.rates import Rate, TopicRates
 
@@ -223,7 +224,7 @@ class TopApp(App[int]):
         """Whether a command was passed on; what is refused is told."""
         try:
             await command()
-        except RefusedError as refusal:
+        except (RequestRefusedError, RobotUnavailableError) as refusal:
             self._tell_refusal(str(refusal))
             return False
         return True

@@ -4,28 +4,19 @@ from __future__ import annotations
 
 import asyncio
 import json
-import urllib.error
-import urllib.request
 from collections.abc import Callable
 from typing import Any, Final
 
 import websockets
 
-from roomba.errors import RoombaError
+from roomba.client.page_api import PageApi
+from roomba.client.protocol import RequestRefusedError, RobotUnavailableError
 from roomba.ui.top.grids import Grid, take_tiles
 
 _AGAIN: Final = 1.0
 """s of wall time from a lost connection to the next try."""
-_PATIENCE: Final = 6.0
-"""s of wall time; a robot that says nothing for 5 s is told by its server."""
 _LARGEST: Final = 64 << 20
 """Bytes of a message: a map of 20 million cells, and more."""
-_OPENER: Final = urllib.request.build_opener(urllib.request.ProxyHandler({}))
-"""Goes past any proxy: the server is on this machine."""
-
-
-class RefusedError(RoombaError):
-    """The robot, or its server, does not do what was wished for; the message is the reason."""
 
 
 class PageLink:
@@ -38,6 +29,7 @@ class PageLink:
     def __init__(self, port: int, token: str, host: str = "127.0.0.1") -> None:
         """Connect nothing yet; without a token, an empty one, the robot can only be looked at."""
         self._address, self._token = f"{host}:{port}", token
+        self._api = PageApi(f"http://{self._address}", token)
         self.state: dict[str, Any] = {}
         self.home: dict[str, Any] = {}
         self.grids: dict[str, Grid] = {}
@@ -66,18 +58,20 @@ class PageLink:
     async def drive(self, linear: float, angular: float) -> None:
         """Drive by hand, m/s and rad/s; the robot stands half a second after the last wish."""
         if self._socket is None:
-            raise RefusedError("the robot cannot be reached")
+            raise RobotUnavailableError("the robot cannot be reached")
         if not self.may_change:
-            raise RefusedError(NO_TOKEN)
+            raise RequestRefusedError(NO_TOKEN)
         await self._socket.send(json.dumps({"type": "drive", "linear": linear, "angular": angular}))
 
     async def command(self, name: str, wish: dict[str, Any] | None = None) -> None:
-        """Let the API do something; raises RefusedError with the reason."""
-        await asyncio.to_thread(self._post, name, wish or {})
+        """Let the API do something; raises RequestRefusedError, RobotUnavailableError."""
+        if not self._token:
+            raise RequestRefusedError(NO_TOKEN)
+        await asyncio.to_thread(self._api.send, name, wish)
 
     async def limits(self) -> dict[str, Any]:
-        """Return what may be asked for; raises RefusedError."""
-        return await asyncio.to_thread(self._asked, urllib.request.Request(self._url("limits")))
+        """Return what may be asked for; raises RequestRefusedError, RobotUnavailableError."""
+        return await asyncio.to_thread(self._api.get, "api/v1/limits")
 
     def _take(self, message: str | bytes) -> None:
         """Take in what the server shows; raises ValueError for what makes no sense."""
@@ -95,40 +89,9 @@ class PageLink:
         elif kind == "refused":
             self.on_refusal(str(told.get("reason", "")))
 
-    def _post(self, name: str, wish: dict[str, Any]) -> None:
-        if not self._token:
-            raise RefusedError(NO_TOKEN)
-        headers = {"Authorization": f"Bearer {self._token}", "Content-Type": "application/json"}
-        self._asked(
-            urllib.request.Request(
-                self._url(name), json.dumps(wish).encode(), headers, method="POST"
-            )
-        )
-
-    def _url(self, name: str) -> str:
-        return f"http://{self._address}/api/v1/{name}"
-
-    def _asked(self, request: urllib.request.Request) -> dict[str, Any]:
-        try:
-            with _OPENER.open(request, timeout=_PATIENCE) as answer:
-                told: dict[str, Any] = json.load(answer)
-                return told
-        except urllib.error.HTTPError as refusal:
-            raise RefusedError(_reason_of(refusal)) from refusal
-        except (OSError, ValueError) as error:
-            raise RefusedError(f"the robot cannot be reached: {error}") from error
-
 
 NO_TOKEN: Final = (
     "its server obeys only who has its token, and none that fits was found: give ./roomba top the "
     "whole address that ./roomba run or play printed"
 )
 """Why nothing can be changed."""
-
-
-def _reason_of(refusal: urllib.error.HTTPError) -> str:
-    """Return the sentence of the server, or what HTTP says."""
-    try:
-        return str(json.load(refusal)["detail"])
-    except (ValueError, KeyError, TypeError, OSError):
-        return str(refusal)
