@@ -20,6 +20,7 @@ from roomba.mission.cleaning.dirty import DirtyFloor
 from roomba.mission.cleaning.ledger import CoverageLedger
 from roomba.mission.cleaning.missed import is_hidden, missed_floor
 from roomba.mission.cleaning.request import CleanRefusedError, CleanRequest, Missed
+from roomba.mission.cleaning.rounds import Rounds
 from roomba.mission.cleaning.stages import Stage, edges_of
 from roomba.mission.driving.gaps import closed_gaps
 from roomba.mission.inputs.planning_context import PlanningContext
@@ -61,14 +62,10 @@ class Cleaning:
             )
         self._count_passes()
         self.is_again = False
-        self._rounds = 0
-        self._last_missed = np.inf
+        self._rounds = Rounds(config)
         self._looked_again = False
         self._unreachable = False
         self._scrubbed = False
-        self._ways_out = self._cut_offs = 0
-        self._anew, self._planned_anew_at = 0, -np.inf
-        self._is_anew = False
         self.broken_off = 0.0
         """m; of the last path that was not driven to its end, what was left then."""
 
@@ -200,10 +197,8 @@ class Cleaning:
 
     def cut_off(self) -> None:
         """Tell that no way led to some of what was planned."""
-        self._unreachable, self._last_missed = True, np.inf
-        self._cut_offs += 1
-        if self._cut_offs <= self._config.most_cut_offs:
-            self._rounds = min(self._rounds, 1)
+        self._unreachable = True
+        self._rounds.cut_off()
 
     def interrupted(self, left: float) -> None:
         """Tell that the last path was not driven to its end, of which ``left`` m were left.
@@ -219,19 +214,14 @@ class Cleaning:
         With all that is known by now that takes less way than to go around it and to come back for
         what is next to it.
         """
-        since = now - self._planned_anew_at
-        config = self._config
-        if left < config.least_way_to_replan or self._anew >= config.most_replans:
+        if not self._rounds.replans(now, left):
             return False
-        if 0.0 <= since < config.replan_period:
-            return False
-        self._anew, self._planned_anew_at = self._anew + 1, now
         self._begin_anew()
         return True
 
     def _begin_anew(self) -> None:
         """Do not count the last plan as a round."""
-        self._rounds, self._last_missed, self._is_anew = 1, np.inf, True
+        self._rounds.begin_anew()
         self._ledger.try_again()
 
     def use_context(self, context: PlanningContext, dirt: DirtMap) -> None:
@@ -240,9 +230,8 @@ class Cleaning:
         ``dirt`` is that of the planning context's map.
         """
         if self._context.is_growing:
-            self._begin_stage()
             # With the whole map the first way through is done.
-            self._rounds = 0 if context.is_growing else 1
+            self._begin_stage(is_driven=not context.is_growing)
         self._context = context
         self.dirty.begin(dirt)
         self._ledger.use_context(context, dirt)
@@ -302,23 +291,20 @@ class Cleaning:
         """Plan what is missed of a stage, if that is worth it."""
         todo = stage.floor & self.coverage.missed
         missed, config = float(np.count_nonzero(todo)) * self.coverage.cell_area, self._config
-        is_anew, self._is_anew = self._is_anew, False
+        is_anew = self._rounds.takes_anew()
         large = _patches(todo, self.coverage.frame, config.least_for_round) if is_anew else todo
         if is_anew and large.any():
             todo = large
-        elif self._rounds > 0:
+        elif not self._rounds.is_first:
             self.is_again = True
             todo = self._worth_it(stage, todo, here, obstacles)
-            gained = self._last_missed - missed
-            is_little = gained < config.little_gain * self._last_missed
-            if self._rounds > config.most_rounds or is_little:
+            if self._rounds.is_over(missed):
                 todo[:] = False
-        if self._rounds > 0 and not todo.any() and not self._scrubbed:
+        if not self._rounds.is_first and not todo.any() and not self._scrubbed:
             todo = self._dirty_again(stage)
         if not todo.any():
             return None
-        self._rounds += 1
-        self._last_missed = missed
+        self._rounds.begin(missed)
         edges_only = self.request.mode is CleanMode.EDGES
         try:
             plan = self._context.plan_coverage(
@@ -336,9 +322,8 @@ class Cleaning:
                 plan = self._context.coverage.plan(
                     (here.x, here.y), None, todo, obstacles, edges_only=edges_only
                 )
-            elif self._ways_out < config.most_ways_out:
-                self._ways_out += 1
-                self._rounds, self._last_missed = self._rounds - 1, np.inf
+            elif self._rounds.tries_to_get_out():
+                self._rounds.take_back()
                 raise
             else:
                 return None
@@ -387,7 +372,7 @@ class Cleaning:
         again = self.dirty.left(self.coverage, stage.floor)
         if again.any():
             self._ledger.sweep_anew(again)
-            self._last_missed = np.inf
+            self._rounds.expect_gain()
         return again
 
     def _next_stage(self) -> None:
@@ -399,9 +384,9 @@ class Cleaning:
         asked = sum(stage.cells for stage in self.stages)
         self.mean_passes = asked / wanted if wanted and not self.explores else self.request.passes
 
-    def _begin_stage(self) -> None:
-        self._rounds, self._last_missed, self._scrubbed = 0, np.inf, False
-        self.is_again = False
+    def _begin_stage(self, *, is_driven: bool = False) -> None:
+        self._rounds.begin_stage(is_driven=is_driven)
+        self._scrubbed = self.is_again = False
 
 
 def _patches(floor: Mask, frame: GridFrame, least: float) -> Mask:
