@@ -14,6 +14,9 @@ Division by zero is not looked for: it gives what the processor makes of it.
 
 from __future__ import annotations
 
+import contextlib
+import importlib
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, Final, TypeVar
@@ -31,6 +34,26 @@ _ALLOCATES: Final[dict[str, Any]] = {**_ALWAYS, "_nrt": True}
 _ALLOCATES_NOT: Final[dict[str, Any]] = {**_ALWAYS, "_nrt": False}
 _ANY_ORDER: Final = {"nsz", "arcp", "contract", "reassoc"}
 """Fast math, but for what is not finite: a beam that meets nothing is infinite."""
+_BLAS: Final = "scipy.linalg.cython_blas"
+
+
+def _read_arrays_without_blas() -> None:
+    """Let numba read what it knows of arrays, and find no BLAS meanwhile.
+
+    It only asks whether there is one, for ``np.correlate``, and imports all of scipy's linear
+    algebra to know: 0.13 s of each start. What multiplies matrices looks for it later by itself.
+    """
+    if _BLAS in sys.modules:
+        return
+    sys.modules[_BLAS] = None  # type: ignore[assignment]  # Python then says that there is none
+    try:
+        with contextlib.suppress(ImportError):
+            importlib.import_module("numba.np.arraymath")
+    finally:
+        del sys.modules[_BLAS]
+
+
+_read_arrays_without_blas()
 
 
 def entry(function: _Function) -> _Function:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import ast
+import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -121,6 +123,30 @@ def test_no_function_without_references_is_given_a_new_array() -> None:
         if isinstance(call, ast.Call) and isinstance(call.func, ast.Name) and call.func.id in givers
     ]
     assert leaks == []
+
+
+AT_START = """
+import sys
+import roomba.compilation
+print("scipy.linalg" in sys.modules)
+
+import numba
+import numpy as np
+numba.njit(lambda values: values[0])(np.ones(2))
+print("scipy.linalg" in sys.modules)
+print(numba.njit(lambda one, other: one @ other)(2.0 * np.eye(2), np.ones((2, 2))).tolist())
+"""
+
+
+def test_linear_algebra_is_read_when_it_is_needed_and_not_at_each_start() -> None:
+    told = subprocess.run(
+        [sys.executable, "-c", AT_START],
+        capture_output=True,
+        text=True,
+        check=True,
+        timeout=300,
+    ).stdout
+    assert told.split("\n")[:3] == ["False", "False", "[[2.0, 2.0], [2.0, 2.0]]"]
 
 
 def gives(function: ast.FunctionDef) -> bool:
