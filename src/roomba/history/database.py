@@ -12,9 +12,8 @@ import time
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
-from roomba.client.household import TotalsView
 from roomba.client.protocol import MissedFloor
 from roomba.errors import RoombaError
 from roomba.files.atomic import make_private
@@ -22,6 +21,9 @@ from roomba.files.journal import append_line, read_lines, write_lines
 from roomba.history.run import RunFigures, RunRecording, RunSource
 from roomba.history.run_file import packed, unpacked
 from roomba.time_spent import TimeSpent
+
+if TYPE_CHECKING:
+    from roomba.client.household import TotalsView
 
 LAST: Final = "last"
 """In place of a run's number: the newest one."""
@@ -145,6 +147,9 @@ class History:
 
     def totals(self, program: str) -> TotalsView:
         """Return the sums over all runs of a program; what is not known counts as nothing."""
+        # Imported here, with all of the household's plans: what keeps a run needs none.
+        from roomba.client.household import TotalsView
+
         sums = ", ".join(f"TOTAL({name})" for name in _SUMS)
         with self._opened() as database:
             row = database.execute(

@@ -6,6 +6,7 @@ import math
 import threading
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,9 +16,11 @@ from roomba.configuration.sensors import CameraConfig
 from roomba.geometry import Pose
 from roomba.grid import GridFrame
 from roomba.headless.embodied import Embodied
-from roomba.world.camera.camera import Camera, Scene
 from roomba.world.home.home import Home
 from roomba.world.simulator import Simulator
+
+if TYPE_CHECKING:
+    from roomba.world.camera.camera import Camera
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -53,6 +56,9 @@ class LiveCamera:
             raise RequestRefusedError(
                 f"expected an angle from {-most:g} to {most:g} degrees, got {degrees:g}"
             )
+        # Imported here: most runs take no picture, and the camera's loops take a while.
+        from roomba.world.camera.camera import Camera, Scene
+
         sight = ask(lambda _: self._sight())
         with self._lock:
             self._camera = self._camera or Camera(Scene.of(self._home), self._config, 1)

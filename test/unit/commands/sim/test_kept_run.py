@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -46,6 +48,21 @@ def test_a_run_is_kept_as_the_json_tells_it(folder: Path, tmp_path: Path) -> Non
     swept = np.count_nonzero(coverage.cells) * coverage.resolution**2
     assert swept >= 0.95 * figures.covered
     assert (folder / "runs.sqlite").stat().st_size < 1_000_000
+
+
+KEEPING = """
+import sys
+import roomba.commands.sim.kept_run, roomba.commands.sim.state_samples, roomba.headless.live.playing
+print([name for name in ("roomba.world.camera.camera", "roomba.plans.plan") if name in sys.modules])
+"""
+
+
+def test_what_keeps_a_run_reads_neither_the_camera_nor_the_households_plans() -> None:
+    """They would take a twentieth of a second after each table."""
+    told = subprocess.run(
+        [sys.executable, "-c", KEEPING], capture_output=True, text=True, check=True, timeout=60
+    )
+    assert told.stdout == "[]\n"
 
 
 def test_a_run_is_not_kept_on_demand(folder: Path) -> None:
