@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 from pydantic import Field
 
@@ -190,6 +190,8 @@ class ExploringConfig(Frozen):
     seeing_speed: Positive = 0.25
     """rad/s; where the map shows no way, it turns once to see more: scans should be as sharp."""
     clearance: Positive = 0.12
+    careful_clearance: Positive = 0.025
+    """Kept wherever any way does: the map may have a surface 0.4 of a cell behind itself."""
     tight_clearance: Positive = 0.005
     cleaning_clearance: Positive = 0.015
     """The same as ``driving.clearance``, for a clean while the map is being made."""
@@ -208,6 +210,8 @@ class ExploringConfig(Frozen):
     small_frontier: NotNegative = 0.4
     """m; a shorter frontier comes later: it costs ``small_cost``, m of way, more."""
     small_cost: NotNegative = 1.0
+    tight_cost: NotNegative = 0.5
+    """m of way that a viewpoint nearer to walls than ``clearance`` costs more."""
     least_cells: AtLeastOne = 3
     """Cells of the map; a frontier of fewer is none: a gap between two beams."""
     frontier_stride: Positive = 0.3
@@ -220,6 +224,8 @@ class ExploringConfig(Frozen):
     """s; a frontier that it has not come to by then, and twice its way's time, is given up."""
     map_wait: Positive = 120.0
     """s; how long a clean waits for the whole map when all is seen."""
+
+    in_order: ClassVar[tuple[str, ...]] = ("tight_clearance <= careful_clearance <= clearance",)
 
 
 class EnergyConfig(Frozen):

@@ -15,6 +15,7 @@ from fixtures.robots.mapped import wrong_cells
 from fixtures.robots.missions import HOME, TWO_ROOMS
 
 from roomba.configuration.mapping import MappingConfig
+from roomba.configuration.sensors import EXACT_LIDAR
 from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.geometry import Pose
 from roomba.grid import FREE
@@ -159,13 +160,19 @@ def test_stopped_it_stands_and_what_it_mapped_stays() -> None:
     assert_explored(robot, record, TWO_ROOMS)
 
 
-def test_things_that_stand_about_are_mapped_like_walls() -> None:
-    robot = HeadlessMission(HOME, seed=1, known=MappingConfig())
-    robot.simulator.place_obstacle(1.4, 1.9, 0.12)
+@pytest.mark.parametrize("lidar", [EXACT_LIDAR, "lds_02", "rplidar_a1"])
+@pytest.mark.parametrize(("place", "seed"), [((1.4, 1.9), 1), ((1.4, 1.9), 3), ((1.8, 1.7), 1)])
+def test_things_that_stand_about_are_mapped_like_walls(
+    place: tuple[float, float], seed: int, lidar: str
+) -> None:
+    """And not touched, though their round sides stand before the cells that the map has of them."""
+    config = SimulatedRobotConfig().with_lidar(lidar)
+    robot = HeadlessMission(HOME, config, seed=seed, known=MappingConfig())
+    robot.simulator.place_obstacle(*place, 0.12)
     record = robot.explore()
     assert record.result.outcome is CleanOutcome.COMPLETED
     assert record.hits == 0
-    row, column = record.occupancy.frame.cell_of(1.4, 1.9)
+    row, column = record.occupancy.frame.cell_of(*place)
     assert (record.occupancy.values[row - 3 : row + 4, column - 3 : column + 4] > FREE).sum() >= 4
 
 

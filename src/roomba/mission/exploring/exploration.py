@@ -57,6 +57,7 @@ class Exploration:
             config.small_cost,
             config.least_cells,
             config.frontier_stride,
+            config.tight_cost,
         )
         self.goal: Frontier | None = None
         self.unseen: list[Point] = []
@@ -98,10 +99,12 @@ class Exploration:
             fits = context.paths.reachable(at, obstacles)
         except NoPathError:
             return None
+        roomy = context.paths.roomy(obstacles)
         points = self._way_to_next(
             context,
             at,
             fits,
+            roomy,
             farthest,
             lambda there: context.paths.plan(at, there, obstacles).points,
         )
@@ -114,6 +117,7 @@ class Exploration:
             context,
             at,
             narrow.places,
+            roomy,
             farthest,
             lambda there: context.squeeze(at, narrow.place_near(there), obstacles),
         )
@@ -123,11 +127,15 @@ class Exploration:
         context: PlanningContext,
         at: Point,
         fits: NDArray[np.bool_],
+        roomy: NDArray[np.bool_],
         farthest: float,
         plan: Callable[[Point], NDArray[np.float64]],
     ) -> NDArray[np.float64] | None:
-        """Return the way to the next viewpoint on floor where the robot ``fits``, or None."""
-        found = frontiers(context.known, fits, at, self.unseen, self._choice)
+        """Return the way to the next viewpoint on floor where the robot ``fits``, or None.
+
+        Rather to one where it has room, ``roomy``.
+        """
+        found = frontiers(context.known, fits, roomy, at, self.unseen, self._choice)
         for frontier in [each for each in found if each.way < farthest][:_MOST_TRIES]:
             try:
                 points = plan(frontier.viewpoint)

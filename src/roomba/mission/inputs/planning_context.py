@@ -23,6 +23,7 @@ from roomba.planning.coverage.floor.floor import CoverageFloor
 from roomba.planning.coverage.plan import CoveragePlan
 from roomba.planning.coverage.planner import CoveragePlanner
 from roomba.planning.coverage.stages import OUR_STAGES, CoverageStages
+from roomba.planning.path.careful import CarefulPathPlanner
 from roomba.planning.path.costmap import Point, RoundObstacle
 from roomba.planning.path.planner import NoPathError, NoPathReason, PathPlanner
 
@@ -98,7 +99,10 @@ class PlanningContext:
         if is_growing:
             exploring = mission.exploring
             self._clearance, self._least = exploring.clearance, exploring.tight_clearance
-        self.paths = PathPlanner(self.known, radius, self._clearance, self._least)
+            clearances = exploring.clearance, exploring.careful_clearance, self._least
+            self.paths: PathPlanner = CarefulPathPlanner(self.known, radius, *clearances)
+        else:
+            self.paths = PathPlanner(self.known, radius, self._clearance, self._least)
 
     @cached_property
     def coverage(self) -> CoveragePlanner:

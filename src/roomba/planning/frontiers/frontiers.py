@@ -26,7 +26,8 @@ class FrontierChoice:
     nearer than ``away`` m to one that is left out. A viewpoint is at most ``look_from`` m off its
     frontier; one metre nearer to it is worth ``nearer_worth`` m of way. Frontiers shorter than
     ``small`` m cost ``small_cost`` m of way more, so that large ones come first. One of fewer than
-    ``least_cells`` is none; about ``stride`` m apart are the places of one that are tried.
+    ``least_cells`` is none; about ``stride`` m apart are the places of one that are tried. A
+    viewpoint where the body has little room costs ``tight_cost`` m of way more.
     """
 
     least_unknown: float
@@ -37,6 +38,7 @@ class FrontierChoice:
     small_cost: float
     least_cells: int
     stride: float
+    tight_cost: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,21 +56,23 @@ class Frontier:
 def frontiers(
     occupancy: OccupancyMap,
     fits: NDArray[np.bool_],
+    roomy: NDArray[np.bool_],
     here: Point,
     left_out: Sequence[Point],
     choice: FrontierChoice,
 ) -> list[Frontier]:
     """Return the frontiers that can be looked at, the best to go to first.
 
-    ``fits``, bool over the map's grid, tells where the robot's middle may be; ``here`` is where it
-    is, m. Those near a point ``left_out``, m, are left out. Raises ValueError when ``here`` is not
-    on the map.
+    ``fits``, bool over the map's grid, tells where the robot's middle may be, ``roomy`` where it
+    has room; ``here`` is where it is, m. Those near a point ``left_out``, m, are left out. Raises
+    ValueError when ``here`` is not on the map.
     """
     frame = occupancy.frame
     if not frame.contains(*here):
         raise ValueError(f"expected a place on the map, got ({here[0]:.2f}, {here[1]:.2f})")
     ways = np.empty(frame.shape)
     ways_from(fits, *frame.cell_of(*here), ways)
+    costs = ways + np.where(roomy, 0.0, choice.tight_cost / frame.resolution)
     frontier = np.empty(frame.shape, np.bool_)
     least = max(1, round(choice.least_unknown / frame.resolution**2))
     frontier_cells(occupancy.values, least, frontier)
@@ -86,7 +90,7 @@ def frontiers(
             continue
         tried = first + _spaced(apart[first:last], every)
         index, row, column = seen_from(
-            cells[tried], middles[tried], leave, choice.away, occupancy.values, ways, radius, worth
+            cells[tried], middles[tried], leave, choice.away, occupancy.values, costs, radius, worth
         )
         if index < 0:
             continue

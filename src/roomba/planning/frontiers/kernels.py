@@ -159,7 +159,7 @@ def seen_from(
     left_out: NDArray[np.float64],
     away: float,
     values: Values,
-    ways: NDArray[np.float64],
+    costs: NDArray[np.float64],
     radius: int,
     aside: float,
 ) -> tuple[int, int, int]:
@@ -177,7 +177,9 @@ def seen_from(
             is_left_out = is_left_out or math.hypot(off_x, off_y) < away
         if is_left_out:
             continue
-        row, column, cost = viewpoint(values, ways, cells[index, 0], cells[index, 1], radius, aside)
+        row, column, cost = viewpoint(
+            values, costs, cells[index, 0], cells[index, 1], radius, aside
+        )
         if math.isfinite(cost):
             return index, row, column
     return -1, -1, -1
@@ -186,7 +188,7 @@ def seen_from(
 @entry
 def viewpoint(
     values: Values,
-    ways: NDArray[np.float64],
+    costs: NDArray[np.float64],
     row: int,
     column: int,
     radius: int,
@@ -195,15 +197,15 @@ def viewpoint(
     """Return the cell from where a frontier cell is best looked at, and its cost in cells.
 
     It can be reached, nothing occupied stands between, and it is ``radius`` cells away at most;
-    the cost is the way there, and ``aside`` times how far it is from the frontier. An infinite cost
-    means that there is none.
+    the cost is that of being there, ``costs``, and ``aside`` times how far it is from the frontier.
+    An infinite cost means that there is none.
     """
     rows, columns = values.shape
     best, best_row, best_column = math.inf, -1, -1
     for to_row in range(max(row - radius, 0), min(row + radius + 1, rows)):
         for to_column in range(max(column - radius, 0), min(column + radius + 1, columns)):
             away = math.hypot(to_row - row, to_column - column)
-            cost = ways[to_row, to_column] + aside * away
+            cost = costs[to_row, to_column] + aside * away
             if away > radius or not cost < best:
                 continue
             if _sees(values, to_row, to_column, row, column):

@@ -160,6 +160,13 @@ class PathPlanner:
             self._reachable[regions] = mask
         return self._reachable[regions]
 
+    def roomy(self, obstacles: Iterable[RoundObstacle] = ()) -> Mask:
+        """Return the cells on whose centres the body keeps the distance wanted, bool as the map.
+
+        ``obstacles`` as for :meth:`plan`. Raises ValueError for numbers that are not finite.
+        """
+        return self._room(obstacles).comfortable.fits
+
     def is_free(self, points: NDArray[np.float64]) -> bool:
         """Whether the body fits everywhere on a way, float64 [n, 2], m, with tight clearance."""
         tight = self._among_walls.tight

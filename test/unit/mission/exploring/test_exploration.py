@@ -17,6 +17,7 @@ from roomba.geometry import Pose
 from roomba.grid import FREE, OCCUPIED, UNKNOWN, OccupancyMap
 from roomba.mission.exploring.exploration import Exploration
 from roomba.mission.inputs.planning_context import PlanningContext
+from roomba.planning.path.costmap import FitMap
 from roomba.planning.path.planner import NoPathError, NoPathReason, PathPlanner
 
 HERE = Pose(0.8, 1.0, 0.0)
@@ -69,6 +70,17 @@ def test_it_goes_to_where_it_sees_into_the_next_room() -> None:
     assert path[-1] == pytest.approx(exploration.goal.viewpoint)
     assert HALL_SITE.paths.is_free(path)
     assert exploration.unseen == []
+
+
+def test_it_looks_from_where_it_has_room_and_goes_there_with_care() -> None:
+    """Beside a thing whose round side the map has two centimetres behind where it stands."""
+    exploration, things = Exploration(CONFIG), [(1.2, 1.5, 0.12)]
+    path = exploration.next_path(HERE, HALL_SITE, things)
+    assert path is not None
+    assert exploration.goal is not None
+    fit = FitMap.build(HALL, ROBOT.body.radius, CONFIG.clearance, things)
+    assert fit.fits_at(*exploration.goal.viewpoint)
+    assert fit.room_along(*path[-2:].tolist()) >= ROBOT.body.radius + CONFIG.careful_clearance
 
 
 def test_where_all_is_known_there_is_no_next() -> None:

@@ -16,7 +16,7 @@ Point = tuple[float, float]
 
 LEAST = 3
 CHOICE = FrontierChoice(
-    0.03, 0.3, 1.2, 2.0, small=0.4, small_cost=1.0, least_cells=LEAST, stride=0.3
+    0.03, 0.3, 1.2, 2.0, small=0.4, small_cost=1.0, least_cells=LEAST, stride=0.3, tight_cost=0.5
 )
 
 
@@ -53,7 +53,7 @@ def fits(made: OccupancyMap, cells: int = 3) -> NDArray[np.bool_]:
 
 
 def found_in(made: OccupancyMap, here: Point = (0.5, 0.5), *left_out: Point) -> list[Frontier]:
-    return frontiers(made, fits(made), here, left_out, CHOICE)
+    return frontiers(made, fits(made), fits(made), here, left_out, CHOICE)
 
 
 def test_in_a_closed_room_there_is_none() -> None:
@@ -150,6 +150,20 @@ def test_it_looks_around_corners_only_where_it_sees() -> None:
             round(at_row + share * (row - at_row)), round(at_column + share * (column - at_column))
         ]
         assert along != OCCUPIED
+
+
+def test_it_is_looked_at_from_where_there_is_room() -> None:
+    """Nearer to the doorway there is little; where there is little everywhere, that must do."""
+    made, tight = room(), fits(room())
+    roomy = fits(made, 6)
+    (frontier,) = frontiers(made, tight, roomy, (0.5, 0.5), (), CHOICE)
+    (nearest,) = found_in(made)
+    assert roomy[made.frame.cell_of(*frontier.viewpoint)]
+    assert not roomy[made.frame.cell_of(*nearest.viewpoint)]
+    # The way that is told is the way.
+    assert frontier.way < nearest.way
+    (squeezed,) = frontiers(made, tight, np.zeros_like(roomy), (0.5, 0.5), (), CHOICE)
+    assert squeezed == nearest
 
 
 def test_a_place_off_the_map_is_refused() -> None:
