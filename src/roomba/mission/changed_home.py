@@ -56,7 +56,21 @@ class ChangedHome:
         if phase is Phase.RETURNING:
             # Its way leads over known floor; a path planned anew each time begins with a turn.
             return False
-        return exploration is not None and exploration.wants_another(occupancy)
+        if exploration is None:
+            return False
+        return exploration.wants_another(occupancy) or self._is_walled(occupancy)
+
+    def _is_walled(self, occupancy: OccupancyMap) -> bool:
+        """Whether it is on its way to a frontier, and a map shows something new that stands on it.
+
+        What stands close to the walls of the map that it goes by no look ahead tells from them.
+        """
+        exploration, drives = self._job.exploration, self._drives
+        if drives.driver is None or drives.is_round or exploration is None:
+            return False
+        return exploration.is_under_way and drives.context.has_new_on(
+            drives.driver.tracker.rest, occupancy
+        )
 
     def _goes_on_looking(self) -> bool:
         """Whether it is on its way to a frontier that still is one, and nothing stands between."""

@@ -91,6 +91,21 @@ def test_a_map_makes_a_difference_when_the_goal_is_seen_or_there_is_none() -> No
     assert not rig.mission.wants_map(WHOLE)
 
 
+def test_a_map_makes_a_difference_when_it_shows_something_new_on_the_way() -> None:
+    rig = exploring()
+    values, frame = HALL.values.copy(), HALL.frame
+    low, column = frame.cell_of(HERE.x + 0.35, 0.0)
+    beside, on = values.copy(), values.copy()
+    beside[frame.cell_of(HERE.x, HERE.y - 0.4)] = OCCUPIED
+    on[low:, column] = OCCUPIED
+    assert not rig.mission.wants_map(OccupancyMap(frame, beside))
+    assert rig.mission.wants_map(OccupancyMap(frame, on))
+    # Going by that map it finds nothing new on it.
+    rig.grow(OccupancyMap(frame, on))
+    rig.tick(2)
+    assert rig.mission.driver is None or not rig.mission.wants_map(OccupancyMap(frame, on))
+
+
 def test_a_map_that_changes_nothing_leaves_it_on_its_way() -> None:
     rig = exploring()
     driver = rig.mission.driver

@@ -25,6 +25,7 @@ from roomba.planning.coverage.planner import CoveragePlanner
 from roomba.planning.coverage.stages import OUR_STAGES, CoverageStages
 from roomba.planning.path.careful import CarefulPathPlanner
 from roomba.planning.path.costmap import Point, RoundObstacle
+from roomba.planning.path.new_walls import is_walled
 from roomba.planning.path.planner import NoPathError, NoPathReason, PathPlanner
 
 Mask = NDArray[np.bool_]
@@ -148,6 +149,10 @@ class PlanningContext:
         finally:
             self.plans += 1
             self.planning_time += time.perf_counter() - began
+
+    def has_new_on(self, points: NDArray[np.float64], occupancy: OccupancyMap) -> bool:
+        """Whether a newer map shows something new on a way, float64 [n, 2], m, through this one."""
+        return is_walled(points, occupancy, self.occupancy, self.body_radius, self._least)
 
     def squeeze(
         self, here: Point, there: Point, obstacles: Sequence[RoundObstacle]
