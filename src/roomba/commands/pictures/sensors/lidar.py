@@ -32,6 +32,8 @@ _MOST_LINES = 20
 """Beams that were lost are drawn one by one, if they are no more."""
 _BINS = np.arange(-20.0, 20.1, 1.0)
 """mm"""
+_ABOVE = 1.3
+"""Height of that axis, by what is drawn: there the legend is."""
 
 
 @drawn
@@ -114,5 +116,6 @@ def _draw_errors(
     axes.plot(x, normal.mean(axis=1), color=INK, label="of noise by range,\nmet squarely")
     axes.set(xlabel="error of a range, mm", ylabel="share per mm")
     half, most = np.quantile(np.abs(errors), (0.5, 0.95))
-    axes.set_title(f"{len(errors)} ranges\nhalf within {half:.1f} mm, 95 % within {most:.0f} mm")
+    axes.set_title(f"{len(errors)} ranges: half within\n{half:.1f} mm, 95 % within {most:.0f} mm")
+    axes.set_ylim(top=_ABOVE * axes.get_ylim()[1])
     axes.legend(loc="upper right")
