@@ -40,8 +40,13 @@ def closet() -> Home:
 
 
 def warm_up_ticks() -> None:
-    """Clean it tick by tick, as nodes do: without the burst, which is the largest loop of all."""
-    HeadlessMission(closet(), longest_burst=0).clean()
+    """Clean it tick by tick, as nodes do: without the burst, which is the largest loop of all.
+
+    First it walks: :mod:`roomba.commands.warm_up`, which may run beside it, begins with planning.
+    """
+    robot = HeadlessMission(closet(), longest_burst=0)
+    robot.walk(0.9, 0.9)
+    robot.clean()
 
 
 if __name__ == "__main__":
