@@ -191,7 +191,7 @@ class ExploringConfig(Frozen):
     """rad/s; where the map shows no way, it turns once to see more: scans should be as sharp."""
     clearance: Positive = 0.12
     careful_clearance: Positive = 0.025
-    """Kept wherever any way does: the map may have a surface 0.4 of a cell behind itself."""
+    """m; kept wherever any way does: the map may have a surface 0.4 of a cell too far back."""
     tight_clearance: Positive = 0.005
     cleaning_clearance: Positive = 0.015
     """The same as ``driving.clearance``, for a clean while the map is being made."""
