@@ -47,6 +47,7 @@ _NEEDED = ("odom", "battery_state", "dock_status")
 """The body's topics without which nothing can be begun."""
 _HEARD = (
     *_NEEDED,
+    "imu",
     "scan",
     "bumper",
     "cliff",
@@ -65,7 +66,7 @@ class MissionNode:
 
     Publishes, subscribes and serves what :class:`HeardSenses`, :class:`HomeTopics`,
     :class:`LowThingTopics`, :class:`CarpetTopics`, :class:`MissionOrders`, :class:`MissionDrive`
-    and :class:`MissionTopics` say. Of the body it hears ``odom``, ``scan``, ``bumper``,
+    and :class:`MissionTopics` say. Of the body it hears ``odom``, ``imu``, ``scan``, ``bumper``,
     ``cliff``, ``wheel_drop``, ``battery_state``, ``dock_status``, ``ir_omni``, ``dirt_detect``,
     ``bin_level``, ``brush_current`` and ``emptying_station``.
     Parameters: ``robot_config``, ``mission_config``, ``docking_config``, ``things_config``,

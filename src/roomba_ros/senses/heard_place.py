@@ -1,50 +1,45 @@
-"""The robot's place as it is told, carried on by the wheels."""
+"""The robot's place as it is told, carried on by wheels and gyro."""
 
 from __future__ import annotations
 
 import math
 import threading
 import time
-from collections import deque
-from typing import Final
 
-import numpy as np
 import rospy
 from geometry_msgs.msg import PoseStamped
 from roomba_robot.msg import Localization
 
-from roomba.clock import ClockJumps, is_recent
+from roomba.clock import is_recent
 from roomba.configuration.nodes import HearingConfig
+from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose, Twist
+from roomba.perception.localization.dead_reckoning import DeadReckoning
 from roomba.perception.localization.estimate import Knowledge
-from roomba.perception.matching.reckoned_path import ReckonedPath, forget_path, remember
+from roomba.perception.matching.reckoned_path import ReckonedPath
 from roomba.robot.readings import Readings
 from roomba_ros.convert.localization import knowledge_of
 from roomba_ros.convert.readings import StampedPose, stamped_pose_of
 from roomba_ros.runtime.senders import SELDOM_SILENT_AFTER, OneSender
 from roomba_ros.runtime.subscriptions import subscribe
 
-_KEPT: Final = 40
-"""Readings that are remembered: two seconds of them."""
-
 
 class HeardPlace:
-    """Finds out where odometry's frame is in the map, by a pose and the odometry of its time.
+    """Finds out where the frame of dead reckoning is in the map, by a pose and where that was then.
 
-    So a pose that comes late is as good: the wheels tell the way since.
+    So a pose that comes late is as good: wheels and gyro tell the way since, as the node reckons
+    that tells the pose.
 
     Subscribes: ``pose``, ``localization``.
     """
 
-    def __init__(self, tick: float, config: HearingConfig) -> None:
-        """Connect nothing yet; the wheels tell about the way every ``tick`` s."""
-        self._tick, self._config = tick, config
+    def __init__(self, robot: RobotConfig, config: HearingConfig) -> None:
+        """Connect nothing yet."""
+        self._config = config
         self._lock = threading.Lock()
         self._senders = OneSender()
-        self._way: deque[Readings] = deque(maxlen=_KEPT)
-        self.path = ReckonedPath.empty()
-        """Where the wheels had the robot in the last seconds."""
-        self._jumps = ClockJumps()
+        self._reckoning = DeadReckoning(robot.localization, robot.gyro)
+        self._newest: Readings | None = None
         self._pose: StampedPose | None = None
         self._heard = 0.0
         self._correction = Pose()
@@ -85,15 +80,15 @@ class HeardPlace:
         conflict = self._senders.conflict
         return (Knowledge.SEARCHING, f"of its place {conflict}") if conflict else self._told
 
+    @property
+    def path(self) -> ReckonedPath:
+        """Where wheels and gyro had the robot in the last seconds."""
+        return self._reckoning.path
+
     def move(self, readings: Readings) -> None:
-        """Take what the wheels say next."""
-        if self._jumps.at(readings.time):
-            self._way.clear()
-            forget_path(self.path)
-        if not self._way or readings.time > self._way[-1].time:
-            at = readings.odometry
-            remember(self.path, readings.time, np.array([at.x, at.y, at.theta]))
-        self._way.append(readings)
+        """Take what wheels and gyro say next."""
+        self._reckoning.move(readings.time, readings.odometry, readings.turning)
+        self._newest = readings
         self._correct()
 
     def at(self, now: float) -> Pose | None:
@@ -102,15 +97,12 @@ class HeardPlace:
         Later than what the wheels told last, it is where their twist leads.
         """
         self._correct()
-        if self._corrected is None:
+        newest = self._newest
+        if self._corrected is None or newest is None:
             return None
-        newest = self._way[-1]
-        if now >= newest.time:
-            ahead = min(now - newest.time, self._config.oldest_pose)
-            odometry = moved(newest.odometry, newest.twist, ahead)
-        else:
-            odometry = self._odometry_at(now)
-        return self._correction.compose(odometry)
+        here = self._reckoned_at(min(now, newest.time))
+        ahead = min(max(now - newest.time, 0.0), self._config.oldest_pose)
+        return self._correction.compose(moved(here, newest.twist, ahead))
 
     def is_late(self, now: float, longest: float) -> bool:
         """Whether the newest pose is ``longest`` s old, or older: the robot must not drive by it.
@@ -128,22 +120,21 @@ class HeardPlace:
         return time.monotonic() > self._heard + self._config.silence and is_old
 
     def _correct(self) -> None:
-        """Find out where the odometry's frame is in the map, if a pose is new."""
+        """Find out where the frame of dead reckoning is in the map, if a pose is new."""
         with self._lock:
             told = self._pose
-        if told is None or told == self._corrected or not self._way:
+        newest = self._newest
+        if told is None or told == self._corrected or newest is None:
             return
-        if self._corrected is not None and told.stamp > self._way[-1].time:
+        if self._corrected is not None and told.stamp > newest.time:
             # It came before the odometry that it follows from.
             return
-        self._correction = told.pose.compose(self._odometry_at(told.stamp).inverse())
+        self._correction = told.pose.compose(self._reckoned_at(told.stamp).inverse())
         self._corrected = told
 
-    def _odometry_at(self, stamp: float) -> Pose:
-        """Return where odometry was at a time, or at the nearest to it that is remembered, s."""
-        nearest = min(self._way, key=lambda each: abs(each.time - stamp))
-        off = min(max(stamp - nearest.time, -self._tick), self._tick)
-        return moved(nearest.odometry, nearest.twist, off)
+    def _reckoned_at(self, stamp: float) -> Pose:
+        """Return where the robot was reckoned to be, s; now, if that is not remembered."""
+        return self._reckoning.at(stamp) or self._reckoning.pose
 
     def _on_pose(self, told: StampedPose) -> None:
         with self._lock:

@@ -25,7 +25,7 @@ class HeardSenses:
     def __init__(self, config: RobotConfig, hearing: HearingConfig, *topics: str) -> None:
         """Connect nothing yet."""
         self._body = BodyTopics(config, *topics, "lidar_correction")
-        self.place = HeardPlace(config.timing.tick, hearing)
+        self.place = HeardPlace(config, hearing)
         self._scans = ScanSelection(config.timing)
         self._readings: Readings | None = None
         self._scan: ScanReading | None = None

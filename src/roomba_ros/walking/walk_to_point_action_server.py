@@ -43,7 +43,7 @@ from roomba_ros.senses.senses import HeardSenses
 from roomba_ros.walking.walk_goals import MoveBaseGoal, WalkGoal, WalkToPointGoal, checked_goal
 
 NAME = "walk_to_point_action_server_node"
-_HEARD = ("odom", "scan", "bumper", "cliff")
+_HEARD = ("odom", "imu", "scan", "bumper", "cliff")
 _OVERTAKEN = "a newer goal took over"
 
 
@@ -77,7 +77,7 @@ class WalkToPointActionServer:
     ``move_base/{goal,feedback,result,status}``.
     Subscribes: ``map``, ``walk_to_point/{goal,cancel}``, ``move_base/{goal,cancel}``,
     ``move_base_simple/goal`` (PoseStamped: becomes a goal of ``move_base``), and what
-    :class:`HeardSenses` hears, of the body ``odom``, ``scan``, ``bumper`` and ``cliff``.
+    :class:`HeardSenses` hears, of the body ``odom``, ``imu``, ``scan``, ``bumper`` and ``cliff``.
     Services: ``make_plan`` (GetPlan: the path to a point, without walking it).
     Parameters: ``robot_max_speed``, ``min_cordinate``, ``max_cordinate``, ``robot_config``,
     ``nodes_config``, ``mission_config``, ``things_config`` (obstacles are noticed and remembered

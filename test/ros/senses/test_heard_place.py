@@ -11,6 +11,7 @@ from fixtures.nodes.lockstep import Lockstep
 from roomba_robot.msg import Localization
 
 from roomba.configuration.nodes import HearingConfig
+from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose, Twist
 from roomba.perception.localization.estimate import Knowledge
 from roomba.robot.readings import Readings
@@ -29,7 +30,7 @@ def ros() -> Iterator[Lockstep]:
 
 
 def place() -> HeardPlace:
-    heard = HeardPlace(TICK, HearingConfig())
+    heard = HeardPlace(RobotConfig(), HearingConfig())
     heard.start()
     return heard
 
@@ -64,6 +65,18 @@ def test_after_the_last_odometry_it_is_where_its_twist_leads_but_not_for_ever(
     ros.publish("/pose", pose_message(10.0, Pose(), "map"))
     assert is_at(heard.at(10.3), 0.06, 0.0, 0.0)
     assert is_at(heard.at(99.0), 0.1, 0.0, 0.0)
+
+
+def test_on_wheels_that_slip_the_gyro_tells_how_it_turned(ros: Lockstep) -> None:
+    heard = place()
+    for tick in range(5):
+        # The wheels tell of no turn.
+        turning = 0.0 if tick == 0 else 1.0
+        heard.move(Readings(10.0 + tick * TICK, Pose(), Twist(), turning))
+    ros.publish("/pose", pose_message(10.0, Pose(3.0, 1.0, 0.0), "map"))
+    turned = heard.at(10.2)
+    assert turned is not None
+    assert turned.theta > 0.15, "both count, by their variances"
 
 
 def test_a_pose_waits_for_the_odometry_that_it_follows_from(ros: Lockstep) -> None:
