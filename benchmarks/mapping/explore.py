@@ -15,6 +15,7 @@ from roomba.commands.map.runs import Drawn, run_trial
 from roomba.commands.trials.trial import Trial
 from roomba.configuration.docking import DockingConfig
 from roomba.configuration.mapping import MappingConfig
+from roomba.configuration.sensors import EXACT_LIDAR
 from roomba.geometry import Pose
 from roomba.grid import OccupancyMap
 from roomba.headless.cleaner import HeadlessMission
@@ -63,7 +64,7 @@ class Cleaned:
 def explore(task: Task) -> Explored:
     """Make an exploration with the shipped noise."""
     path = str(Path(task.folder) / f"{task.home}.yaml") if task.folder else task.home
-    run = run_trial(Trial(home=path, seed=task.seed, sensors="noisy"))
+    run = run_trial(Trial(home=path, seed=task.seed, sensors="noisy", lidar=EXACT_LIDAR))
     record = run.record
     return Explored(
         task,

@@ -21,6 +21,7 @@ from mcap_ros2.decoder import DecoderFactory
 from roomba_robot.msg import Localization, RobotPosition
 
 from roomba.commands.localize.command import main
+from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.files.shipped import HOMES
 from roomba.recordings.bags.exporting import Form, export_bag
 from roomba.recordings.bags.mending import mend_bag, needs_mending
@@ -28,7 +29,7 @@ from roomba.recordings.bags.mending import mend_bag, needs_mending
 NAMES = ("pose", "amcl")
 
 
-SCAN_PERIOD = 0.1
+SCAN_PERIOD = 1.0 / SimulatedRobotConfig().lidar.rate
 """s; between two scans of the robot's lidar."""
 
 

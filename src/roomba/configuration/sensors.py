@@ -35,13 +35,13 @@ class LidarConfig(Frozen):
     file of ``data/configuration/lidars`` whose numbers stand for what is not given.
     """
 
-    model: str = "ideal_12m"
+    model: str = "lds_02"
     beams: Annotated[int, Field(ge=8, le=4096)] = 360
     field: Annotated[float, Field(ge=10.0, le=360.0)] = 360.0
-    min_range: Positive = 0.15
-    max_range: Positive = 12.0
-    rate: Positive = 10.0
-    sweep_time: NotNegative = 0.0
+    min_range: Positive = 0.16
+    max_range: Positive = 8.0
+    rate: Positive = 5.0
+    sweep_time: NotNegative = 0.2
     mount_height: Positive = 0.085
     mount_ahead: Annotated[float, Field(ge=-0.3, le=0.3)] = 0.0
 

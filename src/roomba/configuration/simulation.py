@@ -101,16 +101,16 @@ class SimulatedLidar(Frozen):
         s; from the end of a sweep until it has come over the line.
     """
 
-    noise: NotNegative = 0.005
-    noise_growth: NotNegative = 0.0
-    grazing_noise: NotNegative = 0.0
-    misses: Ratio = 0.01
-    range_step: NotNegative = 0.0
-    angle_rounding: NotNegative = 0.0
-    spot: NotNegative = 0.0
-    white_reach: NotNegative = 0.0
-    dark: Ratio = 0.0
-    shiny: Ratio = 0.0
+    noise: NotNegative = 0.003
+    noise_growth: NotNegative = 0.0016
+    grazing_noise: NotNegative = 0.3
+    misses: Ratio = 0.02
+    range_step: NotNegative = 0.001
+    angle_rounding: NotNegative = 0.5
+    spot: NotNegative = 0.4
+    white_reach: NotNegative = 10.0
+    dark: Ratio = 0.1
+    shiny: Ratio = 0.05
     delay: NotNegative = 0.0
 
     @property

@@ -1,9 +1,9 @@
 """``./roomba sim --bag FILE.bag``: a headless run as a bag, with the live robot's topics.
 
 Topics: ``/map`` and ``/tf_static`` once; ``/clock``, ``/tf`` (map -> odom -> base_link), ``/odom``,
-``/pose`` (where the robot took itself to be), ``/ground_truth/pose`` and ``/scan`` 10 Hz;
-``/battery_state`` 1 Hz; ``/plan`` whenever it drives another way; ``/coverage_map`` (0: wanted,
-100: swept, -1: neither; cells of the map) every 10 s and at the end.
+``/pose`` (where the robot took itself to be) and ``/ground_truth/pose`` 10 Hz; ``/scan`` as often
+as the lidar has one; ``/battery_state`` 1 Hz; ``/plan`` whenever it drives another way;
+``/coverage_map`` (0: wanted, 100: swept, -1: neither; cells of the map) every 10 s and at the end.
 """
 
 from __future__ import annotations

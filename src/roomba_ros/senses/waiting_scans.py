@@ -1,4 +1,4 @@
-"""Scans that wait until it is known where the robot was when they were taken."""
+"""Scans that wait until it is known where the robot was when each of their beams was measured."""
 
 from __future__ import annotations
 
@@ -29,9 +29,12 @@ class WaitingScans:
             self._scans = [*self._scans[1 - _KEPT :], scan]
 
     def take(self, stamp: float) -> ScanReading | None:
-        """Return the newest that was taken by ``stamp``, s, if there is one; older ones go."""
+        """Return the newest of which all beams were measured by ``stamp``, s, if there is one.
+
+        Older ones go.
+        """
         with self._lock:
-            ready = sum(scan.stamp <= stamp for scan in self._scans)
+            ready = sum(scan.stamp + scan.lidar.sweep <= stamp for scan in self._scans)
             scan = self._scans[ready - 1] if ready else None
             del self._scans[:ready]
         return scan

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import rosbag
 
+from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.files.occupancy_map import save_map
 from roomba.geometry import Pose
 from roomba.grid import FREE, OCCUPIED, GridFrame, OccupancyMap
@@ -21,7 +22,7 @@ RATES = {
     "/odom": 10.0,
     "/pose": 10.0,
     "/ground_truth/pose": 10.0,
-    "/scan": 10.0,
+    "/scan": SimulatedRobotConfig().lidar.rate,
     "/battery_state": 1.0,
     "/coverage_map": 0.1,
 }

@@ -45,3 +45,11 @@ def test_after_the_clock_was_set_back_older_ones_do_not_wait() -> None:
 
 def test_one_without_a_stamp_is_taken_at_once() -> None:
     assert taken(scans(0.0), 7.0) == 0.0
+
+
+def test_one_waits_for_its_last_beam() -> None:
+    waiting = WaitingScans()
+    turning = LidarModel(np.arange(5) * 0.5, 0.1, 8.0, time_increment=0.05)
+    waiting.put(ScanReading(1.0, np.ones(5, np.float32), turning))
+    assert taken(waiting, 1.15) is None
+    assert taken(waiting, 1.2) == 1.0

@@ -34,6 +34,7 @@ from sensor_msgs.msg import (
 from std_msgs.msg import Float32, UInt16
 from tf2_msgs.msg import TFMessage
 
+from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.files.shipped import HOMES
 from roomba.geometry import Pose
 from roomba.world.layers.layer import load_home
@@ -46,6 +47,8 @@ DESCRIPTION = (package_folder() / "srv" / "InjectFault.srv").read_text(encoding=
 HOME = load_home("apartment", HOMES)
 MIDDLE = Pose(5.0, 5.0, 0.0)
 """Of the empty room of 10 x 10 m."""
+BEFORE_WALL = Pose(9.0, 5.0, 0.0)
+"""A metre from the wall ahead: there a range is exact to some mm."""
 
 
 @pytest.fixture(scope="module")
@@ -72,12 +75,14 @@ def test_each_sensor_tells_in_the_messages_of_its_kind(apartment: RosGraph) -> N
     assert np.array(scan.ranges, np.float32) == pytest.approx(exact, abs=1e-4)
     assert scan.header.frame_id == "laser"
     assert scan.angle_min + 359 * scan.angle_increment == pytest.approx(scan.angle_max, abs=1e-5)
-    assert (scan.range_min, scan.range_max) == pytest.approx((0.15, 12.0))
-    assert scan.scan_time == pytest.approx(0.1)
+    lidar = SimulatedRobotConfig().lidar
+    assert (scan.range_min, scan.range_max) == pytest.approx((lidar.min_range, lidar.max_range))
+    assert scan.scan_time == pytest.approx(1.0 / lidar.rate)
+    assert scan.time_increment == pytest.approx(lidar.sweep_time / lidar.beams)
     second = probe.next("/scan", LaserScan)
-    assert second.ranges == scan.ranges
+    assert second.ranges == pytest.approx(scan.ranges, abs=1e-4)
     apart = (second.header.stamp - scan.header.stamp).to_sec()
-    assert apart == pytest.approx(0.1 * round(apart / 0.1), abs=1e-6)
+    assert apart * lidar.rate == pytest.approx(round(apart * lidar.rate), abs=1e-5)
 
     assert probe.next("/dock_status", DockStatus).is_docked
     battery = probe.next("/battery_state", BatteryState)
@@ -154,7 +159,7 @@ def test_a_lifted_robot_feels_it_and_can_be_put_elsewhere(empty_room: RosGraph) 
 
 
 def test_wheels_that_slip_or_stall_are_felt_by_encoders_and_hazards(empty_room: RosGraph) -> None:
-    body = Body(empty_room, MIDDLE)
+    body = Body(empty_room, BEFORE_WALL)
     assert body.inject("slip", 1.0).success
     before = body.odometry().pose.pose.position
     body.drive_for(0.3, 0.0, 1.0)
@@ -162,7 +167,7 @@ def test_wheels_that_slip_or_stall_are_felt_by_encoders_and_hazards(empty_room: 
     after = body.odometry().pose.pose.position
     assert math.dist((after.x, after.y), (before.x, before.y)) > 0.15
     ranges = body.probe.next("/scan", LaserScan).ranges
-    assert np.median(ranges[-2:] + ranges[:3]) == pytest.approx(5.0, abs=0.02)
+    assert np.median(ranges[-2:] + ranges[:3]) == pytest.approx(1.0, abs=0.02)
     body.inject("slip", 0.0)
     body.inject("stall_left")
     body.drive(0.3, 0.0, lambda: HazardDetection.STALL in body.hazards(), "the stall is felt")

@@ -55,8 +55,8 @@ def test_a_robot_takes_any_of_them_by_name_or_by_its_file(model: str, tmp_path: 
     assert config.is_swept == (model != EXACT_LIDAR)
 
 
-def test_the_default_is_the_exact_one() -> None:
-    assert SimulatedRobotConfig().with_lidar(EXACT_LIDAR) == SimulatedRobotConfig()
+def test_the_default_is_one_that_robot_vacuums_have() -> None:
+    assert SimulatedRobotConfig().with_lidar("lds_02") == SimulatedRobotConfig()
 
 
 def test_single_numbers_replace_those_of_the_model(tmp_path: Path) -> None:

@@ -13,6 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from roomba.configuration.robot import RobotConfig
+from roomba.configuration.things import ThingConfig
 from roomba.geometry import Pose
 from roomba.grid import FREE, OCCUPIED, OccupancyMap
 from roomba.headless.cleaner import HeadlessMission
@@ -86,7 +87,9 @@ def test_a_thing_that_is_taken_away_is_forgotten() -> None:
     assert there.state is WalkState.ARRIVED
     assert there.bumps == 0
     assert nearest(there, at.x, at.y) > CONFIG.body.radius + 0.2
-    while robot.simulator.time < 15.0:
+    # So many scans through where it stood it takes until that is sure.
+    scans = math.ceil(ThingConfig().most / ThingConfig().loss) + 1
+    while robot.simulator.time < 15.0 + scans / robot.robot.lidar.rate:
         robot.walk(4.5, 3.0)
         robot.walk(4.5, 2.0)
     back = robot.walk(0.5, 2.0)

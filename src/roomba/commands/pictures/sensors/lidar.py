@@ -32,6 +32,8 @@ _MOST_LINES = 20
 """Beams that were lost are drawn one by one, if they are no more."""
 _BINS = np.arange(-20.0, 20.1, 1.0)
 """mm"""
+_ABOVE = 1.3
+"""Height of that axis, by what is drawn: there the legend is."""
 
 
 @drawn
@@ -106,11 +108,14 @@ def _draw_errors(
     axes: Axes, measured: NDArray[np.float32], exact: NDArray[np.float32], config: SimulatedLidar
 ) -> None:
     errors = 1000.0 * (measured - exact)[np.isfinite(measured) & np.isfinite(exact)]
-    sigma = 1000.0 * config.noise
     axes.hist(errors, bins=list(_BINS), density=True, color=BLUE, alpha=0.55, label="measured")
     x = np.linspace(_BINS[0], _BINS[-1], 200)
-    normal = np.exp(-0.5 * (x / sigma) ** 2) / (sigma * math.sqrt(2.0 * math.pi))
-    axes.plot(x, normal, color=INK, label=f"normal, σ = {sigma:g} mm")
+    met = exact[np.isfinite(exact)]
+    sigma = 1000.0 * (config.noise + config.noise_growth * met * met)
+    normal = np.exp(-0.5 * (x[:, None] / sigma) ** 2) / (sigma * math.sqrt(2.0 * math.pi))
+    axes.plot(x, normal.mean(axis=1), color=INK, label="of noise by range,\nmet squarely")
     axes.set(xlabel="error of a range, mm", ylabel="share per mm")
-    axes.set_title(f"{len(errors)} ranges\nσ = {errors.std():.2f} mm, mean {errors.mean():+.2f} mm")
+    half, most = np.quantile(np.abs(errors), (0.5, 0.95))
+    axes.set_title(f"{len(errors)} ranges: half within\n{half:.1f} mm, 95 % within {most:.0f} mm")
+    axes.set_ylim(top=_ABOVE * axes.get_ylim()[1])
     axes.legend(loc="upper right")

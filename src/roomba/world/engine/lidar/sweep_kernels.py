@@ -64,9 +64,13 @@ def sweep(around: Surroundings, scans: tuple[Floats, Floats, Floats], dt: float)
 
 @inner_part
 def begin_sweep(world: Row, body: Row, numbers: Row, dt: float) -> bool:
-    """Begin a sweep if it is time for one; sweeps before this step stay missed."""
+    """Begin a sweep if it is time for one.
+
+    Missed stay those before this step, and in a long step those that a newer one has overtaken.
+    """
     period = numbers.scan_period
-    late = world.time - dt - body.next_scan
+    since = min(dt, numbers.sweep_time + numbers.scan_delay + period)
+    late = world.time - since - body.next_scan
     if late > _SLACK:
         body.next_scan += math.ceil((late - _SLACK) / period) * period
     if body.next_scan > world.time + _SLACK:
