@@ -7,12 +7,12 @@ import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import Literal
 
 import pytest
 from fastapi import FastAPI
+from fixtures.pages.windows import Motion, Windows
 from fixtures.thoroughness import core_first
-from playwright.sync_api import Browser, Page, sync_playwright
+from playwright.sync_api import Page, sync_playwright
 
 from roomba.commands.play.living import live_client
 from roomba.headless.live.client import LiveClient
@@ -77,13 +77,13 @@ class Opened:
 
 
 @pytest.fixture(scope="session")
-def browser() -> Iterator[Browser]:
-    """The distribution's Chromium."""
+def windows() -> Iterator[Windows]:
+    """Those of the distribution's Chromium."""
     program = shutil.which("chromium") or shutil.which("chromium-browser")
     assert program, "expected chromium, found none; have it installed: ./roomba test sets it up"
     with sync_playwright() as playwright:
         launched = playwright.chromium.launch(executable_path=program, args=["--no-sandbox"])
-        yield launched
+        yield Windows(launched)
         launched.close()
 
 
@@ -111,6 +111,12 @@ def bin_grams() -> float | None:
     return None
 
 
+@pytest.fixture
+def is_own() -> bool:
+    """Whether a test needs a window that nothing else has used or uses later."""
+    return False
+
+
 @contextmanager
 def serving(app: FastAPI) -> Iterator[PageServer]:
     """Serve a page on a free port."""
@@ -124,31 +130,24 @@ def serving(app: FastAPI) -> Iterator[PageServer]:
 
 @contextmanager
 def page_at(
-    browser: Browser,
+    windows: Windows,
     address: str,
     size: tuple[int, int],
     *,
     has_touch: bool = False,
-    motion: Literal["reduce", "no-preference"] = "reduce",
+    motion: Motion = "reduce",
+    is_own: bool = False,
 ) -> Iterator[Page]:
     """Open an address in a window, px; no script failed when that closes.
 
     For a viewer who prefers less motion the robot does not glide from place to place: sixty
     pictures a second, drawn without a graphics card, would take most of a test's time.
     """
-    context = browser.new_context(
-        viewport={"width": size[0], "height": size[1]},
-        has_touch=has_touch,
-        reduced_motion=motion,
-    )
-    page = context.new_page()
     errors: list[str] = []
-    page.on("pageerror", lambda error: errors.append(str(error)))
-    page.goto(address)
-    try:
+    with windows.lent(size, has_touch=has_touch, motion=motion, is_own=is_own) as page:
+        page.on("pageerror", lambda error: errors.append(str(error)))
+        page.goto(address)
         yield page
-    finally:
-        context.close()
     assert errors == []
 
 
@@ -183,14 +182,15 @@ def size(request: pytest.FixtureRequest) -> tuple[int, int]:
 
 @pytest.fixture
 def opened(
-    browser: Browser,
+    windows: Windows,
     served: tuple[LiveClient, PageServer, Guard],
     size: tuple[int, int],
+    is_own: bool,
 ) -> Iterator[Opened]:
     """The page by the printed address, live; no script failed when the test ends."""
     robot, server, guard = served
     address = f"{server.address}#token={guard.token}"
-    with page_at(browser, address, size, has_touch=size[0] < 900) as page:
+    with page_at(windows, address, size, has_touch=size[0] < 900, is_own=is_own) as page:
         opened = Opened(page, robot, server, guard)
         opened.wait_for_phase("docked")
         yield opened

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import re
-from typing import Any, Literal
+from typing import Any
 
 import pytest
 from axe_playwright_python.sync_playwright import Axe
+from fixtures.pages.windows import Motion, Windows
 from fixtures.waiting import wait_until
-from playwright.sync_api import Browser, Page, Route
+from playwright.sync_api import Page, Route
 from web.conftest import SIZES, Opened, page_at
 
 from roomba.headless.live.client import LiveClient
@@ -82,6 +83,7 @@ def test_all_modules_are_asked_for_at_once() -> None:
 
 
 @pytest.mark.parametrize("size", [SIZES["phone"]])
+@pytest.mark.parametrize("is_own", [True])
 def test_it_is_painted_within_a_second(opened: Opened) -> None:
     """Of opening it on loopback, when nothing of it is kept yet."""
     first = opened.page.evaluate("() => performance.getEntriesByName('first-paint')[0].startTime")
@@ -120,13 +122,13 @@ def glides(page: Page) -> bool:
 @pytest.mark.parametrize("speed", [1.0])
 @pytest.mark.parametrize("motion", ["reduce", "no-preference"])
 def test_the_robot_glides_unless_less_motion_is_preferred(
-    browser: Browser,
+    windows: Windows,
     served: tuple[LiveClient, PageServer, Guard],
-    motion: Literal["reduce", "no-preference"],
+    motion: Motion,
 ) -> None:
     robot, server, guard = served
     address = f"{server.address}#token={guard.token}"
-    with page_at(browser, address, SIZES["phone"], motion=motion) as page:
+    with page_at(windows, address, SIZES["phone"], motion=motion) as page:
         opened = Opened(page, robot, server, guard)
         opened.wait_for_phase("docked")
         page.click("#clean")

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from fixtures.pages.windows import Windows
 from fixtures.waiting import wait_until
-from playwright.sync_api import Browser
 from web.conftest import SIZES, Opened, page_at, serving
 
 from roomba.commands.play.living import live_client
@@ -39,11 +39,11 @@ def household(tmp_path: Path) -> Iterator[LiveHousehold]:
 
 
 @pytest.fixture
-def opened(browser: Browser, household: LiveHousehold) -> Iterator[Opened]:
+def opened(windows: Windows, household: LiveHousehold) -> Iterator[Opened]:
     guard = Guard(new_token())
     with (
         serving(create_app(household.robot, guard, household=household)) as server,
-        page_at(browser, f"{server.address}#token={guard.token}", SIZES["desktop"]) as page,
+        page_at(windows, f"{server.address}#token={guard.token}", SIZES["desktop"]) as page,
     ):
         opened = Opened(page, household.robot, server, guard)  # type: ignore[arg-type]
         opened.wait_for_phase("docked")

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from fixtures.pages.windows import Windows
 from fixtures.waiting import wait_until
-from playwright.sync_api import Browser
 from unit.history.made import made_figures, made_recording
 from web.conftest import Opened, page_at, serving
 from web.test_page import CONTRASTS, CONTROLS, DEADLINE
@@ -30,7 +30,7 @@ def history(tmp_path: Path) -> History:
 
 
 @pytest.fixture
-def opened(browser: Browser, history: History, size: tuple[int, int]) -> Iterator[Opened]:
+def opened(windows: Windows, history: History, size: tuple[int, int]) -> Iterator[Opened]:
     """The page of a live robot, whose runs are kept."""
     robot = live_client("studio", seed=1, speed=10.0, knows_map=True)
     keeper = HistoryKeeper(history, RunSource("play", "studio", 1), lambda text: pytest.fail(text))
@@ -38,7 +38,7 @@ def opened(browser: Browser, history: History, size: tuple[int, int]) -> Iterato
     robot.start()
     with (
         serving(create_app(robot, guard, keeper)) as server,
-        page_at(browser, f"{server.address}#token={guard.token}", size) as page,
+        page_at(windows, f"{server.address}#token={guard.token}", size) as page,
     ):
         opened = Opened(page, robot, server, guard)
         opened.wait_for_phase("docked")

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from fixtures.pages.windows import Windows
 from fixtures.waiting import wait_until
-from playwright.sync_api import Browser
 from web.conftest import Opened, page_at, serving
 from web.test_page import CONTRASTS, CONTROLS, DEADLINE
 
@@ -41,13 +41,13 @@ def household(tmp_path: Path) -> Iterator[LiveHousehold]:
 
 
 @pytest.fixture
-def opened(browser: Browser, household: LiveHousehold, size: tuple[int, int]) -> Iterator[Opened]:
+def opened(windows: Windows, household: LiveHousehold, size: tuple[int, int]) -> Iterator[Opened]:
     """The page of a live robot in its household."""
     guard = Guard(new_token())
     household.start()
     with (
         serving(create_app(household.robot, guard, household=household)) as server,
-        page_at(browser, f"{server.address}#token={guard.token}", size) as page,
+        page_at(windows, f"{server.address}#token={guard.token}", size) as page,
     ):
         opened = Opened(page, household.robot, server, guard)  # type: ignore[arg-type]
         opened.wait_for_phase("docked")

@@ -12,7 +12,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from playwright.sync_api import Browser, Page
+from fixtures.pages.windows import Windows
+from playwright.sync_api import Page
 from web.conftest import PIXELS, SIZES
 
 PAGE = Path(__file__).parents[2] / "docs" / "page.md"
@@ -62,24 +63,21 @@ def playing(folder: Path, *words: str) -> Iterator[str]:
 
 
 @contextmanager
-def phone(browser: Browser, address: str) -> Iterator[Page]:
+def phone(windows: Windows, address: str) -> Iterator[Page]:
     """Open an address in a window of a phone."""
-    width, height = SIZES["phone"]
-    context = browser.new_context(viewport={"width": width, "height": height}, has_touch=True)
-    context.set_default_timeout(MET)
-    page = context.new_page()
-    page.goto(address)
-    page.get_by_text(STEPS[0]).wait_for()
-    yield page
-    context.close()
+    with windows.lent(SIZES["phone"], has_touch=True, motion="no-preference") as page:
+        page.set_default_timeout(MET)
+        page.goto(address)
+        page.get_by_text(STEPS[0]).wait_for()
+        yield page
 
 
-def test_from_the_command_to_the_report_in_five_minutes(browser: Browser, tmp_path: Path) -> None:
+def test_from_the_command_to_the_report_in_five_minutes(windows: Windows, tmp_path: Path) -> None:
     told = PAGE.read_text("utf-8").split("## The first five minutes")[1].split("\n## ")[0]
     assert tuple(re.findall("“([^”]+)”", told)) == STEPS
     assert "`./roomba play`" in told
     began = time.monotonic()
-    with playing(tmp_path) as address, phone(browser, address) as page:
+    with playing(tmp_path) as address, phone(windows, address) as page:
         page.wait_for_function(ANCHORS)
         for anchor in page.evaluate(ANCHORS)[:2]:
             page.touchscreen.tap(*page.evaluate(PIXELS, anchor))
@@ -104,10 +102,10 @@ def test_from_the_command_to_the_report_in_five_minutes(browser: Browser, tmp_pa
 
 
 def test_at_another_address_it_is_seen_and_commanded_as_well(
-    browser: Browser, tmp_path: Path
+    windows: Windows, tmp_path: Path
 ) -> None:
     with playing(tmp_path, "--home", "studio", "--host", OTHER) as address:
         assert address.startswith(f"http://{OTHER}:")
-        with phone(browser, address) as page:
+        with phone(windows, address) as page:
             page.get_by_role("button", name="Clean all").tap()
             page.wait_for_selector("body[data-phase='cleaning']")

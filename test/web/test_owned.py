@@ -6,10 +6,10 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from fixtures.pages.windows import Windows
 from fixtures.robots.faulty_end import FaultyEnd
 from fixtures.robots.neato_rig import NeatoEnd, neato_world
 from fixtures.waiting import wait_until
-from playwright.sync_api import Browser
 from web.conftest import SIZES, Opened, page_at, serving
 
 from roomba.commands.play.owned import OwnedLife
@@ -30,14 +30,14 @@ def neato(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[NeatoEnd]
 
 
 @pytest.fixture
-def owned(browser: Browser, neato: NeatoEnd, tmp_path: Path) -> Iterator[Opened]:
+def owned(windows: Windows, neato: NeatoEnd, tmp_path: Path) -> Iterator[Opened]:
     told: list[str] = []
     life = OwnedLife(ROBOTS["neato"], str(tmp_path / "neato"), makes_map=False, tell=told.append)
     life.client.start()
     guard = Guard(new_token())
     with (
         serving(create_app(life.client, guard)) as server,
-        page_at(browser, f"{server.address}#token={guard.token}", SIZES["desktop"]) as page,
+        page_at(windows, f"{server.address}#token={guard.token}", SIZES["desktop"]) as page,
     ):
         opened = Opened(page, life.client, server, guard)
         opened.wait_for_phase("docked")

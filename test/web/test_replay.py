@@ -6,8 +6,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import pytest
+from fixtures.pages.windows import Windows
 from fixtures.waiting import wait_until
-from playwright.sync_api import Browser, Page
+from playwright.sync_api import Page
 from web.conftest import page_at, serving
 from web.test_page import CONTRASTS, CONTROLS, DEADLINE
 
@@ -63,12 +64,12 @@ class Replayed:
 
 @pytest.fixture
 def replayed(
-    browser: Browser, recorded: tuple[RunFigures, RunRecording], size: tuple[int, int]
+    windows: Windows, recorded: tuple[RunFigures, RunRecording], size: tuple[int, int]
 ) -> Iterator[Replayed]:
     robot, guard = RecordedRobot(*recorded), Guard(new_token())
     with (
         serving(create_app(robot, guard)) as server,
-        page_at(browser, f"{server.address}#token={guard.token}", size) as page,
+        page_at(windows, f"{server.address}#token={guard.token}", size) as page,
     ):
         page.wait_for_selector("#timeline:not([hidden])")
         yield Replayed(page, robot, recorded[1])
