@@ -20,6 +20,8 @@ from roomba.ui.web.app import create_app
 from roomba.ui.web.guard import Guard, new_token
 from roomba.ui.web.server import PageServer, listen
 
+PARTS = ("rooms", "zones", "more")
+"""Of the commands; on a phone one is seen at a time."""
 SIZES = {"desktop": (1440, 900), "phone": (390, 844)}
 PIXELS = """async ([x, y]) => {
     const { toScreen } = await import("/map/view.js");
@@ -46,6 +48,10 @@ class Opened:
         tab = self.page.locator(f"[data-tab={part}]")
         if tab.is_visible() and tab.get_attribute("aria-expanded") == "false":
             tab.click()
+
+    def parts(self) -> tuple[str, ...]:
+        """Return the parts of which each is to be shown, so that all were seen."""
+        return PARTS if self.page.locator("[data-tab]").first.is_visible() else PARTS[:1]
 
     def show_map(self) -> None:
         """Close the sheet again, if there is one."""
@@ -149,6 +155,13 @@ def page_at(
         page.goto(address)
         yield page
     assert errors == []
+
+
+def in_each_scheme(page: Page) -> Iterator[str]:
+    """Let the viewer prefer light, then dark."""
+    for scheme in ("light", "dark"):
+        page.emulate_media(color_scheme="dark" if scheme == "dark" else "light")
+        yield scheme
 
 
 @pytest.fixture

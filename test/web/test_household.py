@@ -9,7 +9,7 @@ import pytest
 from fixtures.pages.windows import Windows
 from fixtures.waiting import wait_until
 from web.conftest import Opened, page_at, serving
-from web.test_page import CONTRASTS, CONTROLS, DEADLINE
+from web.test_page import DEADLINE, check_it_can_be_read
 
 from roomba.client.household import TotalsView
 from roomba.commands.play.living import live_client
@@ -66,7 +66,7 @@ def test_what_is_worn_is_told_and_reset(opened: Opened, household: LiveHousehold
     assert page.inner_text("#upkeep summary") == "Upkeep: 1 due"
     assert page.locator("#upkeep-parts li").count() == 5
     assert "12 runs, 340 m², 2 h 30 min, 2.50 km, 40 g" in page.inner_text("#upkeep-totals")
-    check_it_can_be_read(opened)
+    check_it_can_be_read(page)
     page.get_by_role("button", name="Reset the sensors").click()
     page.locator("#ask").get_by_role("button", name="OK").click()
     page.wait_for_selector("#upkeep-due", state="hidden")
@@ -121,7 +121,7 @@ def test_a_plan_is_made_changed_and_removed(opened: Opened, household: LiveHouse
     page.locator("#ask-text").fill("Asia/Tokyo")
     page.locator("#ask").get_by_role("button", name="OK").click()
     page.get_by_text("Times are those of Asia/Tokyo").wait_for()
-    check_it_can_be_read(opened)
+    check_it_can_be_read(page)
     page.get_by_role("button", name="Remove Mornings").click()
     page.locator("#ask").get_by_role("button", name="OK").click()
     wait_until(lambda: not household.plans().household.plans, DEADLINE, "a plan that is gone")
@@ -141,13 +141,3 @@ def test_a_preset_is_made_and_begun(opened: Opened, household: LiveHousehold) ->
     opened.wait_for_phase("cleaning")
     (preset,) = household.plans().household.presets
     assert preset.order.mode.value == "edges"
-
-
-def check_it_can_be_read(opened: Opened) -> None:
-    """Contrasts and sizes are those that the rest of the page has."""
-    for scheme in ("light", "dark"):
-        opened.page.emulate_media(color_scheme="dark" if scheme == "dark" else "light")
-        assert [found for found in opened.page.evaluate(CONTRASTS) if found[1] < 4.5] == []
-    for identity, name, width, height in opened.page.evaluate(CONTROLS):
-        assert name, identity
-        assert min(width, height) >= 24, (identity, name)

@@ -1,4 +1,4 @@
-"""What else can be asked for on the page: a drawn zone, edges, a place, a beep, another look."""
+"""What else can be asked for on the page: a drawn zone, edges, a place, a beep, other rooms."""
 
 from __future__ import annotations
 
@@ -6,19 +6,11 @@ import math
 
 import pytest
 from fixtures.waiting import wait_until
-from web.conftest import SIZES, Opened
+from web.conftest import Opened
 from web.test_page import DEADLINE
 
 from roomba.headless.embodied import Embodied
 from roomba.vocabulary import CleanMode
-
-SCALE = "async () => (await import('/map/view.js')).view.scale"
-HIDE = """(is_hidden) => {
-    Object.defineProperty(document, "hidden", { configurable: true, value: is_hidden });
-    const state = is_hidden ? "hidden" : "visible";
-    Object.defineProperty(document, "visibilityState", { configurable: true, value: state });
-    document.dispatchEvent(new Event("visibilitychange"));
-}"""
 
 
 def asked_for(robot: Embodied) -> CleanMode | None:
@@ -38,7 +30,12 @@ def test_a_zone_is_drawn_and_cleaned(opened: Opened) -> None:
     assert opened.robot.home().zones == ()
 
 
-def test_edges_alone_are_cleaned(opened: Opened) -> None:
+def test_it_beeps_and_edges_alone_are_cleaned(opened: Opened) -> None:
+    opened.show("more")
+    opened.page.get_by_text("Drive by hand", exact=True).click()
+    with opened.page.expect_response("**/api/v1/locate") as answer:
+        opened.page.get_by_role("button", name="Beep").click()
+    assert answer.value.ok
     opened.show("rooms")
     opened.page.locator("#mode").select_option("edges")
     opened.page.get_by_role("button", name="Clean all").click()
@@ -46,10 +43,12 @@ def test_edges_alone_are_cleaned(opened: Opened) -> None:
     assert opened.robot.ask(asked_for) is CleanMode.EDGES
 
 
-def test_it_goes_where_the_floor_was_tapped(opened: Opened) -> None:
+@pytest.mark.parametrize("speed", [20.0])
+def test_it_goes_where_the_floor_was_tapped_and_back_to_be_charged(opened: Opened) -> None:
+    page = opened.page
     x, y = opened.robot.home().rooms[0].anchor
     opened.tap(x, y)
-    opened.page.get_by_role("button", name="Go here").click()
+    page.get_by_role("button", name="Go here").click()
 
     def is_there() -> bool:
         at_x, at_y, _ = opened.robot.robot().pose
@@ -58,52 +57,12 @@ def test_it_goes_where_the_floor_was_tapped(opened: Opened) -> None:
     wait_until(is_there, DEADLINE, "the robot where the floor was tapped")
     opened.wait_for_phase("idle")
     # What was tapped to go there is no choice of a room.
-    assert opened.page.inner_text("#clean") == "Clean all"
-
-
-def test_it_beeps(opened: Opened) -> None:
-    opened.show("more")
-    opened.page.get_by_text("Drive by hand", exact=True).click()
-    with opened.page.expect_response("**/api/v1/locate") as answer:
-        opened.page.get_by_role("button", name="Beep").click()
-    assert answer.value.ok
-
-
-def test_a_page_that_is_hidden_drives_no_more(opened: Opened) -> None:
-    page = opened.page
-    page.get_by_role("button", name="Clean all").click()
-    opened.wait_for_phase("cleaning")
-    page.get_by_role("button", name="Pause").click()
-    opened.wait_for_phase("paused")
-    opened.show("more")
-    page.get_by_text("Drive by hand", exact=True).click()
-    page.keyboard.down("ArrowLeft")
-    wait_until(lambda: turns(opened), DEADLINE, "a turn")
-    page.evaluate(HIDE, True)
-    wait_until(lambda: not turns(opened), DEADLINE, "standstill, with the key still down")
-    before = opened.robot.robot()
-    wait_until(lambda: opened.robot.robot().time > before.time + 5.0, DEADLINE, "five seconds")
-    assert opened.robot.robot().pose[2] == pytest.approx(before.pose[2], abs=0.02)
-    page.keyboard.up("ArrowLeft")
-
-
-def turns(opened: Opened) -> bool:
-    """Whether the robot turns just now."""
-    return opened.robot.ask(lambda robot: abs(robot.now.twist.angular) > 0.01)
-
-
-@pytest.mark.parametrize("size", [SIZES["desktop"]])
-def test_the_buttons_look_nearer_farther_and_at_all(opened: Opened) -> None:
-    page = opened.page
-    before = page.evaluate(SCALE)
-    page.get_by_role("button", name="Zoom in").click()
-    nearer = page.evaluate(SCALE)
-    assert nearer > 1.2 * before
-    for _ in range(2):
-        page.get_by_role("button", name="Zoom out").click()
-    assert page.evaluate(SCALE) < before
-    page.get_by_role("button", name="Show the whole home").click()
-    assert page.evaluate(SCALE) == pytest.approx(before)
+    assert page.inner_text("#clean") == "Clean all"
+    wait_until(lambda: opened.robot.robot().vacuum.battery < 0.995, DEADLINE, "a used battery")
+    page.get_by_role("button", name="Dock").click()
+    opened.wait_for_phase("docked")
+    page.get_by_text("On its station, charging").wait_for()
+    assert "full in" in page.inner_text("#battery")
 
 
 def test_the_rooms_of_a_clean_under_way_are_changed(opened: Opened) -> None:

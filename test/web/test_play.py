@@ -87,7 +87,7 @@ def test_the_robot_is_dragged_elsewhere(playing: Opened) -> None:
 
 
 @pytest.mark.parametrize("size", [SIZES["desktop"]])
-def test_the_truth_is_laid_over_the_belief(playing: Opened) -> None:
+def test_the_truth_is_laid_over_the_belief_where_it_is_offered(playing: Opened) -> None:
     page, door = playing.page, "kitchen door"
     playing.robot.set_door(door, is_shut=True)
     left, low, right, high = next(d.opening for d in truth_of(playing).doors if d.name == door)
@@ -102,11 +102,7 @@ def test_the_truth_is_laid_over_the_belief(playing: Opened) -> None:
     page.get_by_role("checkbox", name="Show the truth").check()
     assert page.locator("#layers input").last.is_checked()
     wait_until(is_violet, DEADLINE, "the shut door to be drawn")
-
-
-@pytest.mark.parametrize("size", [SIZES["desktop"]])
-def test_only_what_the_robot_offers_is_shown(playing: Opened) -> None:
-    page, anchor = playing.page, playing.robot.home().rooms[0].anchor
+    anchor = playing.robot.home().rooms[0].anchor
     playing.tap(*anchor)
     assert "Spill dirt" in page.locator(f"{CARD} button").all_inner_texts()
     page.evaluate(

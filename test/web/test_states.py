@@ -53,7 +53,7 @@ def test_a_full_bin_is_said_with_what_to_do(opened: Opened) -> None:
 
 
 @pytest.mark.parametrize("size", [SIZES["desktop"]])
-def test_a_robot_that_tells_nothing_is_stale_and_comes_back(opened: Opened) -> None:
+def test_a_robot_that_tells_nothing_is_stale_comes_back_and_is_gone(opened: Opened) -> None:
     page, goes_on = opened.page, threading.Event()
     held = threading.Thread(target=lambda: opened.robot.ask(lambda _: goes_on.wait(20.0)))
     held.start()
@@ -64,26 +64,8 @@ def test_a_robot_that_tells_nothing_is_stale_and_comes_back(opened: Opened) -> N
         goes_on.set()
         held.join()
     page.wait_for_selector("body[data-link='live']")
-
-
-@pytest.mark.parametrize("size", [SIZES["desktop"]])
-def test_a_robot_that_is_gone_is_told(opened: Opened) -> None:
-    page = opened.page
     opened.robot.end()
     page.wait_for_selector("body[data-link='gone']")
     assert page.inner_text("#headline") == "The robot does not answer"
     assert "Last seen at" in page.inner_text("#explanation")
     assert page.get_by_role("button", name="Clean all").is_disabled()
-
-
-def test_a_robot_on_its_station_says_whether_it_charges(opened: Opened) -> None:
-    page = opened.page
-    x, y = opened.robot.home().rooms[0].anchor
-    opened.tap(x, y)
-    page.get_by_role("button", name="Go here").click()
-    opened.wait_for_phase("idle")
-    wait_until(lambda: opened.robot.robot().vacuum.battery < 0.995, DEADLINE, "a used battery")
-    page.get_by_role("button", name="Dock").click()
-    opened.wait_for_phase("docked")
-    page.get_by_text("On its station, charging").wait_for()
-    assert "full in" in page.inner_text("#battery")

@@ -169,7 +169,10 @@ def test_the_network_is_cut_and_back_while_it_cleans(opened: Opened) -> None:
     port = int(opened.server.address.rsplit(":", 1)[1].strip("/"))
     opened.server.stop()
     page.wait_for_selector("body[data-link='reconnecting']")
+    assert "Connecting again" in page.inner_text("#headline")
     assert "Last seen at" in page.inner_text("#explanation")
+    for name in ("Clean all", "Pause"):
+        assert page.get_by_role("button", name=name).is_disabled()
     covered = opened.robot.robot().vacuum.covered
     wait_until(lambda: opened.robot.robot().vacuum.covered > covered, DEADLINE, "it to go on")
     again = PageServer(
@@ -180,5 +183,9 @@ def test_the_network_is_cut_and_back_while_it_cleans(opened: Opened) -> None:
         page.wait_for_selector("body[data-link='live']")
         page.get_by_role("button", name="Pause").click()
         opened.wait_for_phase("paused")
+        page.get_by_role("button", name="Stop", exact=True).click()
+        opened.wait_for_phase("idle")
+        page.get_by_role("button", name="Clean all").click()
+        opened.wait_for_phase("cleaning")
     finally:
         again.stop()

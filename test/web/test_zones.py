@@ -42,46 +42,44 @@ def wait_for_points(opened: Opened, points: tuple[tuple[float, float], ...]) -> 
     wait_until(are_there, DEADLINE, lambda: f"{points}, not {points_of(opened)}")
 
 
-@pytest.fixture
-def zoned(opened: Opened) -> Opened:
-    """The page of a robot with a no-go zone."""
-    opened.robot.put_zone(ZoneView("Zone 1", "no-go", CORNERS))
-    opened.page.locator("#zones li").wait_for(state="attached")
-    return opened
-
-
 @DESKTOP
-def test_a_zone_is_chosen_dragged_and_resized(zoned: Opened) -> None:
-    page = zoned.page
-    zoned.tap(1.5, 2.0)
-    page.get_by_text("Zone 1: drag it, or a corner").wait_for()
-    zoned.drag((1.5, 2.0), (1.7, 2.1))
-    moved = tuple((x + 0.2, y + 0.1) for x, y in CORNERS)
-    wait_for_points(zoned, moved)
-    zoned.drag((2.2, 2.5), (2.4, 2.7))
-    wait_for_points(zoned, ((1.2, 1.7), (2.4, 1.7), (2.4, 2.7), (1.2, 2.7)))
-    page.locator("#floor").focus()
-    page.keyboard.press("ArrowLeft")
-    wait_for_points(zoned, ((1.1, 1.7), (2.3, 1.7), (2.3, 2.7), (1.1, 2.7)))
-    page.keyboard.press("Delete")
-    wait_until(lambda: points_of(zoned) == (), DEADLINE, "no zone")
-    page.get_by_role("button", name="Undo").click()
-    wait_for_points(zoned, ((1.1, 1.7), (2.3, 1.7), (2.3, 2.7), (1.1, 2.7)))
-
-
-@DESKTOP
-def test_what_is_drawn_can_be_taken_back(opened: Opened) -> None:
+def test_a_wall_is_taken_back_and_a_zone_is_dragged_and_resized(opened: Opened) -> None:
     page = opened.page
     page.get_by_role("button", name="Virtual wall").click()
     opened.drag((1.0, 1.6), (2.0, 2.4))
     wait_for_points(opened, ((1.0, 1.6), (2.0, 2.4)))
     page.get_by_role("button", name="Undo").click()
     wait_until(lambda: points_of(opened) == (), DEADLINE, "no wall")
+    page.locator("#zones li").wait_for(state="detached")
+    opened.robot.put_zone(ZoneView("Zone 1", "no-go", CORNERS))
+    page.locator("#zones li").wait_for(state="attached")
+    opened.tap(1.5, 2.0)
+    page.get_by_text("Zone 1: drag it, or a corner").wait_for()
+    opened.drag((1.5, 2.0), (1.7, 2.1))
+    moved = tuple((x + 0.2, y + 0.1) for x, y in CORNERS)
+    wait_for_points(opened, moved)
+    opened.drag((2.2, 2.5), (2.4, 2.7))
+    wait_for_points(opened, ((1.2, 1.7), (2.4, 1.7), (2.4, 2.7), (1.2, 2.7)))
+    page.locator("#floor").focus()
+    page.keyboard.press("ArrowLeft")
+    wait_for_points(opened, ((1.1, 1.7), (2.3, 1.7), (2.3, 2.7), (1.1, 2.7)))
+    page.keyboard.press("Delete")
+    wait_until(lambda: points_of(opened) == (), DEADLINE, "no zone")
+    page.get_by_role("button", name="Undo").click()
+    wait_for_points(opened, ((1.1, 1.7), (2.3, 1.7), (2.3, 2.7), (1.1, 2.7)))
 
 
 @DESKTOP
-def test_the_wheel_zooms_around_the_mouse_and_the_map_stays_under_it(opened: Opened) -> None:
+def test_buttons_and_the_wheel_zoom_and_the_map_stays_under_the_mouse(opened: Opened) -> None:
     page = opened.page
+    at_first = page.evaluate(VIEW)["scale"]
+    page.get_by_role("button", name="Zoom in").click()
+    assert page.evaluate(VIEW)["scale"] > 1.2 * at_first
+    for _ in range(2):
+        page.get_by_role("button", name="Zoom out").click()
+    assert page.evaluate(VIEW)["scale"] < at_first
+    page.get_by_role("button", name="Show the whole home").click()
+    assert page.evaluate(VIEW)["scale"] == pytest.approx(at_first)
     box = page.locator("#floor").bounding_box()
     assert box is not None
     page.mouse.move(box["x"] + 200, box["y"] + 150)

@@ -176,22 +176,11 @@ def test_what_cannot_be_put_back_takes_a_window_of_its_own(windows: Windows, sit
         for name, change in WAYS.items():
             with pytest.raises(OwnWindowError, match=name):
                 change(page)
-    with windows.lent(SIZE, is_own=True) as page:
-        page.context.add_init_script("window.begun = true")
-        page.goto(site.address)
-        assert page.evaluate("() => window.begun")
-    with windows.lent(SIZE) as page:
-        page.goto(site.address)
-        assert not page.evaluate("() => window.begun")
-
-
-def test_two_at_a_time_do_not_share(windows: Windows) -> None:
-    with (
-        windows.lent(SIZE),
-        windows.lent(SIZE, has_touch=True) as phone,
-        windows.lent(SIZE, is_own=True) as own,
-    ):
-        assert phone.evaluate("() => navigator.maxTouchPoints") == 1
-        assert own.evaluate("() => navigator.maxTouchPoints") == 0
         with pytest.raises(OwnWindowError, match="at a time"), windows.lent(SIZE):
             pass
+        with windows.lent(SIZE, is_own=True) as own:
+            own.context.add_init_script("window.begun = true")
+            own.goto(site.address)
+            assert own.evaluate("() => window.begun")
+        page.goto(site.address)
+        assert not page.evaluate("() => window.begun")
