@@ -81,27 +81,33 @@ class Journey:
 def test_while_it_travels_it_keeps_the_newest_picture_of_each_angle(
     graph: RosGraph, tmp_path: Path
 ) -> None:
+    """It travels in single leaps: each outdates all pictures once, whenever the node hears it."""
     graph.configure_nodes(pictures={"rest": 0.05})
     journey = Journey(graph)
     asked = offer_camera()
     start(graph, tmp_path / "Images")
 
-    def has_travelled() -> bool:
-        journey.goes_on(1.0)
-        return len(asked) >= 8
+    def stands_until(pictures: int) -> None:
+        def are_asked_for() -> bool:
+            journey.goes_on(0.0)
+            return len(asked) >= pictures
 
-    wait_until(has_travelled, 20.0, "eight pictures", pause=0.1)
-    assert asked[:5] == [float(angle) for angle in ANGLES]
-    assert asked[5:8] == [-30.0, -15.0, 0.0]
+        wait_until(are_asked_for, 20.0, lambda: f"{pictures} pictures, not {asked}", pause=0.1)
+
+    journey.goes_on(1.0)
+    stands_until(5)
+    journey.goes_on(1.0)
+    stands_until(10)
     assert {path.name for path in (tmp_path / "Images").glob("*.png")} == {
         f"{angle}.png" for angle in ANGLES
     }
-    standing = len(asked)
-    # A robot that stands for a minute.
     for _ in range(20):
         journey.goes_on(0.0)
-        time.sleep(0.1)
-    assert len(asked) <= standing + 5
+        time.sleep(0.05)  # a minute of its clock, at a pace at which the node looks each time
+    # A picture that was taken meanwhile comes before those of a third leap.
+    journey.goes_on(1.0)
+    stands_until(15)
+    assert asked == [float(angle) for angle in 3 * ANGLES]
 
 
 def test_on_a_fast_clock_it_takes_no_more_than_one_a_second(
