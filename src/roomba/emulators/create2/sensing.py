@@ -40,7 +40,8 @@ _WALL: Final = -90.0
 """degrees; the wall sensor looks to the right."""
 _WALL_REACH: Final = 0.06
 """m (assumed)."""
-_MOST_WALL: Final = 1023
+MOST_WALL: Final = 1023
+"""The wall sensor's strongest signal."""
 _SPREAD: Final = 10.0
 """degrees, to each side of where they look (assumed)."""
 _SIDE_SIGHT: Final = (math.radians(-30.0), math.radians(130.0))
@@ -72,6 +73,14 @@ def sensed(seen: Observation, ranges: NDArray[np.float32], about: SensingContext
     }
 
 
+def wall_signal(ranges: NDArray[np.float32], radius: float) -> int:
+    """Return how strong the wall's light comes back, 0 to :data:`MOST_WALL`.
+
+    ``ranges`` as above; the body's ``radius``, m.
+    """
+    return _signal(ranges, _WALL, radius + _WALL_REACH, radius, MOST_WALL)
+
+
 def encoder_angles(seen: Observation) -> tuple[float, float]:
     """Return how far the wheels turned, left and right, rad."""
     return seen.wheels.left, seen.wheels.right
@@ -97,7 +106,7 @@ def _lights(ranges: NDArray[np.float32], radius: float) -> Told:
         light: _signal(ranges, angle, radius + _LIGHT_REACH, radius, _MOST_LIGHT)
         for light, angle in _LIGHTS.items()
     }
-    wall = _signal(ranges, _WALL, radius + _WALL_REACH, radius, _MOST_WALL)
+    wall = wall_signal(ranges, radius)
     return {
         **signals,
         Packet.LIGHT_BUMPER: _bits(signal >= _LEAST_LIGHT for signal in signals.values()),
