@@ -11,6 +11,7 @@ import pytest
 import rospy
 from actionlib_msgs.msg import GoalStatus
 from fixtures.graph import LAUNCHED, RosGraph
+from fixtures.nodes.ended_drives import ENDS
 from fixtures.probe import Probe, Walker
 from fixtures.processes.forked import run_forked
 from fixtures.processes.programs import is_running
@@ -35,21 +36,23 @@ def shared_robot(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RosGraph]
         yield own
 
 
-def at_home(graph: RosGraph) -> tuple[Probe, Walker]:
-    probe = Probe(graph)
-    walker = Walker()
-    probe.position()
-    walker.send(0.0, 0.0)
-    walker.arrives(40.0)
-    return probe, walker
+class LongWalk:
+    """A walk of 3 to 5 m from where the robot is, at full speed by now."""
 
+    def __init__(self, graph: RosGraph) -> None:
+        self.probe, self.walker = Probe(graph), Walker()
+        self.goal = max(ENDS, key=self.left_to)
+        self.walker.send(*self.goal)
+        wait_until(lambda: self.probe.speed() > 0.45, 15.0, "full speed")
 
-def walking(graph: RosGraph) -> tuple[Probe, Walker]:
-    """Let it walk from where it started to the farthest corner: 5 m."""
-    probe, walker = at_home(graph)
-    walker.send(3.0, 4.0)
-    wait_until(lambda: probe.speed() > 0.45, 15.0, "full speed")
-    return probe, walker
+    def left_to(self, place: tuple[float, float]) -> float:
+        """Return how far it is from there, m."""
+        return math.dist(self.probe.position(), place)
+
+    @property
+    def left(self) -> float:
+        """How far it is from the goal, m."""
+        return self.left_to(self.goal)
 
 
 def is_back(graph: RosGraph, node: str, old: int) -> None:
@@ -104,18 +107,18 @@ def walk_fast(graph: RosGraph) -> None:
 
 def walk_again(graph: RosGraph) -> None:
     """Walk, kill the server on the way, and walk to the same goal by the one that came back."""
-    probe, walker = walking(graph)
+    walk = LongWalk(graph)
     old = graph.signal(SERVER, signal.SIGKILL)
-    stands(probe)
+    stands(walk.probe)
     is_back(graph, SERVER, old)
-    assert walker.ends(30.0) in (GoalStatus.LOST, GoalStatus.ABORTED)
-    left = math.dist(probe.position(), (3.0, 4.0))
+    assert walk.walker.ends(30.0) in (GoalStatus.LOST, GoalStatus.ABORTED)
+    left = walk.left
     assert left > 1.0
-    walker.send(3.0, 4.0)
-    walker.arrives(40.0)
-    assert math.dist(probe.position(), (3.0, 4.0)) < 0.05
+    walk.walker.send(*walk.goal)
+    walk.walker.arrives(40.0)
+    assert walk.left < 0.05
     # At 0.5 m/s, with what turns and the start take.
-    assert walker.time_spent < 2.0 * left + 6.0
+    assert walk.walker.time_spent < 2.0 * left + 6.0
 
 
 def test_a_wrong_argument_ends_the_launch_with_a_clear_line(tmp_path: Path) -> None:
@@ -132,27 +135,29 @@ def test_a_killed_server_stops_the_robot_and_its_goal_ends(shared_robot: RosGrap
 
     How soon it stands: test_standstill.py.
     """
-    probe, walker = walking(shared_robot)
+    walk = LongWalk(shared_robot)
     old = shared_robot.pid(SERVER)
     os.kill(old, signal.SIGKILL)
-    stands(probe)
+    stands(walk.probe)
     is_back(shared_robot, SERVER, old)
-    assert math.dist(probe.position(), (3.0, 4.0)) > 1.0
+    assert walk.left > 1.0
     noticed = "the sender of change_position vanished"
     wait_until(lambda: noticed in shared_robot.programs[0].output, 10.0, "it was noticed, no luck")
-    assert walker.ends(30.0) in (GoalStatus.LOST, GoalStatus.ABORTED)
-    at_home(shared_robot)
+    assert walk.walker.ends(30.0) in (GoalStatus.LOST, GoalStatus.ABORTED)
+    again = Walker()
+    again.send(1.2, 1.6)
+    again.arrives(40.0)
 
 
 def test_a_server_told_to_end_ends_and_the_robot_stops(shared_robot: RosGraph) -> None:
     """SIGINT or SIGTERM in the middle of a walk: the walk has an outcome, nothing drives on."""
     for number in (signal.SIGINT, signal.SIGTERM):
-        probe, walker = walking(shared_robot)
+        walk = LongWalk(shared_robot)
         pid = shared_robot.signal(SERVER, number)
         wait_until_ended(pid)
-        stands(probe)
-        assert math.dist(probe.position(), (3.0, 4.0)) > 1.0
-        assert walker.ends(30.0) in (GoalStatus.ABORTED, GoalStatus.LOST)
+        stands(walk.probe)
+        assert walk.left > 1.0
+        assert walk.walker.ends(30.0) in (GoalStatus.ABORTED, GoalStatus.LOST)
         is_back(shared_robot, SERVER, pid)
 
 
@@ -162,7 +167,7 @@ def wait_until_ended(pid: int) -> None:
 
 def test_a_killed_position_node_keeps_the_pose(shared_robot: RosGraph) -> None:
     """It comes back where the robot is, not at the origin."""
-    probe, walker = at_home(shared_robot)
+    probe, walker = Probe(shared_robot), Walker()
     walker.send(1.2, 1.6)
     walker.arrives(40.0)
     before = probe.position()
@@ -174,10 +179,10 @@ def test_a_killed_position_node_keeps_the_pose(shared_robot: RosGraph) -> None:
 
 def test_a_walk_outlives_the_position_node(shared_robot: RosGraph) -> None:
     """The node comes back with the pose, and the walk goes on to its goal."""
-    probe, walker = walking(shared_robot)
+    walk = LongWalk(shared_robot)
     shared_robot.signal("position_pub_node", signal.SIGKILL)
-    walker.arrives(40.0)
-    assert math.dist(probe.position(), (3.0, 4.0)) < 0.05
+    walk.walker.arrives(40.0)
+    assert walk.left < 0.05
 
 
 @pytest.mark.parametrize("bad", [-9.0, 0.0, "fast"])
