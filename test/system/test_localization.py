@@ -9,7 +9,7 @@ from actionlib_msgs.msg import GoalStatus
 from fixtures.graph import RosGraph
 from fixtures.probe import Probe, Walker
 from fixtures.waiting import wait_until
-from geometry_msgs.msg import PoseArray, PoseWithCovarianceStamped
+from geometry_msgs.msg import PoseArray, PoseStamped, PoseWithCovarianceStamped
 from roomba_robot.msg import Localization
 from roomba_robot.srv import InjectFault, InjectFaultRequest
 from std_srvs.srv import Empty
@@ -61,12 +61,21 @@ def told(x: float, y: float, theta: float) -> PoseWithCovarianceStamped:
     return message
 
 
+def place_of(message: PoseStamped) -> tuple[float, float]:
+    return message.pose.position.x, message.pose.position.y
+
+
 def test_what_people_tell_is_checked(shared_robot: RosGraph) -> None:
     hands = Robot(shared_robot)
     x, y = hands.probe.position()
+    places: list[tuple[float, float]] = []
+    rospy.Subscriber("/pose", PoseStamped, lambda m: places.append(place_of(m)))
     for wrong in (told(x + 0.2, y, 3.4), told(5.0, 3.0, 0.0)):
+        places.clear()
         hands.probe.send("/initialpose", wrong)
-        rospy.sleep(0.5)
+        wait_until(
+            lambda: any(math.dist(place, (x, y)) > 0.1 for place in places), 20.0, "it is believed"
+        )
         hands.until(Localization.KNOWN, 20.0)
         wait_until(lambda: hands.is_at(x, y), 30.0, "it corrects the pose that was told")
     bad = told(math.nan, 0.0, 0.0)
