@@ -18,8 +18,8 @@ from roomba_robot.msg import CarpetArray, CleanActionGoal
 
 from roomba_ros.convert.page import carpets_of
 
-CARPET = (1.4, 0.9, 2.4, 1.9)
-CASE = Case(room_home(3.0, 2.5, station=STATION, carpets=(CARPET,)), sensors="ideal")
+CARPET = (1.1, 0.6, 1.8, 1.3)
+CASE = Case(room_home(2.1, 1.7, station=STATION, carpets=(CARPET,)), sensors="ideal")
 DEADLINE = 60.0
 """s of wall time for a clean, and for what the node does in the background."""
 
