@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from scipy import stats
 
 from roomba.commands.campaign.comparison import Comparison, compared, interval_of
 
@@ -26,6 +25,8 @@ def runs_of(values: dict[tuple[str, int], float | None]) -> Runs:
 
 
 def test_the_interval_is_that_of_scipys_paired_test() -> None:
+    from scipy import stats  # a second of each process that would read this file
+
     random = np.random.default_rng(1)
     one = random.normal(100.0, 30.0, 12)
     other = one + random.normal(2.0, 3.0, 12)

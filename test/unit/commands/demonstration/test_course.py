@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from fixtures.thoroughness import core_first
 from fixtures.waiting import wait_until
 from PIL import Image
 
@@ -20,7 +21,7 @@ from roomba.errors import RoombaError
 DUE = dt.datetime(2026, 3, 2, 8, 0, tzinfo=dt.timezone.utc)
 
 
-@pytest.mark.parametrize("name", SHOWN)
+@pytest.mark.parametrize("name", core_first(SHOWN, ["create2"]))
 def test_broker_robot_and_brain_are_started_and_the_robot_waits_for_its_plan(
     name: str, tmp_path: Path
 ) -> None:

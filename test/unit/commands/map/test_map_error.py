@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import cache
 
 import numpy as np
 import pytest
@@ -33,7 +34,12 @@ def _solid() -> NDArray[np.bool_]:
 
 
 SOLID = _solid()
-SEEN = seen_floor(SOLID, FRAME, STATION, RobotConfig())
+
+
+@cache
+def all_seen() -> NDArray[np.bool_]:
+    """The floor that can be seen; made by the process that needs it."""
+    return seen_floor(SOLID, FRAME, STATION, RobotConfig())
 
 
 def _map(
@@ -51,13 +57,13 @@ def _map(
     inside = (row >= 0) & (row < FRAME.rows) & (column >= 0) & (column < FRAME.columns)
     row, column = np.where(inside, row, 0), np.where(inside, column, 0)
     values = np.full(frame.shape, UNKNOWN, np.int8)
-    values[inside & SEEN[row, column]] = FREE
+    values[inside & all_seen()[row, column]] = FREE
     values[inside & SOLID[row, column]] = OCCUPIED
     return OccupancyMap(frame, values)
 
 
 def _error(occupancy: OccupancyMap) -> MapError:
-    return map_error(occupancy, FRAME, SOLID, SEEN)
+    return map_error(occupancy, FRAME, SOLID, all_seen())
 
 
 def _with(occupancy: OccupancyMap, rows: slice, columns: slice, value: int) -> OccupancyMap:
@@ -118,7 +124,7 @@ def test_floor_that_is_not_there_and_floor_that_is_missed() -> None:
     assert more.missed == pytest.approx(0.0, abs=1e-6)
     less = _error(_with(true, slice(70, 80), slice(40, 50), UNKNOWN))
     assert less.missed == pytest.approx(0.25, abs=1e-6)
-    area = np.count_nonzero(SEEN) * 0.05**2
+    area = np.count_nonzero(all_seen()) * 0.05**2
     assert more.floor == pytest.approx(area / (area + 0.25))
     assert less.floor == pytest.approx((area - 0.25) / area)
 
@@ -132,7 +138,7 @@ def test_floor_beyond_the_home_s_grid_is_too_much() -> None:
 def test_a_closed_room_does_not_count() -> None:
     room = _with(_map(), slice(107, 127), slice(147, 167), FREE)
     assert _error(room).floor == pytest.approx(1.0)
-    assert not SEEN[97:117, 137:157].any()
+    assert not all_seen()[97:117, 137:157].any()
 
 
 def test_a_wall_that_is_mapped_twice_is_counted() -> None:
@@ -174,7 +180,7 @@ def test_what_truly_stands_before_a_wall_is_not_mapped_twice() -> None:
     solid = SOLID.copy()
     solid[40:60, 5] = True
     occupancy = _with(_map(), slice(50, 70), slice(15, 16), OCCUPIED)
-    assert map_error(occupancy, FRAME, solid, SEEN & ~solid).doubled == 0
+    assert map_error(occupancy, FRAME, solid, all_seen() & ~solid).doubled == 0
     assert _error(occupancy).doubled == 20
 
 
@@ -188,10 +194,12 @@ def test_a_thin_wall_seen_from_both_sides_is_one_wall() -> None:
 
 def test_sides_that_are_wrong_are_told() -> None:
     # A cell in the middle of nowhere has four.
-    wrong = wrong_sides(_with(_map(), slice(60, 61), slice(60, 61), OCCUPIED), FRAME, SOLID, SEEN)
+    wrong = wrong_sides(
+        _with(_map(), slice(60, 61), slice(60, 61), OCCUPIED), FRAME, SOLID, all_seen()
+    )
     assert len(wrong) == 4
     assert wrong.mean(axis=0) == pytest.approx((-1.5 + 60.5 * 0.05, -2.5 + 60.5 * 0.05))
-    assert len(wrong_sides(_map(), FRAME, SOLID, SEEN)) == 0
+    assert len(wrong_sides(_map(), FRAME, SOLID, all_seen())) == 0
 
 
 def test_an_empty_map_cannot_be_compared() -> None:
@@ -208,11 +216,11 @@ def test_behind_a_gap_too_narrow_for_the_body_floor_is_seen_and_counts() -> None
     solid[27:29, 80:82] = False
     seen = seen_floor(solid, FRAME, STATION, RobotConfig())
     beyond = np.count_nonzero(seen[:, 82:])
-    assert 0 < beyond < 0.7 * np.count_nonzero(SEEN[:, 82:])
+    assert 0 < beyond < 0.7 * np.count_nonzero(all_seen()[:, 82:])
     assert not (seen & solid).any()
 
 
-def test_floor_beyond_the_lidar_s_range_is_not_seen() -> None:
+def test_floor_beyond_the_lidar_s_range_is_not_all_seen() -> None:
     frame = GridFrame(0.05, 0.0, 0.0, 20, 400)
     solid = np.zeros(frame.shape, np.bool_)
     solid[0], solid[-1], solid[:, 0], solid[:, -1] = True, True, True, True

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -32,9 +33,13 @@ from roomba.world.camera.camera import Camera, Scene
 from roomba.world.home.home import Box, Carpet, Door, Rectangle
 from roomba.world.home.materials import MATERIALS
 
-FURNISHED_CAMERA = Camera(Scene.of(FURNISHED), CONFIG, supersampling=1)
-
 places = st.floats(-2.4, 2.4)
+
+
+@cache
+def furnished_camera() -> Camera:
+    """Made by the process that needs it."""
+    return Camera(Scene.of(FURNISHED), CONFIG, supersampling=1)
 
 
 @settings(max_examples=examples(60), deadline=None)
@@ -52,7 +57,7 @@ def test_depth_is_that_of_a_slow_caster(
     lens = pose.compose(Pose(CONFIG.mount_forward, 0.0, 0.0))
     if FURNISHED.solid[FURNISHED.frame.cell_of(lens.x, lens.y)]:
         return
-    depth = FURNISHED_CAMERA.depth(pose, pan)
+    depth = furnished_camera().depth(pose, pan)
     random = np.random.default_rng(seed)
     wrong = 0
     for row, column in zip(random.integers(0, 120, 40), random.integers(0, 160, 40), strict=True):
@@ -193,12 +198,12 @@ def test_what_is_not_finite_is_refused(slot: str, bad: float) -> None:
     values = {"x": 0.0, "y": 0.0, "theta": 0.0, "pan": 0.0, slot: bad}
     pose = Pose(values["x"], values["y"], values["theta"])
     with pytest.raises(PictureError, match=rf"{slot}={bad}"):
-        FURNISHED_CAMERA.picture(pose, values["pan"], CLEAN, DIRT_FRAME)
+        furnished_camera().picture(pose, values["pan"], CLEAN, DIRT_FRAME)
 
 
 def test_dirt_that_does_not_fit_is_refused() -> None:
     with pytest.raises(PictureError, match=r"\(60, 60\).*\(3, 4\)"):
-        FURNISHED_CAMERA.picture(Pose(), 0.0, np.zeros((3, 4), np.int32), DIRT_FRAME)
+        furnished_camera().picture(Pose(), 0.0, np.zeros((3, 4), np.int32), DIRT_FRAME)
 
 
 def test_supersampling_is_one_or_two() -> None:
@@ -210,7 +215,7 @@ def test_supersampling_is_one_or_two() -> None:
     "place", [(2.95, 0.0), (50.0, -70.0), (-3.0, -3.0), (1e9, 0.0), (1e300, -1e308)]
 )
 def test_from_inside_a_wall_or_off_the_map_a_wall_is_seen(place: tuple[float, float]) -> None:
-    depth = FURNISHED_CAMERA.depth(Pose(*place, 0.3), 0.0)
+    depth = furnished_camera().depth(Pose(*place, 0.3), 0.0)
     assert (depth < 0.01).all()
 
 
