@@ -2,6 +2,7 @@
 
 import subprocess
 from pathlib import Path
+from typing import Any
 
 import pytest
 import rospy
@@ -78,7 +79,7 @@ def tool(graph: RosGraph, *command: str, deadline: float = 60.0) -> str:
 
 
 @pytest.mark.parametrize("kind", MD5)
-def test_interfaces_are_byte_compatible(kind: type) -> None:
+def test_interfaces_are_byte_compatible(kind: Any) -> None:
     """Nodes compare these sums when they connect."""
     assert kind._md5sum == MD5[kind]
 
