@@ -74,7 +74,8 @@ def test_a_new_master_knows_all_and_the_clean_goes_on(shared_robot: RosGraph) ->
     owner = Owner(shared_robot)
     owner.cleans()
     before = shared_robot.system_state()
-    mark = str(shared_robot.folder)
+    # Of this robot alone; other parameters have its folder as well.
+    mark = f"kept of {shared_robot.folder}"
     shared_robot.set_param("/kept", mark)
     wait_until(lambda: is_kept(mark), 10.0, "the master has kept what it knows")
     hold = rospy.ServiceProxy("/emergency_stop", EmergencyStop, persistent=True)

@@ -7,6 +7,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+from fixtures.homes.worlds import EXACT
 from numpy.typing import NDArray
 
 from roomba.commands.map.error_kernels import TrueSurfaces, offsets
@@ -226,7 +227,7 @@ def test_floor_beyond_the_lidar_s_range_is_not_all_seen() -> None:
     solid[0], solid[-1], solid[:, 0], solid[:, -1] = True, True, True, True
     solid[:7, 100:] = True
     solid[12:, 100:] = True
-    seen = seen_floor(solid, frame, (1.0, 0.5), RobotConfig())
+    seen = seen_floor(solid, frame, (1.0, 0.5), EXACT)
     # It gets no farther than 5 m: 12 m from there it is dark.
     assert seen[8:11, 330].any()
     assert not seen[:, 345].any()

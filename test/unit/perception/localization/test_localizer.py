@@ -250,7 +250,7 @@ def test_a_lidar_that_dies_while_the_clock_is_set_back_is_noticed() -> None:
     robot = started()
     robot.clock = -1000.0
     robot.see_as = lambda ranges: None
-    robot.stay(0.7)
+    robot.stay(CONFIG.localization.scan_timeout + 0.2)
     assert robot.estimate.knowledge is Knowledge.ROUGH
     assert "the lidar sends no scans" in robot.estimate.reason
 

@@ -41,7 +41,7 @@ def test_without_scans_it_says_so_and_how_unsure_it_is(dies: str) -> None:
         robot = started(seed=seed)
         robot.see_as = lambda ranges: None if dies == "silent" else np.full_like(ranges, np.inf)
         # A scan in which nothing came back says so at once, silence after a while.
-        robot.stay(0.7 if dies == "silent" else 0.15)
+        robot.stay(CONFIG.localization.scan_timeout + 0.2 if dies == "silent" else 0.15)
         assert robot.estimate.knowledge is Knowledge.ROUGH
         said = "the lidar sends no scans" if dies == "silent" else "the lidar sees next to nothing"
         assert said in robot.estimate.reason

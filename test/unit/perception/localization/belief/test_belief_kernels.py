@@ -26,6 +26,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from roomba.configuration.localization import LocalizationConfig
 from roomba.geometry import Pose, Twist, wrap_angle
 from roomba.perception.localization.belief.belief import (
     ADAPTING,
@@ -347,8 +348,9 @@ def test_a_blind_lidar_is_not_calm_and_a_silent_one_not_for_long() -> None:
     robot, twin = twins()
     kernels, seen = Kernels(twin), robot.world.observe()
     assert kernels.tick(seen, robot.world.ranges)
-    assert is_calm(twin.belief, kernels.numbers, seen.time + 0.49)
-    assert not is_calm(twin.belief, kernels.numbers, seen.time + 0.51)
+    silent = seen.time + LocalizationConfig().scan_timeout
+    assert is_calm(twin.belief, kernels.numbers, silent - 0.01)
+    assert not is_calm(twin.belief, kernels.numbers, silent + 0.01)
     assert not kernels.tick(seen, np.full(360, np.inf, np.float32))
     twin.resumed(seen.time)
     twin.reconsider(seen.time, np.full(360, np.inf, np.float32), LIDAR)
