@@ -58,10 +58,12 @@ TIMED: Final = (
     "system/faults/test_refused_messages.py",
     "system/faults/test_standstill.py",
     "system/faults/test_supervision.py",
+    "system/test_conformance.py",
     "system/test_foreign_robot.py",
 )
 """Folders and files that assert promises of tenths of a second, or of a few seconds, of wall time,
-or play a bag faster than it was recorded: nothing but what is idle computes beside them."""
+play a bag faster than it was recorded, or compare where a robot at several times real time drives:
+nothing but what is idle computes beside them."""
 WAITING: Final = (
     "ros/runtime",
     "ros/supervision",

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 from fixtures.homes.rooms import room_home
-from fixtures.homes.worlds import IDEAL, NOISY, drive
+from fixtures.homes.worlds import EXACT, IDEAL, NOISY, drive
 from fixtures.thoroughness import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -36,7 +36,7 @@ def hours_until(world: Simulator, twist: Twist, charge: float, dt: float) -> flo
 
 @pytest.mark.parametrize(("speed", "hours", "dt"), [(0.0, 4.9, 5.0), (0.306, 3.1, 0.5)])
 def test_it_idles_and_drives_as_long_as_create_3(speed: float, hours: float, dt: float) -> None:
-    world = Simulator(HALL, start=MIDDLE)
+    world = Simulator(HALL, EXACT, start=MIDDLE)
     world.set_power(0.0, 0.0)
     took = hours_until(world, Twist(speed, speed / 0.9), 0.0, dt)
     assert world.numbers["hits"] == 0.0
@@ -44,7 +44,7 @@ def test_it_idles_and_drives_as_long_as_create_3(speed: float, hours: float, dt:
 
 
 def test_it_charges_from_empty_to_full_in_its_time_the_last_tenth_ever_slower() -> None:
-    world = Simulator(HOME, start=FREE)
+    world = Simulator(HOME, EXACT, start=FREE)
     hours_until(world, Twist(), 0.0, 10.0)
     world.put(HOME.station)
     first = hours_until(world, Twist(), 0.9 * CAPACITY, 1.0)
@@ -87,7 +87,7 @@ def test_energy_adds_up_and_the_charge_keeps_its_bounds_whatever_is_driven(
 
 
 def power_of(linear: float, angular: float, duty: tuple[float, float] = (0.0, 0.0)) -> float:
-    world = Simulator(room_home(20.0, 8.0), start=Pose(10.0, 4.0, 0.0))
+    world = Simulator(room_home(20.0, 8.0), EXACT, start=Pose(10.0, 4.0, 0.0))
     world.set_power(*duty)
     drive(world, linear, angular, 3.0)
     return world.numbers["power"]
@@ -113,7 +113,7 @@ def test_each_consumer_draws_its_power() -> None:
 
 def test_carpet_makes_the_brush_draw_more() -> None:
     home = room_home(carpets=((0.0, 0.0, 5.0, 4.0),))
-    world = Simulator(home, start=FREE)
+    world = Simulator(home, EXACT, start=FREE)
     world.set_power(1.0, 0.0)
     drive(world, 0.306, 0.306, 1.0)
     battery = CONFIG.simulation.battery
@@ -122,7 +122,7 @@ def test_carpet_makes_the_brush_draw_more() -> None:
 
 
 def test_an_empty_robot_comes_to_rest_and_drives_again_when_charged() -> None:
-    world = Simulator(HOME, start=FREE)
+    world = Simulator(HOME, EXACT, start=FREE)
     hours_until(world, Twist(), 0.01, 10.0)
     drive(world, 0.3, 0.3, 60.0)
     rest = world.observe()
@@ -136,7 +136,7 @@ def test_an_empty_robot_comes_to_rest_and_drives_again_when_charged() -> None:
 
 
 def test_the_battery_warms_up_by_its_load_and_cools_down_again() -> None:
-    world = Simulator(HALL, start=MIDDLE)
+    world = Simulator(HALL, EXACT, start=MIDDLE)
     world.set_power(1.0, 1.0)
     circle = 0.306, 0.34, 60.0, 0.5
     temperatures = [drive(world, *circle).battery.temperature for _ in range(30)]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from fixtures.homes.rooms import room_home
-from fixtures.homes.worlds import drive
+from fixtures.homes.worlds import EXACT, drive
 from numpy.typing import NDArray
 
 from roomba.configuration.simulation import (
@@ -29,7 +29,9 @@ def fallen(world: Simulator, hours: float) -> NDArray[np.int64]:
 
 @pytest.mark.parametrize("rate", [0.5, 30.0])
 def test_each_source_has_its_rate_and_its_spread(rate: float) -> None:
-    world = Simulator(room_home(10.0, 8.0, sources=[DirtSource("one", 5.0, 4.0, 0.5, 0.0, rate)]))
+    world = Simulator(
+        room_home(10.0, 8.0, sources=[DirtSource("one", 5.0, 4.0, 0.5, 0.0, rate)]), EXACT
+    )
     hours = 4000.0 / (rate / 0.002)
     fell = fallen(world, hours)
     assert fell.sum() == pytest.approx(hours * rate * 1e6, rel=0.06)
@@ -44,7 +46,7 @@ def test_each_source_has_its_rate_and_its_spread(rate: float) -> None:
 
 
 def test_a_source_without_a_rate_lets_nothing_fall() -> None:
-    world = Simulator(room_home(sources=[DirtSource("once", 2.0, 2.0, 0.3, 5.0, 0.0)]))
+    world = Simulator(room_home(sources=[DirtSource("once", 2.0, 2.0, 0.3, 5.0, 0.0)]), EXACT)
     assert world.brought_in == 5_000_000
     assert not fallen(world, 1000.0).any()
     assert world.brought_in == 5_000_000
@@ -56,7 +58,7 @@ def test_crumbs_lie_on_free_floor_only_and_all_are_counted() -> None:
         stairs=((3.5, 0.0, 5.0, 4.0),),
         sources=[DirtSource("wide", 3.2, 2.0, 0.6, 0.0, 50.0)],
     )
-    world = Simulator(home)
+    world = Simulator(home, EXACT)
     fell = fallen(world, 1.0)
     assert fell.sum() == world.brought_in > 40_000_000
     assert not fell[~world.dirt.floor].any()
@@ -66,7 +68,7 @@ def test_how_much_has_fallen_does_not_depend_on_the_step() -> None:
     sources = [DirtSource("one", 2.0, 2.0, 0.3, 0.0, 40.0)]
     brought = []
     for dt in (0.5, 5.0, 60.0):
-        world = Simulator(room_home(sources=sources), seed=4)
+        world = Simulator(room_home(sources=sources), EXACT, seed=4)
         drive(world, 0.0, 0.0, 600.0, dt)
         brought.append((world.brought_in, world.dirt.micrograms.tobytes()))
     assert brought[0] == brought[1] == brought[2]
